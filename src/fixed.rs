@@ -1,0 +1,242 @@
+//! The number types: screen coordinates, shades and 16.16 values, with every rounding named.
+//!
+//! | type | holds | bits | unit |
+//! |---|---|---|---|
+//! | [`I24F8`] | a screen coordinate | 24 whole and sign, 8 fraction | 1/256 pixel |
+//! | [`U8F8`] | a shade | 8 whole, 8 fraction | 1/256 shade |
+//! | [`I16F16`] | a coordinate or factor of the integer vertex path | 16 whole and sign, 16 fraction | 1/65,536 |
+//!
+//! S4 warns that a right shift of a negative number needs `sar`, not `shr`. More is true: `sar`
+//! rounds toward minus infinity and a division rounds toward zero, so a value that is narrowed must
+//! say which. Here each narrowing conversion has its rounding in its name.
+
+/// A screen coordinate in 1/256 pixel: 24 bits before the point, 8 behind it.
+///
+/// Pixel `p` has its centre at `256·p + 128` units.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
+pub struct I24F8(i32);
+
+impl I24F8 {
+    /// Units in a pixel.
+    pub const ONE: i32 = 256;
+    /// From the pixel's left edge to its centre, in units.
+    pub const HALF: i32 = 128;
+
+    /// From units of 1/256 pixel.
+    #[must_use]
+    pub const fn from_bits(units: i32) -> Self {
+        Self(units)
+    }
+
+    /// In units of 1/256 pixel.
+    #[must_use]
+    pub const fn to_bits(self) -> i32 {
+        self.0
+    }
+
+    /// From whole pixels, −2²³ to 2²³ − 1; wraps beyond.
+    #[must_use]
+    pub const fn from_pixels(pixels: i32) -> Self {
+        Self(pixels.wrapping_mul(Self::ONE))
+    }
+
+    /// `floor(256·pixels + ½)`, exactly: the one rounding that a projected coordinate goes through.
+    ///
+    /// Returns `None` if `pixels` is not finite or the result does not fit in 32 bits.
+    ///
+    /// Adding the half in f64 first would be wrong: `0.49999999999999994 + 0.5` is 1. So the
+    /// fraction is compared with a half instead. 256·x is exact (a power of two; where a denormal
+    /// loses nothing either), and so is `scaled − floor(scaled)` for every value for which it
+    /// matters: of a negative number nearer to 0 than 2⁻⁵³ it is rounded to 1, which is still no
+    /// less than ½.
+    ///
+    /// ```
+    /// use mode13h::fixed::I24F8;
+    /// assert_eq!(I24F8::round_from_f64(1.5), Some(I24F8::from_bits(384)));
+    /// assert_eq!(I24F8::round_from_f64(-1.0 / 512.0), Some(I24F8::from_bits(0)));
+    /// assert_eq!(I24F8::round_from_f64(f64::NAN), None);
+    /// ```
+    #[must_use]
+    #[inline]
+    pub fn round_from_f64(pixels: f64) -> Option<Self> {
+        let scaled = pixels * 256.0;
+        // Written so that NaN fails it.
+        if !(scaled > -2_147_483_648.0 && scaled < 2_147_483_647.0) {
+            return None;
+        }
+        // Truncates toward zero, in range by the line above.
+        let mut whole = scaled as i32;
+        if f64::from(whole) > scaled {
+            whole -= 1;
+        }
+        if scaled - f64::from(whole) >= 0.5 {
+            whole += 1;
+        }
+        Some(Self(whole))
+    }
+
+    /// As [`round_from_f64`](Self::round_from_f64); an f32 is an f64.
+    #[must_use]
+    #[inline]
+    pub fn round_from_f32(pixels: f32) -> Option<Self> {
+        Self::round_from_f64(f64::from(pixels))
+    }
+
+    /// From 16.16 pixels: `floor(256·x + ½)`, exactly. The sum is taken in 64 bits.
+    #[must_use]
+    #[inline]
+    pub const fn round_from_i16f16(pixels: I16F16) -> Self {
+        Self(((pixels.0 as i64 + 128) >> 8) as i32)
+    }
+
+    /// The first pixel whose centre lies at or to the right of (below) this coordinate: `ceil(x − ½)`.
+    #[must_use]
+    #[inline]
+    pub const fn first_centre(self) -> i32 {
+        // ceil((u − 128) / 256) = floor((u + 127) / 256); u is at most 2²⁰ in a raster vertex.
+        self.0.saturating_add(Self::HALF - 1) >> 8
+    }
+}
+
+/// A shade, 0 to 255 + 255/256, in 1/256 shade: 8 bits before the point, 8 behind it. AX of the
+/// 1994 loop: AH is the byte that is written, AL the fraction.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
+pub struct U8F8(u16);
+
+impl U8F8 {
+    /// The greatest shade that a vertex may have: 255.0.
+    pub const MAX_VERTEX: Self = Self(0xFF00);
+
+    /// From units of 1/256 shade.
+    #[must_use]
+    pub const fn from_bits(units: u16) -> Self {
+        Self(units)
+    }
+
+    /// In units of 1/256 shade.
+    #[must_use]
+    pub const fn to_bits(self) -> u16 {
+        self.0
+    }
+
+    /// From a whole shade, 0 to 255.
+    #[must_use]
+    pub const fn from_shade(shade: u8) -> Self {
+        Self((shade as u16) << 8)
+    }
+
+    /// The nearest whole shade, halves upward: `(u + 128) >> 8`. 255.5 and above stay at 255.
+    #[must_use]
+    pub const fn nearest(self) -> u8 {
+        (self.0.saturating_add(128) >> 8) as u8
+    }
+
+    /// The shade of an intensity on a ramp: `first + intensity·(entries − 1)`, rounded to the
+    /// nearest 1/256, halves upward. NaN and everything below 0 count as 0, everything above 1 as 1.
+    ///
+    /// `entries` is 1 to 256 and `first + entries` at most 256 (a [`Ramp`](crate::palette::Ramp)
+    /// sees to both); what does not fit saturates at 255.0.
+    #[must_use]
+    #[inline]
+    pub fn from_intensity(intensity: f32, first: u8, entries: u16) -> Self {
+        let units = f64::from(entries.saturating_sub(1)) * 256.0;
+        // `max` drops NaN: the other operand comes back. The product of 24 and 16 bits is exact in
+        // f64, and so is the sum with a half unless the product is below 2⁻¹³, where the whole part
+        // is 0 either way. `as` truncates.
+        let above = (f64::from(intensity.max(0.0).min(1.0)) * units + 0.5) as u32;
+        let shade = u32::from(first) * 256 + above;
+        Self(if shade > 0xFF00 { 0xFF00 } else { shade as u16 })
+    }
+}
+
+/// A 16.16 number: the integer vertex path of S4, whose unit vectors have length 65,536.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
+pub struct I16F16(i32);
+
+impl I16F16 {
+    /// 1.0.
+    pub const ONE: Self = Self(65_536);
+
+    /// From units of 1/65,536.
+    #[must_use]
+    pub const fn from_bits(units: i32) -> Self {
+        Self(units)
+    }
+
+    /// In units of 1/65,536.
+    #[must_use]
+    pub const fn to_bits(self) -> i32 {
+        self.0
+    }
+
+    /// From a whole number, −32,768 to 32,767.
+    #[must_use]
+    pub const fn from_int(whole: i16) -> Self {
+        Self((whole as i32) << 16)
+    }
+
+    /// `floor(65,536·x + ½)`, or `None` if `x` is not finite or does not fit. For loading a mesh:
+    /// nothing on the drawing path calls it.
+    #[must_use]
+    pub fn round_from_f64(x: f64) -> Option<Self> {
+        // The 1/256 rounding of a number 256 times as large; the product is exact.
+        I24F8::round_from_f64(x * 256.0).map(|units| Self(units.0))
+    }
+
+    /// The product, rounded toward minus infinity (`sar`), or `None` if it does not fit.
+    #[must_use]
+    pub fn checked_mul_floor(self, other: Self) -> Option<Self> {
+        i32::try_from((i64::from(self.0) * i64::from(other.0)) >> 16).ok().map(Self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_classical_half_below_is_not_rounded_up() {
+        let just_below_half = 0.499_999_999_999_999_94_f64;
+        assert_eq!((just_below_half + 0.5).floor(), 1.0, "what adding the half first would give");
+        assert_eq!(I24F8::round_from_f64(just_below_half / 256.0), Some(I24F8(0)));
+    }
+
+    #[test]
+    fn halves_go_up_on_both_sides_of_zero() {
+        for (pixels, units) in [(0.5, 1), (-0.5, 0), (1.5, 2), (-1.5, -1), (-0.500_000_1, -1)] {
+            assert_eq!(I24F8::round_from_f64(pixels / 256.0), Some(I24F8(units)), "{pixels}");
+        }
+        for tiny in [f64::MIN_POSITIVE, -f64::MIN_POSITIVE, 5e-324, -5e-324, -0.0, -1e-20] {
+            assert_eq!(I24F8::round_from_f64(tiny), Some(I24F8(0)), "{tiny:e}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 8_388_608.0, -8_388_609.0] {
+            assert_eq!(I24F8::round_from_f64(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn first_centre_is_the_ceiling_of_x_less_a_half() {
+        for units in -2000..2000 {
+            let naive = (-100..100).find(|p| p * 256 + 128 >= units);
+            assert_eq!(Some(I24F8(units).first_centre()), naive, "{units}");
+        }
+    }
+
+    #[test]
+    fn intensity_covers_the_ramp_and_never_leaves_it() {
+        for entries in 1..=256_u16 {
+            let first = (256 - entries).min(255) as u8;
+            assert_eq!(U8F8::from_intensity(0.0, first, entries).to_bits(), u16::from(first) << 8);
+            for odd in [1.0, 2.0, f32::INFINITY, f32::MAX] {
+                assert_eq!(U8F8::from_intensity(odd, first, entries).nearest(), 255);
+            }
+            for odd in [f32::NAN, -1.0, f32::NEG_INFINITY] {
+                assert_eq!(U8F8::from_intensity(odd, first, entries).nearest(), first);
+            }
+        }
+    }
+}
