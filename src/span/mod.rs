@@ -1,1 +1,206 @@
-//! Stub.
+//! The span: a row of pixels whose shade changes by the same step from each to the next.
+//!
+//! ```text
+//! fill(row, shade, step)        row[k] = ((shade + k·step) mod 65,536) >> 8
+//! ```
+//!
+//! Nothing else, for every `k` below `row.len()`, whatever the length; an empty row is left alone.
+//! `shade` and `step` are 8.8 fixed point; a falling ramp is a step in two's complement.
+//!
+//! Every kernel gives the same bytes for **all** inputs, or it is wrong. That costs the fast ones
+//! nothing: the sum wraps at 65,536, so lane `k` may start at `shade + k·step` and be exact.
+//!
+//! | kernel | what | where |
+//! |---|---|---|
+//! | `portable` | the loop in Rust; the specification | everywhere |
+//! | `asm` | the loop, five instructions a pixel | x86-64 and 32-bit x86, feature `asm` |
+//! | `asm-unrolled` | the same, eight pixels a turn | x86-64, feature `asm` |
+//! | `simd` | the best of the levels below | feature `simd` |
+//! | `simd-arrays` | plain arrays, which the compiler vectorises | everywhere, feature `simd` |
+//! | `simd-sse2` | 16 pixels a turn | x86-64, feature `simd` |
+//! | `simd-avx2` | 32 pixels a turn | x86-64 with AVX2 and feature `simd` |
+//! | `simd-avx512` | 64 pixels a turn | x86-64 with AVX-512 BW, BMI2 and feature `simd` |
+//!
+//! With `std` the processor is asked what it has; without, what the compiler was told counts.
+
+use core::fmt;
+
+mod portable;
+#[cfg(any())]
+#[expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")]
+mod simd;
+#[cfg(any())]
+#[expect(unsafe_code, reason = "the assembly's only door")]
+mod x86;
+
+/// The bare assembly entries, for the tests that call them with rubbish in their registers and read
+/// their instructions. No part of the interface.
+#[cfg(any())]
+#[doc(hidden)]
+pub mod entry {
+    pub use super::x86::entry::*;
+}
+
+/// What every kernel is: `row` (any length), `shade` and `step` in 8.8.
+type Fill = fn(row: &mut [u8], shade: u16, step: u16);
+
+/// A way to fill a span that this machine has.
+///
+/// A kernel can only be had from the constructors here, which give none that the processor cannot run.
+///
+/// ```
+/// use mode13h::span::Kernel;
+///
+/// let mut row = [0; 4];
+/// Kernel::fastest().fill(&mut row, 0x1080, 0x0100); // from 16.5, up by 1 a pixel
+/// assert_eq!(row, [0x10, 0x11, 0x12, 0x13]);
+///
+/// Kernel::fastest().fill(&mut row, 0x0100, 0xFF80); // from 1, down by ½: wraps below 0
+/// assert_eq!(row, [0x01, 0x00, 0x00, 0xFF]);
+/// ```
+#[derive(Clone, Copy)]
+pub struct Kernel {
+    name: &'static str,
+    level: &'static str,
+    fill: Fill,
+}
+
+/// A row of the table of kernels.
+struct Listed {
+    name: &'static str,
+    /// The level it draws with and its function; `None` where the machine or the build lacks it.
+    find: fn() -> Option<(&'static str, Fill)>,
+}
+
+impl Listed {
+    fn kernel(&self) -> Option<Kernel> {
+        (self.find)().map(|(level, fill)| Kernel { name: self.name, level, fill })
+    }
+}
+
+/// Every kernel there is, portable first.
+static LISTED: [Listed; 8] = [
+    Listed { name: "portable", find: || Some(("portable", portable::fill)) },
+    Listed { name: "asm", find: find_asm },
+    Listed { name: "asm-unrolled", find: find_asm_unrolled },
+    Listed { name: "simd", find: find_simd },
+    Listed { name: "simd-arrays", find: find_arrays },
+    Listed { name: "simd-sse2", find: find_sse2 },
+    Listed { name: "simd-avx2", find: find_avx2 },
+    Listed { name: "simd-avx512", find: find_avx512 },
+];
+
+fn find_asm() -> Option<(&'static str, Fill)> {
+    None
+}
+fn find_asm_unrolled() -> Option<(&'static str, Fill)> {
+    None
+}
+fn find_simd() -> Option<(&'static str, Fill)> {
+    find_avx512().or_else(find_avx2).or_else(find_sse2).or_else(find_arrays)
+}
+fn find_arrays() -> Option<(&'static str, Fill)> {
+    None
+}
+fn find_sse2() -> Option<(&'static str, Fill)> {
+    None
+}
+fn find_avx2() -> Option<(&'static str, Fill)> {
+    None
+}
+fn find_avx512() -> Option<(&'static str, Fill)> {
+    None
+}
+
+impl Kernel {
+    /// The specification, in Rust.
+    pub const PORTABLE: Self = Self { name: "portable", level: "portable", fill: portable::fill };
+
+    /// The kernels that this machine and this build have, `portable` first.
+    ///
+    /// `simd` is one of the `simd-…` levels under the name that programs ask for.
+    pub fn available() -> impl Iterator<Item = Self> + Clone {
+        LISTED.iter().filter_map(Listed::kernel)
+    }
+
+    /// The fastest kernel of this machine and this build.
+    ///
+    /// Costs a few loads: what the processor has is found out once a program.
+    #[must_use]
+    pub fn fastest() -> Self {
+        let by_speed = [find_simd, find_asm_unrolled];
+        let _ = by_speed;
+        Self::by_name("simd").unwrap_or(Self::PORTABLE)
+    }
+
+    /// The kernel of that name, as [`name`](Self::name) gives it.
+    ///
+    /// # Errors
+    /// [`UnknownKernel`] if no kernel has this name, or if this machine or build lacks it.
+    pub fn by_name(name: &str) -> Result<Self, UnknownKernel> {
+        match LISTED.iter().find(|listed| listed.name == name) {
+            Some(listed) => listed.kernel().ok_or(UnknownKernel { lacking: Some(listed.name) }),
+            None => Err(UnknownKernel { lacking: None }),
+        }
+    }
+
+    /// Its name in the table, such as `simd`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.name
+    }
+
+    /// What it draws with: for `simd` the level that was chosen, such as `avx2`.
+    #[must_use]
+    pub const fn level(self) -> &'static str {
+        self.level
+    }
+
+    /// Writes `row[k] = ((shade + k·step) mod 65,536) >> 8` for every `k` below `row.len()`.
+    ///
+    /// `shade` is the first pixel's shade, `step` what each pixel adds to it, both in 8.8.
+    #[inline]
+    pub fn fill(self, row: &mut [u8], shade: u16, step: u16) {
+        (self.fill)(row, shade, step);
+    }
+}
+
+/// The name, and for `simd` the level in brackets.
+impl fmt::Display for Kernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.name {
+            "simd" => write!(f, "simd ({})", self.level),
+            name => f.write_str(name),
+        }
+    }
+}
+
+impl fmt::Debug for Kernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Kernel({self})")
+    }
+}
+
+/// A kernel was asked for that does not exist, or that this machine or build lacks.
+///
+/// Its text lists those that there are.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct UnknownKernel {
+    /// The name, if there is such a kernel elsewhere.
+    lacking: Option<&'static str>,
+}
+
+impl fmt::Display for UnknownKernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.lacking {
+            Some(name) => write!(f, "this machine or build lacks the kernel {name}; it has")?,
+            None => f.write_str("no such kernel; this machine has")?,
+        }
+        for (i, kernel) in Kernel::available().enumerate() {
+            write!(f, "{} {}", if i == 0 { "" } else { "," }, kernel.name())?;
+        }
+        Ok(())
+    }
+}
+
+impl core::error::Error for UnknownKernel {}

@@ -1,0 +1,11 @@
+//! The loop of 1994, and the specification: what this writes is right.
+
+/// `mov [edi],ah` / `inc edi` / `add ax,bx` / `loop`, with `row` for EDI and CX.
+pub(super) fn fill(row: &mut [u8], shade: u16, step: u16) {
+    let mut ax = shade;
+    for pixel in row {
+        let [ah, _al] = ax.to_be_bytes();
+        *pixel = ah;
+        ax = ax.wrapping_add(step);
+    }
+}
