@@ -13,10 +13,7 @@ fn r4_a_square_of_two_triangles_on_pixel_centres() {
         .draw('o', [(4.5, 1.5), (4.5, 3.5), (1.5, 3.5)])
         .assert_pattern(&[
             "......", //
-            ".###..",
-            ".##o..",
-            "......",
-            "......",
+            ".###..", ".##o..", "......", "......",
         ]);
 }
 
@@ -31,12 +28,7 @@ fn r4_a_fan_round_a_centre() {
     }
     display.assert_pattern(&[
         "aaabbb.", //
-        "haabbc.",
-        "hhabcc.",
-        "gggddd.",
-        "ggfedd.",
-        "gffeed.",
-        ".......",
+        "haabbc.", "hhabcc.", "gggddd.", "ggfedd.", "gffeed.", ".......",
     ]);
 }
 

@@ -6,8 +6,8 @@ use mode13h::fixed::{I24F8, U8F8};
 use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex, VertexError};
 use support::oracle;
 use support::random::Random;
-use support::tried::Tried;
 use support::triangles::{draw, triangle, vertex};
+use support::tried::Tried;
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 24;
@@ -20,10 +20,12 @@ fn check(vertices: &[Vertex; 3]) -> u32 {
     let (low, high) = (*shades.iter().min().expect("three"), *shades.iter().max().expect("three"));
     let mut covered = 0;
     // Reseeded: off by less than 64/256 before the byte's half; else by less than (k + 1)/256.
-    for (shading, reseed, drift) in [(Shading::GouraudReseeded, 64, 64), (Shading::Gouraud, 1 << 20, i128::from(WIDTH))] {
+    for (shading, reseed, drift) in [(Shading::GouraudReseeded, 64, 64), (Shading::Gouraud, 1 << 20, i128::from(WIDTH))]
+    {
         let expected = oracle::gouraud(vertices, WIDTH as i32, HEIGHT as i32, reseed);
         // Two backgrounds tell a byte that is drawn from one that is left alone.
-        let (on_0, on_1) = (draw(vertices, shading, WIDTH, HEIGHT, None, 0), draw(vertices, shading, WIDTH, HEIGHT, None, 1));
+        let (on_0, on_1) =
+            (draw(vertices, shading, WIDTH, HEIGHT, None, 0), draw(vertices, shading, WIDTH, HEIGHT, None, 1));
         covered = 0;
         for y in 0..HEIGHT as usize {
             for x in 0..WIDTH as usize {
@@ -64,10 +66,13 @@ fn r2_slivers() {
     let mut random = Random::seeded("r2");
     let mut drawn = 0;
     while tried.more() {
-        // A hundred pixels long, one unit wide, in every direction.
-        let (x, y) = (random.within(0, 24_000), random.within(0, 6_000));
+        // A hundred pixels long, a unit wide, in every direction; along a pixel's centre, or it would
+        // hardly ever cover one.
         let turn = random.unit() * std::f64::consts::TAU;
         let (dx, dy) = ((turn.cos() * 25_600.0) as i64, (turn.sin() * 25_600.0) as i64);
+        let back = random.unit();
+        let x = random.within(0, 95) * 256 + 128 - (dx as f64 * back) as i64;
+        let y = random.within(0, 23) * 256 + 128 - (dy as f64 * back) as i64;
         let t = random.unit();
         let mut shade = || random.one_of(&[0, 0xFF00, 0x1234, 0x00FF]);
         let shades = [shade(), shade(), shade()];
@@ -105,9 +110,8 @@ fn r4_every_sixteenth_of_a_pixel() {
         for corner in 0..3 {
             for _ in 0..4 {
                 // The other corners on centres, so that edges pass through centres too.
-                let mut corners = [(0, 0); 3].map(|_| {
-                    (random.within(0, 40) * 256 + 128, random.within(0, 20) * 256 + 128)
-                });
+                let mut corners =
+                    [(0, 0); 3].map(|_| (random.within(0, 40) * 256 + 128, random.within(0, 20) * 256 + 128));
                 let (x, y) = (random.within(0, 40) * 256, random.within(0, 20) * 256);
                 corners[corner] = (x + place % 16 * 16, y + place / 16 * 16);
                 check(&corners.map(|(x, y)| vertex(x, y, (x * 7 + y) % 0xFF01, 1)));
@@ -165,8 +169,7 @@ fn r8_bands_give_the_bytes_of_the_whole() {
     let mut random = Random::seeded("r8 bands");
     let (size, pitch) = ((WIDTH * HEIGHT) as usize, WIDTH as usize + 5);
     while tried.more() {
-        let triangles: Vec<_> =
-            (0..20).map(|_| triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT))).collect();
+        let triangles: Vec<_> = (0..20).map(|_| triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT))).collect();
         let rows_each = random.within(1, i64::from(HEIGHT)) as u32;
         for with_depth in [false, true] {
             let mut paint = |frame: Frame<'_>| {
@@ -228,7 +231,9 @@ fn r14_shades_at_both_ends() {
 #[test]
 fn r7_outside_the_guard_band_is_refused() {
     let (zero, edge) = (I24F8::from_bits(0), Vertex::GUARD_BAND);
-    for (bits, legal) in [(edge, true), (-edge, true), (edge + 1, false), (-edge - 1, false), (i32::MAX, false), (i32::MIN, false)] {
+    for (bits, legal) in
+        [(edge, true), (-edge, true), (edge + 1, false), (-edge - 1, false), (i32::MAX, false), (i32::MIN, false)]
+    {
         let far = I24F8::from_bits(bits);
         for (x, y) in [(far, zero), (zero, far)] {
             let made = Vertex::new(x, y, U8F8::from_bits(0), 0);
@@ -255,9 +260,7 @@ fn depth_is_as_defined_and_the_first_of_equals_stays() {
     while tried.more() {
         let triangles: Vec<_> = (0..6).map(|_| triangle(&mut random, WIDTH.into(), HEIGHT.into())).collect();
         // The last is the first again with other shades: of equal depths the first submitted wins.
-        let twin = triangles[0].map(|v| {
-            vertex(v.x().to_bits().into(), v.y().to_bits().into(), 0, v.depth().into())
-        });
+        let twin = triangles[0].map(|v| vertex(v.x().to_bits().into(), v.y().to_bits().into(), 0, v.depth().into()));
         let all: Vec<_> = triangles.iter().copied().chain([twin]).collect();
         let (mut expected, mut nearest) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
         for vertices in &all {
@@ -265,9 +268,8 @@ fn depth_is_as_defined_and_the_first_of_equals_stays() {
                 for (x, byte) in row.iter().enumerate() {
                     let (Some(byte), place) = (byte, y * WIDTH as usize + x) else { continue };
                     let depth = oracle::depth_at(vertices, x as i32, y as i32);
-                    let (low, high) = vertices.iter().fold((u32::MAX, 0), |(low, high), v| {
-                        (low.min(v.depth()), high.max(v.depth()))
-                    });
+                    let (low, high) =
+                        vertices.iter().fold((u32::MAX, 0), |(low, high), v| (low.min(v.depth()), high.max(v.depth())));
                     assert!((low..=high).contains(&depth), "depth within the vertices' at ({x}, {y}) of {vertices:?}");
                     if depth > nearest[place] {
                         replaced += u32::from(nearest[place] != 0);

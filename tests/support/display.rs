@@ -41,8 +41,7 @@ impl Display {
 
     #[track_caller]
     pub fn assert_pattern(&self, rows: &[&str]) {
-        let shown: Vec<String> =
-            self.marks.chunks(self.width as usize).map(|row| row.iter().collect()).collect();
+        let shown: Vec<String> = self.marks.chunks(self.width as usize).map(|row| row.iter().collect()).collect();
         assert_eq!(shown, rows, "\nshown:\n{}\nexpected:\n{}\n", shown.join("\n"), rows.join("\n"));
     }
 }

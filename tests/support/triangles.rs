@@ -57,7 +57,14 @@ pub fn triangle(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
 }
 
 /// What a triangle draws into a frame full of `empty`, without a depth buffer.
-pub fn draw(vertices: &[Vertex; 3], shading: Shading, width: u32, height: u32, clip: Option<Rect>, empty: u8) -> Vec<u8> {
+pub fn draw(
+    vertices: &[Vertex; 3],
+    shading: Shading,
+    width: u32,
+    height: u32,
+    clip: Option<Rect>,
+    empty: u8,
+) -> Vec<u8> {
     let mut bytes = vec![empty; (width * height) as usize];
     let frame = Frame::new(&mut bytes, width, height, width as usize).expect("a legal frame");
     let mut raster = Raster::new(frame);
