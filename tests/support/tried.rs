@@ -1,0 +1,64 @@
+//! The table of how many cases each test tried: none, or fewer than stated, is a failure.
+//!
+//! A test's row is printed, and kept in the target directory as `tmp/tried/<test>`, so that
+//! `cat target/tmp/tried/*` is the table of all of them.
+
+use std::fs;
+use std::path::Path;
+
+/// Counts one test's cases. Has to be [`done`](Self::done) with.
+#[must_use]
+pub struct Tried {
+    test: String,
+    stated: u64,
+    cases: u64,
+    done: bool,
+}
+
+impl Tried {
+    /// A row for `test`, which states that it tries at least `stated` cases.
+    pub fn new(test: impl Into<String>, stated: u64) -> Self {
+        Self { test: test.into(), stated, cases: 0, done: false }
+    }
+
+    /// `cases` more have been tried.
+    pub fn add(&mut self, cases: u64) {
+        self.cases += cases;
+    }
+
+    /// Prints and keeps the row.
+    ///
+    /// # Panics
+    /// If no case was tried, or fewer than stated.
+    pub fn done(mut self) {
+        self.done = true;
+        let row = format!("{:<56} {:>15} cases", self.test, grouped(self.cases));
+        println!("{row}");
+        let table = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tried");
+        let file = table.join(self.test.replace([':', '/'], "_"));
+        if let Err(error) = fs::create_dir_all(&table).and_then(|()| fs::write(&file, row + "\n")) {
+            println!("{}: {error}", file.display());
+        }
+        assert!(self.cases > 0, "{}: no case was tried", self.test);
+        assert!(self.cases >= self.stated, "{}: {} cases tried, {} stated", self.test, self.cases, self.stated);
+    }
+}
+
+impl Drop for Tried {
+    fn drop(&mut self) {
+        assert!(self.done || std::thread::panicking(), "{}: its cases were never reported", self.test);
+    }
+}
+
+/// 1234567 as 1,234,567.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i) % 3 == 0 {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
