@@ -1,1 +1,182 @@
-//! Stub.
+//! 256 colours, and the ramps of shades among them.
+//!
+//! | item | what |
+//! |---|---|
+//! | [`Rgb`] | one colour; 8 bits a channel, and the DAC's 6 |
+//! | [`Ramp`] | neighbouring entries from dark to light, which a shade can never leave |
+//! | [`Palette`] | 256 colours, with the ramps that they hold |
+//! | [`gradient`] | ramps from key colours |
+//! | [`cube`] | the 6 × 6 × 6 colour cube with greys, and its nearest entry without a search |
+//! | [`BIOS`] | the colours that mode 13h starts with |
+//! | [`builtin`] | the palettes that are compiled in, by name |
+//! | [`file`] | JASC, GIMP, Adobe, Lospec and raw VGA files |
+//!
+//! A palette has 8 bits a channel, the card 6. A palette keeps the 8 bits it was given, so that a
+//! file is written as it was read; [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down
+//! to 6, and the scan-out expands to 8 again. [`Palette::on_dac`] shows what comes out.
+
+mod bios;
+pub mod builtin;
+pub mod cube;
+pub mod file;
+pub mod gradient;
+mod ramp;
+mod rgb;
+
+pub use bios::BIOS;
+pub use ramp::Ramp;
+pub use rgb::{Rgb, expand, reduce};
+
+/// 256 colours, and into how many equal shade ramps they fall.
+///
+/// ```
+/// use mode13h::palette::{Palette, Rgb, builtin};
+/// let materials = &builtin::MATERIALS_4X64;
+/// assert_eq!(materials.ramps(), 4);
+/// assert_eq!(materials.ramp(1).map(|ramp| (ramp.first(), ramp.last())), Some((64, 127)));
+///
+/// let grey = Palette::from_colors(core::array::from_fn(|i| Rgb::new(i as u8, i as u8, i as u8)));
+/// assert_eq!(grey.ramps(), 1);
+/// assert_eq!(grey.nearest(Rgb::new(99, 100, 101)), 100);
+/// ```
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Palette {
+    colors: [Rgb; 256],
+    // 0, or a power of two up to 256.
+    ramps: u16,
+}
+
+impl Palette {
+    /// The most ramps that [`from_colors`](Self::from_colors) looks for: ramps of 8 entries.
+    const MOST_RAMPS_FOUND: u16 = 32;
+
+    /// From 256 colours. The ramps are found by looking: of 1, 2, 4, 8, 16 and 32 equal ramps the
+    /// fewest such that within each no entry is darker than the one before it, and the last is
+    /// brighter than the first ([`Rgb::brightness`]); 0 if there is no such number.
+    /// [`with_ramps`](Self::with_ramps) overrides it.
+    #[must_use]
+    pub const fn from_colors(colors: [Rgb; 256]) -> Self {
+        let mut ramps = 1;
+        while ramps <= Self::MOST_RAMPS_FOUND {
+            if all_ramps_rise(&colors, ramps) {
+                return Self { colors, ramps };
+            }
+            ramps *= 2;
+        }
+        Self { colors, ramps: 0 }
+    }
+
+    /// From 256 DAC colours, 0 to 63 a channel.
+    #[must_use]
+    pub const fn from_dac(six: &[[u8; 3]; 256]) -> Self {
+        let mut colors = [Rgb::BLACK; 256];
+        let mut i = 0;
+        while i < 256 {
+            colors[i] = Rgb::from_dac(six[i]);
+            i += 1;
+        }
+        Self::from_colors(colors)
+    }
+
+    /// The same colours, said to hold `ramps` equal ramps: 0 for none, or 1, 2, 4 … 256.
+    ///
+    /// Returns `None` for any other number.
+    #[must_use]
+    pub const fn with_ramps(mut self, ramps: u16) -> Option<Self> {
+        if ramps != 0 && (!ramps.is_power_of_two() || ramps > 256) {
+            return None;
+        }
+        self.ramps = ramps;
+        Some(self)
+    }
+
+    /// The colours.
+    #[must_use]
+    #[inline]
+    pub const fn colors(&self) -> &[Rgb; 256] {
+        &self.colors
+    }
+
+    /// The colour of an entry.
+    #[must_use]
+    #[inline]
+    pub const fn color(&self, index: u8) -> Rgb {
+        self.colors[index as usize]
+    }
+
+    /// How many equal ramps the entries fall into; 0 if they are no ramps.
+    #[must_use]
+    #[inline]
+    pub const fn ramps(&self) -> usize {
+        self.ramps as usize
+    }
+
+    /// Ramp `i`, counted from 0. Returns `None` if `i` is not below [`ramps`](Self::ramps).
+    #[must_use]
+    #[inline]
+    pub const fn ramp(&self, i: usize) -> Option<Ramp> {
+        if i >= self.ramps() {
+            return None;
+        }
+        let entries = 256 / self.ramps;
+        // i is below 256 / entries, so the product is below 256.
+        Ramp::new((i as u16 * entries) as u8, entries)
+    }
+
+    /// The entry nearest to a colour, by the square of the distance in the RGB cube; of entries
+    /// equally near, the first. Looks at all 256; for the cube palette there is [`cube::nearest`].
+    #[must_use]
+    pub const fn nearest(&self, color: Rgb) -> u8 {
+        let (mut best, mut best_distance, mut i) = (0, u32::MAX, 0);
+        while i < 256 {
+            let distance = self.colors[i].distance_squared(color);
+            if distance < best_distance {
+                (best, best_distance) = (i as u8, distance);
+            }
+            i += 1;
+        }
+        best
+    }
+
+    /// The colours that the card shows for these: each through 6 bits and back. The ramps stay.
+    #[must_use]
+    pub const fn on_dac(&self) -> Self {
+        let mut colors = self.colors;
+        let mut i = 0;
+        while i < 256 {
+            colors[i] = colors[i].on_dac();
+            i += 1;
+        }
+        Self { colors, ramps: self.ramps }
+    }
+
+    pub(crate) const fn from_parts(colors: [Rgb; 256], ramps: u16) -> Self {
+        Self { colors, ramps }
+    }
+}
+
+impl Default for Palette {
+    /// The colours that mode 13h starts with.
+    fn default() -> Self {
+        BIOS
+    }
+}
+
+const fn all_ramps_rise(colors: &[Rgb; 256], ramps: u16) -> bool {
+    let entries = 256 / ramps as usize;
+    let mut first = 0;
+    while first < 256 {
+        if colors[first].brightness() >= colors[first + entries - 1].brightness() {
+            return false;
+        }
+        let mut i = first + 1;
+        while i < first + entries {
+            if colors[i].brightness() < colors[i - 1].brightness() {
+                return false;
+            }
+            i += 1;
+        }
+        first += entries;
+    }
+    true
+}

@@ -1,1 +1,229 @@
-//! Stub.
+//! The machine: a VGA card in mode 13h, with 320 × 200 pixels of one byte.
+//!
+//! | file | what |
+//! |---|---|
+//! | `vga/mod.rs` | [`Vga`]: 64 KiB of memory, the ports, the plain calls |
+//! | `vga/dac.rs` | [`Dac`]: 256 colours of 3 × 6 bits |
+//! | `vga/timing.rs` | [`timing`]: the beam, and the clock that the caller advances |
+//! | `vga/scan_out.rs` | bytes to RGB |
+//! | `vga/stamp.rs` | whether anyone touched the memory |
+
+mod dac;
+mod scan_out;
+mod stamp;
+pub mod timing;
+
+use core::ops::RangeBounds;
+
+pub use dac::Dac;
+pub use timing::Beam;
+
+use crate::palette::{BIOS, Palette, Rgb};
+use stamp::Stamp;
+
+/// A VGA card in mode 13h.
+///
+/// It holds its 64 KiB in itself: on a small stack put it into a `static` or a box.
+///
+/// ```
+/// use mode13h::palette::Rgb;
+/// use mode13h::vga::Vga;
+///
+/// let mut vga = Vga::new();
+/// vga.poke(320 * 100 + 160, 40);
+/// // 1994: entry 40 becomes pure green.
+/// for (port, value) in [(0x3C8, 40), (0x3C9, 0), (0x3C9, 63), (0x3C9, 0)] {
+///     vga.write_port(port, value);
+/// }
+/// assert_eq!(vga.palette().color(40), Rgb::new(0, 255, 0));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Vga {
+    memory: [u8; Self::MEMORY],
+    stamp: Stamp,
+    dac: Dac,
+    /// Of the palette that was set last.
+    ramps: u16,
+    beam: Beam,
+}
+
+impl Vga {
+    /// Pixels in a row.
+    pub const WIDTH: usize = 320;
+    /// Rows.
+    pub const HEIGHT: usize = 200;
+    /// Bytes from a pixel to the one below it.
+    pub const PITCH: usize = 320;
+    /// Bytes of memory that are shown: 64,000.
+    pub const SHOWN: usize = Self::PITCH * Self::HEIGHT;
+    /// Bytes of memory: 65,536.
+    pub const MEMORY: usize = 65_536;
+    /// A pixel's width to its height: 320 × 200 of them fill a 4:3 screen.
+    pub const PIXEL_ASPECT: (u32, u32) = (5, 6);
+
+    /// The card as the BIOS leaves it: memory clear, the BIOS's colours, pixel mask 0xFF, the beam
+    /// at the first pixel.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { memory: [0; Self::MEMORY], stamp: Stamp::new(), dac: Dac::new(), ramps: 0, beam: Beam::new() }
+    }
+
+    /// All 65,536 bytes; the first 64,000 are shown.
+    #[must_use]
+    #[inline]
+    pub const fn memory(&self) -> &[u8; Self::MEMORY] {
+        &self.memory
+    }
+
+    /// All 65,536 bytes, to be changed. Counts as an access, as [`stamp`](Self::stamp) shows.
+    #[must_use]
+    #[inline]
+    pub fn memory_mut(&mut self) -> &mut [u8; Self::MEMORY] {
+        self.stamp.renew();
+        &mut self.memory
+    }
+
+    /// The byte at an offset. Offsets wrap at 65,536, as DI does.
+    #[must_use]
+    #[inline]
+    pub const fn peek(&self, offset: u32) -> u8 {
+        self.memory[wrapped(offset)]
+    }
+
+    /// Stores a byte. Offsets wrap at 65,536; from 64,000 on the byte is stored but not shown.
+    #[inline]
+    pub fn poke(&mut self, offset: u32, byte: u8) {
+        self.stamp.renew();
+        self.memory[wrapped(offset)] = byte;
+    }
+
+    /// The 64,000 bytes that are shown: 320 × 200, row-major.
+    #[must_use]
+    #[inline]
+    pub const fn pixels(&self) -> &[u8] {
+        self.memory.split_at(Self::SHOWN).0
+    }
+
+    /// The 64,000 bytes that are shown, to be changed. Counts as an access, as
+    /// [`stamp`](Self::stamp) shows.
+    #[must_use]
+    #[inline]
+    pub fn pixels_mut(&mut self) -> &mut [u8] {
+        self.stamp.renew();
+        self.memory.split_at_mut(Self::SHOWN).0
+    }
+
+    /// A number that changes with every mutable access to the memory, whether or not a byte changed.
+    ///
+    /// Two cards with equal stamps hold equal bytes (see `vga/stamp.rs` for processors without
+    /// atomic instructions). The value means nothing else, and differs from run to run.
+    #[must_use]
+    #[inline]
+    pub const fn stamp(&self) -> u64 {
+        self.stamp.value()
+    }
+
+    /// `out port, value`. Ports 3C6h to 3C9h reach the [`Dac`]; a write to any other is ignored.
+    pub fn write_port(&mut self, port: u16, value: u8) {
+        match port {
+            Dac::PIXEL_MASK => self.dac.mask = value,
+            Dac::READ_INDEX => self.dac.read_index(value),
+            Dac::WRITE_INDEX => self.dac.write_index(value),
+            Dac::DATA => self.dac.write_data(value),
+            _ => {}
+        }
+    }
+
+    /// `in port`. Ports 3C6h to 3C9h read the [`Dac`], 3DAh the [`Beam`]'s status; any other reads
+    /// 0xFF, as an empty bus does.
+    ///
+    /// A loop that waits for the retrace must [`advance`](Self::advance) the clock in its body.
+    pub fn read_port(&mut self, port: u16) -> u8 {
+        match port {
+            Dac::PIXEL_MASK => self.dac.mask,
+            Dac::READ_INDEX => self.dac.state(),
+            Dac::WRITE_INDEX => self.dac.address(),
+            Dac::DATA => self.dac.read_data(),
+            Self::INPUT_STATUS => self.beam.status(),
+            _ => 0xFF,
+        }
+    }
+
+    /// Input status: bit 3 vertical retrace, bit 0 not displaying.
+    pub const INPUT_STATUS: u16 = 0x3DA;
+
+    /// Lets time pass for port 3DAh. Any number of calls ends where one call with their sum would:
+    /// nothing is rounded.
+    pub const fn advance(&mut self, nanoseconds: u64) {
+        self.beam.advance(nanoseconds);
+    }
+
+    /// Where the beam is.
+    #[must_use]
+    pub const fn beam(&self) -> Beam {
+        self.beam
+    }
+
+    /// The DAC's registers.
+    #[must_use]
+    pub const fn dac(&self) -> &Dac {
+        &self.dac
+    }
+
+    /// Loads all 256 entries, rounded down to 6 bits. Neither the memory nor the ports' index and
+    /// count take notice; the same holds for [`fade`](Self::fade) and [`cycle`](Self::cycle).
+    pub fn set_palette(&mut self, palette: &Palette) {
+        self.fade(palette, palette, 0);
+    }
+
+    /// The palette as it is displayed: entry `i` is the colour of a pixel whose byte is `i`, through
+    /// the pixel mask, 6 bits expanded to 8. [`dac`](Self::dac) has the entries as they are stored.
+    ///
+    /// Its ramps are those of the palette that was set last.
+    #[must_use]
+    pub fn palette(&self) -> Palette {
+        let mut colors = [Rgb::BLACK; 256];
+        for (pixel, color) in (0..=255).zip(&mut colors) {
+            *color = self.dac.color_of(pixel);
+        }
+        Palette::from_parts(colors, self.ramps)
+    }
+
+    /// Loads the palette that lies `t`/256 of the way from `from` to `to`: channel by channel
+    /// `(from·(256 − t) + to·t) >> 8` in 8 bits, then down to 6. `t` above 256 counts as 256. At 0
+    /// and 256 these are the palettes themselves.
+    pub fn fade(&mut self, from: &Palette, to: &Palette, t: u16) {
+        self.dac.fade(from, to, t);
+        // At most 256.
+        self.ramps = to.ramps() as u16;
+    }
+
+    /// Moves the colours of a range of entries `steps` entries up, those pushed out at the top back
+    /// in at the bottom; negative steps move them down. A range that runs backwards is empty.
+    ///
+    /// ```
+    /// # use mode13h::vga::Vga;
+    /// let mut vga = Vga::new();
+    /// let before = vga.palette();
+    /// vga.cycle(32..56, 1);
+    /// assert_eq!(vga.palette().color(33), before.color(32));
+    /// assert_eq!(vga.palette().color(32), before.color(55));
+    /// assert_eq!(vga.palette().color(56), before.color(56));
+    /// ```
+    pub fn cycle(&mut self, range: impl RangeBounds<u8>, steps: i32) {
+        self.dac.cycle(range, steps);
+    }
+}
+
+impl Default for Vga {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+const fn wrapped(offset: u32) -> usize {
+    // Below 65,536.
+    (offset & 0xFFFF) as usize
+}
+
+const _: () = assert!(BIOS.ramps() == 0, "Vga::new says that the default palette has no ramps");

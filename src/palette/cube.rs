@@ -1,0 +1,111 @@
+//! The colour cube: every mixture of six reds, six greens and six blues, and forty greys more.
+//!
+//! Entry `36·r + 6·g + b` holds level r of red, g of green, b of blue; entries 216 to 255 are greys,
+//! from dark to light, spread evenly over the DAC's levels that the cube's own six greys leave free.
+//! Every colour is one that the DAC shows exactly.
+
+use super::{Palette, Rgb, expand};
+
+/// The six levels of a channel, in the DAC's 6 bits: `63·k/5` to the nearest.
+const LEVELS: [u8; 6] = [0, 13, 25, 38, 50, 63];
+
+/// The first of the greys.
+const FIRST_GREY: usize = 216;
+
+/// The cube with its greys. It has no ramps.
+pub const CUBE: Palette = Palette::from_parts(colors(), 0);
+
+/// By reference: a `const` palette would be copied wherever it is used.
+const COLORS: &[Rgb; 256] = CUBE.colors();
+
+/// The 6-bit level of grey `k`, 0 to 39, of the entries from 216 on. 58 of the DAC's 64 levels are no
+/// level of the cube; of these, number `57·k/39`, rounded down.
+const GREYS: [u8; 40] = greys();
+
+const fn greys() -> [u8; 40] {
+    let mut free = [0; 58];
+    let (mut v, mut count, mut next_level) = (0, 0, 0);
+    while v < 64 {
+        if next_level < 6 && LEVELS[next_level] == v {
+            next_level += 1;
+        } else {
+            free[count] = v;
+            count += 1;
+        }
+        v += 1;
+    }
+    let mut greys = [0; 40];
+    let mut k = 0;
+    while k < 40 {
+        greys[k] = free[57 * k / 39];
+        k += 1;
+    }
+    greys
+}
+
+const fn colors() -> [Rgb; 256] {
+    let mut colors = [Rgb::BLACK; 256];
+    let mut i = 0;
+    while i < FIRST_GREY {
+        colors[i] = Rgb::from_dac([LEVELS[i / 36], LEVELS[i / 6 % 6], LEVELS[i % 6]]);
+        i += 1;
+    }
+    while i < 256 {
+        colors[i] = Rgb::from_dac([GREYS[i - FIRST_GREY]; 3]);
+        i += 1;
+    }
+    colors
+}
+
+/// The nearest of the six levels to each channel value; of two equally near, the lower.
+const LEVEL_OF: [u8; 256] = nearest_table(&LEVELS);
+
+/// The nearest of the forty greys to each value; of two equally near, the lower.
+const GREY_OF: [u8; 256] = nearest_table(&GREYS);
+
+const fn nearest_table<const N: usize>(rising: &[u8; N]) -> [u8; 256] {
+    let mut table = [0; 256];
+    let (mut value, mut k) = (0, 0);
+    while value < 256 {
+        // The nearest never goes back while the value rises.
+        while k + 1 < N && expand(rising[k + 1]).abs_diff(value as u8) < expand(rising[k]).abs_diff(value as u8) {
+            k += 1;
+        }
+        // N is at most 40.
+        table[value] = k as u8;
+        value += 1;
+    }
+    table
+}
+
+/// The entry of the 216 that is nearest to a colour: each channel for itself, by a table.
+#[must_use]
+#[inline]
+pub const fn nearest_mixture(color: Rgb) -> u8 {
+    // At most 36·5 + 6·5 + 5 = 215.
+    36 * LEVEL_OF[color.r as usize] + 6 * LEVEL_OF[color.g as usize] + LEVEL_OF[color.b as usize]
+}
+
+/// The entry of [`CUBE`] nearest to a colour: what [`Palette::nearest`] finds, without its search.
+///
+/// The squared distance to a grey v is 3·(v − m)² plus something that is the same for all greys, m
+/// being the mean of the three channels. So only the grey nearest to m has to be looked at, or, as m
+/// is a number of thirds, the two around it.
+#[must_use]
+#[inline]
+pub const fn nearest(color: Rgb) -> u8 {
+    let mixture = nearest_mixture(color);
+    let mut best = mixture;
+    let mut best_distance = COLORS[mixture as usize].distance_squared(color);
+    let sum = color.r as usize + color.g as usize + color.b as usize;
+    let mut value = sum / 3;
+    while value <= sum.div_ceil(3) {
+        let grey = FIRST_GREY as u8 + GREY_OF[value];
+        let distance = COLORS[grey as usize].distance_squared(color);
+        if distance < best_distance {
+            (best, best_distance) = (grey, distance);
+        }
+        value += 1;
+    }
+    best
+}

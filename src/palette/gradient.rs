@@ -1,0 +1,83 @@
+//! Ramps from key colours.
+
+use super::{Ramp, Rgb};
+
+/// A colour at a place on a ramp.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Key {
+    /// Where: 0 is the ramp's first entry, 255 its last.
+    pub at: u8,
+    /// The colour there.
+    pub color: Rgb,
+}
+
+impl Key {
+    /// A key at `at`, 0 to 255, of the colour `0xRRGGBB`.
+    #[must_use]
+    pub const fn new(at: u8, rgb: u32) -> Self {
+        Self { at, color: Rgb::from_u32(rgb) }
+    }
+}
+
+/// Fills the entries of `ramp` by straight lines between keys, channel by channel.
+///
+/// Entry `i` of `n` lies at `255·i/(n − 1)`, the only entry of a ramp of one at 255. A channel's
+/// value is rounded to the nearest of 0 to 255, halves upward, from the exact fraction. Before the
+/// first key and behind the last their colours go on. The keys must stand in rising order of
+/// [`Key::at`]; a key that does not rise above the one before it counts for nothing. With no keys
+/// nothing changes.
+///
+/// ```
+/// use mode13h::palette::{Ramp, Rgb, gradient::{Key, fill}};
+/// let mut colors = [Rgb::BLACK; 256];
+/// fill(&mut colors, Ramp::new(16, 3).unwrap(), &[Key::new(0, 0x000000), Key::new(255, 0xff8001)]);
+/// assert_eq!(colors[17], Rgb::new(128, 64, 1));
+/// assert_eq!(colors[19], Rgb::BLACK);
+/// ```
+pub const fn fill(colors: &mut [Rgb; 256], ramp: Ramp, keys: &[Key]) {
+    let mut i = 0;
+    while i < ramp.entries() {
+        if let Some(color) = color_at(i, ramp.entries(), keys) {
+            colors[ramp.index(i) as usize] = color;
+        }
+        i += 1;
+    }
+}
+
+const fn color_at(i: u16, entries: u16, keys: &[Key]) -> Option<Rgb> {
+    if keys.is_empty() {
+        return None;
+    }
+    // Places are held as numerators over `entries − 1`.
+    let (place, scale) = if entries == 1 { (255, 1) } else { (i as i32 * 255, entries as i32 - 1) };
+    let mut below = keys[0];
+    let mut k = 1;
+    while k < keys.len() && keys[k].at as i32 * scale <= place {
+        if keys[k].at > below.at {
+            below = keys[k];
+        }
+        k += 1;
+    }
+    // The next key that rises, if there is one.
+    while k < keys.len() && keys[k].at <= below.at {
+        k += 1;
+    }
+    let start = below.at as i32 * scale;
+    if k == keys.len() || place <= start {
+        return Some(below.color);
+    }
+    let above = keys[k];
+    let (along, length) = (place - start, above.at as i32 * scale - start);
+    Some(Rgb::new(
+        between(below.color.r, above.color.r, along, length),
+        between(below.color.g, above.color.g, along, length),
+        between(below.color.b, above.color.b, along, length),
+    ))
+}
+
+/// `a + (b − a)·along/length`, to the nearest, halves upward. `length` is at most 255·255, so that
+/// all products stay below 2²⁶; the result lies between `a` and `b`.
+const fn between(a: u8, b: u8, along: i32, length: i32) -> u8 {
+    let twice = 2 * (a as i32 * length + (b as i32 - a as i32) * along) + length;
+    (twice / (2 * length)) as u8
+}

@@ -1,0 +1,149 @@
+//! The DAC: 256 entries of 3 × 6 bits behind four ports.
+//!
+//! | port | written | read |
+//! |---|---|---|
+//! | 3C6h | pixel mask | pixel mask |
+//! | 3C7h | index to read from | 3 after a read index, 0 after a write index |
+//! | 3C8h | index to write to | the index that the next third write would change |
+//! | 3C9h | red, green, blue in turn | red, green, blue in turn |
+//!
+//! As in the chip that IBM took (Inmos IMS G171) there is one address register and one count of
+//! three for both directions; setting a read index leaves the address one further, so that 3C8h
+//! then reads one more. Sources: IBM PS/2 technical reference, video subsystem; FreeVGA; DOSBox
+//! `vga_dac.cpp`, which does the same.
+
+use core::ops::{Bound, RangeBounds};
+
+use crate::palette::{BIOS, Palette, Rgb};
+
+/// The palette registers of the card.
+#[derive(Clone, Debug)]
+pub struct Dac {
+    /// 0x00RRGGBB, each channel an expanded 6-bit value: the form that the scan-out looks up.
+    pub(super) shown: [u32; 256],
+    /// Every pixel's byte is ANDed with this on its way to the table.
+    pub(super) mask: u8,
+    address: u8,
+    reading: bool,
+    /// Which channel comes next: 0 red, 1 green, 2 blue.
+    channel: u8,
+    /// The colour on its way, in 6 bits.
+    latch: [u8; 3],
+}
+
+impl Dac {
+    /// Pixel mask, read and write.
+    pub const PIXEL_MASK: u16 = 0x3C6;
+    /// Write: the index to read from. Read: 3 while reading, 0 while writing.
+    pub const READ_INDEX: u16 = 0x3C7;
+    /// The index to write to.
+    pub const WRITE_INDEX: u16 = 0x3C8;
+    /// Red, green, blue in turn, 6 bits each.
+    pub const DATA: u16 = 0x3C9;
+
+    pub(super) const fn new() -> Self {
+        let mut shown = [0; 256];
+        let mut i = 0;
+        while i < 256 {
+            shown[i] = BIOS.colors()[i].to_u32();
+            i += 1;
+        }
+        Self { shown, mask: 0xFF, address: 0, reading: false, channel: 0, latch: [0; 3] }
+    }
+
+    /// An entry as it is stored, 0 to 63 a channel; the pixel mask plays no part.
+    #[must_use]
+    pub const fn entry(&self, index: u8) -> [u8; 3] {
+        Rgb::from_u32(self.shown[index as usize]).to_dac()
+    }
+
+    /// The pixel mask, 0xFF unless changed through port 3C6h.
+    #[must_use]
+    pub const fn mask(&self) -> u8 {
+        self.mask
+    }
+
+    /// The colour that a pixel's byte shows as: looked up through the pixel mask, in 8 bits.
+    #[must_use]
+    pub const fn color_of(&self, pixel: u8) -> Rgb {
+        Rgb::from_u32(self.shown[(pixel & self.mask) as usize])
+    }
+
+    /// Stores a colour, rounded down to 6 bits.
+    pub(super) fn set(&mut self, index: u8, color: Rgb) {
+        self.shown[usize::from(index)] = color.on_dac().to_u32();
+    }
+
+    pub(super) fn write_index(&mut self, index: u8) {
+        self.address = index;
+        self.reading = false;
+        self.channel = 0;
+    }
+
+    pub(super) fn read_index(&mut self, index: u8) {
+        self.address = index.wrapping_add(1);
+        self.reading = true;
+        self.channel = 0;
+    }
+
+    pub(super) fn state(&self) -> u8 {
+        if self.reading { 3 } else { 0 }
+    }
+
+    pub(super) fn address(&self) -> u8 {
+        self.address
+    }
+
+    pub(super) fn write_data(&mut self, value: u8) {
+        self.latch[usize::from(self.channel)] = value & 63;
+        self.channel += 1;
+        if self.channel == 3 {
+            self.channel = 0;
+            self.set(self.address, Rgb::from_dac(self.latch));
+            self.address = self.address.wrapping_add(1);
+        }
+    }
+
+    pub(super) fn read_data(&mut self) -> u8 {
+        if self.channel == 0 {
+            self.latch = self.entry(self.address.wrapping_sub(1));
+        }
+        let value = self.latch[usize::from(self.channel)];
+        self.channel += 1;
+        if self.channel == 3 {
+            self.channel = 0;
+            self.address = self.address.wrapping_add(1);
+        }
+        value
+    }
+
+    pub(super) fn fade(&mut self, from: &Palette, to: &Palette, t: u16) {
+        let t = u32::from(t.min(256));
+        // At most 255·256, so the shifted sum is a byte. Rounded down, as the DAC rounds.
+        let mix = |a: u8, b: u8| ((u32::from(a) * (256 - t) + u32::from(b) * t) >> 8) as u8;
+        for index in 0..=255 {
+            let (a, b) = (from.color(index), to.color(index));
+            self.set(index, Rgb::new(mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)));
+        }
+    }
+
+    pub(super) fn cycle(&mut self, range: impl RangeBounds<u8>, steps: i32) {
+        let first = match range.start_bound() {
+            Bound::Included(&i) => usize::from(i),
+            Bound::Excluded(&i) => usize::from(i) + 1,
+            Bound::Unbounded => 0,
+        };
+        let end = match range.end_bound() {
+            Bound::Included(&i) => usize::from(i) + 1,
+            Bound::Excluded(&i) => usize::from(i),
+            Bound::Unbounded => 256,
+        };
+        // `None` where the range runs backwards.
+        if let Some(entries) = self.shown.get_mut(first..end)
+            && !entries.is_empty()
+        {
+            // Of at most 256 entries, so the remainder is 0 to 255.
+            entries.rotate_right(steps.rem_euclid(entries.len() as i32) as usize);
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! From bytes to colours, as the DAC does it on the fly.
+
+use super::Vga;
+
+impl Vga {
+    /// The frame as 64,000 pixels `0x00RRGGBB`, row-major: each byte ANDed with the pixel mask,
+    /// looked up, its 6 bits a channel expanded to 8.
+    ///
+    /// Fills as much of `out` as there is, from the start: of a shorter buffer all, of a longer one
+    /// the first 64,000 pixels; the rest is left alone.
+    ///
+    /// ```
+    /// use mode13h::vga::Vga;
+    /// let mut vga = Vga::new();
+    /// vga.pixels_mut()[0] = 4;
+    /// let mut rgb = [0; Vga::SHOWN];
+    /// vga.scan_out(&mut rgb);
+    /// assert_eq!(rgb[0], 0x00AA_0000);
+    /// ```
+    pub fn scan_out(&self, out: &mut [u32]) {
+        let (colors, mask) = (&self.dac.shown, self.dac.mask);
+        for (color, pixel) in out.iter_mut().zip(self.pixels()) {
+            *color = colors[usize::from(pixel & mask)];
+        }
+    }
+
+    /// A row as 320 pixels of 5 bits red, 6 green, 5 blue (red on top), for a display that is fed
+    /// row by row from a small buffer.
+    ///
+    /// Fills as much of `out` as there is, as [`scan_out`](Self::scan_out) does. A row of 200 or
+    /// more leaves `out` alone.
+    pub fn scan_out_row_rgb565(&self, row: usize, out: &mut [u16]) {
+        // Each colour is converted where it stands: a table of 256 for a row of 320 would hardly pay.
+        let Some(pixels) = self.pixels().chunks_exact(Self::WIDTH).nth(row) else { return };
+        for (color, &pixel) in out.iter_mut().zip(pixels) {
+            *color = self.dac.color_of(pixel).to_rgb565();
+        }
+    }
+}

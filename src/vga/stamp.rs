@@ -1,0 +1,62 @@
+//! A number that tells whether anyone touched the frame.
+
+#[cfg(target_has_atomic = "ptr")]
+use core::sync::atomic::{AtomicUsize, Ordering};
+
+/// How many stamps a machine takes from the common store at once: one atomic addition in so many
+/// accesses.
+const BLOCK: u64 = 1 << 20;
+
+/// Blocks given out so far. Block 0 is for memory that was never touched: all of it is alike.
+#[cfg(target_has_atomic = "ptr")]
+static BLOCKS: AtomicUsize = AtomicUsize::new(1);
+
+/// Equal stamps mean equal memory, also between two machines: a renderer that drew into one would
+/// otherwise take the other's untouched frame for its own. (On a processor without atomic
+/// additions the stamps of two machines can meet; there a stamp speaks for one machine alone.)
+#[derive(Debug)]
+pub(super) struct Stamp {
+    value: u64,
+    /// The last stamp of the block that is this machine's own.
+    last: u64,
+}
+
+impl Stamp {
+    pub(super) const fn new() -> Self {
+        Self { value: 0, last: 0 }
+    }
+
+    pub(super) const fn value(&self) -> u64 {
+        self.value
+    }
+
+    #[inline]
+    pub(super) fn renew(&mut self) {
+        if self.value == self.last {
+            self.value = next_block(self.last);
+            self.last = self.value + (BLOCK - 1);
+        } else {
+            self.value += 1;
+        }
+    }
+}
+
+impl Clone for Stamp {
+    /// The copy's memory is the same, so its stamp is; its next one comes from a block of its own.
+    fn clone(&self) -> Self {
+        Self { value: self.value, last: self.value }
+    }
+}
+
+#[cfg(target_has_atomic = "ptr")]
+#[cold]
+fn next_block(_last: u64) -> u64 {
+    // Wraps after 2⁶⁴ accesses, or 2⁵² where pointers have 32 bits.
+    (BLOCKS.fetch_add(1, Ordering::Relaxed) as u64).wrapping_mul(BLOCK)
+}
+
+#[cfg(not(target_has_atomic = "ptr"))]
+#[cold]
+fn next_block(last: u64) -> u64 {
+    (last / BLOCK).wrapping_add(1).wrapping_mul(BLOCK)
+}
