@@ -114,7 +114,7 @@ pub fn write_atomically(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), ExportError> {
     let path = path.as_ref();
-    let fail = |error| ExportError::io(path, error);
+    let fail = |error: io::Error| ExportError::io(path, error);
 
     // A link is followed, so that the file behind it is replaced and not the link. One that leads nowhere yet is
     // replaced itself.

@@ -23,9 +23,7 @@ use crate::vga::Vga;
 /// let mut vga = Vga::new();
 /// vga.pixels_mut()[100 * 320 + 160] = 15;
 /// export::png(&vga, &path)?;
-/// # Ok::<(), export::ExportError>(())
-/// # .map_err(|error| std::io::Error::other(error))?;
-/// # Ok::<(), std::io::Error>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn png(vga: &Vga, path: impl AsRef<Path>) -> Result<(), ExportError> {
     let palette = vga.palette();
