@@ -12,9 +12,9 @@ pub use glam;
 
 pub mod fixed;
 pub mod palette;
-pub mod vga;
-pub mod span;
 pub mod raster;
+pub mod span;
+pub mod vga;
 
 #[cfg(feature = "alloc")]
 pub mod light;

@@ -1,1 +1,242 @@
-//! Stub.
+//! Triangle meshes: vertices with normals, triangles, surfaces; what holds of them as a whole.
+//!
+//! A [`Mesh`] comes from one of the [`shapes`], from an OBJ file (`obj`, with the feature of that
+//! name) or from the caller's own vertices ([`Mesh::new`], [`Mesh::with_normals`]). Once made it is
+//! sound: every position and normal is finite, every index in range, there is at least one triangle.
+//! Whatever would not be is refused with a [`MeshError`].
+//!
+//! Triangles are counter-clockwise seen from outside, in a right-handed system; y is up.
+
+mod bounds;
+mod error;
+pub mod normals;
+
+mod orientation;
+pub mod shapes;
+mod surface;
+mod topology;
+mod wide;
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use glam::{Vec2, Vec3};
+
+pub use bounds::Bounds;
+pub use error::MeshError;
+pub use normals::Weight;
+pub use surface::Surface;
+
+/// A triangle mesh.
+///
+/// ```
+/// use mode13h::glam::Vec3;
+/// use mode13h::mesh::Mesh;
+///
+/// let mesh = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]])?;
+/// assert_eq!(mesh.normals()[0], Vec3::Z);
+/// assert!(!mesh.is_closed());
+/// # Ok::<(), mode13h::mesh::MeshError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    texcoords: Option<Vec<Vec2>>,
+    triangles: Vec<[u32; 3]>,
+    triangle_surfaces: Vec<u16>,
+    surfaces: Vec<Surface>,
+    bounds: Bounds,
+    closed: bool,
+    convex: bool,
+}
+
+impl Mesh {
+    /// The most vertices, and the most triangles, of a mesh: 2³¹ − 1.
+    pub const MOST: usize = i32::MAX as usize;
+
+    /// A mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share
+    /// a vertex: a vertex that is listed twice is a crease.
+    ///
+    /// Vertices keep their numbers. Where the normals of a vertex's faces cancel, it is split, and
+    /// the new vertices come at the end (see [`normals`]).
+    ///
+    /// # Errors
+    /// A position that is not finite, an index out of range, no triangle, or more than
+    /// [`MOST`](Self::MOST) of either.
+    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        check(&positions, &triangles)?;
+        let normals = vec![Vec3::Z; positions.len()];
+        let mut mesh = Self::assemble(positions, normals, triangles);
+        // Numbers of vertices, which are below 2³¹.
+        let own: Vec<u32> = (0..mesh.positions.len() as u32).collect();
+        mesh.average(&own, Weight::Angle, None);
+        Ok(mesh)
+    }
+
+    /// A mesh with one plain [`Surface`] and the caller's normals, one for each vertex. They are made
+    /// unit here.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); as many normals as vertices, each finite and none zero.
+    pub fn with_normals(
+        positions: Vec<Vec3>,
+        mut normals: Vec<Vec3>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
+        check(&positions, &triangles)?;
+        if normals.len() != positions.len() {
+            return Err(MeshError::Count { what: "normals", given: normals.len(), needed: positions.len() });
+        }
+        for (vertex, normal) in normals.iter_mut().enumerate() {
+            if !normal.is_finite() {
+                return Err(MeshError::NormalNotFinite { vertex });
+            }
+            *normal = normals::unit(*normal).ok_or(MeshError::NormalZero { vertex })?;
+        }
+        Ok(Self::assemble(positions, normals, triangles))
+    }
+
+    /// The same mesh with texture coordinates, one pair for each vertex.
+    ///
+    /// # Errors
+    /// As many pairs as vertices, each finite.
+    pub fn with_texcoords(mut self, texcoords: Vec<Vec2>) -> Result<Self, MeshError> {
+        let (given, needed) = (texcoords.len(), self.positions.len());
+        if given != needed {
+            return Err(MeshError::Count { what: "texture coordinates", given, needed });
+        }
+        if let Some(vertex) = texcoords.iter().position(|t| !t.is_finite()) {
+            return Err(MeshError::TexcoordNotFinite { vertex });
+        }
+        self.texcoords = Some(texcoords);
+        Ok(self)
+    }
+
+    /// The same mesh with these surfaces, and for each triangle the number of its own.
+    ///
+    /// # Errors
+    /// As many numbers as triangles, each below the number of surfaces.
+    pub fn with_surfaces(mut self, surfaces: Vec<Surface>, triangle_surfaces: Vec<u16>) -> Result<Self, MeshError> {
+        let (given, needed) = (triangle_surfaces.len(), self.triangles.len());
+        if given != needed {
+            return Err(MeshError::Count { what: "triangle surfaces", given, needed });
+        }
+        if let Some(triangle) = triangle_surfaces.iter().position(|&s| usize::from(s) >= surfaces.len()) {
+            return Err(MeshError::SurfaceOutOfRange { triangle });
+        }
+        self.surfaces = surfaces;
+        self.triangle_surfaces = triangle_surfaces;
+        Ok(self)
+    }
+
+    /// Finite positions, unit normals, indices in range: a shape, or input that was checked.
+    pub(in crate::mesh) fn assemble(positions: Vec<Vec3>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
+        debug_assert!(check(&positions, &triangles).is_ok() && normals.len() == positions.len());
+        let points = topology::weld(&positions);
+        let bounds = Bounds::of(&positions, &triangles);
+        let closed = topology::is_closed(&triangles, &points);
+        let convex = closed && topology::is_convex(&positions, &triangles, &points);
+        Self {
+            positions,
+            normals,
+            texcoords: None,
+            triangle_surfaces: vec![0; triangles.len()],
+            triangles,
+            surfaces: vec![Surface::default()],
+            bounds,
+            closed,
+            convex,
+        }
+    }
+
+    /// Where each vertex is.
+    #[must_use]
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// A unit normal for each vertex.
+    #[must_use]
+    pub fn normals(&self) -> &[Vec3] {
+        &self.normals
+    }
+
+    /// A pair of texture coordinates for each vertex: u to the right, v up.
+    #[must_use]
+    pub fn texcoords(&self) -> Option<&[Vec2]> {
+        self.texcoords.as_deref()
+    }
+
+    /// Three vertices each, counter-clockwise seen from outside; at least one triangle.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// For each triangle the number of its surface.
+    #[must_use]
+    pub fn triangle_surfaces(&self) -> &[u16] {
+        &self.triangle_surfaces
+    }
+
+    /// The surfaces that [`triangle_surfaces`](Self::triangle_surfaces) counts.
+    #[must_use]
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    /// The box and the sphere around all vertices that a triangle uses.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Is every edge shared by exactly two triangles that run through it in opposite directions?
+    /// Vertices at the same position count as one. No back face of a closed mesh can be seen from
+    /// outside.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Is the mesh certainly closed, convex and wound outward? Then its front faces never hide each
+    /// other. Exact: coordinates that were rounded so that a face has the slightest dent make it
+    /// `false`, which costs time, never correctness.
+    #[must_use]
+    pub fn is_convex(&self) -> bool {
+        self.convex
+    }
+
+    /// The volume inside a closed mesh, by the divergence theorem: the sum of the tetrahedra between
+    /// the box's centre and each triangle. Negative if the triangles are wound inward; of no meaning
+    /// if the mesh is not closed.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        let centre = wide::widen(self.bounds.centre);
+        let mut six_volumes = 0.0;
+        for &triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|i| wide::sub(wide::widen(self.positions[i as usize]), centre));
+            six_volumes += wide::dot(a, wide::cross(b, c));
+        }
+        six_volumes / 6.0
+    }
+}
+
+/// What every mesh must keep to.
+fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
+    if triangles.is_empty() {
+        return Err(MeshError::NoTriangles);
+    }
+    if positions.len() > Mesh::MOST || triangles.len() > Mesh::MOST {
+        return Err(MeshError::TooLarge);
+    }
+    if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
+        return Err(MeshError::PositionNotFinite { vertex });
+    }
+    let out = |t: &[u32; 3]| t.iter().any(|&i| i as usize >= positions.len());
+    match triangles.iter().position(out) {
+        Some(triangle) => Err(MeshError::IndexOutOfRange { triangle }),
+        None => Ok(()),
+    }
+}

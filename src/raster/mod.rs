@@ -1,1 +1,51 @@
-//! Stub.
+//! The raster: from projected vertices to bytes, exact where it counts.
+//!
+//! A projected coordinate has been rounded once, to 1/256 pixel. From there on everything is
+//! integer, and **cover is exact**: a pixel is drawn if and only if its centre, at
+//! (x + ½, y + ½), lies inside the triangle or on a top or left edge. Two triangles that share an
+//! edge leave no hole and draw no pixel twice. Shades stay **in range**: a byte lies within
+//! `[(min + 128) >> 8, (max + 128) >> 8]` of its own triangle's vertices. Neither is reached by
+//! clamping pixels: [`edge`] walks the edges with quotient and remainder, [`shade`] says why no
+//! sum can leave the range.
+//!
+//! The stages, in the order in which a triangle passes them:
+//!
+//! | file | what |
+//! |---|---|
+//! | [`vertex`] | what may enter: a [`Vertex`] is checked when it is made |
+//! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
+//! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
+//! | [`edge`], [`cover`] | which pixels |
+//! | [`shade`], [`depth`] | which byte, and whether it is in front |
+//! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
+//!
+//! ```
+//! use mode13h::fixed::{I24F8, U8F8};
+//! use mode13h::raster::{Frame, Raster, Shading, Vertex};
+//!
+//! let mut bytes = [0_u8; 8 * 4];
+//! let mut raster = Raster::new(Frame::new(&mut bytes, 8, 4, 8)?);
+//! let at = |x, y, shade| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(shade), 0);
+//! let drawn = raster.triangle(&[at(0, 0, 40)?, at(8, 0, 200)?, at(0, 4, 40)?], Shading::default());
+//! assert_eq!(drawn.pixels, 16);
+//! assert_eq!(&bytes[..8], &[50, 70, 90, 110, 130, 150, 170, 0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod cover;
+pub mod depth;
+#[cfg(feature = "embedded-graphics")]
+mod draw_target;
+pub mod edge;
+pub mod frame;
+pub mod quotient;
+pub mod shade;
+pub mod triangle;
+pub mod vertex;
+
+pub use depth::DepthBuffer;
+#[cfg(feature = "embedded-graphics")]
+pub use draw_target::Index;
+pub use frame::{Frame, FrameError, Rect};
+pub use triangle::{Drawn, Raster, Shading};
+pub use vertex::{Vertex, VertexError};

@@ -25,6 +25,7 @@
 
 use core::fmt;
 
+pub mod depth;
 mod portable;
 #[cfg(any())]
 #[expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")]

@@ -1,0 +1,49 @@
+//! How far a mesh reaches.
+
+use glam::Vec3;
+
+use super::wide::{length, sub, widen};
+
+/// The box and the sphere around a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The least x, y and z.
+    pub min: Vec3,
+    /// The greatest x, y and z.
+    pub max: Vec3,
+    /// The middle of the box.
+    pub centre: Vec3,
+    /// From the centre to the farthest vertex, rounded up. No more than `f32::MAX`: of a mesh that
+    /// reaches farther, up to √3 times that, it is `f32::MAX`.
+    pub radius: f32,
+}
+
+impl Bounds {
+    /// Around the vertices that the triangles use. There is at least one triangle; indices are in
+    /// range.
+    pub(super) fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+        let used = || triangles.iter().flatten().map(|&i| positions[i as usize]);
+        let mut min = Vec3::MAX;
+        let mut max = Vec3::MIN;
+        for p in used() {
+            min = min.min(p);
+            max = max.max(p);
+        }
+        // In f64: min + max may exceed f32, and so may the radius.
+        let middle = |a: f32, b: f32| ((f64::from(a) + f64::from(b)) / 2.0) as f32;
+        let centre = Vec3::new(middle(min.x, max.x), middle(min.y, max.y), middle(min.z, max.z));
+        let mut radius = 0.0_f64;
+        for p in used() {
+            radius = radius.max(length(sub(widen(p), widen(centre))));
+        }
+        Self { min, max, centre, radius: round_up(radius) }
+    }
+}
+
+/// To the next f32 that is not less, or `f32::MAX`. `value` ≥ 0.
+fn round_up(value: f64) -> f32 {
+    // To the nearest; beyond the range to infinity.
+    let nearest = value as f32;
+    let up = if f64::from(nearest) < value { nearest.next_up() } else { nearest };
+    up.min(f32::MAX)
+}

@@ -1,0 +1,72 @@
+//! Why a mesh is refused.
+
+use core::fmt;
+
+/// Why a mesh is refused. Vertices and triangles are counted from 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// There is nothing to draw.
+    NoTriangles,
+    /// More than [`Mesh::MOST`](super::Mesh::MOST) vertices or triangles.
+    TooLarge,
+    /// A position has a NaN or an infinity.
+    PositionNotFinite {
+        /// Whose.
+        vertex: usize,
+    },
+    /// A normal has a NaN or an infinity.
+    NormalNotFinite {
+        /// Whose.
+        vertex: usize,
+    },
+    /// A normal has length 0, so no direction.
+    NormalZero {
+        /// Whose.
+        vertex: usize,
+    },
+    /// A texture coordinate is a NaN or an infinity.
+    TexcoordNotFinite {
+        /// Whose.
+        vertex: usize,
+    },
+    /// A triangle names a vertex that there is not.
+    IndexOutOfRange {
+        /// Which.
+        triangle: usize,
+    },
+    /// A triangle names a surface that there is not.
+    SurfaceOutOfRange {
+        /// Which.
+        triangle: usize,
+    },
+    /// Two lists that belong together are of different lengths.
+    Count {
+        /// Of the list that was given.
+        what: &'static str,
+        /// Its length.
+        given: usize,
+        /// The length it must have.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NoTriangles => write!(f, "no faces"),
+            Self::TooLarge => write!(f, "more than 2,147,483,647 vertices or triangles"),
+            Self::PositionNotFinite { vertex } => write!(f, "the position of vertex {vertex} is not finite"),
+            Self::NormalNotFinite { vertex } => write!(f, "the normal of vertex {vertex} is not finite"),
+            Self::NormalZero { vertex } => write!(f, "the normal of vertex {vertex} is zero"),
+            Self::TexcoordNotFinite { vertex } => {
+                write!(f, "the texture coordinates of vertex {vertex} are not finite")
+            }
+            Self::IndexOutOfRange { triangle } => write!(f, "triangle {triangle} names a vertex that there is not"),
+            Self::SurfaceOutOfRange { triangle } => write!(f, "triangle {triangle} names a surface that there is not"),
+            Self::Count { what, given, needed } => write!(f, "{given} {what}, but {needed} are needed"),
+        }
+    }
+}
+
+impl core::error::Error for MeshError {}

@@ -1,0 +1,92 @@
+//! Shapes that need no file: each fits into the unit sphere about the origin.
+//!
+//! All normals are analytic (S2) but for the cube's, which are those of its faces. Numbers of slices,
+//! stacks and segments that are too small are raised to the least that makes the shape, and those
+//! over 4,096 lowered to that.
+//!
+//! | shape | closed | convex | axis |
+//! |---|---|---|---|
+//! | [`cube`] | yes | yes | |
+//! | [`sphere`] | yes | yes | y |
+//! | [`torus`] | yes | no | z: seen through the hole from the front |
+//! | [`cone`] | yes | yes | y, apex up |
+//! | [`cylinder`] | yes | yes | y |
+//! | [`wall`] | no | no | faces +z |
+//! | [`teapot`] | no | no | y up, spout to +x |
+//!
+//! Coordinates are rounded toward zero, so that nothing reaches out of the unit sphere, and where a
+//! quad's four corners are not in one plane after rounding it is split along the diagonal that makes
+//! the shape convex. So [`Mesh::is_convex`], which is exact, holds.
+
+mod cube;
+mod revolution;
+mod teapot;
+mod wall;
+
+use core::cmp::Ordering;
+
+use glam::Vec3;
+
+use super::Mesh;
+use super::orientation::side;
+
+pub use cube::cube;
+pub use revolution::{cone, cylinder, sphere, torus};
+pub use teapot::teapot;
+pub use wall::wall;
+
+/// The most slices, stacks or segments.
+const MOST: u32 = 4096;
+
+/// Name, and how it is made when nothing is said about its subdivision.
+const TABLE: [(&str, fn() -> Mesh); 7] = [
+    ("cube", cube),
+    ("sphere", || sphere(48, 24)),
+    ("torus", || torus(48, 24)),
+    ("cone", || cone(48, 8)),
+    ("cylinder", || cylinder(48, 8)),
+    ("wall", || wall(16, 16)),
+    ("teapot", || teapot(8)),
+];
+
+/// The names that [`by_name`] knows.
+pub const NAMES: [&str; 7] = {
+    let mut names = [""; 7];
+    let mut i = 0;
+    while i < names.len() {
+        names[i] = TABLE[i].0;
+        i += 1;
+    }
+    names
+};
+
+/// A shape in its usual subdivision, at most 4,032 triangles; `None` if the name is not in [`NAMES`].
+///
+/// ```
+/// use mode13h::mesh::shapes;
+/// let torus = shapes::by_name("torus").expect("it is in NAMES");
+/// assert_eq!(torus.triangles().len(), 2 * 48 * 24);
+/// ```
+#[must_use]
+pub fn by_name(name: &str) -> Option<Mesh> {
+    TABLE.iter().find(|row| row.0 == name).map(|row| row.1())
+}
+
+/// To the f32 next to `value` on the side of zero.
+fn toward_zero(value: f64) -> f32 {
+    // To the nearest.
+    let nearest = value as f32;
+    if libm::fabs(f64::from(nearest)) <= libm::fabs(value) {
+        nearest
+    } else {
+        // The magnitude is in the lower 31 bits, and not 0.
+        f32::from_bits(nearest.to_bits() - 1)
+    }
+}
+
+/// Two triangles for the quad `a`, `b`, `c`, `d`, counter-clockwise; along a–c unless b–d makes them
+/// convex and a–c does not.
+fn quad(positions: &[Vec3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
+    let [pa, pb, pc, pd] = [a, b, c, d].map(|i| positions[i as usize]);
+    if side(pa, pb, pc, pd) == Ordering::Greater { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }
+}

@@ -1,0 +1,101 @@
+//! Which pixels a triangle covers: its rows, top to bottom.
+
+use super::edge::Edge;
+use super::frame::Rect;
+use super::vertex::Vertex;
+
+/// A triangle whose vertices are in order: top, middle, bottom, of equal heights the left one
+/// first. What is drawn depends on the three points alone, not on the order they were given in.
+#[derive(Clone, Copy, Debug)]
+pub struct Ordered {
+    /// The vertices by (y, x).
+    pub vertices: [Vertex; 3],
+    /// Twice the area in (1/256 pixel)²; positive if the middle vertex lies right of the edge from
+    /// top to bottom. Within ±2⁴².
+    pub doubled_area: i64,
+}
+
+impl Ordered {
+    /// Puts three vertices in order.
+    #[must_use]
+    #[inline]
+    pub fn new(vertices: &[Vertex; 3]) -> Self {
+        let [mut top, mut middle, mut bottom] = *vertices;
+        let key = |v: &Vertex| (v.y(), v.x());
+        if key(&middle) < key(&top) {
+            core::mem::swap(&mut top, &mut middle);
+        }
+        if key(&bottom) < key(&middle) {
+            core::mem::swap(&mut middle, &mut bottom);
+            if key(&middle) < key(&top) {
+                core::mem::swap(&mut top, &mut middle);
+            }
+        }
+        let vertices = [top, middle, bottom];
+        let [(x0, y0), (x1, y1), (x2, y2)] = vertices.map(|v| point(&v));
+        let doubled_area =
+            i64::from(x1 - x0) * i64::from(y2 - y0) - i64::from(x2 - x0) * i64::from(y1 - y0);
+        Self { vertices, doubled_area }
+    }
+
+    /// Calls `row` for every row that has a covered pixel inside `clip`, from the top down.
+    /// `frame_width` is that of the whole frame; `clip` lies inside the frame.
+    #[inline]
+    pub fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row)) {
+        let [top, middle, bottom] = &self.vertices;
+        // The clip rectangle lies inside a frame of at most 4,096 pixels a side.
+        let (clip_x0, clip_x1, width) = (clip.x0 as i32, clip.x1 as i32, frame_width as i32);
+        let first = top.y().first_centre().max(clip.y0 as i32);
+        let end = bottom.y().first_centre().min(clip.y1 as i32);
+        if self.doubled_area == 0 || first >= end || clip_x0 >= clip_x1 {
+            return;
+        }
+        // No column's centre between the leftmost and the rightmost vertex, or none inside the clip.
+        let (left, right) = self.vertices.iter().fold((i32::MAX, i32::MIN), |(low, high), v| {
+            (low.min(v.x().first_centre()), high.max(v.x().first_centre()))
+        });
+        if left >= right || left >= clip_x1 || right <= clip_x0 {
+            return;
+        }
+        let split = middle.y().first_centre();
+        let mut long = Edge::at_row(point(top), point(bottom), first);
+        let mut y = first;
+        for (from, to, until) in [(top, middle, split.min(end)), (middle, bottom, end)] {
+            if y >= until {
+                continue;
+            }
+            let mut short = Edge::at_row(point(from), point(to), y);
+            while y < until {
+                let (x_left, x_right) =
+                    if self.doubled_area > 0 { (long.x, short.x) } else { (short.x, long.x) };
+                let origin = x_left.max(0);
+                let (x0, x1) = (origin.max(clip_x0), x_right.min(width).min(clip_x1));
+                if x0 < x1 {
+                    row(Row { y, origin, x0, x1 });
+                }
+                long.down();
+                short.down();
+                y += 1;
+            }
+        }
+    }
+}
+
+/// The covered pixels of one row.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Row {
+    /// The row.
+    pub y: i32,
+    /// The row's first covered pixel inside the *frame*, whatever the clip rectangle: where shades
+    /// start, so that a pixel's byte does not depend on the clip rectangle.
+    pub origin: i32,
+    /// The first covered pixel inside the clip rectangle.
+    pub x0: i32,
+    /// The pixel after the last.
+    pub x1: i32,
+}
+
+#[inline]
+fn point(v: &Vertex) -> (i32, i32) {
+    (v.x().to_bits(), v.y().to_bits())
+}

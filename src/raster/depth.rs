@@ -1,0 +1,150 @@
+//! Depth: which of two triangles is in front.
+//!
+//! A vertex's depth is `d = round(2³⁰ · near / w)`, a u32: greater is nearer, and there is no far
+//! plane. 1/w is linear on the screen, so over a triangle d is a plane. [`DepthPlane::at`] is the
+//! *definition* of a triangle's depth at a pixel; every hidden-surface method decides by it.
+//!
+//! ```text
+//! at(x, y) = (d0·2²⁴ + gx·(X − x0) + gy·(Y − y0) + 2²³) >> 24     X, Y: the pixel's centre, 1/256 pixel
+//! gx = nearest(2²⁴ · ((d1 − d0)·(y2 − y0) − (d2 − d0)·(y1 − y0)) / A)
+//! ```
+//!
+//! vertex 0 being the first in (y, x) order: gradients a pixel with 16 fraction bits. They are
+//! within half a unit, and no vertex is further than 2²¹ units away in x and in y, so the sum is
+//! within 2²¹ of exact: an eighth of a depth step. The byte shift rounds to the nearest, so a
+//! depth lies within that of its vertices, without a clamp.
+//!
+//! A sliver's gradients don't fit in 64 bits. The *sum* does, so all is taken modulo 2⁶⁴, where
+//! the wrap is meant; only the division needs 128 bits, and only then.
+
+use core::fmt;
+
+use super::cover::Ordered;
+use super::frame::Frame;
+use super::quotient::Divisor;
+
+/// The depth plane of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct DepthPlane {
+    /// At column 0's centre of row 0, with 24 fraction bits, the half included, modulo 2⁶⁴.
+    origin: i64,
+    per_column: i64,
+    per_row: i64,
+}
+
+impl DepthPlane {
+    /// The plane of a triangle that is not degenerate.
+    #[must_use]
+    #[inline]
+    pub fn new(triangle: &Ordered) -> Self {
+        let [v0, v1, v2] = &triangle.vertices;
+        let sign = triangle.doubled_area >> 63;
+        let area = Divisor::new((triangle.doubled_area ^ sign) - sign);
+        let (x0, y0) = (i64::from(v0.x().to_bits()), i64::from(v0.y().to_bits()));
+        let (x1, y1) = (i64::from(v1.x().to_bits()) - x0, i64::from(v1.y().to_bits()) - y0);
+        let (x2, y2) = (i64::from(v2.x().to_bits()) - x0, i64::from(v2.y().to_bits()) - y0);
+        let d0 = i64::from(v0.depth());
+        let (d1, d2) = (i64::from(v1.depth()) - d0, i64::from(v2.depth()) - d0);
+        // At most 2 · 2³² · 2²¹ = 2⁵⁴.
+        let gx = gradient(((d1 * y2 - d2 * y1) ^ sign) - sign, &area);
+        let gy = gradient(((d2 * x1 - d1 * x2) ^ sign) - sign, &area);
+        let origin = ((d0 << 24) + (1 << 23))
+            .wrapping_add(gx.wrapping_mul(128 - x0))
+            .wrapping_add(gy.wrapping_mul(128 - y0));
+        Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
+    }
+
+    /// The depth at pixel (`x`, `y`), whose centre lies in the triangle.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, x: i32, y: i32) -> u32 {
+        // Within the vertices' depths, so non-negative and below 2³².
+        (self.fixed_at(x, y) >> 24) as u32
+    }
+
+    /// The same with 24 fraction bits, the half included, modulo 2⁶⁴: where a depth span starts.
+    #[must_use]
+    #[inline]
+    pub fn fixed_at(&self, x: i32, y: i32) -> i64 {
+        self.origin
+            .wrapping_add(self.per_column.wrapping_mul(i64::from(x)))
+            .wrapping_add(self.per_row.wrapping_mul(i64::from(y)))
+    }
+
+    /// From one pixel to the next, with 24 fraction bits, modulo 2⁶⁴.
+    #[must_use]
+    #[inline]
+    pub fn step(&self) -> i64 {
+        self.per_column
+    }
+}
+
+/// `nearest(2²⁴ · numerator / area)` modulo 2⁶⁴, halves upward; |numerator| at most 2⁵⁴.
+#[inline]
+fn gradient(numerator: i64, area: &Divisor) -> i64 {
+    // Below 2³⁷ the product is below 2⁶¹; the quotient is then within the proved range if the area
+    // is at least 2¹⁵, half a pixel.
+    if numerator.unsigned_abs() < 1 << 37 && area.get() >= 1 << 15 {
+        area.floor((numerator << 24) + (area.get() >> 1))
+    } else {
+        let wide = (i128::from(numerator) << 24) + i128::from(area.get() >> 1);
+        // The wrap is meant: see the module's head.
+        wide.div_euclid(i128::from(area.get())) as i64
+    }
+}
+
+/// A depth buffer over the rows of a frame: one u32 a pixel, greater is nearer, 0 is farthest.
+/// The slice is the caller's.
+#[derive(Debug)]
+pub struct DepthBuffer<'a> {
+    values: &'a mut [u32],
+    width: u32,
+    first_row: u32,
+}
+
+/// The slice is too short for a frame's depth buffer.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct DepthBufferError {
+    /// Values given.
+    pub given: usize,
+    /// Values needed: the frame's columns times the rows that it holds.
+    pub needed: usize,
+}
+
+impl fmt::Display for DepthBufferError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} depths given for a frame that needs {}", self.given, self.needed)
+    }
+}
+
+impl core::error::Error for DepthBufferError {}
+
+impl<'a> DepthBuffer<'a> {
+    /// Lays a depth buffer over the rows that `frame` holds. The values stay as they are:
+    /// [`clear`](Self::clear) sets them.
+    ///
+    /// # Errors
+    /// `values` is shorter than columns × rows.
+    pub fn new(values: &'a mut [u32], frame: &Frame<'_>) -> Result<Self, DepthBufferError> {
+        let rows = frame.rows();
+        let needed = frame.width() as usize * (rows.end - rows.start) as usize;
+        let given = values.len();
+        match values.get_mut(..needed) {
+            Some(values) => Ok(Self { values, width: frame.width(), first_row: rows.start }),
+            None => Err(DepthBufferError { given, needed }),
+        }
+    }
+
+    /// Everything as far away as can be.
+    pub fn clear(&mut self) {
+        self.values.fill(0);
+    }
+
+    /// The depths of row `y`, or `None` if the buffer does not hold it.
+    #[must_use]
+    #[inline]
+    pub fn row_mut(&mut self, y: u32) -> Option<&mut [u32]> {
+        let start = y.checked_sub(self.first_row)? as usize * self.width as usize;
+        self.values.get_mut(start..start + self.width as usize)
+    }
+}

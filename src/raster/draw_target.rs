@@ -1,0 +1,78 @@
+//! A frame as a target of `embedded-graphics`: text, lines, shapes and images on the same bytes.
+
+use core::convert::Infallible;
+
+use embedded_graphics::Pixel;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{Dimensions, Point, Size};
+use embedded_graphics::pixelcolor::PixelColor;
+use embedded_graphics::pixelcolor::raw::RawU8;
+use embedded_graphics::primitives::Rectangle;
+
+use super::frame::Frame;
+
+/// A palette index as a colour of `embedded-graphics`.
+///
+/// ```
+/// use embedded_graphics::{mono_font::{MonoTextStyle, ascii::FONT_6X10}, prelude::*, text::Text};
+/// use mode13h::raster::{Frame, Index};
+///
+/// let mut bytes = [0_u8; 32 * 12];
+/// let mut frame = Frame::new(&mut bytes, 32, 12, 32)?;
+/// Text::new("386", Point::new(1, 8), MonoTextStyle::new(&FONT_6X10, Index(15))).draw(&mut frame)?;
+/// assert!(bytes.contains(&15));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub struct Index(pub u8);
+
+impl PixelColor for Index {
+    type Raw = RawU8;
+}
+
+impl From<RawU8> for Index {
+    fn from(raw: RawU8) -> Self {
+        use embedded_graphics::pixelcolor::raw::RawData;
+        Self(raw.into_inner())
+    }
+}
+
+impl From<Index> for RawU8 {
+    fn from(index: Index) -> Self {
+        Self::new(index.0)
+    }
+}
+
+impl Dimensions for Frame<'_> {
+    fn bounding_box(&self) -> Rectangle {
+        Rectangle::new(Point::zero(), Size::new(self.width(), self.height()))
+    }
+}
+
+impl DrawTarget for Frame<'_> {
+    type Color = Index;
+    type Error = Infallible;
+
+    /// Pixels outside the frame, or in rows that this band does not hold, are left out.
+    fn draw_iter<I: IntoIterator<Item = Pixel<Index>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        for Pixel(at, Index(index)) in pixels {
+            let (Ok(x), Ok(y)) = (usize::try_from(at.x), u32::try_from(at.y)) else { continue };
+            if let Some(pixel) = self.row_mut(y).and_then(|row| row.get_mut(x)) {
+                *pixel = index;
+            }
+        }
+        Ok(())
+    }
+
+    fn fill_solid(&mut self, area: &Rectangle, Index(index): Index) -> Result<(), Infallible> {
+        let area = area.intersection(&self.bounding_box());
+        let (x, width) = (area.top_left.x.max(0) as usize, area.size.width as usize);
+        for y in area.rows() {
+            // Not negative: the area lies within the frame.
+            if let Some(pixels) = self.row_mut(y as u32).and_then(|row| row.get_mut(x..x + width)) {
+                pixels.fill(index);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,271 @@
+//! The bytes that are drawn into: a frame of any size, whole or in bands of rows.
+
+use core::fmt;
+use core::ops::Range;
+
+use crate::vga::Vga;
+
+/// A rectangle of pixels: `x0 ≤ x < x1`, `y0 ≤ y < y1`. Empty where an end is not after its start.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub struct Rect {
+    /// First column.
+    pub x0: u32,
+    /// First row.
+    pub y0: u32,
+    /// The column after the last.
+    pub x1: u32,
+    /// The row after the last.
+    pub y1: u32,
+}
+
+impl Rect {
+    /// The part that both rectangles hold.
+    #[must_use]
+    pub fn intersection(self, other: Self) -> Self {
+        Self {
+            x0: self.x0.max(other.x0),
+            y0: self.y0.max(other.y0),
+            x1: self.x1.min(other.x1),
+            y1: self.y1.min(other.y1),
+        }
+    }
+
+    /// Whether it holds no pixel.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self.x0 >= self.x1 || self.y0 >= self.y1
+    }
+}
+
+/// Why bytes can't serve as a frame.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum FrameError {
+    /// Width or height is 0 or above 4,096.
+    Size {
+        /// Columns asked for.
+        width: u32,
+        /// Rows asked for.
+        height: u32,
+    },
+    /// The pitch is less than the width.
+    Pitch {
+        /// Bytes from one row to the next.
+        pitch: usize,
+        /// Columns.
+        width: u32,
+    },
+    /// The band of rows is empty or reaches beyond the frame.
+    Band {
+        /// First row of the band.
+        first: u32,
+        /// The row after its last.
+        end: u32,
+        /// Rows of the frame.
+        height: u32,
+    },
+    /// There are fewer bytes than the rows need.
+    Short {
+        /// Bytes given.
+        given: usize,
+        /// Bytes needed.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for FrameError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Size { width, height } => {
+                write!(f, "a frame of {width} × {height} pixels: each side must be 1 to {}", Frame::MAX_SIDE)
+            }
+            Self::Pitch { pitch, width } => write!(f, "a pitch of {pitch} bytes is less than the width, {width}"),
+            Self::Band { first, end, height } => {
+                write!(f, "rows {first} to {end} are no band of a frame of {height} rows")
+            }
+            Self::Short { given, needed } => write!(f, "{given} bytes given for a frame that needs {needed}"),
+        }
+    }
+}
+
+impl core::error::Error for FrameError {}
+
+/// A frame of bytes, row-major, borrowed from whoever owns them. It may hold all rows or a band of
+/// them; coordinates are those of the whole frame either way, and drawing in bands gives the same
+/// bytes as drawing the whole.
+#[derive(Debug)]
+pub struct Frame<'a> {
+    pixels: &'a mut [u8],
+    width: u32,
+    height: u32,
+    pitch: usize,
+    rows: Range<u32>,
+}
+
+impl<'a> Frame<'a> {
+    /// The most columns or rows.
+    pub const MAX_SIDE: u32 = 4096;
+
+    /// A whole frame of `width × height` pixels whose rows lie `pitch` bytes apart.
+    ///
+    /// # Errors
+    /// A side of 0 or above 4,096, a pitch below the width, too few bytes.
+    pub fn new(pixels: &'a mut [u8], width: u32, height: u32, pitch: usize) -> Result<Self, FrameError> {
+        Self::band(pixels, width, height, pitch, 0..height)
+    }
+
+    /// The band `rows` of a frame of `width × height`: `pixels` holds those rows alone. A chip with
+    /// 5 KiB to spare draws 320 × 200 as thirteen bands.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and a band that is empty or reaches beyond the frame.
+    pub fn band(
+        pixels: &'a mut [u8],
+        width: u32,
+        height: u32,
+        pitch: usize,
+        rows: Range<u32>,
+    ) -> Result<Self, FrameError> {
+        let side = 1..=Self::MAX_SIDE;
+        if !side.contains(&width) || !side.contains(&height) {
+            return Err(FrameError::Size { width, height });
+        }
+        if pitch < width as usize {
+            return Err(FrameError::Pitch { pitch, width });
+        }
+        if rows.start >= rows.end || rows.end > height {
+            return Err(FrameError::Band { first: rows.start, end: rows.end, height });
+        }
+        // The last row needs only its pixels. Saturating: a pitch may be any usize.
+        let needed = pitch.saturating_mul((rows.end - rows.start - 1) as usize).saturating_add(width as usize);
+        if pixels.len() < needed {
+            return Err(FrameError::Short { given: pixels.len(), needed });
+        }
+        Ok(Self { pixels, width, height, pitch, rows })
+    }
+
+    /// Columns.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows of the whole frame.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The rows that it holds.
+    #[must_use]
+    pub fn rows(&self) -> Range<u32> {
+        self.rows.clone()
+    }
+
+    /// All pixels that it holds.
+    #[must_use]
+    pub fn bounds(&self) -> Rect {
+        Rect { x0: 0, y0: self.rows.start, x1: self.width, y1: self.rows.end }
+    }
+
+    /// The pixels of row `y`, or `None` if the frame does not hold it.
+    #[must_use]
+    #[inline]
+    pub fn row(&self, y: u32) -> Option<&[u8]> {
+        let start = self.offset_of(y)?;
+        self.pixels.get(start..start + self.width as usize)
+    }
+
+    /// The pixels of row `y` to draw into, or `None` if the frame does not hold it.
+    #[must_use]
+    #[inline]
+    pub fn row_mut(&mut self, y: u32) -> Option<&mut [u8]> {
+        let start = self.offset_of(y)?;
+        self.pixels.get_mut(start..start + self.width as usize)
+    }
+
+    /// Sets every pixel that it holds to `index`; bytes between the rows stay.
+    pub fn clear(&mut self, index: u8) {
+        for y in self.rows() {
+            if let Some(row) = self.row_mut(y) {
+                row.fill(index);
+            }
+        }
+    }
+
+    /// The same frame, borrowed for a shorter time.
+    pub fn reborrow(&mut self) -> Frame<'_> {
+        Frame {
+            pixels: self.pixels,
+            width: self.width,
+            height: self.height,
+            pitch: self.pitch,
+            rows: self.rows.clone(),
+        }
+    }
+
+    /// Parts the frame into bands of `rows_each` rows (at least 1), the last perhaps shorter.
+    pub fn bands(&mut self, rows_each: u32) -> impl Iterator<Item = Frame<'_>> {
+        let (width, height, pitch, rows) = (self.width, self.height, self.pitch, self.rows.clone());
+        let rows_each = rows_each.max(1);
+        // The last chunk may lack the bytes after the last pixel; it still holds width of them.
+        self.pixels.chunks_mut(pitch.saturating_mul(rows_each as usize)).zip(0..).filter_map(move |(pixels, band)| {
+            let first = rows.start + band * rows_each;
+            Frame::band(pixels, width, height, pitch, first..(first + rows_each).min(rows.end)).ok()
+        })
+    }
+
+    #[inline]
+    fn offset_of(&self, y: u32) -> Option<usize> {
+        // In range: `band` has checked the last row.
+        self.rows.contains(&y).then(|| (y - self.rows.start) as usize * self.pitch)
+    }
+}
+
+impl<'a> From<&'a mut Vga> for Frame<'a> {
+    /// The 320 × 200 pixels that the machine shows. Taking them counts as a change of its memory.
+    fn from(vga: &'a mut Vga) -> Self {
+        Frame {
+            pixels: vga.pixels_mut(),
+            width: Vga::WIDTH as u32,
+            height: Vga::HEIGHT as u32,
+            pitch: Vga::PITCH,
+            rows: 0..Vga::HEIGHT as u32,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_that_cannot_be_are_refused() {
+        let mut bytes = [0_u8; 64];
+        assert!(matches!(Frame::new(&mut bytes, 0, 4, 8), Err(FrameError::Size { .. })));
+        assert!(matches!(Frame::new(&mut bytes, 4, 4097, 8), Err(FrameError::Size { .. })));
+        assert!(matches!(Frame::new(&mut bytes, 8, 4, 7), Err(FrameError::Pitch { .. })));
+        assert!(matches!(Frame::new(&mut bytes, 8, 9, 8), Err(FrameError::Short { given: 64, needed: 72 })));
+        assert!(matches!(Frame::new(&mut bytes, 8, 2, usize::MAX), Err(FrameError::Short { .. })));
+        assert!(matches!(Frame::band(&mut bytes, 8, 4, 8, 2..2), Err(FrameError::Band { .. })));
+        assert!(matches!(Frame::band(&mut bytes, 8, 4, 8, 2..5), Err(FrameError::Band { .. })));
+        assert!(Frame::new(&mut bytes, 1, 8, 9).is_ok(), "the last row needs only its pixels");
+    }
+
+    #[test]
+    fn bands_hold_each_row_once() {
+        let mut bytes = [0_u8; 10 * 7 - 3];
+        let mut frame = Frame::new(&mut bytes, 7, 7, 10).expect("legal");
+        for mut band in frame.bands(3) {
+            for y in band.rows() {
+                for byte in band.row_mut(y).expect("held") {
+                    *byte += 1 + y as u8;
+                }
+            }
+        }
+        for y in 0..7 {
+            assert_eq!(frame.row(y), Some(&[1 + y as u8; 7][..]));
+        }
+        assert_eq!(frame.row(7), None);
+    }
+}

@@ -1,0 +1,139 @@
+//! Exact quotients from one reciprocal.
+//!
+//! A triangle divides several numbers by the same divisor: its doubled area, the height of an edge.
+//! Integer division is slow (20 to 90 cycles for 64 bits on the processors of the last decade), so
+//! where the processor has f64 the divisor is inverted once and every quotient is a product, made
+//! exact by its remainder:
+//!
+//! ```text
+//! q = nearest(n · (1/d))        in f64: three roundings, each at most one part in 2⁵³
+//! r = n − q·d                   in i64: exact
+//! if r < 0 { q −= 1; r += d }   now 0 ≤ r < d: q is the floor
+//! ```
+//!
+//! One correction is enough while |n/d| < 2⁴⁶: the product's error is then below 2⁴⁶ · 3 · 2⁻⁵³ <
+//! 0.03, so |q − n/d| < 0.53 and −0.53·d < r < 0.53·d. The result is the integer floor, so the same on every processor;
+//! where there is no f64 unit the integer division is used, and nothing of this module links a
+//! soft-float routine.
+
+/// Whether the target has IEEE double precision in hardware. Without it the branch that uses
+/// floats is not compiled. (x87 is left out: it rounds to 64 bits on the way.)
+const HAS_F64: bool = cfg!(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    target_arch = "wasm32",
+    all(target_arch = "x86", target_feature = "sse2")
+));
+
+/// A divisor, 1 to 2⁴⁴, with its reciprocal.
+#[derive(Clone, Copy, Debug)]
+pub struct Divisor {
+    divisor: i64,
+    /// 1/divisor, or 0 where the target has no f64 unit.
+    reciprocal: f64,
+}
+
+impl Divisor {
+    /// The largest quotient, either way, that one correction is proved for.
+    pub const MAX_QUOTIENT: i64 = 1 << 46;
+
+    /// `divisor` must be 1 to 2⁴⁴; what is less counts as 1.
+    #[must_use]
+    #[inline]
+    pub fn new(divisor: i64) -> Self {
+        debug_assert!((1..=1 << 44).contains(&divisor), "divisor {divisor}");
+        let divisor = divisor.max(1);
+        Self { divisor, reciprocal: if HAS_F64 { 1.0 / divisor as f64 } else { 0.0 } }
+    }
+
+    /// The divisor.
+    #[must_use]
+    #[inline]
+    pub fn get(&self) -> i64 {
+        self.divisor
+    }
+
+    /// `(q, r)` with `n = q·divisor + r` and `0 ≤ r < divisor`: the floor and its remainder.
+    /// |n| is below 2⁶² and the quotient within ±[`MAX_QUOTIENT`](Self::MAX_QUOTIENT).
+    #[must_use]
+    #[inline]
+    pub fn floor_and_rest(&self, n: i64) -> (i64, i64) {
+        debug_assert!((n / self.divisor).abs() <= Self::MAX_QUOTIENT, "{n} / {}", self.divisor);
+        if !HAS_F64 {
+            return (n.div_euclid(self.divisor), n.rem_euclid(self.divisor));
+        }
+        // 1.5 · 2⁵²: adding it leaves the nearest integer in the low bits of the mantissa, for
+        // values within ±2⁵¹. SSE2 has no rounding instruction, and a cast to i64 would saturate,
+        // at the cost of two comparisons.
+        const MAGIC: f64 = 6_755_399_441_055_744.0;
+        let nearest = (n as f64 * self.reciprocal + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()) as i64;
+        let rest = n.wrapping_sub(nearest.wrapping_mul(self.divisor));
+        let below = rest >> 63; // −1 where the nearest was above, else 0
+        (nearest + below, rest + (below & self.divisor))
+    }
+
+    /// The quotient rounded toward minus infinity.
+    #[must_use]
+    #[inline]
+    pub fn floor(&self, n: i64) -> i64 {
+        self.floor_and_rest(n).0
+    }
+
+    /// The quotient rounded toward plus infinity.
+    #[must_use]
+    #[inline]
+    pub fn ceil(&self, n: i64) -> i64 {
+        self.floor(n + (self.divisor - 1))
+    }
+
+    /// The quotient rounded toward zero.
+    #[must_use]
+    #[inline]
+    pub fn truncate(&self, n: i64) -> i64 {
+        let sign = n >> 63;
+        // The floor of the magnitude, with the sign put back.
+        (self.floor((n ^ sign) - sign) ^ sign) - sign
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn check(n: i64, d: i64) {
+        let divisor = Divisor::new(d);
+        assert_eq!(divisor.floor_and_rest(n), (n.div_euclid(d), n.rem_euclid(d)), "{n} / {d}");
+        assert_eq!(divisor.truncate(n), n / d, "{n} / {d}");
+        assert_eq!(divisor.ceil(n), -((-n).div_euclid(d)), "{n} / {d}");
+    }
+
+    #[test]
+    fn at_the_multiples_and_beside_them() {
+        for bits_d in 0..=42 {
+            for d in [(1_i64 << bits_d) - 1, 1 << bits_d, (1 << bits_d) + 1, (1 << bits_d) / 3 * 2 + 1] {
+                let d = d.clamp(1, 1 << 42);
+                for bits_q in 0..=45 {
+                    for q in [(1_i64 << bits_q) - 1, 1 << bits_q, (1 << bits_q) + 1, (1 << bits_q) / 7 * 5] {
+                        let Some(n) = q.checked_mul(d).filter(|n| *n < 1 << 61) else { continue };
+                        for n in [n - 1, n, n + 1, n + d / 2, n + d - 1] {
+                            check(n, d);
+                            check(-n, d);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        #[test]
+        fn anywhere(d_bits in 0..42_u32, d in any::<i64>(), n_bits in 0..61_u32, n in any::<i64>()) {
+            let d = (d & ((2_i64 << d_bits) - 1)).max(1);
+            let n = n % (2_i64 << n_bits);
+            prop_assume!((n / d).abs() < Divisor::MAX_QUOTIENT);
+            check(n, d);
+        }
+    }
+}

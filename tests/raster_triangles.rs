@@ -1,0 +1,292 @@
+//! Single triangles against the oracle: cover, range, shades, clip rectangles, bands, depth.
+
+mod support;
+
+use mode13h::fixed::{I24F8, U8F8};
+use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex, VertexError};
+use support::oracle;
+use support::random::Random;
+use support::triangles::{draw, triangle, vertex};
+use support::tried::Tried;
+
+const WIDTH: u32 = 96;
+const HEIGHT: u32 = 24;
+
+/// Cover, bytes, range and error of one triangle in both kinds of Gouraud, and flat. Returns the
+/// pixels covered.
+fn check(vertices: &[Vertex; 3]) -> u32 {
+    let points = vertices.each_ref().map(oracle::point);
+    let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
+    let (low, high) = (*shades.iter().min().expect("three"), *shades.iter().max().expect("three"));
+    let mut covered = 0;
+    // Reseeded: off by less than 64/256 before the byte's half; else by less than (k + 1)/256.
+    for (shading, reseed, drift) in [(Shading::GouraudReseeded, 64, 64), (Shading::Gouraud, 1 << 20, i128::from(WIDTH))]
+    {
+        let expected = oracle::gouraud(vertices, WIDTH as i32, HEIGHT as i32, reseed);
+        // Two backgrounds tell a byte that is drawn from one that is left alone.
+        let (on_0, on_1) =
+            (draw(vertices, shading, WIDTH, HEIGHT, None, 0), draw(vertices, shading, WIDTH, HEIGHT, None, 1));
+        covered = 0;
+        for y in 0..HEIGHT as usize {
+            for x in 0..WIDTH as usize {
+                let place = y * WIDTH as usize + x;
+                let drawn = (on_0[place] == on_1[place]).then_some(on_0[place]);
+                assert_eq!(drawn, expected[y][x], "{shading:?} at ({x}, {y}) of {vertices:?}");
+                let Some(byte) = drawn.map(i128::from) else { continue };
+                covered += 1;
+                assert!((low + 128) >> 8 <= byte && byte <= (high + 128) >> 8, "range at ({x}, {y}) of {vertices:?}");
+                let exact = oracle::interpolate(points, shades, oracle::centre(x as i32, y as i32));
+                assert!(exact.is_within(byte * 256, 128 + drift, 1), "error at ({x}, {y}) of {vertices:?}");
+            }
+        }
+    }
+    let flat = draw(vertices, Shading::Flat(7), WIDTH, HEIGHT, None, 0);
+    assert_eq!(flat.iter().filter(|&&byte| byte == 7).count() as u32, covered, "flat covers the same");
+    covered
+}
+
+#[test]
+fn r1_zero_area_draws_nothing() {
+    let mut tried = Tried::new("r1", 2000);
+    let mut random = Random::seeded("r1");
+    while tried.more() {
+        let (x, y) = (random.within(-500, 30_000), random.within(-500, 8_000));
+        let (dx, dy) = (random.within(-40, 40), random.within(-40, 40));
+        let at = |k: i64| vertex(x + k * dx, y + k * dy, 0x8000, 5);
+        let k = random.within(-100, 100);
+        for vertices in [[at(0), at(1), at(k)], [at(k), at(0), at(0)], [at(0), at(0), at(0)]] {
+            assert_eq!(check(&vertices), 0, "{vertices:?}");
+        }
+    }
+}
+
+#[test]
+fn r2_slivers() {
+    let mut tried = Tried::new("r2", 600);
+    let mut random = Random::seeded("r2");
+    let mut drawn = 0;
+    while tried.more() {
+        // A hundred pixels long, a unit wide, in every direction; along a pixel's centre, or it would
+        // hardly ever cover one.
+        let turn = random.unit() * std::f64::consts::TAU;
+        let (dx, dy) = ((turn.cos() * 25_600.0) as i64, (turn.sin() * 25_600.0) as i64);
+        let back = random.unit();
+        let x = random.within(0, 95) * 256 + 128 - (dx as f64 * back) as i64;
+        let y = random.within(0, 23) * 256 + 128 - (dy as f64 * back) as i64;
+        let t = random.unit();
+        let mut shade = || random.one_of(&[0, 0xFF00, 0x1234, 0x00FF]);
+        let shades = [shade(), shade(), shade()];
+        let middle = (x + (dx as f64 * t) as i64 + 1, y + (dy as f64 * t) as i64);
+        drawn += check(&[
+            vertex(x, y, shades[0], 1),
+            vertex(x + dx, y + dy, shades[1], 2),
+            vertex(middle.0, middle.1, shades[2], 3),
+        ]);
+    }
+    assert!(drawn > 100, "slivers that cover pixels were among them: {drawn}");
+}
+
+#[test]
+fn r3_smaller_than_a_pixel() {
+    let mut tried = Tried::new("r3", 3000);
+    let mut random = Random::seeded("r3");
+    let mut drawn = 0;
+    while tried.more() {
+        let (x, y) = (random.within(0, 20_000), random.within(0, 5_000));
+        let mut corner = || vertex(x + random.within(0, 255), y + random.within(0, 255), random.within(0, 0xFF00), 9);
+        let vertices = [corner(), corner(), corner()];
+        let pixels = check(&vertices);
+        assert!(pixels <= 1, "{vertices:?}");
+        drawn += pixels;
+    }
+    assert!(drawn > 100, "some held a centre: {drawn}");
+}
+
+#[test]
+fn r4_every_sixteenth_of_a_pixel() {
+    let mut tried = Tried::new("r4", 256 * 12);
+    let mut random = Random::seeded("r4");
+    for place in 0..256 {
+        for corner in 0..3 {
+            for _ in 0..4 {
+                // The other corners on centres, so that edges pass through centres too.
+                let mut corners =
+                    [(0, 0); 3].map(|_| (random.within(0, 40) * 256 + 128, random.within(0, 20) * 256 + 128));
+                let (x, y) = (random.within(0, 40) * 256, random.within(0, 20) * 256);
+                corners[corner] = (x + place % 16 * 16, y + place / 16 * 16);
+                check(&corners.map(|(x, y)| vertex(x, y, (x * 7 + y) % 0xFF01, 1)));
+                tried.one();
+            }
+        }
+    }
+}
+
+#[test]
+fn r6_order_and_winding_make_no_difference() {
+    let mut tried = Tried::new("r6", 1500);
+    let mut random = Random::seeded("r6");
+    while tried.more() {
+        let [a, b, c] = triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT));
+        for shading in [Shading::GouraudReseeded, Shading::Gouraud, Shading::Flat(9)] {
+            let first = draw(&[a, b, c], shading, WIDTH, HEIGHT, None, 0);
+            for order in [[a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]] {
+                assert_eq!(draw(&order, shading, WIDTH, HEIGHT, None, 0), first, "{order:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn r8_a_clip_rectangle_changes_no_byte_inside_it() {
+    let mut tried = Tried::new("r8", 1500);
+    let mut random = Random::seeded("r8");
+    // Wide enough for a third start.
+    const WIDE: u32 = 200;
+    while tried.more() {
+        let vertices = triangle(&mut random, i64::from(WIDE), i64::from(HEIGHT));
+        let mut ends = |size: u32| {
+            let (a, b) = (random.within(0, size.into()) as u32, random.within(0, size.into()) as u32);
+            (a.min(b), a.max(b))
+        };
+        let ((x0, x1), (y0, y1)) = (ends(WIDE), ends(HEIGHT));
+        let clip = Rect { x0, y0, x1, y1 };
+        for shading in [Shading::GouraudReseeded, Shading::Gouraud, Shading::Flat(9)] {
+            let mut expected = draw(&vertices, shading, WIDE, HEIGHT, None, 0);
+            for (place, byte) in expected.iter_mut().enumerate() {
+                let (x, y) = (place as u32 % WIDE, place as u32 / WIDE);
+                if !((x0..x1).contains(&x) && (y0..y1).contains(&y)) {
+                    *byte = 0;
+                }
+            }
+            assert_eq!(draw(&vertices, shading, WIDE, HEIGHT, Some(clip), 0), expected, "{clip:?} {vertices:?}");
+        }
+    }
+}
+
+#[test]
+fn r8_bands_give_the_bytes_of_the_whole() {
+    let mut tried = Tried::new("r8", 60);
+    let mut random = Random::seeded("r8 bands");
+    let (size, pitch) = ((WIDTH * HEIGHT) as usize, WIDTH as usize + 5);
+    while tried.more() {
+        let triangles: Vec<_> = (0..20).map(|_| triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT))).collect();
+        let rows_each = random.within(1, i64::from(HEIGHT)) as u32;
+        for with_depth in [false, true] {
+            let mut paint = |frame: Frame<'_>| {
+                let mut depths = vec![0; size];
+                let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+                let mut raster = Raster::new(frame);
+                if with_depth {
+                    raster = raster.with_depth(depth);
+                }
+                for vertices in &triangles {
+                    raster.triangle(vertices, Shading::GouraudReseeded);
+                }
+            };
+            let (mut whole, mut bands) = (vec![3; pitch * HEIGHT as usize], vec![3; pitch * HEIGHT as usize]);
+            paint(Frame::new(&mut whole, WIDTH, HEIGHT, pitch).expect("legal"));
+            Frame::new(&mut bands, WIDTH, HEIGHT, pitch).expect("legal").bands(rows_each).for_each(&mut paint);
+            assert_eq!(whole, bands, "bands of {rows_each}, depth {with_depth}");
+            assert!(whole.chunks(pitch).all(|row| row[WIDTH as usize..] == [3; 5]), "bytes between rows stay");
+        }
+    }
+}
+
+#[test]
+fn r11_moved_by_whole_pixels() {
+    let mut tried = Tried::new("r11", 1500);
+    let mut random = Random::seeded("r11");
+    let (width, height) = (i64::from(WIDTH), i64::from(HEIGHT));
+    while tried.more() {
+        let mut corner = || (random.within(0, 40 * 256), random.within(0, 12 * 256), random.within(0, 0xFF00));
+        let corners = [corner(), corner(), corner()];
+        let at = |dx: i64, dy: i64| corners.map(|(x, y, shade)| vertex(x + dx * 256, y + dy * 256, shade, 1));
+        let (dx, dy) = (random.within(0, width - 41), random.within(0, height - 13));
+        let still = draw(&at(0, 0), Shading::GouraudReseeded, WIDTH, HEIGHT, None, 0);
+        let mut moved = draw(&at(dx, dy), Shading::GouraudReseeded, WIDTH, HEIGHT, None, 0);
+        moved.rotate_left((dy * width + dx) as usize);
+        assert_eq!(still, moved, "moved by ({dx}, {dy}): {corners:?}");
+    }
+}
+
+#[test]
+fn r14_shades_at_both_ends() {
+    let mut tried = Tried::new("r14", 800);
+    let mut random = Random::seeded("r14");
+    while tried.more() {
+        let vertices = triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT));
+        let ends = vertices.map(|v| {
+            let shade = random.one_of(&[0, 0, 1, 0x7F, 0x80, 0xFE80, 0xFEFF, 0xFF00, 0xFF00]);
+            vertex(v.x().to_bits().into(), v.y().to_bits().into(), shade, 1)
+        });
+        check(&ends);
+    }
+    for above in 0xFF01..=0xFFFF {
+        let shade = U8F8::from_bits(above);
+        let refused = Vertex::new(I24F8::from_pixels(1), I24F8::from_pixels(1), shade, 0);
+        assert_eq!(refused, Err(VertexError::ShadeAbove255 { shade }));
+    }
+}
+
+#[test]
+fn r7_outside_the_guard_band_is_refused() {
+    let (zero, edge) = (I24F8::from_bits(0), Vertex::GUARD_BAND);
+    for (bits, legal) in
+        [(edge, true), (-edge, true), (edge + 1, false), (-edge - 1, false), (i32::MAX, false), (i32::MIN, false)]
+    {
+        let far = I24F8::from_bits(bits);
+        for (x, y) in [(far, zero), (zero, far)] {
+            let made = Vertex::new(x, y, U8F8::from_bits(0), 0);
+            let expected = if legal { Ok((x, y)) } else { Err(VertexError::OutsideGuardBand { x, y }) };
+            assert_eq!(made.map(|v| (v.x(), v.y())), expected);
+        }
+    }
+}
+
+#[test]
+fn random_triangles_against_the_oracle() {
+    let mut tried = Tried::new("r*", 3000);
+    let mut random = Random::seeded("r*");
+    while tried.more() {
+        check(&triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT)));
+    }
+}
+
+#[test]
+fn depth_is_as_defined_and_the_first_of_equals_stays() {
+    let mut tried = Tried::new("d*", 400);
+    let mut random = Random::seeded("d*");
+    let mut replaced = 0;
+    while tried.more() {
+        let triangles: Vec<_> = (0..6).map(|_| triangle(&mut random, WIDTH.into(), HEIGHT.into())).collect();
+        // The last is the first again with other shades: of equal depths the first submitted wins.
+        let twin = triangles[0].map(|v| vertex(v.x().to_bits().into(), v.y().to_bits().into(), 0, v.depth().into()));
+        let all: Vec<_> = triangles.iter().copied().chain([twin]).collect();
+        let (mut expected, mut nearest) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
+        for vertices in &all {
+            for (y, row) in oracle::gouraud(vertices, WIDTH as i32, HEIGHT as i32, 64).iter().enumerate() {
+                for (x, byte) in row.iter().enumerate() {
+                    let (Some(byte), place) = (byte, y * WIDTH as usize + x) else { continue };
+                    let depth = oracle::depth_at(vertices, x as i32, y as i32);
+                    let (low, high) =
+                        vertices.iter().fold((u32::MAX, 0), |(low, high), v| (low.min(v.depth()), high.max(v.depth())));
+                    assert!((low..=high).contains(&depth), "depth within the vertices' at ({x}, {y}) of {vertices:?}");
+                    if depth > nearest[place] {
+                        replaced += u32::from(nearest[place] != 0);
+                        (nearest[place], expected[place]) = (depth, *byte);
+                    }
+                }
+            }
+        }
+        let (mut bytes, mut depths) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
+        let frame = Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
+        let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+        let mut raster = Raster::new(frame).with_depth(depth);
+        for vertices in &all {
+            raster.triangle(vertices, Shading::GouraudReseeded);
+        }
+        assert_eq!(bytes, expected, "{all:?}");
+        assert_eq!(depths, nearest, "{all:?}");
+    }
+    assert!(replaced > 1000, "triangles hid each other: {replaced}");
+}

@@ -1,0 +1,8 @@
+//! What several test files share.
+#![expect(dead_code, unreachable_pub, reason = "each test file is a program of its own and uses its part")]
+
+pub mod display;
+pub mod oracle;
+pub mod random;
+pub mod triangles;
+pub mod tried;

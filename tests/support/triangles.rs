@@ -1,0 +1,76 @@
+//! Triangles for the tests of the raster: plain, thin, small, large, on the grid of centres.
+
+use mode13h::fixed::{I24F8, U8F8};
+use mode13h::raster::{Frame, Raster, Rect, Shading, Vertex};
+
+use super::random::Random;
+
+pub fn vertex(x: i64, y: i64, shade: i64, depth: i64) -> Vertex {
+    Vertex::new(
+        I24F8::from_bits(i32::try_from(x).expect("a coordinate")),
+        I24F8::from_bits(i32::try_from(y).expect("a coordinate")),
+        U8F8::from_bits(u16::try_from(shade).expect("a shade")),
+        u32::try_from(depth).expect("a depth"),
+    )
+    .expect("inside the guard band")
+}
+
+/// A random triangle near a frame of `width × height` pixels; a third of them slivers.
+pub fn triangle(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
+    const BAND: i64 = Vertex::GUARD_BAND as i64;
+    let kind = random.within(0, 8);
+    let reach = match kind {
+        0 => BAND,
+        _ => random.log_uniform(width * 512),
+    };
+    let (cx, cy) = (random.within(-2000, width * 256 + 2000), random.within(-2000, height * 256 + 2000));
+    let mut place = || {
+        let (x, y) = (cx + random.within(-reach, reach), cy + random.within(-reach, reach));
+        // Every fourth kind on centres, corners and sixteenths.
+        let snap = match kind {
+            1 => 128,
+            2 => 16,
+            _ => 1,
+        };
+        ((x / snap * snap).clamp(-BAND, BAND), (y / snap * snap).clamp(-BAND, BAND))
+    };
+    let (a, mut b, mut c) = (place(), place(), place());
+    if (3..6).contains(&kind) {
+        // A sliver: c lies on a–b but for a few units.
+        let t = random.unit();
+        c = (a.0 + ((b.0 - a.0) as f64 * t) as i64, a.1 + ((b.1 - a.1) as f64 * t) as i64);
+        c.0 = (c.0 + random.within(-3, 3)).clamp(-BAND, BAND);
+        c.1 = (c.1 + random.within(-3, 3)).clamp(-BAND, BAND);
+    }
+    if kind == 6 {
+        // An edge along a row or a column.
+        if random.within(0, 1) == 0 { b.1 = a.1 } else { b.0 = a.0 }
+    }
+    [a, b, c].map(|(x, y)| {
+        let shade = match random.within(0, 3) {
+            0 => random.one_of(&[0, 0xFF00]),
+            _ => random.within(0, 0xFF00),
+        };
+        let depth = random.log_uniform(1 << 30);
+        vertex(x, y, shade, depth)
+    })
+}
+
+/// What a triangle draws into a frame full of `empty`, without a depth buffer.
+pub fn draw(
+    vertices: &[Vertex; 3],
+    shading: Shading,
+    width: u32,
+    height: u32,
+    clip: Option<Rect>,
+    empty: u8,
+) -> Vec<u8> {
+    let mut bytes = vec![empty; (width * height) as usize];
+    let frame = Frame::new(&mut bytes, width, height, width as usize).expect("a legal frame");
+    let mut raster = Raster::new(frame);
+    if let Some(clip) = clip {
+        raster = raster.with_clip(clip);
+    }
+    raster.triangle(vertices, shading);
+    bytes
+}
