@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
+use png::{BitDepth, ColorType, Encoder, EncodingError, PixelDimensions, Unit};
 
 use super::scale::Scaled;
 use super::{ExportError, ExportErrorKind, Picture, PictureError, Scale, write_atomically};
@@ -64,13 +64,20 @@ fn encode(picture: &Picture<'_>, scaled: &Scaled<'_>, out: &mut dyn Write) -> io
     encoder.set_palette(picture.palette.iter().flat_map(|c| [c.r, c.g, c.b]).collect::<Vec<u8>>());
     let (xppu, yppu) = scaled.density();
     encoder.set_pixel_dims(Some(PixelDimensions { xppu, yppu, unit: Unit::Unspecified }));
-    let mut header = encoder.write_header()?;
+    let mut header = encoder.write_header().map_err(reason)?;
     // Row by row: an enlarged picture may be 4,096 times as large as the frame.
-    let mut data = header.stream_writer()?;
+    let mut data = header.stream_writer().map_err(reason)?;
     for row in scaled.rows() {
         data.write_all(&row)?;
     }
-    data.finish()?;
-    header.finish()?;
-    Ok(())
+    data.finish().map_err(reason)?;
+    header.finish().map_err(reason)
+}
+
+/// What the disk said. (The encoder's own conversion hides the kind of an error.)
+fn reason(error: EncodingError) -> io::Error {
+    match error {
+        EncodingError::IoError(error) => error,
+        other => io::Error::other(other),
+    }
 }
