@@ -8,6 +8,9 @@ use minifb::{InputCallback, Key, MouseButton, MouseMode, Window};
 
 use super::fit::Place;
 
+/// A notch of what minifb reports. On X11, where a wheel is a button, it counts its going down and its coming up.
+const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
+
 /// The mouse's buttons that are down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Buttons {
@@ -125,7 +128,7 @@ impl Events {
         // Also while the mouse is outside, with the button still down.
         let anywhere = window.get_unscaled_mouse_pos(MouseMode::Pass).map(to_frame);
         let drag = self.draw(anywhere.filter(|_| buttons.left));
-        let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches);
+        let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);
         Input { pressed, held: self.held.clone(), typed, mouse, buttons, drag, wheel }
     }
 
