@@ -13,6 +13,7 @@ pub mod normals;
 
 mod orientation;
 pub mod shapes;
+mod split;
 mod surface;
 mod topology;
 mod wide;

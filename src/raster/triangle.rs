@@ -74,6 +74,18 @@ impl<'a> Raster<'a> {
         self
     }
 
+    /// Draws with a depth buffer of its own, cleared, in `values`, which is made as long as needed.
+    #[cfg(feature = "alloc")]
+    #[must_use]
+    pub fn with_cleared_depth(mut self, values: &'a mut alloc::vec::Vec<u32>) -> Self {
+        let rows = self.frame.rows();
+        values.clear();
+        values.resize(self.frame.width() as usize * (rows.end - rows.start) as usize, 0);
+        // Long enough, by the line above.
+        self.depth = DepthBuffer::new(values, &self.frame).ok();
+        self
+    }
+
     /// Draws with `kernel`. All give the same bytes.
     #[must_use]
     pub fn with_kernel(mut self, kernel: Kernel) -> Self {

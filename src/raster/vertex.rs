@@ -74,6 +74,14 @@ impl Vertex {
         Ok(Self { x: h, y: v, shade: shade.to_bits(), depth })
     }
 
+    /// The same vertex with another shade; what is above 255.0 counts as that.
+    #[must_use]
+    #[inline]
+    pub const fn with_shade(self, shade: U8F8) -> Self {
+        let (bits, most) = (shade.to_bits(), U8F8::MAX_VERTEX.to_bits());
+        Self { shade: if bits > most { most } else { bits }, ..self }
+    }
+
     /// x, to the right.
     #[must_use]
     #[inline]

@@ -1,0 +1,80 @@
+//! One surface a vertex: a vertex is lit once, with one material, so where two surfaces meet they
+//! each need their own.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::Mesh;
+
+/// No triangle uses the vertex, or none so far.
+const NONE: u32 = u32::MAX;
+
+impl Mesh {
+    /// Whether no vertex is used by triangles of two surfaces.
+    #[must_use]
+    pub fn has_one_surface_a_vertex(&self) -> bool {
+        let mut surface_of = vec![NONE; self.positions.len()];
+        self.triangles.iter().zip(&self.triangle_surfaces).all(|(triangle, &surface)| {
+            triangle.iter().all(|&i| {
+                let seen = &mut surface_of[i as usize];
+                let first = *seen == NONE;
+                if first {
+                    *seen = u32::from(surface);
+                }
+                first || *seen == u32::from(surface)
+            })
+        })
+    }
+
+    /// The same mesh with every vertex that lies between surfaces split, one for each. New vertices
+    /// come at the end.
+    #[must_use]
+    pub fn with_one_surface_a_vertex(&self) -> Self {
+        let mut mesh = self.clone();
+        // For each vertex the surface it belongs to, and the next vertex split off the same one.
+        let mut links: Vec<(u32, u32)> = vec![(NONE, NONE); mesh.positions.len()];
+        for (triangle, &surface) in mesh.triangles.iter_mut().zip(&mesh.triangle_surfaces) {
+            for index in triangle {
+                let mut at = *index;
+                loop {
+                    let (owner, next) = links[at as usize];
+                    if owner == NONE {
+                        links[at as usize].0 = u32::from(surface);
+                    } else if owner != u32::from(surface) {
+                        if next != NONE {
+                            at = next;
+                            continue;
+                        }
+                        // At most three vertices a triangle: the count stays below 2³³; of a mesh
+                        // that large the index would not fit, so it keeps its first surface.
+                        let Ok(new) = u32::try_from(mesh.positions.len()) else { break };
+                        links[at as usize].1 = new;
+                        links.push((u32::from(surface), NONE));
+                        mesh.positions.push(mesh.positions[at as usize]);
+                        mesh.normals.push(mesh.normals[at as usize]);
+                        if let Some(texcoords) = &mut mesh.texcoords {
+                            texcoords.push(texcoords[at as usize]);
+                        }
+                        at = new;
+                    }
+                    break;
+                }
+                *index = at;
+            }
+        }
+        mesh
+    }
+
+    /// For each vertex the number of its surface; 0 where no triangle uses it. Of a mesh without
+    /// [one surface a vertex](Self::has_one_surface_a_vertex), that of the last triangle.
+    #[must_use]
+    pub fn vertex_surfaces(&self) -> Vec<u16> {
+        let mut surface_of = vec![0; self.positions.len()];
+        for (triangle, &surface) in self.triangles.iter().zip(&self.triangle_surfaces) {
+            for &i in triangle {
+                surface_of[i as usize] = surface;
+            }
+        }
+        surface_of
+    }
+}

@@ -1,0 +1,62 @@
+//! What drawing a frame came to, in counts.
+
+use core::fmt;
+
+use super::{HiddenSurfaces, Rung};
+use crate::raster::Drawn;
+use crate::span::Kernel;
+
+/// The work of one frame.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub struct Stats {
+    /// The rung that shaded.
+    pub rung: Rung,
+    /// The name of the span kernel that drew.
+    pub kernel: &'static str,
+    /// How hidden surfaces were left out.
+    pub hidden_surfaces: HiddenSurfaces,
+    /// Vertices transformed.
+    pub vertices: u64,
+    /// Vertices lit, or faces where shading is flat.
+    pub lit: u64,
+    /// Faces of all objects.
+    pub faces: u64,
+    /// Faces cut by the near plane or the guard band, or wholly beyond them.
+    pub clipped: u64,
+    /// Triangles turned away, or without area once rounded, parts of clipped faces among them.
+    pub culled: u64,
+    /// Triangles handed to the raster.
+    pub drawn: u64,
+    /// What the raster did with them.
+    pub raster: Drawn,
+}
+
+impl Stats {
+    pub(super) fn new(rung: Rung, kernel: Kernel, hidden_surfaces: HiddenSurfaces) -> Self {
+        Self {
+            rung,
+            kernel: kernel.name(),
+            hidden_surfaces,
+            vertices: 0,
+            lit: 0,
+            faces: 0,
+            clipped: 0,
+            culled: 0,
+            drawn: 0,
+            raster: Drawn::default(),
+        }
+    }
+}
+
+impl fmt::Display for Stats {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { rung, kernel, hidden_surfaces, vertices, lit, faces, clipped, culled, drawn, raster } = self;
+        write!(
+            f,
+            "{rung}, kernel {kernel}, {hidden_surfaces}: {vertices} vertices, {lit} lit, {faces} faces, \
+             {clipped} clipped, {culled} culled, {drawn} drawn, {} spans, {} pixels covered, {} written",
+            raster.spans, raster.covered, raster.pixels
+        )
+    }
+}

@@ -1,0 +1,248 @@
+//! From a mesh's own coordinates to the screen: one matrix an object, then one division a vertex.
+//!
+//! The camera's space is chosen so that projecting is two products and two sums:
+//!
+//! ```text
+//! X = fx·(right · d)    Y = −fy·(up · d)    W = forward · d        d from the eye to the point
+//! x = cx + X / W        y = cy + Y / W                             in pixels
+//! ```
+//!
+//! fy is half the picture's height over the tangent of half the field of view, and fx is fy times
+//! the height of a pixel over its width: 6/5 in mode 13h, whose 320 × 200 fill a 4:3 screen.
+
+use glam::{Mat3, Vec3};
+
+use crate::fixed::{I24F8, U8F8};
+use crate::raster::Vertex;
+use crate::scene::{Camera, Object, UpAxis};
+
+/// What is drawn on: size in pixels, and the shape of a pixel.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct Screen {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// A pixel's width to its height.
+    pub pixel_aspect: (u32, u32),
+}
+
+impl Screen {
+    /// 320 × 200, pixels 5:6.
+    pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
+}
+
+type Row = [f64; 3];
+type Matrix = [Row; 3];
+
+fn dot(a: Row, b: Row) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Row, b: Row) -> Row {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn widen(v: Vec3) -> Row {
+    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let column = |j: usize| [b[0][j], b[1][j], b[2][j]];
+    a.map(|row| [dot(row, column(0)), dot(row, column(1)), dot(row, column(2))])
+}
+
+/// `None` for the zero vector. Finite f32 components can neither overflow nor vanish in f64.
+fn unit(v: Row) -> Option<Row> {
+    let length = libm::sqrt(dot(v, v));
+    (length > 0.0).then(|| v.map(|c| c / length))
+}
+
+/// The camera's part of the way: from the world to the screen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    eye: Row,
+    /// The rows that give X, Y and W.
+    rows: Matrix,
+    /// The middle of the screen, in pixels.
+    centre: (f32, f32),
+    near: f32,
+}
+
+impl View {
+    pub(super) fn new(camera: &Camera, screen: Screen) -> Result<Self, &'static str> {
+        let Camera { eye, target, up, field_of_view, near } = *camera;
+        let numbers_are_finite = eye.is_finite() && target.is_finite() && up.is_finite();
+        if !numbers_are_finite || !(near.is_finite() && near > 0.0) {
+            return Err("its positions must be finite and its near distance above 0");
+        }
+        if !(field_of_view > 0.0 && field_of_view < core::f32::consts::PI) {
+            return Err("its field of view must lie between 0 and π");
+        }
+        let (eye, up) = (widen(eye), widen(up));
+        let to_target = widen(target);
+        let Some(forward) = unit([to_target[0] - eye[0], to_target[1] - eye[1], to_target[2] - eye[2]]) else {
+            return Err("it looks at the point where it is");
+        };
+        // The axis that is farthest from the view serves where `up` lies along it. Within 10⁻⁶ of
+        // it the direction of the product is mostly rounding of the f32 that made it.
+        let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
+        let mut axis = [0.0; 3];
+        axis[least] = 1.0;
+        let right = unit(up)
+            .map(|up| cross(forward, up))
+            .filter(|right| dot(*right, *right) > 1e-12)
+            .and_then(unit)
+            .or_else(|| unit(cross(forward, axis)))
+            .ok_or("it has no right-hand side")?;
+        let up = cross(right, forward);
+
+        let (width, height) = (f64::from(screen.width), f64::from(screen.height));
+        let fy = height / 2.0 / libm::tan(f64::from(field_of_view) / 2.0);
+        let (pixel_width, pixel_height) = screen.pixel_aspect;
+        let fx = fy * f64::from(pixel_height) / f64::from(pixel_width);
+        Ok(Self {
+            eye,
+            rows: [right.map(|c| fx * c), up.map(|c| -fy * c), forward],
+            // Halves of whole numbers up to 4,096: exact.
+            centre: ((width / 2.0) as f32, (height / 2.0) as f32),
+            near,
+        })
+    }
+}
+
+/// An object's turn, from its angles about x, y and z: z first, then y, then x.
+fn turn(angles: [f64; 3]) -> Matrix {
+    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
+    let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
+    let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
+    let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];
+    product(&about_x, &product(&about_y, &about_z))
+}
+
+/// An object's whole way: from its mesh to the screen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ObjectView {
+    exact: (Matrix, Row),
+    /// The same in f32, unless the object reaches so far that f32 could overflow.
+    fast: Option<(Mat3, Vec3)>,
+    centre: (f32, f32),
+    near: f32,
+    /// The turn alone: from the object's directions to the world's.
+    turn: Matrix,
+}
+
+/// A vertex before its division: X, Y in pixels times W, W along the view.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Homogeneous {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) w: f64,
+}
+
+impl ObjectView {
+    /// What is projected beyond this, in pixels either way, is clipped: inside the raster's guard
+    /// band by a whole pixel, more than all rounding of a clipped point comes to.
+    pub(super) const LIMIT: f64 = 4095.0;
+
+    /// Beyond this a sum of products might overflow f32, or, below its inverse, vanish in it.
+    const FAST_REACH: f64 = 1e30;
+
+    pub(super) fn new(view: &View, object: &Object) -> Self {
+        let mut turn = turn(object.angles());
+        if object.up_axis == UpAxis::Z {
+            // (x, y, z) stands up as (x, z, −y).
+            turn = turn.map(|[x, y, z]| [x, -z, y]);
+        }
+        let scale = f64::from(object.scale);
+        let matrix = product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
+        let (position, pivot) = (widen(object.position), widen(object.pivot));
+        let to_position = [position[0] - view.eye[0], position[1] - view.eye[1], position[2] - view.eye[2]];
+        let mut offset = [0.0; 3];
+        for (i, c) in offset.iter_mut().enumerate() {
+            *c = dot(view.rows[i], to_position) - dot(matrix[i], pivot);
+        }
+        let bounds = object.mesh().bounds();
+        let far = widen(bounds.min.abs().max(bounds.max.abs()));
+        let reach = |i: usize| dot(matrix[i].map(f64::abs), far) + offset[i].abs();
+        let farthest = reach(0).max(reach(1)).max(reach(2));
+        let fits = farthest < Self::FAST_REACH && farthest > 1.0 / Self::FAST_REACH;
+        let fast = fits.then(|| {
+            let narrow = |[x, y, z]: Row| Vec3::new(x as f32, y as f32, z as f32);
+            (Mat3::from_cols(narrow(matrix[0]), narrow(matrix[1]), narrow(matrix[2])).transpose(), narrow(offset))
+        });
+        Self { exact: (matrix, offset), fast, centre: view.centre, near: view.near, turn }
+    }
+
+    /// A direction of the world in the object's own space, unit; `None` for the zero vector.
+    pub(crate) fn direction_in_object(&self, world: Vec3) -> Option<Vec3> {
+        let world = unit(widen(world))?;
+        let column = |j: usize| dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], world) as f32;
+        Some(Vec3::new(column(0), column(1), column(2)))
+    }
+
+    pub(super) fn near(&self) -> f32 {
+        self.near
+    }
+
+    /// A vertex before its division. The same numbers whoever asks, so that triangles that share
+    /// the vertex agree on where it is.
+    #[inline]
+    pub(super) fn homogeneous(&self, p: Vec3) -> Homogeneous {
+        match self.fast {
+            Some((matrix, offset)) => {
+                let v = matrix * p + offset;
+                Homogeneous { x: f64::from(v.x), y: f64::from(v.y), w: f64::from(v.z) }
+            }
+            None => {
+                let ([mx, my, mw], [ox, oy, ow]) = self.exact;
+                let p = widen(p);
+                Homogeneous { x: dot(mx, p) + ox, y: dot(my, p) + oy, w: dot(mw, p) + ow }
+            }
+        }
+    }
+
+    /// The vertex on the screen, without its shade; `None` if it must be clipped.
+    #[inline]
+    pub(super) fn project(&self, p: Vec3) -> Option<Vertex> {
+        match self.fast {
+            Some((matrix, offset)) => {
+                let v = matrix * p + offset;
+                if v.z < self.near {
+                    return None;
+                }
+                let inverse = 1.0 / v.z;
+                let (x, y) = (self.centre.0 + v.x * inverse, self.centre.1 + v.y * inverse);
+                self.vertex(f64::from(x), f64::from(y), f64::from(v.z), U8F8::default())
+            }
+            None => {
+                let h = self.homogeneous(p);
+                if h.w < f64::from(self.near) { None } else { self.divide(h, U8F8::default()) }
+            }
+        }
+    }
+
+    /// The vertex on the screen of a point that is not nearer than the near plane; `None` if it
+    /// lies beyond the limit.
+    #[inline]
+    pub(super) fn divide(&self, h: Homogeneous, shade: U8F8) -> Option<Vertex> {
+        let (cx, cy) = (f64::from(self.centre.0), f64::from(self.centre.1));
+        self.vertex(cx + h.x / h.w, cy + h.y / h.w, h.w, shade)
+    }
+
+    /// The middle of the screen, in pixels.
+    pub(super) fn centre(&self) -> (f64, f64) {
+        (f64::from(self.centre.0), f64::from(self.centre.1))
+    }
+
+    #[inline]
+    fn vertex(&self, x: f64, y: f64, w: f64, shade: U8F8) -> Option<Vertex> {
+        // Half a pixel of room for what a clipped point is off the limit by rounding. NaN fails.
+        if !(x.abs() <= Self::LIMIT + 0.5 && y.abs() <= Self::LIMIT + 0.5) {
+            return None;
+        }
+        // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates.
+        let depth = (f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32;
+        Vertex::new(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, shade, depth).ok()
+    }
+}
