@@ -1,0 +1,171 @@
+//! What is wrong with a palette file, and where.
+
+use core::fmt;
+
+/// Why a palette file was refused. Nothing of it is used.
+///
+/// Displays as `line 7: expected three numbers 0 to 255, found "red"`, to stand behind the file's
+/// name and a colon.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub struct PaletteError {
+    /// What is wrong.
+    pub kind: PaletteErrorKind,
+    /// Where.
+    pub place: Place,
+}
+
+/// A place in a file.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Place {
+    /// A line of text, counted from 1. One more than there are lines: where one is missing.
+    Line(usize),
+    /// A byte, counted from 0. As many as there are bytes: where one is missing.
+    Offset(usize),
+}
+
+/// What can be wrong with a palette file.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum PaletteErrorKind {
+    /// No bytes at all.
+    Empty,
+    /// Like none of the formats.
+    UnknownFormat,
+    /// A line that must read one way reads another.
+    Expected {
+        /// How it must read.
+        expected: &'static str,
+        /// How it reads.
+        found: Excerpt,
+    },
+    /// The number of colours is no number from 1 to 256.
+    Count {
+        /// What stands there.
+        found: Excerpt,
+    },
+    /// A line is not three numbers from 0 to 255.
+    NotThreeNumbers {
+        /// What stands there.
+        found: Excerpt,
+    },
+    /// A line is not six hexadecimal digits.
+    NotSixHexDigits {
+        /// What stands there.
+        found: Excerpt,
+    },
+    /// A 257th colour.
+    TooManyColors,
+    /// A colour, or something else, behind the last one that the file announces.
+    MoreThanAnnounced {
+        /// How many it announces.
+        announced: usize,
+    },
+    /// The file ends too soon.
+    TooFewColors {
+        /// How many there are.
+        found: usize,
+        /// How many it announces, or at least 1.
+        expected: usize,
+    },
+    /// The file's length is not one that the format has.
+    Length {
+        /// The lengths that it has.
+        expected: &'static str,
+        /// The file's.
+        found: usize,
+    },
+}
+
+impl PaletteError {
+    pub(super) const fn at_line(line: usize, kind: PaletteErrorKind) -> Self {
+        Self { kind, place: Place::Line(line) }
+    }
+
+    pub(super) const fn at_offset(offset: usize, kind: PaletteErrorKind) -> Self {
+        Self { kind, place: Place::Offset(offset) }
+    }
+}
+
+impl core::error::Error for PaletteError {}
+
+impl fmt::Display for PaletteError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.kind)
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Offset(offset) => write!(f, "offset {offset}"),
+        }
+    }
+}
+
+impl fmt::Display for PaletteErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(f, "the file is empty"),
+            Self::UnknownFormat => write!(f, "neither a JASC, GIMP, Lospec, Adobe nor raw VGA palette"),
+            Self::Expected { expected, found } => write!(f, "expected \"{expected}\", found {found}"),
+            Self::Count { found } => write!(f, "expected the number of colours, 1 to 256, found {found}"),
+            Self::NotThreeNumbers { found } => write!(f, "expected three numbers 0 to 255, found {found}"),
+            Self::NotSixHexDigits { found } => write!(f, "expected six hexadecimal digits, found {found}"),
+            Self::TooManyColors => write!(f, "more than 256 colours"),
+            Self::MoreThanAnnounced { announced } => {
+                write!(f, "more than the {announced} colours that the file announces")
+            }
+            Self::TooFewColors { found, expected } => {
+                write!(f, "the file ends after {found} of {expected} colours")
+            }
+            Self::Length { expected, found } => write!(f, "expected {expected} bytes, found {found}"),
+        }
+    }
+}
+
+/// What was found where something else was expected: the beginning of it, without an allocator.
+///
+/// Displays in quotes, with three dots if there was more; what is not printable ASCII as `?`.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Excerpt {
+    bytes: [u8; Self::LONGEST],
+    // At most LONGEST.
+    length: u8,
+    cut: bool,
+}
+
+impl Excerpt {
+    const LONGEST: usize = 32;
+
+    pub(super) fn of(found: &[u8]) -> Self {
+        let mut bytes = [b'?'; Self::LONGEST];
+        for (to, &from) in bytes.iter_mut().zip(found) {
+            if from == b' ' || from.is_ascii_graphic() {
+                *to = from;
+            }
+        }
+        let length = found.len().min(Self::LONGEST) as u8;
+        Self { bytes, length, cut: found.len() > Self::LONGEST }
+    }
+
+    /// The beginning of what was found, up to 32 characters of ASCII.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        // Only ASCII was stored, so the default is never taken.
+        core::str::from_utf8(&self.bytes[..usize::from(self.length)]).unwrap_or_default()
+    }
+}
+
+impl fmt::Display for Excerpt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "\"{}{}\"", self.as_str(), if self.cut { "..." } else { "" })
+    }
+}
+
+impl fmt::Debug for Excerpt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
