@@ -1,1 +1,20 @@
-//! Stub.
+//! Pictures on disk: the frame as an indexed PNG, true colour, and files that are never half-written.
+//!
+//! Every file goes through [`write_atomically`]: it is written beside its name and then renamed, so that whatever
+//! stood under the name before is whole until the new file is.
+
+mod atomic;
+#[cfg(feature = "png")]
+mod indexed;
+mod picture;
+#[cfg(feature = "image")]
+mod rgb;
+mod scale;
+
+pub use atomic::{ExportError, ExportErrorKind, write_atomically};
+#[cfg(feature = "png")]
+pub use indexed::{encode_png, png, picture_png};
+pub use picture::{Picture, PictureError, PixelShape};
+#[cfg(feature = "image")]
+pub use rgb::{encode_rgb_png, picture_rgb_png, rgb_png};
+pub use scale::{MAX_SIDE, Scale, ScaleError};

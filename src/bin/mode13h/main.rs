@@ -1,2 +1,79 @@
-//! The program.
-fn main() {}
+//! `mode13h`: a model in a window, or a picture of it.
+
+mod demo;
+mod failure;
+mod input;
+mod options;
+mod output;
+mod overlay;
+mod palette;
+mod render;
+mod stage;
+mod verify;
+
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// Draws models as a 386 with a VGA card did: 320 x 200 bytes, 256 colours, fixed point.
+#[derive(Parser)]
+#[command(version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+struct Words {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    demo: demo::Options,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Turn a model in a window; what `mode13h` and `mode13h INPUT` do
+    Demo(demo::Options),
+    /// Write a picture of a model, or a numbered row of them
+    Render(render::Options),
+    /// Look at a palette, or convert it
+    Palette(palette::Options),
+    /// Check this machine: every span kernel against the specification, and the hard cases
+    Verify(verify::Options),
+}
+
+fn main() -> ExitCode {
+    output::finish_files_when_interrupted();
+    match Words::try_parse() {
+        Ok(words) => exit(run(words)),
+        Err(error) => match error.kind() {
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => exit(output::print(&error.render().to_string())),
+            _ => exit(Err(Failure::words(sentence(&error.render().to_string())))),
+        },
+    }
+}
+
+fn run(words: Words) -> Result<(), Failure> {
+    match words.command {
+        None => demo::run(&words.demo),
+        Some(Command::Demo(options)) => demo::run(&options),
+        Some(Command::Render(options)) => render::run(&options),
+        Some(Command::Palette(options)) => palette::run(&options),
+        Some(Command::Verify(options)) => verify::run(&options),
+    }
+}
+
+fn exit(result: Result<(), Failure>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("mode13h: {failure}");
+            failure.status()
+        }
+    }
+}
+
+/// What clap says over several lines, as one: its first paragraph, without the word "error".
+fn sentence(message: &str) -> String {
+    let message = message.strip_prefix("error: ").unwrap_or(message);
+    let paragraph: Vec<&str> = message.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+    format!("{} (mode13h --help shows the words there are)", paragraph.join(" "))
+}

@@ -1,0 +1,369 @@
+//! `mode13h demo`: a model that turns in a window.
+
+use std::ffi::OsString;
+use std::time::Instant;
+
+use clap::Args;
+use mode13h::palette::{Palette, builtin};
+use mode13h::render::{Renderer, Rung, Stats};
+use mode13h::span::Kernel;
+use mode13h::vga::Vga;
+use mode13h::window::{Flow, Input, Key, Window};
+
+use crate::failure::Failure;
+use crate::options::Drawing;
+use crate::stage::{Pose, SPEED, Stage};
+use crate::{input, output, overlay};
+
+/// Keys: Esc quits, Space stops and starts, arrows and mouse turn, wheel and + - zoom, [ and ] change the rung,
+/// K the kernel, P the palette, S saves a PNG, H shows help and figures. Without a display one picture is saved.
+#[derive(Args)]
+pub(crate) struct Options {
+    #[arg(default_value = "torus", help = input::help())]
+    input: OsString,
+    #[command(flatten)]
+    drawing: Drawing,
+}
+
+/// How fast the arrow keys turn, in radians a second.
+const ARROW_SPEED: f64 = 2.0;
+/// How far one press of an arrow key turns at once, in radians: a tap shorter than a frame shows too.
+const ARROW_TAP: f64 = 0.05;
+/// How far a drag over one pixel of the frame turns, in radians: half a turn over its width.
+const DRAG: f64 = std::f64::consts::PI / Vga::WIDTH as f64;
+/// A pixel's height in pixel widths.
+const PIXEL_HEIGHT: f64 = Vga::PIXEL_ASPECT.1 as f64 / Vga::PIXEL_ASPECT.0 as f64;
+/// How much one notch of the wheel, or one + or -, enlarges.
+const NOTCH: f64 = 1.1;
+/// The least and the greatest enlargement.
+const ZOOM: (f64, f64) = (0.25, 8.0);
+/// The longest time that a key counts as held for in one frame, in seconds: nothing is caught up with after a pause.
+const LONGEST_FRAME: f64 = 0.1;
+/// How long the title shows where a picture was saved, in seconds.
+const NOTICE: f64 = 3.0;
+
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let mut demo = Demo::new(options)?;
+    let mut vga = Vga::new();
+    let mut window = match Window::open(&demo.name) {
+        Ok(window) => window,
+        Err(no_display) => {
+            demo.draw(&mut vga)?;
+            let path = output::numbered_picture(&vga).map_err(Failure::work)?;
+            eprintln!("mode13h: {no_display}; one frame is in {}", path.display());
+            return Ok(());
+        }
+    };
+    let mut title = String::new();
+    loop {
+        let wish = demo.follow(window.input(), window.seconds());
+        demo.draw(&mut vga)?;
+        match wish {
+            Wish::Nothing => {}
+            Wish::Picture => demo.save(&vga),
+            Wish::End => return Ok(()),
+        }
+        let new = demo.title();
+        if new != title {
+            window.set_title(&new);
+            title = new;
+        }
+        if window.show(&vga).map_err(Failure::work)? == Flow::Close {
+            return Ok(());
+        }
+    }
+}
+
+/// What the keys ask for beyond a change of the picture.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Wish {
+    Nothing,
+    Picture,
+    End,
+}
+
+struct Demo {
+    name: String,
+    triangles: usize,
+    stage: Stage,
+    renderer: Renderer,
+    rungs: Choice<Rung>,
+    kernels: Choice<Kernel>,
+    palettes: Choice<(String, Palette)>,
+    motion: Motion,
+    help: bool,
+    timing: Timing,
+    stats: Option<Stats>,
+    /// What the title says besides, and until when.
+    notice: Option<(String, f64)>,
+    seconds: f64,
+}
+
+impl Demo {
+    fn new(options: &Options) -> Result<Demo, Failure> {
+        let Options { input, drawing } = options;
+        let kernel = drawing.kernel()?;
+        let (palette_name, palette) = drawing.palette()?;
+        let input::Model { name, mesh } = input::model(input, drawing.up)?;
+        // A palette without ramps has no order of shades: such a one is shown only if it was asked for.
+        let builtin = builtin::ALL.iter().filter(|builtin| builtin.palette.ramps() > 0);
+        let palettes = builtin.map(|builtin| (builtin.name.to_string(), builtin.palette.clone()));
+        Ok(Demo {
+            triangles: mesh.triangles().len(),
+            stage: Stage::new(mesh, palette.clone()),
+            name,
+            renderer: Renderer::new(),
+            rungs: Choice::new(Rung::ALL.iter().copied(), drawing.rung(), |a, b| a == b),
+            kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
+            palettes: Choice::new(palettes, (palette_name, palette), |a, b| a == b),
+            motion: Motion::new(),
+            help: false,
+            timing: Timing::default(),
+            stats: None,
+            notice: None,
+            seconds: 0.0,
+        })
+    }
+
+    /// Does what the user asks for in the frame that shows the time `seconds`.
+    fn follow(&mut self, input: &Input, seconds: f64) -> Wish {
+        self.seconds = seconds;
+        self.notice.take_if(|(_, until)| *until < seconds);
+        self.motion.follow(input, seconds);
+        let typed = |characters: &[char]| input.typed().contains(characters);
+        if input.pressed(Key::LeftBracket) || typed(&['[']) {
+            self.rungs.step_back();
+        }
+        if input.pressed(Key::RightBracket) || typed(&[']']) {
+            self.rungs.step_on();
+        }
+        if input.pressed(Key::K) {
+            self.kernels.go_round();
+        }
+        if input.pressed(Key::P) {
+            self.palettes.go_round();
+            self.stage.scene.palette = Some(self.palettes.chosen().1.clone());
+        }
+        if input.pressed(Key::H) {
+            self.help = !self.help;
+        }
+        if input.pressed(Key::Escape) {
+            Wish::End
+        } else if input.pressed(Key::S) {
+            Wish::Picture
+        } else {
+            Wish::Nothing
+        }
+    }
+
+    fn draw(&mut self, vga: &mut Vga) -> Result<(), Failure> {
+        self.stage.pose(self.motion.pose());
+        self.renderer.set_rung(*self.rungs.chosen());
+        self.renderer.set_kernel(*self.kernels.chosen());
+        let start = Instant::now();
+        let stats = self.renderer.draw(&self.stage.scene, vga).map_err(Failure::work)?;
+        self.timing.add(start.elapsed().as_secs_f64(), self.seconds);
+        self.stats = Some(stats);
+        if self.help {
+            overlay::write(vga, &self.lines());
+        }
+        Ok(())
+    }
+
+    /// Saves the picture as it is on the screen. A failure is shown and ends nothing.
+    fn save(&mut self, vga: &Vga) {
+        let notice = match output::numbered_picture(vga) {
+            Ok(path) => format!("saved {}", path.display()),
+            Err(error) => error.to_string(),
+        };
+        eprintln!("mode13h: {notice}");
+        self.notice = Some((notice, self.seconds + NOTICE));
+    }
+
+    fn title(&self) -> String {
+        let notice = self.notice.as_ref().map_or(String::new(), |(notice, _)| format!(" - {notice}"));
+        format!("{} - {} - mode13h{notice}", self.name, self.timing)
+    }
+
+    fn lines(&self) -> Vec<String> {
+        let mut lines = vec![
+            format!("{}: {} triangles", self.name, self.triangles),
+            format!("{}, {:.0} a second", self.timing, self.timing.rate),
+            format!("rung    {}", self.rungs.chosen().name()),
+            format!("kernel  {}", self.kernels.chosen()),
+            format!("palette {}", self.palettes.chosen().0),
+            format!("zoom    {:.2}", self.motion.pose().zoom),
+        ];
+        lines.extend(self.stats.iter().map(|stats| stats.to_string()));
+        lines.extend(HELP.map(str::to_string));
+        lines
+    }
+}
+
+const HELP: [&str; 8] = [
+    "",
+    "[ ]  rung        K  kernel    P  palette",
+    "arrows, mouse    turn",
+    "wheel, + -       zoom",
+    "Space            stop and go on",
+    "S                save a PNG",
+    "H                hide this",
+    "Esc              quit",
+];
+
+/// How the model moves: by the clock unless it is stopped, and by the user.
+struct Motion {
+    /// The turn at the time `since`.
+    turn: f64,
+    /// When the clock began to turn it, in seconds; nothing while it is stopped.
+    since: Option<f64>,
+    tilt: f64,
+    zoom: f64,
+    now: f64,
+}
+
+impl Motion {
+    fn new() -> Motion {
+        let Pose { turn, tilt, zoom } = Pose::FIRST;
+        Motion { turn, since: Some(0.0), tilt, zoom, now: 0.0 }
+    }
+
+    fn follow(&mut self, input: &Input, seconds: f64) {
+        let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);
+        self.now = seconds;
+        if input.pressed(Key::Space) {
+            self.turn = self.pose().turn;
+            self.since = if self.since.is_none() { Some(seconds) } else { None };
+        }
+        let arrow = |key| {
+            let held = if input.held(key) { ARROW_SPEED * passed } else { 0.0 };
+            held + if input.pressed(key) { ARROW_TAP } else { 0.0 }
+        };
+        let (right, down) = input.drag();
+        self.turn += arrow(Key::Right) - arrow(Key::Left) + DRAG * f64::from(right);
+        self.tilt += arrow(Key::Down) - arrow(Key::Up) + DRAG * PIXEL_HEIGHT * f64::from(down);
+
+        let typed = |characters: &[char]| input.typed().contains(characters);
+        let mut notches = f64::from(input.wheel());
+        if input.pressed(Key::NumPadPlus) || typed(&['+', '=']) {
+            notches += 1.0;
+        }
+        if input.pressed(Key::NumPadMinus) || typed(&['-', '_']) {
+            notches -= 1.0;
+        }
+        self.zoom = (self.zoom * NOTCH.powf(notches)).clamp(ZOOM.0, ZOOM.1);
+    }
+
+    /// At the time of the last [`follow`](Self::follow). The turn comes from the clock and not from the frames that
+    /// were drawn since.
+    fn pose(&self) -> Pose {
+        let by_clock = self.since.map_or(0.0, |since| SPEED * (self.now - since));
+        Pose { turn: self.turn + by_clock, tilt: self.tilt, zoom: self.zoom }
+    }
+}
+
+/// A list, one of which is chosen.
+struct Choice<T> {
+    list: Vec<T>,
+    at: usize,
+}
+
+impl<T> Choice<T> {
+    /// `first` is chosen. It is put in front if the list does not hold it.
+    fn new(list: impl IntoIterator<Item = T>, first: T, same: fn(&T, &T) -> bool) -> Choice<T> {
+        let mut list: Vec<T> = list.into_iter().collect();
+        let at = list.iter().position(|entry| same(entry, &first)).unwrap_or_else(|| {
+            list.insert(0, first);
+            0
+        });
+        Choice { list, at }
+    }
+
+    fn chosen(&self) -> &T {
+        &self.list[self.at]
+    }
+
+    fn go_round(&mut self) {
+        self.at = (self.at + 1) % self.list.len();
+    }
+
+    fn step_on(&mut self) {
+        self.at = (self.at + 1).min(self.list.len() - 1);
+    }
+
+    fn step_back(&mut self) {
+        self.at = self.at.saturating_sub(1);
+    }
+}
+
+/// The time that drawing a frame takes, and how many are shown, steady enough to be read.
+#[derive(Default)]
+struct Timing {
+    sum: f64,
+    frames: u32,
+    since: f64,
+    /// Seconds for a frame, and frames a second, over the last period.
+    frame: f64,
+    rate: f64,
+}
+
+impl Timing {
+    /// The least time from one figure to the next, in seconds.
+    const PERIOD: f64 = 0.5;
+
+    /// A frame was drawn in `taken` seconds, at the time `now`.
+    fn add(&mut self, taken: f64, now: f64) {
+        self.sum += taken;
+        self.frames += 1;
+        let passed = now - self.since;
+        if passed >= Self::PERIOD || self.frame == 0.0 {
+            self.frame = self.sum / f64::from(self.frames);
+            self.rate = if passed > 0.0 { f64::from(self.frames) / passed } else { 0.0 };
+            (self.sum, self.frames, self.since) = (0.0, 0, now);
+        }
+    }
+}
+
+impl std::fmt::Display for Timing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.2} ms", self.frame * 1000.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn t1_the_turn_comes_from_the_clock_and_not_from_the_frames() {
+        let turn_after = |times: &[f64]| {
+            let mut motion = Motion::new();
+            times.iter().for_each(|&seconds| motion.follow(&Input::default(), seconds));
+            motion.pose()
+        };
+        let many: Vec<f64> = (0..=1_000_000).map(|i| f64::from(i) / 1000.0).collect();
+        assert_eq!(turn_after(&many), turn_after(&[1000.0]));
+    }
+
+    #[test]
+    fn t2_an_hour_in_one_frame_is_an_hour_of_turning() {
+        let mut motion = Motion::new();
+        for (seconds, turn) in [(0.0, 0.0), (0.0, 0.0), (3600.0, 3600.0 * SPEED), (3599.0, 3599.0 * SPEED)] {
+            motion.follow(&Input::default(), seconds);
+            assert_eq!(motion.pose().turn, turn);
+        }
+    }
+
+    #[test]
+    fn a_choice_goes_round_or_stops_at_its_ends() {
+        let mut choice = Choice::new([1, 2, 3], 2, |a, b| a == b);
+        choice.step_on();
+        choice.step_on();
+        assert_eq!(*choice.chosen(), 3);
+        choice.go_round();
+        assert_eq!(*choice.chosen(), 1);
+        choice.step_back();
+        assert_eq!(*choice.chosen(), 1);
+        assert_eq!(Choice::new([1, 2], 7, |a, b| a == b).list, [7, 1, 2]);
+    }
+}

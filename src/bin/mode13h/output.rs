@@ -1,0 +1,67 @@
+//! What the program says and writes: standard output, pictures, and the end by Ctrl-C.
+
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{PoisonError, RwLock};
+
+use mode13h::export::{self, ExportError, Picture, Scale};
+use mode13h::vga::Vga;
+
+use crate::failure::Failure;
+
+/// Held while a file is written, by any number of threads.
+static WRITING: RwLock<()> = RwLock::new(());
+
+/// Makes Ctrl-C, and what else asks a program to end, wait for the files that are being written: each is then whole
+/// under its name, and none is left beside it.
+pub(crate) fn finish_files_when_interrupted() {
+    let end = || {
+        // No file is begun from here on; those begun are waited for. The lock is never given back.
+        let _none = WRITING.write().unwrap_or_else(PoisonError::into_inner);
+        eprintln!("mode13h: interrupted");
+        // 128 + SIGINT, as shells count.
+        std::process::exit(130);
+    };
+    // Without a handler the program ends as the system has it, at once.
+    let _ = ctrlc::set_handler(end);
+}
+
+/// Writes a file that ends whole also if the program is told to end meanwhile.
+pub(crate) fn file<T>(write: impl FnOnce() -> T) -> T {
+    let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
+    write()
+}
+
+/// Writes what `vga` shows as a PNG: indexed, or in true colour if `rgb`.
+pub(crate) fn picture(vga: &Vga, path: &Path, rgb: bool, scale: Option<Scale>) -> Result<(), ExportError> {
+    let palette = vga.palette();
+    let picture = Picture::mode_13h(vga.pixels(), &palette);
+    file(|| match (rgb, scale) {
+        (true, scale) => export::picture_rgb_png(&picture, scale.unwrap_or(Scale::FiveBySix), path),
+        (false, scale) => export::picture_png(&picture, scale.unwrap_or(Scale::One), path),
+    })
+}
+
+/// Writes what `vga` shows under the first name that is free of `mode13h-0001.png`, `mode13h-0002.png` and so on in
+/// the current folder. Nothing is overwritten.
+pub(crate) fn numbered_picture(vga: &Vga) -> Result<PathBuf, ExportError> {
+    let free = (1_u64..).map(|number| PathBuf::from(format!("mode13h-{number:04}.png")));
+    // Some number below 2⁶⁴ is free, as no folder holds so many files.
+    let path = free.skip_while(|path| path.symlink_metadata().is_ok()).next().unwrap_or_default();
+    picture(vga, &path, false, None)?;
+    Ok(path)
+}
+
+/// Prints to standard output. That nobody reads on is no failure.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::work(format!("standard output: {error}"))),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a person sees what [`print`] prints, with colours.
+pub(crate) fn is_colored_terminal() -> bool {
+    io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}

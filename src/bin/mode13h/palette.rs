@@ -1,0 +1,86 @@
+//! `mode13h palette`: look at a palette, or convert it.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use mode13h::export::{self, Picture, PixelShape, Scale};
+use mode13h::palette::file::Format;
+use mode13h::palette::{Palette, builtin};
+
+use crate::failure::Failure;
+use crate::{input, output};
+
+#[derive(Args)]
+pub(crate) struct Options {
+    #[arg(value_name = "FILE|NAME", help = help())]
+    palette: OsString,
+    /// Write it to a file, in the format of its extension; .png makes a chart of the colours
+    #[arg(short, long, value_name = "OUT")]
+    out: Option<PathBuf>,
+}
+
+fn help() -> String {
+    format!("A file ({}), or a built-in palette: {}", input::palette_extensions(), input::palette_names())
+}
+
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let (name, palette) = input::palette(&options.palette)?;
+    match &options.out {
+        None => output::print(&look(&name, &palette)),
+        Some(out) => convert(&name, &palette, out),
+    }
+}
+
+fn convert(name: &str, palette: &Palette, out: &Path) -> Result<(), Failure> {
+    let extension = out.extension().unwrap_or_default().to_string_lossy();
+    if extension.eq_ignore_ascii_case("png") {
+        return output::file(|| chart(palette, out)).map_err(Failure::work);
+    }
+    let Some(format) = Format::by_extension(&extension) else {
+        let known = input::palette_extensions();
+        let reason = format!("{}: no kind of palette that can be written: {known}, or .png", out.display());
+        return Err(Failure::words(reason));
+    };
+    let bytes = format.write(palette, name);
+    output::file(|| export::write_atomically(out, |file| file.write_all(&bytes))).map_err(Failure::work)
+}
+
+/// The 256 colours in 16 rows of 16, each a square of 16 pixels.
+fn chart(palette: &Palette, out: &Path) -> Result<(), export::ExportError> {
+    let indices: Vec<u8> = (0..=255).collect();
+    let squares = Picture {
+        pixels: &indices,
+        width: 16,
+        height: 16,
+        pitch: 16,
+        palette: palette.colors(),
+        shape: PixelShape::SQUARE,
+    };
+    export::picture_png(&squares, Scale::To { width: 256, height: 256 }, out)
+}
+
+/// The palette as text: what it is, and its colours; painted where the terminal can.
+fn look(name: &str, palette: &Palette) -> String {
+    let ramps = match palette.ramps() {
+        0 => "no ramps".to_string(),
+        1 => "1 ramp of 256".to_string(),
+        ramps => format!("{ramps} ramps of {}", 256 / ramps),
+    };
+    let provenance = builtin::by_name(name).map_or("", |builtin| builtin.provenance);
+    let mut text = format!("{name}: {ramps}. {provenance}").trim_end().to_string() + "\n";
+    let painted = output::is_colored_terminal();
+    let in_a_row = if painted { 32 } else { 8 };
+    for (row, colors) in palette.colors().chunks(in_a_row).enumerate() {
+        text += &format!("{:3}", row * in_a_row);
+        for color in colors {
+            text += &if painted {
+                format!("\x1b[48;2;{};{};{}m  ", color.r, color.g, color.b)
+            } else {
+                format!(" {:06x}", color.to_u32())
+            };
+        }
+        text += if painted { "\x1b[0m\n" } else { "\n" };
+    }
+    text
+}

@@ -1,0 +1,195 @@
+//! Files that are whole or not there: written beside their name, flushed, then renamed.
+
+use std::error::Error;
+use std::ffi::OsString;
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Why a file was not written. What stood under its name before is untouched.
+#[derive(Debug)]
+pub struct ExportError {
+    path: PathBuf,
+    kind: ExportErrorKind,
+}
+
+impl ExportError {
+    pub(super) fn new(path: &Path, kind: ExportErrorKind) -> ExportError {
+        ExportError { path: path.to_path_buf(), kind }
+    }
+
+    fn io(path: &Path, error: io::Error) -> ExportError {
+        ExportError::new(path, ExportErrorKind::from_io(error))
+    }
+
+    /// The file that was to be written.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What went wrong.
+    pub fn kind(&self) -> &ExportErrorKind {
+        &self.kind
+    }
+}
+
+/// What went wrong while a file was written.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ExportErrorKind {
+    /// The folder that the file was to stand in does not exist.
+    MissingFolder,
+    /// The name is that of a folder, or ends like one.
+    IsFolder,
+    /// No right to write there; also a file or a file system that is read-only.
+    NotPermitted,
+    /// The disk, or the user's share of it, is full.
+    DiskFull,
+    /// The picture itself cannot be written.
+    Picture(super::PictureError),
+    /// Any other failure that the system reports.
+    Io(io::Error),
+}
+
+impl ExportErrorKind {
+    fn from_io(error: io::Error) -> ExportErrorKind {
+        match error.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ExportErrorKind::MissingFolder,
+            io::ErrorKind::IsADirectory => ExportErrorKind::IsFolder,
+            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => ExportErrorKind::NotPermitted,
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ExportErrorKind::DiskFull,
+            _ => ExportErrorKind::Io(error),
+        }
+    }
+}
+
+impl fmt::Display for ExportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.path.display())?;
+        match &self.kind {
+            ExportErrorKind::MissingFolder => write!(f, "the folder {} does not exist", folder_of(&self.path).display()),
+            ExportErrorKind::IsFolder => f.write_str("is a folder"),
+            ExportErrorKind::NotPermitted => f.write_str("no right to write there"),
+            ExportErrorKind::DiskFull => f.write_str("the disk is full"),
+            ExportErrorKind::Picture(error) => write!(f, "{error}"),
+            ExportErrorKind::Io(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl Error for ExportError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match &self.kind {
+            ExportErrorKind::Picture(error) => Some(error),
+            ExportErrorKind::Io(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+/// Writes a file whole or not at all.
+///
+/// `write` fills a temporary file in the same folder (`.mode13h-` and two numbers), which is flushed to the disk and
+/// then renamed to `path`. If `write` fails or panics, or the disk does, the temporary is removed and what stood under
+/// `path` before is as it was. A link is followed; the permissions of a file that is replaced are kept; a file that is
+/// read-only is refused, although a rename could replace it. What exists and is no ordinary file (a device, a pipe) is
+/// written to directly, as renaming would take its place.
+///
+/// # Errors
+///
+/// [`ExportError`], with the path and what went wrong; the errors that `write` returns are sorted in the same way.
+///
+/// ```
+/// use std::io::Write as _;
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("note.txt");
+/// mode13h::export::write_atomically(&path, |out| out.write_all(b"320 x 200"))?;
+/// assert_eq!(std::fs::read(&path)?, b"320 x 200");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_atomically(
+    path: impl AsRef<Path>,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), ExportError> {
+    let path = path.as_ref();
+    let fail = |error: io::Error| ExportError::io(path, error);
+
+    // A link is followed, so that the file behind it is replaced and not the link. One that leads nowhere yet is
+    // replaced itself.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let before = fs::metadata(&target).ok();
+    if let Some(before) = &before {
+        if before.is_dir() {
+            return Err(ExportError::new(path, ExportErrorKind::IsFolder));
+        }
+        if !before.is_file() {
+            let mut device = BufWriter::new(File::options().write(true).open(&target).map_err(fail)?);
+            return write(&mut device).and_then(|()| device.flush()).map_err(fail);
+        }
+        if before.permissions().readonly() {
+            return Err(ExportError::new(path, ExportErrorKind::NotPermitted));
+        }
+    }
+    let named_as_folder = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
+    if named_as_folder || target.file_name().is_none() {
+        return Err(ExportError::new(path, ExportErrorKind::IsFolder));
+    }
+
+    let (temporary, file) = Temporary::create(folder_of(&target)).map_err(fail)?;
+    let mut out = BufWriter::new(file);
+    write(&mut out).map_err(fail)?;
+    let file = out.into_inner().map_err(|error| fail(error.into_error()))?;
+    if let Some(before) = before {
+        file.set_permissions(before.permissions()).map_err(fail)?;
+    }
+    file.sync_all().map_err(fail)?;
+    drop(file);
+    temporary.rename(&target).map_err(fail)
+}
+
+/// The folder that a file of this name stands in.
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// A file that is removed when it is dropped, unless it was renamed.
+struct Temporary {
+    path: PathBuf,
+}
+
+impl Temporary {
+    /// A new file in `folder`, under a name that nothing else has.
+    fn create(folder: &Path) -> io::Result<(Temporary, File)> {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        loop {
+            // The name does not hold the file's own: that may be as long as the system allows already.
+            let number = NEXT.fetch_add(1, Ordering::Relaxed);
+            let path = folder.join(OsString::from(format!(".mode13h-{}-{number}", std::process::id())));
+            match File::options().write(true).create_new(true).open(&path) {
+                Ok(file) => return Ok((Temporary { path }, file)),
+                // Left behind by a process of the same number that was killed.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    fn rename(self, target: &Path) -> io::Result<()> {
+        fs::rename(&self.path, target)?;
+        // Nothing of that name is left to remove.
+        std::mem::forget(self);
+        Ok(())
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // Nothing better can be done about a failure here; the error that led here is the one to report.
+        let _ = fs::remove_file(&self.path);
+    }
+}

@@ -1,0 +1,106 @@
+//! What an exporter needs to know of a frame: bytes, size, palette, and the shape of a pixel.
+
+use std::error::Error;
+use std::fmt;
+
+use crate::palette::{Palette, Rgb};
+
+/// The shape of a pixel: its width to its height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelShape {
+    /// Width, in the same unit as the height; at least 1.
+    pub width: u16,
+    /// Height; at least 1.
+    pub height: u16,
+}
+
+impl PixelShape {
+    /// As wide as high.
+    pub const SQUARE: PixelShape = PixelShape { width: 1, height: 1 };
+
+    /// 5:6, which makes 320 × 200 pixels a 4:3 screen.
+    pub const MODE_13H: PixelShape = PixelShape { width: 5, height: 6 };
+}
+
+/// A picture of palette indices, as it is exported.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture<'a> {
+    /// Palette indices, row by row, `pitch` bytes from one row to the next.
+    pub pixels: &'a [u8],
+    /// Pixels in a row, 1 to 16,384.
+    pub width: usize,
+    /// Rows, 1 to 16,384.
+    pub height: usize,
+    /// Bytes from the start of one row to the start of the next, at least `width`.
+    pub pitch: usize,
+    /// The colours that the indices stand for.
+    pub palette: &'a [Rgb; 256],
+    /// The shape of one pixel.
+    pub shape: PixelShape,
+}
+
+impl<'a> Picture<'a> {
+    /// The 320 × 200 visible bytes of mode 13h in the colours of `palette`.
+    pub fn mode_13h(pixels: &'a [u8], palette: &'a Palette) -> Picture<'a> {
+        Picture { pixels, width: 320, height: 200, pitch: 320, palette: palette.colors(), shape: PixelShape::MODE_13H }
+    }
+
+    /// That the sizes agree with each other and with the bytes there are.
+    pub(super) fn check(&self) -> Result<(), PictureError> {
+        let limit = 1..=super::MAX_SIDE as usize;
+        let shape = self.shape;
+        if !limit.contains(&self.width) || !limit.contains(&self.height) || shape.width == 0 || shape.height == 0 {
+            return Err(PictureError::Size { width: self.width, height: self.height });
+        }
+        // The last row needs no padding behind it.
+        let needed = self.pitch.checked_mul(self.height - 1).and_then(|bytes| bytes.checked_add(self.width));
+        match needed {
+            Some(needed) if self.pitch >= self.width && needed <= self.pixels.len() => Ok(()),
+            _ => Err(PictureError::Bytes { bytes: self.pixels.len(), pitch: self.pitch }),
+        }
+    }
+
+    /// Row `y`, `width` bytes. The picture has been checked, and `y` is below its height.
+    pub(super) fn row(&self, y: usize) -> &'a [u8] {
+        &self.pixels[y * self.pitch..][..self.width]
+    }
+}
+
+/// Why a picture cannot be exported.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PictureError {
+    /// A side of no pixels or of more than 16,384, or a pixel of no size.
+    Size {
+        /// Pixels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+    },
+    /// The bytes are fewer than the rows need, or the rows overlap.
+    Bytes {
+        /// The bytes there are.
+        bytes: usize,
+        /// The pitch that was given.
+        pitch: usize,
+    },
+    /// The picture does not fit in memory.
+    Memory {
+        /// The bytes that were asked for.
+        bytes: usize,
+    },
+}
+
+impl fmt::Display for PictureError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PictureError::Size { width, height } => {
+                write!(f, "a picture of {width} x {height} pixels: each side must be 1 to {}", super::MAX_SIDE)
+            }
+            PictureError::Bytes { bytes, pitch } => write!(f, "{bytes} bytes do not hold the picture's rows at a pitch of {pitch}"),
+            PictureError::Memory { bytes } => write!(f, "no memory for a picture of {bytes} bytes"),
+        }
+    }
+}
+
+impl Error for PictureError {}

@@ -1,0 +1,151 @@
+//! Enlarging for programs that show square pixels only.
+
+use std::error::Error;
+use std::fmt;
+use std::str::FromStr;
+
+use super::{Picture, PixelShape};
+
+/// The longest side of an exported picture, in pixels.
+pub const MAX_SIDE: u16 = 16_384;
+
+/// How a picture is enlarged when it is exported. Each pixel of the result is one pixel of the frame, never a mixture,
+/// so that an indexed picture stays indexed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Scale {
+    /// As it is: a 320 × 200 frame gives 320 × 200.
+    #[default]
+    One,
+    /// Every pixel 2 × 2, as the VGA scans every row twice: 640 × 400.
+    Double,
+    /// Every pixel 5 wide and 6 high: 1600 × 1200, exactly 4:3 in square pixels.
+    FiveBySix,
+    /// Stretched to this size, each pixel the one of the frame that its centre falls in.
+    To {
+        /// Pixels in a row, 1 to [`MAX_SIDE`].
+        width: u16,
+        /// Rows, 1 to [`MAX_SIDE`].
+        height: u16,
+    },
+}
+
+impl Scale {
+    /// The size that a picture of `width` × `height` pixels is exported at.
+    pub fn size(self, width: usize, height: usize) -> (usize, usize) {
+        match self {
+            Scale::One => (width, height),
+            Scale::Double => (width.saturating_mul(2), height.saturating_mul(2)),
+            Scale::FiveBySix => (width.saturating_mul(5), height.saturating_mul(6)),
+            Scale::To { width, height } => (width.into(), height.into()),
+        }
+    }
+}
+
+/// `1`, `2`, `5x6`, or a width and a height as `640x480`. The two sides that are `5x6` mean [`Scale::FiveBySix`].
+impl FromStr for Scale {
+    type Err = ScaleError;
+
+    fn from_str(words: &str) -> Result<Scale, ScaleError> {
+        match words {
+            "1" => Ok(Scale::One),
+            "2" => Ok(Scale::Double),
+            "5x6" => Ok(Scale::FiveBySix),
+            _ => {
+                let side = |digits: &str| match digits.parse::<u16>() {
+                    Ok(side) if (1..=MAX_SIDE).contains(&side) && !digits.starts_with('+') => Ok(side),
+                    _ => Err(ScaleError),
+                };
+                let (width, height) = words.split_once('x').ok_or(ScaleError)?;
+                Ok(Scale::To { width: side(width)?, height: side(height)? })
+            }
+        }
+    }
+}
+
+impl fmt::Display for Scale {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Scale::One => f.write_str("1"),
+            Scale::Double => f.write_str("2"),
+            Scale::FiveBySix => f.write_str("5x6"),
+            Scale::To { width, height } => write!(f, "{width}x{height}"),
+        }
+    }
+}
+
+/// Words that are no [`Scale`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ScaleError;
+
+impl fmt::Display for ScaleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a scale is 1, 2, 5x6, or a width and height of 1 to {MAX_SIDE} such as 640x480")
+    }
+}
+
+impl Error for ScaleError {}
+
+/// A picture and the size that it is exported at: for each pixel of the result, where in the frame it comes from.
+pub(super) struct Scaled<'a> {
+    picture: Picture<'a>,
+    /// Of the result, in pixels.
+    pub(super) width: u32,
+    pub(super) height: u32,
+    /// The frame's column of each column of the result.
+    columns: Vec<usize>,
+}
+
+impl<'a> Scaled<'a> {
+    pub(super) fn new(picture: &Picture<'a>, scale: Scale) -> Result<Scaled<'a>, super::PictureError> {
+        picture.check()?;
+        let (width, height) = scale.size(picture.width, picture.height);
+        let too_large = super::PictureError::Size { width, height };
+        let limit = 1..=u32::from(MAX_SIDE);
+        match (u32::try_from(width), u32::try_from(height)) {
+            (Ok(w), Ok(h)) if limit.contains(&w) && limit.contains(&h) => {
+                let columns = (0..width).map(|x| source(x, width, picture.width)).collect();
+                Ok(Scaled { picture: *picture, width: w, height: h, columns })
+            }
+            _ => Err(too_large),
+        }
+    }
+
+    /// The palette indices of each row of the result, from the top.
+    pub(super) fn rows(&self) -> impl Iterator<Item = Vec<u8>> + '_ {
+        let height = self.height as usize;
+        (0..height).map(move |y| {
+            let row = self.picture.row(source(y, height, self.picture.height));
+            self.columns.iter().map(|&x| row[x]).collect()
+        })
+    }
+
+    /// Pixels per unit of length, across and down, in lowest terms: what `pHYs` says. The picture keeps its shape
+    /// whatever its size, so that 320 × 200 pixels of 5:6 are 6 across to 5 down, and 1600 × 1200 are square.
+    pub(super) fn density(&self) -> (u32, u32) {
+        let PixelShape { width: across, height: down } = self.picture.shape;
+        let x = u64::from(self.width) * u64::from(down) * self.picture.height as u64;
+        let y = u64::from(self.height) * u64::from(across) * self.picture.width as u64;
+        let common = greatest_common_divisor(x, y);
+        let (mut x, mut y) = (x / common, y / common);
+        // PNG numbers end at 2^31 - 1. Odd shapes at odd sizes may need more: the ratio is then rounded.
+        const END: u64 = (1 << 31) - 1;
+        while x > END || y > END {
+            (x, y) = (x.div_ceil(2), y.div_ceil(2));
+        }
+        // Both fit: the loop has just ended.
+        (x as u32, y as u32)
+    }
+}
+
+/// The pixel of `from` that the centre of pixel `at` of `to` falls in: floor((at + ½) · from / to).
+fn source(at: usize, to: usize, from: usize) -> usize {
+    (2 * at + 1) * from / (2 * to)
+}
+
+fn greatest_common_divisor(mut a: u64, mut b: u64) -> u64 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}

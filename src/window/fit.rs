@@ -1,0 +1,132 @@
+//! From 320 × 200 pixels of 5:6 to a 4:3 picture in a window of any shape.
+
+use crate::vga::Vga;
+
+const WIDTH: usize = 320;
+const HEIGHT: usize = 200;
+
+/// Where the picture stands in the window, in the window's pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) left: usize,
+    pub(super) top: usize,
+    pub(super) width: usize,
+    pub(super) height: usize,
+}
+
+impl Place {
+    /// The largest 4:3 rectangle in the middle of a window. Both its sides may be a part of a pixel too short.
+    fn within(width: usize, height: usize) -> Place {
+        let (w, h) = if width * 3 <= height * 4 { (width, width * 3 / 4) } else { (height * 4 / 3, height) };
+        Place { left: (width - w) / 2, top: (height - h) / 2, width: w, height: h }
+    }
+
+    /// A point of the window as a point of the frame: 0 to 320 across and 0 to 200 down if it is on the picture,
+    /// beyond these beside it.
+    pub(super) fn to_frame(self, x: f32, y: f32) -> (f32, f32) {
+        let along = |at: f32, from: usize, length: usize, frame: usize| {
+            (at - from as f32) * frame as f32 / length.max(1) as f32
+        };
+        (along(x, self.left, self.width, WIDTH), along(y, self.top, self.height, HEIGHT))
+    }
+}
+
+/// The stretched picture, kept from frame to frame so that nothing is allocated while the window keeps its size.
+#[derive(Default)]
+pub(super) struct Picture {
+    size: (usize, usize),
+    place: Place,
+    /// Of each column of the picture, the frame's column.
+    columns: Vec<usize>,
+    frame: Vec<u32>,
+    stretched: Vec<u32>,
+}
+
+impl Picture {
+    pub(super) fn place(&self) -> Place {
+        self.place
+    }
+
+    /// What `vga` displays, at `width` × `height` pixels of the window: 0x00RRGGBB, row by row, black beside the
+    /// picture. Each pixel shows the one of the frame that its centre falls in.
+    pub(super) fn stretch(&mut self, vga: &Vga, width: usize, height: usize) -> &[u32] {
+        if self.size != (width, height) {
+            self.size = (width, height);
+            self.place = Place::within(width, height);
+            self.columns = (0..self.place.width).map(|x| source(x, self.place.width, WIDTH)).collect();
+            self.stretched.clear();
+            self.stretched.resize(width * height, 0);
+        }
+        self.frame.resize(WIDTH * HEIGHT, 0);
+        vga.scan_out(&mut self.frame);
+
+        let Place { left, top, width: across, height: down } = self.place;
+        let mut drawn: Option<usize> = None;
+        for y in 0..down {
+            let start = (top + y) * width + left;
+            let from = source(y, down, HEIGHT);
+            if drawn == Some(from) {
+                // The same row of the frame as the row above, which is there already.
+                self.stretched.copy_within(start - width..start - width + across, start);
+            } else {
+                let row = &self.frame[from * WIDTH..][..WIDTH];
+                for (pixel, &x) in self.stretched[start..start + across].iter_mut().zip(&self.columns) {
+                    *pixel = row[x];
+                }
+                drawn = Some(from);
+            }
+        }
+        &self.stretched
+    }
+}
+
+/// The pixel of `from` that the centre of pixel `at` of `to` falls in: floor((at + ½) · from / to).
+fn source(at: usize, to: usize, from: usize) -> usize {
+    (2 * at + 1) * from / (2 * to)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_is_the_largest_of_4_to_3() {
+        for (window, expected) in [
+            ((960, 720), Place { left: 0, top: 0, width: 960, height: 720 }),
+            ((1920, 720), Place { left: 480, top: 0, width: 960, height: 720 }),
+            ((400, 900), Place { left: 0, top: 300, width: 400, height: 300 }),
+            ((1, 1), Place { left: 0, top: 0, width: 1, height: 0 }),
+            ((0, 0), Place { left: 0, top: 0, width: 0, height: 0 }),
+        ] {
+            assert_eq!(Place::within(window.0, window.1), expected, "{window:?}");
+        }
+    }
+
+    #[test]
+    fn every_pixel_of_the_window_shows_the_pixel_under_its_centre() {
+        let mut vga = Vga::new();
+        let mut picture = Picture::default();
+        for (i, byte) in vga.pixels_mut().iter_mut().enumerate() {
+            // A pattern in which neighbouring rows and columns differ.
+            *byte = (i * 7 + i / 320 * 13) as u8;
+        }
+        let mut frame = vec![0; WIDTH * HEIGHT];
+        vga.scan_out(&mut frame);
+        for (width, height) in [(960, 720), (321, 200), (320, 240), (500, 100), (7, 300), (3, 3)] {
+            let pixels = picture.stretch(&vga, width, height).to_vec();
+            let place = picture.place();
+            assert_eq!(pixels.len(), width * height);
+            for y in 0..height {
+                for x in 0..width {
+                    let (fx, fy) = place.to_frame(x as f32 + 0.5, y as f32 + 0.5);
+                    let beside = x < place.left
+                        || x >= place.left + place.width
+                        || y < place.top
+                        || y >= place.top + place.height;
+                    let expected = if beside { 0 } else { frame[fy as usize * WIDTH + fx as usize] };
+                    assert_eq!(pixels[y * width + x], expected, "{x}, {y} of {width} x {height}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! What the user did between two frames.
+
+use std::cell::RefCell;
+use std::mem;
+use std::rc::Rc;
+
+use minifb::{InputCallback, Key, MouseButton, MouseMode, Window};
+
+use super::fit::Place;
+
+/// A notch of what minifb reports. On X11, where a wheel is a button, it counts its going down and its coming up.
+const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
+
+/// The mouse's buttons that are down.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Buttons {
+    /// The left one.
+    pub left: bool,
+    /// The middle one.
+    pub middle: bool,
+    /// The right one.
+    pub right: bool,
+}
+
+/// What the user did since the last frame, and what they hold.
+#[derive(Clone, Debug, Default)]
+pub struct Input {
+    pressed: Vec<Key>,
+    held: Vec<Key>,
+    typed: String,
+    mouse: Option<(f32, f32)>,
+    buttons: Buttons,
+    drag: (f32, f32),
+    wheel: f32,
+}
+
+impl Input {
+    /// Whether the key went down since the last frame, however short it was.
+    pub fn pressed(&self, key: Key) -> bool {
+        self.pressed.contains(&key)
+    }
+
+    /// The keys that went down since the last frame, in order.
+    pub fn keys_pressed(&self) -> &[Key] {
+        &self.pressed
+    }
+
+    /// Whether the key is down.
+    pub fn held(&self, key: Key) -> bool {
+        self.held.contains(&key)
+    }
+
+    /// The characters that were typed since the last frame, by the user's own keyboard layout. A key that is held
+    /// repeats, as the desktop is set up.
+    pub fn typed(&self) -> &str {
+        &self.typed
+    }
+
+    /// Where the mouse is, in pixels of the frame, from the top left corner: 0 to 320 across and 0 to 200 down while
+    /// it is on the picture, `None` while it is outside of the window.
+    pub fn mouse(&self) -> Option<(f32, f32)> {
+        self.mouse
+    }
+
+    /// The mouse's buttons that are down.
+    pub fn buttons(&self) -> Buttons {
+        self.buttons
+    }
+
+    /// How far the mouse was drawn with its left button down since the last frame, in pixels of the frame: to the
+    /// right and down.
+    pub fn drag(&self) -> (f32, f32) {
+        self.drag
+    }
+
+    /// By how many notches the wheel was turned since the last frame; away from the user is positive.
+    pub fn wheel(&self) -> f32 {
+        self.wheel
+    }
+}
+
+/// Keys and characters in the order in which the desktop reported them. minifb's own list of keys that were pressed
+/// leaves out those that went down and up again between two frames.
+#[derive(Default)]
+struct Queue {
+    keys: Vec<(Key, bool)>,
+    typed: String,
+}
+
+/// Collects what happens in a window.
+#[derive(Clone, Default)]
+pub(super) struct Events {
+    queue: Rc<RefCell<Queue>>,
+    held: Vec<Key>,
+    active: bool,
+    /// Where the mouse was while its left button was down, in pixels of the frame.
+    drawn_from: Option<(f32, f32)>,
+}
+
+impl InputCallback for Events {
+    fn add_char(&mut self, character: u32) {
+        self.queue.borrow_mut().typed.extend(char::from_u32(character).filter(|c| !c.is_control()));
+    }
+
+    fn set_key_state(&mut self, key: Key, down: bool) {
+        self.queue.borrow_mut().keys.push((key, down));
+    }
+}
+
+impl Events {
+    /// What happened since the last call.
+    pub(super) fn collect(&mut self, window: &Window, place: Place) -> Input {
+        let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
+        let pressed = self.follow(&keys);
+        // A window that is left hears nothing of keys that are let go meanwhile.
+        let was_active = mem::replace(&mut self.active, window.is_active());
+        if was_active && !self.active {
+            self.held.clear();
+        }
+
+        let to_frame = |(x, y)| place.to_frame(x, y);
+        let mouse = window.get_unscaled_mouse_pos(MouseMode::Discard).map(to_frame);
+        let buttons = Buttons {
+            left: window.get_mouse_down(MouseButton::Left),
+            middle: window.get_mouse_down(MouseButton::Middle),
+            right: window.get_mouse_down(MouseButton::Right),
+        };
+        // Also while the mouse is outside, with the button still down.
+        let anywhere = window.get_unscaled_mouse_pos(MouseMode::Pass).map(to_frame);
+        let drag = self.draw(anywhere.filter(|_| buttons.left));
+        let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);
+        Input { pressed, held: self.held.clone(), typed, mouse, buttons, drag, wheel }
+    }
+
+    /// Applies key events in their order and gives the keys that went down. A key that repeats while it is held does
+    /// not go down again.
+    fn follow(&mut self, events: &[(Key, bool)]) -> Vec<Key> {
+        let mut pressed = Vec::new();
+        for &(key, down) in events {
+            let held = self.held.contains(&key);
+            if down && !held {
+                self.held.push(key);
+                pressed.push(key);
+            } else if !down {
+                self.held.retain(|&other| other != key);
+            }
+        }
+        pressed
+    }
+
+    /// How far the mouse came since the last call, if its button is and was down.
+    fn draw(&mut self, at: Option<(f32, f32)>) -> (f32, f32) {
+        let from = mem::replace(&mut self.drawn_from, at);
+        match (from, at) {
+            (Some(from), Some(at)) => (at.0 - from.0, at.1 - from.1),
+            _ => (0.0, 0.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_that_is_down_and_up_between_two_frames_was_pressed() {
+        let mut events = Events::default();
+        assert_eq!(events.follow(&[(Key::S, true), (Key::S, false)]), [Key::S]);
+        assert!(events.held.is_empty());
+    }
+
+    #[test]
+    fn a_key_that_repeats_is_pressed_once() {
+        let mut events = Events::default();
+        assert_eq!(events.follow(&[(Key::K, true), (Key::K, true)]), [Key::K]);
+        assert_eq!(events.follow(&[(Key::K, true)]), []);
+        assert_eq!(events.held, [Key::K]);
+        assert_eq!(events.follow(&[(Key::K, false), (Key::K, true)]), [Key::K]);
+    }
+
+    #[test]
+    fn a_drag_begins_where_the_button_went_down() {
+        let mut events = Events::default();
+        assert_eq!(events.draw(Some((100.0, 50.0))), (0.0, 0.0));
+        assert_eq!(events.draw(Some((103.0, 48.0))), (3.0, -2.0));
+        assert_eq!(events.draw(None), (0.0, 0.0));
+        assert_eq!(events.draw(Some((0.0, 0.0))), (0.0, 0.0));
+    }
+}

@@ -1,0 +1,178 @@
+//! A window that shows a [`Vga`], and what the user does in it.
+//!
+//! [`run`] is a whole game's frame; [`Window`] is the same for programs that keep their own loop. Without a display
+//! both give a [`WindowError`] and no panic.
+
+mod fit;
+mod input;
+mod screen;
+
+use std::error::Error;
+use std::fmt;
+use std::thread;
+use std::time::{Duration, Instant};
+
+pub use input::{Buttons, Input};
+pub use minifb::Key;
+
+use crate::vga::Vga;
+use fit::Picture;
+use input::Events;
+
+/// A frame of the VGA: 800 clocks × 449 lines at 25.175 MHz, 70.086 Hz.
+const FRAME: Duration = Duration::from_nanos(800 * 449 * 1_000_000 / 25_175);
+
+/// Whether the window stays open after a frame.
+///
+/// A frame function that returns nothing keeps it open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// The next frame follows.
+    Continue,
+    /// The window closes, and [`run`] returns.
+    Close,
+}
+
+impl From<()> for Flow {
+    fn from((): ()) -> Flow {
+        Flow::Continue
+    }
+}
+
+/// Opens a window and calls `frame` for every frame, at most 70 times a second, until it returns [`Flow::Close`] or
+/// the user closes the window.
+///
+/// `frame` is given the machine to draw on, what the user did since the last frame, and the seconds since the window
+/// opened. These are absolute: after a pause the next frame is drawn for the time that it is then, and none is made
+/// up for.
+///
+/// # Errors
+///
+/// [`WindowError`] if there is no display, or if it goes away.
+///
+/// ```no_run
+/// use mode13h::window::{self, Flow, Key};
+///
+/// window::run("plasma", |vga, input, seconds| {
+///     for (i, byte) in vga.pixels_mut().iter_mut().enumerate() {
+///         *byte = ((i % 320) as f64 + seconds * 70.0) as u64 as u8;
+///     }
+///     if input.pressed(Key::Escape) { Flow::Close } else { Flow::Continue }
+/// })?;
+/// # Ok::<(), window::WindowError>(())
+/// ```
+pub fn run<F: Into<Flow>>(title: &str, mut frame: impl FnMut(&mut Vga, &Input, f64) -> F) -> Result<(), WindowError> {
+    let mut window = Window::open(title)?;
+    let mut vga = Vga::new();
+    loop {
+        let flow = frame(&mut vga, window.input(), window.seconds()).into();
+        if flow == Flow::Close || window.show(&vga)? == Flow::Close {
+            return Ok(());
+        }
+    }
+}
+
+/// An open window. [`run`] is all that most programs need of it.
+pub struct Window {
+    window: minifb::Window,
+    events: Events,
+    input: Input,
+    picture: Picture,
+    opened: Instant,
+    /// The time that the current frame is drawn for.
+    now: Instant,
+    /// When the next frame is due.
+    due: Instant,
+}
+
+impl Window {
+    /// Opens a window: the largest of 4:3 that fits the screen, at most 960 × 720. The user may resize it; the picture
+    /// stays 4:3, with black beside it.
+    ///
+    /// The screen is asked for its size on X11. Elsewhere the window opens at 960 × 720.
+    ///
+    /// # Errors
+    ///
+    /// [`WindowError`] if there is no display to open it on.
+    pub fn open(title: &str) -> Result<Window, WindowError> {
+        let mut window = screen::open(&printable(title)).map_err(WindowError::new)?;
+        // The loop below waits by itself, so that a late frame puts off those that follow.
+        window.set_target_fps(0);
+        let events = Events::default();
+        window.set_input_callback(Box::new(events.clone()));
+        let now = Instant::now();
+        Ok(Window { window, events, input: Input::default(), picture: Picture::default(), opened: now, now, due: now })
+    }
+
+    /// Changes the title.
+    pub fn set_title(&mut self, title: &str) {
+        self.window.set_title(&printable(title));
+    }
+
+    /// What the user did between the last two frames.
+    pub fn input(&self) -> &Input {
+        &self.input
+    }
+
+    /// The time that the current frame is drawn for: seconds since the window opened.
+    pub fn seconds(&self) -> f64 {
+        self.now.duration_since(self.opened).as_secs_f64()
+    }
+
+    /// Shows what `vga` displays, waits until the next frame is due, and collects what the user did in the meantime.
+    /// [`Flow::Close`] if the user has closed the window.
+    ///
+    /// # Errors
+    ///
+    /// [`WindowError`] if the display went away.
+    pub fn show(&mut self, vga: &Vga) -> Result<Flow, WindowError> {
+        self.wait();
+        let (width, height) = self.window.get_size();
+        let pixels = self.picture.stretch(vga, width, height);
+        if pixels.is_empty() {
+            // A window of no size, which a tiling desktop can make.
+            self.window.update();
+        } else {
+            self.window.update_with_buffer(pixels, width, height).map_err(WindowError::new)?;
+        }
+        self.now = Instant::now();
+        self.input = self.events.collect(&self.window, self.picture.place());
+        Ok(if self.window.is_open() { Flow::Continue } else { Flow::Close })
+    }
+
+    fn wait(&mut self) {
+        let now = Instant::now();
+        if let Some(early) = self.due.checked_duration_since(now) {
+            thread::sleep(early);
+            self.due += FRAME;
+        } else {
+            // Late: no frame is made up for.
+            self.due = now + FRAME;
+        }
+    }
+}
+
+/// The display system takes no zero characters in a title; minifb prints to standard output when it is given one.
+fn printable(title: &str) -> String {
+    title.replace('\0', " ")
+}
+
+/// That there is no display, or that it went away.
+#[derive(Debug)]
+pub struct WindowError {
+    reason: minifb::Error,
+}
+
+impl WindowError {
+    fn new(reason: minifb::Error) -> WindowError {
+        WindowError { reason }
+    }
+}
+
+impl fmt::Display for WindowError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no display: {}", self.reason)
+    }
+}
+
+impl Error for WindowError {}
