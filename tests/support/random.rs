@@ -1,11 +1,11 @@
 //! Random numbers from a seed that is printed and can be set: `MODE13H_SEED=123 cargo test`.
 
 /// SplitMix64 (Steele, Lea, Flood 2014): one addition and a mix, every seed as good as another.
-pub struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
     /// From the seed of this run, which is printed; `stream` keeps tests and threads apart.
-    pub fn new(stream: u64) -> Self {
+    pub(crate) fn new(stream: u64) -> Self {
         let seed = seed();
         println!("MODE13H_SEED={seed}, stream {stream}");
         let mut random = Self(seed);
@@ -13,7 +13,7 @@ impl Random {
         random
     }
 
-    pub fn next_u64(&mut self) -> u64 {
+    pub(crate) fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -21,14 +21,14 @@ impl Random {
     }
 
     /// 1 to 2^`bits` − 1, each power of two as likely as any other, and all its numbers alike.
-    pub fn log_uniform(&mut self, bits: u32) -> usize {
+    pub(crate) fn log_uniform(&mut self, bits: u32) -> usize {
         let bit = self.next_u64() % u64::from(bits);
         (1 << bit) + (self.next_u64() & ((1 << bit) - 1)) as usize
     }
 }
 
 /// `MODE13H_SEED`, or 13.
-pub fn seed() -> u64 {
+pub(crate) fn seed() -> u64 {
     match std::env::var("MODE13H_SEED") {
         Ok(text) => text.parse().expect("MODE13H_SEED is a number"),
         Err(_) => 13,

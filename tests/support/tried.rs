@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// Counts one test's cases. Has to be [`done`](Self::done) with.
 #[must_use]
-pub struct Tried {
+pub(crate) struct Tried {
     test: String,
     stated: u64,
     cases: u64,
@@ -17,12 +17,12 @@ pub struct Tried {
 
 impl Tried {
     /// A row for `test`, which states that it tries at least `stated` cases.
-    pub fn new(test: impl Into<String>, stated: u64) -> Self {
+    pub(crate) fn new(test: impl Into<String>, stated: u64) -> Self {
         Self { test: test.into(), stated, cases: 0, done: false }
     }
 
     /// `cases` more have been tried.
-    pub fn add(&mut self, cases: u64) {
+    pub(crate) fn add(&mut self, cases: u64) {
         self.cases += cases;
     }
 
@@ -30,7 +30,7 @@ impl Tried {
     ///
     /// # Panics
     /// If no case was tried, or fewer than stated.
-    pub fn done(mut self) {
+    pub(crate) fn done(mut self) {
         self.done = true;
         let row = format!("{:<56} {:>15} cases", self.test, grouped(self.cases));
         println!("{row}");
