@@ -47,8 +47,8 @@ fn check(vertices: &[Vertex; 3]) -> u32 {
 
 #[test]
 fn r1_zero_area_draws_nothing() {
-    let mut tried = Tried::new("r1", 2000);
-    let mut random = Random::seeded("r1");
+    let mut tried = Tried::new("r1_zero_area_draws_nothing", 2000);
+    let mut random = Random::named("r1");
     while tried.more() {
         let (x, y) = (random.within(-500, 30_000), random.within(-500, 8_000));
         let (dx, dy) = (random.within(-40, 40), random.within(-40, 40));
@@ -62,8 +62,8 @@ fn r1_zero_area_draws_nothing() {
 
 #[test]
 fn r2_slivers() {
-    let mut tried = Tried::new("r2", 600);
-    let mut random = Random::seeded("r2");
+    let mut tried = Tried::new("r2_slivers", 600);
+    let mut random = Random::named("r2");
     let mut drawn = 0;
     while tried.more() {
         // A hundred pixels long, a unit wide, in every direction; along a pixel's centre, or it would
@@ -88,8 +88,8 @@ fn r2_slivers() {
 
 #[test]
 fn r3_smaller_than_a_pixel() {
-    let mut tried = Tried::new("r3", 3000);
-    let mut random = Random::seeded("r3");
+    let mut tried = Tried::new("r3_smaller_than_a_pixel", 3000);
+    let mut random = Random::named("r3");
     let mut drawn = 0;
     while tried.more() {
         let (x, y) = (random.within(0, 20_000), random.within(0, 5_000));
@@ -104,8 +104,8 @@ fn r3_smaller_than_a_pixel() {
 
 #[test]
 fn r4_every_sixteenth_of_a_pixel() {
-    let mut tried = Tried::new("r4", 256 * 12);
-    let mut random = Random::seeded("r4");
+    let mut tried = Tried::new("r4_every_sixteenth_of_a_pixel", 256 * 12);
+    let mut random = Random::named("r4");
     for place in 0..256 {
         for corner in 0..3 {
             for _ in 0..4 {
@@ -115,7 +115,7 @@ fn r4_every_sixteenth_of_a_pixel() {
                 let (x, y) = (random.within(0, 40) * 256, random.within(0, 20) * 256);
                 corners[corner] = (x + place % 16 * 16, y + place / 16 * 16);
                 check(&corners.map(|(x, y)| vertex(x, y, (x * 7 + y) % 0xFF01, 1)));
-                tried.one();
+                tried.add(1);
             }
         }
     }
@@ -123,8 +123,8 @@ fn r4_every_sixteenth_of_a_pixel() {
 
 #[test]
 fn r6_order_and_winding_make_no_difference() {
-    let mut tried = Tried::new("r6", 1500);
-    let mut random = Random::seeded("r6");
+    let mut tried = Tried::new("r6_order_and_winding_make_no_difference", 1500);
+    let mut random = Random::named("r6");
     while tried.more() {
         let [a, b, c] = triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT));
         for shading in [Shading::GouraudReseeded, Shading::Gouraud, Shading::Flat(9)] {
@@ -138,8 +138,8 @@ fn r6_order_and_winding_make_no_difference() {
 
 #[test]
 fn r8_a_clip_rectangle_changes_no_byte_inside_it() {
-    let mut tried = Tried::new("r8", 1500);
-    let mut random = Random::seeded("r8");
+    let mut tried = Tried::new("r8_a_clip_rectangle_changes_no_byte_inside_it", 1500);
+    let mut random = Random::named("r8");
     // Wide enough for a third start.
     const WIDE: u32 = 200;
     while tried.more() {
@@ -165,8 +165,8 @@ fn r8_a_clip_rectangle_changes_no_byte_inside_it() {
 
 #[test]
 fn r8_bands_give_the_bytes_of_the_whole() {
-    let mut tried = Tried::new("r8", 60);
-    let mut random = Random::seeded("r8 bands");
+    let mut tried = Tried::new("r8_bands_give_the_bytes_of_the_whole", 60);
+    let mut random = Random::named("r8 bands");
     let (size, pitch) = ((WIDTH * HEIGHT) as usize, WIDTH as usize + 5);
     while tried.more() {
         let triangles: Vec<_> = (0..20).map(|_| triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT))).collect();
@@ -194,8 +194,8 @@ fn r8_bands_give_the_bytes_of_the_whole() {
 
 #[test]
 fn r11_moved_by_whole_pixels() {
-    let mut tried = Tried::new("r11", 1500);
-    let mut random = Random::seeded("r11");
+    let mut tried = Tried::new("r11_moved_by_whole_pixels", 1500);
+    let mut random = Random::named("r11");
     let (width, height) = (i64::from(WIDTH), i64::from(HEIGHT));
     while tried.more() {
         let mut corner = || (random.within(0, 40 * 256), random.within(0, 12 * 256), random.within(0, 0xFF00));
@@ -211,8 +211,8 @@ fn r11_moved_by_whole_pixels() {
 
 #[test]
 fn r14_shades_at_both_ends() {
-    let mut tried = Tried::new("r14", 800);
-    let mut random = Random::seeded("r14");
+    let mut tried = Tried::new("r14_shades_at_both_ends", 800);
+    let mut random = Random::named("r14");
     while tried.more() {
         let vertices = triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT));
         let ends = vertices.map(|v| {
@@ -245,8 +245,8 @@ fn r7_outside_the_guard_band_is_refused() {
 
 #[test]
 fn random_triangles_against_the_oracle() {
-    let mut tried = Tried::new("r*", 3000);
-    let mut random = Random::seeded("r*");
+    let mut tried = Tried::new("random_triangles_against_the_oracle", 3000);
+    let mut random = Random::named("r*");
     while tried.more() {
         check(&triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT)));
     }
@@ -254,8 +254,8 @@ fn random_triangles_against_the_oracle() {
 
 #[test]
 fn depth_is_as_defined_and_the_first_of_equals_stays() {
-    let mut tried = Tried::new("d*", 400);
-    let mut random = Random::seeded("d*");
+    let mut tried = Tried::new("depth_is_as_defined_and_the_first_of_equals_stays", 400);
+    let mut random = Random::named("d*");
     let mut replaced = 0;
     while tried.more() {
         let triangles: Vec<_> = (0..6).map(|_| triangle(&mut random, WIDTH.into(), HEIGHT.into())).collect();

@@ -21,8 +21,8 @@ fn check(x: f64) {
 
 #[test]
 fn r13_f64_against_big_rationals() {
-    let mut tried = Tried::new("r13", 20_000);
-    let mut random = Random::seeded("r13 f64");
+    let mut tried = Tried::new("r13_f64_against_big_rationals", 20_000);
+    let mut random = Random::named("r13 f64");
     while tried.more() {
         let whole = random.within(-(1 << 21), 1 << 21) as f64;
         // Halves, quarters, and their neighbours in the last bit.
@@ -35,10 +35,10 @@ fn r13_f64_against_big_rationals() {
 
 #[test]
 fn r13_f32_against_big_rationals() {
-    let mut tried = Tried::new("r13", 40_000);
-    let mut random = Random::seeded("r13 f32");
+    let mut tried = Tried::new("r13_f32_against_big_rationals", 40_000);
+    let mut random = Random::named("r13 f32");
     while tried.more() {
-        let x = f32::from_bits(random.bits() as u32);
+        let x = f32::from_bits(random.next_u64() as u32);
         if !x.is_finite() {
             assert_eq!(I24F8::round_from_f32(x), None);
         } else if x.abs() < 8_388_607.0 {
@@ -52,14 +52,14 @@ fn r13_f32_against_big_rationals() {
 
 #[test]
 fn r13_16_16_against_big_rationals() {
-    let mut tried = Tried::new("r13", 20_000);
-    let mut random = Random::seeded("r13 16.16");
+    let mut tried = Tried::new("r13_16_16_against_big_rationals", 20_000);
+    let mut random = Random::named("r13 16.16");
     for edge in [0, 1, -1, 127, 128, -127, -128, -129, i32::MAX, i32::MIN] {
-        tried.one();
+        tried.add(1);
         check_16_16(edge);
     }
     while tried.more() {
-        check_16_16(random.bits() as i32);
+        check_16_16(random.next_u64() as i32);
     }
 }
 

@@ -69,7 +69,9 @@ impl fmt::Display for ExportError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.path.display())?;
         match &self.kind {
-            ExportErrorKind::MissingFolder => write!(f, "the folder {} does not exist", folder_of(&self.path).display()),
+            ExportErrorKind::MissingFolder => {
+                write!(f, "the folder {} does not exist", folder_of(&self.path).display())
+            }
             ExportErrorKind::IsFolder => f.write_str("is a folder"),
             ExportErrorKind::NotPermitted => f.write_str("no right to write there"),
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),

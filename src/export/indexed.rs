@@ -38,7 +38,8 @@ pub fn png(vga: &Vga, path: impl AsRef<Path>) -> Result<(), ExportError> {
 /// [`ExportError`] if the picture's sizes do not fit its bytes, or if the file cannot be written.
 pub fn picture_png(picture: &Picture<'_>, scale: Scale, path: impl AsRef<Path>) -> Result<(), ExportError> {
     let path = path.as_ref();
-    let scaled = Scaled::new(picture, scale).map_err(|error| ExportError::new(path, ExportErrorKind::Picture(error)))?;
+    let scaled =
+        Scaled::new(picture, scale).map_err(|error| ExportError::new(path, ExportErrorKind::Picture(error)))?;
     write_atomically(path, |out| encode(picture, &scaled, out))
 }
 

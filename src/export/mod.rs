@@ -13,7 +13,7 @@ mod scale;
 
 pub use atomic::{ExportError, ExportErrorKind, write_atomically};
 #[cfg(feature = "png")]
-pub use indexed::{encode_png, png, picture_png};
+pub use indexed::{encode_png, picture_png, png};
 pub use picture::{Picture, PictureError, PixelShape};
 #[cfg(feature = "image")]
 pub use rgb::{encode_rgb_png, picture_rgb_png, rgb_png};

@@ -97,7 +97,9 @@ impl fmt::Display for PictureError {
             PictureError::Size { width, height } => {
                 write!(f, "a picture of {width} x {height} pixels: each side must be 1 to {}", super::MAX_SIDE)
             }
-            PictureError::Bytes { bytes, pitch } => write!(f, "{bytes} bytes do not hold the picture's rows at a pitch of {pitch}"),
+            PictureError::Bytes { bytes, pitch } => {
+                write!(f, "{bytes} bytes do not hold the picture's rows at a pitch of {pitch}")
+            }
             PictureError::Memory { bytes } => write!(f, "no memory for a picture of {bytes} bytes"),
         }
     }

@@ -27,7 +27,8 @@ pub fn rgb_png(vga: &Vga, path: impl AsRef<Path>) -> Result<(), ExportError> {
 /// [`ExportError`] if the picture's sizes do not fit its bytes, or if the file cannot be written.
 pub fn picture_rgb_png(picture: &Picture<'_>, scale: Scale, path: impl AsRef<Path>) -> Result<(), ExportError> {
     let path = path.as_ref();
-    let file = encode_rgb_png(picture, scale).map_err(|error| ExportError::new(path, ExportErrorKind::Picture(error)))?;
+    let file =
+        encode_rgb_png(picture, scale).map_err(|error| ExportError::new(path, ExportErrorKind::Picture(error)))?;
     write_atomically(path, |out| out.write_all(&file))
 }
 

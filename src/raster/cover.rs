@@ -33,8 +33,7 @@ impl Ordered {
         }
         let vertices = [top, middle, bottom];
         let [(x0, y0), (x1, y1), (x2, y2)] = vertices.map(|v| point(&v));
-        let doubled_area =
-            i64::from(x1 - x0) * i64::from(y2 - y0) - i64::from(x2 - x0) * i64::from(y1 - y0);
+        let doubled_area = i64::from(x1 - x0) * i64::from(y2 - y0) - i64::from(x2 - x0) * i64::from(y1 - y0);
         Self { vertices, doubled_area }
     }
 
@@ -66,8 +65,7 @@ impl Ordered {
             }
             let mut short = Edge::at_row(point(from), point(to), y);
             while y < until {
-                let (x_left, x_right) =
-                    if self.doubled_area > 0 { (long.x, short.x) } else { (short.x, long.x) };
+                let (x_left, x_right) = if self.doubled_area > 0 { (long.x, short.x) } else { (short.x, long.x) };
                 let origin = x_left.max(0);
                 let (x0, x1) = (origin.max(clip_x0), x_right.min(width).min(clip_x1));
                 if x0 < x1 {

@@ -48,9 +48,8 @@ impl DepthPlane {
         // At most 2 · 2³² · 2²¹ = 2⁵⁴.
         let gx = gradient(((d1 * y2 - d2 * y1) ^ sign) - sign, &area);
         let gy = gradient(((d2 * x1 - d1 * x2) ^ sign) - sign, &area);
-        let origin = ((d0 << 24) + (1 << 23))
-            .wrapping_add(gx.wrapping_mul(128 - x0))
-            .wrapping_add(gy.wrapping_mul(128 - y0));
+        let origin =
+            ((d0 << 24) + (1 << 23)).wrapping_add(gx.wrapping_mul(128 - x0)).wrapping_add(gy.wrapping_mul(128 - y0));
         Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
     }
 

@@ -147,8 +147,8 @@ impl<'a> Raster<'a> {
                 },
             };
             let tested = depths.is_some();
-            let (shade, depth) = planes
-                .get_or_insert_with(|| (ShadePlane::new(triangle), tested.then(|| DepthPlane::new(triangle))));
+            let (shade, depth) =
+                planes.get_or_insert_with(|| (ShadePlane::new(triangle), tested.then(|| DepthPlane::new(triangle))));
             let mut depths = depths.zip(depth.as_ref());
             spans::<RESEEDED>(&row, shade, |range, start| {
                 drawn.spans += 1;

@@ -69,7 +69,11 @@ fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_ins
     let shade = inside.shade + (outside.shade - inside.shade) * on_screen;
     // Rounding in `shade` must not leave the range of the two ends.
     let (low, high) = (inside.shade.min(outside.shade), inside.shade.max(outside.shade));
-    Corner { at: Homogeneous { x: between(a.x, b.x), y: between(a.y, b.y), w }, shade: shade.max(low).min(high), vertex: None }
+    Corner {
+        at: Homogeneous { x: between(a.x, b.x), y: between(a.y, b.y), w },
+        shade: shade.max(low).min(high),
+        vertex: None,
+    }
 }
 
 /// Clips a triangle and hands the parts of what is left, a fan, to `part`. Returns whether anything

@@ -88,7 +88,11 @@ impl Stage<'_> {
                     Rung::Flat => (U8F8::default(), U8F8::default()),
                     _ => self.paint(surface).shades(self.beams, normal),
                 };
-                LitVertex { vertex: vertex.unwrap_or_default().with_shade(front), back, needs_clipping: vertex.is_none() }
+                LitVertex {
+                    vertex: vertex.unwrap_or_default().with_shade(front),
+                    back,
+                    needs_clipping: vertex.is_none(),
+                }
             },
         ));
         stats.vertices += positions.len() as u64;
@@ -99,12 +103,7 @@ impl Stage<'_> {
 
     /// Hands the faces that are to be drawn to `triangle`, clipped where they must be. Those of a
     /// closed mesh that are turned away are left out; others show their back.
-    pub(super) fn faces(
-        &self,
-        lit: &[LitVertex],
-        stats: &mut Stats,
-        triangle: &mut impl FnMut(&[Vertex; 3], Shading),
-    ) {
+    pub(super) fn faces(&self, lit: &[LitVertex], stats: &mut Stats, triangle: &mut impl FnMut(&[Vertex; 3], Shading)) {
         let mesh = self.object.mesh();
         let two_sided = !mesh.is_closed();
         stats.faces += mesh.triangles().len() as u64;

@@ -27,16 +27,16 @@ use core::fmt;
 
 pub mod depth;
 mod portable;
-#[cfg(any())]
+#[cfg(feature = "simd")]
 #[expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")]
 mod simd;
-#[cfg(any())]
+#[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
 mod x86;
 
 /// The bare assembly entries, for the tests that call them with rubbish in their registers and read
 /// their instructions. No part of the interface.
-#[cfg(any())]
+#[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[doc(hidden)]
 pub mod entry {
     pub use super::x86::entry::*;
@@ -92,25 +92,51 @@ static LISTED: [Listed; 8] = [
 ];
 
 fn find_asm() -> Option<(&'static str, Fill)> {
-    None
+    #[cfg(all(feature = "asm", target_arch = "x86_64"))]
+    return Some(("x86-64", x86::fill));
+    #[cfg(all(feature = "asm", target_arch = "x86"))]
+    return Some(("i686", x86::fill));
+    #[cfg(not(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86"))))]
+    return None;
 }
+
 fn find_asm_unrolled() -> Option<(&'static str, Fill)> {
-    None
+    #[cfg(all(feature = "asm", target_arch = "x86_64"))]
+    return Some(("x86-64", x86::fill_unrolled));
+    #[cfg(not(all(feature = "asm", target_arch = "x86_64")))]
+    return None;
 }
+
 fn find_simd() -> Option<(&'static str, Fill)> {
     find_avx512().or_else(find_avx2).or_else(find_sse2).or_else(find_arrays)
 }
+
 fn find_arrays() -> Option<(&'static str, Fill)> {
-    None
+    #[cfg(feature = "simd")]
+    return Some(("arrays", simd::arrays::fill));
+    #[cfg(not(feature = "simd"))]
+    return None;
 }
+
 fn find_sse2() -> Option<(&'static str, Fill)> {
-    None
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    return Some(("sse2", simd::sse2::fill));
+    #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
+    return None;
 }
+
 fn find_avx2() -> Option<(&'static str, Fill)> {
-    None
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    return simd::avx2::found().then_some(("avx2", simd::avx2::fill));
+    #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
+    return None;
 }
+
 fn find_avx512() -> Option<(&'static str, Fill)> {
-    None
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    return simd::avx512::found().then_some(("avx512", simd::avx512::fill));
+    #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
+    return None;
 }
 
 impl Kernel {

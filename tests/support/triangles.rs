@@ -21,7 +21,7 @@ pub fn triangle(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
     let kind = random.within(0, 8);
     let reach = match kind {
         0 => BAND,
-        _ => random.log_uniform(width * 512),
+        _ => (random.log_uniform(16) as i64).min(width * 512),
     };
     let (cx, cy) = (random.within(-2000, width * 256 + 2000), random.within(-2000, height * 256 + 2000));
     let mut place = || {
@@ -51,7 +51,7 @@ pub fn triangle(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
             0 => random.one_of(&[0, 0xFF00]),
             _ => random.within(0, 0xFF00),
         };
-        let depth = random.log_uniform(1 << 30);
+        let depth = random.log_uniform(30) as i64;
         vertex(x, y, shade, depth)
     })
 }

@@ -1,36 +1,71 @@
-//! How many cases a test tried: counted, printed, and a failure where they are fewer than stated.
+//! The table of how many cases each test tried: none, or fewer than stated, is a failure.
+//!
+//! A test's row is printed, and kept in the target directory as `tmp/tried/<test>`, so that
+//! `cat target/tmp/tried/*` is the table of all of them.
 
+use std::fs;
+use std::path::Path;
+
+/// Counts one test's cases, and reports them when the test ends.
+#[must_use]
 pub struct Tried {
-    id: &'static str,
+    test: String,
+    stated: u64,
     cases: u64,
-    at_least: u64,
 }
 
 impl Tried {
-    /// A count for the hard case `id`; fewer than `at_least` cases fail the test when it ends.
-    pub fn new(id: &'static str, at_least: u64) -> Self {
-        assert!(at_least > 0);
-        Self { id, cases: 0, at_least }
+    /// A row for `test`, which states that it tries at least `stated` cases.
+    pub fn new(test: impl Into<String>, stated: u64) -> Self {
+        Self { test: test.into(), stated, cases: 0 }
     }
 
-    /// Counts one case.
-    pub fn one(&mut self) {
-        self.cases += 1;
+    /// `cases` more have been tried.
+    pub fn add(&mut self, cases: u64) {
+        self.cases += cases;
     }
 
-    /// Whether there are cases left to try; counts the next one if so.
+    /// Whether there are stated cases left to try; counts the next one if so.
     pub fn more(&mut self) -> bool {
-        let more = self.cases < self.at_least;
+        let more = self.cases < self.stated;
         self.cases += u64::from(more);
         more
     }
+
+    /// Reports now.
+    pub fn done(self) {}
 }
 
 impl Drop for Tried {
+    /// Prints and keeps the row, unless the test has failed.
+    ///
+    /// # Panics
+    /// If no case was tried, or fewer than stated.
     fn drop(&mut self) {
-        if !std::thread::panicking() {
-            println!("tried {}: {} cases", self.id, self.cases);
-            assert!(self.cases >= self.at_least, "{}: {} cases tried of {}", self.id, self.cases, self.at_least);
+        if std::thread::panicking() {
+            return;
         }
+        let row = format!("{:<56} {:>15} cases", self.test, grouped(self.cases));
+        println!("{row}");
+        let table = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tried");
+        let file = table.join(self.test.replace([':', '/', '*', ' '], "_"));
+        if let Err(error) = fs::create_dir_all(&table).and_then(|()| fs::write(&file, row + "\n")) {
+            println!("{}: {error}", file.display());
+        }
+        assert!(self.cases > 0, "{}: no case was tried", self.test);
+        assert!(self.cases >= self.stated, "{}: {} cases tried, {} stated", self.test, self.cases, self.stated);
     }
+}
+
+/// 1234567 as 1,234,567.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i) % 3 == 0 {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
 }

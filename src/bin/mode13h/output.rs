@@ -56,7 +56,9 @@ pub(crate) fn numbered_picture(vga: &Vga) -> Result<PathBuf, ExportError> {
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::work(format!("standard output: {error}"))),
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::work(format!("standard output: {error}")))
+        }
         _ => Ok(()),
     }
 }

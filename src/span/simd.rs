@@ -1,0 +1,312 @@
+//! Many pixels at once: lane `k` starts at `shade + k·step`, which is exact because wrapping is.
+//!
+//! The vector kernels keep the *even* pixels of a block in one vector of 16-bit shades and the *odd*
+//! ones in another:
+//!
+//! ```text
+//! even[j] = shade + 2·j·step        odd[j] = even[j] + step
+//! bytes   = even >> 8 | odd & 0xFF00               (little-endian: byte 2j, byte 2j + 1)
+//! ```
+//!
+//! so that no lane has to be packed or carried across the register. Both run on by a block's worth
+//! of steps.
+
+/// Plain arrays that the compiler vectorises, for processors without a kernel of their own.
+pub(super) mod arrays {
+    /// Pixels a turn.
+    const BLOCK: usize = 32;
+    const BLOCK_STEPS: u16 = BLOCK as u16;
+
+    pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
+        // 32 starts cost more than they save on a short row.
+        if row.len() < BLOCK {
+            return super::super::portable::fill(row, shade, step);
+        }
+        let mut shades = [0_u16; BLOCK];
+        let mut start = shade;
+        for lane in &mut shades {
+            *lane = start;
+            start = start.wrapping_add(step);
+        }
+        let (blocks, tail) = row.as_chunks_mut::<BLOCK>();
+        for block in blocks {
+            for (pixel, lane) in block.iter_mut().zip(&mut shades) {
+                [*pixel, _] = lane.to_be_bytes();
+                *lane = lane.wrapping_add(step.wrapping_mul(BLOCK_STEPS));
+            }
+        }
+        for (pixel, lane) in tail.iter_mut().zip(shades) {
+            [*pixel, _] = lane.to_be_bytes();
+        }
+    }
+}
+
+/// 0, 2, 4 … of a block of 64, and the mask of the odd bytes behind them.
+#[cfg(target_arch = "x86_64")]
+#[repr(C, align(64))]
+struct Lanes {
+    even: [u16; 32],
+    odd_bytes: u32,
+}
+
+#[cfg(target_arch = "x86_64")]
+static LANES: Lanes = Lanes {
+    even: {
+        let mut even = [0; 32];
+        let mut j = 0;
+        while j < 32 {
+            even[j as usize] = 2 * j;
+            j += 1;
+        }
+        even
+    },
+    odd_bytes: 0xFF00_FF00,
+};
+
+#[cfg(target_arch = "x86_64")]
+pub(super) mod sse2 {
+    use core::arch::x86_64::*;
+
+    /// Even and odd shades of a block of 16 pixels.
+    #[derive(Clone, Copy)]
+    pub(super) struct Block {
+        even: __m128i,
+        odd: __m128i,
+    }
+
+    impl Block {
+        /// The block whose first pixel has `shade`.
+        #[inline]
+        #[target_feature(enable = "sse2")]
+        pub(super) fn new(shade: u16, step: u16) -> Self {
+            let steps = _mm_set1_epi16(step as i16); // the same bits
+            let ramp = _mm_mullo_epi16(steps, _mm_setr_epi16(0, 2, 4, 6, 8, 10, 12, 14));
+            let even = _mm_add_epi16(ramp, _mm_set1_epi16(shade as i16));
+            Self { even, odd: _mm_add_epi16(even, steps) }
+        }
+
+        /// The block whose shades are higher by `by`.
+        #[inline]
+        #[target_feature(enable = "sse2")]
+        pub(super) fn raised(self, by: __m128i) -> Self {
+            Self { even: _mm_add_epi16(self.even, by), odd: _mm_add_epi16(self.odd, by) }
+        }
+
+        #[inline]
+        #[target_feature(enable = "sse2")]
+        pub(super) fn bytes(self) -> __m128i {
+            let odd_bytes = _mm_set1_epi16(0xFF00_u16 as i16);
+            _mm_or_si128(_mm_srli_epi16(self.even, 8), _mm_and_si128(self.odd, odd_bytes))
+        }
+
+        #[inline]
+        #[target_feature(enable = "sse2")]
+        pub(super) fn store(self, to: &mut [u8; 16]) {
+            // SAFETY: `to` is 16 writable bytes; the store asks for no alignment.
+            unsafe { _mm_storeu_si128(to.as_mut_ptr().cast(), self.bytes()) }
+        }
+
+        #[inline]
+        #[target_feature(enable = "sse2")]
+        pub(super) fn words(self) -> [u64; 2] {
+            let bytes = self.bytes();
+            let high = _mm_unpackhi_epi64(bytes, bytes);
+            [_mm_cvtsi128_si64(bytes) as u64, _mm_cvtsi128_si64(high) as u64]
+        }
+    }
+
+    /// Every x86-64 has SSE2, so for any processor.
+    pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
+        // SAFETY: x86-64 includes SSE2.
+        unsafe { vectors(row, shade, step) }
+    }
+
+    /// Rows of less than 16, each with stores that overlap instead of a loop for the rest.
+    #[inline]
+    #[target_feature(enable = "sse2")]
+    pub(super) fn short(row: &mut [u8], shade: u16, step: u16) {
+        let n = row.len();
+        if n >= 8 {
+            let [low, high] = Block::new(shade, step).words();
+            // The last 8 begin at byte n − 8. (`high` goes up 64 − down bits, in two steps as down may be 0.)
+            let down = 8 * (n as u32 - 8);
+            let last = (low >> down) | ((high << 1) << (63 - down));
+            row[n - 8..].copy_from_slice(&last.to_le_bytes());
+            row[..8].copy_from_slice(&low.to_le_bytes());
+        } else if n >= 4 {
+            let [low, _] = Block::new(shade, step).words();
+            let last = (low >> (8 * (n as u32 - 4))) as u32; // its low half
+            row[n - 4..].copy_from_slice(&last.to_le_bytes());
+            row[..4].copy_from_slice(&(low as u32).to_le_bytes());
+        } else if n > 0 {
+            // One to three pixels: the first, the middle and the last are all of them.
+            let pixel = |k: usize| (shade.wrapping_add(step.wrapping_mul(k as u16)) >> 8) as u8; // k < 4
+            row[n / 2] = pixel(n / 2);
+            row[n - 1] = pixel(n - 1);
+            row[0] = pixel(0);
+        }
+    }
+
+    #[target_feature(enable = "sse2")]
+    fn vectors(row: &mut [u8], shade: u16, step: u16) {
+        let n = row.len();
+        if n < 16 {
+            return short(row, shade, step);
+        }
+        let first = Block::new(shade, step);
+        // The last 16, whatever the length: its first pixel is number n − 16. (mod 65,536, as the shade)
+        let to_last = step.wrapping_mul((n - 16) as u16);
+        let last = first.raised(_mm_set1_epi16(to_last as i16));
+        let by = _mm_set1_epi16(step.wrapping_mul(16) as i16);
+        let mut block = first;
+        let (blocks, _) = row.as_chunks_mut::<16>();
+        for to in blocks {
+            block.store(to);
+            block = block.raised(by);
+        }
+        if let Some(to) = row.last_chunk_mut::<16>() {
+            last.store(to);
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) mod avx2 {
+    use super::sse2;
+    use core::arch::x86_64::*;
+
+    /// Whether this processor has what [`fill`] needs.
+    pub(crate) fn found() -> bool {
+        #[cfg(feature = "std")]
+        return std::arch::is_x86_feature_detected!("avx2");
+        #[cfg(not(feature = "std"))]
+        return cfg!(target_feature = "avx2");
+    }
+
+    /// Only for a processor for which [`found`] is true.
+    pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
+        // SAFETY: the table gives this function out only where AVX2 was found.
+        unsafe { vectors(row, shade, step) }
+    }
+
+    #[derive(Clone, Copy)]
+    struct Block {
+        even: __m256i,
+        odd: __m256i,
+    }
+
+    impl Block {
+        #[inline]
+        #[target_feature(enable = "avx2")]
+        fn raised(self, by: __m256i) -> Self {
+            Self { even: _mm256_add_epi16(self.even, by), odd: _mm256_add_epi16(self.odd, by) }
+        }
+
+        #[inline]
+        #[target_feature(enable = "avx2")]
+        fn store(self, to: &mut [u8; 32]) {
+            let odd_bytes = _mm256_set1_epi16(0xFF00_u16 as i16);
+            let bytes = _mm256_or_si256(_mm256_srli_epi16(self.even, 8), _mm256_and_si256(self.odd, odd_bytes));
+            // SAFETY: `to` is 32 writable bytes; the store asks for no alignment.
+            unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), bytes) }
+        }
+    }
+
+    #[target_feature(enable = "avx2")]
+    fn vectors(row: &mut [u8], shade: u16, step: u16) {
+        let n = row.len();
+        if n < 16 {
+            return sse2::short(row, shade, step);
+        }
+        if n <= 32 {
+            let first = sse2::Block::new(shade, step);
+            let to_last = step.wrapping_mul((n - 16) as u16);
+            let last = first.raised(_mm_set1_epi16(to_last as i16));
+            if let Some(to) = row.first_chunk_mut::<16>() {
+                first.store(to);
+            }
+            if let Some(to) = row.last_chunk_mut::<16>() {
+                last.store(to);
+            }
+            return;
+        }
+        let steps = _mm256_set1_epi16(step as i16);
+        let lanes = _mm256_setr_epi16(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+        let even = _mm256_add_epi16(_mm256_mullo_epi16(steps, lanes), _mm256_set1_epi16(shade as i16));
+        let first = Block { even, odd: _mm256_add_epi16(even, steps) };
+        let to_last = step.wrapping_mul((n - 32) as u16);
+        let last = first.raised(_mm256_set1_epi16(to_last as i16));
+        let by = _mm256_set1_epi16(step.wrapping_mul(32) as i16);
+        let mut block = first;
+        let (blocks, _) = row.as_chunks_mut::<32>();
+        for to in blocks {
+            block.store(to);
+            block = block.raised(by);
+        }
+        if let Some(to) = row.last_chunk_mut::<32>() {
+            last.store(to);
+        }
+    }
+}
+
+/// AVX-512 in assembly: its intrinsics came with Rust 1.89, and this crate builds with 1.88.
+#[cfg(target_arch = "x86_64")]
+pub(super) mod avx512 {
+    /// Whether this processor has what [`fill`] needs.
+    pub(crate) fn found() -> bool {
+        #[cfg(feature = "std")]
+        return std::arch::is_x86_feature_detected!("avx512f")
+            && std::arch::is_x86_feature_detected!("avx512bw")
+            && std::arch::is_x86_feature_detected!("bmi2");
+        #[cfg(not(feature = "std"))]
+        return cfg!(all(target_feature = "avx512f", target_feature = "avx512bw", target_feature = "bmi2"));
+    }
+
+    /// Only for a processor for which [`found`] is true.
+    ///
+    /// A masked store writes the last 0 to 64 pixels, so that no length takes a branch of its own.
+    /// Registers 16 to 31 need no `vzeroupper` and belong to the caller on no system.
+    pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
+        // SAFETY: the table gives this function out only where AVX-512 F and BW and BMI2 were found.
+        // Written are row[0..64·i] by whole blocks while more than 64 bytes are left, then as many
+        // bytes as are left, by the mask. Read is `LANES` alone. No stack, flags given up.
+        unsafe {
+            core::arch::asm!(
+                "vpbroadcastw zmm16, {shade:e}",
+                "vpbroadcastw zmm17, {step:e}",
+                "vpmullw  zmm18, zmm17, [{lanes}]",
+                "vpaddw   zmm18, zmm18, zmm16",          // even
+                "vpaddw   zmm19, zmm18, zmm17",          // odd
+                "cmp      {left}, 64",
+                "jbe      3f",
+                "vpbroadcastd zmm20, [{lanes} + 64]",
+                "vpsllw   zmm17, zmm17, 6",              // 64·step
+                "2:",
+                "vpsrlw   zmm16, zmm18, 8",
+                "vpternlogd zmm16, zmm19, zmm20, 0xF8",  // | odd & 0xFF00
+                "vmovdqu64 [{row}], zmm16",
+                "vpaddw   zmm18, zmm18, zmm17",
+                "vpaddw   zmm19, zmm19, zmm17",
+                "add      {row}, 64",
+                "sub      {left}, 64",
+                "cmp      {left}, 64",
+                "ja       2b",
+                "3:",
+                "mov      {mask}, -1",
+                "bzhi     {mask}, {mask}, {left}",
+                "kmovq    k1, {mask}",
+                "vpsrlw   zmm16, zmm18, 8",
+                "vpternlogd zmm16, zmm19, [{lanes} + 64]{{1to16}}, 0xF8",
+                "vmovdqu8 [{row}]{{k1}}, zmm16",
+                row = inout(reg) row.as_mut_ptr() => _,
+                left = inout(reg) row.len() => _,
+                mask = out(reg) _,
+                shade = in(reg) u32::from(shade),
+                step = in(reg) u32::from(step),
+                lanes = in(reg) &raw const super::LANES,
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("k1") _,
+                options(nostack),
+            );
+        }
+    }
+}
