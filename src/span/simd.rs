@@ -14,54 +14,31 @@
 /// Plain arrays that the compiler vectorises, for processors without a kernel of their own.
 pub(super) mod arrays {
     /// Pixels a turn.
-    const BLOCK: usize = 32;
+    const BLOCK: usize = 16;
     const BLOCK_STEPS: u16 = BLOCK as u16;
 
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
-        // 32 starts cost more than they save on a short row.
-        if row.len() < BLOCK {
+        let n = row.len();
+        if n < BLOCK {
             return super::super::portable::fill(row, shade, step);
         }
-        let mut shades = [0_u16; BLOCK];
+        let mut rises = [0_u16; BLOCK];
+        for (k, rise) in (0..).zip(&mut rises) {
+            *rise = step.wrapping_mul(k);
+        }
+        let pixels = |start: u16| rises.map(|rise| start.wrapping_add(rise).to_be_bytes()[0]);
         let mut start = shade;
-        for lane in &mut shades {
-            *lane = start;
-            start = start.wrapping_add(step);
-        }
-        let (blocks, tail) = row.as_chunks_mut::<BLOCK>();
+        let (blocks, _) = row.as_chunks_mut::<BLOCK>();
         for block in blocks {
-            for (pixel, lane) in block.iter_mut().zip(&mut shades) {
-                [*pixel, _] = lane.to_be_bytes();
-                *lane = lane.wrapping_add(step.wrapping_mul(BLOCK_STEPS));
-            }
+            *block = pixels(start);
+            start = start.wrapping_add(step.wrapping_mul(BLOCK_STEPS));
         }
-        for (pixel, lane) in tail.iter_mut().zip(shades) {
-            [*pixel, _] = lane.to_be_bytes();
+        // The last 16, whatever the length. Its first pixel is number n − 16, taken mod 65,536 as shades are.
+        if let Some(last) = row.last_chunk_mut::<BLOCK>() {
+            *last = pixels(shade.wrapping_add(step.wrapping_mul((n - BLOCK) as u16)));
         }
     }
 }
-
-/// 0, 2, 4 … of a block of 64, and the mask of the odd bytes behind them.
-#[cfg(target_arch = "x86_64")]
-#[repr(C, align(64))]
-struct Lanes {
-    even: [u16; 32],
-    odd_bytes: u32,
-}
-
-#[cfg(target_arch = "x86_64")]
-static LANES: Lanes = Lanes {
-    even: {
-        let mut even = [0; 32];
-        let mut j = 0;
-        while j < 32 {
-            even[j as usize] = 2 * j;
-            j += 1;
-        }
-        even
-    },
-    odd_bytes: 0xFF00_FF00,
-};
 
 #[cfg(target_arch = "x86_64")]
 pub(super) mod sse2 {
@@ -252,6 +229,34 @@ pub(super) mod avx2 {
 /// AVX-512 in assembly: its intrinsics came with Rust 1.89, and this crate builds with 1.88.
 #[cfg(target_arch = "x86_64")]
 pub(super) mod avx512 {
+    /// What the vectors start from, read by the assembly at the offsets beside it.
+    #[repr(C, align(64))]
+    struct Constants {
+        /// 0: the number of each even pixel of a block.
+        even: [u16; 32],
+        /// 64: both bytes of a 16-bit lane from its upper, for `vpshufb`.
+        upper: [u8; 16],
+        /// 80: the even bytes of a block, as a mask.
+        even_bytes: u64,
+        /// 88: the odd bytes of two lanes.
+        odd_bytes: u32,
+    }
+
+    static CONSTANTS: Constants = Constants {
+        even: {
+            let mut even = [0; 32];
+            let mut j = 0;
+            while j < 32 {
+                even[j as usize] = 2 * j;
+                j += 1;
+            }
+            even
+        },
+        upper: [1, 1, 3, 3, 5, 5, 7, 7, 9, 9, 11, 11, 13, 13, 15, 15],
+        even_bytes: 0x5555_5555_5555_5555,
+        odd_bytes: 0xFF00_FF00,
+    };
+
     /// Whether this processor has what [`fill`] needs.
     pub(crate) fn found() -> bool {
         #[cfg(feature = "std")]
@@ -264,47 +269,63 @@ pub(super) mod avx512 {
 
     /// Only for a processor for which [`found`] is true.
     ///
-    /// A masked store writes the last 0 to 64 pixels, so that no length takes a branch of its own.
-    /// Registers 16 to 31 need no `vzeroupper` and belong to the caller on no system.
+    /// ```text
+    /// even[j] = shade + 2·j·step
+    /// while more than 64 pixels are left:
+    ///     bytes = even + step, its even bytes replaced by the upper bytes of even
+    ///     even += 64·step
+    /// the last 1 to 64: the same bytes, stored under a mask
+    /// ```
+    ///
+    /// 1. A masked store ends every row, so that no length has a branch of its own: spans of 1 to 64
+    ///    pixels in a random order take 2.7 ns each, the same as in order; with AVX2 it is 11.
+    /// 2. In the loop a masked `vpshufb` does the work of a shift and a merge: 320 pixels in 4.9 ns
+    ///    instead of 6.6. (`vpermi2b`, which packs two vectors, is three operations on Intel.)
+    /// 3. Two blocks a turn, a last store that overlaps, stores from an aligned address on, 32-byte vectors:
+    ///    each tried, none faster at 320 pixels and at 8.
+    /// 4. Registers 16 to 31 need no `vzeroupper`, and no calling convention saves them.
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
-        // SAFETY: the table gives this function out only where AVX-512 F and BW and BMI2 were found.
-        // Written are row[0..64·i] by whole blocks while more than 64 bytes are left, then as many
-        // bytes as are left, by the mask. Read is `LANES` alone. No stack, flags given up.
+        // SAFETY: the table gives this function out only where AVX-512 F, AVX-512 BW and BMI2 were found.
+        // Written are the row's first 64 bytes, and the next, for as long as more than 64 are left, and then
+        // as many bytes as are left, by the mask. Read is `CONSTANTS`, at the offsets of `repr(C)`. The
+        // stack is not used; flags and all registers written are given up.
         unsafe {
             core::arch::asm!(
                 "vpbroadcastw zmm16, {shade:e}",
                 "vpbroadcastw zmm17, {step:e}",
-                "vpmullw  zmm18, zmm17, [{lanes}]",
-                "vpaddw   zmm18, zmm18, zmm16",          // even
-                "vpaddw   zmm19, zmm18, zmm17",          // odd
-                "cmp      {left}, 64",
-                "jbe      3f",
-                "vpbroadcastd zmm20, [{lanes} + 64]",
-                "vpsllw   zmm17, zmm17, 6",              // 64·step
+                "vpmullw    zmm18, zmm17, [{constants}]",
+                "vpaddw     zmm18, zmm18, zmm16",               // even
+                "sub        {left}, 64",
+                "jbe        3f",
+                "vbroadcasti32x4 zmm20, [{constants} + 64]",    // upper
+                "kmovq      k2, [{constants} + 80]",            // even_bytes
+                "vpsllw     zmm21, zmm17, 6",                   // 64·step
+                ".p2align   5",
                 "2:",
-                "vpsrlw   zmm16, zmm18, 8",
-                "vpternlogd zmm16, zmm19, zmm20, 0xF8",  // | odd & 0xFF00
-                "vmovdqu64 [{row}], zmm16",
-                "vpaddw   zmm18, zmm18, zmm17",
-                "vpaddw   zmm19, zmm19, zmm17",
-                "add      {row}, 64",
-                "sub      {left}, 64",
-                "cmp      {left}, 64",
-                "ja       2b",
+                "vpaddw     zmm19, zmm18, zmm17",               // odd
+                "vpshufb    zmm19{{k2}}, zmm18, zmm20",         // and the upper bytes of even
+                "vpaddw     zmm18, zmm18, zmm21",
+                "vmovdqu64  [{row}], zmm19",
+                "add        {row}, 64",
+                "sub        {left}, 64",                        // left: of this row, less 64
+                "ja         2b",
                 "3:",
-                "mov      {mask}, -1",
-                "bzhi     {mask}, {mask}, {left}",
-                "kmovq    k1, {mask}",
-                "vpsrlw   zmm16, zmm18, 8",
-                "vpternlogd zmm16, zmm19, [{lanes} + 64]{{1to16}}, 0xF8",
-                "vmovdqu8 [{row}]{{k1}}, zmm16",
+                "add        {left}, 64",                        // 0 to 64
+                "mov        {mask}, -1",
+                "bzhi       {mask}, {mask}, {left}",
+                "kmovq      k1, {mask}",
+                "vpaddw     zmm19, zmm18, zmm17",
+                "vpsrlw     zmm16, zmm18, 8",
+                "vpternlogd zmm16, zmm19, [{constants} + 88]{{1to16}}, 0xF8", // even >> 8 | odd & 0xFF00
+                "vmovdqu8   [{row}]{{k1}}, zmm16",
                 row = inout(reg) row.as_mut_ptr() => _,
                 left = inout(reg) row.len() => _,
                 mask = out(reg) _,
                 shade = in(reg) u32::from(shade),
                 step = in(reg) u32::from(step),
-                lanes = in(reg) &raw const super::LANES,
-                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("k1") _,
+                constants = in(reg) &raw const CONSTANTS,
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
+                out("k1") _, out("k2") _,
                 options(nostack),
             );
         }
