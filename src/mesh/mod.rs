@@ -10,6 +10,8 @@
 mod bounds;
 mod error;
 pub mod normals;
+#[cfg(feature = "obj")]
+pub mod obj;
 
 mod orientation;
 pub mod shapes;
@@ -53,8 +55,9 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The most vertices, and the most triangles, of a mesh: 2³¹ − 1.
-    pub const MOST: usize = i32::MAX as usize;
+    /// The most vertices, and the most triangles, of a mesh: a third of 2³², so that the corners of
+    /// all triangles can be counted in 32 bits.
+    pub const MOST: usize = (u32::MAX / 3) as usize;
 
     /// A mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share
     /// a vertex: a vertex that is listed twice is a crease.
@@ -71,7 +74,8 @@ impl Mesh {
         let mut mesh = Self::assemble(positions, normals, triangles);
         // Numbers of vertices, which are below 2³¹.
         let own: Vec<u32> = (0..mesh.positions.len() as u32).collect();
-        mesh.average(&own, Weight::Angle, None);
+        let known = vec![None; mesh.positions.len()];
+        mesh.average(&own, Weight::Angle, None, known);
         Ok(mesh)
     }
 

@@ -108,14 +108,15 @@ impl Mesh {
     /// Vertices keep their numbers; new ones come at the end.
     pub fn smooth(&mut self, weight: Weight, crease: Option<f32>) {
         let points = topology::weld(&self.positions);
-        self.average(&points, weight, crease);
+        let known = vec![None; self.positions.len()];
+        self.average(&points, weight, crease, known);
     }
 
     /// Gives every face its own normal at all its corners. Vertices are split where they must be.
     pub fn flat(&mut self) {
         let faces = self.faces();
         let normals = faces.iter().flat_map(|face| [face.has_area().then(|| narrow(face.normal)); 3]).collect();
-        self.give(normals);
+        self.give(normals, vec![None; self.positions.len()]);
     }
 
     fn faces(&self) -> Vec<Face> {
@@ -126,9 +127,9 @@ impl Mesh {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
-    /// As [`smooth`](Self::smooth), where `points` says which vertices count as one. Points are
-    /// numbered below the number of vertices.
-    pub(super) fn average(&mut self, points: &[u32], weight: Weight, crease: Option<f32>) {
+    /// As [`smooth`](Self::smooth), where `points` says which vertices count as one (points are
+    /// numbered below the number of vertices), and `known` which of them keep the normal that it gives.
+    pub(super) fn average(&mut self, points: &[u32], weight: Weight, crease: Option<f32>, known: Vec<Option<Vec3>>) {
         let faces = self.faces();
         let classes = match crease {
             None => self.triangles.iter().flatten().map(|&vertex| points[vertex as usize]).collect(),
@@ -159,10 +160,12 @@ impl Mesh {
         drop(sums);
         let normal = |corner: usize| {
             let face = &faces[corner / 3];
-            face.has_area().then(|| means[classes[corner] as usize].unwrap_or_else(|| narrow(face.normal)))
+            let vertex = self.triangles[corner / 3][corner % 3];
+            (face.has_area() && known[vertex as usize].is_none())
+                .then(|| means[classes[corner] as usize].unwrap_or_else(|| narrow(face.normal)))
         };
         let normals = (0..classes.len()).map(normal).collect();
-        self.give(normals);
+        self.give(normals, known);
     }
 
     /// For each corner the corner that stands for all that share a normal with it: two faces at a
@@ -178,7 +181,7 @@ impl Mesh {
             }
             for i in 0..3 {
                 let at = |corner: usize| u64::from(points[triangle[corner % 3] as usize]);
-                // Fewer than 2³¹ triangles have fewer than 2³³ corners; `give` needs them in 32 bits.
+                // Fits, see `Mesh::MOST`.
                 let corner = (3 * t + i) as u32;
                 edges.push((at(i) << 32 | at(i + 1), corner));
                 edges.push((at(i) << 32 | at(i + 2), corner));
@@ -202,9 +205,8 @@ impl Mesh {
     }
 
     /// A normal for each corner; `None`: any will do. Splits the vertices whose corners want more
-    /// than one.
-    fn give(&mut self, normals: Vec<Option<Vec3>>) {
-        let mut given: Vec<Option<Vec3>> = vec![None; self.positions.len()];
+    /// than one. `given`: what vertices have already.
+    fn give(&mut self, normals: Vec<Option<Vec3>>, mut given: Vec<Option<Vec3>>) {
         let bits = |n: Vec3| [n.x, n.y, n.z].map(f32::to_bits);
         let mut splits: Vec<(u32, [u32; 3], u32)> = Vec::new();
         for (corner, (&vertex, &normal)) in self.triangles.as_flattened().iter().zip(&normals).enumerate() {

@@ -39,7 +39,9 @@ pub use wall::wall;
 const MOST: u32 = 4096;
 
 /// Name, and how it is made when nothing is said about its subdivision.
-const TABLE: [(&str, fn() -> Mesh); 7] = [
+type Row = (&'static str, fn() -> Mesh);
+
+const TABLE: [Row; 7] = [
     ("cube", cube),
     ("sphere", || sphere(48, 24)),
     ("torus", || torus(48, 24)),

@@ -1,0 +1,102 @@
+//! Why a model is refused, and where in the file.
+
+use std::path::{Path, PathBuf};
+use std::string::String;
+use std::{error, fmt, io};
+
+/// Why a model is refused. Displayed as `path:line: what`, on one line.
+#[derive(Debug)]
+pub struct ObjError {
+    /// The file, as the caller or `mtllib` named it.
+    pub path: PathBuf,
+    /// Counted from 1. `None` where no one line is at fault.
+    pub line: Option<u64>,
+    /// What is wrong.
+    pub kind: ObjErrorKind,
+}
+
+/// What is wrong with a model.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ObjErrorKind {
+    /// The file is not there or cannot be read.
+    Read(io::Error),
+    /// The path is that of a directory.
+    Directory,
+    /// Not a text file.
+    NotText,
+    /// Fewer numbers than the statement needs.
+    Missing(&'static str),
+    /// This should be a number.
+    NotNumber(String),
+    /// A NaN, an infinity, or a number beyond the range of f32.
+    NotFinite(String),
+    /// This should be `v`, `v/vt`, `v//vn` or `v/vt/vn`, whole numbers.
+    NotCorner(String),
+    /// Index 0: they count from 1.
+    IndexZero,
+    /// An index that names nothing.
+    IndexOutOfRange {
+        /// "vertex", "texture coordinate" or "normal".
+        what: &'static str,
+        /// As it stands in the file.
+        index: i64,
+        /// How many there are: in the file, or for a negative index up to this line.
+        count: usize,
+    },
+    /// A face of one or two corners.
+    FewCorners(usize),
+    /// The file holds no face.
+    NoFaces,
+    /// More than [`Mesh::MOST`](crate::mesh::Mesh::MOST) of a kind, more than 2³² − 1 corners, more than 65,536 materials, or a concave face of
+    /// more than a million corners.
+    TooLarge(&'static str),
+}
+
+impl ObjError {
+    pub(super) fn of_file(path: &Path, kind: ObjErrorKind) -> Self {
+        Self { path: path.to_owned(), line: None, kind }
+    }
+
+    pub(super) fn of_line(path: &Path, line: u64, kind: ObjErrorKind) -> Self {
+        Self { path: path.to_owned(), line: Some(line), kind }
+    }
+}
+
+impl fmt::Display for ObjError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            Some(line) => write!(f, "{}:{line}: {}", self.path.display(), self.kind),
+            None => write!(f, "{}: {}", self.path.display(), self.kind),
+        }
+    }
+}
+
+impl fmt::Display for ObjErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read(error) => write!(f, "{error}"),
+            Self::Directory => write!(f, "is a directory"),
+            Self::NotText => write!(f, "not a text file"),
+            Self::Missing(what) => write!(f, "too few numbers for {what}"),
+            Self::NotNumber(word) => write!(f, "`{word}` is not a number"),
+            Self::NotFinite(word) => write!(f, "`{word}` is not a finite number"),
+            Self::NotCorner(word) => write!(f, "`{word}` is not the corner of a face"),
+            Self::IndexZero => write!(f, "index 0: indices count from 1"),
+            Self::IndexOutOfRange { what, index, count } => write!(f, "there is no {what} {index}, only {count}"),
+            Self::FewCorners(1) => write!(f, "a face with 1 corner; 3 are needed"),
+            Self::FewCorners(corners) => write!(f, "a face with {corners} corners; 3 are needed"),
+            Self::NoFaces => write!(f, "no faces"),
+            Self::TooLarge(what) => write!(f, "{what}"),
+        }
+    }
+}
+
+impl error::Error for ObjError {
+    fn source(&self) -> Option<&(dyn error::Error + 'static)> {
+        match &self.kind {
+            ObjErrorKind::Read(error) => Some(error),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Lines and words, of OBJ and MTL alike.
+
+use std::borrow::ToOwned;
+use std::io::{self, BufRead};
+use std::string::String;
+use std::vec::Vec;
+
+use super::ObjErrorKind;
+
+/// Lines, with those joined that end in a backslash. One buffer serves them all.
+pub(super) struct Lines<R> {
+    reader: R,
+    buffer: Vec<u8>,
+    /// Of the line that was read last (of joined ones the first), from 1.
+    number: u64,
+    /// Lines read so far.
+    read: u64,
+}
+
+impl<R: BufRead> Lines<R> {
+    pub(super) fn new(reader: R) -> Self {
+        Self { reader, buffer: Vec::new(), number: 0, read: 0 }
+    }
+
+    /// The next line's number and its text without the end-of-line; `None` at the end.
+    pub(super) fn next(&mut self) -> io::Result<Option<(u64, &[u8])>> {
+        self.buffer.clear();
+        self.number = self.read + 1;
+        loop {
+            if self.reader.read_until(b'\n', &mut self.buffer)? == 0 {
+                // A backslash may stand at the very end.
+                return Ok((self.read >= self.number).then_some((self.number, &self.buffer)));
+            }
+            self.read += 1;
+            if self.read == 1 && self.buffer.starts_with(b"\xEF\xBB\xBF") {
+                self.buffer.drain(..3);
+            }
+            for end in [b'\n', b'\r'] {
+                self.buffer.pop_if(|last| *last == end);
+            }
+            // A path at the end of a comment joins nothing.
+            if !self.buffer.ends_with(b"\\") || self.buffer.trim_ascii_start().starts_with(b"#") {
+                return Ok(Some((self.number, &self.buffer)));
+            }
+            self.buffer.pop();
+            self.buffer.push(b' ');
+        }
+    }
+}
+
+/// The first word and the rest.
+pub(super) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
+    let line = line.trim_ascii_start();
+    let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
+    line.split_at(end)
+}
+
+/// The words, up to a comment.
+pub(super) fn words(rest: &[u8]) -> impl Iterator<Item = &[u8]> {
+    rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).take_while(|word| word[0] != b'#')
+}
+
+/// A name or a path: the rest of the line, which may hold blanks.
+pub(super) fn name(rest: &[u8]) -> String {
+    String::from_utf8_lossy(rest.trim_ascii()).into_owned()
+}
+
+/// The next word as a finite number, or `None` at the end of the line.
+pub(super) fn number<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<Option<f32>, ObjErrorKind> {
+    let Some(word) = words.next() else { return Ok(None) };
+    match str::from_utf8(word).ok().and_then(|word| word.parse::<f32>().ok()) {
+        None => Err(ObjErrorKind::NotNumber(shown(word))),
+        Some(value) if !value.is_finite() => Err(ObjErrorKind::NotFinite(shown(word))),
+        value => Ok(value),
+    }
+}
+
+/// As many numbers as the statement needs.
+pub(super) fn numbers<'a, const N: usize>(
+    words: &mut impl Iterator<Item = &'a [u8]>,
+    what: &'static str,
+) -> Result<[f32; N], ObjErrorKind> {
+    let mut values = [0.0; N];
+    for value in &mut values {
+        *value = number(words)?.ok_or(ObjErrorKind::Missing(what))?;
+    }
+    Ok(values)
+}
+
+/// A word as an error shows it: on one line, and short, for words may be a megabyte long.
+pub(super) fn shown(word: &[u8]) -> String {
+    const MOST: usize = 40;
+    let text = String::from_utf8_lossy(&word[..word.len().min(MOST)]);
+    let mut shown = text.replace(char::is_control, "\u{FFFD}");
+    if word.len() > MOST {
+        shown.push('…');
+    }
+    shown.to_owned()
+}

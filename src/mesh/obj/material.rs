@@ -1,0 +1,171 @@
+//! MTL files, and which of their materials a model uses.
+
+use std::collections::HashMap;
+use std::io;
+use std::path::Path;
+use std::string::String;
+use std::vec::Vec;
+
+use super::line::{Lines, keyword, name, number, words};
+use super::statement::Model;
+use super::{ObjError, ObjErrorKind};
+use crate::mesh::Surface;
+
+/// The surfaces for `model.names`, in their order, and warnings.
+pub(super) fn surfaces(
+    model: &Model,
+    path: &Path,
+    mut library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+) -> Result<(Vec<Surface>, Vec<String>), ObjError> {
+    let mut known = HashMap::new();
+    let mut warnings = Vec::new();
+    let mut all_read = true;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for (line, text) in &model.libraries {
+        // One name that may hold blanks, or several names; a folder as Windows writes it.
+        let slashed = text.replace('\\', "/");
+        let several: Vec<&str> = text.split_whitespace().collect();
+        let mut found = read_all(&[text], folder, &mut library)
+            .or_else(|error| if slashed == *text { Err(error) } else { read_all(&[&slashed], folder, &mut library) });
+        if found.is_err() && several.len() > 1 {
+            found = read_all(&several, folder, &mut library).or(found);
+        }
+        match found {
+            Ok(libraries) => {
+                for (path, bytes) in libraries {
+                    read(&bytes, &path, &mut known, &mut warnings)?;
+                }
+            }
+            Err(error) => {
+                all_read = false;
+                let path = path.display();
+                warnings.push(format!("{path}:{line}: cannot read {text} ({error}); materials are white and matt"));
+            }
+        }
+    }
+    let mut surfaces = Vec::new();
+    for (name, line) in model.names.iter().zip(&model.name_lines) {
+        surfaces.push(known.get(name).cloned().unwrap_or_else(|| {
+            // If a file is missing, that has been said.
+            if all_read && !name.is_empty() {
+                let path = path.display();
+                warnings.push(format!("{path}:{line}: there is no material {name}; it is white and matt"));
+            }
+            Surface { name: name.clone(), ..Surface::default() }
+        }));
+    }
+    Ok((surfaces, warnings))
+}
+
+type Files = Vec<(std::path::PathBuf, Vec<u8>)>;
+
+fn read_all(
+    names: &[&str],
+    folder: &Path,
+    library: &mut impl FnMut(&Path) -> io::Result<Vec<u8>>,
+) -> io::Result<Files> {
+    names
+        .iter()
+        .map(|name| {
+            let path = folder.join(name);
+            library(&path).map(|bytes| (path, bytes))
+        })
+        .collect()
+}
+
+/// The materials of one file; of two with the same name the later one holds.
+fn read(
+    bytes: &[u8],
+    path: &Path,
+    known: &mut HashMap<String, Surface>,
+    warnings: &mut Vec<String>,
+) -> Result<(), ObjError> {
+    let mut lines = Lines::new(bytes);
+    let mut current: Option<Surface> = None;
+    while let Some((line, text)) = lines.next().map_err(|error| ObjError::of_file(path, ObjErrorKind::Read(error)))? {
+        let (word, rest) = keyword(text);
+        if word == b"newmtl" {
+            let new = Surface { name: name(rest), ..Surface::default() };
+            known.extend(current.replace(new).map(|done| (done.name.clone(), done)));
+            continue;
+        }
+        let Some(surface) = &mut current else { continue };
+        let result = match word {
+            b"Kd" => color(rest).map(|color| set(&mut surface.diffuse, color, path, line, warnings)),
+            b"Ks" => color(rest).map(|color| set(&mut surface.specular, color, path, line, warnings)),
+            b"Ns" => match number(&mut words(rest)) {
+                Ok(Some(exponent)) => {
+                    surface.shininess = exponent;
+                    Ok(())
+                }
+                Ok(None) => Err(ObjErrorKind::Missing("an exponent (1)")),
+                Err(kind) => Err(kind),
+            },
+            b"map_Kd" => {
+                surface.texture = texture(rest).map(|file| beside(path, &file));
+                Ok(())
+            }
+            _ => Ok(()),
+        };
+        result.map_err(|kind| ObjError::of_line(path, line, kind))?;
+    }
+    known.extend(current.map(|done| (done.name.clone(), done)));
+    Ok(())
+}
+
+/// Red, green and blue; one number stands for all three. `None` for a spectral file or CIE XYZ, which
+/// nothing writes.
+fn color(rest: &[u8]) -> Result<Option<[f32; 3]>, ObjErrorKind> {
+    const WHAT: &str = "a colour (1 or 3)";
+    let mut words = words(rest).peekable();
+    if words.next_if(|word| matches!(*word, b"spectral" | b"xyz")).is_some() {
+        return Ok(None);
+    }
+    let red = number(&mut words)?.ok_or(ObjErrorKind::Missing(WHAT))?;
+    let Some(green) = number(&mut words)? else { return Ok(Some([red; 3])) };
+    let blue = number(&mut words)?.ok_or(ObjErrorKind::Missing(WHAT))?;
+    Ok(Some([red, green, blue]))
+}
+
+fn set(component: &mut [f32; 3], color: Option<[f32; 3]>, path: &Path, line: u64, warnings: &mut Vec<String>) {
+    match color {
+        Some(color) => *component = color,
+        None => {
+            warnings.push(format!("{}:{line}: only red, green and blue are read; this is left alone", path.display()));
+        }
+    }
+}
+
+/// The file name after the options of a texture statement; `None` if there is none.
+fn texture(rest: &[u8]) -> Option<String> {
+    let mut rest = rest.trim_ascii();
+    while rest.starts_with(b"-") {
+        let (option, mut after) = keyword(rest);
+        // -o, -s and -t have one to three numbers, -mm two, all others one word.
+        let most = match option {
+            b"-o" | b"-s" | b"-t" => 3,
+            b"-mm" => 2,
+            _ => 1,
+        };
+        for i in 0..most {
+            let (value, next) = keyword(after);
+            let is_number = str::from_utf8(value).is_ok_and(|value| value.parse::<f32>().is_ok());
+            if i > 0 && !is_number {
+                break;
+            }
+            after = next;
+        }
+        rest = after.trim_ascii();
+    }
+    (!rest.is_empty()).then(|| name(rest))
+}
+
+/// A path as an MTL file gives it, from its own folder.
+fn beside(path: &Path, file: &str) -> String {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let as_written = folder.join(file);
+    // Windows' separators are a part of a name elsewhere; hardly ever one that was meant.
+    let joined =
+        if file.contains('\\') && !as_written.exists() { folder.join(file.replace('\\', "/")) } else { as_written };
+    joined.to_string_lossy().into_owned()
+}

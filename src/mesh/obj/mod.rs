@@ -1,0 +1,99 @@
+//! Models from Wavefront OBJ files, with their MTL files.
+//!
+//! | statement | read as |
+//! |---|---|
+//! | `v x y z` | a position; what follows (a weight, a colour) is left alone |
+//! | `vt u v`, `vn x y z` | texture coordinates (`v` is 0 if left out), a normal |
+//! | `f`, with `v`, `v/vt`, `v//vn`, `v/vt/vn` | a face of three corners or more; negative indices count back from the last; an index may name what comes later in the file |
+//! | `mtllib`, `usemtl` | surfaces: `Kd`, `Ks`, `Ns`, `map_Kd` of the MTL file |
+//! | all others, `l` and `p` among them | left alone |
+//!
+//! A backslash at the end of a line joins it to the next. A line need not be UTF-8 and may be of any
+//! length. Each different triple of position, texture coordinates and normal becomes a vertex; what
+//! no face uses does not. A face of n corners becomes n − 2 triangles, those without area among them.
+//!
+//! Corners without a normal, or with one of length 0, get the mean by angle over all faces at that
+//! position.
+//!
+//! A broken file is an [`ObjError`] that names file and line. A missing MTL file or texture is a
+//! warning, and white, matt surfaces take its place.
+//!
+//! The `tobj` crate is not used for this (the tests read with it, and compare): it names no line,
+//! turns `l` into faces, gives up at a comment in Latin-1, panics at `Kd 0.5`, does not say which
+//! corners had no normal nor which material was not found, and keeps 104 bytes for each face.
+
+mod error;
+mod gather;
+mod line;
+mod material;
+mod polygon;
+mod statement;
+
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader};
+use std::path::Path;
+use std::string::String;
+use std::vec::Vec;
+
+use super::Mesh;
+
+pub use error::{ObjError, ObjErrorKind};
+
+/// A model and what was found wanting while it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded {
+    /// The model.
+    pub mesh: Mesh,
+    /// One line each, with the file and the line in it.
+    pub warnings: Vec<String>,
+}
+
+/// Reads an OBJ file and the MTL files that it names. Of textures it only looks whether they exist.
+///
+/// # Errors
+/// A file that cannot be read, or that is broken: see [`ObjErrorKind`].
+pub fn load(path: impl AsRef<Path>) -> Result<Loaded, ObjError> {
+    let path = path.as_ref();
+    let failed = |error: io::Error| ObjError::of_file(path, ObjErrorKind::Read(error));
+    let file = File::open(path).map_err(failed)?;
+    if file.metadata().map_err(failed)?.is_dir() {
+        return Err(ObjError::of_file(path, ObjErrorKind::Directory));
+    }
+    let mut loaded = parse(BufReader::with_capacity(1 << 16, file), path, |library| fs::read(library))?;
+    for surface in &mut loaded.mesh.surfaces {
+        if let Some(texture) = surface.texture.take_if(|texture| !Path::new(texture).is_file()) {
+            let name = &surface.name;
+            loaded.warnings.push(format!("{texture}: no such texture; material {name} is drawn without it"));
+        }
+    }
+    Ok(loaded)
+}
+
+/// Reads a model from `reader`. `path` is what errors call it, and MTL files are looked for beside it:
+/// `library` is given their paths and returns their bytes. Textures are not looked for.
+///
+/// ```
+/// use mode13h::mesh::obj;
+/// let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+/// let none = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
+/// let model = obj::parse(text.as_bytes(), "square.obj", none)?;
+/// assert_eq!(model.mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
+///
+/// let error = obj::parse("v 0 0 0\nf 1 2 3\n".as_bytes(), "broken.obj", none).unwrap_err();
+/// assert_eq!(error.to_string(), "broken.obj:2: there is no vertex 2, only 1");
+/// # Ok::<(), obj::ObjError>(())
+/// ```
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(
+    reader: impl BufRead,
+    path: impl AsRef<Path>,
+    library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+) -> Result<Loaded, ObjError> {
+    let path = path.as_ref();
+    let model = statement::read(reader, path)?;
+    let (surfaces, warnings) = material::surfaces(&model, path, library)?;
+    let mesh = gather::mesh(model, surfaces).map_err(|kind| ObjError::of_file(path, kind))?;
+    Ok(Loaded { mesh, warnings })
+}

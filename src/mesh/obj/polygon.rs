@@ -1,0 +1,142 @@
+//! A face of more than three corners, into triangles: a fan if it is convex, ears cut off if not.
+
+use core::mem;
+use std::vec::Vec;
+
+use earcut::Earcut;
+use glam::Vec3;
+
+use super::ObjErrorKind;
+use crate::mesh::wide::{Wide, add, cross, sub, widen};
+
+/// The most corners of a concave face.
+const MOST_CONCAVE: usize = 1_000_000;
+
+/// Buffers that one face after the other uses.
+pub(super) struct Splitter {
+    earcut: Earcut<f64>,
+    flat: Vec<[f64; 2]>,
+    cut: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    edges: Vec<(u32, u32)>,
+}
+
+impl Splitter {
+    pub(super) fn new() -> Self {
+        Self { earcut: Earcut::new(), flat: Vec::new(), cut: Vec::new(), triangles: Vec::new(), edges: Vec::new() }
+    }
+
+    /// n − 2 triangles for a face of n corners, as numbers of its corners, in the face's winding. Each
+    /// edge of the face is an edge of one of them, so that no gap opens to its neighbours; a corner in
+    /// the middle of a straight edge is therefore kept, if need be by a triangle of no area.
+    pub(super) fn split(&mut self, corners: &[Vec3]) -> Result<&[[u32; 3]], ObjErrorKind> {
+        self.triangles.clear();
+        if corners.len() > 3 && self.flatten(corners) && !self.is_convex() {
+            if corners.len() > MOST_CONCAVE {
+                return Err(ObjErrorKind::TooLarge("a concave face of more than 1,000,000 corners"));
+            }
+            self.earcut.earcut_slice(&self.flat, &[], &mut self.cut);
+            // The corners of each piece in the order of the face have its winding.
+            self.triangles.extend(self.cut.as_chunks::<3>().0.iter().map(|t| ascending(*t)));
+            // Ear cutting leaves out corners on straight edges.
+            if self.triangles.len() != corners.len() - 2 {
+                self.put_back(corners.len());
+            }
+        }
+        // Convex; flat on a line; or so tangled that ears could not be cut.
+        if self.triangles.len() != corners.len() - 2 {
+            self.triangles.clear();
+            // Fewer than 2³² corners, see `statement`.
+            self.triangles.extend((1..corners.len() as u32 - 1).map(|i| [0, i, i + 1]));
+        }
+        Ok(&self.triangles)
+    }
+
+    /// Onto the plane of two axes that the face is most nearly parallel to, so that it is
+    /// counter-clockwise there. `false` if it has no area.
+    fn flatten(&mut self, corners: &[Vec3]) -> bool {
+        let origin = widen(corners[0]);
+        let from_first = |p: Vec3| sub(widen(p), origin);
+        // Newell's normal, twice the area long.
+        let mut normal: Wide = [0.0; 3];
+        for pair in corners.windows(2) {
+            normal = add(normal, cross(from_first(pair[0]), from_first(pair[1])));
+        }
+        let size = normal.map(libm::fabs);
+        let axis = if size[0] > size[1].max(size[2]) {
+            0
+        } else if size[1] > size[2] {
+            1
+        } else {
+            2
+        };
+        if size[axis] == 0.0 {
+            return false;
+        }
+        let (mut right, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
+        if normal[axis] < 0.0 {
+            mem::swap(&mut right, &mut up);
+        }
+        self.flat.clear();
+        self.flat.extend(corners.iter().map(|&p| {
+            let p = from_first(p);
+            [p[right], p[up]]
+        }));
+        true
+    }
+
+    /// Turns left or not at all at each corner, and goes round once in all.
+    fn is_convex(&self) -> bool {
+        let n = self.flat.len();
+        let edge = |i: usize| {
+            let (a, b) = (self.flat[i % n], self.flat[(i + 1) % n]);
+            [b[0] - a[0], b[1] - a[1]]
+        };
+        let upward = |e: [f64; 2]| e[1] > 0.0 || (e[1] == 0.0 && e[0] > 0.0);
+        let mut rounds = 0;
+        // There is one that is not zero, as the face has an area.
+        let Some(mut last) = (0..n).rev().map(edge).find(|e| *e != [0.0; 2]) else { return false };
+        for next in (0..n).map(edge).filter(|e| *e != [0.0; 2]) {
+            let turn = last[0] * next[1] - last[1] * next[0];
+            let back = last[0] * next[0] + last[1] * next[1] < 0.0;
+            if turn < 0.0 || (turn == 0.0 && back) {
+                return false;
+            }
+            rounds += u32::from(!upward(last) && upward(next));
+            last = next;
+        }
+        rounds == 1
+    }
+
+    /// Puts the corners back that were left out: each on the edge of a triangle that passes it by.
+    fn put_back(&mut self, corners: usize) {
+        let cut = mem::take(&mut self.triangles);
+        self.edges.clear();
+        self.edges.extend(cut.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]));
+        self.edges.sort_unstable();
+        // At most `MOST_CONCAVE`.
+        let n = corners as u32;
+        for &[a, b, c] in &cut {
+            // From corner to corner round the triangle, through what its outer edges pass by.
+            let mut loop_ = Vec::new();
+            let mut apex = 0;
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let outer = self.edges.binary_search(&(to, from)).is_err();
+                let passed = if outer { (to + n - from) % n } else { 1 };
+                if passed == 1 {
+                    // A fan from a corner between two whole edges has no triangle without need.
+                    apex = loop_.len();
+                }
+                loop_.extend((0..passed).map(|i| (from + i) % n));
+            }
+            loop_.rotate_left(apex);
+            self.triangles.extend(loop_.windows(2).skip(1).map(|pair| ascending([loop_[0], pair[0], pair[1]])));
+        }
+    }
+}
+
+/// In the order of the face.
+fn ascending(mut triangle: [u32; 3]) -> [u32; 3] {
+    triangle.sort_unstable();
+    triangle
+}

@@ -1,0 +1,206 @@
+//! The statements of an OBJ file, into lists as they stand there.
+
+use std::io::BufRead;
+use std::path::Path;
+use std::string::String;
+use std::vec::Vec;
+
+use glam::{Vec2, Vec3};
+
+use super::line::{Lines, keyword, name, number, numbers, shown, words};
+use super::{Mesh, ObjError, ObjErrorKind};
+
+/// Position, texture coordinates, normal, from 0; [`NONE`](Self::NONE) for one that was left out.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct Corner {
+    pub(super) position: u32,
+    pub(super) texcoord: u32,
+    pub(super) normal: u32,
+}
+
+impl Corner {
+    pub(super) const NONE: u32 = u32::MAX;
+}
+
+/// What an OBJ file says.
+#[derive(Default)]
+pub(super) struct Model {
+    pub(super) positions: Vec<Vec3>,
+    pub(super) texcoords: Vec<Vec2>,
+    pub(super) normals: Vec<Vec3>,
+    /// Of all faces in turn.
+    pub(super) corners: Vec<Corner>,
+    /// How many of them each face has, three or more.
+    pub(super) sizes: Vec<u32>,
+    /// From which face on which material, by its place in `names`.
+    pub(super) runs: Vec<(usize, usize)>,
+    /// Of `usemtl`, each once, in order. The first is that of faces before any `usemtl`: empty.
+    pub(super) names: Vec<String>,
+    /// Line and text of each `mtllib`.
+    pub(super) libraries: Vec<(u64, String)>,
+    /// Line of the first `usemtl` of each name.
+    pub(super) name_lines: Vec<u64>,
+}
+
+/// Reads all lines.
+pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Model, ObjError> {
+    let mut model = Model { runs: vec![(0, 0)], names: vec![String::new()], name_lines: vec![0], ..Model::default() };
+    let mut later = Later::default();
+    let mut known = std::collections::HashMap::from([(String::new(), 0)]);
+    let mut lines = Lines::new(reader);
+    while let Some((line, text)) = lines.next().map_err(|error| ObjError::of_file(path, ObjErrorKind::Read(error)))? {
+        let (word, rest) = keyword(text);
+        let result = match word {
+            b"v" => position(&mut model, rest),
+            b"vt" => texcoord(&mut model, rest),
+            b"vn" => normal(&mut model, rest),
+            b"f" => face(&mut model, &mut later, line, rest),
+            b"usemtl" => {
+                let next = model.names.len();
+                let number = *known.entry(name(rest)).or_insert_with_key(|name| {
+                    model.names.push(name.clone());
+                    model.name_lines.push(line);
+                    next
+                });
+                model.runs.push((model.sizes.len(), number));
+                Ok(())
+            }
+            b"mtllib" => {
+                model.libraries.push((line, name(rest)));
+                Ok(())
+            }
+            _ => foreign(word, text),
+        };
+        result.map_err(|kind| ObjError::of_line(path, line, kind))?;
+    }
+    later.check(&model).map_err(|(line, kind)| ObjError::of_line(path, line, kind))?;
+    if model.sizes.is_empty() {
+        return Err(ObjError::of_file(path, ObjErrorKind::NoFaces));
+    }
+    Ok(model)
+}
+
+/// One more, if there is room for it.
+fn push<T>(list: &mut Vec<T>, value: T) -> Result<(), ObjErrorKind> {
+    if list.len() >= Mesh::MOST {
+        return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 of a kind"));
+    }
+    list.push(value);
+    Ok(())
+}
+
+fn position(model: &mut Model, rest: &[u8]) -> Result<(), ObjErrorKind> {
+    push(&mut model.positions, Vec3::from_array(numbers(&mut words(rest), "a position (3)")?))
+}
+
+fn texcoord(model: &mut Model, rest: &[u8]) -> Result<(), ObjErrorKind> {
+    let mut words = words(rest);
+    let [u] = numbers(&mut words, "texture coordinates (2)")?;
+    let v = number(&mut words)?.unwrap_or(0.0);
+    push(&mut model.texcoords, Vec2::new(u, v))
+}
+
+fn normal(model: &mut Model, rest: &[u8]) -> Result<(), ObjErrorKind> {
+    push(&mut model.normals, Vec3::from_array(numbers(&mut words(rest), "a normal (3)")?))
+}
+
+/// A statement that is not for us, unless the file is no text at all.
+fn foreign(word: &[u8], text: &[u8]) -> Result<(), ObjErrorKind> {
+    let binary = |byte: &u8| *byte < b' ' && !matches!(byte, b'\t' | b'\r' | 0x0B | 0x0C | 0x1A);
+    if !word.starts_with(b"#") && text.iter().any(binary) { Err(ObjErrorKind::NotText) } else { Ok(()) }
+}
+
+fn face(model: &mut Model, later: &mut Later, line: u64, rest: &[u8]) -> Result<(), ObjErrorKind> {
+    let counts = [model.positions.len(), model.texcoords.len(), model.normals.len()];
+    let first = model.corners.len();
+    for word in words(rest) {
+        let mut indices = [Corner::NONE; 3];
+        let mut parts = 0;
+        for (kind, part) in word.split(|&byte| byte == b'/').enumerate() {
+            parts += 1;
+            if kind > 2 || (part.is_empty() && kind == 0) {
+                return Err(ObjErrorKind::NotCorner(shown(word)));
+            }
+            if !part.is_empty() {
+                let index = whole(part).ok_or_else(|| ObjErrorKind::NotCorner(shown(word)))?;
+                indices[kind] = later.resolve(kind, index, counts[kind], line)?;
+            }
+        }
+        debug_assert!(parts > 0);
+        let [position, texcoord, normal] = indices;
+        model.corners.push(Corner { position, texcoord, normal });
+    }
+    let size = model.corners.len() - first;
+    if size < 3 {
+        return Err(ObjErrorKind::FewCorners(size));
+    }
+    if model.corners.len() > u32::MAX as usize {
+        return Err(ObjErrorKind::TooLarge("more than 4,294,967,295 corners"));
+    }
+    if model.corners.len() - 2 * model.sizes.len() > Mesh::MOST + 2 {
+        return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 triangles"));
+    }
+    // Fits by the lines above.
+    model.sizes.push(size as u32);
+    Ok(())
+}
+
+/// A whole number with an optional sign; `None` if it is none or does not fit.
+fn whole(digits: &[u8]) -> Option<i64> {
+    let (sign, digits) = match digits {
+        [b'-', rest @ ..] => (-1, rest),
+        [b'+', rest @ ..] => (1, rest),
+        _ => (1, digits),
+    };
+    if digits.is_empty() {
+        return None;
+    }
+    let mut value: i64 = 0;
+    for &digit in digits {
+        if !digit.is_ascii_digit() {
+            return None;
+        }
+        value = value.checked_mul(10)?.checked_add(i64::from(digit - b'0'))?;
+    }
+    Some(sign * value)
+}
+
+/// Indices of what had not come yet: position, texture coordinates, normal. Whether it came is known
+/// at the end. It is enough to keep each index that is greater than all before it: the first that
+/// turns out too great is among them.
+#[derive(Default)]
+struct Later {
+    records: [Vec<(i64, u64)>; 3],
+}
+
+const WHAT: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+
+impl Later {
+    /// Counted from 0. `count`: how many there are so far.
+    fn resolve(&mut self, kind: usize, index: i64, count: usize, line: u64) -> Result<u32, ObjErrorKind> {
+        // `count` is at most `Mesh::MOST`, see `push`.
+        let from_zero = match index {
+            0 => return Err(ObjErrorKind::IndexZero),
+            1.. => index - 1,
+            _ => count as i64 + index,
+        };
+        if from_zero < 0 || from_zero >= Mesh::MOST as i64 {
+            return Err(ObjErrorKind::IndexOutOfRange { what: WHAT[kind], index, count });
+        }
+        if from_zero >= count as i64 && self.records[kind].last().is_none_or(|&(greatest, _)| index > greatest) {
+            self.records[kind].push((index, line));
+        }
+        // Below 2³¹ by the line above.
+        Ok(from_zero as u32)
+    }
+
+    fn check(&self, model: &Model) -> Result<(), (u64, ObjErrorKind)> {
+        let counts = [model.positions.len(), model.texcoords.len(), model.normals.len()];
+        let missing = (0..3).filter_map(|kind| {
+            let count = counts[kind];
+            let &(index, line) = self.records[kind].iter().find(|&&(index, _)| index > count as i64)?;
+            Some((line, ObjErrorKind::IndexOutOfRange { what: WHAT[kind], index, count }))
+        });
+        missing.min_by_key(|&(line, _)| line).map_or(Ok(()), Err)
+    }
+}
