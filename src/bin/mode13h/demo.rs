@@ -18,7 +18,7 @@ use crate::{input, output, overlay};
 /// What the help says below the options.
 pub(crate) const KEYS: &str = "\
 Keys in the window: Esc quits, Space stops and goes on, arrows and mouse turn, wheel and + - zoom, [ and ] step through
-the rungs, K next kernel, P next palette, S saves a PNG in the current folder, H shows help and figures.
+the rungs, K next kernel, P next palette, S saves a PNG in the current directory, H shows help and figures.
 With no display one frame is saved as a PNG.";
 
 #[derive(Args)]

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use mode13h::mesh::{Mesh, shapes};
+use mode13h::mesh::{Mesh, obj, shapes};
 use mode13h::palette::{Palette, builtin, file};
 
 use crate::failure::Failure;
@@ -27,14 +27,14 @@ pub(crate) fn model(words: &OsStr) -> Result<Model, Failure> {
     let (name, mesh) = if let Some(mesh) = words.to_str().and_then(shapes::by_name) {
         (words.to_string_lossy().into_owned(), mesh)
     } else if is_obj(path) {
-        let loaded = tmp_load(path)?;
+        let loaded = obj::load(path).map_err(Failure::work)?;
         for warning in loaded.warnings {
             eprintln!("mode13h: {}", Failure::work(warning));
         }
         (path.file_stem().unwrap_or(words).to_string_lossy().into_owned(), loaded.mesh)
     } else {
         let reason = match path.metadata() {
-            Ok(metadata) if metadata.is_dir() => "is a folder, not a model".to_string(),
+            Ok(metadata) if metadata.is_dir() => "is a directory, not a model".to_string(),
             Ok(_) => "no model that can be read: models are .obj files".to_string(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 format!("neither a file nor a shape; shapes are {}", shapes::NAMES.join(", "))
@@ -79,7 +79,7 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
         io::ErrorKind::NotFound => {
             fail(&format_args!("neither a file nor a built-in palette; those are {}", palette_names()))
         }
-        io::ErrorKind::IsADirectory => fail(&"is a folder, not a palette"),
+        io::ErrorKind::IsADirectory => fail(&"is a directory, not a palette"),
         _ => fail(&error),
     })?;
     let palette = file::parse_named(&words.to_string_lossy(), &bytes).map_err(|error| fail(&error))?;
@@ -96,6 +96,3 @@ fn read_at_most(path: &Path, bytes: u64) -> io::Result<Vec<u8>> {
     File::open(path)?.take(bytes).read_to_end(&mut contents)?;
     Ok(contents)
 }
-
-struct L { mesh: Mesh, warnings: Vec<String> }
-fn tmp_load(_p: &Path) -> Result<L, Failure> { Err(Failure::work("no obj yet")) }
