@@ -285,13 +285,13 @@ fn f4_each_reason_has_its_own_error_with_the_path() {
         (file.join("frame.png"), "file does not exist"),
     ] {
         let error = write_atomically(&path, nothing).expect_err("no such folder");
-        assert!(matches!(error.kind(), ExportErrorKind::MissingFolder), "{error}");
+        assert!(matches!(error.kind(), ExportErrorKind::MissingDirectory), "{error}");
         assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
         assert!(error.to_string().ends_with(says), "{error}");
     }
     for path in [folder.path().to_path_buf(), folder.path().join(".."), folder.path().join("new/"), "".into()] {
         let error = write_atomically(&path, nothing).expect_err("a folder");
-        assert!(matches!(error.kind(), ExportErrorKind::IsFolder), "{error}");
+        assert!(matches!(error.kind(), ExportErrorKind::IsDirectory), "{error}");
     }
 
     let mut permissions = fs::metadata(&file).expect("metadata").permissions();

@@ -39,10 +39,10 @@ impl ExportError {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ExportErrorKind {
-    /// The folder that the file was to stand in does not exist.
-    MissingFolder,
-    /// The name is that of a folder, or ends like one.
-    IsFolder,
+    /// The directory that the file was to stand in does not exist.
+    MissingDirectory,
+    /// The name is that of a directory, or ends like one.
+    IsDirectory,
     /// No right to write there; also a file or a file system that is read-only.
     NotPermitted,
     /// The disk, or the user's share of it, is full.
@@ -56,8 +56,8 @@ pub enum ExportErrorKind {
 impl ExportErrorKind {
     fn from_io(error: io::Error) -> ExportErrorKind {
         match error.kind() {
-            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ExportErrorKind::MissingFolder,
-            io::ErrorKind::IsADirectory => ExportErrorKind::IsFolder,
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ExportErrorKind::MissingDirectory,
+            io::ErrorKind::IsADirectory => ExportErrorKind::IsDirectory,
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => ExportErrorKind::NotPermitted,
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ExportErrorKind::DiskFull,
             _ => ExportErrorKind::Io(error),
@@ -69,10 +69,10 @@ impl fmt::Display for ExportError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.path.display())?;
         match &self.kind {
-            ExportErrorKind::MissingFolder => {
-                write!(f, "the folder {} does not exist", folder_of(&self.path).display())
+            ExportErrorKind::MissingDirectory => {
+                write!(f, "the directory {} does not exist", directory_of(&self.path).display())
             }
-            ExportErrorKind::IsFolder => f.write_str("is a folder"),
+            ExportErrorKind::IsDirectory => f.write_str("is a directory"),
             ExportErrorKind::NotPermitted => f.write_str("no right to write there"),
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),
             ExportErrorKind::Picture(error) => write!(f, "{error}"),
@@ -93,7 +93,7 @@ impl Error for ExportError {
 
 /// Writes a file whole or not at all.
 ///
-/// `write` fills a temporary file in the same folder (`.mode13h-` and two numbers), which is flushed to the disk and
+/// `write` fills a temporary file in the same directory (`.mode13h-` and two numbers), which is flushed to the disk and
 /// then renamed to `path`. If `write` fails or panics, or the disk does, the temporary is removed and what stood under
 /// `path` before is as it was. A link is followed; the permissions of a file that is replaced are kept; a file that is
 /// read-only is refused, although a rename could replace it. What exists and is no ordinary file (a device, a pipe) is
@@ -105,8 +105,8 @@ impl Error for ExportError {
 ///
 /// ```
 /// use std::io::Write as _;
-/// # let folder = tempfile::tempdir()?;
-/// # let path = folder.path().join("note.txt");
+/// # let directory = tempfile::tempdir()?;
+/// # let path = directory.path().join("note.txt");
 /// mode13h::export::write_atomically(&path, |out| out.write_all(b"320 x 200"))?;
 /// assert_eq!(std::fs::read(&path)?, b"320 x 200");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -124,7 +124,7 @@ pub fn write_atomically(
     let before = fs::metadata(&target).ok();
     if let Some(before) = &before {
         if before.is_dir() {
-            return Err(ExportError::new(path, ExportErrorKind::IsFolder));
+            return Err(ExportError::new(path, ExportErrorKind::IsDirectory));
         }
         if !before.is_file() {
             let mut device = BufWriter::new(File::options().write(true).open(&target).map_err(fail)?);
@@ -134,12 +134,12 @@ pub fn write_atomically(
             return Err(ExportError::new(path, ExportErrorKind::NotPermitted));
         }
     }
-    let named_as_folder = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
-    if named_as_folder || target.file_name().is_none() {
-        return Err(ExportError::new(path, ExportErrorKind::IsFolder));
+    let named_as_directory = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
+    if named_as_directory || target.file_name().is_none() {
+        return Err(ExportError::new(path, ExportErrorKind::IsDirectory));
     }
 
-    let (temporary, file) = Temporary::create(folder_of(&target)).map_err(fail)?;
+    let (temporary, file) = Temporary::create(directory_of(&target)).map_err(fail)?;
     let mut out = BufWriter::new(file);
     write(&mut out).map_err(fail)?;
     let file = out.into_inner().map_err(|error| fail(error.into_error()))?;
@@ -151,10 +151,10 @@ pub fn write_atomically(
     temporary.rename(&target).map_err(fail)
 }
 
-/// The folder that a file of this name stands in.
-fn folder_of(path: &Path) -> &Path {
+/// The directory that a file of this name stands in.
+fn directory_of(path: &Path) -> &Path {
     match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        Some(directory) if !directory.as_os_str().is_empty() => directory,
         _ => Path::new("."),
     }
 }
@@ -165,13 +165,13 @@ struct Temporary {
 }
 
 impl Temporary {
-    /// A new file in `folder`, under a name that nothing else has.
-    fn create(folder: &Path) -> io::Result<(Temporary, File)> {
+    /// A new file in `directory`, under a name that nothing else has.
+    fn create(directory: &Path) -> io::Result<(Temporary, File)> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         loop {
             // The name does not hold the file's own: that may be as long as the system allows already.
             let number = NEXT.fetch_add(1, Ordering::Relaxed);
-            let path = folder.join(OsString::from(format!(".mode13h-{}-{number}", std::process::id())));
+            let path = directory.join(OsString::from(format!(".mode13h-{}-{number}", std::process::id())));
             match File::options().write(true).create_new(true).open(&path) {
                 Ok(file) => return Ok((Temporary { path }, file)),
                 // Left behind by a process of the same number that was killed.

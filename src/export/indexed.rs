@@ -18,8 +18,8 @@ use crate::vga::Vga;
 ///
 /// ```
 /// use mode13h::{export, vga::Vga};
-/// # let folder = tempfile::tempdir()?;
-/// # let path = folder.path().join("frame.png");
+/// # let directory = tempfile::tempdir()?;
+/// # let path = directory.path().join("frame.png");
 /// let mut vga = Vga::new();
 /// vga.pixels_mut()[100 * 320 + 160] = 15;
 /// export::png(&vga, &path)?;

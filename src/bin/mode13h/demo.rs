@@ -15,8 +15,12 @@ use crate::options::Drawing;
 use crate::stage::{Pose, SPEED, Stage};
 use crate::{input, output, overlay};
 
-/// Keys: Esc quits, Space stops and starts, arrows and mouse turn, wheel and + - zoom, [ and ] change the rung,
-/// K the kernel, P the palette, S saves a PNG, H shows help and figures. Without a display one picture is saved.
+/// What the help says below the options.
+pub(crate) const KEYS: &str = "\
+Keys in the window: Esc quits, Space stops and goes on, arrows and mouse turn, wheel and + - zoom, [ and ] step through
+the rungs, K next kernel, P next palette, S saves a PNG in the current directory, H shows help and figures.
+With no display one frame is saved as a PNG.";
+
 #[derive(Args)]
 pub(crate) struct Options {
     #[arg(default_value = "torus", help = input::help())]
@@ -104,13 +108,13 @@ impl Demo {
         let Options { input, drawing } = options;
         let kernel = drawing.kernel()?;
         let (palette_name, palette) = drawing.palette()?;
-        let input::Model { name, mesh } = input::model(input, drawing.up)?;
+        let input::Model { name, mesh } = input::model(input)?;
         // A palette without ramps has no order of shades: such a one is shown only if it was asked for.
         let builtin = builtin::ALL.iter().filter(|builtin| builtin.palette.ramps() > 0);
         let palettes = builtin.map(|builtin| (builtin.name.to_string(), builtin.palette.clone()));
         Ok(Demo {
             triangles: mesh.triangles().len(),
-            stage: Stage::new(mesh, palette.clone()),
+            stage: Stage::new(mesh, drawing.up_axis(), palette.clone()),
             name,
             renderer: Renderer::new(),
             rungs: Choice::new(Rung::ALL.iter().copied(), drawing.rung(), |a, b| a == b),

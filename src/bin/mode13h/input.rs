@@ -5,14 +5,12 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use mode13h::glam::Vec3;
-use mode13h::mesh::{Mesh, MeshError, obj, shapes};
+use mode13h::mesh::{Mesh, obj, shapes};
 use mode13h::palette::{Palette, builtin, file};
 
 use crate::failure::Failure;
-use crate::options::Up;
 
-/// A mesh about the origin, y up, and what to call it.
+/// A mesh, and what to call it.
 pub(crate) struct Model {
     pub(crate) name: String,
     pub(crate) mesh: Mesh,
@@ -24,7 +22,7 @@ pub(crate) fn help() -> String {
 }
 
 /// The model of a file or the shape of a name. Warnings go to standard error, a line each.
-pub(crate) fn model(words: &OsStr, up: Up) -> Result<Model, Failure> {
+pub(crate) fn model(words: &OsStr) -> Result<Model, Failure> {
     let path = Path::new(words);
     let (name, mesh) = if let Some(mesh) = words.to_str().and_then(shapes::by_name) {
         (words.to_string_lossy().into_owned(), mesh)
@@ -36,7 +34,7 @@ pub(crate) fn model(words: &OsStr, up: Up) -> Result<Model, Failure> {
         (path.file_stem().unwrap_or(words).to_string_lossy().into_owned(), loaded.mesh)
     } else {
         let reason = match path.metadata() {
-            Ok(metadata) if metadata.is_dir() => "is a folder, not a model".to_string(),
+            Ok(metadata) if metadata.is_dir() => "is a directory, not a model".to_string(),
             Ok(_) => "no model that can be read: models are .obj files".to_string(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 format!("neither a file nor a shape; shapes are {}", shapes::NAMES.join(", "))
@@ -45,32 +43,11 @@ pub(crate) fn model(words: &OsStr, up: Up) -> Result<Model, Failure> {
         };
         return Err(Failure::work(format!("{}: {reason}", path.display())));
     };
-    let mesh = placed(&mesh, up).map_err(|error| Failure::work(format!("{}: {error}", path.display())))?;
     Ok(Model { name, mesh })
 }
 
 fn is_obj(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"))
-}
-
-/// The mesh with the middle of its bounds in the origin, about which it is turned, and its own upward axis along y.
-///
-/// The middle lies no farther from a vertex than the farthest vertex does, so nothing overflows.
-fn placed(mesh: &Mesh, up: Up) -> Result<Mesh, MeshError> {
-    let centre = mesh.bounds().centre;
-    // A turn by a quarter, which rounds nothing.
-    let upright = |v: Vec3| match up {
-        Up::Y => v,
-        Up::Z => Vec3::new(v.x, v.z, -v.y),
-    };
-    let positions = mesh.positions().iter().map(|&p| upright(p - centre)).collect();
-    let normals = mesh.normals().iter().map(|&n| upright(n)).collect();
-    let placed = Mesh::with_normals(positions, normals, mesh.triangles().to_vec())?
-        .with_surfaces(mesh.surfaces().to_vec(), mesh.triangle_surfaces().to_vec())?;
-    match mesh.texcoords() {
-        Some(texcoords) => placed.with_texcoords(texcoords.to_vec()),
-        None => Ok(placed),
-    }
 }
 
 /// The names of the palettes that are compiled in.
@@ -102,7 +79,7 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
         io::ErrorKind::NotFound => {
             fail(&format_args!("neither a file nor a built-in palette; those are {}", palette_names()))
         }
-        io::ErrorKind::IsADirectory => fail(&"is a folder, not a palette"),
+        io::ErrorKind::IsADirectory => fail(&"is a directory, not a palette"),
         _ => fail(&error),
     })?;
     let palette = file::parse_named(&words.to_string_lossy(), &bytes).map_err(|error| fail(&error))?;

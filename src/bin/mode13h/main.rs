@@ -20,7 +20,7 @@ use failure::Failure;
 
 /// Draws models as a 386 with a VGA card did: 320 x 200 bytes, 256 colours, fixed point.
 #[derive(Parser)]
-#[command(version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(version, args_conflicts_with_subcommands = true, after_help = demo::KEYS)]
 struct Words {
     #[command(subcommand)]
     command: Option<Command>,
@@ -30,7 +30,8 @@ struct Words {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Turn a model in a window; what `mode13h` and `mode13h INPUT` do
+    /// Turn a model in a window; so do `mode13h` and `mode13h INPUT`
+    #[command(after_help = demo::KEYS)]
     Demo(demo::Options),
     /// Write a picture of a model, or a numbered row of them
     Render(render::Options),

@@ -1,12 +1,11 @@
 //! Options that several commands share, and what may stand behind them.
 
-use std::ffi::{OsStr, OsString};
-use std::str::FromStr;
+use std::ffi::OsString;
 
 use clap::{Args, ValueEnum};
-use mode13h::export::Scale;
-use mode13h::palette::{Palette, builtin};
+use mode13h::palette::Palette;
 use mode13h::render::Rung;
+use mode13h::scene::UpAxis;
 use mode13h::span::Kernel;
 
 use crate::failure::Failure;
@@ -26,15 +25,13 @@ pub(crate) struct Drawing {
     kernel: Option<Kernel>,
     /// The axis of the model that points up
     #[arg(long, value_name = "AXIS", value_enum, default_value = "y")]
-    pub(crate) up: Up,
+    up: Up,
 }
 
-/// The axis of a model that points up.
+/// The axis of a model that points up: y in most, z in those from CAD and geography.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Up {
-    /// As in most models
+enum Up {
     Y,
-    /// As in models from CAD and geography
     Z,
 }
 
@@ -55,6 +52,13 @@ impl Drawing {
                 Kernel::by_name(&name).map_err(|error| Failure::words(format!("{KERNEL_VARIABLE}={name}: {error}")))
             }
             _ => Ok(Kernel::fastest()),
+        }
+    }
+
+    pub(crate) fn up_axis(&self) -> UpAxis {
+        match self.up {
+            Up::Y => UpAxis::Y,
+            Up::Z => UpAxis::Z,
         }
     }
 

