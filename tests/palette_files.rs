@@ -1,4 +1,5 @@
 //! Palettes: the hard cases P1, P2 and P5, the ramps, the cube, the built-ins and their files.
+#![cfg(feature = "alloc")] // The writers.
 
 use std::collections::BTreeSet;
 
@@ -102,7 +103,7 @@ fn p2_ramps_of_a_palette_share_the_entries_out() {
 #[test]
 fn packed_forms_are_what_their_names_say() {
     for (color, packed, rgb565) in [
-        (Rgb::new(0x12, 0x34, 0x56), 0x0012_3456, 0b00010_001101_01010),
+        (Rgb::new(0x12, 0x34, 0x56), 0x0012_3456, 0x11AA),
         (Rgb::WHITE, 0x00FF_FFFF, 0xFFFF),
         (Rgb::new(255, 0, 0), 0x00FF_0000, 0xF800),
         (Rgb::new(0, 255, 0), 0x0000_FF00, 0x07E0),
@@ -188,9 +189,11 @@ fn nearest_is_the_first_of_the_nearest() {
 
 #[test]
 fn the_cube_finds_its_nearest_without_a_search() {
-    // Every 5th value of a channel, and both ends: 52³ colours.
+    // Every 5th value of a channel, and both ends: 52³ colours. And all that are almost grey, where
+    // the mean of the three lies between two greys.
     let values: Vec<u8> = (0..=255).step_by(5).collect();
-    let greys = (0..=255).map(|v| Rgb::new(v, v, v));
+    let greys = (0..=255_u8).flat_map(|v| (0..27).map(move |k| [k / 9, k / 3 % 3, k % 3].map(|d| v.saturating_add(d))));
+    let greys = greys.map(|[r, g, b]| Rgb::new(r, g, b));
     let mixtures = values
         .iter()
         .flat_map(|&r| values.iter().flat_map(move |&g| (0..=255).step_by(5).map(move |b| Rgb::new(r, g, b))));
@@ -198,6 +201,15 @@ fn the_cube_finds_its_nearest_without_a_search() {
         assert_eq!(cube::nearest(color), cube::CUBE.nearest(color), "{color:?}");
         let among_mixtures = (0..216).min_by_key(|&i| cube::CUBE.color(i).distance_squared(color)).unwrap();
         assert_eq!(cube::nearest_mixture(color), among_mixtures, "{color:?}");
+    }
+}
+
+#[test]
+#[ignore = "16,777,216 searches: run it in release"]
+fn the_cube_finds_the_nearest_of_every_colour() {
+    for rgb in 0..=0xFF_FFFF {
+        let color = Rgb::from_u32(rgb);
+        assert_eq!(cube::nearest(color), cube::CUBE.nearest(color), "{color:?}");
     }
 }
 
@@ -348,6 +360,18 @@ fn raw_files_have_six_bits_where_that_keeps_every_colour() {
     assert!(six.iter().all(|&value| value <= 63));
     assert_eq!(&six[3 * 6..][..3], [42, 21, 0]);
     assert_eq!(raw.write(&builtin::GREY, "")[765..], [255, 255, 255]);
+}
+
+#[test]
+fn a_raw_file_with_a_value_over_63_has_eight_bits() {
+    let mut bytes = [63; 768];
+    assert_eq!(format("vga").read(&bytes), Ok(palette_of(|_| Rgb::WHITE)));
+    for at in [0, 767] {
+        bytes[at] = 64;
+        let palette = format("vga").read(&bytes).unwrap();
+        assert_eq!(palette.color(1), Rgb::new(63, 63, 63), "64 at {at}");
+        bytes[at] = 63;
+    }
 }
 
 #[test]
