@@ -1,1 +1,532 @@
-//! Placeholder, replaced in the next commit.
+//! OBJ and MTL: what is read, what is refused and where, and the same as `tobj` where that can read.
+#![cfg(feature = "obj")]
+
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use mode13h::glam::{Vec2, Vec3};
+use mode13h::mesh::Mesh;
+use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
+use proptest::prelude::*;
+
+fn no_library(_: &Path) -> io::Result<Vec<u8>> {
+    Err(io::ErrorKind::NotFound.into())
+}
+
+fn parse(text: impl AsRef<[u8]>) -> Result<Loaded, ObjError> {
+    obj::parse(text.as_ref(), "model.obj", no_library)
+}
+
+fn mesh(text: impl AsRef<[u8]>) -> Mesh {
+    parse(text).unwrap_or_else(|error| panic!("{error}")).mesh
+}
+
+fn refused(text: impl AsRef<[u8]>) -> String {
+    match parse(text) {
+        Ok(_) => "read".to_owned(),
+        Err(error) => error.to_string(),
+    }
+}
+
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+#[test]
+fn a_file_with_materials() {
+    let Loaded { mesh, warnings } = obj::load(data("chest.obj")).unwrap();
+    assert_eq!(warnings, [""; 0]);
+    assert_eq!(mesh.triangles().len(), 12);
+    assert!(mesh.is_closed() && mesh.is_convex());
+    assert_eq!(mesh.volume(), 4.0);
+    let [wood, brass] = mesh.surfaces() else { panic!("{:?}", mesh.surfaces()) };
+    assert_eq!((wood.name.as_str(), wood.diffuse, wood.specular), ("wood", [0.6, 0.4, 0.2], [0.0; 3]));
+    assert_eq!(wood.texture.as_deref().map(Path::new), Some(data("chest planks.ppm").as_path()));
+    assert_eq!((brass.diffuse, brass.specular, brass.shininess), ([0.75; 3], [1.0, 0.9, 0.5], 96.0));
+    assert_eq!(brass.texture, None);
+    assert_eq!(mesh.triangle_surfaces(), [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1]);
+    let texcoords = mesh.texcoords().unwrap();
+    for (triangle, surface) in mesh.triangles().iter().zip(mesh.triangle_surfaces()) {
+        for &i in triangle {
+            let (p, n) = (mesh.positions()[i as usize], mesh.normals()[i as usize]);
+            // The lid has given normals, the sides the mean over all three faces at their corners.
+            if *surface == 1 {
+                assert_eq!((n, texcoords[i as usize]), (Vec3::Y, Vec2::ZERO));
+            } else if n != Vec3::NEG_Y {
+                let out = Vec3::new(p.x, p.y * 2.0 - 1.0, p.z) / 3f32.sqrt();
+                assert!(n.abs_diff_eq(out, 1e-6), "{p} {n}");
+            }
+        }
+    }
+}
+
+#[test]
+fn f1_broken_files() {
+    let message = |name: &str| obj::load(data(name)).unwrap_err().to_string();
+    let ends = |name: &str, end: &str| {
+        let message = message(name);
+        assert!(message.ends_with(end) && message.lines().count() == 1, "{message}");
+    };
+    ends("broken_nan.obj", "broken_nan.obj:4: `nan` is not a finite number");
+    ends("broken_empty.obj", "broken_empty.obj: no faces");
+    ends("broken_binary.obj", "broken_binary.obj:1: not a text file");
+    ends("broken_library.obj", "broken_library.mtl:2: too few numbers for a colour (1 or 3)");
+    assert!(matches!(
+        obj::load(data("nowhere.obj")).unwrap_err(),
+        ObjError { line: None, kind: ObjErrorKind::Read(error), .. } if error.kind() == io::ErrorKind::NotFound
+    ));
+    assert!(message("nowhere.obj").contains("nowhere.obj: "));
+    let folder = obj::load(data("")).unwrap_err();
+    assert!(matches!(folder.kind, ObjErrorKind::Directory), "{folder}");
+}
+
+#[test]
+fn f1_broken_lines() {
+    let with = |line: &str| refused(format!("{TRIANGLE}vt 0 0\nvn 0 0 1\n{line}\nf 1 2 3\n"));
+    for (line, message) in [
+        ("f 0 1 2", "index 0: indices count from 1"),
+        ("f 1 2 4", "there is no vertex 4, only 3"),
+        ("f 1 2 -4", "there is no vertex -4, only 3"),
+        ("f 1/1 2/2 3/1", "there is no texture coordinate 2, only 1"),
+        ("f 1//1 2//1 3//-2", "there is no normal -2, only 1"),
+        ("f 1/0 2/1 3/1", "index 0: indices count from 1"),
+        ("f 1 2 99999999999", "there is no vertex 99999999999, only 3"),
+        ("f 1 2 99999999999999999999", "`99999999999999999999` is not the corner of a face"),
+        ("f 1 2 -9223372036854775807", "there is no vertex -9223372036854775807, only 3"),
+        ("f 1 2 x", "`x` is not the corner of a face"),
+        ("f 1 2 3.0", "`3.0` is not the corner of a face"),
+        ("f 1/1/1/1 2 3", "`1/1/1/1` is not the corner of a face"),
+        ("f /1 2 3", "`/1` is not the corner of a face"),
+        ("f 1 2", "a face with 2 corners; 3 are needed"),
+        ("f 1", "a face with 1 corner; 3 are needed"),
+        ("f", "a face with 0 corners; 3 are needed"),
+        ("v 1 2", "too few numbers for a position (3)"),
+        ("v 1 2 three", "`three` is not a number"),
+        ("v 1 2 inf", "`inf` is not a finite number"),
+        ("v 1e39 0 0", "`1e39` is not a finite number"),
+        ("vn 0 NaN 1", "`NaN` is not a finite number"),
+        ("vn 1", "too few numbers for a normal (3)"),
+        ("vt", "too few numbers for texture coordinates (2)"),
+        ("v 1 2 \u{1}\u{2}", "`\u{FFFD}\u{FFFD}` is not a number"),
+        ("\u{0}\u{1}", "not a text file"),
+    ] {
+        assert_eq!(with(line), format!("model.obj:6: {message}"), "{line}");
+    }
+    assert_eq!(refused("v 0 0 0\n"), "model.obj: no faces");
+    assert_eq!(refused(TRIANGLE), "model.obj: no faces");
+    assert_eq!(refused(""), "model.obj: no faces");
+    assert_eq!(refused("Dear reader,\nthis is no model.\n"), "model.obj: no faces");
+    let long = format!("v {} 0 0", "9x".repeat(1000));
+    assert_eq!(refused(&long), format!("model.obj:1: `{}…` is not a number", "9x".repeat(20)));
+}
+
+/// An index may name what follows; the first that never comes is the one at fault.
+#[test]
+fn f1_indices_that_look_ahead() {
+    assert_eq!(mesh(format!("f 1 2 3\n{TRIANGLE}")).triangles(), [[0, 1, 2]]);
+    let late = refused(format!("f 1 2 3\nf 1 2 5\nf 1 4 2\nf 1 2 9\n{TRIANGLE}"));
+    assert_eq!(late, "model.obj:2: there is no vertex 5, only 3");
+    let normal = refused(format!("f 1//2 2//2 3//2\nf 1 2 9\nvn 0 0 1\n{TRIANGLE}"));
+    assert_eq!(normal, "model.obj:1: there is no normal 2, only 1");
+}
+
+#[test]
+fn f1_what_is_large_but_well_formed_loads() {
+    // A line of two megabytes: a convex face of 10,000 corners, spaced out.
+    let corners = 10_000;
+    let mut text = String::new();
+    for i in 0..corners {
+        let angle = 2.0 * std::f64::consts::PI * f64::from(i) / f64::from(corners);
+        writeln!(text, "v {} {} 0", angle.cos(), angle.sin()).unwrap();
+    }
+    text.push('f');
+    for i in 1..=corners {
+        write!(text, "{:200}{i}", "").unwrap();
+    }
+    let disc = mesh(&text);
+    assert_eq!((disc.triangles().len(), disc.positions().len()), (9_998, 10_000));
+    // A concave one: a comb of 5,000 teeth.
+    let mut text = String::from("v 4999 -1 0\nv 0 -1 0\n");
+    for i in 0..corners {
+        writeln!(text, "v {i} {} 0", i % 2).unwrap();
+    }
+    text.push('f');
+    for i in (1..=corners + 2).rev() {
+        write!(text, " {i}").unwrap();
+    }
+    let comb = mesh(&text);
+    assert_eq!(comb.triangles().len(), 10_000);
+    let face: Vec<Vec3> = (1..=corners + 2).rev().map(|i| comb_corner(i)).collect();
+    check_split(&comb, &face);
+}
+
+fn comb_corner(i: u32) -> Vec3 {
+    match i {
+        1 => Vec3::new(4999.0, -1.0, 0.0),
+        2 => Vec3::new(0.0, -1.0, 0.0),
+        _ => Vec3::new((i - 3) as f32, ((i - 3) % 2) as f32, 0.0),
+    }
+}
+
+#[test]
+fn lines_of_all_kinds() {
+    let plain = mesh(format!("{TRIANGLE}f 1 2 3\n"));
+    for text in [
+        format!("{TRIANGLE}f 1 2 3"),
+        format!("\u{FEFF}{TRIANGLE}f 1 2 3\n"),
+        format!("{TRIANGLE}f 1 2 3\n").replace('\n', "\r\n"),
+        format!("{TRIANGLE}\t f\t1  2 \\\n 3 # and no more\n"),
+        format!("{TRIANGLE}f 1 2 3 \\"),
+        format!("# C:\\models\\\n{TRIANGLE}f 1 2 3\n"),
+        format!("{TRIANGLE}l 1 2 3\np 1\ns off\no x\ng\nvp 1 1\nf 1 2 3\n"),
+        "v 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0 2\nf +1 +2 +3".to_owned(),
+        format!("{TRIANGLE}v 9 9 9\nf 1 2 3\n"),
+    ] {
+        assert_eq!(mesh(&text), plain, "{text}");
+    }
+    let mut latin1 = b"# Z\xFCrich\n".to_vec();
+    latin1.extend_from_slice(format!("{TRIANGLE}o caf\u{e9}\nf 1 2 3\n").as_bytes());
+    assert_eq!(mesh(latin1), plain);
+}
+
+#[test]
+fn normals_that_are_missing_are_filled_in() {
+    // Two faces over an edge; the first has normals, of which one is zero.
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1\nvn 0 0 5\nvn 0 0 0\nf 1//1 2//1 3//2\nf 1 3 4\n";
+    let mesh = mesh(text);
+    let [first, second] = mesh.triangles() else { panic!() };
+    let normal = |i: u32| mesh.normals()[i as usize];
+    assert_eq!((normal(first[0]), normal(first[1])), (Vec3::Z, Vec3::Z));
+    // By angle at (0, 1, 0): 45° of +z and 45° of −x.
+    let mean = Vec3::new(-1.0, 0.0, 1.0) / 2f32.sqrt();
+    assert!(normal(first[2]).abs_diff_eq(mean, 1e-6));
+    assert!(normal(second[0]).abs_diff_eq(mean, 1e-6) && normal(second[1]).abs_diff_eq(mean, 1e-6));
+    assert_eq!(normal(second[2]), Vec3::NEG_X);
+}
+
+/// Without normals, positions that are listed twice are one.
+#[test]
+fn normals_are_averaged_by_place() {
+    let twice = mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 0 1 -0\nv 0 0 -1\nf 1 2 3\nf 4 5 6\n");
+    let mean = Vec3::new(-1.0, 0.0, 1.0) / 2f32.sqrt();
+    assert_eq!(twice.positions().len(), 6);
+    assert!([0, 2].iter().all(|&i: &usize| twice.normals()[i].abs_diff_eq(mean, 1e-6)));
+    assert!((3..5).all(|i| twice.normals()[i].abs_diff_eq(mean, 1e-6)));
+}
+
+#[test]
+fn faces_without_area_are_kept() {
+    let mesh = mesh(format!("{TRIANGLE}f 1 1 1\nf 1 2 2\nf 1 2 3\nf 1 2 1 2\n"));
+    assert_eq!(mesh.triangles().len(), 5);
+    assert!(mesh.normals().iter().all(|&n| n == Vec3::Z));
+}
+
+#[test]
+fn missing_files_are_one_warning() {
+    let Loaded { mesh, warnings } = obj::load(data("missing_library.obj")).unwrap();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].contains("missing_library.obj:1: cannot read nowhere.mtl"), "{warnings:?}");
+    assert_eq!((mesh.surfaces()[0].name.as_str(), mesh.surfaces()[0].diffuse), ("gold", [1.0; 3]));
+
+    let Loaded { mesh, warnings } = obj::load(data("missing_texture.obj")).unwrap();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].contains("nowhere.png: no such texture"), "{warnings:?}");
+    assert_eq!(mesh.surfaces()[0].texture, None);
+
+    let Loaded { warnings, .. } = parse(format!("{TRIANGLE}usemtl x\nf 1 2 3\nusemtl x\nf 1 2 3\n")).unwrap();
+    assert_eq!(warnings, ["model.obj:4: there is no material x; it is white and matt"]);
+}
+
+#[test]
+fn surfaces_are_those_in_use_in_order() {
+    let mtl = "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\nnewmtl a\nKd 0 0 1\n";
+    let text = format!("mtllib one.mtl\n{TRIANGLE}usemtl c\nusemtl b\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+    let library = |path: &Path| {
+        assert_eq!(path, Path::new("models/one.mtl"));
+        Ok(mtl.into())
+    };
+    let loaded = obj::parse(text.as_bytes(), "models/model.obj", library).unwrap();
+    let names: Vec<_> = loaded.mesh.surfaces().iter().map(|s| (s.name.as_str(), s.diffuse)).collect();
+    assert_eq!(names, [("b", [0.0, 1.0, 0.0]), ("a", [0.0, 0.0, 1.0])]);
+    assert_eq!(loaded.mesh.triangle_surfaces(), [0, 1, 0]);
+}
+
+#[test]
+fn library_names() {
+    let read = |line: &str, files: &[&str]| {
+        let text = format!("{line}\n{TRIANGLE}usemtl a\nf 1 2 3\n");
+        let library = |path: &Path| match files.iter().any(|file| Path::new(file) == path) {
+            true => Ok(b"newmtl a\nmap_Kd -o 1 -bm 0.5 -mm 0 1 textures/a b.png\n".to_vec()),
+            false => Err(io::ErrorKind::NotFound.into()),
+        };
+        let loaded = obj::parse(text.as_bytes(), "model.obj", library).unwrap();
+        (loaded.warnings.len(), loaded.mesh.surfaces()[0].texture.clone())
+    };
+    let found = |folder: &str| (0, Some(Path::new(folder).join("textures/a b.png").to_string_lossy().into_owned()));
+    assert_eq!(read("mtllib one two.mtl", &["one two.mtl"]), found(""));
+    assert_eq!(read("mtllib one.mtl two.mtl", &["one.mtl", "two.mtl"]), found(""));
+    assert_eq!(read("mtllib parts\\one.mtl", &["parts/one.mtl"]), found("parts"));
+    assert_eq!(read("mtllib one.mtl two.mtl", &["one.mtl"]), (1, None));
+}
+
+#[test]
+fn f1_broken_libraries() {
+    let refused = |mtl: &'static str| {
+        let text = format!("mtllib a.mtl\n{TRIANGLE}f 1 2 3\n");
+        let error = obj::parse(text.as_bytes(), "model.obj", |_: &Path| Ok(mtl.into())).unwrap_err();
+        error.to_string()
+    };
+    assert_eq!(refused("newmtl a\nKd\n"), "a.mtl:2: too few numbers for a colour (1 or 3)");
+    assert_eq!(refused("newmtl a\nKd 1 1\n"), "a.mtl:2: too few numbers for a colour (1 or 3)");
+    assert_eq!(refused("newmtl a\n\nKs red\n"), "a.mtl:3: `red` is not a number");
+    assert_eq!(refused("newmtl a\nNs nan\n"), "a.mtl:2: `nan` is not a finite number");
+    assert_eq!(refused("newmtl a\nNs\n"), "a.mtl:2: too few numbers for an exponent (1)");
+}
+
+/// A mesh of one face in the plane z = 0, against that face: n − 2 triangles, none turned over, whose
+/// areas add up, and each edge of the face in just one of them.
+fn check_split(mesh: &Mesh, face: &[Vec3]) {
+    assert_eq!(mesh.triangles().len(), face.len() - 2);
+    let double_area = |a: Vec3, b: Vec3, c: Vec3| {
+        let d = |p: Vec3| (f64::from(p.x) - f64::from(a.x), f64::from(p.y) - f64::from(a.y));
+        d(b).0 * d(c).1 - d(b).1 * d(c).0
+    };
+    let bits = |p: Vec3| p.to_array().map(f32::to_bits);
+    let mut edges: HashMap<_, i32> = HashMap::new();
+    let mut sum = 0.0;
+    for triangle in mesh.triangles() {
+        let p = triangle.map(|i| mesh.positions()[i as usize]);
+        let area = double_area(p[0], p[1], p[2]);
+        assert!(area >= 0.0, "{p:?}");
+        sum += area;
+        for i in 0..3 {
+            *edges.entry((bits(p[i]), bits(p[(i + 1) % 3]))).or_default() += 1;
+        }
+    }
+    let whole: f64 = (1..face.len() - 1).map(|i| double_area(face[0], face[i], face[i + 1])).sum();
+    assert!((sum - whole).abs() <= 1e-9 * whole.abs(), "{sum} {whole}");
+    for i in 0..face.len() {
+        let (from, to) = (bits(face[i]), bits(face[(i + 1) % face.len()]));
+        let net = edges.get(&(from, to)).unwrap_or(&0) - edges.get(&(to, from)).unwrap_or(&0);
+        assert_eq!(net, 1, "edge {i}");
+    }
+}
+
+fn face_text(face: &[Vec3]) -> String {
+    let mut text: String = face.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
+    text.push('f');
+    (1..=face.len()).for_each(|i| write!(text, " {i}").unwrap());
+    text
+}
+
+#[test]
+fn concave_faces_in_any_plane() {
+    // An L.
+    let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
+    let planes: [fn((f32, f32)) -> Vec3; 6] = [
+        |(a, b)| Vec3::new(a, b, 7.0),
+        |(a, b)| Vec3::new(7.0, a, b),
+        |(a, b)| Vec3::new(b, 7.0, a),
+        |(a, b)| Vec3::new(b, a, 7.0),
+        |(a, b)| Vec3::new(7.0, b, a),
+        |(a, b)| Vec3::new(a, 7.0, b),
+    ];
+    for (i, plane) in planes.into_iter().enumerate() {
+        for start in 0..6 {
+            let mut face = corners.map(plane);
+            face.rotate_left(start);
+            let mesh = mesh(face_text(&face));
+            assert_eq!(mesh.triangles().len(), 4);
+            let normal = if i < 3 { plane((0.0, 0.0)) / 7.0 } else { plane((0.0, 0.0)) / -7.0 };
+            let mut area = 0.0;
+            for t in mesh.triangles() {
+                let [a, b, c] = t.map(|i| mesh.positions()[i as usize]);
+                let double = (b - a).cross(c - a).dot(normal);
+                assert!(double >= 0.0, "plane {i}, start {start}");
+                area += double / 2.0;
+            }
+            assert_eq!(area, 3.0);
+            assert!(mesh.normals().iter().all(|&n| n == normal));
+        }
+    }
+}
+
+/// Corners in the middle of a straight edge stay, or a gap would open to the neighbour.
+#[test]
+fn corners_on_straight_edges_are_kept() {
+    let outline = [(0, 0), (1, 0), (2, 0), (4, 0), (4, 2), (3, 2), (2, 2), (2, 3), (2, 4), (1, 4), (0, 4), (0, 1)];
+    for start in 0..outline.len() {
+        let mut face: Vec<Vec3> = outline.iter().map(|&(x, y)| Vec3::new(x as f32, y as f32, 0.0)).collect();
+        face.rotate_left(start);
+        check_split(&mesh(face_text(&face)), &face);
+    }
+}
+
+/// Any face at all, tangled or in one point, gives n − 2 triangles.
+#[test]
+fn strange_faces_have_their_count() {
+    for face in ["1 2 3 1 2 3", "1 1 1 1", "1 2 1 2 1 2", "1 2 3 3 3 2", "1 2 4 3", "1 4 2 3 1 4"] {
+        let mesh = mesh(format!("{TRIANGLE}v 1 1 0\nf {face}\n"));
+        assert_eq!(mesh.triangles().len(), face.split(' ').count() - 2);
+    }
+}
+
+/// `tobj`'s corners: position, texture coordinates, normal.
+fn by_tobj(text: &str) -> Vec<[f32; 8]> {
+    let options = tobj::LoadOptions { single_index: true, triangulate: true, ..Default::default() };
+    let (models, _) =
+        tobj::load_obj_buf(&mut text.as_bytes(), &options, |_| Err(tobj::LoadError::OpenFileFailed)).unwrap();
+    let corners = models.iter().flat_map(|model| {
+        let m = &model.mesh;
+        m.indices.iter().map(|&i| {
+            let i = i as usize;
+            let (p, t, n) = (&m.positions[3 * i..], &m.texcoords[2 * i..], &m.normals[3 * i..]);
+            [p[0], p[1], p[2], t[0], t[1], n[0], n[1], n[2]]
+        })
+    });
+    corners.collect()
+}
+
+proptest! {
+    /// Triangles and convex quads with all three indices, positive or negative: what tobj can read.
+    #[test]
+    fn the_same_as_tobj(
+        numbers in prop::collection::vec(prop::array::uniform3(any::<f32>().prop_filter("finite", |x| x.is_finite())), 4..30),
+        faces in prop::collection::vec((prop::collection::vec(any::<prop::sample::Index>(), 3), any::<bool>()), 1..30),
+    ) {
+        let axes = ["1 0 0", "0 1 0", "0 0 1", "-1 0 0"];
+        let count = numbers.len();
+        let mut text = String::new();
+        for (i, [x, y, z]) in numbers.iter().enumerate() {
+            writeln!(text, "v {x} {y:e} {z}\nvt {y} {x:e}\nvn {}", axes[i % 4]).unwrap();
+        }
+        for (i, (corners, negative)) in faces.iter().enumerate() {
+            if i % 7 == 3 {
+                writeln!(text, "g part {i}").unwrap();
+            }
+            text.push('f');
+            for (k, corner) in corners.iter().enumerate() {
+                let index = |shift: usize| {
+                    let index = (corner.index(count) + shift * k) % count;
+                    if *negative { index as i64 - count as i64 } else { index as i64 + 1 }
+                };
+                write!(text, " {}/{}/{}", index(0), index(1), index(2)).unwrap();
+            }
+            text.push('\n');
+        }
+        let ours = mesh(&text);
+        let texcoords = ours.texcoords().unwrap();
+        let corners: Vec<[f32; 8]> = ours.triangles().iter().flatten().map(|&i| {
+            let (p, t, n) = (ours.positions()[i as usize], texcoords[i as usize], ours.normals()[i as usize]);
+            [p.x, p.y, p.z, t.x, t.y, n.x, n.y, n.z]
+        }).collect();
+        prop_assert_eq!(corners, by_tobj(&text));
+    }
+
+    /// Star-shaped faces, so concave as a rule, some corners on straight edges.
+    #[test]
+    fn concave_faces_are_split(radii in prop::collection::vec(1u8..=8, 5..60), middle in any::<bool>()) {
+        let n = radii.len();
+        let outer: Vec<Vec3> = radii.iter().enumerate().map(|(i, &r)| {
+            let angle = 2.0 * std::f32::consts::PI * i as f32 / n as f32;
+            // On a grid, so that the middle of an edge is exactly on it.
+            (Vec3::new(angle.cos(), angle.sin(), 0.0) * f32::from(r) * 512.0).round() * 2.0
+        }).collect();
+        let mut face = Vec::new();
+        for i in 0..n {
+            face.push(outer[i]);
+            if middle {
+                face.push((outer[i] + outer[(i + 1) % n]) / 2.0);
+            }
+        }
+        check_split(&mesh(face_text(&face)), &face);
+    }
+
+    /// Whatever the file says: a sound mesh, or an error on one line.
+    #[test]
+    fn f1_no_file_breaks_the_parser(text in prop::collection::vec(token(), 0..200)) {
+        let text: String = text.concat();
+        let library = |path: &Path| {
+            if path == Path::new("a") { Ok(text.clone().into_bytes()) } else { no_library(path) }
+        };
+        match obj::parse(text.as_bytes(), "model.obj", library) {
+            Ok(Loaded { mesh, .. }) => {
+                prop_assert!(!mesh.triangles().is_empty());
+                prop_assert!(mesh.positions().iter().all(|p| p.is_finite()));
+                prop_assert!(mesh.normals().iter().all(|n| n.is_normalized()));
+                prop_assert!(mesh.triangles().iter().flatten().all(|&i| (i as usize) < mesh.positions().len()));
+                prop_assert_eq!(mesh.triangles().len(), mesh.triangle_surfaces().len());
+            }
+            Err(error) => prop_assert_eq!(error.to_string().lines().count(), 1),
+        }
+    }
+
+    #[test]
+    fn f1_no_bytes_break_the_parser(bytes in prop::collection::vec(any::<u8>(), 0..500)) {
+        if let Err(error) = parse(&bytes) {
+            prop_assert_eq!(error.to_string().lines().count(), 1);
+        }
+    }
+}
+
+/// Pieces of OBJ and MTL text; faces mostly of indices that there are.
+fn token() -> impl Strategy<Value = String> {
+    let fixed = prop::sample::select(vec![
+        "\n",
+        "\n",
+        "\r\n",
+        " ",
+        "\t",
+        "\\\n",
+        "#",
+        "/",
+        "//",
+        "\nv ",
+        "\nv 0 0 0\n",
+        "\nv 1 0 0\n",
+        "\nv 1 1 0\n",
+        "\nv 0 1 0\n",
+        "\nv 3e38 -3e38 0\n",
+        "\nv 1e-45 0 0\n",
+        "\nvt 0 1\n",
+        "\nvn 0 0 1\n",
+        "\nvn 0 0 0\n",
+        "\nf ",
+        "\nf 1 2 3\n",
+        "\nf 1 2 3 4\n",
+        "\nf -1 -2 -3\n",
+        "\nf 1/1/1 2/1/1 3/1/1\n",
+        "\nf 4 3 2 1 2 3 4\n",
+        "\nusemtl a\n",
+        "\nmtllib a\n",
+        "\nmtllib b\n",
+        "\nnewmtl a\n",
+        "\nKd 1 0 0\n",
+        "\nKd ",
+        "\nNs 5\n",
+        "\nmap_Kd ",
+        "-s ",
+        "-o 1 1 1 ",
+        "\ng x\n",
+        "\nl 1 2 3\n",
+        "nan",
+        "inf",
+        "1e99",
+        "0",
+        "-0",
+        "é",
+        "\u{FEFF}",
+        "\0",
+    ]);
+    prop_oneof![
+        6 => fixed.prop_map(str::to_owned),
+        3 => (-6i64..8).prop_map(|i| format!(" {i}")),
+        1 => any::<i64>().prop_map(|i| format!(" {i}")),
+        1 => any::<f32>().prop_map(|x| format!(" {x}")),
+        1 => "\\PC{0,6}",
+    ]
+}

@@ -22,16 +22,19 @@ fn check(vertices: &[Vertex; 3]) -> u32 {
     // Reseeded: off by less than 64/256 before the byte's half; else by less than (k + 1)/256.
     for (shading, reseed, drift) in [(Shading::GouraudReseeded, 64, 64), (Shading::Gouraud, 1 << 20, i128::from(WIDTH))]
     {
-        let expected = oracle::gouraud(vertices, WIDTH as i32, HEIGHT as i32, reseed);
+        let mut expected = vec![None; (WIDTH * HEIGHT) as usize];
+        for pixel in oracle::gouraud(vertices, WIDTH as i32, HEIGHT as i32, reseed) {
+            expected[pixel.y as usize * WIDTH as usize + pixel.x as usize] = Some(pixel.byte);
+        }
         // Two backgrounds tell a byte that is drawn from one that is left alone.
-        let (on_0, on_1) =
-            (draw(vertices, shading, WIDTH, HEIGHT, None, 0), draw(vertices, shading, WIDTH, HEIGHT, None, 1));
+        let on = |empty| draw(vertices, shading, WIDTH, HEIGHT, None, empty);
+        let (on_0, on_1) = (on(0), on(1));
         covered = 0;
         for y in 0..HEIGHT as usize {
             for x in 0..WIDTH as usize {
                 let place = y * WIDTH as usize + x;
                 let drawn = (on_0[place] == on_1[place]).then_some(on_0[place]);
-                assert_eq!(drawn, expected[y][x], "{shading:?} at ({x}, {y}) of {vertices:?}");
+                assert_eq!(drawn, expected[place], "{shading:?} at ({x}, {y}) of {vertices:?}");
                 let Some(byte) = drawn.map(i128::from) else { continue };
                 covered += 1;
                 assert!((low + 128) >> 8 <= byte && byte <= (high + 128) >> 8, "range at ({x}, {y}) of {vertices:?}");
@@ -264,17 +267,15 @@ fn depth_is_as_defined_and_the_first_of_equals_stays() {
         let all: Vec<_> = triangles.iter().copied().chain([twin]).collect();
         let (mut expected, mut nearest) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
         for vertices in &all {
-            for (y, row) in oracle::gouraud(vertices, WIDTH as i32, HEIGHT as i32, 64).iter().enumerate() {
-                for (x, byte) in row.iter().enumerate() {
-                    let (Some(byte), place) = (byte, y * WIDTH as usize + x) else { continue };
-                    let depth = oracle::depth_at(vertices, x as i32, y as i32);
-                    let (low, high) =
-                        vertices.iter().fold((u32::MAX, 0), |(low, high), v| (low.min(v.depth()), high.max(v.depth())));
-                    assert!((low..=high).contains(&depth), "depth within the vertices' at ({x}, {y}) of {vertices:?}");
-                    if depth > nearest[place] {
-                        replaced += u32::from(nearest[place] != 0);
-                        (nearest[place], expected[place]) = (depth, *byte);
-                    }
+            for oracle::Pixel { x, y, byte } in oracle::gouraud(vertices, WIDTH as i32, HEIGHT as i32, 64) {
+                let depth = oracle::depth_at(vertices, x, y);
+                let (low, high) =
+                    vertices.iter().fold((u32::MAX, 0), |(low, high), v| (low.min(v.depth()), high.max(v.depth())));
+                assert!((low..=high).contains(&depth), "depth within the vertices' at ({x}, {y}) of {vertices:?}");
+                let place = y as usize * WIDTH as usize + x as usize;
+                if depth > nearest[place] {
+                    replaced += u32::from(nearest[place] != 0);
+                    (nearest[place], expected[place]) = (depth, byte);
                 }
             }
         }

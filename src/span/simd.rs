@@ -13,29 +13,70 @@
 
 /// Plain arrays that the compiler vectorises, for processors without a kernel of their own.
 pub(super) mod arrays {
+    use super::super::portable;
+
+    /// Lanes of a vector of shades: half a block.
+    const LANES: usize = 8;
     /// Pixels a turn.
-    const BLOCK: usize = 16;
-    const BLOCK_STEPS: u16 = BLOCK as u16;
+    const BLOCK: usize = 2 * LANES;
+    /// From this length on the compiler's own vectors of the portable loop are faster: on x86-64 at
+    /// 160 pixels 9.7 ns and 30 here, at 100 about the same, at random 1 to 64 pixels 26 and 15.
+    const LONG: usize = 128;
+
+    /// Even and odd shades of a block of 16 pixels.
+    #[derive(Clone, Copy)]
+    struct Block {
+        even: [u16; LANES],
+        odd: [u16; LANES],
+    }
+
+    impl Block {
+        #[inline]
+        fn new(shade: u16, step: u16) -> Self {
+            let mut block = Self { even: [0; LANES], odd: [0; LANES] };
+            for (j, (even, odd)) in (0_u16..).zip(block.even.iter_mut().zip(&mut block.odd)) {
+                *even = shade.wrapping_add(step.wrapping_mul(2 * j));
+                *odd = even.wrapping_add(step);
+            }
+            block
+        }
+
+        #[inline]
+        fn raised(self, by: u16) -> Self {
+            let add = |shade: u16| shade.wrapping_add(by);
+            Self { even: self.even.map(add), odd: self.odd.map(add) }
+        }
+
+        #[inline]
+        fn store(self, to: &mut [u8; BLOCK]) {
+            let (pairs, _) = to.as_chunks_mut::<2>();
+            for (pair, (even, odd)) in pairs.iter_mut().zip(self.even.into_iter().zip(self.odd)) {
+                *pair = (even >> 8 | odd & 0xFF00).to_le_bytes();
+            }
+        }
+    }
 
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
         let n = row.len();
+        if n >= LONG {
+            return portable::fill(row, shade, step);
+        }
+        let first = Block::new(shade, step);
         if n < BLOCK {
-            return super::super::portable::fill(row, shade, step);
+            let mut bytes = [0; BLOCK];
+            first.store(&mut bytes);
+            return row.copy_from_slice(&bytes[..n]);
         }
-        let mut rises = [0_u16; BLOCK];
-        for (k, rise) in (0..).zip(&mut rises) {
-            *rise = step.wrapping_mul(k);
-        }
-        let pixels = |start: u16| rises.map(|rise| start.wrapping_add(rise).to_be_bytes()[0]);
-        let mut start = shade;
+        // The last 16, whatever the length: its first pixel is number n − 16.
+        let last = first.raised(step.wrapping_mul((n - BLOCK) as u16)); // n < 128
+        let mut block = first;
         let (blocks, _) = row.as_chunks_mut::<BLOCK>();
-        for block in blocks {
-            *block = pixels(start);
-            start = start.wrapping_add(step.wrapping_mul(BLOCK_STEPS));
+        for to in blocks {
+            block.store(to);
+            block = block.raised(step.wrapping_mul(BLOCK as u16));
         }
-        // The last 16, whatever the length. Its first pixel is number n − 16, taken mod 65,536 as shades are.
-        if let Some(last) = row.last_chunk_mut::<BLOCK>() {
-            *last = pixels(shade.wrapping_add(step.wrapping_mul((n - BLOCK) as u16)));
+        if let Some(to) = row.last_chunk_mut::<BLOCK>() {
+            last.store(to);
         }
     }
 }

@@ -91,35 +91,49 @@ pub fn per_pixel(triangle: [Point; 3], values: [i128; 3]) -> Ratio {
     Ratio { n: at(1).n - at(0).n, d: at(0).d }
 }
 
-/// The bytes of a triangle in a frame of `width × height`, by the letter of DESIGN section 4:
-/// `None` where it draws nothing. `reseed` is 64, or more than any width for "at f alone".
-pub fn gouraud(vertices: &[Vertex; 3], width: i32, height: i32, reseed: i32) -> Vec<Vec<Option<u8>>> {
+/// A pixel that a triangle draws.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Pixel {
+    pub x: i32,
+    pub y: i32,
+    pub byte: u8,
+}
+
+/// The pixels of a triangle in a frame of `width × height`, by the letter of DESIGN section 4, row by
+/// row. `reseed` is 64, or more than any width for "at f alone".
+pub fn gouraud(vertices: &[Vertex; 3], width: i32, height: i32, reseed: i32) -> Vec<Pixel> {
     let triangle = vertices.each_ref().map(point);
     let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
-    (0..height)
-        .map(|y| {
-            let covered: Vec<bool> = (0..width).map(|x| covers(triangle, centre(x, y))).collect();
-            let Some(f) = covered.iter().position(|&c| c) else { return vec![None; width as usize] };
+    // No pixel further out than the vertices' own.
+    let pixels = |coordinate: fn(&Point) -> i128, size: i32| {
+        let (mut low, mut high) = (i128::from(size), -1);
+        for p in &triangle {
+            low = low.min(coordinate(p).div_euclid(256));
+            high = high.max(coordinate(p).div_euclid(256));
+        }
+        low.max(0) as i32..(high + 1).min(i128::from(size)) as i32
+    };
+    let mut drawn = Vec::new();
+    for y in pixels(|p| p.1, height) {
+        let mut first = None;
+        let mut sum = 0;
+        for x in pixels(|p| p.0, width) {
+            if !covers(triangle, centre(x, y)) {
+                continue;
+            }
             let slope = per_pixel(triangle, shades);
-            let step = slope.truncate();
-            let mut sum = 0;
-            (0..width)
-                .map(|x| {
-                    let k = x - f as i32;
-                    if !covered[x as usize] {
-                        return None;
-                    }
-                    if k % reseed == 0 {
-                        let exact = interpolate(triangle, shades, centre(x, y));
-                        sum = if slope.n < 0 { exact.ceil() } else { exact.floor() };
-                    }
-                    let byte = (sum + 128) >> 8;
-                    sum += step;
-                    Some(u8::try_from(byte).expect("a shade in range is a byte"))
-                })
-                .collect()
-        })
-        .collect()
+            let f = *first.get_or_insert(x);
+            if (x - f) % reseed == 0 {
+                let exact = interpolate(triangle, shades, centre(x, y));
+                sum = if slope.n < 0 { exact.ceil() } else { exact.floor() };
+            } else {
+                sum += slope.truncate();
+            }
+            let byte = u8::try_from((sum + 128) >> 8).expect("a shade in range is a byte");
+            drawn.push(Pixel { x, y, byte });
+        }
+    }
+    drawn
 }
 
 /// The depth at a covered pixel, by the letter of the definition in `raster::depth`.

@@ -67,13 +67,13 @@ const RADIUS: f64 = 3.3405;
 type Patch = [[Wide; 4]; 4];
 
 /// The Utah teapot, bottom included, each of its 32 patches cut into `segments` × `segments` quads
-/// (at least 1, at most 512). 64 · segments² − 8 · segments triangles: those with two corners in a
+/// (at least 2, at most 512). 64 · segments² − 8 · segments triangles: those with two corners in a
 /// pole are left out.
 ///
 /// It is not closed: the spout is open, and there is a gap about the lid.
 #[must_use]
 pub fn teapot(segments: u32) -> Mesh {
-    let n = segments.clamp(1, MOST / 8);
+    let n = segments.clamp(2, MOST / 8);
     let mut builder = Builder { n, positions: Vec::new(), normals: Vec::new(), triangles: Vec::new() };
     for profile in REVOLVED {
         let mut patch = profile.map(|[r, t, z]| [[r, 0.0, z], [r, -t, z], [t, -r, z], [0.0, -r, z]]);
@@ -114,14 +114,17 @@ fn evaluate(patch: &Patch, u: f64, v: f64) -> (Wide, Wide) {
     let point = blend(bv, rows);
     let along_v = blend(dv, rows);
     let slopes = patch.map(|row| blend(du, row));
-    let along_u = blend(bv, slopes);
-    let mut normal = cross(along_u, along_v);
-    if length(normal) == 0.0 {
-        // A pole: the row of control points is one point, so ∂u vanishes there. Nearby it is
-        // ∂²/∂u∂v times the way to the pole, so that gives its direction.
-        let mixed = blend(dv, slopes);
-        normal = cross(if v < 0.5 { mixed } else { scale(mixed, -1.0) }, along_v);
-    }
+    // At a pole the row of control points is one point, so ∂u vanishes. Nearby it is ∂²/∂u∂v times the
+    // way from the pole, which therefore gives its direction.
+    let is_pole = |row: usize| patch[row].iter().all(|p| *p == patch[row][0]);
+    let direction = if v == 0.0 && is_pole(0) {
+        blend(dv, slopes)
+    } else if v == 1.0 && is_pole(3) {
+        scale(blend(dv, slopes), -1.0)
+    } else {
+        blend(bv, slopes)
+    };
+    let normal = cross(direction, along_v);
     (point, scale(normal, 1.0 / length(normal)))
 }
 
