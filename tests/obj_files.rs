@@ -149,8 +149,8 @@ fn f1_what_is_large_but_well_formed_loads() {
     }
     let disc = mesh(&text);
     assert_eq!((disc.triangles().len(), disc.positions().len()), (9_998, 10_000));
-    // A concave one: a comb of 5,000 teeth.
-    let mut text = String::from("v 4999 -1 0\nv 0 -1 0\n");
+    // A concave one: a saw of 5,000 teeth.
+    let mut text = String::from("v 9999 -1 0\nv 0 -1 0\n");
     for i in 0..corners {
         writeln!(text, "v {i} {} 0", i % 2).unwrap();
     }
@@ -158,15 +158,15 @@ fn f1_what_is_large_but_well_formed_loads() {
     for i in (1..=corners + 2).rev() {
         write!(text, " {i}").unwrap();
     }
-    let comb = mesh(&text);
-    assert_eq!(comb.triangles().len(), 10_000);
-    let face: Vec<Vec3> = (1..=corners + 2).rev().map(|i| comb_corner(i)).collect();
-    check_split(&comb, &face);
+    let saw = mesh(&text);
+    assert_eq!(saw.triangles().len(), 10_000);
+    let face: Vec<Vec3> = (1..=corners + 2).rev().map(|i| saw_corner(i)).collect();
+    check_split(&saw, &face);
 }
 
-fn comb_corner(i: u32) -> Vec3 {
+fn saw_corner(i: u32) -> Vec3 {
     match i {
-        1 => Vec3::new(4999.0, -1.0, 0.0),
+        1 => Vec3::new(9999.0, -1.0, 0.0),
         2 => Vec3::new(0.0, -1.0, 0.0),
         _ => Vec3::new((i - 3) as f32, ((i - 3) % 2) as f32, 0.0),
     }
