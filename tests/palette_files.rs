@@ -1,4 +1,5 @@
 //! Palettes: the hard cases P1, P2 and P5, the ramps, the cube, the built-ins and their files.
+#![cfg(feature = "alloc")] // The writers.
 
 use std::collections::BTreeSet;
 
@@ -102,7 +103,7 @@ fn p2_ramps_of_a_palette_share_the_entries_out() {
 #[test]
 fn packed_forms_are_what_their_names_say() {
     for (color, packed, rgb565) in [
-        (Rgb::new(0x12, 0x34, 0x56), 0x0012_3456, 0b00010_001101_01010),
+        (Rgb::new(0x12, 0x34, 0x56), 0x0012_3456, 0x11AA),
         (Rgb::WHITE, 0x00FF_FFFF, 0xFFFF),
         (Rgb::new(255, 0, 0), 0x00FF_0000, 0xF800),
         (Rgb::new(0, 255, 0), 0x0000_FF00, 0x07E0),
@@ -198,6 +199,15 @@ fn the_cube_finds_its_nearest_without_a_search() {
         assert_eq!(cube::nearest(color), cube::CUBE.nearest(color), "{color:?}");
         let among_mixtures = (0..216).min_by_key(|&i| cube::CUBE.color(i).distance_squared(color)).unwrap();
         assert_eq!(cube::nearest_mixture(color), among_mixtures, "{color:?}");
+    }
+}
+
+#[test]
+#[ignore = "16,777,216 searches: run it in release"]
+fn the_cube_finds_the_nearest_of_every_colour() {
+    for rgb in 0..=0xFF_FFFF {
+        let color = Rgb::from_u32(rgb);
+        assert_eq!(cube::nearest(color), cube::CUBE.nearest(color), "{color:?}");
     }
 }
 

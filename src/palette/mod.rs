@@ -9,7 +9,7 @@
 //! | [`cube`] | the 6 × 6 × 6 colour cube with greys, and its nearest entry without a search |
 //! | [`BIOS`] | the colours that mode 13h starts with |
 //! | [`builtin`] | the palettes that are compiled in, by name |
-//! | [`file`] | JASC, GIMP, Adobe, Lospec and raw VGA files |
+//! | [`mod@file`] | JASC, GIMP, Adobe, Lospec and raw VGA files |
 //!
 //! A palette has 8 bits a channel, the card 6. A palette keeps the 8 bits it was given, so that a
 //! file is written as it was read; [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down
