@@ -12,8 +12,9 @@ use mode13h::window::{Flow, Input, Key, Window};
 
 use crate::failure::Failure;
 use crate::options::Drawing;
+use crate::overlay::{self, Place};
 use crate::stage::{Pose, SPEED, Stage};
-use crate::{input, output, overlay};
+use crate::{input, output};
 
 /// What the help says below the options.
 pub(crate) const KEYS: &str = "\
@@ -169,7 +170,8 @@ impl Demo {
         self.timing.add(start.elapsed().as_secs_f64(), self.seconds);
         self.stats = Some(stats);
         if self.help {
-            overlay::write(vga, &self.lines());
+            overlay::write(vga, Place::Top, &self.figures());
+            overlay::write(vga, Place::Bottom, &HELP);
         }
         Ok(())
     }
@@ -189,7 +191,7 @@ impl Demo {
         format!("{} - {} - mode13h{notice}", self.name, self.timing)
     }
 
-    fn lines(&self) -> Vec<String> {
+    fn figures(&self) -> Vec<String> {
         let mut lines = vec![
             format!("{}: {} triangles", self.name, self.triangles),
             format!("{}, {:.0} a second", self.timing, self.timing.rate),
@@ -198,21 +200,18 @@ impl Demo {
             format!("palette {}", self.palettes.chosen().0),
             format!("zoom    {:.2}", self.motion.pose().zoom),
         ];
-        lines.extend(self.stats.iter().map(|stats| stats.to_string()));
-        lines.extend(HELP.map(str::to_string));
+        if let Some(Stats { hidden_surfaces, vertices, drawn, raster, .. }) = &self.stats {
+            lines.push(format!("{hidden_surfaces}: {vertices} vertices, {drawn} drawn"));
+            lines.push(format!("{} spans, {} pixels", raster.spans, raster.pixels));
+        }
         lines
     }
 }
 
-const HELP: [&str; 8] = [
-    "",
-    "[ ]  rung        K  kernel    P  palette",
-    "arrows, mouse    turn",
-    "wheel, + -       zoom",
-    "Space            stop and go on",
-    "S                save a PNG",
-    "H                hide this",
-    "Esc              quit",
+const HELP: [&str; 3] = [
+    "Esc quit   Space stop   S save   H hide this",
+    "[ ] rung   K kernel     P palette",
+    "arrows, mouse turn      wheel, + - zoom",
 ];
 
 /// How the model moves: by the clock unless it is stopped, and by the user.
