@@ -76,14 +76,59 @@ fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_ins
     }
 }
 
-/// Clips a triangle and hands the parts of what is left, a fan, to `part`. Returns whether anything
-/// was left.
-pub(super) fn clip(view: &ObjectView, corners: [Corner; 3], mut part: impl FnMut([Vertex; 3])) -> bool {
+/// What is left of a triangle: a convex polygon, but for the rounding of its corners.
+pub(super) struct Clipped {
+    vertices: [Vertex; 3 + PLANES],
+    count: usize,
+}
+
+impl Clipped {
+    fn vertices(&self) -> &[Vertex] {
+        &self.vertices[..self.count]
+    }
+
+    /// The triangles of the fan from this corner.
+    fn fan(&self, apex: usize) -> impl Iterator<Item = [Vertex; 3]> {
+        let corner = move |i: usize| self.vertices[(apex + i) % self.count];
+        (2..self.count).map(move |i| [corner(0), corner(i - 1), corner(i)])
+    }
+
+    /// Twice the area, as [`doubled_area`] has it of a triangle.
+    pub(super) fn doubled_area(&self) -> i64 {
+        self.fan(0).map(|part| doubled_area(&part)).sum()
+    }
+
+    /// The polygon in triangles that turn the same way as the whole.
+    ///
+    /// Where a cut lies near a corner, three corners in a row may be all but on a line, and rounding
+    /// may dent the polygon there. A fan from any other corner would then cover the dent twice; a
+    /// fan from the dent does not. Triangles that still turn the other way, of polygons that are
+    /// hardly more than a line, are left out.
+    pub(super) fn parts(&self) -> impl Iterator<Item = [Vertex; 3]> {
+        let sign = self.doubled_area().signum();
+        let turns = move |part: &[Vertex; 3]| doubled_area(part).signum() * sign;
+        let whole = |apex: &usize| self.fan(*apex).all(|part| turns(&part) >= 0);
+        let apex = (0..self.count).find(whole).unwrap_or(0);
+        self.fan(apex).filter(move |part| turns(part) > 0)
+    }
+}
+
+/// Twice the area on the screen in (1/256 pixel)²: exact, and negative where the face is turned
+/// towards the eye, for it is counter-clockwise seen from outside and the screen's y runs down.
+#[inline]
+pub(super) fn doubled_area(vertices: &[Vertex; 3]) -> i64 {
+    let [(x0, y0), (x1, y1), (x2, y2)] =
+        vertices.each_ref().map(|v| (i64::from(v.x().to_bits()), i64::from(v.y().to_bits())));
+    (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+}
+
+/// Clips a triangle. Returns `None` if nothing is left.
+pub(super) fn clip(view: &ObjectView, corners: [Corner; 3]) -> Option<Clipped> {
     let [a, b, c] = corners;
     let mut polygon = Polygon { corners: [a, b, c, a, a, a, a, a], count: 3 };
     for plane in 0..PLANES {
         let mut kept = Polygon { corners: polygon.corners, count: 0 };
-        let Some(mut previous) = polygon.corners[..polygon.count].last() else { return false };
+        let mut previous = polygon.corners[..polygon.count].last()?;
         let mut d_previous = distance(view, plane, previous);
         for corner in &polygon.corners[..polygon.count] {
             let d = distance(view, plane, corner);
@@ -99,19 +144,14 @@ pub(super) fn clip(view: &ObjectView, corners: [Corner; 3], mut part: impl FnMut
         }
         polygon = kept;
         if polygon.count < 3 {
-            return false;
+            return None;
         }
     }
-    let mut vertices = polygon.corners[..polygon.count].iter().map(|corner| {
+    let mut clipped = Clipped { vertices: [Vertex::default(); 3 + PLANES], count: polygon.count };
+    for (vertex, corner) in clipped.vertices.iter_mut().zip(&polygon.corners[..polygon.count]) {
         // At most 0xFF00: between two shades that are. The cast truncates after the half.
         let shade = U8F8::from_bits((corner.shade + 0.5) as u16);
-        corner.vertex.or_else(|| view.divide(corner.at, shade))
-    });
-    let (Some(Some(first)), Some(Some(mut previous))) = (vertices.next(), vertices.next()) else { return false };
-    for vertex in vertices {
-        let Some(vertex) = vertex else { return false };
-        part([first, previous, vertex]);
-        previous = vertex;
+        *vertex = corner.vertex.or_else(|| view.divide(corner.at, shade))?;
     }
-    true
+    Some(clipped)
 }

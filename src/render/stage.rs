@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use super::clip::{Corner, clip};
+use super::clip::{Corner, clip, doubled_area};
 use super::view::{Homogeneous, ObjectView};
 use super::{Rung, Stats};
 use crate::fixed::U8F8;
@@ -145,22 +145,22 @@ impl Stage<'_> {
         let positions = self.object.mesh().positions();
         let at = indices.map(|i| self.view.homogeneous(positions[i as usize]));
         let turned = two_sided && is_turned_away(&at);
-        let mut shading = None;
         let corner = |i: usize| {
             let LitVertex { vertex, back, needs_clipping } = corners[i];
             let shade = if turned { back } else { vertex.shade() };
             let projected = (!needs_clipping).then(|| vertex.with_shade(shade));
             Corner { at: at[i], shade: f64::from(shade.to_bits()), vertex: projected }
         };
-        clip(self.view, [corner(0), corner(1), corner(2)], |part| {
-            if is_culled(doubled_area(&part), two_sided) {
-                stats.culled += 1;
-                return;
-            }
+        let Some(clipped) = clip(self.view, [corner(0), corner(1), corner(2)]) else { return };
+        if is_culled(clipped.doubled_area(), two_sided) {
+            stats.culled += 1;
+            return;
+        }
+        let shading = self.shading(indices, surface, turned, stats);
+        for part in clipped.parts() {
             stats.drawn += 1;
-            let shading = *shading.get_or_insert_with(|| self.shading(indices, surface, turned, stats));
             triangle(&part, shading);
-        });
+        }
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
@@ -186,15 +186,6 @@ impl Stage<'_> {
         // One for each surface, by the renderer's check of the object.
         &self.paints[usize::from(surface)]
     }
-}
-
-/// Twice the area on the screen in (1/256 pixel)²: exact, and negative where the face is turned
-/// towards the eye, for it is counter-clockwise seen from outside and the screen's y runs down.
-#[inline]
-fn doubled_area(vertices: &[Vertex; 3]) -> i64 {
-    let [(x0, y0), (x1, y1), (x2, y2)] =
-        vertices.each_ref().map(|v| (i64::from(v.x().to_bits()), i64::from(v.y().to_bits())));
-    (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
 }
 
 #[inline]

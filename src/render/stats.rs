@@ -24,9 +24,9 @@ pub struct Stats {
     pub faces: u64,
     /// Faces cut by the near plane or the guard band, or wholly beyond them.
     pub clipped: u64,
-    /// Triangles turned away, or without area once rounded, parts of clipped faces among them.
+    /// Faces turned away, or without area once clipped and rounded.
     pub culled: u64,
-    /// Triangles handed to the raster.
+    /// Triangles handed to the raster: faces, and the parts of those that were clipped.
     pub drawn: u64,
     /// What the raster did with them.
     pub raster: Drawn,
