@@ -140,9 +140,10 @@ impl U8F8 {
     #[inline]
     pub fn from_intensity(intensity: f32, first: u8, entries: u16) -> Self {
         let units = f64::from(entries.saturating_sub(1)) * 256.0;
-        // `max` drops NaN: the other operand comes back. The product of 24 and 16 bits is exact in
+        // Of NaN `max` gives the other operand, and `clamp` would not. The product of 24 and 16 bits is exact in
         // f64, and so is the sum with a half unless the product is below 2⁻¹³, where the whole part
         // is 0 either way. `as` truncates.
+        #[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
         let above = (f64::from(intensity.max(0.0).min(1.0)) * units + 0.5) as u32;
         let shade = u32::from(first) * 256 + above;
         Self(if shade > 0xFF00 { 0xFF00 } else { shade as u16 })

@@ -403,9 +403,8 @@ proptest! {
             let used: std::collections::HashSet<u32> = mesh.triangles().iter().flatten().copied().collect();
             for vertex in used {
                 let Some(expected) = naive_normal(&mesh, vertex as usize, weight) else { continue };
-                for k in 0..3 {
-                    let found = f64::from(mesh.normals()[vertex as usize][k]);
-                    prop_assert!((found - expected[k]).abs() < 1.0 / f64::from(1 << 23), "{weight:?}");
+                for (found, expected) in mesh.normals()[vertex as usize].to_array().into_iter().zip(expected) {
+                    prop_assert!((f64::from(found) - expected).abs() < 1.0 / f64::from(1 << 23), "{weight:?}");
                 }
             }
         }

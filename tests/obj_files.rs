@@ -160,7 +160,7 @@ fn f1_what_is_large_but_well_formed_loads() {
     }
     let saw = mesh(&text);
     assert_eq!(saw.triangles().len(), 10_000);
-    let face: Vec<Vec3> = (1..=corners + 2).rev().map(|i| saw_corner(i)).collect();
+    let face: Vec<Vec3> = (1..=corners + 2).rev().map(saw_corner).collect();
     check_split(&saw, &face);
 }
 

@@ -189,9 +189,11 @@ fn nearest_is_the_first_of_the_nearest() {
 
 #[test]
 fn the_cube_finds_its_nearest_without_a_search() {
-    // Every 5th value of a channel, and both ends: 52³ colours.
+    // Every 5th value of a channel, and both ends: 52³ colours. And all that are almost grey, where
+    // the mean of the three lies between two greys.
     let values: Vec<u8> = (0..=255).step_by(5).collect();
-    let greys = (0..=255).map(|v| Rgb::new(v, v, v));
+    let greys = (0..=255_u8).flat_map(|v| (0..27).map(move |k| [k / 9, k / 3 % 3, k % 3].map(|d| v.saturating_add(d))));
+    let greys = greys.map(|[r, g, b]| Rgb::new(r, g, b));
     let mixtures = values
         .iter()
         .flat_map(|&r| values.iter().flat_map(move |&g| (0..=255).step_by(5).map(move |b| Rgb::new(r, g, b))));
@@ -358,6 +360,18 @@ fn raw_files_have_six_bits_where_that_keeps_every_colour() {
     assert!(six.iter().all(|&value| value <= 63));
     assert_eq!(&six[3 * 6..][..3], [42, 21, 0]);
     assert_eq!(raw.write(&builtin::GREY, "")[765..], [255, 255, 255]);
+}
+
+#[test]
+fn a_raw_file_with_a_value_over_63_has_eight_bits() {
+    let mut bytes = [63; 768];
+    assert_eq!(format("vga").read(&bytes), Ok(palette_of(|_| Rgb::WHITE)));
+    for at in [0, 767] {
+        bytes[at] = 64;
+        let palette = format("vga").read(&bytes).unwrap();
+        assert_eq!(palette.color(1), Rgb::new(63, 63, 63), "64 at {at}");
+        bytes[at] = 63;
+    }
 }
 
 #[test]
