@@ -132,7 +132,9 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.png", "--up", "x"], "--up"),
         (vec!["palette", "grey", "-o", "x.txt"], "x.txt: "),
         (vec!["verify", "--xml"], "--xml"),
-        (vec!["torus", "cube"], "cube"),
+        (vec!["torus", "cube"], "unexpected argument 'cube' found"),
+        (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
+        (vec!["plan", "torus"], "unexpected argument 'torus' found"),
     ] {
         assert_fails(&run(&directory, &words), 2, says);
     }
