@@ -48,6 +48,7 @@ pub enum ExportErrorKind {
     /// The disk, or the user's share of it, is full.
     DiskFull,
     /// The picture itself cannot be written.
+    #[cfg(any(feature = "png", feature = "image"))]
     Picture(super::PictureError),
     /// Any other failure that the system reports.
     Io(io::Error),
@@ -75,6 +76,7 @@ impl fmt::Display for ExportError {
             ExportErrorKind::IsDirectory => f.write_str("is a directory"),
             ExportErrorKind::NotPermitted => f.write_str("no right to write there"),
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),
+            #[cfg(any(feature = "png", feature = "image"))]
             ExportErrorKind::Picture(error) => write!(f, "{error}"),
             ExportErrorKind::Io(error) => write!(f, "{error}"),
         }
@@ -84,6 +86,7 @@ impl fmt::Display for ExportError {
 impl Error for ExportError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match &self.kind {
+            #[cfg(any(feature = "png", feature = "image"))]
             ExportErrorKind::Picture(error) => Some(error),
             ExportErrorKind::Io(error) => Some(error),
             _ => None,

@@ -6,15 +6,19 @@
 mod atomic;
 #[cfg(feature = "png")]
 mod indexed;
+#[cfg(any(feature = "png", feature = "image"))]
 mod picture;
 #[cfg(feature = "image")]
 mod rgb;
+#[cfg(any(feature = "png", feature = "image"))]
 mod scale;
 
 pub use atomic::{ExportError, ExportErrorKind, write_atomically};
 #[cfg(feature = "png")]
 pub use indexed::{encode_png, picture_png, png};
+#[cfg(any(feature = "png", feature = "image"))]
 pub use picture::{Picture, PictureError, PixelShape};
 #[cfg(feature = "image")]
 pub use rgb::{encode_rgb_png, picture_rgb_png, rgb_png};
+#[cfg(any(feature = "png", feature = "image"))]
 pub use scale::{MAX_SIDE, Scale, ScaleError};

@@ -44,7 +44,7 @@ impl From<()> for Flow {
 ///
 /// `frame` is given the machine to draw on, what the user did since the last frame, and the seconds since the window
 /// opened. These are absolute: after a pause the next frame is drawn for the time that it is then, and none is made
-/// up for.
+/// up for. The machine's own clock, which port 3DAh shows, moves with them.
 ///
 /// # Errors
 ///
@@ -66,9 +66,12 @@ pub fn run<F: Into<Flow>>(title: &str, mut frame: impl FnMut(&mut Vga, &Input, f
     let mut vga = Vga::new();
     loop {
         let flow = frame(&mut vga, window.input(), window.seconds()).into();
+        let before = window.now;
         if flow == Flow::Close || window.show(&vga)? == Flow::Close {
             return Ok(());
         }
+        // 2⁶⁴ nanoseconds are 584 years.
+        vga.advance(window.now.duration_since(before).as_nanos() as u64);
     }
 }
 

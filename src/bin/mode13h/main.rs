@@ -13,8 +13,8 @@ mod verify;
 
 use std::process::ExitCode;
 
-use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
 
@@ -47,7 +47,7 @@ fn main() -> ExitCode {
         Ok(words) => exit(run(words)),
         Err(error) => match error.kind() {
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => exit(output::print(&error.render().to_string())),
-            _ => exit(Err(Failure::words(sentence(&error.render().to_string())))),
+            _ => exit(Err(Failure::words(sentence(&error)))),
         },
     }
 }
@@ -73,8 +73,15 @@ fn exit(result: Result<(), Failure>) -> ExitCode {
 }
 
 /// What clap says over several lines, as one: its first paragraph, without the word "error".
-fn sentence(message: &str) -> String {
-    let message = message.strip_prefix("error: ").unwrap_or(message);
+fn sentence(error: &clap::Error) -> String {
+    let message = match error.get(ContextKind::InvalidSubcommand) {
+        // clap calls a second INPUT a subcommand that cannot stand there.
+        Some(ContextValue::String(word)) if Words::command().find_subcommand(word).is_none() => {
+            format!("unexpected argument '{word}' found")
+        }
+        _ => error.render().to_string(),
+    };
+    let message = message.strip_prefix("error: ").unwrap_or(&message);
     let paragraph: Vec<&str> = message.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
     format!("{} (mode13h --help shows the words there are)", paragraph.join(" "))
 }

@@ -45,9 +45,9 @@ pub(crate) fn picture(vga: &Vga, path: &Path, rgb: bool, scale: Option<Scale>) -
 /// Writes what `vga` shows under the first name that is free of `mode13h-0001.png`, `mode13h-0002.png` and so on in
 /// the current directory. Nothing is overwritten.
 pub(crate) fn numbered_picture(vga: &Vga) -> Result<PathBuf, ExportError> {
-    let free = (1_u64..).map(|number| PathBuf::from(format!("mode13h-{number:04}.png")));
+    let mut names = (1_u64..).map(|number| PathBuf::from(format!("mode13h-{number:04}.png")));
     // Some number below 2⁶⁴ is free, as no directory holds so many files.
-    let path = free.skip_while(|path| path.symlink_metadata().is_ok()).next().unwrap_or_default();
+    let path = names.find(|path| path.symlink_metadata().is_err()).unwrap_or_default();
     picture(vga, &path, false, None)?;
     Ok(path)
 }

@@ -1,0 +1,412 @@
+//! The program as its user meets it: what it writes, what it says, and how it ends.
+#![cfg(feature = "cli")]
+
+use std::ffi::OsStr;
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use mode13h::palette::{builtin, file};
+use mode13h::span::Kernel;
+use tempfile::TempDir;
+
+/// The program in a directory, with no display and no wishes from the environment.
+fn program(directory: &TempDir) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
+    command.current_dir(directory).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("MODE13H_KERNEL");
+    command
+}
+
+fn run<Word: AsRef<OsStr>>(directory: &TempDir, words: &[Word]) -> Output {
+    program(directory).args(words).output().expect("started")
+}
+
+/// As [`run`], for what has to succeed in silence.
+#[track_caller]
+fn succeed(directory: &TempDir, words: &[&str]) {
+    let output = run(directory, words);
+    assert!(output.status.success() && output.stderr.is_empty() && output.stdout.is_empty(), "{words:?}: {output:?}");
+}
+
+/// That it failed with this status, said one line that holds `says`, and wrote nothing.
+#[track_caller]
+fn assert_fails(output: &Output, status: i32, says: &str) {
+    let line = String::from_utf8(output.stderr.clone()).expect("text");
+    assert_eq!(output.status.code(), Some(status), "{line}");
+    assert!(line.starts_with("mode13h: ") && line.contains(says), "{line}\nhas not: {says}");
+    assert_eq!(line.find('\n'), Some(line.len() - 1), "more than one line: {line}");
+    assert!(output.stdout.is_empty(), "{output:?}");
+}
+
+fn directory() -> TempDir {
+    tempfile::tempdir().expect("a directory")
+}
+
+fn names_in(directory: &Path) -> Vec<String> {
+    let entries = fs::read_dir(directory).expect("a directory");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+fn read(directory: &TempDir, name: &str) -> Vec<u8> {
+    fs::read(directory.path().join(name)).expect(name)
+}
+
+/// Size, colour type and pixel density of a PNG.
+fn png_header(bytes: &[u8]) -> ((u32, u32), png::ColorType, Option<(u32, u32)>) {
+    let reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("a PNG");
+    let info = reader.info();
+    ((info.width, info.height), info.color_type, info.pixel_dims.map(|dims| (dims.xppu, dims.yppu)))
+}
+
+#[test]
+fn f1_broken_input_is_one_line_with_file_and_place() {
+    let directory = directory();
+    let put = |name: &str, text: &[u8]| fs::write(directory.path().join(name), text).expect("written");
+    put("empty.obj", b"");
+    put("vertices.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    put("nan.obj", b"v 0 0 0\nv 1 NaN 0\nv 0 1 0\nf 1 2 3\n");
+    put("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n");
+    put("zero.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n");
+    put("binary.obj", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01");
+    put("model.stl", b"solid\n");
+    put("broken.pal", b"JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n");
+    put("short.vga", &[0; 767]);
+    put("empty.gpl", b"");
+    fs::create_dir(directory.path().join("directory.obj")).expect("made");
+    let before = names_in(directory.path());
+
+    let model = |input| vec!["render", input, "-o", "x.png"];
+    let palette = |palette| vec!["render", "cube", "-o", "x.png", "--palette", palette];
+    for (words, says) in [
+        (model("none.obj"), "none.obj: No such file"),
+        (model("directory.obj"), "directory.obj: is a directory"),
+        (model("."), ".: is a directory"),
+        (model("empty.obj"), "empty.obj: no faces"),
+        (model("vertices.obj"), "vertices.obj: no faces"),
+        (model("nan.obj"), "nan.obj:2: `NaN`"),
+        (model("index.obj"), "index.obj:5: there is no vertex 4"),
+        (model("zero.obj"), "zero.obj:4: index 0"),
+        (model("binary.obj"), "binary.obj"),
+        (model("model.stl"), "model.stl: no model that can be read"),
+        (model("toroid"), "toroid: neither a file nor a shape; shapes are cube, sphere, torus"),
+        (model(""), ": neither a file nor a shape"),
+        (palette("broken.pal"), "broken.pal: line 5"),
+        (palette("short.vga"), "short.vga: "),
+        (palette("empty.gpl"), "empty.gpl: "),
+        (palette("none.pal"), "none.pal: neither a file nor a built-in palette; those are grey"),
+        (palette("."), ".: is a directory"),
+        (vec!["palette", "broken.pal"], "broken.pal: line 5"),
+        (vec!["palette", "mauve"], "mauve: neither a file nor a built-in palette"),
+        (vec!["demo", "nan.obj"], "nan.obj:2: "),
+        (vec!["nan.obj"], "nan.obj:2: "),
+        (vec!["none.obj"], "none.obj: No such file"),
+    ] {
+        assert_fails(&run(&directory, &words), 1, says);
+    }
+    assert_eq!(names_in(directory.path()), before);
+}
+
+#[test]
+fn wrong_words_end_with_2() {
+    let directory = directory();
+    for (words, says) in [
+        (vec!["render"], "--out <OUT>"),
+        (vec!["render", "torus"], "--out <OUT>"),
+        (vec!["render", "torus", "-o", "x.png", "--kernel", "mmx"], "no such kernel; this machine has portable"),
+        (vec!["--kernel", "mmx"], "no such kernel; this machine has portable"),
+        (vec!["render", "torus", "-o", "x.png", "--rung", "mirror"], "there are flat, gouraud-8.8"),
+        (vec!["render", "torus", "-o", "x.gif"], "x.gif: "),
+        (vec!["render", "torus", "-o", "x"], "x: "),
+        (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a row of pictures needs"),
+        (vec!["render", "torus", "-o", "x%d.png", "--frames", "0"], "--frames"),
+        (vec!["render", "torus", "-o", "x%d.png", "--threads", "0"], "--threads"),
+        (vec!["render", "torus", "-o", "x.png", "--scale", "3"], "a scale is 1, 2, 5x6"),
+        (vec!["render", "torus", "-o", "x.png", "--scale", "16385x1"], "a scale is 1, 2, 5x6"),
+        (vec!["render", "torus", "-o", "x.png", "--turn", "NaN"], "--turn"),
+        (vec!["render", "torus", "-o", "x.png", "--at", "inf"], "--at"),
+        (vec!["render", "torus", "-o", "x.png", "--fps", "0"], "--fps"),
+        (vec!["render", "torus", "-o", "x.png", "--up", "x"], "--up"),
+        (vec!["palette", "grey", "-o", "x.txt"], "x.txt: "),
+        (vec!["verify", "--xml"], "--xml"),
+        (vec!["torus", "cube"], "unexpected argument 'cube' found"),
+        (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
+        (vec!["plan", "torus"], "unexpected argument 'torus' found"),
+    ] {
+        assert_fails(&run(&directory, &words), 2, says);
+    }
+    let output = program(&directory)
+        .args(["render", "torus", "-o", "x.png"])
+        .env("MODE13H_KERNEL", "mmx")
+        .output()
+        .expect("started");
+    assert_fails(&output, 2, "MODE13H_KERNEL=mmx: no such kernel; this machine has portable");
+    assert!(names_in(directory.path()).is_empty());
+}
+
+#[test]
+fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
+    let directory = directory();
+    fs::create_dir(directory.path().join("x.png")).expect("made");
+    for (out, says) in [
+        ("none/x.png", "none/x.png: the directory none does not exist"),
+        ("none/%04d.png", "none/0000.png: the directory none does not exist"),
+        ("x.png", "x.png: is a directory"),
+    ] {
+        assert_fails(&run(&directory, &["render", "torus", "-o", out]), 1, says);
+    }
+    assert_fails(
+        &run(&directory, &["render", "torus", "-o", "none/%d.png", "--frames", "9"]),
+        1,
+        "none does not exist",
+    );
+    assert_fails(&run(&directory, &["palette", "grey", "-o", "none/x.pal"]), 1, "none does not exist");
+    assert_eq!(names_in(directory.path()), ["x.png"]);
+    assert!(names_in(&directory.path().join("x.png")).is_empty());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn f4_a_picture_that_no_longer_fits_leaves_the_old_one_whole() {
+    let directory = directory();
+    fs::write(directory.path().join("x.png"), "what stood there").expect("written");
+    // Files may grow to one block, which the picture does not fit in.
+    let output = Command::new("sh")
+        .args(["-c", r#"ulimit -f 1; trap "" XFSZ; exec "$0" render torus -o x.png"#, env!("CARGO_BIN_EXE_mode13h")])
+        .current_dir(&directory)
+        .output()
+        .expect("started");
+    assert_fails(&output, 1, "x.png: ");
+    assert_eq!(read(&directory, "x.png"), b"what stood there");
+    assert_eq!(names_in(directory.path()), ["x.png"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn f4_an_interrupted_row_is_made_of_whole_pictures() {
+    let directory = directory();
+    let mut child = program(&directory)
+        .args(["render", "torus", "-o", "%06d.png", "--frames", "1000000", "--scale", "2"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    while names_in(directory.path()).iter().filter(|name| !name.starts_with('.')).count() < 20 {
+        assert!(child.try_wait().expect("waited").is_none(), "ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("started");
+    assert!(killed.success());
+    let output = child.wait_with_output().expect("waited");
+    assert_fails(&output, 130, "interrupted");
+    for name in names_in(directory.path()) {
+        assert!(name.ends_with(".png") && !name.starts_with('.'), "{name} is left");
+        let bytes = read(&directory, &name);
+        assert_eq!(&bytes[bytes.len() - 8..][..4], b"IEND", "{name} is not whole");
+    }
+}
+
+#[test]
+fn a_picture_is_indexed_320_by_200_with_the_shape_of_its_pixels() {
+    let directory = directory();
+    succeed(&directory, &["render", "torus", "-o", "x.png", "--palette", "copper"]);
+    assert_eq!(names_in(directory.path()), ["x.png"]);
+    let bytes = read(&directory, "x.png");
+    assert_eq!(png_header(&bytes), ((320, 200), png::ColorType::Indexed, Some((6, 5))));
+
+    let mut reader = png::Decoder::new(Cursor::new(&bytes)).read_info().expect("a PNG");
+    let copper = builtin::by_name("copper").expect("a built-in").palette.on_dac();
+    let expected: Vec<u8> = copper.colors().iter().flat_map(|c| [c.r, c.g, c.b]).collect();
+    assert_eq!(reader.info().palette.as_deref(), Some(&expected[..]));
+    let mut pixels = vec![0; 64_000];
+    reader.next_frame(&mut pixels).expect("its pixels");
+    let mut used = [false; 256];
+    pixels.iter().for_each(|&index| used[usize::from(index)] = true);
+    assert!(used.iter().filter(|&&used| used).count() > 60, "a smooth picture has many shades");
+}
+
+#[test]
+fn pictures_are_enlarged_and_in_true_color_when_asked_for() {
+    let directory = directory();
+    let indexed = png::ColorType::Indexed;
+    let rgb = png::ColorType::Rgb;
+    for (words, expected) in [
+        (vec!["--scale", "1"], ((320, 200), indexed, Some((6, 5)))),
+        (vec!["--scale", "2"], ((640, 400), indexed, Some((6, 5)))),
+        (vec!["--scale", "5x6"], ((1600, 1200), indexed, Some((1, 1)))),
+        (vec!["--scale", "640x480"], ((640, 480), indexed, Some((1, 1)))),
+        (vec!["--rgb"], ((1600, 1200), rgb, Some((1, 1)))),
+        (vec!["--rgb", "--scale", "1"], ((320, 200), rgb, Some((6, 5)))),
+    ] {
+        succeed(&directory, &[&["render", "cube", "-o", "x.png"], &words[..]].concat());
+        assert_eq!(png_header(&read(&directory, "x.png")), expected, "{words:?}");
+    }
+}
+
+#[test]
+fn every_kernel_gives_the_same_bytes_and_is_named() {
+    let directory = directory();
+    succeed(&directory, &["render", "torus", "-o", "default.png"]);
+    let expected = read(&directory, "default.png");
+    let mut tried = 0;
+    for kernel in Kernel::available() {
+        for by_environment in [false, true] {
+            let mut command = program(&directory);
+            command.args(["render", "torus", "-o", "x.png", "--stats"]);
+            if by_environment {
+                command.env("MODE13H_KERNEL", kernel.name());
+            } else {
+                // The option has the last word.
+                command.args(["--kernel", kernel.name()]).env("MODE13H_KERNEL", "mmx");
+            }
+            let output = command.output().expect("started");
+            assert!(output.status.success(), "{output:?}");
+            let said = String::from_utf8(output.stderr).expect("text");
+            assert!(said.contains(&format!("kernel {},", kernel.name())) && said.lines().count() == 1, "{said}");
+            assert!(read(&directory, "x.png") == expected, "{} draws other bytes", kernel.name());
+            tried += 1;
+        }
+    }
+    assert!(tried >= 2);
+}
+
+#[test]
+fn a_row_is_the_same_whatever_the_number_of_threads() {
+    let names: Vec<String> = (0..8).map(|number| format!("x{number:04}.png")).collect();
+    let rows: Vec<Vec<Vec<u8>>> = ["1", "2", "7"]
+        .map(|threads| {
+            let directory = directory();
+            let words = ["render", "torus", "-o", "x%04d.png", "--frames", "8", "--turn", "360", "--threads", threads];
+            succeed(&directory, &words);
+            assert_eq!(names_in(directory.path()), names);
+            names.iter().map(|name| read(&directory, name)).collect()
+        })
+        .into();
+    assert!(rows.iter().all(|row| *row == rows[0]));
+    for (i, frame) in rows[0].iter().enumerate() {
+        assert!(rows[0][..i].iter().all(|earlier| earlier != frame), "frame {i} repeats an earlier one");
+    }
+}
+
+#[test]
+fn t1_a_frame_of_a_row_is_the_frame_drawn_alone() {
+    let directory = directory();
+    succeed(&directory, &["render", "teapot", "-o", "turn%d.png", "--frames", "4", "--turn", "360"]);
+    succeed(&directory, &["render", "teapot", "-o", "alone.png", "--turn", "90"]);
+    assert_eq!(read(&directory, "turn1.png"), read(&directory, "alone.png"));
+
+    succeed(&directory, &["render", "teapot", "-o", "time%d.png", "--frames", "3", "--fps", "2", "--at", "7"]);
+    succeed(&directory, &["render", "teapot", "-o", "alone.png", "--at", "8"]);
+    assert_eq!(read(&directory, "time2.png"), read(&directory, "alone.png"));
+    assert_ne!(read(&directory, "time0.png"), read(&directory, "alone.png"));
+}
+
+#[test]
+fn with_no_display_one_frame_is_saved() {
+    let directory = directory();
+    for (number, words) in [(1, vec![]), (2, vec!["cube"]), (3, vec!["demo", "cube"])] {
+        let output = run(&directory, &words);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let said = String::from_utf8(output.stderr).expect("text");
+        let name = format!("mode13h-{number:04}.png");
+        assert!(said.starts_with("mode13h: no display") && said.contains(&name), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert_eq!(png_header(&read(&directory, &name)), ((320, 200), png::ColorType::Indexed, Some((6, 5))));
+        // Nothing is overwritten.
+        assert_eq!(names_in(directory.path()).len(), number);
+    }
+    assert_eq!(read(&directory, "mode13h-0002.png"), read(&directory, "mode13h-0003.png"));
+}
+
+#[test]
+fn palettes_are_converted_from_each_format_to_each() {
+    let directory = directory();
+    // Its colours are the DAC's own, so that no format rounds them.
+    let colors = *builtin::by_name("bios").expect("a built-in").palette.colors();
+    let extensions: Vec<&str> = file::FORMATS.iter().flat_map(|format| format.extensions).copied().collect();
+    for from in &extensions {
+        let first = format!("first.{from}");
+        succeed(&directory, &["palette", "bios", "-o", &first]);
+        for to in &extensions {
+            let second = format!("second.{to}");
+            succeed(&directory, &["palette", &first, "-o", &second]);
+            let palette = file::parse_named(&second, &read(&directory, &second)).expect("a palette");
+            assert!(palette.colors() == &colors, "{from} to {to}");
+        }
+    }
+    assert!(extensions.len() >= 5);
+}
+
+#[test]
+fn palettes_are_looked_at() {
+    let directory = directory();
+    for builtin in &builtin::ALL {
+        let output = run(&directory, &["palette", builtin.name]);
+        assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+        let text = String::from_utf8(output.stdout).expect("text");
+        assert!(text.starts_with(&format!("{}: ", builtin.name)), "{text}");
+        let shown: Vec<String> =
+            text.lines().skip(1).flat_map(|line| line.split_whitespace().skip(1)).map(String::from).collect();
+        let colors: Vec<String> =
+            builtin.palette.colors().iter().map(|color| format!("{:06x}", color.to_u32())).collect();
+        assert_eq!(shown, colors, "{}", builtin.name);
+    }
+    succeed(&directory, &["palette", "cube", "-o", "chart.png"]);
+    assert_eq!(png_header(&read(&directory, "chart.png")), ((256, 256), png::ColorType::Indexed, Some((1, 1))));
+}
+
+#[test]
+fn verify_says_how_many_cases_it_tried() {
+    let directory = directory();
+    let output = run(&directory, &["verify"]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.lines().count() >= 1);
+    for line in text.lines() {
+        let cases = line.split(": ").nth(1).and_then(|rest| rest.split(' ').next()).expect(line);
+        assert!(cases.parse::<u64>().expect(line) > 0 && line.ends_with(" cases, ok"), "{line}");
+    }
+
+    let output = run(&directory, &["verify", "--json"]);
+    assert!(output.status.success(), "{output:?}");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(json["schema"], 1);
+    assert_eq!(json["passed"], true);
+    assert_eq!(json["groups"].as_array().map(Vec::len), Some(text.lines().count()));
+}
+
+#[test]
+fn help_and_version_succeed() {
+    let directory = directory();
+    for words in [vec!["--help"], vec!["-h"], vec!["--version"], vec!["help", "render"], vec!["palette", "--help"]] {
+        let output = run(&directory, &words);
+        assert!(output.status.success() && output.stderr.is_empty() && !output.stdout.is_empty(), "{words:?}");
+    }
+}
+
+#[test]
+fn nobody_reading_on_is_no_failure() {
+    let directory = directory();
+    let mut command = program(&directory);
+    command.args(["palette", "grey"]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("started");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("waited");
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn names_need_not_be_text() {
+    use std::os::unix::ffi::OsStrExt;
+    let directory = directory();
+    let name = OsStr::from_bytes(b"a\xFF\n.png");
+    let output = run(&directory, &[OsStr::new("render"), OsStr::new("cube"), OsStr::new("-o"), name]);
+    assert!(output.status.success(), "{output:?}");
+    assert!(directory.path().join(name).is_file());
+    let missing = OsStr::from_bytes(b"line\nend\x1B[2J\xFF.obj");
+    let output = run(&directory, &[OsStr::new("render"), missing, OsStr::new("-o"), OsStr::new("x.png")]);
+    assert_fails(&output, 1, "line end [2J");
+}
