@@ -19,12 +19,6 @@ impl Random {
         let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ (z >> 31)
     }
-
-    /// 1 to 2^`bits` − 1, each power of two as likely as any other, and all its numbers alike.
-    pub(crate) fn log_uniform(&mut self, bits: u32) -> usize {
-        let bit = self.next_u64() % u64::from(bits);
-        (1 << bit) + (self.next_u64() & ((1 << bit) - 1)) as usize
-    }
 }
 
 /// `MODE13H_SEED`, or 13.
