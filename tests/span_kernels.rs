@@ -6,6 +6,8 @@
 //! cargo test --release --test span_kernels -- --ignored --nocapture
 //! ```
 
+#[path = "support/log_uniform.rs"]
+mod log_uniform;
 #[path = "support/naive_span.rs"]
 mod naive_span;
 #[path = "support/random.rs"]
@@ -13,6 +15,7 @@ mod random;
 #[path = "support/tried.rs"]
 mod tried;
 
+use log_uniform::log_uniform;
 use mode13h::span::Kernel;
 use naive_span::naive_span;
 use proptest::prelude::*;
@@ -462,7 +465,7 @@ mod long {
             let base = canvas.as_ptr().addr().next_multiple_of(64) - canvas.as_ptr().addr();
             let spans = SPANS.div_ceil(threads);
             for i in 0..spans {
-                let length = random.log_uniform(12);
+                let length = log_uniform(&mut random, 12);
                 let bits = random.next_u64();
                 let (shade, step, alignment) = (bits as u16, (bits >> 16) as u16, (bits >> 32) as usize % 64);
                 let expected = &mut expected[..length];
