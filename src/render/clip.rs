@@ -83,10 +83,6 @@ pub(super) struct Clipped {
 }
 
 impl Clipped {
-    fn vertices(&self) -> &[Vertex] {
-        &self.vertices[..self.count]
-    }
-
     /// The triangles of the fan from this corner.
     fn fan(&self, apex: usize) -> impl Iterator<Item = [Vertex; 3]> {
         let corner = move |i: usize| self.vertices[(apex + i) % self.count];
