@@ -163,12 +163,17 @@ impl Camera {
     /// 40°: about that of a 4:3 screen at the length of an arm and a half.
     const FIELD_OF_VIEW: f32 = 40.0 * core::f32::consts::PI / 180.0;
 
-    /// Looks along −z at a sphere, from where it just fills the height of the picture.
+    /// Of the picture's height, how much a framed sphere fills.
+    const FILL: f32 = 15.0 / 16.0;
+
+    /// Looks along −z at a sphere, from where it fills fifteen sixteenths of the picture's height.
     #[must_use]
     pub fn framing(centre: Vec3, radius: f32) -> Self {
-        // A sphere touches the edges of the view where its sine is that of half the angle. The
-        // distance is at most f32::MAX, so that a sphere of that size is still something to look at.
-        let distance = (radius / libm::sinf(Self::FIELD_OF_VIEW / 2.0)).clamp(f32::MIN_POSITIVE, f32::MAX);
+        // Half the angle under which the sphere is seen, and the distance at which its sine is that.
+        // The distance is at most f32::MAX, so that a sphere of that size is still something to look
+        // at.
+        let half = libm::atanf(Self::FILL * libm::tanf(Self::FIELD_OF_VIEW / 2.0));
+        let distance = (radius / libm::sinf(half)).clamp(f32::MIN_POSITIVE, f32::MAX);
         let eye = Vec3::new(centre.x, centre.y, (centre.z + distance).min(f32::MAX));
         Self {
             eye,
