@@ -28,7 +28,10 @@ use core::fmt;
 pub mod depth;
 mod portable;
 #[cfg(feature = "simd")]
-#[expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")]
+#[cfg_attr(
+    target_arch = "x86_64",
+    expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
+)]
 mod simd;
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
