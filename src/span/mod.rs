@@ -21,6 +21,9 @@
 //! | `simd-avx2` | 32 pixels a turn | x86-64 with AVX2 and feature `simd` |
 //! | `simd-avx512` | 64 pixels a turn | x86-64 with AVX-512 BW, BMI2 and feature `simd` |
 //!
+//! `simd` can be forced down to one of its levels, for tests and measurements. Other loops that write
+//! pixels will each be a type of this pattern: a portable specification, faster twins, one table.
+//!
 //! With `std` the processor is asked what it has; without, what the compiler was told counts.
 
 use core::fmt;
