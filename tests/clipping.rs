@@ -1,4 +1,5 @@
 //! What the camera sees when geometry reaches behind it or beyond the guard band.
+#![cfg(feature = "alloc")]
 
 mod support;
 

@@ -5,18 +5,13 @@
 //! Kernels that are wrong on purpose show that each fault would be seen.
 #![cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 
-#[path = "support/naive_span.rs"]
-mod naive_span;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/tried.rs"]
-mod tried;
+mod support;
 
 use iced_x86::{Decoder, DecoderOptions, Formatter, IntelFormatter, Mnemonic};
 use mode13h::span::{Kernel, entry};
-use naive_span::naive_span;
-use random::Random;
-use tried::Tried;
+use support::naive_span::naive_span;
+use support::random::Random;
+use support::tried::Tried;
 
 #[cfg(target_os = "linux")]
 #[path = "span_abi/edge.rs"]

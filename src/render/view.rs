@@ -72,9 +72,12 @@ pub(super) struct View {
 impl View {
     pub(super) fn new(camera: &Camera, screen: Screen) -> Result<Self, &'static str> {
         let Camera { eye, target, up, field_of_view, near } = *camera;
-        let numbers_are_finite = eye.is_finite() && target.is_finite() && up.is_finite();
-        if !numbers_are_finite || !(near.is_finite() && near > 0.0) {
-            return Err("its positions must be finite and its near distance above 0");
+        if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+            return Err("its positions must be finite");
+        }
+        // Written so that NaN fails it.
+        if !(near > 0.0 && near <= f32::MAX) {
+            return Err("its near distance must be above 0 and finite");
         }
         if !(field_of_view > 0.0 && field_of_view < core::f32::consts::PI) {
             return Err("its field of view must lie between 0 and π");
