@@ -14,7 +14,7 @@ use glam::{Mat3, Vec3};
 
 use crate::fixed::{I24F8, U8F8};
 use crate::raster::Vertex;
-use crate::scene::{Camera, Object, UpAxis};
+use crate::scene::{Camera, Object, matrix_product};
 
 /// What is drawn on: size in pixels, and the shape of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -45,11 +45,6 @@ fn cross(a: Row, b: Row) -> Row {
 
 fn widen(v: Vec3) -> Row {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
-}
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    let column = |j: usize| [b[0][j], b[1][j], b[2][j]];
-    a.map(|row| [dot(row, column(0)), dot(row, column(1)), dot(row, column(2))])
 }
 
 /// `None` for the zero vector. Finite f32 components can neither overflow nor vanish in f64.
@@ -114,15 +109,6 @@ impl View {
     }
 }
 
-/// An object's turn, from its angles about x, y and z: z first, then y, then x.
-fn turn(angles: [f64; 3]) -> Matrix {
-    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
-    let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
-    let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
-    let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];
-    product(&about_x, &product(&about_y, &about_z))
-}
-
 /// An object's whole way: from its mesh to the screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ObjectView {
@@ -152,13 +138,9 @@ impl ObjectView {
     const FAST_REACH: f64 = 1e30;
 
     pub(super) fn new(view: &View, object: &Object) -> Self {
-        let mut turn = turn(object.angles());
-        if object.up_axis == UpAxis::Z {
-            // (x, y, z) stands up as (x, z, −y).
-            turn = turn.map(|[x, y, z]| [x, -z, y]);
-        }
+        let turn = object.turn();
         let scale = f64::from(object.scale);
-        let matrix = product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
+        let matrix = matrix_product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
         let (position, pivot) = (widen(object.position), widen(object.pivot));
         let to_position = [position[0] - view.eye[0], position[1] - view.eye[1], position[2] - view.eye[2]];
         let mut offset = [0.0; 3];
