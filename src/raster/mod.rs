@@ -18,6 +18,8 @@
 //! | [`edge`], [`cover`] | which pixels |
 //! | [`shade`], [`depth`] | which byte, and whether it is in front |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
+//! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
+//! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
 //! ```
 //! use mode13h::fixed::{I24F8, U8F8};
@@ -38,7 +40,9 @@ pub mod depth;
 mod draw_target;
 pub mod edge;
 pub mod frame;
+pub mod polygon;
 pub mod quotient;
+pub mod scan_line;
 pub mod shade;
 pub mod triangle;
 pub mod vertex;
