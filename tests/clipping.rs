@@ -85,7 +85,16 @@ fn r7_a_floor_of_any_size_is_closed_to_the_horizon() {
 
 #[test]
 fn c1_corners_behind_the_eye_on_the_near_plane_at_w_0() {
-    let mut tried = Tried::new("c1_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000);
+    corners_about_the_near_plane(Tried::new("c1_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000));
+}
+
+#[test]
+#[ignore = "the long run: a million faces through the near plane"]
+fn c1_long_a_million_faces_through_the_near_plane() {
+    corners_about_the_near_plane(Tried::new("c1_long_a_million_faces_through_the_near_plane", 1_000_000));
+}
+
+fn corners_about_the_near_plane(mut tried: Tried) {
     let mut random = Random::named("c1");
     let mut drawn = 0_u64;
     while tried.more() {
@@ -217,12 +226,21 @@ fn distance((x, y): (f64, f64), [a, b]: &Line) -> f64 {
     squared.to_f64().expect("a distance").sqrt()
 }
 
+#[test]
+fn r7_edges_of_far_triangles_are_where_they_belong() {
+    edges_of_far_triangles(Tried::new("r7_edges_of_far_triangles_are_where_they_belong", 1000));
+}
+
+#[test]
+#[ignore = "the long run: 50,000 far triangles"]
+fn r7_long_edges_of_far_triangles() {
+    edges_of_far_triangles(Tried::new("r7_long_edges_of_far_triangles", 50_000));
+}
+
 /// For corners up to 2⁴⁰ pixels away the edges on the screen lie within 1/128 pixel of the exact ones.
 /// Each end of a drawn edge is off by at most half of 1/256 in x and in y, 0.0028 pixel; a corner's
 /// f32 coordinates turn the edge by 2⁻²³, 0.0005 over 4,096 pixels.
-#[test]
-fn r7_edges_of_far_triangles_are_where_they_belong() {
-    let mut tried = Tried::new("r7_edges_of_far_triangles_are_where_they_belong", 1000);
+fn edges_of_far_triangles(mut tried: Tried) {
     let mut random = Random::named("r7 edges");
     // What the engine works out from the field of view: tan of f64 is within an ulp of this.
     let fy = 100.0 / f64::tan(f64::from(1.0_f32) / 2.0);

@@ -248,7 +248,16 @@ fn r7_outside_the_guard_band_is_refused() {
 
 #[test]
 fn random_triangles_against_the_oracle() {
-    let mut tried = Tried::new("random_triangles_against_the_oracle", 3000);
+    against_the_oracle(Tried::new("random_triangles_against_the_oracle", 3000));
+}
+
+#[test]
+#[ignore = "the long run: a million triangles, pixel by pixel"]
+fn random_long_triangles_against_the_oracle() {
+    against_the_oracle(Tried::new("random_long_triangles_against_the_oracle", 1_000_000));
+}
+
+fn against_the_oracle(mut tried: Tried) {
     let mut random = Random::named("r*");
     while tried.more() {
         check(&triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT)));
