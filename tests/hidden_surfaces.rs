@@ -142,8 +142,13 @@ fn soups(at_least: u64) {
                 3 => vertices = with_depths(vertices, || 1000 + random.log_uniform(5) as i64),
                 _ => vertices = with_depths(vertices, || 7),
             }
-            let shading =
-                random.one_of(&[Shading::GouraudReseeded, Shading::Gouraud, Shading::Flat(0), Shading::Flat(200)]);
+            let shading = random.one_of(&[
+                Shading::GouraudReseeded,
+                Shading::Gouraud,
+                Shading::GouraudHyperbolic,
+                Shading::Flat(0),
+                Shading::Flat(200),
+            ]);
             faces.push((vertices, shading));
             if random.within(0, 5) == 0 {
                 // Again, and turned round, in other shades.
@@ -463,7 +468,7 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
             .collect();
         let (mut bytes, mut cells) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0_u128; (WIDTH * HEIGHT) as usize]);
         for (vertices, _) in &faces {
-            for oracle::Pixel { x, y, byte } in oracle::gouraud(vertices, width, height, 64) {
+            for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, Shading::GouraudReseeded, width, height) {
                 let place = (y * width + x) as usize;
                 let cell = u128::from(oracle::depth_at(vertices, x, y)).div_ceil(16_384).min(65_535);
                 if cell > cells[place] {

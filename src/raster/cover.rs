@@ -127,6 +127,16 @@ pub struct Row {
     pub x1: i32,
 }
 
+impl Row {
+    /// Its covered pixels, as columns.
+    #[must_use]
+    #[inline]
+    pub fn range(&self) -> core::ops::Range<usize> {
+        // Columns of a frame: 0 to 4,096.
+        self.x0 as usize..self.x1 as usize
+    }
+}
+
 #[inline]
 pub(super) fn point(v: &Vertex) -> (i32, i32) {
     (v.x().to_bits(), v.y().to_bits())

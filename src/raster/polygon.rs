@@ -62,12 +62,16 @@ pub enum PolygonError {
         /// Rows needed: those that the frame holds.
         needed: usize,
     },
+    /// The table interpolates shades linearly along edges and rows; it has no other shading than
+    /// flat and the two linear ones.
+    Shading(Shading),
 }
 
 impl fmt::Display for PolygonError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotConvex => f.write_str("the polygon is not convex"),
+            Self::Shading(shading) => write!(f, "a table of rows cannot shade as {shading:?}"),
             Self::Table { given, needed } => write!(f, "a table of {given} rows given where {needed} are needed"),
         }
     }
@@ -220,7 +224,7 @@ impl<D: Cell> Raster<'_, D> {
     /// ```
     ///
     /// # Errors
-    /// A polygon that is not convex (after rounding to 1/256 pixel one may no longer be), or a table
+    /// A shading that is neither flat nor linear, a polygon that is not convex (after rounding to 1/256 pixel one may no longer be), or a table
     /// with too few rows. Nothing is drawn then.
     pub fn polygon(
         &mut self,
@@ -228,6 +232,11 @@ impl<D: Cell> Raster<'_, D> {
         shading: Shading,
         table: &mut [TableRow],
     ) -> Result<Drawn, PolygonError> {
+        let reseed = match shading {
+            Shading::Flat(_) | Shading::Gouraud => i32::MAX,
+            Shading::GouraudReseeded => RESEED,
+            other => return Err(PolygonError::Shading(other)),
+        };
         let held = self.frame.rows();
         let (given, needed) = (table.len(), held.len());
         if given < needed {
@@ -248,17 +257,13 @@ impl<D: Cell> Raster<'_, D> {
             }
             drawn.covered += (x1 - x0) as u32;
             drawn.pixels += (x1 - x0) as u32;
-            let reseed = match shading {
-                Shading::Flat(index) => {
-                    drawn.spans += 1;
-                    if let Some(pixels) = pixels.get_mut(x0 as usize..x1 as usize) {
-                        pixels.fill(index);
-                    }
-                    continue;
+            if let Shading::Flat(index) = shading {
+                drawn.spans += 1;
+                if let Some(pixels) = pixels.get_mut(x0 as usize..x1 as usize) {
+                    pixels.fill(index);
                 }
-                Shading::Gouraud => i32::MAX,
-                Shading::GouraudReseeded => RESEED,
-            };
+                continue;
+            }
             let shade = RowShade::new(edges);
             // The start at or left of the first pixel, as a triangle has them.
             let mut seed = origin + (x0 - origin) / reseed * reseed;
