@@ -1,9 +1,11 @@
 //! Convex polygons by the table of rows, against an oracle that says the same in i128; and why faces
-//! are split into triangles instead (N8).
+//! are split into triangles instead (N8), whose shades agree along their edges (N9).
 
 mod support;
 
+use mode13h::raster::cover::Ordered;
 use mode13h::raster::polygon::{PolygonError, TableRow};
+use mode13h::raster::shade::ShadePlane;
 use mode13h::raster::{Drawn, Frame, Raster, Rect, Shading, Vertex};
 use support::oracle::{self, Point, Ratio};
 use support::random::Random;
@@ -397,4 +399,49 @@ fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     }
     assert!(greatest > 100, "as a table the quad's shades depend on the turn, by {greatest} shades");
     println!("n8: as a table a quad's shade changes with the turn by up to {greatest} shades");
+}
+
+/// S1 says that the intensity has jumps at face borders (slip 5). With shared vertices it has not: along
+/// the common edge the planes of both faces are within the rounding of a shade.
+#[test]
+fn n9_slip_5_two_faces_agree_along_their_edge() {
+    let mut tried = Tried::new("n9_slip_5_two_faces_agree_along_their_edge", 3000);
+    let mut random = Random::named("n9");
+    let mut centres = 0;
+    while tried.more() {
+        // An edge through pixel centres: from one to another, and those on the way.
+        let (parts, dx, dy) = (random.within(1, 12), random.within(-12, 12), random.within(-12, 12));
+        let (x, y) = (random.within(0, 200), random.within(0, 100));
+        let shade = |random: &mut Random| random.within(0, 0xFF00);
+        let ends =
+            [0, parts].map(|k| vertex((x + k * dx) * 256 + 128, (y + k * dy) * 256 + 128, shade(&mut random), 1));
+        let sides = [1, -1].map(|side| {
+            // On either side of the edge, anywhere.
+            let (along, off) = (random.within(-20_000, 20_000), side * random.log_uniform(14) as i64);
+            let third = vertex(
+                x * 256 + along * dx / 12 - off * dy,
+                y * 256 + along * dy / 12 + off * dx,
+                shade(&mut random),
+                1,
+            );
+            [ends[0], ends[1], third]
+        });
+        let [Some(one), Some(two)] = sides.map(|vertices| {
+            let ordered = Ordered::new(&vertices);
+            (ordered.doubled_area != 0).then(|| ShadePlane::new(&ordered))
+        }) else {
+            continue;
+        };
+        for k in 0..=parts {
+            let (x, y) = ((x + k * dx) as i32, (y + k * dy) as i32);
+            // Exactly, the two are equal; each start is rounded by less than 1/256 shade.
+            let shades = ends.map(|v| i64::from(v.shade().to_bits()));
+            let exact = (shades[0] * (parts - k) + shades[1] * k) as f64 / parts as f64 + 128.0;
+            for start in [one.start(x, y), two.start(x, y)] {
+                assert!((f64::from(start) - exact).abs() < 1.0, "{start} for {exact} at ({x}, {y}) of {sides:?}");
+            }
+            centres += 1;
+        }
+    }
+    assert!(centres > 10_000, "{centres}");
 }
