@@ -8,7 +8,7 @@ use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::cover::Ordered;
 use mode13h::raster::{Rect, Vertex};
-use mode13h::render::{Renderer, Screen, Stats};
+use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::vga::Vga;
 use num_rational::BigRational;
@@ -80,6 +80,26 @@ fn r7_a_floor_of_any_size_is_closed_to_the_horizon() {
             assert!(stats.clipped > 0, "{stats}");
             tried.add(1);
         }
+    }
+}
+
+/// There is no far plane: with every method a wall is seen from a hundred thousand million times the
+/// near distance.
+#[test]
+fn c3_what_is_very_far_is_drawn() {
+    let mut tried = Tried::new("c3_what_is_very_far_is_drawn", 4);
+    for way in HiddenSurfaces::ALL {
+        let mut scene = scene(shapes::wall(2, 2));
+        scene.objects_mut()[0].position.z = -2.5e10;
+        scene.objects_mut()[0].scale = 1e10;
+        scene.add_light(Light::sun([0.0, 0.0, 1.0]));
+        let mut renderer = Renderer::new();
+        renderer.set_hidden_surfaces(Some(way));
+        let mut vga = Vga::new();
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        let lit = vga.pixels().iter().filter(|&&byte| byte != 0).count();
+        assert!(lit > 5000, "{way}: {lit} pixels");
+        tried.add(1);
     }
 }
 

@@ -233,8 +233,10 @@ impl ObjectView {
     /// round(2³⁰ · near / w).
     #[inline]
     fn depth(&self, w: f64) -> u32 {
-        // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates.
-        (f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32
+        // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates. There is no
+        // far plane: beyond 2³¹ times the near distance, where the formula gives the background's 0,
+        // a face is still in front of it.
+        ((f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32).max(1)
     }
 
     /// The least and the greatest depth that a vertex within `bounds` may have, once what is nearer
