@@ -284,7 +284,8 @@ fn lists_and_tests_in_order_pass() {
         ("#[test]\nfn s1_works", "#[test]\nfn f32_is_no_case() {}\n\n#[test]\nfn s1_works"),
         (
             "#[test]\nfn s1_works()",
-            "macro_rules! stamp {\n    (@each $t:ident) => {\n        #[test]\n        fn $t() {}\n    };\n}\nstamp!(@each: s0,\n    s1_works);\nfn s1_works(kernel: Kernel)",
+            "macro_rules! stamp {\n    (@each $t:ident) => {\n        #[test]\n        fn $t() {}\n    };\n}\n\
+             stamp!(@each: s0,\n    s1_works);\nfn s1_works(kernel: Kernel)",
         ),
         (
             "let mut tried = Tried::new(\"s7_works\", 1);\n}",
