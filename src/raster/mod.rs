@@ -13,6 +13,7 @@
 //! | file | what |
 //! |---|---|
 //! | [`vertex`] | what may enter: a [`Vertex`] is checked when it is made |
+//! | [`polygon`] | what clipping leaves of a triangle, in triangles |
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
 //! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
 //! | [`edge`], [`cover`] | which pixels |
@@ -38,6 +39,7 @@ pub mod depth;
 mod draw_target;
 pub mod edge;
 pub mod frame;
+pub mod polygon;
 pub mod quotient;
 pub mod shade;
 pub mod triangle;
