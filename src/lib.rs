@@ -11,6 +11,7 @@ extern crate alloc;
 pub use glam;
 
 pub mod fixed;
+pub mod integer;
 pub mod palette;
 pub mod raster;
 pub mod span;
