@@ -1,4 +1,54 @@
-//! A software 3-D engine that draws the way a 386 with a VGA card did.
+//! A software 3-D engine that draws the way a 386 with a VGA card did in 1994: a frame of
+//! 320 × 200 bytes, a palette of 256 colours, fixed-point arithmetic, and one inner loop,
+//! `mov [edi],ah` / `inc edi` / `add ax,bx` / `dec cx` / `jnz`.
+//!
+//! The stages, from the bottom up. A module uses those above it in this list, never those below.
+//!
+//! | module | holds | needs |
+//! |---|---|---|
+//! | [`fixed`] | the number types: 8.8 shades, 24.8 screen coordinates, 16.16; every rounding by name | – |
+//! | [`palette`] | 256 colours, ramps of shades, file formats | – |
+//! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
+//! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
+//! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
+//! | [`mesh`] | vertices, faces, normals; shapes; OBJ models | `alloc` |
+//! | [`light`] | lights, materials, the intensity at a vertex | `alloc` |
+//! | [`scene`] | objects, camera, lights | `alloc` |
+//! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
+//! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
+//! | [`verify`] | every kernel of this machine against the specification | `std` |
+//! | [`window`] | a whole game's frame: [`window::run`] | `window` |
+//!
+#![cfg_attr(feature = "png", doc = "```no_run")]
+#![cfg_attr(not(feature = "png"), doc = "```ignore")]
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use mode13h::export;
+//! use mode13h::light::Light;
+//! use mode13h::mesh::shapes;
+//! use mode13h::render::Renderer;
+//! use mode13h::scene::{Object, Scene};
+//! use mode13h::vga::Vga;
+//!
+//! let mut scene = Scene::new();
+//! let ship = scene.add(Object::new(shapes::torus(48, 24)));
+//! scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+//! let mut renderer = Renderer::new();
+//! let mut vga = Vga::new();
+//! scene[ship].rotate_y(0.02);
+//! renderer.draw(&scene, &mut vga)?;
+//! export::png(&vga, "torus.png")?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Features
+//!
+//! The default, `program`, brings all that the program of the same name needs. A library user
+//! writes `default-features = false, features = ["std"]` and adds what is wanted: `asm` and `simd`
+//! (faster spans; without both the crate forbids `unsafe` code), `png`, `image`, `obj`, `window`,
+//! `embedded-graphics` (text and shapes on a frame). With no feature at all `fixed`, `palette`,
+//! `vga`, `span` and `raster` remain, which need neither `std` nor an allocator; `alloc` adds the
+//! engine.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(any(feature = "asm", feature = "simd")), forbid(unsafe_code))]

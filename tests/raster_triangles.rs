@@ -247,8 +247,17 @@ fn r7_outside_the_guard_band_is_refused() {
 }
 
 #[test]
-fn random_triangles_against_the_oracle() {
-    let mut tried = Tried::new("random_triangles_against_the_oracle", 3000);
+fn r4_random_triangles_against_the_oracle() {
+    against_the_oracle(Tried::new("r4_random_triangles_against_the_oracle", 3000));
+}
+
+#[test]
+#[ignore = "the long run: a million triangles, pixel by pixel"]
+fn r4_long_random_triangles_against_the_oracle() {
+    against_the_oracle(Tried::new("r4_long_random_triangles_against_the_oracle", 1_000_000));
+}
+
+fn against_the_oracle(mut tried: Tried) {
     let mut random = Random::named("r*");
     while tried.more() {
         check(&triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT)));
@@ -256,8 +265,8 @@ fn random_triangles_against_the_oracle() {
 }
 
 #[test]
-fn depth_is_as_defined_and_the_first_of_equals_stays() {
-    let mut tried = Tried::new("depth_is_as_defined_and_the_first_of_equals_stays", 400);
+fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
+    let mut tried = Tried::new("d3_depth_is_as_defined_and_the_first_of_equals_stays", 400);
     let mut random = Random::named("d*");
     let mut replaced = 0;
     while tried.more() {

@@ -5,19 +5,17 @@
 //! Kernels that are wrong on purpose show that each fault would be seen.
 #![cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 
-#[path = "support/naive_span.rs"]
-mod naive_span;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/tried.rs"]
-mod tried;
+mod support;
 
 use iced_x86::{Decoder, DecoderOptions, Formatter, IntelFormatter, Mnemonic};
 use mode13h::span::{Kernel, entry};
-use naive_span::naive_span;
-use random::Random;
-use tried::Tried;
+use support::naive_span::naive_span;
+use support::random::Random;
+use support::tried::Tried;
 
+#[cfg(target_os = "linux")]
+#[path = "span_abi/edge.rs"]
+mod edge;
 #[cfg(target_arch = "x86_64")]
 #[path = "span_abi/x86_64.rs"]
 mod machine;
@@ -152,6 +150,29 @@ fn s7_every_kernel_keeps_the_rules() {
     for (kernel, shim) in Kernel::available().zip(shims) {
         keeps_the_rules(&format!("shim_{}", kernel.name()), shim, 0);
     }
+}
+
+/// Rows that begin or end with a page whose neighbour may not be touched: guard bytes would not show a
+/// kernel that reads beyond, or writes back what it read there. A fault ends the test program.
+#[cfg(target_os = "linux")]
+#[test]
+fn s7_no_byte_beside_is_touched() {
+    let mut tried = Tried::new("s7_no_byte_beside_is_touched", 2 * 321);
+    let mut edge = edge::Edge::new();
+    for kernel in Kernel::available() {
+        for length in (0..=320).chain([edge::SIZE - 1, edge::SIZE]) {
+            let expected = naive_span(length, 0x1234, 0xFE01);
+            let bytes = edge.bytes();
+            for start in [0, bytes.len() - length] {
+                let row = &mut bytes[start..start + length];
+                row.fill(0);
+                kernel.fill(row, 0x1234, 0xFE01);
+                assert!(*row == expected[..], "{kernel}: length {length} from {start}");
+                tried.add(1);
+            }
+        }
+    }
+    tried.done();
 }
 
 /// Kernels that are wrong in one respect each are caught, for that.

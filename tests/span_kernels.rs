@@ -6,20 +6,15 @@
 //! cargo test --release --test span_kernels -- --ignored --nocapture
 //! ```
 
-#[path = "support/naive_span.rs"]
-mod naive_span;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/tried.rs"]
-mod tried;
+mod support;
 
 use mode13h::span::Kernel;
-use naive_span::naive_span;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use random::Random;
 use std::fmt;
-use tried::Tried;
+use support::naive_span::naive_span;
+use support::random::Random;
+use support::tried::Tried;
 
 /// Bytes before and behind the row that have to stay as they were.
 const GUARD: usize = 64;
@@ -263,8 +258,8 @@ fn s6_complement(kernel: Kernel) {
 /// The property on anything, shrunk when it fails.
 fn any_span(kernel: Kernel) {
     let mut seed = [0; 32];
-    seed[..8].copy_from_slice(&random::seed().to_le_bytes());
-    println!("MODE13H_SEED={}", random::seed());
+    seed[..8].copy_from_slice(&support::random::seed().to_le_bytes());
+    println!("MODE13H_SEED={}", support::random::seed());
     let config = Config { cases: 2_000, failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
     let edge = || prop_oneof![any::<u16>(), proptest::sample::select(&EDGES[..])];

@@ -20,10 +20,6 @@ impl ExportError {
         ExportError { path: path.to_path_buf(), kind }
     }
 
-    fn io(path: &Path, error: io::Error) -> ExportError {
-        ExportError::new(path, ExportErrorKind::from_io(error))
-    }
-
     /// The file that was to be written.
     pub fn path(&self) -> &Path {
         &self.path
@@ -55,11 +51,19 @@ pub enum ExportErrorKind {
 }
 
 impl ExportErrorKind {
-    fn from_io(error: io::Error) -> ExportErrorKind {
+    /// From opening or renaming a file.
+    fn from_opening(error: io::Error) -> ExportErrorKind {
         match error.kind() {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ExportErrorKind::MissingDirectory,
             io::ErrorKind::IsADirectory => ExportErrorKind::IsDirectory,
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => ExportErrorKind::NotPermitted,
+            _ => ExportErrorKind::from_writing(error),
+        }
+    }
+
+    /// From writing into an open file. That something does not exist is then no word about the directory.
+    fn from_writing(error: io::Error) -> ExportErrorKind {
+        match error.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ExportErrorKind::DiskFull,
             _ => ExportErrorKind::Io(error),
         }
@@ -104,7 +108,8 @@ impl Error for ExportError {
 ///
 /// # Errors
 ///
-/// [`ExportError`], with the path and what went wrong; the errors that `write` returns are sorted in the same way.
+/// [`ExportError`], with the path and what went wrong. Of the errors that `write` returns a full disk is told apart;
+/// all others are [`ExportErrorKind::Io`].
 ///
 /// ```
 /// use std::io::Write as _;
@@ -119,7 +124,8 @@ pub fn write_atomically(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), ExportError> {
     let path = path.as_ref();
-    let fail = |error: io::Error| ExportError::io(path, error);
+    let fail = |error: io::Error| ExportError::new(path, ExportErrorKind::from_opening(error));
+    let fail_to_write = |error: io::Error| ExportError::new(path, ExportErrorKind::from_writing(error));
 
     // A link is followed, so that the file behind it is replaced and not the link. One that leads nowhere yet is
     // replaced itself.
@@ -131,7 +137,7 @@ pub fn write_atomically(
         }
         if !before.is_file() {
             let mut device = BufWriter::new(File::options().write(true).open(&target).map_err(fail)?);
-            return write(&mut device).and_then(|()| device.flush()).map_err(fail);
+            return write(&mut device).and_then(|()| device.flush()).map_err(fail_to_write);
         }
         if before.permissions().readonly() {
             return Err(ExportError::new(path, ExportErrorKind::NotPermitted));
@@ -144,12 +150,12 @@ pub fn write_atomically(
 
     let (temporary, file) = Temporary::create(directory_of(&target)).map_err(fail)?;
     let mut out = BufWriter::new(file);
-    write(&mut out).map_err(fail)?;
-    let file = out.into_inner().map_err(|error| fail(error.into_error()))?;
+    write(&mut out).map_err(fail_to_write)?;
+    let file = out.into_inner().map_err(|error| fail_to_write(error.into_error()))?;
     if let Some(before) = before {
         file.set_permissions(before.permissions()).map_err(fail)?;
     }
-    file.sync_all().map_err(fail)?;
+    file.sync_all().map_err(fail_to_write)?;
     drop(file);
     temporary.rename(&target).map_err(fail)
 }

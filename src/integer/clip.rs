@@ -10,7 +10,7 @@
 use super::view::{Homogeneous, ObjectView, vertex};
 use crate::fixed::U8F8;
 use crate::raster::Vertex;
-use crate::raster::polygon::{self, Polygon};
+use crate::raster::clip::{Clipped, clip as clip_triangle};
 
 /// Bits that a corner has more than a vertex.
 const EXTRA: u32 = 12;
@@ -101,8 +101,8 @@ fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_ins
 }
 
 /// Clips a triangle. Returns `None` if nothing is left.
-pub(super) fn clip(view: &ObjectView, corners: [Corner; 3]) -> Option<Polygon> {
-    let left = polygon::clip(
+pub(super) fn clip(view: &ObjectView, corners: [Corner; 3]) -> Option<Clipped> {
+    let left = clip_triangle(
         corners,
         |plane, corner| distance(view, plane, corner),
         |plane, inside, outside, d_inside, d_outside| cut(view, plane, inside, outside, d_inside, d_outside),

@@ -7,7 +7,7 @@ use super::light::{Beam, Paint, Sun};
 use super::mesh::{FixedMesh, Index, face_normal};
 use super::view::{Homogeneous, ObjectView, Placement, View};
 use crate::fixed::U8F8;
-use crate::raster::polygon::doubled_area;
+use crate::raster::clip::doubled_area;
 use crate::raster::{Shading, Vertex};
 
 /// How faces are shaded: the rungs of the same names, for which see `render::Rung`.

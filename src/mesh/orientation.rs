@@ -135,3 +135,66 @@ impl Expansion {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use core::cmp::Ordering;
+
+    use glam::Vec3;
+    use num_rational::BigRational;
+    use num_traits::Zero;
+    use proptest::prelude::*;
+
+    use super::side;
+
+    fn oracle(corners: [Vec3; 4]) -> Ordering {
+        let [a, b, c, d] = corners.map(|p| p.to_array().map(|x| BigRational::from_float(x).unwrap()));
+        let sub = |p: &[BigRational; 3]| [0, 1, 2].map(|i| &p[i] - &a[i]);
+        let [u, v, w] = [sub(&b), sub(&c), sub(&d)];
+        let normal = [&u[1] * &v[2] - &u[2] * &v[1], &u[2] * &v[0] - &u[0] * &v[2], &u[0] * &v[1] - &u[1] * &v[0]];
+        (&normal[0] * &w[0] + &normal[1] * &w[1] + &normal[2] * &w[2]).cmp(&BigRational::zero())
+    }
+
+    fn finite() -> impl Strategy<Value = f32> {
+        any::<f32>().prop_filter("finite", |x| x.is_finite())
+    }
+
+    proptest! {
+        /// The fourth point a few units in the last place off the plane, or on it: its coordinates are
+        /// those of a + s·(b − a) + t·(c − a), rounded, and then moved.
+        #[test]
+        fn near_the_plane(
+            corners in prop::array::uniform3(prop::array::uniform3(-1.0f32..1.0)),
+            factors in prop::array::uniform2(-2.0f32..2.0),
+            moves in prop::array::uniform3(-2i32..=2),
+            exponent in -120i32..120,
+        ) {
+            let [a, b, c] = corners.map(Vec3::from_array);
+            let d = a + (b - a) * factors[0] + (c - a) * factors[1];
+            let moved = |(x, m): (f32, i32)| f32::from_bits(x.to_bits().wrapping_add_signed(m));
+            let d = [(d.x, moves[0]), (d.y, moves[1]), (d.z, moves[2])].map(moved);
+            let points = [a, b, c, Vec3::from_array(d)].map(|p| p * 2f32.powi(exponent));
+            if points.iter().all(|p| p.is_finite()) {
+                prop_assert_eq!(side(points[0], points[1], points[2], points[3]), oracle(points));
+            }
+        }
+
+        /// In one plane exactly, but with coordinates whose products f64 does not hold.
+        #[test]
+        fn in_the_plane(p in prop::array::uniform3(prop::array::uniform2(finite())), z in finite()) {
+            // The plane x = y, and the two that the cyclic change of axes makes of it.
+            let points = [p[0], p[1], p[2], [z, p[0][1]]].map(|[x, z]| Vec3::new(x, x, z));
+            for turn in 0..3 {
+                let turned = points.map(|p| Vec3::from_array([p[turn], p[(turn + 1) % 3], p[(turn + 2) % 3]]));
+                prop_assert_eq!(side(turned[0], turned[1], turned[2], turned[3]), Ordering::Equal);
+            }
+        }
+
+        /// Of any size, denormals and f32::MAX among them.
+        #[test]
+        fn anywhere(p in prop::array::uniform4(prop::array::uniform3(finite()))) {
+            let points = p.map(Vec3::from_array);
+            prop_assert_eq!(side(points[0], points[1], points[2], points[3]), oracle(points));
+        }
+    }
+}

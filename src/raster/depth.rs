@@ -22,6 +22,7 @@ use core::fmt;
 use super::cover::Ordered;
 use super::frame::Frame;
 use super::quotient::Divisor;
+pub use crate::span::depth::Cell;
 
 /// The depth plane of a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -37,19 +38,16 @@ impl DepthPlane {
     #[must_use]
     #[inline]
     pub fn new(triangle: &Ordered) -> Self {
-        let [v0, v1, v2] = &triangle.vertices;
-        let sign = triangle.doubled_area >> 63;
-        let area = Divisor::new((triangle.doubled_area ^ sign) - sign);
-        let (x0, y0) = (i64::from(v0.x().to_bits()), i64::from(v0.y().to_bits()));
-        let (x1, y1) = (i64::from(v1.x().to_bits()) - x0, i64::from(v1.y().to_bits()) - y0);
-        let (x2, y2) = (i64::from(v2.x().to_bits()) - x0, i64::from(v2.y().to_bits()) - y0);
-        let d0 = i64::from(v0.depth());
-        let (d1, d2) = (i64::from(v1.depth()) - d0, i64::from(v2.depth()) - d0);
-        // At most 2 · 2³² · 2²¹ = 2⁵⁴.
-        let gx = gradient(((d1 * y2 - d2 * y1) ^ sign) - sign, &area);
-        let gy = gradient(((d2 * x1 - d1 * x2) ^ sign) - sign, &area);
-        let origin =
-            ((d0 << 24) + (1 << 23)).wrapping_add(gx.wrapping_mul(128 - x0)).wrapping_add(gy.wrapping_mul(128 - y0));
+        let area = Divisor::new(triangle.area());
+        let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth()));
+        // At most 2⁵⁴ both.
+        let (gx, gy) = triangle.gradient(depths);
+        let (gx, gy) = (gradient(gx, &area), gradient(gy, &area));
+        let first = &triangle.vertices[0];
+        let (x0, y0) = (i64::from(first.x().to_bits()), i64::from(first.y().to_bits()));
+        let origin = ((depths[0] << 24) + (1 << 23))
+            .wrapping_add(gx.wrapping_mul(128 - x0))
+            .wrapping_add(gy.wrapping_mul(128 - y0));
         Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
     }
 
@@ -92,11 +90,11 @@ fn gradient(numerator: i64, area: &Divisor) -> i64 {
     }
 }
 
-/// A depth buffer over the rows of a frame: one u32 a pixel, greater is nearer, 0 is farthest.
-/// The slice is the caller's.
+/// A depth buffer over the rows of a frame: a u32 a pixel, or a u16 on small machines ([`Cell`] says
+/// what that loses); greater is nearer, 0 is farthest. The slice is the caller's.
 #[derive(Debug)]
-pub struct DepthBuffer<'a> {
-    values: &'a mut [u32],
+pub struct DepthBuffer<'a, D: Cell = u32> {
+    values: &'a mut [D],
     width: u32,
     first_row: u32,
 }
@@ -118,13 +116,13 @@ impl fmt::Display for DepthBufferError {
 
 impl core::error::Error for DepthBufferError {}
 
-impl<'a> DepthBuffer<'a> {
+impl<'a, D: Cell> DepthBuffer<'a, D> {
     /// Lays a depth buffer over the rows that `frame` holds. The values stay as they are:
     /// [`clear`](Self::clear) sets them.
     ///
     /// # Errors
     /// `values` is shorter than columns × rows.
-    pub fn new(values: &'a mut [u32], frame: &Frame<'_>) -> Result<Self, DepthBufferError> {
+    pub fn new(values: &'a mut [D], frame: &Frame<'_>) -> Result<Self, DepthBufferError> {
         let rows = frame.rows();
         let needed = frame.width() as usize * (rows.end - rows.start) as usize;
         let given = values.len();
@@ -136,13 +134,13 @@ impl<'a> DepthBuffer<'a> {
 
     /// Everything as far away as can be.
     pub fn clear(&mut self) {
-        self.values.fill(0);
+        self.values.fill(D::default());
     }
 
     /// The depths of row `y`, or `None` if the buffer does not hold it.
     #[must_use]
     #[inline]
-    pub fn row_mut(&mut self, y: u32) -> Option<&mut [u32]> {
+    pub fn row_mut(&mut self, y: u32) -> Option<&mut [D]> {
         let start = y.checked_sub(self.first_row)? as usize * self.width as usize;
         self.values.get_mut(start..start + self.width as usize)
     }

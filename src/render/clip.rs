@@ -2,13 +2,13 @@
 //!
 //! Only what the raster cannot take is cut off: what lies nearer than the near plane, and what is
 //! projected more than 4,095 pixels away. The screen's edges need no clipping, the raster leaves
-//! out what lies beyond them exactly. [`raster::polygon`](crate::raster::polygon) goes through the
+//! out what lies beyond them exactly. [`raster::clip`](crate::raster::clip) goes through the
 //! planes in an order that leaves no crack.
 
 use super::view::{Homogeneous, ObjectView};
 use crate::fixed::U8F8;
 use crate::raster::Vertex;
-use crate::raster::polygon::{self, Polygon};
+use crate::raster::clip::{Clipped, clip as clip_triangle};
 
 /// A corner of the polygon that is being clipped.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +57,8 @@ fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_ins
 }
 
 /// Clips a triangle. Returns `None` if nothing is left.
-pub(super) fn clip(view: &ObjectView, corners: [Corner; 3]) -> Option<Polygon> {
-    let left = polygon::clip(
+pub(super) fn clip(view: &ObjectView, corners: [Corner; 3]) -> Option<Clipped> {
+    let left = clip_triangle(
         corners,
         |plane, corner| distance(view, plane, corner),
         |plane, inside, outside, d_inside, d_outside| cut(view, plane, inside, outside, d_inside, d_outside),

@@ -12,7 +12,7 @@ use crate::fixed::U8F8;
 use crate::light::{Beam, Light, Material, both_sides};
 use crate::mesh::normals::face_normal;
 use crate::palette::Ramp;
-use crate::raster::polygon::doubled_area;
+use crate::raster::clip::doubled_area;
 use crate::raster::{Shading, Vertex};
 use crate::scene::{Object, Scene};
 

@@ -21,6 +21,9 @@
 //! | `simd-avx2` | 32 pixels a turn | x86-64 with AVX2 and feature `simd` |
 //! | `simd-avx512` | 64 pixels a turn | x86-64 with AVX-512 BW, BMI2 and feature `simd` |
 //!
+//! `simd` can be forced down to one of its levels, for tests and measurements. Other loops that write
+//! pixels will each be a type of this pattern: a portable specification, faster twins, one table.
+//!
 //! With `std` the processor is asked what it has; without, what the compiler was told counts.
 
 use core::fmt;
@@ -28,7 +31,10 @@ use core::fmt;
 pub mod depth;
 mod portable;
 #[cfg(feature = "simd")]
-#[expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")]
+#[cfg_attr(
+    target_arch = "x86_64",
+    expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
+)]
 mod simd;
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[expect(unsafe_code, reason = "the assembly's only door")]

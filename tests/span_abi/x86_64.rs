@@ -175,6 +175,6 @@ wrong! {
     writes_one_beyond => "a byte beside": "inc esi" ; "nop"
     writes_one_before => "a byte beside": "mov byte ptr [rdi - 1], 0" ; "nop"
     reads_the_upper_count => "a byte beside": "mov rax, rsi", "shr rax, 32", "sub esi, eax", "and esi, 31" ; "nop"
-    reads_the_upper_shade => "pixel 0 is": "mov eax, edx", "shr eax, 16", "sub edx, eax" ; "nop"
-    reads_the_upper_step => "pixel 1 is": "mov eax, ecx", "shr eax, 16", "sub ecx, eax" ; "nop"
+    reads_the_upper_shade => "pixel 0 is": "mov eax, edx", "shr eax, 8", "and eax, 0xFF00", "sub edx, eax" ; "nop"
+    reads_the_upper_step => "pixel 1 is": "mov eax, ecx", "shr eax, 8", "and eax, 0xFF00", "sub ecx, eax" ; "nop"
 }

@@ -2,6 +2,7 @@
 #![expect(dead_code, unreachable_pub, reason = "each test file is a program of its own and uses its part")]
 
 pub mod display;
+pub mod naive_span;
 pub mod oracle;
 pub mod random;
 pub mod triangles;

@@ -1,7 +1,8 @@
 //! `mode13h verify`: what the library checks on this machine.
 
 use clap::Args;
-use mode13h::verify::Group;
+use mode13h::span::Kernel;
+use mode13h::verify::{self, Group};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -12,21 +13,35 @@ pub(crate) struct Options {
     /// As JSON, for programs
     #[arg(long)]
     json: bool,
+    /// What the random cases are made from; the same number makes the same cases
+    #[arg(long, value_name = "N", default_value_t = 13)]
+    seed: u64,
 }
 
+/// The checks there are. Each is given the seed.
+const CHECKS: [fn(u64) -> Group; 1] = [verify::spans];
+
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let groups = [] as [Group; 0];
+    let groups = CHECKS.map(|check| check(options.seed));
     // A group that tried nothing has shown nothing.
     let failed = groups.iter().filter(|group| group.cases == 0 || !group.failures.is_empty()).count();
-    output::print(&if options.json { as_json(&groups, failed == 0) } else { as_text(&groups) })?;
+    output::print(&if options.json {
+        as_json(&groups, options.seed, failed == 0)
+    } else {
+        as_text(&groups, options.seed)
+    })?;
     match failed {
         0 => Ok(()),
         _ => Err(Failure::work(format!("{failed} of {} groups failed", groups.len()))),
     }
 }
 
-fn as_text(groups: &[Group]) -> String {
-    let mut text = String::new();
+fn kernels() -> Vec<&'static str> {
+    Kernel::available().map(Kernel::name).collect()
+}
+
+fn as_text(groups: &[Group], seed: u64) -> String {
+    let mut text = format!("kernels {}; seed {seed}\n", kernels().join(", "));
     for group in groups {
         let verdict = match group.failures.len() {
             0 if group.cases == 0 => "FAILED, nothing was tried".to_string(),
@@ -41,11 +56,11 @@ fn as_text(groups: &[Group]) -> String {
     text
 }
 
-fn as_json(groups: &[Group], passed: bool) -> String {
+fn as_json(groups: &[Group], seed: u64, passed: bool) -> String {
     let groups: Vec<Value> = groups
         .iter()
         .map(|group| json!({ "name": group.name, "cases": group.cases, "failures": group.failures }))
         .collect();
-    let all = json!({ "schema": 1, "passed": passed, "groups": groups });
+    let all = json!({ "schema": 1, "passed": passed, "seed": seed, "kernels": kernels(), "groups": groups });
     format!("{all:#}\n")
 }

@@ -38,7 +38,7 @@ impl Splitter {
             self.earcut.earcut_slice(&self.flat, &[], &mut self.cut);
             // The corners of each piece in the order of the face have its winding.
             self.triangles.extend(self.cut.as_chunks::<3>().0.iter().map(|t| ascending(*t)));
-            // Ear cutting leaves out corners on straight edges.
+            // Ear cutting may leave out corners in one place and on straight edges.
             if self.triangles.len() != corners.len() - 2 {
                 self.put_back(corners.len());
             }
