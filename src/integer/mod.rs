@@ -97,20 +97,29 @@ pub enum IntegerError {
     },
 }
 
+impl IntegerError {
+    /// What is wrong, without its numbers.
+    pub(crate) const fn what(&self) -> &'static str {
+        match self {
+            Self::Size => "each side of the picture must be 1 to 4,096 pixels",
+            Self::FieldOfView => "the field of view must be below 180°, and focal lengths 1/65,536 to 16,384 pixels",
+            Self::Near => "the near distance must be above 0",
+            Self::Direction => "the camera looks at the point where it is",
+            Self::Scale => "an object's scale must not be negative",
+            Self::TooFar => "an object reaches farther than 65,535 units from the eye",
+            Self::Light => "a sun must have a direction, and there may be 4,096 of them",
+            Self::Paints { .. } => "each surface of a mesh must have a paint",
+            Self::Room { .. } => "there is too little room for vertices or beams",
+        }
+    }
+}
+
 impl fmt::Display for IntegerError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.what())?;
         match self {
-            Self::Size => f.write_str("each side of the picture must be 1 to 4,096 pixels"),
-            Self::FieldOfView => {
-                f.write_str("the field of view must be below 180°, and focal lengths at most 16,384 pixels")
-            }
-            Self::Near => f.write_str("the near distance must be above 0"),
-            Self::Direction => f.write_str("the camera looks at the point where it is"),
-            Self::Scale => f.write_str("an object's scale must not be negative"),
-            Self::TooFar => f.write_str("an object reaches farther than 65,535 units from the eye"),
-            Self::Light => write!(f, "a sun must have a direction, and there may be {} of them", Sun::MOST),
-            Self::Paints { needed } => write!(f, "the mesh needs {needed} paints"),
-            Self::Room { needed } => write!(f, "there must be room for {needed}"),
+            Self::Paints { needed } | Self::Room { needed } => write!(f, ": {needed} are needed"),
+            _ => Ok(()),
         }
     }
 }

@@ -121,6 +121,14 @@ impl View {
         let up = unit(cross(right, forward), SINE_BITS).ok_or(IntegerError::Direction)?;
         Ok(Self { eye, axes: [right, up.map(|c| -c), forward], lens, near })
     }
+
+    /// Whether `mesh` can be drawn there.
+    ///
+    /// # Errors
+    /// A scale below 0; a mesh of which a part may be more than 65,535 units from the eye.
+    pub fn check<I: Index>(&self, placement: &Placement, mesh: &FixedMesh<'_, I>) -> Result<(), IntegerError> {
+        ObjectView::new(self, placement, mesh).map(|_| ())
+    }
 }
 
 /// The unit vector to the right of `forward`. As in the f32 path, the axis that is farthest from the
