@@ -85,6 +85,11 @@ impl Object {
         &self.mesh
     }
 
+    /// The mesh, to be kept.
+    pub(crate) fn shared_mesh(&self) -> &Shared<Mesh> {
+        &self.mesh
+    }
+
     /// Of each vertex of the mesh, the number of its surface.
     #[must_use]
     pub fn vertex_surfaces(&self) -> &[u16] {
