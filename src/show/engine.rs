@@ -28,6 +28,25 @@ pub(super) fn draw(size: (usize, usize), triangles: &[Triangle], depth_tested: b
     panel
 }
 
+/// The same without a depth buffer, in bands of this many rows, each a frame of its own.
+pub(super) fn draw_in_bands((width, height): (usize, usize), triangles: &[Triangle], rows: usize) -> Panel {
+    let [a, b] = EMPTY.map(|empty| {
+        let mut bytes = vec![empty; width * height];
+        if let Ok(mut frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
+            for band in frame.bands(rows as u32) {
+                let mut raster = Raster::new(band);
+                triangles.iter().for_each(|(vertices, shading)| {
+                    raster.triangle(vertices, *shading);
+                });
+            }
+        }
+        bytes
+    });
+    let mut panel = Panel::new((width, height));
+    panel.write_where_equal(&a, &b);
+    panel
+}
+
 /// The same, of faces.
 pub(super) fn draw_faces(size: (usize, usize), faces: &[Face], depth_tested: bool) -> Panel {
     draw(size, &triangles(faces), depth_tested)
@@ -86,4 +105,10 @@ pub(super) fn outline(triangles: &[Triangle]) -> Vec<Segment> {
     let point = |v: &Vertex| (f64::from(v.x().to_bits()) / 256.0, f64::from(v.y().to_bits()) / 256.0);
     let edges = |[a, b, c]: [(f64, f64); 3]| [[a, b], [b, c], [c, a]];
     triangles.iter().flat_map(|(vertices, _)| edges(vertices.each_ref().map(point))).collect()
+}
+
+/// Of edges, those that belong to one triangle alone: the silhouette of a ball.
+pub(super) fn silhouette(edges: &[Segment]) -> Vec<Segment> {
+    let shared = |[a, b]: &Segment| edges.contains(&[*b, *a]);
+    edges.iter().filter(|edge| !shared(edge)).copied().collect()
 }

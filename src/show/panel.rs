@@ -12,11 +12,13 @@ pub enum Mark {
     Outside,
     /// It has another byte than it should.
     Shade,
+    /// It shows another face than the one in front.
+    Face,
 }
 
 impl Mark {
     /// All of them, in the order of a legend.
-    pub const ALL: [Self; 4] = [Self::LeftOut, Self::Twice, Self::Outside, Self::Shade];
+    pub const ALL: [Self; 5] = [Self::LeftOut, Self::Twice, Self::Outside, Self::Shade, Self::Face];
 
     /// In words.
     #[must_use]
@@ -26,6 +28,7 @@ impl Mark {
             Self::Twice => "drawn twice",
             Self::Outside => "drawn outside",
             Self::Shade => "wrong shade",
+            Self::Face => "wrong face",
         }
     }
 }
@@ -47,6 +50,8 @@ pub(super) struct Measure {
     pub(super) shades: u8,
     /// Whether it counts how many faces drew a pixel. Where faces hide each other it means nothing.
     pub(super) counts_writes: bool,
+    /// What it means that a byte is further off.
+    pub(super) other_byte: Mark,
 }
 
 impl Panel {
@@ -127,7 +132,7 @@ impl Panel {
                 (0, _) => Some(Mark::LeftOut),
                 (_, 0) => Some(Mark::Outside),
                 _ if measure.counts_writes && writes > due => Some(Mark::Twice),
-                _ if off > measure.shades => Some(Mark::Shade),
+                _ if off > measure.shades => Some(measure.other_byte),
                 _ => None,
             };
         }

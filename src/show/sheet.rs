@@ -13,7 +13,7 @@ use super::face::Segment;
 use super::panel::{Mark, Panel};
 use super::{Case, Comparison};
 use crate::export::{Picture, PictureError, PixelShape, Scale, encode_png};
-use crate::palette::{Palette, Rgb};
+use crate::palette::Rgb;
 use crate::raster::{Frame, Index};
 
 /// Times that a pixel is enlarged.
@@ -44,18 +44,19 @@ enum Ink {
     Twice,
     Outside,
     Shade,
+    Face,
 }
 
 impl Ink {
-    const COLORS: [u32; 13] = [
+    const COLORS: [u32; 14] = [
         0xFBFAF5, 0x202028, 0x0A6B2D, 0xB01020, 0x1B2547, 0x2B3863, 0x28C8F0, 0xA8B4D8, 0x283048, 0xFF4040, 0xFF9A1F,
-        0xFF3FC8, 0xFFE81F,
+        0xFF3FC8, 0xFFE81F, 0xFFE81F,
     ];
     /// The first index of these colours.
     const FIRST: u8 = (256 - Self::COLORS.len()) as u8;
 
     fn index(self) -> Index {
-        // FIRST + 12 is 255.
+        // FIRST + 13 is 255.
         Index(Self::FIRST + self as u8)
     }
 
@@ -65,6 +66,7 @@ impl Ink {
             Mark::Twice => Self::Twice,
             Mark::Outside => Self::Outside,
             Mark::Shade => Self::Shade,
+            Mark::Face => Self::Face,
         }
     }
 }
@@ -84,22 +86,20 @@ impl Inks {
                 used[usize::from(*byte)] |= *writes > 0;
             }
         }
-        // There is room for 243. If there are more, neighbours share a colour.
-        let count = used.iter().filter(|used| **used).count();
-        let together = if count > usize::from(Ink::FIRST) { 2 } else { 1 };
-        let palette: &Palette = comparison.palette;
+        // As the DAC shows them: of 256 greys 64. Bytes of one colour share an index.
+        let palette = comparison.palette.on_dac();
         let mut inks = Self { of_byte: [0; 256], light: [false; 256], colors: [Rgb::BLACK; 256] };
-        let mut next = 0_u8;
-        let mut last = None;
+        let mut known: Vec<Rgb> = Vec::new();
         for byte in (0..=255_u8).filter(|byte| used[usize::from(*byte)]) {
-            let group = byte / together;
-            if last.is_some_and(|last| last != group) {
-                next += 1;
-            }
-            last = Some(group);
             let color = palette.color(byte);
-            inks.of_byte[usize::from(byte)] = next;
-            inks.colors[usize::from(next)] = color;
+            let place = known.iter().position(|there| *there == color).unwrap_or(known.len());
+            // There is room for 242; should a case ever have more, the rest share the last.
+            let index = place.min(usize::from(Ink::FIRST) - 1);
+            if place == known.len() {
+                known.push(color);
+            }
+            inks.of_byte[usize::from(byte)] = index as u8;
+            inks.colors[index] = color;
             inks.light[usize::from(byte)] = color.brightness() > Rgb::new(110, 110, 110).brightness();
         }
         for (entry, color) in inks.colors[usize::from(Ink::FIRST)..].iter_mut().zip(Ink::COLORS) {
@@ -150,7 +150,7 @@ pub(super) fn png(case: &Case, comparison: &Comparison) -> Result<Vec<u8>, Pictu
             let top = below + LINE * i;
             let cell = Point::new(MARGIN, top);
             fill(&mut frame, cell, ZOOM, Ink::Empty.index());
-            draw_mark(&mut frame, cell, *mark);
+            draw_mark(&mut frame, cell, *mark, Sides::ALL);
             let text = format!("{}: {}", mark.words(), pixels_in_words(comparison.fault.count(*mark)));
             words(&mut frame, MARGIN + 24, top, &text, Ink::Words, &FONT_9X15);
         }
@@ -206,14 +206,6 @@ fn fill(frame: &mut Frame<'_>, at: Point, side: i32, index: Index) {
     rectangle(frame, at, (side, side), index);
 }
 
-fn ring(frame: &mut Frame<'_>, at: Point, inset: i32, thick: i32, index: Index) {
-    let (corner, side) = (at + Point::new(inset, inset), ZOOM - 2 * inset);
-    rectangle(frame, corner, (side, thick), index);
-    rectangle(frame, corner, (thick, side), index);
-    rectangle(frame, corner + Point::new(0, side - thick), (side, thick), index);
-    rectangle(frame, corner + Point::new(side - thick, 0), (thick, side), index);
-}
-
 fn enlarge(frame: &mut Frame<'_>, at: Point, panel: &Panel, outline: &[Segment], inks: &Inks) {
     let (columns, rows) = (panel.width(), panel.height());
     let cell = |x: usize, y: usize| at + Point::new(x as i32 * ZOOM, y as i32 * ZOOM);
@@ -231,7 +223,7 @@ fn enlarge(frame: &mut Frame<'_>, at: Point, panel: &Panel, outline: &[Segment],
     for y in 0..rows {
         for x in 0..columns {
             if let Some(mark) = panel.marks()[y * columns + x] {
-                draw_mark(frame, cell(x, y), mark);
+                draw_mark(frame, cell(x, y), mark, Sides::of(panel, x, y));
             }
         }
     }
@@ -245,23 +237,70 @@ fn enlarge(frame: &mut Frame<'_>, at: Point, panel: &Panel, outline: &[Segment],
     }
 }
 
-/// A mark in a pixel's cell. Each has a shape of its own, so that colour is not all.
-fn draw_mark(frame: &mut Frame<'_>, cell: Point, mark: Mark) {
+/// A mark in a pixel's cell. Each has a shape of its own, so that colour is not all. A rim stands only on
+/// the sides where the next pixel has another mark: neighbours have one rim round all of them.
+fn draw_mark(frame: &mut Frame<'_>, cell: Point, mark: Mark, open: Sides) {
     let index = Ink::of(mark).index();
     match mark {
         Mark::LeftOut => {
-            ring(frame, cell, 1, 1, index);
             for k in 3..ZOOM - 4 {
                 rectangle(frame, cell + Point::new(k, k), (2, 1), index);
                 rectangle(frame, cell + Point::new(ZOOM - 2 - k, k), (2, 1), index);
             }
         }
         Mark::Twice => {
-            ring(frame, cell, 1, 2, index);
-            ring(frame, cell, 5, 1, index);
+            rim(frame, cell, 2, open, index);
+            rim(frame, cell + Point::new(5, 5), 1, Sides { side: ZOOM - 10, ..Sides::ALL }, index);
         }
-        Mark::Outside => ring(frame, cell, 1, 3, index),
-        Mark::Shade => ring(frame, cell, 1, 1, index),
+        Mark::Outside => rim(frame, cell, 3, open, index),
+        Mark::Shade | Mark::Face => rim(frame, cell, 2, open, index),
+    }
+}
+
+/// Which sides of a square have a rim.
+#[derive(Clone, Copy)]
+struct Sides {
+    left: bool,
+    right: bool,
+    top: bool,
+    bottom: bool,
+    /// Its length.
+    side: i32,
+}
+
+impl Sides {
+    const ALL: Self = Self { left: true, right: true, top: true, bottom: true, side: ZOOM };
+
+    /// Those where the neighbour of pixel (`x`, `y`) has another mark.
+    fn of(panel: &Panel, x: usize, y: usize) -> Self {
+        let mark = |x: usize, y: usize| {
+            let inside = x < panel.width() && y < panel.height();
+            panel.marks().get(y * panel.width() + x).filter(|_| inside).copied().flatten()
+        };
+        let here = mark(x, y);
+        let other = |x: usize, y: usize| mark(x, y) != here;
+        Self {
+            left: x == 0 || other(x - 1, y),
+            right: other(x + 1, y),
+            top: y == 0 || other(x, y - 1),
+            bottom: other(x, y + 1),
+            side: ZOOM,
+        }
+    }
+}
+
+fn rim(frame: &mut Frame<'_>, at: Point, thick: i32, sides: Sides, index: Index) {
+    let side = sides.side;
+    let far = side - thick;
+    for (there, corner, size) in [
+        (sides.left, Point::zero(), (thick, side)),
+        (sides.right, Point::new(far, 0), (thick, side)),
+        (sides.top, Point::zero(), (side, thick)),
+        (sides.bottom, Point::new(0, far), (side, thick)),
+    ] {
+        if there {
+            rectangle(frame, at + corner, size, index);
+        }
     }
 }
 

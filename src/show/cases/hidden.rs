@@ -4,10 +4,10 @@ use super::against_engine;
 use crate::show::Comparison;
 use crate::show::face::{Corner, Face, at, flat};
 use crate::show::fault::depth;
-use crate::show::panel::Measure;
+use crate::show::panel::{Mark, Measure};
 
 /// Faces hide each other: which of them has a pixel counts, not how many drew it.
-const BY_DEPTH: Measure = Measure { shades: 0, counts_writes: false };
+const BY_DEPTH: Measure = Measure { shades: 0, counts_writes: false, other_byte: Mark::Face };
 
 /// Bytes of three ramps of the palette: copper, steel and jade.
 const COLORS: [u8; 3] = [44, 64 + 44, 128 + 44];
@@ -43,8 +43,8 @@ pub(super) fn d1() -> Comparison {
         let (sin, cos) = libm::sincos(f64::from(k) * std::f64::consts::TAU / 3.0 - 1.3);
         (centre.0 + reach * cos, centre.1 + reach * sin)
     };
-    let mut faces = Vec::new();
-    for (k, color) in (0..3).zip(COLORS) {
+    let bars = [0, 1, 2].map(|k| {
+        let color = COLORS[k as usize];
         let (from, to) = (point(k), point(k + 1));
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = libm::hypot(dx, dy);
@@ -56,12 +56,12 @@ pub(super) fn d1() -> Comparison {
                 .rounded()
         };
         let end = length + overhang;
-        faces.extend(quad(
-            [corner(-overhang, -half), corner(end, -half), corner(end, half), corner(-overhang, half)],
-            color,
-        ));
-    }
-    against_engine((30, 28), &faces, BY_DEPTH, |panel| depth::painters_order(panel, &faces))
+        quad([corner(-overhang, -half), corner(end, -half), corner(end, half), corner(-overhang, half)], color)
+    });
+    let faces = bars.concat();
+    against_engine((30, 28), &faces, BY_DEPTH, |panel| {
+        depth::painters_order(panel, &bars.each_ref().map(|bar| &bar[..]))
+    })
 }
 
 pub(super) fn d2() -> Comparison {
@@ -75,7 +75,8 @@ pub(super) fn d2() -> Comparison {
         COLORS[1],
     );
     let faces = [first, second].concat();
-    let mut comparison = against_engine((30, 26), &faces, BY_DEPTH, |panel| depth::painters_order(panel, &faces));
+    let mut comparison =
+        against_engine((30, 26), &faces, BY_DEPTH, |panel| depth::painters_order(panel, &[&first, &second]));
     comparison.outline.push([(15.0, 8.1), (15.0, 19.2)]);
     comparison
 }

@@ -84,8 +84,8 @@ pub(super) fn n1() -> Comparison {
         [cos, sin, 0.0]
     }));
     let mut triangles: Vec<[usize; 3]> = (0..RIM).map(|i| [0, 1 + i, 1 + (i + 1) % RIM]).collect();
-    // The corner 1 twice: no area.
-    triangles.push([0, 1, 1]);
+    // One corner twice: no area.
+    triangles.push([1, 1, 2]);
     let towards = unit([0.4, 0.5, 1.0]);
     // Of NaN nothing is the maximum, so it stays.
     let shades = sums(&positions, &triangles).into_iter().map(|sum| {
@@ -140,7 +140,9 @@ fn ball(suns: Vec<Light>, shade: impl Fn(Vector) -> f64) -> Comparison {
     let shades = mesh.normals().iter().map(|normal| shade(wide(normal))).collect();
     let positions = mesh.positions().iter().map(wide).collect();
     let triangles = mesh.triangles().iter().map(|t| t.map(|i| i as usize)).collect();
-    compare(4.0, Lit { mesh: Some(mesh), positions, triangles, suns, shades, two_sided: false })
+    let mut comparison = compare(4.0, Lit { mesh: Some(mesh), positions, triangles, suns, shades, two_sided: false });
+    comparison.outline = engine::silhouette(&comparison.outline);
+    comparison
 }
 
 /// The low byte of a whole number of shades.
@@ -154,8 +156,8 @@ pub(super) fn n4() -> Comparison {
 }
 
 pub(super) fn n5() -> Comparison {
-    const INTENSITY: f64 = 0.7;
-    let lamps = [[-0.7, 0.5, 1.0], [0.7, 0.6, 1.0], [0.0, -0.8, 1.0]].map(unit);
+    const INTENSITY: f64 = 0.9;
+    let lamps = [[-1.0, 0.3, 0.8], [1.0, 0.3, 0.8]].map(unit);
     let suns = lamps.map(|lamp| sun(lamp).with_intensity(INTENSITY as f32)).to_vec();
     ball(suns, |normal| {
         let bytes = lamps.map(|lamp| in_8_bits(dot(normal, lamp).max(0.0) * INTENSITY * 255.0));

@@ -8,7 +8,7 @@ mod triangles;
 
 use super::engine::{self, Triangle};
 use super::face::{Face, Segment};
-use super::panel::{Measure, Panel};
+use super::panel::{Mark, Measure, Panel};
 use super::{Case, Comparison};
 use crate::palette::builtin;
 
@@ -25,7 +25,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "R2",
         title: "slivers",
-        sentence: "Along a sliver the step of a single row has no bound: shades of 110 to 150 come out black and white.",
+        sentence: "Along a sliver the step of a single row has no bound: shades of 90 to 170 come out black and white.",
         wrong: "a step for each row, (Bs - As) / (Bx - Ax), wrapped in 8 bits",
         right: "exact starts and one step; every byte in range",
         build: shades::r2,
@@ -50,7 +50,7 @@ pub static CASES: &[Case] = &[
         id: "R5",
         title: "shared edges",
         sentence: "Two neighbours walk one edge in opposite directions; if its slope is rounded they part, and leave holes and double pixels.",
-        wrong: "S4's table, slopes cut to 8.8 and added up row by row",
+        wrong: "S4's table, slopes cut to 1/16 pixel and added up row by row",
         right: "edges by quotient and remainder: no slope",
         build: triangles::r5,
     },
@@ -58,7 +58,7 @@ pub static CASES: &[Case] = &[
         id: "R6",
         title: "the order of the corners",
         sentence: "The same triangle, its corners named in two orders: marked is what changes from one to the other.",
-        wrong: "edges and shades walked from the first corner on, in 8.8",
+        wrong: "edges and shades walked from the first corner on, slopes cut",
         right: "corners sorted first: the same bytes in any order",
         build: triangles::r6,
     },
@@ -75,21 +75,21 @@ pub static CASES: &[Case] = &[
         title: "drawing in bands",
         sentence: "One face drawn in four bands of rows: cut at the bands and rounded anew, its edges break.",
         wrong: "the face cut at each band, new corners on whole pixels",
-        right: "rows left out, nothing computed anew",
+        right: "each band starts from the face as it is",
         build: triangles::r8,
     },
     Case {
         id: "R11",
         title: "moved by whole pixels",
         sentence: "The same face twice, the second a whole number of pixels further: marked is where it is not the same.",
-        wrong: "edges as lines x = m y + b from the frame's corner, in 8.8",
+        wrong: "edges as lines x = m y + b from the frame's corner, m cut to 1/16",
         right: "edges from their own corners, exactly",
         build: triangles::r11,
     },
     Case {
         id: "R13",
         title: "rounding of the corners",
-        sentence: "A chessboard turned by 12 degrees: with corners on whole pixels no two of its squares are alike.",
+        sentence: "Sixteen blades of one width: with corners on whole pixels some are twice as wide as others, and some are gone.",
         wrong: "corners rounded to whole pixels",
         right: "corners rounded to 1/256 pixel, once",
         build: triangles::r13,
@@ -123,13 +123,13 @@ pub static CASES: &[Case] = &[
         title: "near : far = 1 : 10,000",
         sentence: "Two faces cross 5,000 times as far away as the near plane: 16 bits of depth put the crossing elsewhere.",
         wrong: "a depth buffer of 16 bits",
-        right: "30 bits: right to a 16,000th of the distance",
+        right: "30 bits of depth",
         build: hidden::c3,
     },
     Case {
         id: "N1",
         title: "a face without area in the average",
-        sentence: "One face of no area among eight has the normal 0/0; in the average it blots out every vertex that it uses.",
+        sentence: "A face of no area at the right edge has the normal 0/0; in the average it blots out every face around its corners.",
         wrong: "its normal counts like the others': NaN, drawn as 0",
         right: "no area, no weight",
         build: light::n1,
@@ -145,7 +145,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "N4",
         title: "light from behind a face",
-        sentence: "A ball lit from the upper left: its far side faces away from the light, and a negative amount wraps to bright.",
+        sentence: "A ball lit from the upper left: its other side faces away from the light, and a negative amount wraps to bright.",
         wrong: "n.l as it is, wrapped in 8 bits",
         right: "max(0, n.l): a light behind a face adds nothing",
         build: light::n4,
@@ -153,7 +153,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "N5",
         title: "more light than white",
-        sentence: "Three lamps on one ball add up to more than 1: where the sum wraps, the brightest spot is dark.",
+        sentence: "Two lamps on one ball add up to more than white in the middle: where the sum wraps, the brightest band is dark.",
         wrong: "bytes added up in 8 bits",
         right: "summed in full, then clamped once",
         build: light::n5,
@@ -209,7 +209,7 @@ pub static CASES: &[Case] = &[
 ];
 
 /// Every pixel as it must be, and the writes counted.
-const EXACT: Measure = Measure { shades: 0, counts_writes: true };
+const EXACT: Measure = Measure { shades: 0, counts_writes: true, other_byte: Mark::Shade };
 
 /// The fault measured against the engine, which draws the faces.
 fn against_engine(

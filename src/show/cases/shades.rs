@@ -16,14 +16,17 @@ pub(super) fn r2() -> Comparison {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let across = width / libm::hypot(dx, dy);
         let middle = ((a.0 + b.0) / 2.0 - dy * across, (a.1 + b.1) / 2.0 + dx * across);
-        gouraud([at(a.0, a.1, 110.0), at(b.0, b.1, 110.0), at(middle.0, middle.1, 150.0)].map(Corner::rounded))
+        gouraud([at(a.0, a.1, 90.0), at(b.0, b.1, 90.0), at(middle.0, middle.1, 170.0)].map(Corner::rounded))
     };
     let faces = [
-        sliver((1.0, 2.2), (29.0, 5.1), 0.4),
-        sliver((1.0, 5.4), (29.0, 12.3), 0.5),
-        sliver((1.0, 8.1), (29.0, 21.7), 0.7),
-        sliver((1.0, 11.2), (20.4, 24.6), 0.9),
-        sliver((1.0, 16.3), (9.4, 24.6), 1.1),
+        sliver((1.0, 1.2), (29.0, 3.1), 0.35),
+        sliver((1.0, 3.4), (29.0, 7.6), 0.4),
+        sliver((1.0, 5.3), (29.0, 12.2), 0.4),
+        sliver((1.0, 7.6), (29.0, 17.1), 0.45),
+        sliver((1.0, 10.2), (29.0, 22.4), 0.5),
+        sliver((1.0, 13.1), (24.3, 25.0), 0.5),
+        sliver((1.0, 16.4), (17.2, 25.1), 0.5),
+        sliver((1.0, 20.3), (9.6, 25.2), 0.5),
     ];
     against_engine((30, 26), &faces, ROUNDED, |panel| {
         faces.iter().for_each(|face| shade::step_of_each_row(panel, &face.corners));
@@ -81,7 +84,7 @@ pub(super) fn n8() -> Comparison {
 
 pub(super) fn n9() -> Comparison {
     // Ribs from the upper to the lower edge, dark and light in turn.
-    let ribs = [(1.2, 4.6), (7.1, 2.2), (10.4, 12.9), (18.6, 14.1), (19.8, 24.7), (28.7, 26.3)];
+    let ribs = [(1.2, 3.6), (8.1, 5.2), (10.4, 14.9), (20.6, 16.1), (28.8, 27.3)];
     let mut faces: Vec<Face> = Vec::new();
     for (i, pair) in ribs.windows(2).enumerate() {
         let shade = |i: usize| if i.is_multiple_of(2) { 15.0 } else { 240.0 };
@@ -89,7 +92,7 @@ pub(super) fn n9() -> Comparison {
         let (a, b, c, d) = (top(0), top(1), bottom(1), bottom(0));
         faces.extend([[a, b, c], [a, c, d]].map(|corners| gouraud(corners.map(Corner::rounded))));
     }
-    let measure = Measure { shades: 8, ..EXACT };
+    let measure = Measure { shades: 16, ..EXACT };
     let mut comparison = against_engine((30, 26), &faces, measure, |panel| {
         faces.iter().for_each(|face| shade::start_at_the_edge(panel, &face.corners));
     });

@@ -80,7 +80,7 @@ pub(super) fn r5() -> Comparison {
         })
         .collect();
     against_engine((31, 27), &faces, EXACT, |panel| {
-        faces.iter().for_each(|face| cover::slopes_in_8_8(panel, &face.corners));
+        faces.iter().for_each(|face| cover::cut_slopes(panel, &face.corners));
     })
 }
 
@@ -93,7 +93,7 @@ pub(super) fn r6() -> Comparison {
     ];
     let drawn = |order: usize| {
         let mut panel = Panel::new(size);
-        triangles.iter().for_each(|corners| cover::slopes_in_8_8(&mut panel, &orders(*corners)[order]));
+        triangles.iter().for_each(|corners| cover::cut_slopes(&mut panel, &orders(*corners)[order]));
         panel
     };
     let faces = |order: usize| triangles.map(|corners| gouraud(orders(corners)[order]));
@@ -112,9 +112,15 @@ pub(super) fn r6() -> Comparison {
 
 pub(super) fn r8() -> Comparison {
     let face = gouraud([at(2.2, 1.3, 30.0), at(28.6, 10.4, 240.0), at(8.7, 26.8, 140.0)].map(Corner::rounded));
-    against_engine((30, 28), &[face], Measure { shades: 1, ..EXACT }, |panel| {
-        cover::cut_at_bands(panel, &face.corners, 7);
-    })
+    const ROWS: usize = 7;
+    let measure = Measure { shades: 1, ..EXACT };
+    let mut comparison = against_engine((30, 28), &[face], measure, |panel| {
+        cover::cut_at_bands(panel, &face.corners, ROWS);
+    });
+    let mut right = engine::draw_in_bands((30, 28), &comparison.triangles, ROWS);
+    right.mark_against(&comparison.right, EXACT);
+    comparison.right = right;
+    comparison
 }
 
 pub(super) fn r11() -> Comparison {
@@ -165,21 +171,26 @@ pub(super) fn r11() -> Comparison {
 }
 
 pub(super) fn r13() -> Comparison {
-    const SQUARES: i32 = 6;
-    let (sin, cos) = libm::sincos(12_f64.to_radians());
-    let corner = |i: i32, j: i32, shade: f64| {
-        let (u, v) = (f64::from(i - SQUARES / 2) * 3.4, f64::from(j - SQUARES / 2) * 3.4);
-        at(15.2 + u * cos - v * sin, 13.1 + u * sin + v * cos, shade)
+    const BLADES: u32 = 16;
+    let hub = (15.2, 14.1);
+    let blade = |k: u32| {
+        let (sin, cos) = libm::sincos(f64::from(k) * std::f64::consts::TAU / f64::from(BLADES) + 0.11);
+        let corner =
+            |along: f64, across: f64| at(hub.0 + along * cos - across * sin, hub.1 + along * sin + across * cos, 200.0);
+        let [a, b, c, d] = [corner(4.6, -0.65), corner(13.2, -0.65), corner(13.2, 0.65), corner(4.6, 0.65)];
+        [gouraud([a, b, c]), gouraud([a, c, d])]
     };
-    let mut faces = Vec::new();
-    for j in 0..SQUARES {
-        for i in 0..SQUARES {
-            let shade = if (i + j) % 2 == 0 { 70.0 } else { 200.0 };
-            let [a, b, c, d] = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(k, l)| corner(i + k, j + l, shade));
-            faces.extend([gouraud([a, b, c]), gouraud([a, c, d])]);
-        }
-    }
-    against_engine((30, 26), &faces, EXACT, |panel| {
+    let faces: Vec<Face> = (0..BLADES).flat_map(blade).collect();
+    let mut comparison = against_engine((30, 28), &faces, EXACT, |panel| {
         faces.iter().for_each(|face| paint(panel, &[gouraud(cover::whole_pixels(&face.corners))]));
-    })
+    });
+    // Without the diagonals: of each half the two edges that are the blade's own.
+    comparison.outline = (0..)
+        .zip(&faces)
+        .flat_map(|(i, face)| {
+            let [first, second, third] = face.edges();
+            if i % 2 == 0 { [first, second] } else { [second, third] }
+        })
+        .collect();
+    comparison
 }

@@ -59,10 +59,14 @@ struct TableRow {
     count: usize,
 }
 
-/// S4's table with slopes in 8.8, cut off: every edge is walked from its first corner to its second,
+/// To this part of a pixel a row's slope is cut. In 8.8 the same shows after a few hundred rows; a
+/// picture has some thirty.
+const SLOPE: f64 = 16.0;
+
+/// S4's table with slopes that are cut off: every edge is walked from its first corner to its second,
 /// one addition a row, so the error of the slope is added once a row too. A neighbour walks the same
 /// edge the other way and comes to other places.
-pub(in crate::show) fn slopes_in_8_8(panel: &mut Panel, corners: &[Corner; 3]) {
+pub(in crate::show) fn cut_slopes(panel: &mut Panel, corners: &[Corner; 3]) {
     let mut table = vec![TableRow::default(); panel.height()];
     let first_centre = |coordinate: f64| (coordinate - 0.5).ceil() as i32;
     for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b])) {
@@ -72,9 +76,9 @@ pub(in crate::show) fn slopes_in_8_8(panel: &mut Panel, corners: &[Corner; 3]) {
             rows.reverse();
         }
         let Some(&begin) = rows.first() else { continue };
-        // The cut: toward zero.
-        let slope = |from: f64, to: f64| ((to - from) / (b.y - a.y) * 256.0) as i32;
-        let (dx, ds) = (slope(a.x, b.x), slope(a.shade, b.shade));
+        // The cut, toward zero; in 1/256. Shades are in 8.8.
+        let slope = |from: f64, to: f64, parts: f64| ((to - from) / (b.y - a.y) * parts).trunc() / parts * 256.0;
+        let (dx, ds) = (slope(a.x, b.x, SLOPE) as i32, slope(a.shade, b.shade, 256.0) as i32);
         let ahead = f64::from(begin) + 0.5 - a.y;
         let start = |from: f64, step: i32| (from * 256.0 + ahead * f64::from(step)).floor() as i32;
         let (mut x, mut shade) = (start(a.x, dx), start(a.shade, ds));
@@ -100,7 +104,7 @@ pub(in crate::show) fn slopes_in_8_8(panel: &mut Panel, corners: &[Corner; 3]) {
     }
 }
 
-/// Each edge as a line x = m·y + b from the frame's own corner, m and b in 8.8: the further down the
+/// Each edge as a line x = m·y + b from the frame's own corner, m cut off: the further down the
 /// frame, the further off.
 pub(in crate::show) fn lines_from_the_corner(panel: &mut Panel, corners: &[Corner; 3]) {
     for y in 0..panel.height() as i32 {
@@ -109,7 +113,7 @@ pub(in crate::show) fn lines_from_the_corner(panel: &mut Panel, corners: &[Corne
         for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b])) {
             if a.y.min(b.y) <= yc && yc < a.y.max(b.y) {
                 let slope = (b.x - a.x) / (b.y - a.y);
-                let m = (slope * 256.0).trunc() / 256.0;
+                let m = (slope * SLOPE).trunc() / SLOPE;
                 let at_top = ((a.x - slope * a.y) * 256.0).floor() / 256.0;
                 ends.push(at_top + m * yc);
             }

@@ -4,13 +4,13 @@ use super::{Sample, samples, wrapped};
 use crate::show::face::Face;
 use crate::show::panel::Panel;
 
-/// Painter's order: the faces one over the other, from the one whose middle is farthest.
-pub(in crate::show) fn painters_order(panel: &mut Panel, faces: &[Face]) {
-    let middle = |face: &Face| face.corners.iter().map(|corner| corner.depth).sum::<f64>();
-    let mut order: Vec<&Face> = faces.iter().collect();
+/// Painter's order: the polygons one over the other, from the one whose middle is farthest.
+pub(in crate::show) fn painters_order(panel: &mut Panel, polygons: &[&[Face]]) {
+    let middle = |faces: &[Face]| faces.iter().flat_map(|face| face.corners).map(|corner| corner.depth).sum::<f64>();
+    let mut order = polygons.to_vec();
     order.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
-    for face in order {
-        super::paint(panel, std::slice::from_ref(face));
+    for faces in order {
+        super::paint(panel, faces);
     }
 }
 
