@@ -16,8 +16,10 @@
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
 //! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
 //! | [`edge`], [`cover`] | which pixels |
-//! | [`shade`], [`depth`] | which byte, and whether it is in front |
+//! | [`shade`], [`hyperbolic`], [`depth`] | which byte, and whether it is in front |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
+//! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
+//! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
 //! ```
 //! use mode13h::fixed::{I24F8, U8F8};
@@ -38,7 +40,11 @@ pub mod depth;
 mod draw_target;
 pub mod edge;
 pub mod frame;
+pub mod hyperbolic;
+mod paint;
+pub mod polygon;
 pub mod quotient;
+pub mod scan_line;
 pub mod shade;
 pub mod triangle;
 pub mod vertex;

@@ -169,6 +169,7 @@ impl Stage<'_> {
         match self.rung {
             Rung::Gouraud88Reseeded => Shading::GouraudReseeded,
             Rung::Gouraud88 => Shading::Gouraud,
+            Rung::GouraudHyperbolic => Shading::GouraudHyperbolic,
             Rung::Flat => {
                 stats.lit += 1;
                 let mesh = self.object.mesh();

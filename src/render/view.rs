@@ -13,8 +13,9 @@
 use glam::{Mat3, Vec3};
 
 use crate::fixed::{I24F8, U8F8};
+use crate::mesh::Bounds;
 use crate::raster::Vertex;
-use crate::scene::{Camera, Object, UpAxis};
+use crate::scene::{Camera, Object, matrix_product};
 
 /// What is drawn on: size in pixels, and the shape of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -45,11 +46,6 @@ fn cross(a: Row, b: Row) -> Row {
 
 fn widen(v: Vec3) -> Row {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
-}
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    let column = |j: usize| [b[0][j], b[1][j], b[2][j]];
-    a.map(|row| [dot(row, column(0)), dot(row, column(1)), dot(row, column(2))])
 }
 
 /// `None` for the zero vector. Finite f32 components can neither overflow nor vanish in f64.
@@ -114,15 +110,6 @@ impl View {
     }
 }
 
-/// An object's turn, from its angles about x, y and z: z first, then y, then x.
-fn turn(angles: [f64; 3]) -> Matrix {
-    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
-    let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
-    let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
-    let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];
-    product(&about_x, &product(&about_y, &about_z))
-}
-
 /// An object's whole way: from its mesh to the screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ObjectView {
@@ -152,13 +139,9 @@ impl ObjectView {
     const FAST_REACH: f64 = 1e30;
 
     pub(super) fn new(view: &View, object: &Object) -> Self {
-        let mut turn = turn(object.angles());
-        if object.up_axis == UpAxis::Z {
-            // (x, y, z) stands up as (x, z, −y).
-            turn = turn.map(|[x, y, z]| [x, -z, y]);
-        }
+        let turn = object.turn();
         let scale = f64::from(object.scale);
-        let matrix = product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
+        let matrix = matrix_product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
         let (position, pivot) = (widen(object.position), widen(object.pivot));
         let to_position = [position[0] - view.eye[0], position[1] - view.eye[1], position[2] - view.eye[2]];
         let mut offset = [0.0; 3];
@@ -244,8 +227,31 @@ impl ObjectView {
         if !(x.abs() <= Self::LIMIT + 0.5 && y.abs() <= Self::LIMIT + 0.5) {
             return None;
         }
-        // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates.
-        let depth = (f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32;
-        Vertex::new(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, shade, depth).ok()
+        Vertex::new(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, shade, self.depth(w)).ok()
+    }
+
+    /// round(2³⁰ · near / w).
+    #[inline]
+    fn depth(&self, w: f64) -> u32 {
+        // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates. There is no
+        // far plane: beyond 2³¹ times the near distance, where the formula gives the background's 0,
+        // a face is still in front of it.
+        ((f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32).max(1)
+    }
+
+    /// The least and the greatest depth that a vertex within `bounds` may have, once what is nearer
+    /// than the near plane is cut off; somewhat wider than they are.
+    pub(super) fn depths(&self, bounds: Bounds) -> (u32, u32) {
+        let (row, offset) = (self.exact.0[2], self.exact.1[2]);
+        let (min, max) = (widen(bounds.min), widen(bounds.max));
+        let middle = dot(row, [0, 1, 2].map(|i| (min[i] + max[i]) / 2.0)) + offset;
+        let size = dot(row.map(f64::abs), [0, 1, 2].map(|i| (max[i] - min[i]) / 2.0));
+        let reach = dot(row.map(f64::abs), [0, 1, 2].map(|i| min[i].abs().max(max[i].abs()))) + offset.abs();
+        // In f32, w is made with four roundings of the matrix, three of products and three of sums, each
+        // of at most 2⁻²⁴ of what they reach.
+        let slack = reach / 1_048_576.0;
+        let near = f64::from(self.near);
+        let at = |w: f64| self.depth(w.max(near));
+        (at(middle + size + slack), at(middle - size - slack))
     }
 }
