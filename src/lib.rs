@@ -17,6 +17,7 @@
 //! | [`scene`] | objects, camera, lights | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
+//! | `show` | hard cases as pictures: the right way beside the fault | `png`, `embedded-graphics` |
 //! | [`verify`] | every kernel of this machine against the specification | `std` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
 //!
@@ -79,6 +80,8 @@ pub mod scene;
 
 #[cfg(feature = "std")]
 pub mod export;
+#[cfg(all(feature = "png", feature = "embedded-graphics"))]
+pub mod show;
 #[cfg(feature = "std")]
 pub mod verify;
 #[cfg(feature = "window")]
