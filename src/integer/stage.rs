@@ -21,6 +21,8 @@ pub enum Technique {
     /// The same, started anew every 64 pixels.
     #[default]
     GouraudReseeded,
+    /// Linear on the face in space: an exact quotient for every pixel.
+    GouraudHyperbolic,
 }
 
 /// A mesh in its place, with one paint for each of its surfaces.
@@ -178,6 +180,7 @@ impl<'a, I: Index> Stage<'a, I> {
         match self.technique {
             Technique::GouraudReseeded => Shading::GouraudReseeded,
             Technique::Gouraud => Shading::Gouraud,
+            Technique::GouraudHyperbolic => Shading::GouraudHyperbolic,
             Technique::Flat => {
                 counts.lit += 1;
                 let mesh = &self.object.mesh;

@@ -247,6 +247,7 @@ impl IntegerPath {
             Rung::Flat => Technique::Flat,
             Rung::Gouraud88 => Technique::Gouraud,
             Rung::Gouraud88Reseeded => Technique::GouraudReseeded,
+            Rung::GouraudHyperbolic => Technique::GouraudHyperbolic,
         };
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
