@@ -6,7 +6,7 @@ use super::vertex::Vertex;
 
 /// A triangle whose vertices are in order: top, middle, bottom, of equal heights the left one
 /// first. What is drawn depends on the three points alone, not on the order they were given in.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Ordered {
     /// The vertices by (y, x).
     pub vertices: [Vertex; 3],
@@ -37,25 +37,32 @@ impl Ordered {
         Self { vertices, doubled_area }
     }
 
+    /// The rows inside `clip` whose centre lies between the top and the bottom; `None` if there is none,
+    /// if no column's centre inside `clip` lies between left and right, or if there is no area.
+    #[must_use]
+    #[inline]
+    pub fn extent(&self, clip: Rect) -> Option<core::ops::Range<i32>> {
+        let [top, _, bottom] = &self.vertices;
+        // The clip rectangle lies inside a frame of at most 4,096 pixels a side.
+        let first = top.y().first_centre().max(clip.y0 as i32);
+        let end = bottom.y().first_centre().min(clip.y1 as i32);
+        if self.doubled_area == 0 || first >= end {
+            return None;
+        }
+        let (left, right) = self.vertices.iter().fold((i32::MAX, i32::MIN), |(low, high), v| {
+            (low.min(v.x().first_centre()), high.max(v.x().first_centre()))
+        });
+        (left.max(clip.x0 as i32) < right.min(clip.x1 as i32)).then_some(first..end)
+    }
+
     /// Calls `row` for every row that has a covered pixel inside `clip`, from the top down.
     /// `frame_width` is that of the whole frame; `clip` lies inside the frame.
     #[inline]
     pub fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row)) {
+        let Some(core::ops::Range { start: first, end }) = self.extent(clip) else { return };
         let [top, middle, bottom] = &self.vertices;
-        // The clip rectangle lies inside a frame of at most 4,096 pixels a side.
+        // As in `extent`.
         let (clip_x0, clip_x1, width) = (clip.x0 as i32, clip.x1 as i32, frame_width as i32);
-        let first = top.y().first_centre().max(clip.y0 as i32);
-        let end = bottom.y().first_centre().min(clip.y1 as i32);
-        if self.doubled_area == 0 || first >= end || clip_x0 >= clip_x1 {
-            return;
-        }
-        // No column's centre between the leftmost and the rightmost vertex, or none inside the clip.
-        let (left, right) = self.vertices.iter().fold((i32::MAX, i32::MIN), |(low, high), v| {
-            (low.min(v.x().first_centre()), high.max(v.x().first_centre()))
-        });
-        if left >= right || left >= clip_x1 || right <= clip_x0 {
-            return;
-        }
         let split = middle.y().first_centre();
         let mut long = Edge::at_row(point(top), point(bottom), first);
         let mut y = first;
@@ -94,6 +101,6 @@ pub struct Row {
 }
 
 #[inline]
-fn point(v: &Vertex) -> (i32, i32) {
+pub(super) fn point(v: &Vertex) -> (i32, i32) {
     (v.x().to_bits(), v.y().to_bits())
 }

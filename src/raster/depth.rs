@@ -22,6 +22,7 @@ use core::fmt;
 use super::cover::Ordered;
 use super::frame::Frame;
 use super::quotient::Divisor;
+pub use crate::span::depth::Cell;
 
 /// The depth plane of a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -92,11 +93,11 @@ fn gradient(numerator: i64, area: &Divisor) -> i64 {
     }
 }
 
-/// A depth buffer over the rows of a frame: one u32 a pixel, greater is nearer, 0 is farthest.
-/// The slice is the caller's.
+/// A depth buffer over the rows of a frame: a u32 a pixel, or a u16 on small machines ([`Cell`] says
+/// what that loses); greater is nearer, 0 is farthest. The slice is the caller's.
 #[derive(Debug)]
-pub struct DepthBuffer<'a> {
-    values: &'a mut [u32],
+pub struct DepthBuffer<'a, D: Cell = u32> {
+    values: &'a mut [D],
     width: u32,
     first_row: u32,
 }
@@ -118,13 +119,13 @@ impl fmt::Display for DepthBufferError {
 
 impl core::error::Error for DepthBufferError {}
 
-impl<'a> DepthBuffer<'a> {
+impl<'a, D: Cell> DepthBuffer<'a, D> {
     /// Lays a depth buffer over the rows that `frame` holds. The values stay as they are:
     /// [`clear`](Self::clear) sets them.
     ///
     /// # Errors
     /// `values` is shorter than columns × rows.
-    pub fn new(values: &'a mut [u32], frame: &Frame<'_>) -> Result<Self, DepthBufferError> {
+    pub fn new(values: &'a mut [D], frame: &Frame<'_>) -> Result<Self, DepthBufferError> {
         let rows = frame.rows();
         let needed = frame.width() as usize * (rows.end - rows.start) as usize;
         let given = values.len();
@@ -136,13 +137,13 @@ impl<'a> DepthBuffer<'a> {
 
     /// Everything as far away as can be.
     pub fn clear(&mut self) {
-        self.values.fill(0);
+        self.values.fill(D::default());
     }
 
     /// The depths of row `y`, or `None` if the buffer does not hold it.
     #[must_use]
     #[inline]
-    pub fn row_mut(&mut self, y: u32) -> Option<&mut [u32]> {
+    pub fn row_mut(&mut self, y: u32) -> Option<&mut [D]> {
         let start = y.checked_sub(self.first_row)? as usize * self.width as usize;
         self.values.get_mut(start..start + self.width as usize)
     }

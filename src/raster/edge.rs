@@ -16,7 +16,7 @@
 use super::quotient::Divisor;
 
 /// An edge at one row.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Edge {
     /// The first pixel whose centre is on the edge or right of it.
     pub x: i32,

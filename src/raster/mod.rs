@@ -18,6 +18,7 @@
 //! | [`edge`], [`cover`] | which pixels |
 //! | [`shade`], [`depth`] | which byte, and whether it is in front |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
+//! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
 //! ```
 //! use mode13h::fixed::{I24F8, U8F8};
@@ -39,6 +40,7 @@ mod draw_target;
 pub mod edge;
 pub mod frame;
 pub mod quotient;
+pub mod scan_line;
 pub mod shade;
 pub mod triangle;
 pub mod vertex;

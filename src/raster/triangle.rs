@@ -1,7 +1,7 @@
 //! A triangle, from three vertices to bytes.
 
 use super::cover::{Ordered, Row};
-use super::depth::{DepthBuffer, DepthPlane};
+use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::frame::{Frame, Rect};
 use super::shade::{RESEED, ShadePlane};
 use super::vertex::Vertex;
@@ -44,11 +44,11 @@ impl core::ops::AddAssign for Drawn {
 /// Draws triangles into a frame: inside a clip rectangle, with a depth buffer if there is one, with
 /// a span kernel of choice.
 #[derive(Debug)]
-pub struct Raster<'a> {
-    frame: Frame<'a>,
-    clip: Rect,
-    depth: Option<DepthBuffer<'a>>,
-    kernel: Kernel,
+pub struct Raster<'a, D: Cell = u32> {
+    pub(super) frame: Frame<'a>,
+    pub(super) clip: Rect,
+    pub(super) depth: Option<DepthBuffer<'a, D>>,
+    pub(super) kernel: Kernel,
 }
 
 impl<'a> Raster<'a> {
@@ -58,31 +58,34 @@ impl<'a> Raster<'a> {
         Self { clip: frame.bounds(), frame, depth: None, kernel: Kernel::fastest() }
     }
 
-    /// Draws only inside `clip`, as far as the frame holds it. The bytes inside are the same as
-    /// without it.
+    /// Draws with a depth buffer of its own, cleared, in `values`, which is made as long as needed.
+    #[cfg(feature = "alloc")]
     #[must_use]
-    pub fn with_clip(mut self, clip: Rect) -> Self {
-        self.clip = clip.intersection(self.frame.bounds());
-        self
+    pub fn with_cleared_depth<D: Cell>(self, values: &'a mut alloc::vec::Vec<D>) -> Raster<'a, D> {
+        let rows = self.frame.rows();
+        values.clear();
+        values.resize(self.frame.width() as usize * (rows.end - rows.start) as usize, D::default());
+        let Self { frame, clip, depth: _, kernel } = self;
+        // Long enough, by the line above.
+        let depth = DepthBuffer::new(values, &frame).ok();
+        Raster { frame, clip, depth, kernel }
     }
 
     /// Draws only what is nearer than `depth` holds. It is laid over this frame's rows
     /// ([`DepthBuffer::new`]); rows that it lacks are not drawn.
     #[must_use]
-    pub fn with_depth(mut self, depth: DepthBuffer<'a>) -> Self {
-        self.depth = Some(depth);
-        self
+    pub fn with_depth<D: Cell>(self, depth: DepthBuffer<'a, D>) -> Raster<'a, D> {
+        let Self { frame, clip, depth: _, kernel } = self;
+        Raster { frame, clip, depth: Some(depth), kernel }
     }
+}
 
-    /// Draws with a depth buffer of its own, cleared, in `values`, which is made as long as needed.
-    #[cfg(feature = "alloc")]
+impl<'a, D: Cell> Raster<'a, D> {
+    /// Draws only inside `clip`, as far as the frame holds it. The bytes inside are the same as
+    /// without it.
     #[must_use]
-    pub fn with_cleared_depth(mut self, values: &'a mut alloc::vec::Vec<u32>) -> Self {
-        let rows = self.frame.rows();
-        values.clear();
-        values.resize(self.frame.width() as usize * (rows.end - rows.start) as usize, 0);
-        // Long enough, by the line above.
-        self.depth = DepthBuffer::new(values, &self.frame).ok();
+    pub fn with_clip(mut self, clip: Rect) -> Self {
+        self.clip = clip.intersection(self.frame.bounds());
         self
     }
 
@@ -175,7 +178,11 @@ impl<'a> Raster<'a> {
 /// `RESEEDED`, every 64 pixels from there; a row whose drawn part begins later continues from the
 /// last start at or left of it, so that the clip rectangle changes no byte.
 #[inline]
-fn spans<const RESEEDED: bool>(row: &Row, shade: &ShadePlane, mut span: impl FnMut(core::ops::Range<usize>, u16)) {
+pub(super) fn spans<const RESEEDED: bool>(
+    row: &Row,
+    shade: &ShadePlane,
+    mut span: impl FnMut(core::ops::Range<usize>, u16),
+) {
     let advance = |start: u16, pixels: i32| start.wrapping_add(shade.step().wrapping_mul(pixels as u16));
     if !RESEEDED {
         let start = shade.start(row.origin, row.y);

@@ -5,18 +5,57 @@
 //!               if d > depth[k] { depth[k] = d; row[k] = ((shade + k·step) mod 65,536) >> 8 }
 //! ```
 //!
-//! Of equal depths the first that was drawn stays.
+//! Of equal depths the first that was drawn stays. A cell of the buffer may be narrower than a depth:
+//! then `d` is narrowed first ([`Cell`]).
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for u32 {}
+    impl Sealed for u16 {}
+}
+
+/// What a depth buffer holds for a pixel: greater is nearer, 0 is nothing yet.
+///
+/// | cell | holds | what is lost |
+/// |---|---|---|
+/// | `u32` | d | nothing |
+/// | `u16` | min(⌈d / 2¹⁴⌉, 65,535) | which of two depths is nearer, if they lie within 2¹⁴ of each other: the first drawn then stays |
+///
+/// In the engine d is at most 2³⁰, so a u16 holds the upper 16 of its 30 bits. They are rounded up:
+/// whatever is drawn with u32 cells (d ≥ 1) hides the background here too, however far it is. At a
+/// distance w two surfaces are told apart that lie w² / (2¹⁶·near) from each other, in front of one
+/// another: at 100 times the near distance that is 0.15 of the near distance. The two nearest values,
+/// of which one would be d = 2³⁰ alone, are the same.
+pub trait Cell: Copy + Ord + Default + sealed::Sealed + 'static {
+    /// The cell's value for a depth.
+    fn of_depth(depth: u32) -> Self;
+}
+
+impl Cell for u32 {
+    #[inline]
+    fn of_depth(depth: u32) -> Self {
+        depth
+    }
+}
+
+impl Cell for u16 {
+    #[inline]
+    fn of_depth(depth: u32) -> Self {
+        // Saturates only where the result does too.
+        (depth.saturating_add((1 << 14) - 1) >> 14).min(0xFFFF) as u16
+    }
+}
 
 /// Fills `row` where the depth at a pixel is greater than in `depth`, and keeps the greater depth.
 ///
 /// `shade` and `step` are 8.8, `z` and `dz` depths with 24 fraction bits; both sums wrap.
 /// Returns the number of pixels written. Pixels beyond the shorter of the two slices are left alone.
 #[inline]
-pub fn fill_nearer(row: &mut [u8], depth: &mut [u32], shade: u16, step: u16, z: i64, dz: i64) -> u32 {
+pub fn fill_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], shade: u16, step: u16, z: i64, dz: i64) -> u32 {
     let (mut ax, mut z, mut written) = (shade, z, 0);
     for (pixel, nearest) in row.iter_mut().zip(depth) {
         // Depths are u32: what lies above bit 56 is not there within a triangle.
-        let d = (z >> 24) as u32;
+        let d = D::of_depth((z >> 24) as u32);
         if d > *nearest {
             *nearest = d;
             *pixel = (ax >> 8) as u8;

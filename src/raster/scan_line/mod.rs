@@ -1,0 +1,284 @@
+//! Hidden surfaces by the scan-line method (S0's own): all faces of a frame at once, row by row, and
+//! every pixel written once.
+//!
+//! ```text
+//! sort the faces by their first row
+//! for every row:
+//!     the faces that begin here enter the active list, which is sorted by the left edges' x
+//!     from left to right, in segments from one edge to the next:
+//!         of the faces open in the segment the nearest has it; its shades ride along
+//!     every face's two edges go down a row, those that end leave, the list is sorted again
+//! ```
+//!
+//! The picture is the depth buffer's, byte for byte: cover by the same edges, depth by the same
+//! [`DepthPlane`](super::depth::DepthPlane), of equal depths the first submitted, and each shade from
+//! the start that the triangle alone would have. It needs no depth for every pixel and paints no
+//! pixel that another face hides; a face that no other overlaps needs no depth at all.
+//!
+//! | file | what |
+//! |---|---|
+//! | `active` | a face on its way down the rows: its two edges |
+//! | `nearest` | which of the open faces has a segment, and how far |
+//!
+//! # What it costs
+//!
+//! Every face that is open in a segment covers each of its pixels, and a segment has one pixel at
+//! least. So all that is done in segments is bounded by the pixels that a depth buffer would test;
+//! on a model it is far less. The list is sorted by insertion, since from row to row it hardly
+//! changes: two faces change places only where their left edges cross.
+
+mod active;
+mod nearest;
+
+use core::fmt;
+
+pub use self::active::EdgePair;
+use super::cover::{Ordered, Row};
+use super::depth::Cell;
+use super::shade::ShadePlane;
+use super::triangle::{Drawn, Raster, Shading, spans};
+use super::vertex::Vertex;
+
+/// The memory of the scan-line method, lent by the caller. What it holds between two frames makes no
+/// difference.
+#[derive(Debug)]
+pub struct Scratch<'a> {
+    list: &'a mut [u64],
+    pairs: &'a mut [EdgePair],
+}
+
+impl<'a> Scratch<'a> {
+    /// Entries of the list that a face needs: one each among those to come, the active and the open.
+    pub const LIST_EACH: usize = 3;
+
+    /// For n faces `list` is [`LIST_EACH`](Self::LIST_EACH)·n long at least, and `pairs` n.
+    #[must_use]
+    pub fn new(list: &'a mut [u64], pairs: &'a mut [EdgePair]) -> Self {
+        Self { list, pairs }
+    }
+}
+
+/// The same, made as long as needed.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Debug, Default)]
+pub struct Lists {
+    list: alloc::vec::Vec<u64>,
+    pairs: alloc::vec::Vec<EdgePair>,
+}
+
+#[cfg(feature = "alloc")]
+impl Lists {
+    /// Memory for so many faces.
+    pub fn scratch(&mut self, faces: usize) -> Scratch<'_> {
+        let least = |length: usize, needed: usize| length.max(needed);
+        self.list.resize(least(self.list.len(), faces.saturating_mul(Scratch::LIST_EACH)), 0);
+        self.pairs.resize(least(self.pairs.len(), faces), EdgePair::default());
+        Scratch::new(&mut self.list, &mut self.pairs)
+    }
+}
+
+/// There is less memory than the faces need.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct ScratchError {
+    /// Faces to be drawn.
+    pub faces: usize,
+    /// Faces that there is memory for.
+    pub room: usize,
+}
+
+impl fmt::Display for ScratchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "scan-line memory for {} faces given for a frame of {}", self.room, self.faces)
+    }
+}
+
+impl core::error::Error for ScratchError {}
+
+/// Something with a place in the order of the scan: a row or a column above a number.
+///
+/// Sorting these sorts by the place, then by the number.
+#[derive(Clone, Copy)]
+struct Key(u64);
+
+impl Key {
+    const NUMBER_BITS: u32 = 48;
+
+    /// `place` is a row or column of a frame or the one after its last. No slice of faces has 2⁴⁸.
+    #[inline]
+    fn new(place: i32, number: usize) -> Self {
+        Self((place as u64) << Self::NUMBER_BITS | number as u64)
+    }
+
+    #[inline]
+    fn place(self) -> i32 {
+        (self.0 >> Self::NUMBER_BITS) as i32
+    }
+
+    #[inline]
+    fn number(self) -> usize {
+        (self.0 & ((1 << Self::NUMBER_BITS) - 1)) as usize
+    }
+}
+
+impl<D: Cell> Raster<'_, D> {
+    /// Draws all `faces` of a frame, of each pixel the nearest one, and writes no pixel twice: the
+    /// bytes of drawing them one after the other with a cleared depth buffer.
+    ///
+    /// What the frame held before counts as background. A depth buffer that the raster has is neither
+    /// looked at nor changed.
+    ///
+    /// ```
+    /// use mode13h::fixed::{I24F8, U8F8};
+    /// use mode13h::raster::{Frame, Raster, Shading, Vertex, scan_line};
+    ///
+    /// let at = |x, y, depth| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::default(), depth);
+    /// let faces = [
+    ///     ([at(0, 0, 500)?, at(4, 0, 500)?, at(0, 4, 500)?], Shading::Flat(1)),
+    ///     ([at(4, 0, 900)?, at(4, 4, 900)?, at(0, 0, 100)?], Shading::Flat(2)), // through the first
+    /// ];
+    /// let mut bytes = [0; 4 * 4];
+    /// let mut list = [0; 2 * scan_line::Scratch::LIST_EACH];
+    /// let mut pairs = [scan_line::EdgePair::default(); 2];
+    /// let mut raster = Raster::new(Frame::new(&mut bytes, 4, 4, 4)?);
+    /// let drawn = raster.scan_line(&faces, scan_line::Scratch::new(&mut list, &mut pairs))?;
+    /// assert_eq!(bytes, [1, 1, 2, 2, 1, 1, 2, 2, 1, 0, 2, 2, 0, 0, 0, 2]);
+    /// assert_eq!((drawn.covered, drawn.pixels), (16, 12));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// `scratch` is too small for so many faces. Nothing is drawn then.
+    pub fn scan_line(&mut self, faces: &[([Vertex; 3], Shading)], scratch: Scratch<'_>) -> Result<Drawn, ScratchError> {
+        let count = faces.len();
+        let Scratch { list, pairs } = scratch;
+        let room = pairs.len().min(list.len() / Scratch::LIST_EACH);
+        if room < count {
+            return Err(ScratchError { faces: count, room });
+        }
+        let (coming, rest) = list.split_at_mut(count);
+        let (active, open) = rest.split_at_mut(count);
+        let mut begun = 0;
+        for (number, (vertices, _)) in faces.iter().enumerate() {
+            if let Some(rows) = Ordered::new(vertices).extent(self.clip) {
+                coming[begun] = Key::new(rows.start, number).0;
+                begun += 1;
+            }
+        }
+        let coming = &mut coming[..begun];
+        coming.sort_unstable();
+        let mut sweep = Sweep { drawn: Drawn::default(), run: None };
+        let mut list = active::List::new(active, pairs, self.clip, self.frame.width());
+        let mut next = 0;
+        while let Some(y) = list.row().or_else(|| coming.get(next).map(|key| Key(*key).place())) {
+            let enter = coming[next..].iter().take_while(|key| Key(**key).place() == y).count();
+            list.enter(y, &mut coming[next..next + enter], faces);
+            next += enter;
+            sweep.row(self, &mut list, open, y);
+            list.down();
+        }
+        Ok(sweep.drawn)
+    }
+}
+
+/// The pixels from `x0` to `x1` of a row that one face has.
+#[derive(Clone, Copy)]
+struct Run {
+    slot: usize,
+    x0: i32,
+    x1: i32,
+}
+
+/// What goes along a row from left to right.
+struct Sweep {
+    drawn: Drawn,
+    /// Not yet painted, because the next segment may be the same face's.
+    run: Option<Run>,
+}
+
+impl Sweep {
+    fn row<D: Cell>(&mut self, raster: &mut Raster<'_, D>, list: &mut active::List<'_>, open: &mut [u64], y: i32) {
+        let (mut next, mut opened, mut x) = (0, 0, 0);
+        loop {
+            if opened == 0 {
+                // On to where a face begins.
+                let Some(key) = list.key(next) else { break };
+                x = key.place();
+            }
+            while let Some(key) = list.key(next).filter(|key| key.place() <= x) {
+                let pair = list.pair(key.number());
+                if pair.x0 < pair.x1 {
+                    self.drawn.covered += (pair.x1 - pair.x0) as u32;
+                    open[opened] = key.number() as u64;
+                    opened += 1;
+                }
+                next += 1;
+            }
+            let mut end = list.key(next).map_or(i32::MAX, Key::place);
+            for slot in &open[..opened] {
+                end = end.min(list.pair(*slot as usize).x1);
+            }
+            let faces = &open[..opened];
+            while !faces.is_empty() && x < end {
+                let (slot, until) = nearest::lead(faces, list, x, end, y);
+                if let Some(slot) = slot {
+                    self.extend(Run { slot, x0: x, x1: until }, raster, list, y);
+                }
+                x = until;
+            }
+            let mut kept = 0;
+            for i in 0..opened {
+                if list.pair(open[i] as usize).x1 > x {
+                    open[kept] = open[i];
+                    kept += 1;
+                }
+            }
+            opened = kept;
+        }
+        if let Some(run) = self.run.take() {
+            self.paint(run, raster, list, y);
+        }
+    }
+
+    #[inline]
+    fn extend<D: Cell>(&mut self, run: Run, raster: &mut Raster<'_, D>, list: &mut active::List<'_>, y: i32) {
+        match &mut self.run {
+            Some(last) if last.slot == run.slot && last.x1 == run.x0 => last.x1 = run.x1,
+            last => {
+                if let Some(last) = last.replace(run) {
+                    self.paint(last, raster, list, y);
+                }
+            }
+        }
+    }
+
+    fn paint<D: Cell>(&mut self, run: Run, raster: &mut Raster<'_, D>, list: &mut active::List<'_>, y: i32) {
+        let Some(pixels) = raster.frame.row_mut(y as u32) else { return };
+        let Run { slot, x0, x1 } = run;
+        let pair = list.pair_mut(slot);
+        let row = Row { y, origin: pair.origin, x0, x1 };
+        let kernel = raster.kernel;
+        let drawn = &mut self.drawn;
+        let mut gouraud = |step: u16, range: core::ops::Range<usize>, start: u16| {
+            let Some(pixels) = pixels.get_mut(range) else { return };
+            drawn.spans += 1;
+            drawn.pixels += pixels.len() as u32;
+            kernel.fill(pixels, start, step);
+        };
+        match pair.shading {
+            Shading::Flat(index) => {
+                let Some(pixels) = pixels.get_mut(x0 as usize..x1 as usize) else { return };
+                drawn.spans += 1;
+                drawn.pixels += pixels.len() as u32;
+                pixels.fill(index);
+            }
+            Shading::Gouraud => {
+                let shade: &ShadePlane = pair.shade();
+                spans::<false>(&row, shade, |range, start| gouraud(shade.step(), range, start));
+            }
+            Shading::GouraudReseeded => {
+                let shade: &ShadePlane = pair.shade();
+                spans::<true>(&row, shade, |range, start| gouraud(shade.step(), range, start));
+            }
+        }
+    }
+}
