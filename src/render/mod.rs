@@ -6,6 +6,7 @@
 //! | `stage` | an object's vertices, lit and projected, then its faces |
 //! | `clip` | near plane and guard band |
 //! | `rung` | the techniques of shading |
+//! | `hidden`, `painter` | the ways to leave out hidden surfaces |
 //! | `stats` | what a frame came to |
 //!
 //! A frame goes through three stages for every object: its vertices are transformed, lit and
@@ -13,6 +14,8 @@
 //! they are turned away; the [`raster`](crate::raster) draws what is left.
 
 mod clip;
+mod hidden;
+mod painter;
 mod rung;
 mod stage;
 mod stats;
@@ -21,6 +24,7 @@ mod view;
 use alloc::vec::Vec;
 use core::fmt;
 
+pub use hidden::{HiddenSurfaces, UnknownHiddenSurfaces};
 pub use rung::{Rung, UnknownRung};
 pub use stats::Stats;
 pub use view::Screen;
@@ -28,6 +32,7 @@ pub use view::Screen;
 use self::stage::{LitVertex, Paint, Stage};
 use self::view::{ObjectView, View};
 use crate::light::Beam;
+use crate::raster::scan_line::Lists;
 use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
 use crate::scene::Scene;
 use crate::span::Kernel;
@@ -70,35 +75,22 @@ impl fmt::Display for RenderError {
 
 impl core::error::Error for RenderError {}
 
-/// How hidden surfaces are left out.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[non_exhaustive]
-pub enum HiddenSurfaces {
-    /// Faces turned away are not drawn; that is enough for one convex object.
-    BackFaces,
-    /// A depth for every pixel.
-    DepthBuffer,
-}
-
-impl fmt::Display for HiddenSurfaces {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::BackFaces => "back faces only",
-            Self::DepthBuffer => "depth buffer",
-        })
-    }
-}
-
 /// Draws scenes. It keeps nothing of a frame but the memory that the next one will need too.
 #[derive(Debug)]
 pub struct Renderer {
     rung: Rung,
     kernel: Kernel,
+    forced: Option<HiddenSurfaces>,
     views: Vec<ObjectView>,
+    /// The objects as they are drawn.
+    order: Vec<usize>,
     beams: Vec<Beam>,
     paints: Vec<Paint>,
     lit: Vec<LitVertex>,
     depths: Vec<u32>,
+    /// Of a frame that must be known whole before it is drawn.
+    triangles: Vec<([Vertex; 3], Shading)>,
+    lists: Lists,
 }
 
 impl Renderer {
@@ -108,11 +100,15 @@ impl Renderer {
         Self {
             rung: Rung::default(),
             kernel: Kernel::fastest(),
+            forced: None,
             views: Vec::new(),
+            order: Vec::new(),
             beams: Vec::new(),
             paints: Vec::new(),
             lit: Vec::new(),
             depths: Vec::new(),
+            triangles: Vec::new(),
+            lists: Lists::default(),
         }
     }
 
@@ -138,6 +134,18 @@ impl Renderer {
         self.kernel
     }
 
+    /// Forces a way to leave out hidden surfaces, right or wrong; with `None`, as a new renderer has it,
+    /// the cheapest that is right for the scene is taken.
+    pub fn set_hidden_surfaces(&mut self, way: Option<HiddenSurfaces>) {
+        self.forced = way;
+    }
+
+    /// The way that is forced, if one is.
+    #[must_use]
+    pub fn hidden_surfaces(&self) -> Option<HiddenSurfaces> {
+        self.forced
+    }
+
     /// Draws `scene` on the machine: sets its DAC to the scene's palette, if it has one, clears its
     /// pixels and draws.
     ///
@@ -145,11 +153,11 @@ impl Renderer {
     /// A number in the scene that is not finite or not in its range. The machine is then left as it
     /// was.
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {
-        self.prepare(scene, Screen::MODE_13H)?;
+        let way = self.prepare(scene, Screen::MODE_13H)?;
         if let Some(palette) = &scene.palette {
             vga.set_palette(palette);
         }
-        Ok(self.fill(scene, Frame::from(vga)))
+        Ok(self.fill(scene, way, Frame::from(vga)))
     }
 
     /// Draws `scene` into any frame, or into a band of one, whose pixels have this width to height.
@@ -162,12 +170,13 @@ impl Renderer {
         frame: Frame<'_>,
         pixel_aspect: (u32, u32),
     ) -> Result<Stats, RenderError> {
-        self.prepare(scene, Screen { width: frame.width(), height: frame.height(), pixel_aspect })?;
-        Ok(self.fill(scene, frame))
+        let way = self.prepare(scene, Screen { width: frame.width(), height: frame.height(), pixel_aspect })?;
+        Ok(self.fill(scene, way, frame))
     }
 
     /// Hands every triangle that is to be drawn to `triangle`, as the raster would get it: object by
-    /// object, in the order of their faces. The counts of the work are returned, without the
+    /// object, far to near where the scene calls for that, each in the order of its faces; a forced
+    /// painter's order does not sort them here. The counts of the work are returned, without the
     /// raster's.
     ///
     /// # Errors
@@ -178,12 +187,13 @@ impl Renderer {
         screen: Screen,
         triangle: impl FnMut(&[Vertex; 3], Shading),
     ) -> Result<Stats, RenderError> {
-        self.prepare(scene, screen)?;
-        Ok(self.triangles(scene, triangle))
+        let way = self.prepare(scene, screen)?;
+        Ok(self.triangles(scene, way, triangle))
     }
 
-    /// Checks the scene, and makes the way to the screen for every object.
-    fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
+    /// Checks the scene, makes the way to the screen for every object, and chooses how hidden surfaces
+    /// are left out.
+    fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<HiddenSurfaces, RenderError> {
         if !scene.ambient.is_finite() {
             return Err(RenderError::Ambient);
         }
@@ -196,27 +206,76 @@ impl Renderer {
         let view = View::new(&scene.camera, screen).map_err(RenderError::Camera)?;
         self.views.clear();
         self.views.extend(scene.objects().iter().map(|object| ObjectView::new(&view, object)));
-        Ok(())
+        if let Some(forced) = self.forced {
+            self.order.clear();
+            self.order.extend(0..scene.objects().len());
+            return Ok(forced);
+        }
+        Ok(HiddenSurfaces::called_for(scene, &self.views, &mut self.order))
     }
 
-    fn fill(&mut self, scene: &Scene, mut frame: Frame<'_>) -> Stats {
+    fn fill(&mut self, scene: &Scene, way: HiddenSurfaces, mut frame: Frame<'_>) -> Stats {
         frame.clear(scene.background);
-        let mut depths = core::mem::take(&mut self.depths);
-        let raster = Raster::new(frame).with_kernel(self.kernel);
-        let mut raster = match hidden_surfaces(scene) {
-            HiddenSurfaces::BackFaces => raster,
-            HiddenSurfaces::DepthBuffer => raster.with_cleared_depth(&mut depths),
-        };
+        let mut raster = Raster::new(frame).with_kernel(self.kernel);
+        match way {
+            HiddenSurfaces::BackFaces => self.one_by_one(scene, way, raster),
+            // Chosen, the objects lie far to near, and in a convex one no face hides another.
+            HiddenSurfaces::PainterOrder if self.forced.is_none() => self.one_by_one(scene, way, raster),
+            HiddenSurfaces::DepthBuffer => {
+                let mut depths = core::mem::take(&mut self.depths);
+                let stats = self.one_by_one(scene, way, raster.with_cleared_depth(&mut depths));
+                self.depths = depths;
+                stats
+            }
+            HiddenSurfaces::PainterOrder => self.all_at_once(scene, way, |triangles, _| {
+                painter::sort(triangles);
+                let mut drawn = Drawn::default();
+                for (vertices, shading) in triangles {
+                    drawn += raster.triangle(vertices, *shading);
+                }
+                drawn
+            }),
+            HiddenSurfaces::ScanLine => self.all_at_once(scene, way, |triangles, lists| {
+                let scratch = lists.scratch(triangles.len());
+                // There is room for all.
+                raster.scan_line(triangles, scratch).unwrap_or_default()
+            }),
+        }
+    }
+
+    /// Draws each triangle as it comes.
+    fn one_by_one(&mut self, scene: &Scene, way: HiddenSurfaces, mut raster: Raster<'_>) -> Stats {
         let mut drawn = Drawn::default();
-        let mut stats = self.triangles(scene, |vertices, shading| drawn += raster.triangle(vertices, shading));
-        self.depths = depths;
+        let mut stats = self.triangles(scene, way, |vertices, shading| drawn += raster.triangle(vertices, shading));
         stats.raster = drawn;
         stats
     }
 
-    fn triangles(&mut self, scene: &Scene, mut triangle: impl FnMut(&[Vertex; 3], Shading)) -> Stats {
-        let mut stats = Stats::new(self.rung, self.kernel, hidden_surfaces(scene));
-        for (object, view) in scene.objects().iter().zip(&self.views) {
+    /// Draws when all triangles are known.
+    fn all_at_once(
+        &mut self,
+        scene: &Scene,
+        way: HiddenSurfaces,
+        draw: impl FnOnce(&mut [([Vertex; 3], Shading)], &mut Lists) -> Drawn,
+    ) -> Stats {
+        let mut triangles = core::mem::take(&mut self.triangles);
+        triangles.clear();
+        let mut stats = self.triangles(scene, way, |vertices, shading| triangles.push((*vertices, shading)));
+        stats.raster = draw(&mut triangles, &mut self.lists);
+        self.triangles = triangles;
+        stats
+    }
+
+    fn triangles(
+        &mut self,
+        scene: &Scene,
+        way: HiddenSurfaces,
+        mut triangle: impl FnMut(&[Vertex; 3], Shading),
+    ) -> Stats {
+        let mut stats = Stats::new(self.rung, self.kernel, way);
+        for &index in &self.order {
+            // One for each object, by `prepare`.
+            let (object, view) = (&scene.objects()[index], &self.views[index]);
             self.beams.clear();
             self.beams.extend(scene.lights().iter().filter_map(|light| light.beam(view)));
             self.paints.clear();
@@ -232,14 +291,5 @@ impl Renderer {
 impl Default for Renderer {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-/// One convex object hides nothing but its own back faces. All else needs a depth for every pixel.
-fn hidden_surfaces(scene: &Scene) -> HiddenSurfaces {
-    match scene.objects() {
-        [] => HiddenSurfaces::BackFaces,
-        [object] if object.mesh().is_convex() => HiddenSurfaces::BackFaces,
-        _ => HiddenSurfaces::DepthBuffer,
     }
 }

@@ -13,6 +13,7 @@
 use glam::{Mat3, Vec3};
 
 use crate::fixed::{I24F8, U8F8};
+use crate::mesh::Bounds;
 use crate::raster::Vertex;
 use crate::scene::{Camera, Object, UpAxis};
 
@@ -244,8 +245,29 @@ impl ObjectView {
         if !(x.abs() <= Self::LIMIT + 0.5 && y.abs() <= Self::LIMIT + 0.5) {
             return None;
         }
+        Vertex::new(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, shade, self.depth(w)).ok()
+    }
+
+    /// round(2³⁰ · near / w).
+    #[inline]
+    fn depth(&self, w: f64) -> u32 {
         // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates.
-        let depth = (f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32;
-        Vertex::new(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, shade, depth).ok()
+        (f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32
+    }
+
+    /// The least and the greatest depth that a vertex within `bounds` may have, once what is nearer
+    /// than the near plane is cut off; somewhat wider than they are.
+    pub(super) fn depths(&self, bounds: Bounds) -> (u32, u32) {
+        let (row, offset) = (self.exact.0[2], self.exact.1[2]);
+        let (min, max) = (widen(bounds.min), widen(bounds.max));
+        let middle = dot(row, [0, 1, 2].map(|i| (min[i] + max[i]) / 2.0)) + offset;
+        let size = dot(row.map(f64::abs), [0, 1, 2].map(|i| (max[i] - min[i]) / 2.0));
+        let reach = dot(row.map(f64::abs), [0, 1, 2].map(|i| min[i].abs().max(max[i].abs()))) + offset.abs();
+        // In f32, w is made with four roundings of the matrix, three of products and three of sums, each
+        // of at most 2⁻²⁴ of what they reach.
+        let slack = reach / 1_048_576.0;
+        let near = f64::from(self.near);
+        let at = |w: f64| self.depth(w.max(near));
+        (at(middle + size + slack), at(middle - size - slack))
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::export::Scale;
-use mode13h::render::{Renderer, Stats};
+use mode13h::render::{HiddenSurfaces, Renderer, Stats};
 use mode13h::vga::Vga;
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -38,6 +38,8 @@ pub(crate) struct Options {
     fps: f64,
     #[command(flatten)]
     drawing: Drawing,
+    #[arg(long, value_name = "WAY", help = help_on_hidden_surfaces())]
+    hidden: Option<HiddenSurfaces>,
     /// Enlarge: 1, 2, 5x6 (exactly 4:3 in square pixels), or a width and height such as 640x480 [default: 1; 5x6 with
     /// --rgb]
     #[arg(long, value_name = "SCALE")]
@@ -51,6 +53,11 @@ pub(crate) struct Options {
     /// Say on standard error what was drawn, and by which kernel, a line for each frame
     #[arg(long)]
     stats: bool,
+}
+
+fn help_on_hidden_surfaces() -> String {
+    let names = HiddenSurfaces::ALL.map(HiddenSurfaces::name);
+    format!("How hidden surfaces are left out: {} [default: as the scene calls for]", names.join(", "))
 }
 
 fn finite(words: &str) -> Result<f64, String> {
@@ -80,6 +87,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         let mut renderer = Renderer::new();
         renderer.set_kernel(kernel);
         renderer.set_rung(options.drawing.rung());
+        renderer.set_hidden_surfaces(options.hidden);
         (renderer, film.stage.clone(), Vga::new())
     };
     let frame = |(renderer, stage, vga): &mut (Renderer, Stage, Vga), number: u32| {
