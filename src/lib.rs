@@ -16,7 +16,8 @@
 //! | [`scene`] | objects, camera, lights | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
-//! | [`verify`] | every kernel of this machine against the specification | `std` |
+//! | [`record`] | a frame's triangles in a file, to be replayed | `std` |
+//! | [`verify`] | the hard cases on this machine; a recorded frame through every kernel and method | `std` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
 //!
 #![cfg_attr(feature = "png", doc = "```no_run")]
@@ -77,6 +78,8 @@ pub mod scene;
 
 #[cfg(feature = "std")]
 pub mod export;
+#[cfg(feature = "std")]
+pub mod record;
 #[cfg(feature = "std")]
 pub mod verify;
 #[cfg(feature = "window")]

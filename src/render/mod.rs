@@ -28,6 +28,8 @@ pub use hidden::{HiddenSurfaces, UnknownHiddenSurfaces};
 pub use rung::{Rung, UnknownRung};
 pub use stats::Stats;
 pub use view::Screen;
+#[cfg(feature = "std")]
+pub(crate) use view::turn;
 
 use self::stage::{LitVertex, Paint, Stage};
 use self::view::{ObjectView, View};

@@ -116,7 +116,7 @@ impl View {
 }
 
 /// An object's turn, from its angles about x, y and z: z first, then y, then x.
-fn turn(angles: [f64; 3]) -> Matrix {
+pub(crate) fn turn(angles: [f64; 3]) -> [[f64; 3]; 3] {
     let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
     let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
     let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
