@@ -18,7 +18,8 @@
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
 //! | `show` | hard cases as pictures: the right way beside the fault | `png`, `embedded-graphics` |
-//! | [`verify`] | every kernel of this machine against the specification | `std` |
+//! | [`record`] | a frame's triangles in a file, to be replayed | `std` |
+//! | [`verify`] | the hard cases on this machine; a recorded frame through every kernel and method | `std` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
 //!
 #![cfg_attr(feature = "png", doc = "```no_run")]
@@ -80,6 +81,8 @@ pub mod scene;
 
 #[cfg(feature = "std")]
 pub mod export;
+#[cfg(feature = "std")]
+pub mod record;
 #[cfg(all(feature = "png", feature = "embedded-graphics"))]
 pub mod show;
 #[cfg(feature = "std")]

@@ -27,12 +27,7 @@ mod view;
 use alloc::vec::Vec;
 use core::fmt;
 
-pub use hidden::{HiddenSurfaces, UnknownHiddenSurfaces};
-pub use rung::{Rung, UnknownRung};
-pub use stats::Stats;
-pub use vertex_path::{UnknownVertexPath, VertexPath};
-pub use view::Screen;
-
+#[cfg(feature = "std")]
 use self::integer::IntegerPath;
 use self::stage::{LitVertex, Paint, Stage};
 use self::view::{ObjectView, View};
@@ -42,6 +37,11 @@ use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
 use crate::scene::Scene;
 use crate::span::Kernel;
 use crate::vga::Vga;
+pub use hidden::{HiddenSurfaces, UnknownHiddenSurfaces};
+pub use rung::{Rung, UnknownRung};
+pub use stats::Stats;
+pub use vertex_path::{UnknownVertexPath, VertexPath};
+pub use view::Screen;
 
 /// Why a scene could not be drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
