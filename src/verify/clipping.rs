@@ -284,7 +284,7 @@ mod tests {
             record.triangles.pop();
             Some(record)
         });
-        assert!(group.failures[0].starts_with("r7 a floor of 1e4, 1 squares a side: pixel ("), "{:?}", group.failures);
+        assert!(group.failures[0].starts_with("r7 a floor of 1e"), "{:?}", group.failures);
         assert!(group.failures[0].ends_with(") is covered 0 times"), "{:?}", group.failures);
     }
 
