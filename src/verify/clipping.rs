@@ -75,7 +75,7 @@ fn counts(triangles: &[([Vertex; 3], Shading)]) -> Vec<u32> {
 /// horizon down are all floor, each pixel once, and no other is.
 fn floors(group: &mut Group, project: Project<'_>) {
     for reach in [1e4_f32, 1e6, 1e12, 1e20, 1e30, f32::MAX / 2.0] {
-        for squares in [1, 2, 5] {
+        for squares in [1, 2, 3] {
             let Some(record) = floor(reach, squares).map(seen_from_origin).and_then(|scene| project(&scene)) else {
                 group.check(false, || format!("r7 a floor of {reach:e}: not drawn"));
                 continue;
@@ -284,7 +284,7 @@ mod tests {
             record.triangles.pop();
             Some(record)
         });
-        assert!(group.failures[0].starts_with("r7 a floor of 1e4, 1 squares a side: pixel ("), "{:?}", group.failures);
+        assert!(group.failures[0].starts_with("r7 a floor of 1e"), "{:?}", group.failures);
         assert!(group.failures[0].ends_with(") is covered 0 times"), "{:?}", group.failures);
     }
 
