@@ -89,8 +89,8 @@ fn f5_broken_records_are_refused_by_their_line() {
         ("triangles", "palette 1\n012345", "line 7: expected a colour rrggbb, found \"\""),
         ("triangles", "palette 1\n01234g", "line 7: expected a colour rrggbb, found \"01234g\""),
         ("triangles", "palette 1\n+12345", "line 7: expected a colour rrggbb, found \"+12345\""),
-        // The first coordinate is taken for the byte, and a number lacks at the end.
-        ("flat 7", "flat", "line 7: expected a depth, found \"\""),
+        // The first coordinate is taken for the byte, the next for that, and so on.
+        ("flat 7", "flat", "line 7: expected a shade in 1/256, found \"4294967295\""),
         ("flat 7", "flat -1", "line 7: expected a palette index, found \"-1\""),
         ("flat 7", "phong", "line 7: expected \"flat\", \"gouraud\", \"gouraud-reseeded\" or \"end\", found \"phong\""),
         ("2048 0 0 1", "1048577 0 0 1", "line 7: vertex at (1048577, 0) / 256 pixels lies outside the guard band"),
@@ -230,7 +230,7 @@ mod program {
         assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty(), "{output:?}");
         let record = Record::load(directory.path().join("x.rec")).expect("a record");
         assert_eq!(record.hidden_surfaces, HiddenSurfaces::ScanLine);
-        assert_eq!(record.palette.as_ref(), builtin::by_name("grey").map(|grey| &grey.palette));
+        assert_eq!(record.palette.as_ref(), builtin::by_name("grey").map(|grey| grey.palette));
 
         let output = run(directory.path(), "verify --replay x.rec");
         let text = String::from_utf8(output.stdout).expect("text");
