@@ -10,6 +10,15 @@
 //! rounds toward minus infinity and a division rounds toward zero, so a value that is narrowed must
 //! say which. Here each narrowing conversion has its rounding in its name.
 
+/// Whether the target has IEEE double precision in hardware. Without it the branch that uses
+/// floats is not compiled. (x87 is left out: it rounds to 64 bits on the way.)
+pub(crate) const HAS_F64: bool = cfg!(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    target_arch = "wasm32",
+    all(target_arch = "x86", target_feature = "sse2")
+));
+
 /// A screen coordinate in 1/256 pixel: 24 bits before the point, 8 behind it.
 ///
 /// Pixel `p` has its centre at `256·p + 128` units.

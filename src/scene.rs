@@ -7,7 +7,7 @@
 use alloc::vec::Vec;
 use core::ops::{Index, IndexMut};
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 use crate::light::{Light, Material};
 use crate::mesh::Mesh;
@@ -85,6 +85,11 @@ impl Object {
         &self.mesh
     }
 
+    /// The mesh, to be kept.
+    pub(crate) fn shared_mesh(&self) -> &Shared<Mesh> {
+        &self.mesh
+    }
+
     /// Of each vertex of the mesh, the number of its surface.
     #[must_use]
     pub fn vertex_surfaces(&self) -> &[u16] {
@@ -141,6 +146,37 @@ impl Object {
     pub fn set_angles(&mut self, angles: [f64; 3]) {
         self.angles = angles;
     }
+
+    /// The matrix that turns the mesh's directions into the scene's: its up axis, then its angles.
+    /// Orthonormal within 10⁻⁶.
+    #[must_use]
+    pub fn rotation(&self) -> Mat3 {
+        // Rows, each rounded to the nearest f32.
+        Mat3::from_cols_array_2d(&self.turn().map(|row| row.map(|c| c as f32))).transpose()
+    }
+
+    /// The same in f64, by rows.
+    pub(crate) fn turn(&self) -> [[f64; 3]; 3] {
+        match self.up_axis {
+            UpAxis::Y => turn(self.angles),
+            // (x, y, z) stands up as (x, z, −y).
+            UpAxis::Z => turn(self.angles).map(|[x, y, z]| [x, -z, y]),
+        }
+    }
+}
+
+/// The turn of angles about x, y and z, by rows: z first, then y, then x.
+pub(crate) fn turn(angles: [f64; 3]) -> [[f64; 3]; 3] {
+    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
+    let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
+    let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
+    let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];
+    matrix_product(&about_x, &matrix_product(&about_y, &about_z))
+}
+
+/// The product of two matrices by rows, each sum in the order of its terms.
+pub(crate) fn matrix_product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    a.map(|[x, y, z]| [0, 1, 2].map(|j| x * b[0][j] + y * b[1][j] + z * b[2][j]))
 }
 
 /// The eye: a perspective camera.

@@ -37,6 +37,33 @@ impl Ordered {
         Self { vertices, doubled_area }
     }
 
+    /// The area doubled, positive.
+    #[must_use]
+    #[inline]
+    pub fn area(&self) -> i64 {
+        self.doubled_area.abs()
+    }
+
+    /// How a value that is linear over the triangle, and `values` at its vertices, changes from one
+    /// 1/256 pixel to the next: numerators (in x, in y) over [`area`](Self::area).
+    ///
+    /// ```text
+    /// gx = (v1 − v0)·(y2 − y0) − (v2 − v0)·(y1 − y0)
+    /// gy = (v2 − v0)·(x1 − x0) − (v1 − v0)·(x2 − x0)       the signs both turned if the area is negative
+    /// ```
+    ///
+    /// Of values that lie within 2ⁿ of each other each is within 2ⁿ⁺²²; n is at most 32.
+    #[must_use]
+    #[inline]
+    pub fn gradient(&self, values: [i64; 3]) -> (i64, i64) {
+        let [(x0, y0), (x1, y1), (x2, y2)] =
+            self.vertices.each_ref().map(|v| (i64::from(v.x().to_bits()), i64::from(v.y().to_bits())));
+        let (v1, v2) = (values[1] - values[0], values[2] - values[0]);
+        let gx = v1 * (y2 - y0) - v2 * (y1 - y0);
+        let gy = v2 * (x1 - x0) - v1 * (x2 - x0);
+        if self.doubled_area < 0 { (-gx, -gy) } else { (gx, gy) }
+    }
+
     /// The rows inside `clip` whose centre lies between the top and the bottom; `None` if there is none,
     /// if no column's centre inside `clip` lies between left and right, or if there is no area.
     #[must_use]
@@ -98,6 +125,16 @@ pub struct Row {
     pub x0: i32,
     /// The pixel after the last.
     pub x1: i32,
+}
+
+impl Row {
+    /// Its covered pixels, as columns.
+    #[must_use]
+    #[inline]
+    pub fn range(&self) -> core::ops::Range<usize> {
+        // Columns of a frame: 0 to 4,096.
+        self.x0 as usize..self.x1 as usize
+    }
 }
 
 #[inline]

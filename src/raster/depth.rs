@@ -38,19 +38,16 @@ impl DepthPlane {
     #[must_use]
     #[inline]
     pub fn new(triangle: &Ordered) -> Self {
-        let [v0, v1, v2] = &triangle.vertices;
-        let sign = triangle.doubled_area >> 63;
-        let area = Divisor::new((triangle.doubled_area ^ sign) - sign);
-        let (x0, y0) = (i64::from(v0.x().to_bits()), i64::from(v0.y().to_bits()));
-        let (x1, y1) = (i64::from(v1.x().to_bits()) - x0, i64::from(v1.y().to_bits()) - y0);
-        let (x2, y2) = (i64::from(v2.x().to_bits()) - x0, i64::from(v2.y().to_bits()) - y0);
-        let d0 = i64::from(v0.depth());
-        let (d1, d2) = (i64::from(v1.depth()) - d0, i64::from(v2.depth()) - d0);
-        // At most 2 · 2³² · 2²¹ = 2⁵⁴.
-        let gx = gradient(((d1 * y2 - d2 * y1) ^ sign) - sign, &area);
-        let gy = gradient(((d2 * x1 - d1 * x2) ^ sign) - sign, &area);
-        let origin =
-            ((d0 << 24) + (1 << 23)).wrapping_add(gx.wrapping_mul(128 - x0)).wrapping_add(gy.wrapping_mul(128 - y0));
+        let area = Divisor::new(triangle.area());
+        let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth()));
+        // At most 2⁵⁴ both.
+        let (gx, gy) = triangle.gradient(depths);
+        let (gx, gy) = (gradient(gx, &area), gradient(gy, &area));
+        let first = &triangle.vertices[0];
+        let (x0, y0) = (i64::from(first.x().to_bits()), i64::from(first.y().to_bits()));
+        let origin = ((depths[0] << 24) + (1 << 23))
+            .wrapping_add(gx.wrapping_mul(128 - x0))
+            .wrapping_add(gy.wrapping_mul(128 - y0));
         Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
     }
 

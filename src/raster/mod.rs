@@ -13,11 +13,13 @@
 //! | file | what |
 //! |---|---|
 //! | [`vertex`] | what may enter: a [`Vertex`] is checked when it is made |
+//! | [`clip`] | what clipping before the projection leaves of a triangle, in triangles |
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
 //! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
 //! | [`edge`], [`cover`] | which pixels |
-//! | [`shade`], [`depth`] | which byte, and whether it is in front |
+//! | [`shade`], [`hyperbolic`], [`depth`] | which byte, and whether it is in front |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
+//! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
 //! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
 //! ```
@@ -33,12 +35,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod clip;
 pub mod cover;
 pub mod depth;
 #[cfg(feature = "embedded-graphics")]
 mod draw_target;
 pub mod edge;
 pub mod frame;
+pub mod hyperbolic;
+mod paint;
+pub mod polygon;
 pub mod quotient;
 pub mod scan_line;
 pub mod shade;

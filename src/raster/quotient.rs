@@ -16,14 +16,7 @@
 //! where there is no f64 unit the integer division is used, and nothing of this module links a
 //! soft-float routine.
 
-/// Whether the target has IEEE double precision in hardware. Without it the branch that uses
-/// floats is not compiled. (x87 is left out: it rounds to 64 bits on the way.)
-const HAS_F64: bool = cfg!(any(
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    target_arch = "wasm32",
-    all(target_arch = "x86", target_feature = "sse2")
-));
+use crate::fixed::HAS_F64;
 
 /// A divisor, 1 to 2⁴⁴, with its reciprocal.
 #[derive(Clone, Copy, Debug)]

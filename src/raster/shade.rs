@@ -61,19 +61,14 @@ impl ShadePlane {
     #[must_use]
     #[inline]
     pub fn new(triangle: &Ordered) -> Self {
-        let [v0, v1, v2] = &triangle.vertices;
-        let sign = triangle.doubled_area >> 63;
-        let area = (triangle.doubled_area ^ sign) - sign;
-        let (x0, y0) = (i64::from(v0.x().to_bits()), i64::from(v0.y().to_bits()));
-        let (x1, y1) = (i64::from(v1.x().to_bits()) - x0, i64::from(v1.y().to_bits()) - y0);
-        let (x2, y2) = (i64::from(v2.x().to_bits()) - x0, i64::from(v2.y().to_bits()) - y0);
-        let i0 = i64::from(v0.shade().to_bits());
-        let (i1, i2) = (i64::from(v1.shade().to_bits()) - i0, i64::from(v2.shade().to_bits()) - i0);
-        // At most 2 · 2¹⁶ · 2²¹ = 2³⁸, and with the area's sign.
-        let gx = ((i1 * y2 - i2 * y1) ^ sign) - sign;
-        let gy = ((i2 * x1 - i1 * x2) ^ sign) - sign;
-        // At most 2¹⁶ · 2⁴² + 2 · 2³⁸ · 2²⁰·⁰⁰⁰² < 2⁶⁰.
-        let origin = i0 * area + gx * (128 - x0) + gy * (128 - y0);
+        let shades = triangle.vertices.each_ref().map(|v| i64::from(v.shade().to_bits()));
+        // At most 2³⁸ both.
+        let (gx, gy) = triangle.gradient(shades);
+        let first = &triangle.vertices[0];
+        let (x0, y0) = (i64::from(first.x().to_bits()), i64::from(first.y().to_bits()));
+        let area = triangle.area();
+        // At most 2¹⁶ · 2⁴² + 2 · 2³⁸ · (2²⁰ + 128) < 2⁶⁰.
+        let origin = shades[0] * area + gx * (128 - x0) + gy * (128 - y0);
         let area = Divisor::new(area);
         Self {
             area,

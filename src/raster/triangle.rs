@@ -1,11 +1,11 @@
 //! A triangle, from three vertices to bytes.
 
-use super::cover::{Ordered, Row};
+use super::cover::Ordered;
 use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::frame::{Frame, Rect};
-use super::shade::{RESEED, ShadePlane};
+use super::paint::Paint;
 use super::vertex::Vertex;
-use crate::span::{Kernel, depth};
+use crate::span::Kernel;
 
 /// How a triangle's pixels get their shade.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -19,6 +19,9 @@ pub enum Shading {
     /// The same, started anew every 64 pixels: within three quarters of a shade of exact.
     #[default]
     GouraudReseeded,
+    /// Linear on the face in space, so perspective-correct: a quotient for every pixel, the nearest
+    /// shade to exact. It takes the depths of the vertices for 1/w.
+    GouraudHyperbolic,
 }
 
 /// What drawing a triangle came to.
@@ -106,94 +109,21 @@ impl<'a, D: Cell> Raster<'a, D> {
     #[inline]
     pub fn triangle(&mut self, vertices: &[Vertex; 3], shading: Shading) -> Drawn {
         let triangle = Ordered::new(vertices);
-        match shading {
-            Shading::Flat(index) => self.flat(&triangle, index),
-            Shading::Gouraud => self.gouraud::<false>(&triangle),
-            Shading::GouraudReseeded => self.gouraud::<true>(&triangle),
-        }
-    }
-
-    fn flat(&mut self, triangle: &Ordered, index: u8) -> Drawn {
-        let mut drawn = Drawn::default();
-        let mut plane = None;
-        triangle.rows(self.frame.width(), self.clip, |row| {
-            let (y, range) = (row.y as u32, row.x0 as usize..row.x1 as usize);
-            drawn.spans += 1;
-            drawn.covered += (row.x1 - row.x0) as u32;
-            let Some(pixels) = self.frame.row_mut(y).and_then(|pixels| pixels.get_mut(range.clone())) else { return };
-            let Some(depth) = &mut self.depth else {
-                pixels.fill(index);
-                drawn.pixels += (row.x1 - row.x0) as u32;
-                return;
-            };
-            let Some(depths) = depth.row_mut(y).and_then(|depths| depths.get_mut(range)) else { return };
-            let plane = plane.get_or_insert_with(|| DepthPlane::new(triangle));
-            let z = plane.fixed_at(row.x0, row.y);
-            drawn.pixels += depth::fill_nearer(pixels, depths, u16::from(index) << 8, 0, z, plane.step());
-        });
-        drawn
-    }
-
-    fn gouraud<const RESEEDED: bool>(&mut self, triangle: &Ordered) -> Drawn {
         let mut drawn = Drawn::default();
         // Made when the first row is there: half of the triangles of a fine model cover no pixel.
-        let mut planes = None;
+        let (mut paint, mut plane) = (None, None);
         triangle.rows(self.frame.width(), self.clip, |row| {
-            let y = row.y as u32;
             drawn.covered += (row.x1 - row.x0) as u32;
+            let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };
-            let depths = match &mut self.depth {
-                None => None,
-                Some(depth) => match depth.row_mut(y) {
-                    Some(depths) => Some(depths),
-                    None => return,
-                },
+            let paint = paint.get_or_insert_with(|| Paint::new(&triangle, shading));
+            let Some(depth) = &mut self.depth else {
+                return paint.row(&row, pixels, self.kernel, &mut drawn);
             };
-            let tested = depths.is_some();
-            let (shade, depth) =
-                planes.get_or_insert_with(|| (ShadePlane::new(triangle), tested.then(|| DepthPlane::new(triangle))));
-            let mut depths = depths.zip(depth.as_ref());
-            spans::<RESEEDED>(&row, shade, |range, start| {
-                drawn.spans += 1;
-                let first = range.start as i32;
-                let Some(pixels) = pixels.get_mut(range.clone()) else { return };
-                match &mut depths {
-                    None => {
-                        drawn.pixels += pixels.len() as u32;
-                        self.kernel.fill(pixels, start, shade.step());
-                    }
-                    Some((depths, plane)) => {
-                        let Some(depths) = depths.get_mut(range) else { return };
-                        let z = plane.fixed_at(first, row.y);
-                        drawn.pixels += depth::fill_nearer(pixels, depths, start, shade.step(), z, plane.step());
-                    }
-                }
-            });
+            let Some(depths) = depth.row_mut(y) else { return };
+            let plane = plane.get_or_insert_with(|| DepthPlane::new(&triangle));
+            paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
         });
         drawn
-    }
-}
-
-/// Cuts a row into spans, each with its start. Exact starts lie at the row's origin and, if
-/// `RESEEDED`, every 64 pixels from there; a row whose drawn part begins later continues from the
-/// last start at or left of it, so that the clip rectangle changes no byte.
-#[inline]
-pub(super) fn spans<const RESEEDED: bool>(
-    row: &Row,
-    shade: &ShadePlane,
-    mut span: impl FnMut(core::ops::Range<usize>, u16),
-) {
-    let advance = |start: u16, pixels: i32| start.wrapping_add(shade.step().wrapping_mul(pixels as u16));
-    if !RESEEDED {
-        let start = shade.start(row.origin, row.y);
-        return span(row.x0 as usize..row.x1 as usize, advance(start, row.x0 - row.origin));
-    }
-    let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
-    let mut x = row.x0;
-    while x < row.x1 {
-        let end = row.x1.min(seed + RESEED);
-        span(x as usize..end as usize, advance(shade.start(seed, row.y), x - seed));
-        seed += RESEED;
-        x = end;
     }
 }

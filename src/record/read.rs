@@ -104,11 +104,12 @@ fn palette(lines: &mut Lines<impl BufRead>) -> Result<Palette, RecordErrorKind> 
 }
 
 fn triangle(fields: &mut Fields<'_>) -> Result<([Vertex; 3], Shading), RecordErrorKind> {
-    const SHADINGS: &str = "\"flat\", \"gouraud\", \"gouraud-reseeded\" or \"end\"";
+    const SHADINGS: &str = "\"flat\", \"gouraud\", \"gouraud-reseeded\", \"gouraud-hyperbolic\" or \"end\"";
     let shading = match fields.next(SHADINGS)? {
         "flat" => Shading::Flat(fields.number("a palette index")?),
         "gouraud" => Shading::Gouraud,
         "gouraud-reseeded" => Shading::GouraudReseeded,
+        "gouraud-hyperbolic" => Shading::GouraudHyperbolic,
         _ => return Err(fields.not(SHADINGS)),
     };
     let mut vertices = [Vertex::default(); 3];

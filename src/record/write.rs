@@ -27,6 +27,7 @@ pub(super) fn write(record: &Record, out: &mut dyn Write) -> io::Result<()> {
             Shading::Flat(index) => write!(out, "flat {index}")?,
             Shading::Gouraud => write!(out, "gouraud")?,
             Shading::GouraudReseeded => write!(out, "gouraud-reseeded")?,
+            Shading::GouraudHyperbolic => write!(out, "gouraud-hyperbolic")?,
         }
         for v in vertices {
             write!(out, "  {} {} {} {}", v.x().to_bits(), v.y().to_bits(), v.shade().to_bits(), v.depth())?;

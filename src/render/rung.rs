@@ -14,11 +14,13 @@ pub enum Rung {
     /// The same, started anew every 64 pixels: the default.
     #[default]
     Gouraud88Reseeded,
+    /// Linear on the face in space, so perspective-correct: a quotient for every pixel.
+    GouraudHyperbolic,
 }
 
 impl Rung {
     /// Every rung, from cheap to exact.
-    pub const ALL: [Self; 3] = [Self::Flat, Self::Gouraud88, Self::Gouraud88Reseeded];
+    pub const ALL: [Self; 4] = [Self::Flat, Self::Gouraud88, Self::Gouraud88Reseeded, Self::GouraudHyperbolic];
 
     /// Its name, as it is typed.
     #[must_use]
@@ -27,6 +29,7 @@ impl Rung {
             Self::Flat => "flat",
             Self::Gouraud88 => "gouraud-8.8",
             Self::Gouraud88Reseeded => "gouraud-8.8-reseeded",
+            Self::GouraudHyperbolic => "gouraud-hyperbolic",
         }
     }
 }

@@ -15,7 +15,7 @@ use glam::{Mat3, Vec3};
 use crate::fixed::{I24F8, U8F8};
 use crate::mesh::Bounds;
 use crate::raster::Vertex;
-use crate::scene::{Camera, Object, UpAxis};
+use crate::scene::{Camera, Object, matrix_product};
 
 /// What is drawn on: size in pixels, and the shape of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -31,6 +31,13 @@ pub struct Screen {
 impl Screen {
     /// 320 × 200, pixels 5:6.
     pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
+
+    /// fx and fy, in pixels; the field of view in radians.
+    pub(super) fn focal_lengths(self, field_of_view: f32) -> [f64; 2] {
+        let (pixel_width, pixel_height) = self.pixel_aspect;
+        let fy = f64::from(self.height) / 2.0 / libm::tan(f64::from(field_of_view) / 2.0);
+        [fy * f64::from(pixel_height) / f64::from(pixel_width), fy]
+    }
 }
 
 type Row = [f64; 3];
@@ -46,11 +53,6 @@ fn cross(a: Row, b: Row) -> Row {
 
 fn widen(v: Vec3) -> Row {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
-}
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    let column = |j: usize| [b[0][j], b[1][j], b[2][j]];
-    a.map(|row| [dot(row, column(0)), dot(row, column(1)), dot(row, column(2))])
 }
 
 /// `None` for the zero vector. Finite f32 components can neither overflow nor vanish in f64.
@@ -102,9 +104,7 @@ impl View {
         let up = cross(right, forward);
 
         let (width, height) = (f64::from(screen.width), f64::from(screen.height));
-        let fy = height / 2.0 / libm::tan(f64::from(field_of_view) / 2.0);
-        let (pixel_width, pixel_height) = screen.pixel_aspect;
-        let fx = fy * f64::from(pixel_height) / f64::from(pixel_width);
+        let [fx, fy] = screen.focal_lengths(field_of_view);
         Ok(Self {
             eye,
             rows: [right.map(|c| fx * c), up.map(|c| -fy * c), forward],
@@ -113,15 +113,6 @@ impl View {
             near,
         })
     }
-}
-
-/// An object's turn, from its angles about x, y and z: z first, then y, then x.
-pub(crate) fn turn(angles: [f64; 3]) -> [[f64; 3]; 3] {
-    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
-    let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
-    let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
-    let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];
-    product(&about_x, &product(&about_y, &about_z))
 }
 
 /// An object's whole way: from its mesh to the screen.
@@ -153,13 +144,9 @@ impl ObjectView {
     const FAST_REACH: f64 = 1e30;
 
     pub(super) fn new(view: &View, object: &Object) -> Self {
-        let mut turn = turn(object.angles());
-        if object.up_axis == UpAxis::Z {
-            // (x, y, z) stands up as (x, z, −y).
-            turn = turn.map(|[x, y, z]| [x, -z, y]);
-        }
+        let turn = object.turn();
         let scale = f64::from(object.scale);
-        let matrix = product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
+        let matrix = matrix_product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
         let (position, pivot) = (widen(object.position), widen(object.pivot));
         let to_position = [position[0] - view.eye[0], position[1] - view.eye[1], position[2] - view.eye[2]];
         let mut offset = [0.0; 3];
@@ -251,8 +238,10 @@ impl ObjectView {
     /// round(2³⁰ · near / w).
     #[inline]
     fn depth(&self, w: f64) -> u32 {
-        // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates.
-        (f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32
+        // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates. There is no
+        // far plane: beyond 2³¹ times the near distance, where the formula gives the background's 0,
+        // a face is still in front of it.
+        ((f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32).max(1)
     }
 
     /// The least and the greatest depth that a vertex within `bounds` may have, once what is nearer
@@ -264,8 +253,9 @@ impl ObjectView {
         let size = dot(row.map(f64::abs), [0, 1, 2].map(|i| (max[i] - min[i]) / 2.0));
         let reach = dot(row.map(f64::abs), [0, 1, 2].map(|i| min[i].abs().max(max[i].abs()))) + offset.abs();
         // In f32, w is made with four roundings of the matrix, three of products and three of sums, each
-        // of at most 2⁻²⁴ of what they reach.
-        let slack = reach / 1_048_576.0;
+        // of at most 2⁻²⁴ of what they reach. In 16.16, each of three angles is off by at most π · 2⁻¹⁶,
+        // and each entry of the matrix by 2⁻¹⁷: in all less than 2⁻¹².
+        let slack = reach / 4096.0;
         let near = f64::from(self.near);
         let at = |w: f64| self.depth(w.max(near));
         (at(middle + size + slack), at(middle - size - slack))

@@ -66,3 +66,19 @@ pub fn fill_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], shade: u16, step: u
     }
     written
 }
+
+/// The same for a row of bytes that is there already: copies `bytes` where the depth is greater.
+#[inline]
+pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i64, dz: i64) -> u32 {
+    let (mut z, mut written) = (z, 0);
+    for ((pixel, nearest), byte) in row.iter_mut().zip(depth).zip(bytes) {
+        let d = D::of_depth((z >> 24) as u32);
+        if d > *nearest {
+            *nearest = d;
+            *pixel = *byte;
+            written += 1;
+        }
+        z = z.wrapping_add(dz);
+    }
+    written
+}

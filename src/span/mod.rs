@@ -29,6 +29,7 @@
 use core::fmt;
 
 pub mod depth;
+pub mod hyperbolic;
 mod portable;
 #[cfg(feature = "simd")]
 #[cfg_attr(

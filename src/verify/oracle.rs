@@ -92,6 +92,13 @@ pub(super) fn draw(
                     // A sum out of range shows as a byte that no drawing has.
                     ((sum + 128) >> 8) as u8
                 }
+                Shading::GouraudHyperbolic => {
+                    let depths = vertices.each_ref().map(|v| i128::from(v.depth().max(1)));
+                    let products = [0, 1, 2].map(|i| depths[i] * shades[i]);
+                    let ((n, _), (d, _)) =
+                        (interpolate(triangle, products, centre(x, y)), interpolate(triangle, depths, centre(x, y)));
+                    (n + 128 * d).div_euclid(256 * d) as u8
+                }
             };
             pixel(Pixel { x: x as u32, y: y as u32, byte, depth: depth_at(vertices, x, y) });
         }

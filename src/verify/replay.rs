@@ -145,7 +145,7 @@ fn out_of_range(record: &Record, should: &Drawing, is: &[u8]) -> Option<String> 
         .iter()
         .map(|(vertices, shading)| match shading {
             Shading::Flat(index) => (*index, *index),
-            Shading::Gouraud | Shading::GouraudReseeded => {
+            Shading::Gouraud | Shading::GouraudReseeded | Shading::GouraudHyperbolic => {
                 let bytes = vertices.each_ref().map(|v| v.shade().nearest());
                 let [low, high] = [bytes.into_iter().min(), bytes.into_iter().max()].map(Option::unwrap_or_default);
                 (low, high)

@@ -3,8 +3,8 @@
 use super::Group;
 use super::random::Random;
 use crate::mesh::shapes;
-use crate::render::{Renderer, turn};
-use crate::scene::Scene;
+use crate::render::Renderer;
+use crate::scene::{Scene, turn};
 use crate::vga::Vga;
 
 /// A matrix from any angles is a rotation (T1, T2), and frame n, drawn after the frames before it, is

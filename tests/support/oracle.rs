@@ -1,7 +1,7 @@
 //! The naive oracles of the raster: what DESIGN says, in i128, with no thought for speed. They share
 //! nothing with the raster but the vertices.
 
-use mode13h::raster::Vertex;
+use mode13h::raster::{Shading, Vertex};
 
 /// Vertex position in 1/256 pixel.
 pub type Point = (i128, i128);
@@ -99,13 +99,26 @@ pub struct Pixel {
     pub byte: u8,
 }
 
-/// The pixels of a triangle in a frame of `width × height`, by the letter of DESIGN section 4, row by
-/// row. `reseed` is 64, or more than any width for "at f alone".
-pub fn gouraud(vertices: &[Vertex; 3], width: i32, height: i32, reseed: i32) -> Vec<Pixel> {
+/// The exact shade of a covered pixel in 1/256: what `shading` interpolates, without its rounding.
+pub fn exact_shade(vertices: &[Vertex; 3], shading: Shading, p: Point) -> Ratio {
+    let triangle = vertices.each_ref().map(point);
+    let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
+    if shading != Shading::GouraudHyperbolic {
+        return interpolate(triangle, shades, p);
+    }
+    // Weighted by the depths, which are 1/w.
+    let depths = vertices.each_ref().map(|v| i128::from(v.depth().max(1)));
+    let products = [0, 1, 2].map(|i| depths[i] * shades[i]);
+    Ratio { n: interpolate(triangle, products, p).n, d: interpolate(triangle, depths, p).n }
+}
+
+/// The pixels of a triangle in a frame of `width × height`, by the letter of each shading's definition,
+/// row by row.
+pub fn pixels(vertices: &[Vertex; 3], shading: Shading, width: i32, height: i32) -> Vec<Pixel> {
     let triangle = vertices.each_ref().map(point);
     let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
     // No pixel further out than the vertices' own.
-    let pixels = |coordinate: fn(&Point) -> i128, size: i32| {
+    let between = |coordinate: fn(&Point) -> i128, size: i32| {
         let (mut low, mut high) = (i128::from(size), -1);
         for p in &triangle {
             low = low.min(coordinate(p).div_euclid(256));
@@ -114,22 +127,29 @@ pub fn gouraud(vertices: &[Vertex; 3], width: i32, height: i32, reseed: i32) -> 
         low.max(0) as i32..(high + 1).min(i128::from(size)) as i32
     };
     let mut drawn = Vec::new();
-    for y in pixels(|p| p.1, height) {
+    for y in between(|p| p.1, height) {
         let mut first = None;
         let mut sum = 0;
-        for x in pixels(|p| p.0, width) {
+        for x in between(|p| p.0, width) {
             if !covers(triangle, centre(x, y)) {
                 continue;
             }
-            let slope = per_pixel(triangle, shades);
             let f = *first.get_or_insert(x);
-            if (x - f) % reseed == 0 {
-                let exact = interpolate(triangle, shades, centre(x, y));
-                sum = if slope.n < 0 { exact.ceil() } else { exact.floor() };
-            } else {
-                sum += slope.truncate();
-            }
-            let byte = u8::try_from((sum + 128) >> 8).expect("a shade in range is a byte");
+            let exact = exact_shade(vertices, shading, centre(x, y));
+            let byte = match shading {
+                Shading::Flat(byte) => byte.into(),
+                Shading::GouraudHyperbolic => Ratio { n: exact.n + 128 * exact.d, d: 256 * exact.d }.floor(),
+                _ => {
+                    let slope = per_pixel(triangle, shades);
+                    if x == f || (shading == Shading::GouraudReseeded && (x - f) % 64 == 0) {
+                        sum = if slope.n < 0 { exact.ceil() } else { exact.floor() };
+                    } else {
+                        sum += slope.truncate();
+                    }
+                    (sum + 128) >> 8
+                }
+            };
+            let byte = u8::try_from(byte).expect("a shade in range is a byte");
             drawn.push(Pixel { x, y, byte });
         }
     }

@@ -8,6 +8,7 @@ mod output;
 mod overlay;
 mod palette;
 mod render;
+mod show;
 mod stage;
 mod verify;
 
@@ -37,6 +38,8 @@ enum Command {
     Render(render::Options),
     /// Look at a palette, or convert it
     Palette(palette::Options),
+    /// Draw a hard case 16 times enlarged: the right way beside the fault it guards against
+    Show(show::Options),
     /// Check this machine: every span kernel against the specification, and the hard cases
     Verify(verify::Options),
 }
@@ -58,6 +61,7 @@ fn run(words: Words) -> Result<(), Failure> {
         Some(Command::Demo(options)) => demo::run(&options),
         Some(Command::Render(options)) => render::run(&options),
         Some(Command::Palette(options)) => palette::run(&options),
+        Some(Command::Show(options)) => show::run(&options),
         Some(Command::Verify(options)) => verify::run(&options),
     }
 }

@@ -5,7 +5,7 @@ use crate::raster::cover::{Ordered, point};
 use crate::raster::depth::DepthPlane;
 use crate::raster::edge::Edge;
 use crate::raster::frame::Rect;
-use crate::raster::shade::ShadePlane;
+use crate::raster::paint::Paint;
 use crate::raster::triangle::Shading;
 use crate::raster::vertex::Vertex;
 
@@ -33,7 +33,7 @@ pub struct EdgePair {
     pub(super) x1: i32,
     /// Whether it hides the background wherever it is: the depths of its vertices are above 0.
     pub(super) hides_background: bool,
-    shade: Option<ShadePlane>,
+    paint: Option<Paint>,
     depth: Option<DepthPlane>,
     /// Of a place that no face has: the next one.
     next_free: usize,
@@ -88,8 +88,8 @@ impl EdgePair {
 
     /// Its shades, worked out when it first has a pixel.
     #[inline]
-    pub(super) fn shade(&mut self) -> &ShadePlane {
-        self.shade.get_or_insert_with(|| ShadePlane::new(&self.triangle))
+    pub(super) fn paint(&mut self) -> &Paint {
+        self.paint.get_or_insert_with(|| Paint::new(&self.triangle, self.shading))
     }
 
     /// Its depths, worked out when it first meets another face.

@@ -35,8 +35,7 @@ use core::fmt;
 pub use self::active::EdgePair;
 use super::cover::{Ordered, Row};
 use super::depth::Cell;
-use super::shade::ShadePlane;
-use super::triangle::{Drawn, Raster, Shading, spans};
+use super::triangle::{Drawn, Raster, Shading};
 use super::vertex::Vertex;
 
 /// The memory of the scan-line method, lent by the caller. What it holds between two frames makes no
@@ -256,29 +255,6 @@ impl Sweep {
         let Run { slot, x0, x1 } = run;
         let pair = list.pair_mut(slot);
         let row = Row { y, origin: pair.origin, x0, x1 };
-        let kernel = raster.kernel;
-        let drawn = &mut self.drawn;
-        let mut gouraud = |step: u16, range: core::ops::Range<usize>, start: u16| {
-            let Some(pixels) = pixels.get_mut(range) else { return };
-            drawn.spans += 1;
-            drawn.pixels += pixels.len() as u32;
-            kernel.fill(pixels, start, step);
-        };
-        match pair.shading {
-            Shading::Flat(index) => {
-                let Some(pixels) = pixels.get_mut(x0 as usize..x1 as usize) else { return };
-                drawn.spans += 1;
-                drawn.pixels += pixels.len() as u32;
-                pixels.fill(index);
-            }
-            Shading::Gouraud => {
-                let shade: &ShadePlane = pair.shade();
-                spans::<false>(&row, shade, |range, start| gouraud(shade.step(), range, start));
-            }
-            Shading::GouraudReseeded => {
-                let shade: &ShadePlane = pair.shade();
-                spans::<true>(&row, shade, |range, start| gouraud(shade.step(), range, start));
-            }
-        }
+        pair.paint().row(&row, pixels, raster.kernel, &mut self.drawn);
     }
 }

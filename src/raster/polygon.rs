@@ -1,0 +1,316 @@
+//! Convex polygons of any number of vertices, by the table of rows of S4.
+//!
+//! ```text
+//! for every edge:  for every row that it crosses:   table[row].left or .right = (x, shade)
+//! for every row:   from left to right:              shade by shade, linear between the two
+//! ```
+//!
+//! The table is the caller's: one [`TableRow`] for every row that the frame holds, 200 in mode 13h.
+//!
+//! Cover is exact, by the same rule as a triangle's: a crossing's x is rounded up to 1/256 pixel,
+//! which hides no pixel centre, for these lie on whole units; the row runs from the first centre at or
+//! right of the left crossing to the last before the right one. So polygons and triangles that share
+//! edges draw each pixel once.
+//!
+//! Shades are S4's: linear along the edges, then linear between the two crossings of a row. Of a
+//! triangle that is the plane through its vertices. Of more vertices it is not: turned on the screen,
+//! the same quad pairs other edges in a row and gets other shades. That is why faces are split into
+//! triangles elsewhere; this is the way to scan them as it was done.
+//!
+//! # Why no byte leaves the range of the vertices, and nothing divides by zero
+//!
+//! S4 divides by the row's width in whole pixels, S0 by its exact width; both may be 0. Here x0 and x1
+//! are the crossings in 1/256 pixel, both rounded up, and a row is drawn only where a centre c has
+//! x0 ≤ c and c < the right crossing ≤ x1: so x1 − x0 is 1 at least. A crossing's shade lies between
+//! the shades of its edge's ends; start and step along the row are rounded back toward where shades
+//! come from, as in [`shade`](super::shade), so every sum lies between the two crossings' shades.
+
+use core::fmt;
+
+use super::cover::point;
+use super::depth::Cell;
+use super::frame::Rect;
+use super::quotient::Divisor;
+use super::shade::RESEED;
+use super::triangle::{Drawn, Raster, Shading};
+use super::vertex::Vertex;
+use crate::fixed::{I24F8, U8F8};
+
+/// Where the two edges of a convex polygon cross a row's centre.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct TableRow {
+    /// Left crossing, rounded up to 1/256 pixel.
+    pub left_x: I24F8,
+    /// Right crossing, rounded up to 1/256 pixel.
+    pub right_x: I24F8,
+    /// Shade at the left crossing, to the nearest 1/256.
+    pub left_shade: U8F8,
+    /// Shade at the right crossing, to the nearest 1/256.
+    pub right_shade: U8F8,
+}
+
+/// Why a polygon was not drawn.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum PolygonError {
+    /// It turns both ways, or more than once around: a row might cross it four times.
+    NotConvex,
+    /// The table has too few rows.
+    Table {
+        /// Rows given.
+        given: usize,
+        /// Rows needed: those that the frame holds.
+        needed: usize,
+    },
+    /// The table interpolates shades linearly along edges and rows; it has no other shading than
+    /// flat and the two linear ones.
+    Shading(Shading),
+}
+
+impl fmt::Display for PolygonError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotConvex => f.write_str("the polygon is not convex"),
+            Self::Shading(shading) => write!(f, "a table of rows cannot shade as {shading:?}"),
+            Self::Table { given, needed } => write!(f, "a table of {given} rows given where {needed} are needed"),
+        }
+    }
+}
+
+impl core::error::Error for PolygonError {}
+
+/// How a convex polygon is wound on the screen; `None` if it has no area.
+///
+/// Exact. All its turns must go the same way, and its direction must change from down to up (in the
+/// order of (y, x)) once and from up to down once: else it would go round more than once. Vertices that
+/// repeat, or lie on the line between their neighbours, make no difference.
+fn winding(vertices: &[Vertex]) -> Result<Option<Winding>, PolygonError> {
+    let Some(last) = vertices.last() else { return Ok(None) };
+    let mut turns = [false; 2];
+    let (mut changes, mut before): (u32, Option<(i64, i64)>) = (0, None);
+    let mut from = point(last);
+    // Once round, and once more to the first edges, which have no edge before them until then.
+    for (i, vertex) in vertices.iter().chain(vertices).enumerate() {
+        let to = point(vertex);
+        let edge = (i64::from(to.0 - from.0), i64::from(to.1 - from.1));
+        from = to;
+        if edge == (0, 0) {
+            continue;
+        }
+        if let Some(before) = before {
+            if i >= vertices.len() {
+                changes += u32::from(is_down(before) != is_down(edge));
+            }
+            let turn = before.0 * edge.1 - before.1 * edge.0;
+            turns[0] |= turn > 0;
+            turns[1] |= turn < 0;
+        }
+        before = Some(edge);
+    }
+    match turns {
+        [false, false] => Ok(None),
+        [true, false] if changes == 2 => Ok(Some(Winding::Clockwise)),
+        [false, true] if changes == 2 => Ok(Some(Winding::CounterClockwise)),
+        _ => Err(PolygonError::NotConvex),
+    }
+}
+
+fn is_down(edge: (i64, i64)) -> bool {
+    (edge.1, edge.0) > (0, 0)
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Winding {
+    /// On a screen whose y runs down: left edges run up.
+    Clockwise,
+    CounterClockwise,
+}
+
+/// A value that changes by the same fraction from row to row, walked with quotient and remainder.
+struct Walk {
+    value: i64,
+    rest: i64,
+    step: i64,
+    step_rest: i64,
+    height: i64,
+}
+
+impl Walk {
+    /// Of a value that is `a` at the upper end of an edge `height` units high and `b` at its lower end,
+    /// `below` units under the upper one: the floor of it with `bias / height` added. All within 2²²,
+    /// `below` and `bias` less than `height`.
+    fn new(a: i32, b: i32, below: i64, height: &Divisor, bias: i64) -> Self {
+        let change = i64::from(b) - i64::from(a);
+        let (value, rest) = height.floor_and_rest(i64::from(a) * height.get() + change * below + bias);
+        let (step, step_rest) = height.floor_and_rest(change * 256);
+        Self { value, rest, step, step_rest, height: height.get() }
+    }
+
+    fn down(&mut self) {
+        self.rest += self.step_rest;
+        let carry = i64::from(self.rest >= self.height);
+        self.rest -= self.height * carry;
+        self.value += self.step + carry;
+    }
+}
+
+/// Fills in the rows of `clip` that the polygon crosses, edge by edge, and returns them. `table[0]` is
+/// the row `first_row`.
+fn fill_table(
+    vertices: &[Vertex],
+    winding: Winding,
+    clip: Rect,
+    table: &mut [TableRow],
+    first_row: u32,
+) -> core::ops::Range<u32> {
+    // Rows of a frame are below 4,096.
+    let (clip_first, clip_end) = (clip.y0 as i32, clip.y1 as i32);
+    let (mut first, mut end) = (i32::MAX, 0);
+    let Some(mut from) = vertices.last() else { return 0..0 };
+    for to in vertices {
+        let is_down = from.y() < to.y();
+        let (upper, lower) = if is_down { (from, to) } else { (to, from) };
+        from = to;
+        let rows = upper.y().first_centre().max(clip_first)..lower.y().first_centre().min(clip_end);
+        if rows.is_empty() {
+            continue;
+        }
+        (first, end) = (first.min(rows.start), end.max(rows.end));
+        let (a, b) = (point(upper), point(lower));
+        let height = Divisor::new(i64::from(b.1) - i64::from(a.1));
+        let below = i64::from(rows.start) * 256 + 128 - i64::from(a.1);
+        let mut x = Walk::new(a.0, b.0, below, &height, height.get() - 1);
+        let shades = [upper, lower].map(|v| i32::from(v.shade().to_bits()));
+        let mut shade = Walk::new(shades[0], shades[1], below, &height, height.get() / 2);
+        let is_right = is_down == (winding == Winding::Clockwise);
+        for y in rows {
+            if let Some(row) = table.get_mut((y as u32 - first_row) as usize) {
+                // Between the ends of the edge, so within the guard band and 0 to 0xFF00.
+                let (x, shade) = (I24F8::from_bits(x.value as i32), U8F8::from_bits(shade.value as u16));
+                if is_right {
+                    (row.right_x, row.right_shade) = (x, shade);
+                } else {
+                    (row.left_x, row.left_shade) = (x, shade);
+                }
+            }
+            x.down();
+            shade.down();
+        }
+    }
+    // Not negative: `clip_first` is not. Empty if no edge crosses a row.
+    first as u32..end as u32
+}
+
+impl<D: Cell> Raster<'_, D> {
+    /// Draws a convex polygon by the table of rows. Which vertex is the first and the winding make no
+    /// difference; one without area, or with fewer than three vertices, draws nothing.
+    ///
+    /// `table` has a row for each that the frame holds (200 in mode 13h), and keeps those of this
+    /// polygon, from its first row inside the clip rectangle to its last; what it held makes no
+    /// difference. There is no depth in it: a depth buffer that the raster has is neither looked at
+    /// nor changed.
+    ///
+    /// ```
+    /// use mode13h::fixed::{I24F8, U8F8};
+    /// use mode13h::raster::{Frame, Raster, Shading, Vertex, polygon::TableRow};
+    ///
+    /// let at = |x, y, shade| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(shade), 0);
+    /// let quad = [at(0, 0, 10)?, at(4, 0, 90)?, at(4, 2, 90)?, at(0, 2, 10)?];
+    /// let mut bytes = [0; 4 * 2];
+    /// let mut raster = Raster::new(Frame::new(&mut bytes, 4, 2, 4)?);
+    /// raster.polygon(&quad, Shading::Gouraud, &mut [TableRow::default(); 2])?;
+    /// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A shading that is neither flat nor linear, a polygon that is not convex (after rounding to 1/256 pixel one may no longer be), or a table
+    /// with too few rows. Nothing is drawn then.
+    pub fn polygon(
+        &mut self,
+        vertices: &[Vertex],
+        shading: Shading,
+        table: &mut [TableRow],
+    ) -> Result<Drawn, PolygonError> {
+        let reseed = match shading {
+            Shading::Flat(_) | Shading::Gouraud => i32::MAX,
+            Shading::GouraudReseeded => RESEED,
+            other => return Err(PolygonError::Shading(other)),
+        };
+        let held = self.frame.rows();
+        let (given, needed) = (table.len(), held.len());
+        if given < needed {
+            return Err(PolygonError::Table { given, needed });
+        }
+        let mut drawn = Drawn::default();
+        let Some(winding) = winding(vertices)? else { return Ok(drawn) };
+        for y in fill_table(vertices, winding, self.clip, table, held.start) {
+            let Some(edges) = table.get((y - held.start) as usize) else { break };
+            // A frame has at most 4,096 columns.
+            let width = self.frame.width() as i32;
+            let origin = edges.left_x.first_centre().max(0);
+            let (x0, x1) =
+                (origin.max(self.clip.x0 as i32), edges.right_x.first_centre().min(width).min(self.clip.x1 as i32));
+            let Some(pixels) = self.frame.row_mut(y) else { break };
+            if x0 >= x1 {
+                continue;
+            }
+            drawn.covered += (x1 - x0) as u32;
+            drawn.pixels += (x1 - x0) as u32;
+            if let Shading::Flat(index) = shading {
+                drawn.spans += 1;
+                if let Some(pixels) = pixels.get_mut(x0 as usize..x1 as usize) {
+                    pixels.fill(index);
+                }
+                continue;
+            }
+            let shade = RowShade::new(edges);
+            // The start at or left of the first pixel, as a triangle has them.
+            let mut seed = origin + (x0 - origin) / reseed * reseed;
+            let mut x = x0;
+            while x < x1 {
+                let end = x1.min(seed.saturating_add(reseed));
+                // Fewer than 4,096 pixels; the product wraps as the sum does.
+                let start = shade.start(seed).wrapping_add(shade.step.wrapping_mul((x - seed) as u16));
+                if let Some(pixels) = pixels.get_mut(x as usize..end as usize) {
+                    self.kernel.fill(pixels, start, shade.step);
+                }
+                drawn.spans += 1;
+                seed = end;
+                x = end;
+            }
+        }
+        Ok(drawn)
+    }
+}
+
+/// The shades between the two crossings of a row that has a pixel.
+struct RowShade {
+    left_x: i64,
+    left_shade: i64,
+    change: i64,
+    width: Divisor,
+    step: u16,
+}
+
+impl RowShade {
+    fn new(edges: &TableRow) -> Self {
+        let left_shade = i64::from(edges.left_shade.to_bits());
+        let change = i64::from(edges.right_shade.to_bits()) - left_shade;
+        let left_x = i64::from(edges.left_x.to_bits());
+        // 1 at least, and below 2²²: see the module's head.
+        let width = Divisor::new(i64::from(edges.right_x.to_bits()) - left_x);
+        // Of one pixel the step may be any size, and is not used.
+        let step = width.truncate(change * 256) as u16;
+        Self { left_x, left_shade, change, width, step }
+    }
+
+    /// AX at pixel `x` of the row: S0's Cs = As + (xc − Ax)·gradient with the As that it leaves out,
+    /// and half a shade.
+    fn start(&self, x: i32) -> u16 {
+        let along = self.change * (i64::from(x) * 256 + 128 - self.left_x);
+        let rounded = if self.change < 0 { self.width.ceil(along) } else { self.width.floor(along) };
+        // 0 to 0xFF00, by cover.
+        (self.left_shade + rounded + 128) as u16
+    }
+}

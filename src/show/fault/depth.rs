@@ -1,0 +1,47 @@
+//! Faults of depth: which face a pixel belongs to.
+
+use super::{Sample, samples, wrapped};
+use crate::show::face::Face;
+use crate::show::panel::Panel;
+
+/// Painter's order: the polygons one over the other, from the one whose middle is farthest.
+pub(in crate::show) fn painters_order(panel: &mut Panel, polygons: &[&[Face]]) {
+    let middle = |faces: &[Face]| faces.iter().flat_map(|face| face.corners).map(|corner| corner.depth).sum::<f64>();
+    let mut order = polygons.to_vec();
+    order.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
+    for faces in order {
+        super::paint(panel, faces);
+    }
+}
+
+/// A depth buffer of 16 bits: near / w in steps of 1/65,536. Far away two faces share a step, and the
+/// first drawn wins whichever is nearer.
+pub(in crate::show) fn buffer_of_16_bits(panel: &mut Panel, faces: &[Face]) {
+    buffered(panel, faces, |face, sample| (sample.of(face.corners.map(|c| c.depth)) * 65_536.0).floor());
+}
+
+/// Depth added up in f32 from the face's first corner on, which another order of the same corners
+/// rounds differently: two faces in one place win here and there.
+pub(in crate::show) fn rounded_from_the_first_corner(panel: &mut Panel, faces: &[Face]) {
+    buffered(panel, faces, |face, sample| {
+        let [a, b, c] = face.corners.map(|corner| corner.depth as f32);
+        let [_, along_b, along_c] = sample.weights.map(|weight| weight as f32);
+        f64::from(a + along_b * (b - a) + along_c * (c - a))
+    });
+}
+
+fn buffered(panel: &mut Panel, faces: &[Face], depth: impl Fn(&Face, &Sample) -> f64) {
+    let size = (panel.width(), panel.height());
+    let mut depths = vec![0.0; size.0 * size.1];
+    for face in faces {
+        for sample in samples(size, &face.corners) {
+            let held = &mut depths[sample.y as usize * size.0 + sample.x as usize];
+            let depth = depth(face, &sample);
+            if depth > *held {
+                *held = depth;
+                let byte = face.flat.unwrap_or_else(|| wrapped(sample.of(face.corners.map(|c| c.shade))));
+                panel.write(sample.x, sample.y, byte);
+            }
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Faults of light and of projection, on a view of their own.
+
+use super::paint;
+use crate::show::face::{Corner, gouraud};
+use crate::show::panel::Panel;
+
+pub(in crate::show) type Vector = [f64; 3];
+
+pub(in crate::show) fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(in crate::show) fn subtract(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+pub(in crate::show) fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+pub(in crate::show) fn unit(v: Vector) -> Vector {
+    // Of the zero vector NaN: here the faults begin.
+    v.map(|c| c / dot(v, v).sqrt())
+}
+
+/// An eye on the z axis, looking along −z, in a frame of square pixels.
+#[derive(Clone, Copy)]
+pub(in crate::show) struct View {
+    pub(in crate::show) size: (usize, usize),
+    pub(in crate::show) eye: Vector,
+    /// From the upper to the lower edge, in radians.
+    pub(in crate::show) field_of_view: f64,
+}
+
+impl View {
+    /// A point on the screen **whatever the sign of w**: behind the eye both coordinates change sides.
+    pub(in crate::show) fn project(&self, point: Vector, shade: f64) -> Corner {
+        let [x, y, z] = subtract(point, self.eye);
+        let (width, height) = (self.size.0 as f64, self.size.1 as f64);
+        let scale = height / 2.0 / libm::tan(self.field_of_view / 2.0);
+        let w = -z;
+        Corner { x: width / 2.0 + scale * x / w, y: height / 2.0 - scale * y / w, shade, depth: 1.0 / w }.rounded()
+    }
+
+    /// How far in front of the eye a point is.
+    pub(in crate::show) fn w(&self, point: Vector) -> f64 {
+        self.eye[2] - point[2]
+    }
+}
+
+/// Draws the faces of a mesh that are turned towards the eye, or all, with these bytes at the vertices.
+pub(in crate::show) fn lit_mesh(
+    panel: &mut Panel,
+    view: View,
+    positions: &[Vector],
+    triangles: &[[usize; 3]],
+    two_sided: bool,
+    shades: &[f64],
+) {
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|i| view.project(positions[i], shades[i]));
+        // Counter-clockwise seen from outside, on a screen whose y runs down.
+        if two_sided || super::side(a, b, (c.x, c.y)) < 0.0 {
+            paint(panel, &[gouraud([a, b, c])]);
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Faults of shade: which byte a pixel gets.
+
+use super::{centre, samples, wrapped};
+use crate::show::face::Corner;
+use crate::show::panel::Panel;
+
+/// A row of a triangle: where its edges cross the row's centre, and the shades there.
+#[derive(Clone, Copy)]
+struct Row {
+    left: (f64, f64),
+    right: (f64, f64),
+}
+
+/// Where the edges of a convex polygon cross the centre of row `y`; `None` where they do not.
+fn row(corners: &[Corner], y: i32) -> Option<Row> {
+    let yc = f64::from(y) + 0.5;
+    let mut ends = Vec::new();
+    for (i, a) in corners.iter().enumerate() {
+        let b = corners[(i + 1) % corners.len()];
+        if a.y.min(b.y) <= yc && yc < a.y.max(b.y) {
+            let t = (yc - a.y) / (b.y - a.y);
+            ends.push((a.x + (b.x - a.x) * t, a.shade + (b.shade - a.shade) * t));
+        }
+    }
+    match ends[..] {
+        [a, b] if a.0 <= b.0 => Some(Row { left: a, right: b }),
+        [a, b] => Some(Row { left: b, right: a }),
+        _ => None,
+    }
+}
+
+/// A step for every row, (Bs − As) / (Bx − Ax), which has no bound as the row gets short, and S0's
+/// start with its As put back: As + (1 − frac(Ax))·step. That is the next whole pixel, not the next
+/// centre. The sums wrap in 8 bits.
+pub(in crate::show) fn step_of_each_row(panel: &mut Panel, corners: &[Corner; 3]) {
+    let mut last = None;
+    for sample in samples((panel.width(), panel.height()), corners) {
+        let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, sample.y) else { continue };
+        let step = (b - a) / (bx - ax);
+        let first = match last {
+            Some((y, first)) if y == sample.y => first,
+            _ => sample.x,
+        };
+        last = Some((sample.y, first));
+        let start = a + (1.0 - ax.fract()) * step;
+        panel.write(sample.x, sample.y, wrapped(start + f64::from(sample.x - first) * step));
+    }
+}
+
+/// No sub-pixel correction: a row's first pixel gets the shade of the edge, wherever in the pixel the
+/// edge is.
+pub(in crate::show) fn start_at_the_edge(panel: &mut Panel, corners: &[Corner; 3]) {
+    let mut last = None;
+    for sample in samples((panel.width(), panel.height()), corners) {
+        let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, sample.y) else { continue };
+        let first = match last {
+            Some((y, first)) if y == sample.y => first,
+            _ => sample.x,
+        };
+        last = Some((sample.y, first));
+        panel.write(sample.x, sample.y, wrapped(a + f64::from(sample.x - first) * (b - a) / (bx - ax)));
+    }
+}
+
+/// Every pixel that a row touches, with the triangle's plane carried on beyond its edges: below 0 and
+/// above 255 the byte wraps.
+pub(in crate::show) fn carried_on_beyond_the_edges(panel: &mut Panel, corners: &[Corner; 3]) {
+    for y in 0..panel.height() as i32 {
+        let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, y) else { continue };
+        for x in ax.floor() as i32..=bx.floor() as i32 {
+            panel.write(x, y, wrapped(a + (centre(x, y).0 - ax) * (b - a) / (bx - ax)));
+        }
+    }
+}
+
+/// A quad shaded as a quad: linear along the two edges that a row crosses, then linear along the row.
+pub(in crate::show) fn quad_as_a_quad(panel: &mut Panel, corners: &[Corner; 4]) {
+    for y in 0..panel.height() as i32 {
+        let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, y) else { continue };
+        for x in (ax - 0.5).ceil() as i32..(bx - 0.5).ceil() as i32 {
+            panel.write(x, y, wrapped(a + (centre(x, y).0 - ax) * (b - a) / (bx - ax)));
+        }
+    }
+}

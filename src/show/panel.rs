@@ -1,0 +1,140 @@
+//! One half of a picture: a small frame, what was drawn into it, and which of its pixels are wrong.
+
+/// What is wrong with a pixel.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
+pub enum Mark {
+    /// It belongs to a face and was not drawn.
+    LeftOut,
+    /// It was drawn by more faces than own it.
+    Twice,
+    /// It belongs to no face and was drawn.
+    Outside,
+    /// It has another byte than it should.
+    Shade,
+    /// It shows another face than the one in front.
+    Face,
+}
+
+impl Mark {
+    /// All of them, in the order of a legend.
+    pub const ALL: [Self; 5] = [Self::LeftOut, Self::Twice, Self::Outside, Self::Shade, Self::Face];
+
+    /// In words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::LeftOut => "left out",
+            Self::Twice => "drawn twice",
+            Self::Outside => "drawn outside",
+            Self::Shade => "wrong shade",
+            Self::Face => "wrong face",
+        }
+    }
+}
+
+/// A frame of at most a few dozen pixels a side, row-major, with a count of the writes to each.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Panel {
+    width: usize,
+    height: usize,
+    pixels: Vec<u8>,
+    writes: Vec<u8>,
+    marks: Vec<Option<Mark>>,
+}
+
+/// How a panel is compared with what it should be.
+#[derive(Clone, Copy)]
+pub(super) struct Measure {
+    /// A byte may be this far off, in shades, and is not marked yet.
+    pub(super) shades: u8,
+    /// Whether it counts how many faces drew a pixel. Where faces hide each other it means nothing.
+    pub(super) counts_writes: bool,
+    /// What it means that a byte is further off.
+    pub(super) other_byte: Mark,
+}
+
+impl Panel {
+    pub(super) fn new((width, height): (usize, usize)) -> Self {
+        let all = width * height;
+        Self { width, height, pixels: vec![0; all], writes: vec![0; all], marks: vec![None; all] }
+    }
+
+    /// Columns.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The bytes, row by row; 0 where nothing was drawn.
+    #[must_use]
+    pub fn pixels(&self) -> &[u8] {
+        &self.pixels
+    }
+
+    /// How often each pixel was drawn.
+    #[must_use]
+    pub fn writes(&self) -> &[u8] {
+        &self.writes
+    }
+
+    /// What is wrong with each pixel.
+    #[must_use]
+    pub fn marks(&self) -> &[Option<Mark>] {
+        &self.marks
+    }
+
+    /// How many pixels have this mark.
+    #[must_use]
+    pub fn count(&self, mark: Mark) -> usize {
+        self.marks.iter().filter(|there| **there == Some(mark)).count()
+    }
+
+    /// The byte at a pixel; `None` where nothing was drawn.
+    pub(super) fn get(&self, x: usize, y: usize) -> Option<u8> {
+        let at = y * self.width + x;
+        self.writes.get(at).filter(|writes| x < self.width && **writes > 0).map(|_| self.pixels[at])
+    }
+
+    /// Draws a pixel; what lies outside the frame is left out.
+    pub(super) fn write(&mut self, x: i32, y: i32, byte: u8) {
+        let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return };
+        if x < self.width && y < self.height {
+            let at = y * self.width + x;
+            self.pixels[at] = byte;
+            self.writes[at] = self.writes[at].saturating_add(1);
+        }
+    }
+
+    /// Takes over the pixels of a frame of the same size that began as `empty` on one side and as
+    /// anything else on the other: drawn is what is the same on both.
+    pub(super) fn write_where_equal(&mut self, a: &[u8], b: &[u8]) {
+        for (at, (byte, other)) in a.iter().zip(b).enumerate() {
+            if byte == other {
+                self.write((at % self.width) as i32, (at / self.width) as i32, *byte);
+            }
+        }
+    }
+
+    /// Marks what differs from `reference`, which has the same size.
+    pub(super) fn mark_against(&mut self, reference: &Self, measure: Measure) {
+        for (at, mark) in self.marks.iter_mut().enumerate() {
+            let (writes, due) = (self.writes[at], reference.writes[at]);
+            let off = self.pixels[at].abs_diff(reference.pixels[at]);
+            *mark = match (writes, due) {
+                (0, 0) => None,
+                (0, _) => Some(Mark::LeftOut),
+                (_, 0) => Some(Mark::Outside),
+                _ if measure.counts_writes && writes > due => Some(Mark::Twice),
+                _ if off > measure.shades => Some(measure.other_byte),
+                _ => None,
+            };
+        }
+    }
+}
