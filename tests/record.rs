@@ -36,7 +36,7 @@ fn any_record(random: &mut Random) -> Record {
     record.palette = random.one_of(&[None, Some(0), Some(2)]).map(|i: usize| builtin::ALL[i].palette.clone());
     for _ in 0..random.within(0, 20) {
         let flat = Shading::Flat(random.within(0, 255) as u8);
-        let shading = random.one_of(&[flat, Shading::Gouraud, Shading::GouraudReseeded]);
+        let shading = random.one_of(&[flat, Shading::Gouraud, Shading::GouraudReseeded, Shading::GouraudHyperbolic]);
         record.triangles.push((triangle(random, width.into(), height.into()), shading));
     }
     record
@@ -92,7 +92,11 @@ fn f5_broken_records_are_refused_by_their_line() {
         // The first coordinate is taken for the byte, the next for that, and so on.
         ("flat 7", "flat", "line 7: expected a shade in 1/256, found \"4294967295\""),
         ("flat 7", "flat -1", "line 7: expected a palette index, found \"-1\""),
-        ("flat 7", "phong", "line 7: expected \"flat\", \"gouraud\", \"gouraud-reseeded\" or \"end\", found \"phong\""),
+        (
+            "flat 7",
+            "phong",
+            "line 7: expected \"flat\", \"gouraud\", \"gouraud-reseeded\", \"gouraud-hyperbolic\" or \"end\", found \"phong\"",
+        ),
         ("2048 0 0 1", "1048577 0 0 1", "line 7: vertex at (1048577, 0) / 256 pixels lies outside the guard band"),
         ("1024 65280", "1024 65281", "line 7: vertex shade 0xff01 is above 0xff00"),
         ("4294967295", "4294967296", "line 7: expected a depth, found \"4294967296\""),
@@ -183,7 +187,7 @@ proptest! {
 /// renderer gives, and the oracle too.
 #[test]
 fn d4_recorded_frames_replay() {
-    let mut tried = Tried::new("d4_recorded_frames_replay", 21);
+    let mut tried = Tried::new("d4_recorded_frames_replay", 28);
     for name in shapes::NAMES {
         for rung in Rung::ALL {
             let mut renderer = Renderer::new();
