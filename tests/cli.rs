@@ -358,30 +358,6 @@ fn palettes_are_looked_at() {
 }
 
 #[test]
-fn verify_says_how_many_cases_it_tried() {
-    let directory = directory();
-    let output = run(&directory, &["verify"]);
-    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
-    let text = String::from_utf8(output.stdout).expect("text");
-    let (machine, groups) = text.split_once('\n').expect("lines");
-    let kernels: Vec<&str> = Kernel::available().map(Kernel::name).collect();
-    assert_eq!(machine, format!("kernels {}; seed 13", kernels.join(", ")));
-    assert!(groups.lines().count() >= 1);
-    for line in groups.lines() {
-        let cases = line.split(": ").nth(1).and_then(|rest| rest.split(' ').next()).expect(line);
-        assert!(cases.parse::<u64>().expect(line) > 0 && line.ends_with(" cases, ok"), "{line}");
-    }
-
-    let output = run(&directory, &["verify", "--json", "--seed", "7"]);
-    assert!(output.status.success(), "{output:?}");
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!(json["schema"], 1);
-    assert_eq!(json["seed"], 7);
-    assert_eq!(json["passed"], true);
-    assert_eq!(json["groups"].as_array().map(Vec::len), Some(groups.lines().count()));
-}
-
-#[test]
 fn help_and_version_succeed() {
     let directory = directory();
     for words in [vec!["--help"], vec!["-h"], vec!["--version"], vec!["help", "render"], vec!["palette", "--help"]] {

@@ -4,13 +4,13 @@
 use super::drawing::{self, Way};
 use super::random::Random;
 use super::{Group, replay};
-use crate::fixed::I24F8;
+use crate::fixed::{I16F16, I24F8};
 use crate::glam::Vec3;
 use crate::mesh::{Mesh, shapes};
 use crate::raster::cover::Ordered;
 use crate::raster::{Rect, Shading, Vertex};
 use crate::record::Record;
-use crate::render::{HiddenSurfaces, Renderer, Screen};
+use crate::render::{HiddenSurfaces, Renderer, Screen, VertexPath};
 use crate::scene::{Camera, Object, Scene};
 use crate::span::Kernel;
 use crate::vga::Vga;
@@ -19,7 +19,7 @@ const WIDTH: u32 = Vga::WIDTH as u32;
 const HEIGHT: u32 = Vga::HEIGHT as u32;
 const NEAR: f32 = 0.25;
 
-/// A floor of any size is closed to the horizon; of faces that reach behind the eye that part is drawn
+/// A floor of any size is closed to the horizon, by both vertex paths; of faces that reach behind the eye that part is drawn
 /// which a ray hits (C1); odd views are quiet and right (C4, R7); coordinates are rounded once and
 /// exactly (R13); −0 and denormals draw as 0 does (R10); what is not finite is refused (R9).
 ///
@@ -42,7 +42,13 @@ fn triangles_of(scene: &Scene) -> Option<Record> {
 fn check(seed: u64, project: Project<'_>) -> Group {
     let mut group = Group::new("clipping");
     let mut random = Random::new(seed, "clipping");
-    floors(&mut group, project);
+    floors(&mut group, &[1e4, 1e6, 1e12, 1e20, 1e30, f32::MAX / 2.0], project);
+    // The 16.16 path has 30 bits from the nearest to the farthest.
+    floors(&mut group, &[400.0, 1e3, 8e3], &|scene| {
+        let mut renderer = Renderer::new();
+        renderer.set_vertex_path(VertexPath::Integer);
+        Record::of_scene(&mut renderer, scene, Screen::MODE_13H).ok()
+    });
     rays(&mut group, &mut random, project);
     odd_views(&mut group, &mut random, project);
     rounding(&mut group, &mut random);
@@ -73,9 +79,9 @@ fn counts(triangles: &[([Vertex; 3], Shading)]) -> Vec<u32> {
 
 /// The far edge is projected fy / reach below the horizon, less than half a pixel: the rows from the
 /// horizon down are all floor, each pixel once, and no other is.
-fn floors(group: &mut Group, project: Project<'_>) {
-    for reach in [1e4_f32, 1e6, 1e12, 1e20, 1e30, f32::MAX / 2.0] {
-        for squares in [1, 2, 5] {
+fn floors(group: &mut Group, reaches: &[f32], project: Project<'_>) {
+    for &reach in reaches {
+        for squares in [1, 2, 3] {
             let Some(record) = floor(reach, squares).map(seen_from_origin).and_then(|scene| project(&scene)) else {
                 group.check(false, || format!("r7 a floor of {reach:e}: not drawn"));
                 continue;
@@ -202,6 +208,11 @@ fn rounding(group: &mut Group, random: &mut Random) {
         let is = I24F8::round_from_f64(x).map(I24F8::to_bits);
         let should = exactly_rounded(x);
         group.check(is == should, || format!("r13 {x:e} ({:#018x}) becomes {is:?}, not {should:?}", x.to_bits()));
+
+        // Of 16.16 pixels: in 1/65,536 a half of 1/256 is 128.
+        let x = random.next() as u32 as i32;
+        let (is, should) = (I24F8::round_from_i16f16(I16F16::from_bits(x)), (i128::from(x) + 128).div_euclid(256));
+        group.check(i128::from(is.to_bits()) == should, || format!("r13 {x}/65,536 becomes {is:?}, not {should}/256"));
     }
 }
 

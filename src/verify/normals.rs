@@ -2,7 +2,9 @@
 
 use super::Group;
 use super::random::Random;
+use crate::fixed::I16F16;
 use crate::glam::Vec3;
+use crate::integer::unit_vector;
 use crate::light::{Light, Material, RampChoice};
 use crate::mesh::{Mesh, Weight, shapes};
 use crate::palette::Ramp;
@@ -43,6 +45,18 @@ fn check(seed: u64, normals: Normals<'_>, shades: Shades<'_>) -> Group {
     for name in shapes::NAMES {
         let Some(mesh) = shapes::by_name(name) else { continue };
         unit(&mut group, name, &normals(&mesh));
+    }
+    for _ in 0..2_000 {
+        // N6 on the 16.16 path: vectors of any length, along an axis too.
+        let most = random.log_uniform(31);
+        let v = [0; 3].map(|_| I16F16::from_bits(random.within(-most, most) as i32));
+        let v = if random.below(8) == 0 { [v[0], I16F16::default(), I16F16::default()] } else { v };
+        let Some(unit_vector) = unit_vector(v) else {
+            group.check(v == [I16F16::default(); 3], || format!("n6 {v:?} has no unit vector"));
+            continue;
+        };
+        let in_ones = unit_vector.map(|c| c.to_bits() as f32 / 65_536.0);
+        unit(&mut group, "16.16", &[Vec3::from_array(in_ones)]);
     }
     for _ in 0..400 {
         soup(&mut group, &mut random, normals);

@@ -29,7 +29,7 @@ impl Random {
         self.within(0, i64::from(end) - 1) as u32
     }
 
-    /// 1 to 2^`bits` − 1, each power of two as likely as any other.
+    /// 1 to 2^`bits` − 1 (`bits` at most 63), each power of two as likely as any other.
     pub(super) fn log_uniform(&mut self, bits: u32) -> i64 {
         let bit = self.below(bits);
         (1 << bit) + self.within(0, (1 << bit) - 1)

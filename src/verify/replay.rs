@@ -198,3 +198,77 @@ pub(super) fn difference(record: &Record, is: &[u8], should: &[u8]) -> Option<Di
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes;
+    use crate::render::{Renderer, Screen};
+    use crate::scene::Scene;
+
+    fn torus() -> Record {
+        let mut scene = Scene::showing(shapes::torus(12, 6));
+        scene.objects_mut()[0].set_angles([1.1, 0.0, 0.4]);
+        Record::of_scene(&mut Renderer::new(), &scene, Screen::MODE_13H).expect("a legal scene")
+    }
+
+    #[test]
+    fn a_frame_is_right_and_painters_order_is_no_failure() {
+        let replay = replay(&torus());
+        assert_eq!((replay.failures.len(), &replay.smallest), (0, &None));
+        assert!(replay.covered > replay.overlaid && replay.overlaid > 100);
+        let ways: Vec<HiddenSurfaces> =
+            replay.comparisons.iter().map(|comparison| comparison.hidden_surfaces).collect();
+        assert_eq!(ways, [HiddenSurfaces::BackFaces, HiddenSurfaces::PainterOrder, HiddenSurfaces::ScanLine]);
+        assert_eq!((replay.comparisons[2].pixels, replay.comparisons[2].must_agree), (0, true));
+        assert!(replay.comparisons[0].pixels > 0 && !replay.comparisons[0].must_agree);
+    }
+
+    /// The frame with one pixel more by one, wherever it is drawn `wrongly`.
+    fn with_a_wrong_pixel(record: &Record, way: Way, wrongly: bool) -> Result<Vec<u8>, Stray> {
+        let mut pixels = drawing::draw(record, way)?;
+        let drawn = pixels.iter().position(|pixel| *pixel != record.background);
+        if let Some(place) = drawn.filter(|_| wrongly) {
+            pixels[place] = pixels[place].wrapping_add(1);
+        }
+        Ok(pixels)
+    }
+
+    #[test]
+    fn a_wrong_kernel_is_told_by_one_triangle() {
+        let Some(guilty) = Kernel::available().last().filter(|kernel| kernel.name() != "portable") else { return };
+        let wrong = |record: &Record, way: Way| with_a_wrong_pixel(record, way, way.kernel.name() == guilty.name());
+        let replay = replay_by(&torus(), &wrong);
+        // By each of the four ways.
+        assert_eq!(replay.failures.len(), 4);
+        for line in &replay.failures {
+            assert!(line.contains(&format!(", {guilty}: pixel (")) && line.contains(", portable 0x"), "{line}");
+        }
+        assert_eq!(replay.smallest.map(|record| record.triangles.len()), Some(1));
+    }
+
+    #[test]
+    fn a_wrong_method_is_told() {
+        let wrong = |record: &Record, way: Way| {
+            with_a_wrong_pixel(record, way, way.hidden_surfaces == HiddenSurfaces::ScanLine)
+        };
+        let replay = replay_by(&torus(), &wrong);
+        assert_eq!(replay.comparisons[2].pixels, 1);
+        assert_eq!(replay.failures.len(), 1);
+        let line = &replay.failures[0];
+        assert!(
+            line.starts_with("scan-line, portable: pixel (") && line.contains(", by depth-buffer, portable 0x"),
+            "{line}"
+        );
+    }
+
+    #[test]
+    fn a_pixel_that_is_not_the_definitions_is_told_with_its_triangle() {
+        let wrong = |record: &Record, way: Way| with_a_wrong_pixel(record, way, true);
+        let line = &replay_by(&torus(), &wrong).failures[0];
+        assert!(line.starts_with("depth-buffer, portable: pixel ("), "{line}");
+        assert!(line.contains(", by the definition 0x") && line.contains(" of triangle "), "{line}");
+        let stray = replay_by(&torus(), &|_, _| Err(Stray::Byte));
+        assert_eq!(stray.failures[0], "depth-buffer, portable: a byte beside the frame was written");
+    }
+}

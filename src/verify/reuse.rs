@@ -5,12 +5,12 @@ use super::random::Random;
 use crate::light::Light;
 use crate::mesh::{Mesh, shapes};
 use crate::palette::{Palette, builtin};
-use crate::render::{HiddenSurfaces, Renderer, Rung};
+use crate::render::{HiddenSurfaces, Renderer, Rung, VertexPath};
 use crate::scene::{Object, Scene, Shared};
 use crate::vga::Vga;
 
 /// Scenes one after the other by one renderer into two machines that somebody draws over: meshes,
-/// palettes, lights, rungs and hidden-surface methods change, and the bytes must be a fresh renderer's
+/// palettes, lights, rungs, vertex paths and hidden-surface methods change, and the bytes must be a fresh renderer's
 /// (E1).
 ///
 /// ```
@@ -43,11 +43,13 @@ fn check(seed: u64, draw: Draw<'_>) -> Group {
         for _ in 0..random.below(50) {
             vga.poke(random.below(65_536), random.below(256) as u8);
         }
-        used.set_rung(rung);
-        used.set_hidden_surfaces(forced);
+        let path = random.one_of(&VertexPath::ALL);
         let mut fresh = (Renderer::new(), Vga::new());
-        fresh.0.set_rung(rung);
-        fresh.0.set_hidden_surfaces(forced);
+        for renderer in [&mut used, &mut fresh.0] {
+            renderer.set_rung(rung);
+            renderer.set_hidden_surfaces(forced);
+            renderer.set_vertex_path(path);
+        }
         let drawn = [draw(&mut used, &scene, vga), fresh.0.draw(&scene, &mut fresh.1).is_ok()];
         let differ = vga.pixels().iter().zip(fresh.1.pixels()).filter(|(a, b)| a != b).count();
         let colors = vga.palette() == fresh.1.palette();

@@ -2,13 +2,16 @@
 
 use super::Group;
 use super::random::Random;
+use crate::fixed::I16F16;
+use crate::integer::{self, Angle};
 use crate::mesh::shapes;
-use crate::render::Renderer;
+use crate::render::{Renderer, VertexPath};
 use crate::scene::{Scene, turn};
 use crate::vga::Vga;
 
-/// A matrix from any angles is a rotation (T1, T2), and frame n, drawn after the frames before it, is
-/// frame n drawn at once (T1).
+/// A matrix from any angles is a rotation, on the 16.16 path too (T1, T2); frame n, drawn after the
+/// frames before it, is frame n drawn at once (T1); and after a full turn the 16.16 path's picture is
+/// what it was (T3).
 ///
 /// ```
 /// let group = mode13h::verify::time(13);
@@ -29,18 +32,50 @@ fn check(seed: u64, turn: Turn<'_>, pose: Pose<'_>) -> Group {
     let mut random = Random::new(seed, "time");
     // From no turn at all to that of a million frames of an hour each, either way round.
     for angle in [0.0, -0.0, 1e-300, 0.025, -0.025, 1e6 * 3600.0, -1e6 * 3600.0] {
-        orthonormal(&mut group, turn, [angle, -angle, angle / 3.0]);
+        orthonormal(&mut group, turn, [angle, -angle, angle / 3.0], 1e-6);
     }
     for _ in 0..20_000 {
         let most = random.log_uniform(32) as f64;
-        orthonormal(&mut group, turn, [0; 3].map(|_| random.around_zero(most)));
+        orthonormal(&mut group, turn, [0; 3].map(|_| random.around_zero(most)), 1e-6);
+        // Whole numbers below 2¹⁶, so that they come through as they are.
+        let steps = [0; 3].map(|_| f64::from(random.below(65_536)));
+        orthonormal(&mut group, &integer_turn, steps, 1.0 / 8192.0);
     }
+    full_turns(&mut group, &mut random);
     frame_at_once(&mut group, &mut random, pose);
     group
 }
 
-/// R·Rᵀ is 1 within 10⁻⁶, and no axis is turned over.
-fn orthonormal(group: &mut Group, turn: Turn<'_>, angles: [f64; 3]) {
+/// The matrix of the 16.16 path; the angles are in 65,536ths of a turn.
+fn integer_turn(steps: [f64; 3]) -> [[f64; 3]; 3] {
+    let rows = integer::turn(steps.map(|steps| Angle::from_bits(steps as u16)));
+    rows.map(|row| row.map(|c: I16F16| f64::from(c.to_bits()) / 65_536.0))
+}
+
+/// T3: any angle, and as many turns more.
+fn full_turns(group: &mut Group, random: &mut Random) {
+    let mut renderer = Renderer::new();
+    renderer.set_vertex_path(VertexPath::Integer);
+    let mut scene = Scene::showing(shapes::torus(16, 8));
+    let mut draw = |steps: [i64; 3]| {
+        scene.objects_mut()[0].set_angles(steps.map(|steps| steps as f64 / 65_536.0 * core::f64::consts::TAU));
+        let mut vga = Vga::new();
+        renderer.draw(&scene, &mut vga).map(|_| vga)
+    };
+    for _ in 0..10 {
+        let steps = [0; 3].map(|_| random.within(0, 65_535));
+        let turns = [0; 3].map(|_| random.within(-1000, 1000));
+        let more = [0, 1, 2].map(|axis| steps[axis] + turns[axis] * 65_536);
+        let same = match (draw(steps), draw(more)) {
+            (Ok(one), Ok(other)) => one.pixels() == other.pixels(),
+            _ => false,
+        };
+        group.check(same, || format!("t3 angles {steps:?}/65,536: after {turns:?} turns another picture"));
+    }
+}
+
+/// R·Rᵀ is 1 within the limit, and no axis is turned over.
+fn orthonormal(group: &mut Group, turn: Turn<'_>, angles: [f64; 3], limit: f64) {
     let [a, b, c] = turn(angles);
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -50,7 +85,7 @@ fn orthonormal(group: &mut Group, turn: Turn<'_>, angles: [f64; 3]) {
         // NaN is as wrong as can be.
         if off <= most { most } else { off }
     });
-    group.check(off <= 1e-6, || format!("t1 angles {angles:?}: no rotation, by {off:e}"));
+    group.check(off <= limit, || format!("t1 angles {angles:?}: no rotation, by {off:e}"));
 }
 
 /// 140 frames, four seconds, by one renderer; then some of them by a fresh one.

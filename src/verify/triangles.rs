@@ -212,7 +212,7 @@ pub(super) fn vertex(x: i64, y: i64, shade: i64, depth: i64) -> Vertex {
 
 pub(super) fn any_shading(random: &mut Random) -> Shading {
     let flat = random.below(256) as u8;
-    random.one_of(&[Shading::Flat(flat), Shading::Gouraud, Shading::GouraudReseeded])
+    random.one_of(&[Shading::Flat(flat), Shading::Gouraud, Shading::GouraudReseeded, Shading::GouraudHyperbolic])
 }
 
 pub(super) fn any_clip(random: &mut Random, width: u32, height: u32) -> Rect {
