@@ -59,7 +59,7 @@ pub(super) fn triangles(faces: &[Face]) -> Vec<Triangle> {
 
 fn bytes((width, height): (usize, usize), triangles: &[Triangle], depth_tested: bool, empty: u8) -> Vec<u8> {
     let mut bytes = vec![empty; width * height];
-    let mut depths = Vec::new();
+    let mut depths: Vec<u32> = Vec::new();
     // Some dozen pixels a side: no frame is refused.
     if let Ok(frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
         let raster = Raster::new(frame);
