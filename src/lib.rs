@@ -11,13 +11,15 @@
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
 //! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
+//! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes; OBJ models | `alloc` |
 //! | [`light`] | lights, materials, the intensity at a vertex | `alloc` |
 //! | [`scene`] | objects, camera, lights | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
 //! | `show` | hard cases as pictures: the right way beside the fault | `png`, `embedded-graphics` |
-//! | [`verify`] | every kernel of this machine against the specification | `std` |
+//! | [`record`] | a frame's triangles in a file, to be replayed | `std` |
+//! | [`verify`] | the hard cases on this machine; a recorded frame through every kernel and method | `std` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
 //!
 #![cfg_attr(feature = "png", doc = "```no_run")]
@@ -48,8 +50,8 @@
 //! writes `default-features = false, features = ["std"]` and adds what is wanted: `asm` and `simd`
 //! (faster spans; without both the crate forbids `unsafe` code), `png`, `image`, `obj`, `window`,
 //! `embedded-graphics` (text and shapes on a frame). With no feature at all `fixed`, `palette`,
-//! `vga`, `span` and `raster` remain, which need neither `std` nor an allocator; `alloc` adds the
-//! engine.
+//! `vga`, `span`, `raster` and `integer` remain, which need neither `std` nor an allocator; `alloc`
+//! adds the engine.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(any(feature = "asm", feature = "simd")), forbid(unsafe_code))]
@@ -62,6 +64,7 @@ extern crate alloc;
 pub use glam;
 
 pub mod fixed;
+pub mod integer;
 pub mod palette;
 pub mod raster;
 pub mod span;
@@ -78,6 +81,8 @@ pub mod scene;
 
 #[cfg(feature = "std")]
 pub mod export;
+#[cfg(feature = "std")]
+pub mod record;
 #[cfg(all(feature = "png", feature = "embedded-graphics"))]
 pub mod show;
 #[cfg(feature = "std")]

@@ -85,6 +85,11 @@ impl Object {
         &self.mesh
     }
 
+    /// The mesh, to be kept.
+    pub(crate) fn shared_mesh(&self) -> &Shared<Mesh> {
+        &self.mesh
+    }
+
     /// Of each vertex of the mesh, the number of its surface.
     #[must_use]
     pub fn vertex_surfaces(&self) -> &[u16] {
@@ -152,17 +157,21 @@ impl Object {
 
     /// The same in f64, by rows.
     pub(crate) fn turn(&self) -> [[f64; 3]; 3] {
-        let [(sx, cx), (sy, cy), (sz, cz)] = self.angles.map(libm::sincos);
-        let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
-        let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
-        let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];
-        let turn = matrix_product(&about_x, &matrix_product(&about_y, &about_z));
         match self.up_axis {
-            UpAxis::Y => turn,
+            UpAxis::Y => turn(self.angles),
             // (x, y, z) stands up as (x, z, −y).
-            UpAxis::Z => turn.map(|[x, y, z]| [x, -z, y]),
+            UpAxis::Z => turn(self.angles).map(|[x, y, z]| [x, -z, y]),
         }
     }
+}
+
+/// The turn of angles about x, y and z, by rows: z first, then y, then x.
+pub(crate) fn turn(angles: [f64; 3]) -> [[f64; 3]; 3] {
+    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
+    let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
+    let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
+    let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];
+    matrix_product(&about_x, &matrix_product(&about_y, &about_z))
 }
 
 /// The product of two matrices by rows, each sum in the order of its terms.

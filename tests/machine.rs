@@ -1,8 +1,11 @@
 //! The machine: memory, ports, DAC, clock and scan-out; hard cases P1, P3 and P4.
 
+mod support;
+
 use mode13h::palette::{BIOS, Palette, Rgb, builtin, expand, reduce};
 use mode13h::vga::{Vga, timing};
 use proptest::prelude::*;
+use support::tried::Tried;
 
 const MASK: u16 = 0x3C6;
 const READ: u16 = 0x3C7;
@@ -47,6 +50,7 @@ fn busy() -> Vga {
 
 #[test]
 fn p1_every_colour_value_goes_through_the_dac_as_six_bits() {
+    let mut tried = Tried::new("p1_every_colour_value_goes_through_the_dac_as_six_bits", 256);
     let mut vga = Vga::new();
     for v in 0..=255_u8 {
         vga.set_palette(&palette_of(|_| Rgb::new(v, v, v)));
@@ -59,11 +63,13 @@ fn p1_every_colour_value_goes_through_the_dac_as_six_bits() {
         vga.write_port(READ, 9);
         assert_eq!(read_color(&mut vga), [v & 63; 3]);
         assert_eq!(reduce(expand(v & 63)), v & 63);
+        tried.add(1);
     }
 }
 
 #[test]
 fn p1_what_is_displayed_can_be_set_again() {
+    let mut tried = Tried::new("p1_what_is_displayed_can_be_set_again", 4);
     let mut vga = Vga::new();
     for palette in [&scattered(), &BIOS, &builtin::GREY, &builtin::COPPER] {
         vga.set_palette(palette);
@@ -71,6 +77,7 @@ fn p1_what_is_displayed_can_be_set_again() {
         assert_eq!(shown, palette.on_dac());
         vga.set_palette(&shown);
         assert_eq!(vga.palette(), shown);
+        tried.add(1);
     }
 }
 
@@ -78,6 +85,7 @@ fn p1_what_is_displayed_can_be_set_again() {
 
 #[test]
 fn p3_offsets_wrap_at_the_end_of_memory() {
+    let mut tried = Tried::new("p3_offsets_wrap_at_the_end_of_memory", 10 * 2);
     let mut vga = Vga::new();
     for (offset, at) in [
         (0_u32, 0_usize),
@@ -97,29 +105,34 @@ fn p3_offsets_wrap_at_the_end_of_memory() {
             assert_eq!(vga.peek(offset), byte);
             let changed: Vec<usize> = (0..Vga::MEMORY).filter(|&i| vga.memory()[i] == byte).collect();
             assert_eq!(changed, [at], "offset {offset}");
+            tried.add(1);
         }
     }
 }
 
 #[test]
 fn p3_a_row_written_over_the_end_goes_on_at_the_beginning() {
+    let mut tried = Tried::new("p3_a_row_written_over_the_end_goes_on_at_the_beginning", 320);
     let mut vga = Vga::new();
     for k in 0..320 {
         vga.poke(65_536 - 100 + k, 1 + (k % 255) as u8);
     }
     for k in 0..320_u32 {
         assert_eq!(vga.memory()[(65_436 + k as usize) % 65_536], 1 + (k % 255) as u8);
+        tried.add(1);
     }
     assert_eq!(vga.memory().iter().filter(|&&byte| byte != 0).count(), 320);
 }
 
 #[test]
 fn p3_bytes_behind_the_frame_are_stored_but_not_shown() {
+    let mut tried = Tried::new("p3_bytes_behind_the_frame_are_stored_but_not_shown", 1_536);
     let mut vga = Vga::new();
     let mut dark = vec![0; Vga::SHOWN];
     vga.scan_out(&mut dark);
     for offset in 64_000..65_536 {
         vga.poke(offset, 15);
+        tried.add(1);
     }
     let mut shown = vec![1; Vga::SHOWN];
     vga.scan_out(&mut shown);
@@ -132,6 +145,7 @@ fn p3_bytes_behind_the_frame_are_stored_but_not_shown() {
 
 #[test]
 fn p4_a_write_broken_off_leaves_the_entry_alone() {
+    let mut tried = Tried::new("p4_a_write_broken_off_leaves_the_entry_alone", 3 * 2);
     for values in 0..3 {
         for index_port in [WRITE, READ] {
             let mut vga = busy();
@@ -150,12 +164,14 @@ fn p4_a_write_broken_off_leaves_the_entry_alone() {
             let mut expected = before;
             expected[9] = [61, 62, 63];
             assert_eq!(entries(&vga), expected);
+            tried.add(1);
         }
     }
 }
 
 #[test]
 fn p4_a_read_broken_off_starts_anew_as_well() {
+    let mut tried = Tried::new("p4_a_read_broken_off_starts_anew_as_well", 3);
     let mut vga = busy();
     let before = entries(&vga);
     for values in 0..3 {
@@ -165,12 +181,14 @@ fn p4_a_read_broken_off_starts_anew_as_well() {
         }
         vga.write_port(READ, 17);
         assert_eq!(read_color(&mut vga), before[17]);
+        tried.add(1);
     }
     assert_eq!(entries(&vga), before, "reading changes nothing");
 }
 
 #[test]
 fn p4_the_third_write_changes_the_entry_and_steps_on_over_the_end() {
+    let mut tried = Tried::new("p4_the_third_write_changes_the_entry_and_steps_on_over_the_end", 12 + 12);
     let mut vga = Vga::new();
     vga.write_port(WRITE, 250);
     let mut expected = entries(&vga);
@@ -180,10 +198,12 @@ fn p4_the_third_write_changes_the_entry_and_steps_on_over_the_end() {
         write_color(&mut vga, [k, k + 1, k + 2]);
         expected[usize::from(index)] = [k, k + 1, k + 2];
         assert_eq!(entries(&vga), expected);
+        tried.add(1);
     }
     vga.write_port(READ, 250);
     for k in 0..12_u8 {
         assert_eq!(read_color(&mut vga), expected[usize::from(250_u8.wrapping_add(k))]);
+        tried.add(1);
     }
 }
 

@@ -2,6 +2,8 @@
 //! refuses; closed and convex against slow, exact oracles.
 #![cfg(feature = "alloc")]
 
+mod support;
+
 use std::f32::consts::PI;
 
 use mode13h::glam::{Vec2, Vec3};
@@ -10,6 +12,7 @@ use mode13h::mesh::{Mesh, MeshError, Surface, Weight, shapes};
 use num_rational::BigRational;
 use num_traits::Zero;
 use proptest::prelude::*;
+use support::tried::Tried;
 
 const WEIGHTS: [Weight; 3] = [Weight::Count, Weight::Area, Weight::Angle];
 
@@ -45,6 +48,7 @@ fn face_normal_points_at_who_sees_it_counter_clockwise() {
 /// Slip 7: S4 divides the sum by the count. At a cube's corner that leaves 0.58 of the light.
 #[test]
 fn n6_a_rounded_corner_is_as_bright_as_a_flat_one() {
+    let mut tried = Tried::new("n6_a_rounded_corner_is_as_bright_as_a_flat_one", 3 * 8);
     let mean = (Vec3::X + Vec3::Y + Vec3::Z) / 3.0;
     assert!(mean.length() < 0.58);
     let mut mesh = box8();
@@ -52,6 +56,7 @@ fn n6_a_rounded_corner_is_as_bright_as_a_flat_one() {
         mesh.smooth(weight, None);
         assert_eq!(mesh.positions().len(), 8);
         assert_unit(&mesh);
+        tried.add(mesh.normals().len() as u64);
     }
 }
 
@@ -127,6 +132,7 @@ fn texture_coordinates_follow_split_vertices() {
 
 #[test]
 fn n1_faces_without_area_have_no_weight() {
+    let mut tried = Tried::new("n1_faces_without_area_have_no_weight", 3 * 3 + 2);
     let positions = vec![
         Vec3::ZERO,
         Vec3::X,
@@ -144,16 +150,20 @@ fn n1_faces_without_area_have_no_weight() {
             assert_unit(&mesh);
             assert_eq!(mesh.positions().len(), 5);
             assert!(mesh.normals()[..3].iter().all(|&n| n == Vec3::Z), "{weight:?} {crease:?}");
+            tried.add(1);
         }
     }
     let mut only = Mesh::new(vec![Vec3::ONE; 3], vec![[0, 1, 2]]).unwrap();
     assert_unit(&only);
+    tried.add(1);
     only.flat();
     assert_unit(&only);
+    tried.add(1);
 }
 
 #[test]
 fn n2_normals_that_cancel_leave_each_face_its_own() {
+    let mut tried = Tried::new("n2_normals_that_cancel_leave_each_face_its_own", 3 * 2 + 6);
     let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     let mut sheet = Mesh::new(positions, vec![[0, 1, 2], [0, 2, 1]]).unwrap();
     for weight in WEIGHTS {
@@ -161,6 +171,7 @@ fn n2_normals_that_cancel_leave_each_face_its_own() {
         assert_eq!(sheet.positions().len(), 6);
         for (triangle, normal) in sheet.triangles().iter().zip([Vec3::Z, Vec3::NEG_Z]) {
             assert!(triangle.iter().all(|&i| sheet.normals()[i as usize] == normal));
+            tried.add(1);
         }
     }
     assert!(sheet.is_closed() && !sheet.is_convex());
@@ -173,6 +184,7 @@ fn n2_normals_that_cancel_leave_each_face_its_own() {
     for triangle in mesh.triangles() {
         let [a, b, c] = triangle.map(|i| mesh.positions()[i as usize]);
         assert!(triangle.iter().all(|&i| mesh.normals()[i as usize] == face_normal(a, b, c).unwrap()));
+        tried.add(1);
     }
 }
 
@@ -215,6 +227,7 @@ fn bounds_hold_what_is_used_and_nothing_else() {
 
 #[test]
 fn r9_what_is_not_finite_is_refused() {
+    let mut tried = Tried::new("r9_what_is_not_finite_is_refused", 3 * (3 * 2 + 1));
     let good = [Vec3::ZERO, Vec3::X, Vec3::Y];
     let face = vec![[0, 1, 2]];
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -222,14 +235,17 @@ fn r9_what_is_not_finite_is_refused() {
             let mut list = good.to_vec();
             list[1][axis] = bad;
             assert_eq!(Mesh::new(list, face.clone()), Err(MeshError::PositionNotFinite { vertex: 1 }));
+            tried.add(1);
             let mut list = [Vec3::Z; 3];
             list[1][axis] = bad;
             let refused = Mesh::with_normals(good.to_vec(), list.to_vec(), face.clone());
             assert_eq!(refused, Err(MeshError::NormalNotFinite { vertex: 1 }));
+            tried.add(1);
         }
         let mesh = Mesh::new(good.to_vec(), face.clone()).unwrap();
         let refused = mesh.with_texcoords(vec![Vec2::ZERO, Vec2::ZERO, Vec2::new(0.0, bad)]);
         assert_eq!(refused, Err(MeshError::TexcoordNotFinite { vertex: 2 }));
+        tried.add(1);
     }
 }
 

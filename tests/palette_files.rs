@@ -1,6 +1,9 @@
 //! Palettes: the hard cases P1, P2 and P5, the ramps, the cube, the built-ins and their files.
 #![cfg(feature = "alloc")] // The writers.
 
+mod support;
+
+use std::cell::Cell;
 use std::collections::BTreeSet;
 
 use mode13h::fixed::U8F8;
@@ -8,6 +11,8 @@ use mode13h::palette::file::{self, FORMATS, Format, PaletteError, PaletteErrorKi
 use mode13h::palette::gradient::{Key, fill};
 use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, cube, expand, reduce};
 use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use support::tried::Tried;
 
 fn format(name: &str) -> &'static Format {
     Format::by_name(name).unwrap()
@@ -25,23 +30,27 @@ fn hash_like(i: u8, seed: u32) -> Rgb {
 
 #[test]
 fn p1_six_bit_values_survive_eight_bits() {
+    let mut tried = Tried::new("p1_six_bit_values_survive_eight_bits", 64);
     for v in 0..=63 {
         assert_eq!(reduce(expand(v)), v);
         assert_eq!(expand(v), (v << 2) | (v >> 4));
         // Spread evenly: within half a step of 255·v/63.
         assert!((i32::from(expand(v)) * 63 - 255 * i32::from(v)).abs() < 63, "{v}");
+        tried.add(1);
     }
     assert_eq!((expand(0), expand(63)), (0, 255));
 }
 
 #[test]
 fn p1_eight_bit_values_round_down_and_stay_there() {
+    let mut tried = Tried::new("p1_eight_bit_values_round_down_and_stay_there", 256);
     for v in 0..=255_u8 {
         assert_eq!(reduce(v), v / 4);
         let once = expand(reduce(v));
         assert_eq!(expand(reduce(once)), once);
         assert!(once.abs_diff(v) <= 3, "{v} shows as {once}");
         assert_eq!(expand(v), expand(v & 63), "the DAC has no seventh bit");
+        tried.add(1);
     }
 }
 
@@ -49,6 +58,7 @@ fn p1_eight_bit_values_round_down_and_stay_there() {
 
 #[test]
 fn p2_no_shade_leaves_its_ramp() {
+    let mut tried = Tried::new("p2_no_shade_leaves_its_ramp", 256 * 257 / 2 * (11 + 8));
     let mut ramps = 0;
     for first in 0..=255_u8 {
         for entries in 0..=300_u16 {
@@ -66,10 +76,12 @@ fn p2_no_shade_leaves_its_ramp() {
                 if shade < entries {
                     assert_eq!(u16::from(index), u16::from(first) + shade);
                 }
+                tried.add(1);
             }
             for intensity in [-1.0, 0.0, 0.5, 1.0 - f32::EPSILON, 1.0, 2.0, f32::NAN, f32::INFINITY] {
                 let shade = U8F8::from_intensity(intensity, first, entries);
                 assert!(ramp.contains(shade.nearest()), "{intensity} on {ramp:?}");
+                tried.add(1);
             }
             assert_eq!((ramp.first(), ramp.entries()), (first, entries));
             assert_eq!(ramp.range().count(), usize::from(entries));
@@ -81,7 +93,9 @@ fn p2_no_shade_leaves_its_ramp() {
 
 #[test]
 fn p2_ramps_of_a_palette_share_the_entries_out() {
+    let mut tried = Tried::new("p2_ramps_of_a_palette_share_the_entries_out", 301);
     for ramps in 0..=300 {
+        tried.add(1);
         let palette = BIOS.with_ramps(ramps);
         assert_eq!(palette.is_some(), ramps == 0 || ramps <= 256 && 256 % ramps == 0, "{ramps}");
         let Some(palette) = palette else { continue };
@@ -428,6 +442,7 @@ fn jasc_lines(count: &str, colors: usize) -> String {
 
 #[test]
 fn p5_text_is_read_whatever_ends_its_lines() {
+    let mut tried = Tried::new("p5_text_is_read_whatever_ends_its_lines", 4 * 7);
     let texts = [
         ("jasc", "JASC-PAL\n0100\n2\n0 0 0\n 255\t128  7 \n"),
         ("gimp", "GIMP Palette\nName: x\nColumns: 2\n# note\n\n  0   0   0\tblack\n255 128 7 a name of words\n"),
@@ -448,6 +463,7 @@ fn p5_text_is_read_whatever_ends_its_lines() {
         for text in endings {
             assert_eq!(format(name).read(text.as_bytes()), Ok(expected.clone()), "{text:?}");
             assert_eq!(file::parse(text.as_bytes()), Ok(expected.clone()), "{text:?}");
+            tried.add(1);
         }
     }
 }
@@ -455,6 +471,7 @@ fn p5_text_is_read_whatever_ends_its_lines() {
 /// Format, file, the whole message.
 #[test]
 fn p5_broken_files_are_refused_with_their_place() {
+    let mut tried = Tried::new("p5_broken_files_are_refused_with_their_place", 42);
     let jasc = |text: &str| ("jasc", text.as_bytes().to_vec());
     let gimp = |text: &str| ("gimp", text.as_bytes().to_vec());
     let hex = |text: &str| ("hex", text.as_bytes().to_vec());
@@ -524,30 +541,37 @@ fn p5_broken_files_are_refused_with_their_place() {
     for ((name, bytes), message) in cases {
         let error = format(name).read(&bytes).expect_err(message);
         assert_eq!(error.to_string(), message);
+        tried.add(1);
     }
 }
 
 #[test]
 fn p5_an_empty_file_is_called_empty() {
+    let mut tried = Tried::new("p5_an_empty_file_is_called_empty", 6 + 3);
     for format in &FORMATS {
         let error = format.read(b"").unwrap_err();
         assert_eq!((error.kind, error.place), (PaletteErrorKind::Empty, Place::Offset(0)));
+        tried.add(1);
     }
     for error in [file::parse(b""), file::parse_named("a.gpl", b""), file::parse_named("a", b"")] {
         assert_eq!(error.unwrap_err().to_string(), "offset 0: the file is empty");
+        tried.add(1);
     }
 }
 
 #[test]
 fn p5_what_looks_like_nothing_is_said_to() {
+    let mut tried = Tried::new("p5_what_looks_like_nothing_is_said_to", 5 + 1);
     let utf16 = "\u{FEFF}JASC-PAL\n".encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
     for bytes in [&b"hello\n"[..], &[0; 700], &[0xFF; 769], &utf16, b"\n"] {
         let error = file::parse(bytes).unwrap_err();
         assert_eq!(error.to_string(), "offset 0: neither a JASC, GIMP, Lospec, Adobe nor raw VGA palette");
+        tried.add(1);
     }
     // With a name, the message is the format's own.
     let error: PaletteError = file::parse_named("a.pal", &utf16).unwrap_err();
     assert_eq!(error.to_string(), "line 1: expected \"JASC-PAL\", found \"??J?A?S?C?-?P?A?L?\"");
+    tried.add(1);
 }
 
 fn any_palette() -> impl Strategy<Value = Palette> {
@@ -589,9 +613,20 @@ proptest! {
         assert_round_trip(&palette);
         assert_round_trip(&palette.on_dac());
     }
+}
 
-    #[test]
-    fn p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file(bytes in any_file()) {
+/// Whatever the file holds: a palette, or an error at a place in it. By hand, so that the cases are counted.
+#[test]
+fn p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file() {
+    let mut seed = [0; 32];
+    seed[..8].copy_from_slice(&support::random::seed().to_le_bytes());
+    println!("MODE13H_SEED={}", support::random::seed());
+    let config = Config { failure_persistence: None, ..Config::default() };
+    let stated = config.cases.into();
+    let mut tried = Tried::new("p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file", stated);
+    let files = Cell::new(0);
+    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
+    let result = runner.run(&any_file(), |bytes| {
         let mut results: Vec<_> = FORMATS.iter().map(|format| format.read(&bytes)).collect();
         results.push(file::parse(&bytes));
         results.extend(["a.pal", "a.gpl", "a.hex", "a.act", "a.vga", "a"].map(|name| file::parse_named(name, &bytes)));
@@ -605,5 +640,11 @@ proptest! {
             }
             prop_assert!(!error.to_string().contains(['\n', '\r']));
         }
+        files.set(files.get() + 1);
+        Ok(())
+    });
+    if let Err(error) = result {
+        panic!("{error}");
     }
+    tried.add(files.get());
 }

@@ -152,8 +152,7 @@ fn split(random: &mut Random) -> Option<Parted> {
     Some(Parted { outline: outline.to_vec(), triangles })
 }
 
-fn shared_edges(at_least: u64) {
-    let mut tried = Tried::new("shared_edges", at_least);
+fn shared_edges(mut tried: Tried, at_least: u64) {
     let mut random = Random::named("r5");
     let mut kinds = [0_u64; 4];
     while kinds.iter().sum::<u64>() < at_least {
@@ -169,11 +168,11 @@ fn shared_edges(at_least: u64) {
 
 #[test]
 fn r5_shared_edges() {
-    shared_edges(20_000);
+    shared_edges(Tried::new("r5_shared_edges", 20_000), 20_000);
 }
 
 #[test]
 #[ignore = "the long run: 10,000,000 triangles"]
 fn r5_long_shared_edges() {
-    shared_edges(10_000_000);
+    shared_edges(Tried::new("r5_long_shared_edges", 10_000_000), 10_000_000);
 }

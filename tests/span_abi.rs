@@ -178,7 +178,7 @@ fn s7_no_byte_beside_is_touched() {
 /// Kernels that are wrong in one respect each are caught, for that.
 #[test]
 fn s7_wrong_kernels_are_caught() {
-    let mut tried = Tried::new("s7_wrong_kernels", machine::WRONG.len() as u64);
+    let mut tried = Tried::new("s7_wrong_kernels_are_caught", machine::WRONG.len() as u64);
     for (kernel, fault) in machine::WRONG {
         match called(*kernel, 20, 0x1234, 0x0156, u64::MAX) {
             Ok(()) => panic!("not caught: {fault}"),
@@ -192,6 +192,7 @@ fn s7_wrong_kernels_are_caught() {
 /// The loop is the five instructions, in their order, and jumps back to the first of them.
 #[test]
 fn s7_the_loop_is_five_instructions() {
+    let mut tried = Tried::new("s7_the_loop_is_five_instructions", 5);
     let code = disassembled(machine::LOOP);
     let jumps: Vec<_> = (0..code.len()).filter(|&i| code[i].text.starts_with('j')).collect();
     let [jump] = jumps[..] else { panic!("one jump, the loop's: {code:#?}") };
@@ -200,12 +201,15 @@ fn s7_the_loop_is_five_instructions() {
     assert_eq!(four, machine::FOUR, "{code:#?}");
     assert!(code[jump].text.starts_with("jne"), "{code:#?}");
     assert_eq!(code[jump].target, code[first].offset, "{code:#?}");
+    // The four and the jump.
+    tried.add(four.len() as u64 + 1);
 }
 
 /// The unrolled loop writes eight pixels between two jumps, by the same two instructions.
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn s7_the_unrolled_loop_is_the_same_eight_times() {
+    let mut tried = Tried::new("s7_the_unrolled_loop_is_the_same_eight_times", 8);
     let code = disassembled(entry::mode13h_span_unrolled_x86_64);
     let text: Vec<_> = code.iter().map(|line| line.text.as_str()).collect();
     let mut eight = vec!["mov [rdi],ah".to_owned(), "add ax,bx".to_owned()];
@@ -215,4 +219,5 @@ fn s7_the_unrolled_loop_is_the_same_eight_times() {
     eight.extend(["add rdi,8".to_owned(), "dec esi".to_owned()]);
     let found = text.windows(eight.len()).any(|window| window == eight);
     assert!(found, "{text:#?}");
+    tried.add(8);
 }

@@ -13,6 +13,7 @@
 //! | file | what |
 //! |---|---|
 //! | [`vertex`] | what may enter: a [`Vertex`] is checked when it is made |
+//! | [`clip`] | what clipping before the projection leaves of a triangle, in triangles |
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
 //! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
 //! | [`edge`], [`cover`] | which pixels |
@@ -34,6 +35,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod clip;
 pub mod cover;
 pub mod depth;
 #[cfg(feature = "embedded-graphics")]

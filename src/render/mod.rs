@@ -5,6 +5,7 @@
 //! | `view` | camera and object to one matrix; projection; the one rounding |
 //! | `stage` | an object's vertices, lit and projected, then its faces |
 //! | `clip` | near plane and guard band |
+//! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `rung` | the techniques of shading |
 //! | `hidden`, `painter` | the ways to leave out hidden surfaces |
 //! | `stats` | what a frame came to |
@@ -15,20 +16,19 @@
 
 mod clip;
 mod hidden;
+mod integer;
 mod painter;
 mod rung;
 mod stage;
 mod stats;
+mod vertex_path;
 mod view;
 
 use alloc::vec::Vec;
 use core::fmt;
 
-pub use hidden::{HiddenSurfaces, UnknownHiddenSurfaces};
-pub use rung::{Rung, UnknownRung};
-pub use stats::Stats;
-pub use view::Screen;
-
+#[cfg(feature = "std")]
+use self::integer::IntegerPath;
 use self::stage::{LitVertex, Paint, Stage};
 use self::view::{ObjectView, View};
 use crate::light::Beam;
@@ -37,6 +37,11 @@ use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
 use crate::scene::Scene;
 use crate::span::Kernel;
 use crate::vga::Vga;
+pub use hidden::{HiddenSurfaces, UnknownHiddenSurfaces};
+pub use rung::{Rung, UnknownRung};
+pub use stats::Stats;
+pub use vertex_path::{UnknownVertexPath, VertexPath};
+pub use view::Screen;
 
 /// Why a scene could not be drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -79,9 +84,11 @@ impl core::error::Error for RenderError {}
 #[derive(Debug)]
 pub struct Renderer {
     rung: Rung,
+    vertex_path: VertexPath,
     kernel: Kernel,
     forced: Option<HiddenSurfaces>,
     views: Vec<ObjectView>,
+    integer: IntegerPath,
     /// The objects as they are drawn.
     order: Vec<usize>,
     beams: Vec<Beam>,
@@ -99,9 +106,11 @@ impl Renderer {
     pub fn new() -> Self {
         Self {
             rung: Rung::default(),
+            vertex_path: VertexPath::default(),
             kernel: Kernel::fastest(),
             forced: None,
             views: Vec::new(),
+            integer: IntegerPath::default(),
             order: Vec::new(),
             beams: Vec::new(),
             paints: Vec::new(),
@@ -121,6 +130,17 @@ impl Renderer {
     #[must_use]
     pub fn rung(&self) -> Rung {
         self.rung
+    }
+
+    /// Chooses the way from mesh to vertices.
+    pub fn set_vertex_path(&mut self, vertex_path: VertexPath) {
+        self.vertex_path = vertex_path;
+    }
+
+    /// The way from mesh to vertices.
+    #[must_use]
+    pub fn vertex_path(&self) -> VertexPath {
+        self.vertex_path
     }
 
     /// Chooses the span kernel. All give the same bytes.
@@ -150,8 +170,8 @@ impl Renderer {
     /// pixels and draws.
     ///
     /// # Errors
-    /// A number in the scene that is not finite or not in its range. The machine is then left as it
-    /// was.
+    /// A number in the scene that is not finite or not in its range; on the integer path one that 16.16
+    /// can't hold beside the others. The machine is then left as it was.
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {
         let way = self.prepare(scene, Screen::MODE_13H)?;
         if let Some(palette) = &scene.palette {
@@ -206,6 +226,9 @@ impl Renderer {
         let view = View::new(&scene.camera, screen).map_err(RenderError::Camera)?;
         self.views.clear();
         self.views.extend(scene.objects().iter().map(|object| ObjectView::new(&view, object)));
+        if self.vertex_path == VertexPath::Integer {
+            self.integer.prepare(scene, screen)?;
+        }
         if let Some(forced) = self.forced {
             self.order.clear();
             self.order.extend(0..scene.objects().len());
@@ -272,10 +295,14 @@ impl Renderer {
         way: HiddenSurfaces,
         mut triangle: impl FnMut(&[Vertex; 3], Shading),
     ) -> Stats {
-        let mut stats = Stats::new(self.rung, self.kernel, way);
+        let mut stats = Stats::new(self.rung, self.vertex_path, self.kernel, way);
         for &index in &self.order {
             // One for each object, by `prepare`.
             let (object, view) = (&scene.objects()[index], &self.views[index]);
+            if self.vertex_path == VertexPath::Integer {
+                self.integer.triangles(self.rung, (index, object), &mut stats, &mut triangle);
+                continue;
+            }
             self.beams.clear();
             self.beams.extend(scene.lights().iter().filter_map(|light| light.beam(view)));
             self.paints.clear();

@@ -5,13 +5,14 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use super::clip::{Corner, clip, doubled_area};
+use super::clip::{Corner, clip};
 use super::view::{Homogeneous, ObjectView};
 use super::{Rung, Stats};
 use crate::fixed::U8F8;
 use crate::light::{Beam, Light, Material, both_sides};
 use crate::mesh::normals::face_normal;
 use crate::palette::Ramp;
+use crate::raster::clip::doubled_area;
 use crate::raster::{Shading, Vertex};
 use crate::scene::{Object, Scene};
 

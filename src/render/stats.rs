@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{HiddenSurfaces, Rung};
+use super::{HiddenSurfaces, Rung, VertexPath};
 use crate::raster::Drawn;
 use crate::span::Kernel;
 
@@ -12,6 +12,8 @@ use crate::span::Kernel;
 pub struct Stats {
     /// The rung that shaded.
     pub rung: Rung,
+    /// The way from mesh to vertices.
+    pub vertex_path: VertexPath,
     /// The name of the span kernel that drew.
     pub kernel: &'static str,
     /// How hidden surfaces were left out.
@@ -33,9 +35,10 @@ pub struct Stats {
 }
 
 impl Stats {
-    pub(super) fn new(rung: Rung, kernel: Kernel, hidden_surfaces: HiddenSurfaces) -> Self {
+    pub(super) fn new(rung: Rung, vertex_path: VertexPath, kernel: Kernel, hidden_surfaces: HiddenSurfaces) -> Self {
         Self {
             rung,
+            vertex_path,
             kernel: kernel.name(),
             hidden_surfaces,
             vertices: 0,
@@ -51,10 +54,11 @@ impl Stats {
 
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { rung, kernel, hidden_surfaces, vertices, lit, faces, clipped, culled, drawn, raster } = self;
+        let Self { rung, vertex_path, kernel, hidden_surfaces, vertices, lit, faces, clipped, culled, drawn, raster } =
+            self;
         write!(
             f,
-            "{rung}, kernel {kernel}, {hidden_surfaces}: {vertices} vertices, {lit} lit, {faces} faces, \
+            "{rung}, {vertex_path} vertices, kernel {kernel}, {hidden_surfaces}: {vertices} vertices, {lit} lit, {faces} faces, \
              {clipped} clipped, {culled} culled, {drawn} drawn, {} spans, {} pixels covered, {} written",
             raster.spans, raster.covered, raster.pixels
         )

@@ -31,6 +31,13 @@ pub struct Screen {
 impl Screen {
     /// 320 × 200, pixels 5:6.
     pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
+
+    /// fx and fy, in pixels; the field of view in radians.
+    pub(super) fn focal_lengths(self, field_of_view: f32) -> [f64; 2] {
+        let (pixel_width, pixel_height) = self.pixel_aspect;
+        let fy = f64::from(self.height) / 2.0 / libm::tan(f64::from(field_of_view) / 2.0);
+        [fy * f64::from(pixel_height) / f64::from(pixel_width), fy]
+    }
 }
 
 type Row = [f64; 3];
@@ -97,9 +104,7 @@ impl View {
         let up = cross(right, forward);
 
         let (width, height) = (f64::from(screen.width), f64::from(screen.height));
-        let fy = height / 2.0 / libm::tan(f64::from(field_of_view) / 2.0);
-        let (pixel_width, pixel_height) = screen.pixel_aspect;
-        let fx = fy * f64::from(pixel_height) / f64::from(pixel_width);
+        let [fx, fy] = screen.focal_lengths(field_of_view);
         Ok(Self {
             eye,
             rows: [right.map(|c| fx * c), up.map(|c| -fy * c), forward],
@@ -248,8 +253,9 @@ impl ObjectView {
         let size = dot(row.map(f64::abs), [0, 1, 2].map(|i| (max[i] - min[i]) / 2.0));
         let reach = dot(row.map(f64::abs), [0, 1, 2].map(|i| min[i].abs().max(max[i].abs()))) + offset.abs();
         // In f32, w is made with four roundings of the matrix, three of products and three of sums, each
-        // of at most 2⁻²⁴ of what they reach.
-        let slack = reach / 1_048_576.0;
+        // of at most 2⁻²⁴ of what they reach. In 16.16, each of three angles is off by at most π · 2⁻¹⁶,
+        // and each entry of the matrix by 2⁻¹⁷: in all less than 2⁻¹².
+        let slack = reach / 4096.0;
         let near = f64::from(self.near);
         let at = |w: f64| self.depth(w.max(near));
         (at(middle + size + slack), at(middle - size - slack))

@@ -338,7 +338,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn t1_the_turn_comes_from_the_clock_and_not_from_the_frames() {
+    fn the_turn_comes_from_the_clock_and_not_from_the_frames() {
         let turn_after = |times: &[f64]| {
             let mut motion = Motion::new();
             times.iter().for_each(|&seconds| motion.follow(&Input::default(), seconds));
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn t2_an_hour_in_one_frame_is_an_hour_of_turning() {
+    fn an_hour_in_one_frame_is_an_hour_of_turning() {
         let mut motion = Motion::new();
         for (seconds, turn) in [(0.0, 0.0), (0.0, 0.0), (3600.0, 3600.0 * SPEED), (3599.0, 3599.0 * SPEED)] {
             motion.follow(&Input::default(), seconds);

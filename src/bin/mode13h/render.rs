@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::export::Scale;
-use mode13h::render::{HiddenSurfaces, Renderer, Stats};
+use mode13h::record::Record;
+use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats};
 use mode13h::vga::Vga;
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -50,6 +51,10 @@ pub(crate) struct Options {
     /// How many frames are drawn at a time [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Keep the triangles of the picture as the raster gets them, for `verify --replay`; with --frames, a name that
+    /// holds %04d or the like
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// Say on standard error what was drawn, and by which kernel, a line for each frame
     #[arg(long)]
     stats: bool,
@@ -75,13 +80,17 @@ fn rate(words: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let names = Names::new(&options.out, options.frames)?;
+    let names = Names::pictures(&options.out, options.frames)?;
+    let records = options.record.as_deref().map(|record| Names::new(record, options.frames, "records")).transpose()?;
+    if options.record.as_ref() == Some(&options.out) {
+        return Err(Failure::words(format!("{}: one name for the picture and its record", options.out.display())));
+    }
     let kernel = options.drawing.kernel()?;
     let (_, palette) = options.drawing.palette()?;
     let model = input::model(&options.input)?;
     let stage = Stage::new(model.mesh, options.drawing.up_axis(), palette);
 
-    let film = Film { options, names, stage };
+    let film = Film { options, names, records, stage };
     let progress = progress(options.frames);
     let artist = || {
         let mut renderer = Renderer::new();
@@ -114,6 +123,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 struct Film<'a> {
     options: &'a Options,
     names: Names,
+    records: Option<Names>,
     stage: Stage,
 }
 
@@ -121,6 +131,10 @@ impl Film<'_> {
     fn draw(&self, number: u32, renderer: &mut Renderer, stage: &mut Stage, vga: &mut Vga) -> Result<Stats, Failure> {
         stage.pose(Pose { turn: self.turn(number), ..Pose::FIRST });
         let stats = renderer.draw(&stage.scene, vga).map_err(Failure::work)?;
+        if let Some(records) = &self.records {
+            let record = Record::of_scene(renderer, &stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+            output::file(|| record.save(records.of(number))).map_err(Failure::work)?;
+        }
         let path = self.names.of(number);
         output::picture(vga, &path, self.options.rgb, self.options.scale).map_err(Failure::work)?;
         Ok(stats)
@@ -138,7 +152,7 @@ impl Film<'_> {
     }
 }
 
-/// The names of a row of pictures.
+/// The names of a row of files.
 struct Names {
     /// What stands before and behind the number, and the number's least count of digits; nothing if the name holds
     /// no number.
@@ -147,14 +161,19 @@ struct Names {
 }
 
 impl Names {
-    fn new(out: &Path, frames: u32) -> Result<Names, Failure> {
-        let fail = |reason: &str| Failure::words(format!("{}: {reason}", out.display()));
+    fn pictures(out: &Path, frames: u32) -> Result<Names, Failure> {
         if !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            return Err(fail("no kind of picture that can be written: the name must end in .png"));
+            let reason = "no kind of picture that can be written: the name must end in .png";
+            return Err(Failure::words(format!("{}: {reason}", out.display())));
         }
+        Names::new(out, frames, "pictures")
+    }
+
+    fn new(out: &Path, frames: u32, of: &str) -> Result<Names, Failure> {
         let numbered = out.file_name().and_then(|name| number_in(name.to_str()?));
         if frames > 1 && numbered.is_none() {
-            return Err(fail("a row of pictures needs a place for the number in the name, such as %04d"));
+            let reason = format!("a row of {of} needs a place for the number in the name, such as %04d");
+            return Err(Failure::words(format!("{}: {reason}", out.display())));
         }
         Ok(Names { numbered, out: out.to_path_buf() })
     }
@@ -207,13 +226,13 @@ mod tests {
             ("50%-%09d-x.PNG", "50%-000000007-x.PNG"),
             ("100%d%d.png", "1007%d.png"),
         ] {
-            let names = Names::new(Path::new(out), 8).expect("a number");
+            let names = Names::pictures(Path::new(out), 8).expect("a number");
             assert_eq!(names.of(7), Path::new(name));
         }
         for out in ["a.png", "%.png", "%4d.png", "%0d.png", "%0xd.png", "%04x.png", "%04d/a.png", "%0"] {
-            assert!(Names::new(Path::new(out), 8).is_err(), "{out}");
+            assert!(Names::pictures(Path::new(out), 8).is_err(), "{out}");
         }
-        let one = Names::new(Path::new("a.png"), 1).expect("one picture");
+        let one = Names::pictures(Path::new("a.png"), 1).expect("one picture");
         assert_eq!(one.of(0), Path::new("a.png"));
     }
 }

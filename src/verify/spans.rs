@@ -1,24 +1,12 @@
-//! The hard cases on the user's own machine, in a quick form. Prints nothing.
+//! Group S: every span kernel of this machine against the definition.
 
+use super::random::Random;
+use super::{FAILURES, Group};
 use crate::span::Kernel;
-
-/// What one group of checks found.
-#[derive(Clone, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub struct Group {
-    /// Its name, such as `spans`.
-    pub name: &'static str,
-    /// How many cases were tried. A group that tried none has shown nothing.
-    pub cases: u64,
-    /// One line for each case that failed, small enough to read; empty if all went well.
-    pub failures: Vec<String>,
-}
 
 /// Bytes before and behind a row that have to stay as they were.
 const GUARD: usize = 64;
 const GUARD_BYTE: u8 = 0xA5;
-/// Of each kernel no more failures are kept: one fault shows in many cases.
-const FAILURES: usize = 4;
 
 /// Every span kernel of this machine against the definition, in the manner of hard cases S1 to S6; under 2 s.
 ///
@@ -36,17 +24,13 @@ const FAILURES: usize = 4;
 /// ```
 #[must_use]
 pub fn spans(seed: u64) -> Group {
-    let mut group = Group { name: "spans", cases: 0, failures: Vec::new() };
+    let mut group = Group::new("spans");
     for kernel in Kernel::available() {
         let mut spans =
             Spans { kernel, canvas: vec![GUARD_BYTE; 131_073 + 64 + 2 * GUARD], cases: 0, failures: vec![] };
-        let mut random = seed;
+        let mut random = Random::new(seed, "spans");
         let mut any = || {
-            // SplitMix64 (Steele, Lea, Flood 2014).
-            random = random.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let z = (random ^ (random >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            let z = z ^ (z >> 31);
+            let z = random.next();
             (z as u16, (z >> 16) as u16) // two of its four words
         };
         for _ in 0..1_000 {

@@ -1,0 +1,111 @@
+//! Clipping in homogeneous space, in wide integers: the near plane first, then the guard band.
+//!
+//! Corners get 12 bits more behind their point than vertices have: a cut is rounded, and one on the
+//! guard band's edge, 4,095 pixels away, leads through the whole picture.
+//!
+//! **Why nothing overflows i128.** Coordinates are at most 2³² · 2¹² = 2⁴⁴. A distance from a plane of the
+//! guard band is `a·W ± b·X` with a at most 2³¹ and b at most 2³¹: below 2⁷⁶. A cut multiplies it by a
+//! difference of coordinates: 2⁷⁶ · 2⁴⁵ = 2¹²¹.
+
+use super::view::{Homogeneous, ObjectView, vertex};
+use crate::fixed::U8F8;
+use crate::raster::Vertex;
+use crate::raster::clip::{Clipped, clip as clip_triangle};
+
+/// Bits that a corner has more than a vertex.
+const EXTRA: u32 = 12;
+/// Bits of a parameter along an edge, and of a shade behind its 8.8.
+const PARAMETER: u32 = 32;
+
+/// A corner of the polygon that is being clipped.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    x: i128,
+    y: i128,
+    w: i128,
+    /// In 2⁻⁴⁰ shade.
+    shade: i64,
+    /// The projected vertex, of a corner of the mesh that needs no clipping. It is kept as it is,
+    /// because a neighbour that needs none either draws with it.
+    vertex: Option<Vertex>,
+}
+
+impl Corner {
+    pub(super) fn new(at: Homogeneous, shade: U8F8, vertex: Option<Vertex>) -> Self {
+        let [x, y, w] = at.map(|c| i128::from(c) << EXTRA);
+        Self { x, y, w, shade: i64::from(shade.to_bits()) << PARAMETER, vertex }
+    }
+
+    /// The vertex on the screen; `None` if it lies beyond the limit.
+    fn project(&self, view: &ObjectView) -> Option<Vertex> {
+        if self.vertex.is_some() {
+            return self.vertex;
+        }
+        let [fx, fy] = view.lens.focal.map(i128::from);
+        let w = self.w;
+        let near = i128::from(view.near) << EXTRA;
+        // As for a vertex, see `view`, at most 2³⁰ · 2⁴⁴.
+        let x = i128::from(view.lens.width) * 128 + (fx * self.x + 128 * w).div_euclid(256 * w);
+        let y = i128::from(view.lens.height) * 128 + (fy * self.y + 128 * w).div_euclid(256 * w);
+        // w is no less than near, so at most 2³⁰.
+        let depth = (((near << 31) + w) / (2 * w)) as u32;
+        // Between two shades of at most 0xFF00, and rounded to the nearest.
+        let shade = U8F8::from_bits(((self.shade + (1 << (PARAMETER - 1))) >> PARAMETER) as u16);
+        vertex(x, y, shade, depth)
+    }
+}
+
+/// The distance of a corner from a plane, 0 or more inside; of the guard band twice that times focal
+/// lengths, in 1/65,536.
+fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> i128 {
+    let Corner { x, y, w, .. } = *corner;
+    let limit = 2 * i128::from(ObjectView::LIMIT);
+    let (width, height) = (i128::from(view.lens.width), i128::from(view.lens.height));
+    let [fx, fy] = view.lens.focal.map(i128::from);
+    let distance = match plane {
+        0 => w - (i128::from(view.near) << EXTRA),
+        1 => ((limit + width) << 16) * w + 2 * fx * x,
+        2 => ((limit - width) << 16) * w - 2 * fx * x,
+        3 => ((limit + height) << 16) * w + 2 * fy * y,
+        _ => ((limit - height) << 16) * w - 2 * fy * y,
+    };
+    // A vertex that was projected counts as inside, with the half pixel of room that it had.
+    if corner.vertex.is_some() { distance.max(0) } else { distance }
+}
+
+/// `n / d` to the nearest; d is above 0.
+fn nearest(n: i128, d: i128) -> i128 {
+    (2 * n + d).div_euclid(2 * d)
+}
+
+/// The point where an edge meets a plane.
+fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_inside: i128, d_outside: i128) -> Corner {
+    // Above 0: one distance is 0 or more, the other less.
+    let whole = d_inside - d_outside;
+    let between = |a: i128, b: i128| a + nearest((b - a) * d_inside, whole);
+    let w = if plane == 0 { i128::from(view.near) << EXTRA } else { between(inside.w, outside.w) };
+    // 0 to 1, with 32 bits: 2⁷⁶ · 2³³ on the way.
+    let t = nearest(d_inside << PARAMETER, whole);
+    // Shades are linear on the screen. On the edge's projection the point lies at t·wb / w. Where
+    // the other end has no projection, beyond the near plane, they are linear along the edge.
+    let on_screen = if plane == 0 { t } else { nearest(t * outside.w, w).clamp(0, 1 << PARAMETER) };
+    // 2⁴⁸ · 2³³ on the way; the shade lies between the two.
+    let change = (i128::from(outside.shade - inside.shade) * on_screen) >> PARAMETER;
+    Corner {
+        x: between(inside.x, outside.x),
+        y: between(inside.y, outside.y),
+        w,
+        shade: inside.shade + change as i64,
+        vertex: None,
+    }
+}
+
+/// Clips a triangle. Returns `None` if nothing is left.
+pub(super) fn clip(view: &ObjectView, corners: [Corner; 3]) -> Option<Clipped> {
+    let left = clip_triangle(
+        corners,
+        |plane, corner| distance(view, plane, corner),
+        |plane, inside, outside, d_inside, d_outside| cut(view, plane, inside, outside, d_inside, d_outside),
+    )?;
+    left.project(|corner| corner.project(view))
+}

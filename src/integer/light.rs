@@ -1,0 +1,87 @@
+//! Lights, materials, and the shade at a vertex, in integers.
+//!
+//! ```text
+//! I = ka·Ia + kd · Σ over lights of Id·max(0, n·l)       clamped once, after the sum
+//! shade = 256·first + round(I · (n − 1) · 256)           for a ramp of n entries
+//! ```
+
+use super::IntegerError;
+use super::angle::SINE_BITS;
+use super::vector::{Vector, dot, unit, widen};
+use super::view::ObjectView;
+use crate::fixed::{I16F16, U8F8};
+use crate::palette::Ramp;
+
+/// A source of light so far away that it comes from one direction everywhere.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Sun {
+    /// **Towards** the light, in the scene; any length but zero.
+    pub direction: Vector,
+    /// Id: 65,536 lights a white surface that faces it fully. It may be negative.
+    pub intensity: I16F16,
+}
+
+impl Sun {
+    /// The most suns of a scene: so many of the greatest intensity stay below 2⁶⁰ in sum.
+    pub const MOST: usize = 4096;
+
+    pub(super) fn beam(&self, view: &ObjectView) -> Result<Beam, IntegerError> {
+        let world = unit(widen(self.direction).map(i128::from), SINE_BITS).ok_or(IntegerError::Light)?;
+        Ok(Beam { towards: view.direction_in_object(world), intensity: self.intensity })
+    }
+}
+
+/// Room for a sun as an object sees it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Beam {
+    /// Unit, towards the light, in the object's own space.
+    towards: Vector,
+    intensity: I16F16,
+}
+
+/// How a surface answers light, and where its shades lie in the palette.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Paint {
+    /// ka·Ia: what it gives back of the scene's ambient light.
+    pub ambient: I16F16,
+    /// kd: the share of a light that it gives back in all directions.
+    pub diffuse: I16F16,
+    /// Its entries of the palette.
+    pub ramp: Ramp,
+}
+
+impl Paint {
+    /// The shades of the side that `normal` (unit) points away from, and of the other.
+    #[inline]
+    pub(super) fn shades(&self, beams: &[Beam], normal: Vector) -> (U8F8, U8F8) {
+        let normal = widen(normal);
+        // With 32 bits behind the point.
+        let (mut front, mut back) = (0_i64, 0_i64);
+        for beam in beams {
+            // Of two vectors of length 1 within 2⁻¹⁴: below 2³³. Rounded to 16 bits below 2¹⁷, times
+            // 2³¹ and at most 4,096 of them, below 2⁶⁰.
+            let cosine = (dot(normal, widen(beam.towards)) + (1 << 15)) >> 16;
+            let light = i64::from(beam.intensity.to_bits()) * cosine;
+            if cosine > 0 {
+                front += light;
+            } else {
+                back -= light;
+            }
+        }
+        (self.shade(front), self.shade(back))
+    }
+
+    /// The shade under light with 32 bits behind the point.
+    #[inline]
+    fn shade(&self, light: i64) -> U8F8 {
+        // With 48 bits behind the point: below 2³¹ · 2⁶⁰ + 2⁶³.
+        let intensity =
+            (i128::from(self.ambient.to_bits()) << 32) + i128::from(self.diffuse.to_bits()) * i128::from(light);
+        // The one clamp. 0 to 2⁴⁸.
+        let intensity = intensity.clamp(0, 1 << 48) as u64;
+        // Entries are 1 to 256: the product is at most 2⁴⁸ · 65,280, which is 2⁵⁶ less than 2⁶⁴.
+        let above = (intensity * u64::from(self.ramp.entries() - 1) * 256 + (1 << 47)) >> 48;
+        // At most 0xFF00: the ramp ends at entry 255.
+        U8F8::from_bits((u64::from(self.ramp.first()) * 256 + above) as u16)
+    }
+}

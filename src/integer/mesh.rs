@@ -1,0 +1,255 @@
+//! A mesh in 16.16: slices that the caller owns, checked once.
+
+use core::fmt;
+
+use super::vector::{Vector, cross, narrow_unit, widen};
+use crate::fixed::I16F16;
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for u16 {}
+    impl Sealed for u32 {}
+}
+
+/// The number of a vertex: `u16`, or `u32` for more than 65,536 vertices.
+pub trait Index: Copy + sealed::Sealed {
+    /// Its place in the slices.
+    fn place(self) -> usize;
+}
+
+impl Index for u16 {
+    #[inline]
+    fn place(self) -> usize {
+        usize::from(self)
+    }
+}
+
+impl Index for u32 {
+    #[inline]
+    fn place(self) -> usize {
+        // No narrower on any target that the raster serves: a frame may have 2²⁴ pixels.
+        self as usize
+    }
+}
+
+/// Why slices can't serve as a mesh.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum FixedMeshError {
+    /// There are not as many of these as there must be.
+    Count {
+        /// Of what.
+        what: &'static str,
+        /// How many there are.
+        given: usize,
+        /// How many there must be.
+        needed: usize,
+    },
+    /// A coordinate lies outside ±32,767.
+    Position {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// A normal's length is not within 2⁻¹⁴ of 1.
+    NormalNotUnit {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// A triangle names a vertex that there is not.
+    IndexOutOfRange {
+        /// The triangle.
+        triangle: usize,
+    },
+}
+
+impl fmt::Display for FixedMeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Count { what, given, needed } => write!(f, "{given} {what} given where {needed} are needed"),
+            Self::Position { vertex } => write!(f, "vertex {vertex} lies outside ±32,767"),
+            Self::NormalNotUnit { vertex } => write!(f, "the normal of vertex {vertex} is not of length 1"),
+            Self::IndexOutOfRange { triangle } => write!(f, "triangle {triangle} names a vertex that is not there"),
+        }
+    }
+}
+
+impl core::error::Error for FixedMeshError {}
+
+/// A mesh in 16.16, borrowed. One that exists is sound.
+#[derive(Clone, Copy, Debug)]
+pub struct FixedMesh<'a, I: Index = u16> {
+    pub(crate) positions: &'a [Vector],
+    pub(crate) normals: &'a [Vector],
+    pub(crate) triangles: &'a [[I; 3]],
+    pub(crate) closed: bool,
+    pub(crate) exponent: i32,
+    /// No vertex is farther from the origin, in 1/65,536 of the mesh's own unit.
+    pub(crate) radius: u64,
+    /// Empty where all are of surface 0.
+    pub(crate) vertex_surfaces: &'a [u16],
+    pub(crate) triangle_surfaces: &'a [u16],
+    /// How many surfaces the two slices name.
+    pub(crate) surfaces: usize,
+}
+
+impl<'a, I: Index> FixedMesh<'a, I> {
+    /// The largest coordinate, either way.
+    pub const REACH: I16F16 = I16F16::from_int(i16::MAX);
+
+    /// Vertices with positions and unit normals, and triangles, counter-clockwise seen from
+    /// outside, in a right-handed system whose y is up. `closed` says that the triangles enclose a
+    /// body without a gap, so that those turned away need not be drawn.
+    ///
+    /// # Errors
+    /// Not one normal for each position; a coordinate outside ±32,767; a normal whose length is not
+    /// within 2⁻¹⁴ of 1; an index out of range.
+    pub fn new(
+        positions: &'a [Vector],
+        normals: &'a [Vector],
+        triangles: &'a [[I; 3]],
+        closed: bool,
+    ) -> Result<Self, FixedMeshError> {
+        count("normals", normals.len(), positions.len())?;
+        let mut most = 0;
+        for (vertex, position) in positions.iter().enumerate() {
+            if position.iter().any(|c| c.to_bits().unsigned_abs() > Self::REACH.to_bits().unsigned_abs()) {
+                return Err(FixedMeshError::Position { vertex });
+            }
+            most = most.max(square(*position));
+        }
+        for (vertex, normal) in normals.iter().enumerate() {
+            let long = normal.iter().any(|c| c.to_bits().unsigned_abs() > 2 * 65_536);
+            // 2⁻¹⁴ is 4 units.
+            if long || !(65_532 * 65_532..=65_540 * 65_540).contains(&square(*normal)) {
+                return Err(FixedMeshError::NormalNotUnit { vertex });
+            }
+        }
+        check_indices(triangles, positions.len())?;
+        Ok(Self {
+            positions,
+            normals,
+            triangles,
+            closed,
+            exponent: 0,
+            radius: most.isqrt() + 1,
+            vertex_surfaces: &[],
+            triangle_surfaces: &[],
+            surfaces: 1,
+        })
+    }
+
+    /// The same mesh 2^`exponent` times as large: its coordinates count 2^`exponent` units of the
+    /// scene. So a mesh may use all of its 32 bits whatever its size.
+    #[must_use]
+    pub fn with_exponent(mut self, exponent: i8) -> Self {
+        self.exponent = i32::from(exponent);
+        self
+    }
+
+    /// The same mesh with the number of its surface for each vertex and for each triangle. A
+    /// surface's number is the place of its [`Paint`](super::Paint).
+    ///
+    /// # Errors
+    /// Not as many numbers as vertices, or as triangles.
+    pub fn with_surfaces(
+        mut self,
+        vertex_surfaces: &'a [u16],
+        triangle_surfaces: &'a [u16],
+    ) -> Result<Self, FixedMeshError> {
+        count("surfaces of vertices", vertex_surfaces.len(), self.positions.len())?;
+        count("surfaces of triangles", triangle_surfaces.len(), self.triangles.len())?;
+        let most = vertex_surfaces.iter().chain(triangle_surfaces).max();
+        self.surfaces = most.map_or(1, |&most| usize::from(most) + 1);
+        (self.vertex_surfaces, self.triangle_surfaces) = (vertex_surfaces, triangle_surfaces);
+        Ok(self)
+    }
+
+    /// How many vertices it has: as many a stage needs room for.
+    #[must_use]
+    pub fn vertices(&self) -> usize {
+        self.positions.len()
+    }
+
+    #[inline]
+    pub(super) fn vertex_surface(&self, vertex: usize) -> usize {
+        self.vertex_surfaces.get(vertex).copied().unwrap_or(0).into()
+    }
+
+    #[inline]
+    pub(super) fn triangle_surface(&self, triangle: usize) -> usize {
+        self.triangle_surfaces.get(triangle).copied().unwrap_or(0).into()
+    }
+}
+
+fn count(what: &'static str, given: usize, needed: usize) -> Result<(), FixedMeshError> {
+    if given == needed { Ok(()) } else { Err(FixedMeshError::Count { what, given, needed }) }
+}
+
+fn check_indices<I: Index>(triangles: &[[I; 3]], vertices: usize) -> Result<(), FixedMeshError> {
+    match triangles.iter().position(|t| t.iter().any(|i| i.place() >= vertices)) {
+        Some(triangle) => Err(FixedMeshError::IndexOutOfRange { triangle }),
+        None => Ok(()),
+    }
+}
+
+/// |v|², of components of at most 32,767: at most 3 · 2⁶² < 2⁶⁴.
+pub(super) fn square(v: Vector) -> u64 {
+    v.iter().map(|c| u64::from(c.to_bits().unsigned_abs()).pow(2)).sum()
+}
+
+/// The unit normal of a face, out of the side from which its corners are counter-clockwise; `None`
+/// if they lie on a line. Exact but for its last rounding.
+#[must_use]
+pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
+    let [a, b, c] = [a, b, c].map(widen);
+    let from_a = |p: [i64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
+    // Differences of 33 bits, products of 66.
+    narrow_unit(cross(from_a(b), from_a(c)))
+}
+
+/// Averages the unit normals of the faces around each vertex, and makes the sum unit again: without
+/// that a corner is the darker the rounder it is (S4's slip). Its length is within 2⁻¹⁶ of 1.
+///
+/// Where the faces' normals cancel the vertex gets that of its first face; where it has no face with
+/// an area, +z. Of more than 32,767 faces around one vertex those beyond may no longer count.
+///
+/// # Errors
+/// Not as much room for normals as there are positions; an index out of range.
+pub fn average_normals<I: Index>(
+    positions: &[Vector],
+    triangles: &[[I; 3]],
+    normals: &mut [Vector],
+) -> Result<(), FixedMeshError> {
+    count("normals", normals.len(), positions.len())?;
+    check_indices(triangles, positions.len())?;
+    const NONE: Vector = [I16F16::from_bits(0); 3];
+    let faces = || {
+        triangles.iter().filter_map(|t| {
+            let corners = t.map(Index::place);
+            let [a, b, c] = corners.map(|i| positions[i]);
+            Some((corners, face_normal(a, b, c)?))
+        })
+    };
+    normals.fill(NONE);
+    for (corners, normal) in faces() {
+        for i in corners {
+            for (sum, c) in normals[i].iter_mut().zip(normal) {
+                *sum = I16F16::from_bits(sum.to_bits().saturating_add(c.to_bits()));
+            }
+        }
+    }
+    for normal in normals.iter_mut() {
+        *normal = narrow_unit(widen(*normal).map(i128::from)).unwrap_or(NONE);
+    }
+    for (corners, normal) in faces() {
+        for i in corners {
+            if normals[i] == NONE {
+                normals[i] = normal;
+            }
+        }
+    }
+    for normal in normals.iter_mut().filter(|normal| **normal == NONE) {
+        *normal = [I16F16::from_bits(0), I16F16::from_bits(0), I16F16::ONE];
+    }
+    Ok(())
+}

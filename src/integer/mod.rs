@@ -1,0 +1,127 @@
+//! The integer vertex path: from a mesh in 16.16 to the raster without a float.
+//!
+//! S4 keeps everything in fixed point, unit vectors of length 65,536. Here the whole way of a frame is
+//! made so: turn, projection, normals, light, clipping. It needs neither `std` nor an allocator, and
+//! nothing of it links a soft-float routine: meshes, paints and suns are borrowed slices, room for
+//! vertices is the caller's, triangles go to a closure. So a chip that has no floating point unit
+//! draws what the f32 path of `render` draws, by the same stages and with the same conventions.
+//!
+//! | file | what |
+//! |---|---|
+//! | `angle` | binary angles and their sines |
+//! | `vector` | unit vectors, the turn of an object |
+//! | `mesh` | a mesh in 16.16; averaged normals |
+//! | `view` | camera and object to one matrix; projection; the one rounding |
+//! | `light` | suns, paints, the shade of a vertex |
+//! | `clip` | near plane and guard band |
+//! | `stage` | an object's vertices, lit and projected, then its faces |
+//!
+//! A frame may be drawn in bands of rows: the vertices are made once, the faces drawn into each band.
+//!
+//! ```
+//! use mode13h::fixed::I16F16;
+//! use mode13h::integer::{Angle, Camera, FixedMesh, Lens, Object, Paint, Placement, Stage, Sun, Technique, View};
+//! use mode13h::palette::Ramp;
+//! use mode13h::raster::{Frame, Raster};
+//!
+//! let at = |x, y, z| [x, y, z].map(I16F16::from_int);
+//! let positions = [at(-1, -1, 0), at(1, -1, 0), at(0, 1, 0)];
+//! let normals = [at(0, 0, 1); 3];
+//! let mesh = FixedMesh::new(&positions, &normals, &[[0_u16, 1, 2]], false)?;
+//!
+//! let lens = Lens::new(320, 200, (5, 6), Angle::from_degrees(40))?;
+//! let camera = Camera { eye: at(0, 0, 4), target: at(0, 0, 0), up: at(0, 1, 0), near: I16F16::ONE };
+//! let view = View::new(&camera, lens)?;
+//! let paint = Paint { ambient: I16F16::default(), diffuse: I16F16::ONE, ramp: Ramp::WHOLE };
+//! let placement = Placement { angles: [Angle::default(), Angle::from_degrees(45), Angle::default()], ..Placement::default() };
+//! let object = Object { mesh, placement, paints: &[paint] };
+//! let suns = [Sun { direction: at(0, 0, 1), intensity: I16F16::ONE }];
+//!
+//! let (mut lit, mut beams) = ([Default::default(); 3], [Default::default(); 1]);
+//! let stage = Stage::new(&view, object, &suns, Technique::default(), &mut lit, &mut beams)?;
+//! let mut bytes = [0; 320 * 200];
+//! let mut raster = Raster::new(Frame::new(&mut bytes, 320, 200, 320)?);
+//! let faces = stage.faces(|vertices, shading| {
+//!     raster.triangle(vertices, shading);
+//! });
+//! assert_eq!(faces.drawn, 1);
+//! assert_eq!(bytes[100 * 320 + 160], 180); // lit under 45°: 255 · √½
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod angle;
+mod clip;
+mod light;
+mod mesh;
+mod stage;
+mod vector;
+mod view;
+
+use core::fmt;
+
+pub use angle::Angle;
+pub use light::{Beam, Paint, Sun};
+pub use mesh::{FixedMesh, FixedMeshError, Index, average_normals, face_normal};
+pub use stage::{Faces, LitVertex, Object, Stage, Technique};
+pub use vector::{Vector, turn, unit_vector};
+pub use view::{Camera, Lens, Placement, View};
+
+/// What the integer path refuses.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum IntegerError {
+    /// A picture with a side of 0 or above 4,096 pixels.
+    Size,
+    /// A field of view that is 0, half a turn or more, or so small that a focal length exceeds 16,384
+    /// pixels; a pixel without a side.
+    FieldOfView,
+    /// A near distance that is not above 0.
+    Near,
+    /// A camera that looks at the point where it is.
+    Direction,
+    /// A scale below 0.
+    Scale,
+    /// An object of which a part may be more than 65,535 units from the eye.
+    TooFar,
+    /// More than [`Sun::MOST`] suns, or one without direction.
+    Light,
+    /// There are fewer paints than the mesh has surfaces.
+    Paints {
+        /// How many there must be.
+        needed: usize,
+    },
+    /// There is too little room for vertices or beams.
+    Room {
+        /// For how many there must be room.
+        needed: usize,
+    },
+}
+
+impl IntegerError {
+    /// What is wrong, without its numbers.
+    pub(crate) const fn what(&self) -> &'static str {
+        match self {
+            Self::Size => "each side of the picture must be 1 to 4,096 pixels",
+            Self::FieldOfView => "the field of view must be below 180°, and focal lengths 1/65,536 to 16,384 pixels",
+            Self::Near => "the near distance must be above 0",
+            Self::Direction => "the camera looks at the point where it is",
+            Self::Scale => "an object's scale must not be negative",
+            Self::TooFar => "an object reaches farther than 65,535 units from the eye",
+            Self::Light => "a sun must have a direction, and there may be 4,096 of them",
+            Self::Paints { .. } => "each surface of a mesh must have a paint",
+            Self::Room { .. } => "there is too little room for vertices or beams",
+        }
+    }
+}
+
+impl fmt::Display for IntegerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.what())?;
+        match self {
+            Self::Paints { needed } | Self::Room { needed } => write!(f, ": {needed} are needed"),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl core::error::Error for IntegerError {}

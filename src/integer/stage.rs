@@ -1,0 +1,209 @@
+//! An object on its way to the raster: its vertices, each lit, projected and rounded once, then its
+//! faces.
+
+use super::IntegerError;
+use super::clip::{Corner, clip};
+use super::light::{Beam, Paint, Sun};
+use super::mesh::{FixedMesh, Index, face_normal};
+use super::view::{Homogeneous, ObjectView, Placement, View};
+use crate::fixed::U8F8;
+use crate::raster::clip::doubled_area;
+use crate::raster::{Shading, Vertex};
+
+/// How faces are shaded: the rungs of the same names, for which see `render::Rung`.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[non_exhaustive]
+pub enum Technique {
+    /// One shade for each face.
+    Flat,
+    /// Linear between the vertices, each row of a triangle one span.
+    Gouraud,
+    /// The same, started anew every 64 pixels.
+    #[default]
+    GouraudReseeded,
+    /// Linear on the face in space: an exact quotient for every pixel.
+    GouraudHyperbolic,
+}
+
+/// A mesh in its place, with one paint for each of its surfaces.
+#[derive(Clone, Copy, Debug)]
+pub struct Object<'a, I: Index = u16> {
+    /// The mesh.
+    pub mesh: FixedMesh<'a, I>,
+    /// Where it is.
+    pub placement: Placement,
+    /// One for each surface.
+    pub paints: &'a [Paint],
+}
+
+/// Room for a vertex, lit and projected.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LitVertex {
+    /// Its shade is that of the front: the side that the normal points away from. Of a vertex that
+    /// needs clipping only the shade counts.
+    vertex: Vertex,
+    back: U8F8,
+    needs_clipping: bool,
+}
+
+/// What the faces of an object came to, in counts.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Faces {
+    /// Faces lit, where shading is flat.
+    pub lit: u64,
+    /// Faces cut by the near plane or the guard band, or wholly beyond them.
+    pub clipped: u64,
+    /// Faces turned away, or without area once clipped and rounded.
+    pub culled: u64,
+    /// Triangles handed on: faces, and the parts of those that were clipped.
+    pub drawn: u64,
+}
+
+/// An object whose vertices are ready: its faces can be drawn, as often as there are bands.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'a, I: Index = u16> {
+    technique: Technique,
+    object: Object<'a, I>,
+    view: ObjectView,
+    beams: &'a [Beam],
+    lit: &'a [LitVertex],
+}
+
+impl<'a, I: Index> Stage<'a, I> {
+    /// Lights and projects every vertex of the mesh. `lit` is room for at least as many vertices as
+    /// the mesh has, `beams` for as many beams as there are suns.
+    ///
+    /// # Errors
+    /// Too little room; a surface without a paint; a scale below 0; an object of which a part may be
+    /// more than 65,535 units away; more than 4,096 suns, or one without direction.
+    pub fn new(
+        view: &View,
+        object: Object<'a, I>,
+        suns: &[Sun],
+        technique: Technique,
+        lit: &'a mut [LitVertex],
+        beams: &'a mut [Beam],
+    ) -> Result<Self, IntegerError> {
+        let Object { mesh, placement, paints } = &object;
+        if suns.len() > Sun::MOST {
+            return Err(IntegerError::Light);
+        }
+        if paints.len() < mesh.surfaces {
+            return Err(IntegerError::Paints { needed: mesh.surfaces });
+        }
+        let lit = lit.get_mut(..mesh.vertices()).ok_or(IntegerError::Room { needed: mesh.vertices() })?;
+        let beams = beams.get_mut(..suns.len()).ok_or(IntegerError::Room { needed: suns.len() })?;
+        let view = ObjectView::new(view, placement, mesh)?;
+        for (beam, sun) in beams.iter_mut().zip(suns) {
+            *beam = sun.beam(&view)?;
+        }
+        for (i, (place, (&position, &normal))) in
+            lit.iter_mut().zip(mesh.positions.iter().zip(mesh.normals)).enumerate()
+        {
+            let vertex = view.project(view.homogeneous(position));
+            let (front, back) = match technique {
+                Technique::Flat => (U8F8::default(), U8F8::default()),
+                _ => paints[mesh.vertex_surface(i)].shades(beams, normal),
+            };
+            *place = LitVertex {
+                vertex: vertex.unwrap_or_default().with_shade(front),
+                back,
+                needs_clipping: vertex.is_none(),
+            };
+        }
+        Ok(Self { technique, object, view, beams, lit })
+    }
+
+    /// Hands the faces that are to be drawn to `triangle`, clipped where they must be. Those of a
+    /// closed mesh that are turned away are left out; others show their back.
+    pub fn faces(&self, mut triangle: impl FnMut(&[Vertex; 3], Shading)) -> Faces {
+        let mut counts = Faces::default();
+        let mesh = &self.object.mesh;
+        for (face, indices) in mesh.triangles.iter().enumerate() {
+            // In range: the mesh saw to it, and every vertex is lit.
+            let indices = indices.map(Index::place);
+            let corners = indices.map(|i| self.lit[i]);
+            if corners.iter().any(|corner| corner.needs_clipping) {
+                counts.clipped += 1;
+                self.clipped(face, indices, &corners, &mut counts, &mut triangle);
+                continue;
+            }
+            let vertices = corners.map(|corner| corner.vertex);
+            let area = doubled_area(&vertices);
+            if self.is_culled(area) {
+                counts.culled += 1;
+                continue;
+            }
+            counts.drawn += 1;
+            let shading = self.shading(face, indices, area > 0, &mut counts);
+            if area > 0 {
+                triangle(&corners.map(|corner| corner.vertex.with_shade(corner.back)), shading);
+            } else {
+                triangle(&vertices, shading);
+            }
+        }
+        counts
+    }
+
+    /// A face that reaches beyond the near plane or the guard band. Kept apart: it is rare.
+    #[cold]
+    fn clipped(
+        &self,
+        face: usize,
+        indices: [usize; 3],
+        corners: &[LitVertex; 3],
+        counts: &mut Faces,
+        triangle: &mut impl FnMut(&[Vertex; 3], Shading),
+    ) {
+        let at = indices.map(|i| self.view.homogeneous(self.object.mesh.positions[i]));
+        let turned = !self.object.mesh.closed && is_turned_away(&at);
+        let corner = |i: usize| {
+            let LitVertex { vertex, back, needs_clipping } = corners[i];
+            let shade = if turned { back } else { vertex.shade() };
+            Corner::new(at[i], shade, (!needs_clipping).then(|| vertex.with_shade(shade)))
+        };
+        let Some(clipped) = clip(&self.view, [corner(0), corner(1), corner(2)]) else { return };
+        if self.is_culled(clipped.doubled_area()) {
+            counts.culled += 1;
+            return;
+        }
+        let shading = self.shading(face, indices, turned, counts);
+        for part in clipped.parts() {
+            counts.drawn += 1;
+            triangle(&part, shading);
+        }
+    }
+
+    /// How a face is shaded; its one shade, where it has but one, is worked out here.
+    #[inline]
+    fn shading(&self, face: usize, indices: [usize; 3], turned: bool, counts: &mut Faces) -> Shading {
+        match self.technique {
+            Technique::GouraudReseeded => Shading::GouraudReseeded,
+            Technique::Gouraud => Shading::Gouraud,
+            Technique::GouraudHyperbolic => Shading::GouraudHyperbolic,
+            Technique::Flat => {
+                counts.lit += 1;
+                let mesh = &self.object.mesh;
+                let [a, b, c] = indices.map(|i| mesh.positions[i]);
+                // A face without area has no normal; rounded, it may still cover a pixel.
+                let normal = face_normal(a, b, c).unwrap_or(mesh.normals[indices[0]]);
+                let paint = &self.object.paints[mesh.triangle_surface(face)];
+                let (front, back) = paint.shades(self.beams, normal);
+                Shading::Flat(if turned { back } else { front }.nearest())
+            }
+        }
+    }
+
+    #[inline]
+    fn is_culled(&self, doubled_area: i64) -> bool {
+        doubled_area == 0 || (doubled_area > 0 && self.object.mesh.closed)
+    }
+}
+
+/// Whether the eye is behind the face, wherever its corners are: the sign of the volume between
+/// the eye and the three corners.
+fn is_turned_away(at: &[Homogeneous; 3]) -> bool {
+    let [[ax, ay, aw], [bx, by, bw], [cx, cy, cw]] = at.map(|corner| corner.map(i128::from));
+    // Coordinates are at most 2³²: below 6 · 2⁹⁶.
+    aw * (bx * cy - cx * by) + bw * (cx * ay - ax * cy) + cw * (ax * by - bx * ay) > 0
+}

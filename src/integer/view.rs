@@ -1,0 +1,298 @@
+//! From a mesh's own coordinates to the screen: one matrix an object, one division a coordinate.
+//!
+//! ```text
+//! X = right · d    Y = −(up · d)    W = forward · d         d from the eye to the point; 1/65,536 unit
+//! x = cx + fx · X / W               y = cy + fy · Y / W     in pixels; fx, fy in 1/65,536 pixel
+//! ```
+//!
+//! **What is rounded (R13).** X, Y and W are integers: a sum of three products, of 16.16 numbers with
+//! 16.16 numbers, rounded to the nearest 1/65,536 once. The projected coordinate is then the exact
+//! rational `cx + fx·X / (65,536·W)`, and it is rounded to floor(256·x + ½) exactly:
+//!
+//! ```text
+//! floor(256·x + ½) = 256·cx + floor((fx·X + 128·W) / (256·W))       256·cx = 128·width: whole
+//! ```
+//!
+//! **Why nothing overflows.** An object is refused unless all of it stays within 2³² units of 1/65,536
+//! ([`ObjectView::REACH`]) of the eye along each axis of the view, and focal lengths are at most 2³⁰.
+//! So fx·X is at most 2⁶² and 128·W at most 2³⁹: the sum fits in i64, and 256·W is at most 2⁴⁰.
+//! The sums on the way are stated where they are taken.
+
+use super::IntegerError;
+use super::angle::{Angle, SINE_BITS};
+use super::mesh::{FixedMesh, Index, square};
+use super::vector::{Matrix, Vector, Wide, cross, dot, product, round_shift, unit, wide_turn, widen};
+use crate::fixed::{I16F16, I24F8, U8F8};
+use crate::raster::{Frame, Vertex};
+
+/// The picture: its size in pixels, and how large things look in it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Lens {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    /// fx and fy in 1/65,536 pixel, 1 to 2³⁰.
+    pub(super) focal: [i64; 2],
+}
+
+impl Lens {
+    /// The longest focal length: 16,384 pixels, in 1/65,536 pixel.
+    const LONGEST: i64 = 1 << 30;
+
+    /// A picture of `width` × `height` pixels, each 1 to 4,096, whose pixels have the shape
+    /// `pixel_aspect`, width to height: 5:6 in mode 13h. `field_of_view` is the angle between the
+    /// picture's upper and lower edge.
+    ///
+    /// fy = height/2 · cot(½ field of view), fx = fy · pixel height / pixel width.
+    ///
+    /// # Errors
+    /// A side or part of the aspect that is 0, or too large; an angle that is 0, half a turn or more,
+    /// or so small that a focal length exceeds 16,384 pixels.
+    pub fn new(width: u32, height: u32, pixel_aspect: (u32, u32), field_of_view: Angle) -> Result<Self, IntegerError> {
+        if field_of_view == Angle::default() || field_of_view.to_bits() >= Angle::HALF.to_bits() || pixel_aspect.0 == 0
+        {
+            return Err(IntegerError::FieldOfView);
+        }
+        let (sine, cosine) = field_of_view.sin_cos();
+        // cot(a/2) = (1 + cos a) / sin a; the sine of the least angle is 102,944. Below 2¹² · 2¹⁵ · 2³¹.
+        let fy = (i64::from(height.min(Frame::MAX_SIDE)) << 15) * ((1 << SINE_BITS) + cosine) / sine;
+        // fy is below 2⁴², and the aspect below 2³².
+        let fx = i128::from(fy) * i128::from(pixel_aspect.1) / i128::from(pixel_aspect.0);
+        Self::checked(width, height, [fx, i128::from(fy)])
+    }
+
+    /// The same from the focal lengths fx and fy in pixels.
+    ///
+    /// # Errors
+    /// A side that is 0 or above 4,096; a focal length that is not above 0, or above 16,384 pixels.
+    pub fn with_focal_lengths(width: u32, height: u32, focal: [I16F16; 2]) -> Result<Self, IntegerError> {
+        Self::checked(width, height, focal.map(|f| i128::from(f.to_bits())))
+    }
+
+    fn checked(width: u32, height: u32, focal: [i128; 2]) -> Result<Self, IntegerError> {
+        let sides = 1..=Frame::MAX_SIDE;
+        if !sides.contains(&width) || !sides.contains(&height) {
+            return Err(IntegerError::Size);
+        }
+        if focal.iter().any(|f| !(1..=i128::from(Self::LONGEST)).contains(f)) {
+            return Err(IntegerError::FieldOfView);
+        }
+        // In range by the line above.
+        Ok(Self { width, height, focal: focal.map(|f| f as i64) })
+    }
+}
+
+/// The eye.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Camera {
+    /// Where it is, in units of the scene.
+    pub eye: Vector,
+    /// What it looks at: the middle of the picture.
+    pub target: Vector,
+    /// What is up in the picture; any length. Where it points along the view, another axis is taken.
+    pub up: Vector,
+    /// Nothing nearer than this is drawn; above 0. It also sets the unit of depth.
+    pub near: I16F16,
+}
+
+/// The camera's part of the way: from the scene to the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    eye: Wide,
+    /// Right, down and forward, of length 2³⁰.
+    axes: Matrix,
+    lens: Lens,
+    near: i64,
+}
+
+impl View {
+    /// What `camera` sees through `lens`.
+    ///
+    /// # Errors
+    /// A camera that looks at the point where it is; a near distance that is not above 0.
+    pub fn new(camera: &Camera, lens: Lens) -> Result<Self, IntegerError> {
+        let near = i64::from(camera.near.to_bits());
+        if near <= 0 {
+            return Err(IntegerError::Near);
+        }
+        let (eye, target) = (widen(camera.eye), widen(camera.target));
+        let to_target = [0, 1, 2].map(|i| i128::from(target[i] - eye[i]));
+        let forward = unit(to_target, SINE_BITS).ok_or(IntegerError::Direction)?;
+        let right = right_of(forward, camera.up).ok_or(IntegerError::Direction)?;
+        let up = unit(cross(right, forward), SINE_BITS).ok_or(IntegerError::Direction)?;
+        Ok(Self { eye, axes: [right, up.map(|c| -c), forward], lens, near })
+    }
+
+    /// Whether `mesh` can be drawn there.
+    ///
+    /// # Errors
+    /// A scale below 0; a mesh of which a part may be more than 65,535 units from the eye.
+    pub fn check<I: Index>(&self, placement: &Placement, mesh: &FixedMesh<'_, I>) -> Result<(), IntegerError> {
+        ObjectView::new(self, placement, mesh).map(|_| ())
+    }
+}
+
+/// The unit vector to the right of `forward`. As in the f32 path, the axis that is farthest from the
+/// view serves where `up` lies within 10⁻⁶ of it.
+fn right_of(forward: Wide, up: Vector) -> Option<Wide> {
+    let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
+    let mut axis = [0; 3];
+    axis[least] = 1 << SINE_BITS;
+    let by_up = unit(widen(up).map(i128::from), SINE_BITS).map(|up| cross(forward, up));
+    // Components with 60 bits behind the point, at most 2⁶¹; 2⁶⁰ · 10⁻⁶ is 2⁴⁰.
+    let is_aslant = |right: &[i128; 3]| right.iter().map(|c| c * c).sum::<i128>() > 1 << 80;
+    by_up.filter(is_aslant).and_then(|right| unit(right, SINE_BITS)).or_else(|| unit(cross(forward, axis), SINE_BITS))
+}
+
+/// Where an object is and how it is turned.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Placement {
+    /// Where the pivot is, in units of the scene.
+    pub position: Vector,
+    /// The point that it turns about, in the mesh's own coordinates.
+    pub pivot: Vector,
+    /// About x, y and z: the turn about z comes first, then y, then x.
+    pub angles: [Angle; 3],
+    /// How many times as large as the mesh it is; not negative.
+    pub scale: I16F16,
+}
+
+impl Default for Placement {
+    /// At the origin, as large as the mesh, not turned.
+    fn default() -> Self {
+        Self {
+            position: Vector::default(),
+            pivot: Vector::default(),
+            angles: [Angle::default(); 3],
+            scale: I16F16::ONE,
+        }
+    }
+}
+
+/// A vertex before its division: X, Y and W in 1/65,536 of the scene's unit, within ±2³².
+pub(super) type Homogeneous = Wide;
+
+/// An object's whole way: from its mesh to the screen.
+///
+/// A vertex p becomes `((matrix · p + offset) >> shift) + translation`: the matrix is the turn,
+/// seen from the camera, times the scale, whose power of two is left to the shift so that the
+/// entries keep their 16 bits behind the point at every size.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ObjectView {
+    matrix: Matrix,
+    offset: Wide,
+    shift: u32,
+    translation: Wide,
+    /// The turn alone, from the object's directions to the scene's, of length 2³⁰.
+    turn: Matrix,
+    pub(super) lens: Lens,
+    pub(super) near: i64,
+}
+
+impl ObjectView {
+    /// No point of an object is farther from the eye than this along an axis of the view, in
+    /// 1/65,536: 65,536 units.
+    pub(super) const REACH: i64 = 1 << 32;
+
+    /// What is projected beyond this, in pixels either way, is clipped: inside the raster's guard
+    /// band by a whole pixel, more than all rounding of a clipped point comes to.
+    pub(super) const LIMIT: i64 = 4095;
+
+    pub(super) fn new<I: Index>(
+        view: &View,
+        placement: &Placement,
+        mesh: &FixedMesh<'_, I>,
+    ) -> Result<Self, IntegerError> {
+        let turn = wide_turn(placement.angles);
+        let turned = product(&view.axes, &turn);
+        let (mantissa, exponent) = normalised(placement.scale)?;
+        // At most 2¹⁷ · 2³⁰ and little more; the matrix then at most 2¹⁷ and little more.
+        let matrix = turned.map(|row| row.map(|c| round_shift(mantissa * c, SINE_BITS)));
+
+        // At most 2³² each; a row has the length 2³⁰, so the sum, and each part of it, is at most
+        // √3 · 2³² · 2³⁰ < 2⁶³.
+        let position = widen(placement.position);
+        let to_position = [0, 1, 2].map(|i| position[i] - view.eye[i]);
+        let translation = view.axes.map(|axis| round_shift_wide(axis, to_position));
+
+        // A position of 2¹⁶ in the mesh, times a scale of 2¹⁶, is 2^exponent of the scene.
+        let shift = 16 - (exponent + mesh.exponent);
+        if shift < 0 {
+            return Err(IntegerError::TooFar);
+        }
+        // Beyond 50 bits nothing is left of any sum: the object is a point.
+        let shift = shift.min(62) as u32;
+        let far = mesh.radius + square(placement.pivot).isqrt() + 1;
+        // How far a vertex is from the pivot along any axis: at most 2³³ · (2¹⁷ + 2) < 2⁵¹. The rows
+        // are longer than the scale by less than 2, from the rounding of their entries.
+        let reach = ((far as i64 * (mantissa + 2)) >> shift) + 1;
+        if translation.iter().any(|c| c.abs() + reach >= Self::REACH) {
+            return Err(IntegerError::TooFar);
+        }
+        // The half unit that makes the shift round to the nearest comes with the offset. At most
+        // 2⁶¹ + 3 · 2¹⁷ · 2³¹, as for every vertex after it.
+        let half = if shift == 0 { 0 } else { 1 << (shift - 1) };
+        let pivot = widen(placement.pivot);
+        let offset = matrix.map(|row| half - dot(row, pivot));
+        Ok(Self { matrix, offset, shift, translation, turn, lens: view.lens, near: view.near })
+    }
+
+    /// A direction of the scene, of length 2³⁰, in the object's own space, of length 65,536.
+    pub(super) fn direction_in_object(&self, world: Wide) -> Vector {
+        let column = |j: usize| [self.turn[0][j], self.turn[1][j], self.turn[2][j]];
+        // Sums below 2⁶²; at most 65,536 either way.
+        [0, 1, 2].map(|j| I16F16::from_bits(round_shift(dot(column(j), world), 2 * SINE_BITS - 16) as i32))
+    }
+
+    /// A vertex before its division.
+    #[inline]
+    pub(super) fn homogeneous(&self, p: Vector) -> Homogeneous {
+        let p = widen(p);
+        [0, 1, 2].map(|i| ((dot(self.matrix[i], p) + self.offset[i]) >> self.shift) + self.translation[i])
+    }
+
+    /// The vertex on the screen, without its shade; `None` if it must be clipped.
+    #[inline]
+    pub(super) fn project(&self, [x, y, w]: Homogeneous) -> Option<Vertex> {
+        if w < self.near {
+            return None;
+        }
+        let [fx, fy] = self.lens.focal;
+        let (cx, cy) = (i64::from(self.lens.width) * 128, i64::from(self.lens.height) * 128);
+        let x = cx + (fx * x + 128 * w).div_euclid(256 * w);
+        let y = cy + (fy * y + 128 * w).div_euclid(256 * w);
+        // nearest(2³⁰ · near / w), at most 2³⁰: near is at most w, and below 2³¹.
+        let depth = (((self.near << 31) + w) / (2 * w)) as u32;
+        vertex(i128::from(x), i128::from(y), U8F8::default(), depth)
+    }
+}
+
+/// A vertex from coordinates in 1/256 pixel; `None` if they lie beyond the limit. Half a pixel of room
+/// is for what a clipped point is off the limit by rounding.
+#[inline]
+pub(super) fn vertex(x: i128, y: i128, shade: U8F8, depth: u32) -> Option<Vertex> {
+    let limit = i128::from(ObjectView::LIMIT * 256 + 128);
+    let within = |c: i128| (-limit..=limit).contains(&c).then_some(I24F8::from_bits(c as i32));
+    Vertex::new(within(x)?, within(y)?, shade, depth).ok()
+}
+
+/// `axis · v`, without the axis' [`SINE_BITS`].
+fn round_shift_wide(axis: Wide, v: Wide) -> i64 {
+    // The half may carry what is just below 2⁶³ over it.
+    let half = 1 << (SINE_BITS - 1);
+    (dot(axis, v).saturating_add(half)) >> SINE_BITS
+}
+
+/// A scale as mantissa, 65,536 to 131,071, and exponent; of 0 the mantissa is 0.
+fn normalised(scale: I16F16) -> Result<(i64, i32), IntegerError> {
+    let bits = scale.to_bits();
+    if bits < 0 {
+        return Err(IntegerError::Scale);
+    }
+    if bits == 0 {
+        return Ok((0, 0));
+    }
+    // 0 to 30 bits below the highest.
+    let exponent = 15 - bits.leading_zeros() as i32;
+    let bits = i64::from(bits);
+    Ok((if exponent >= 0 { bits >> exponent } else { bits << -exponent }, exponent))
+}

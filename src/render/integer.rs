@@ -1,0 +1,283 @@
+//! A scene for the integer path: its floats become 16.16 here, and nowhere further on.
+//!
+//! Powers of two bring everything into range. A mesh is taken about its pivot and scaled until its
+//! farthest coordinate lies between 16,384 and 32,767: 30 bits, whatever its size. The scene is scaled,
+//! with the eye as its origin, until its farthest object does.
+
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use super::stats::Stats;
+use super::{RenderError, Rung, Screen};
+use crate::fixed::I16F16;
+use crate::integer::{
+    Angle, Beam, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Stage, Sun, Technique,
+    Vector, View,
+};
+use crate::light::{Light, Material};
+use crate::mesh::Mesh;
+use crate::raster::{Shading, Vertex};
+use crate::scene::{self, Scene, Shared, UpAxis};
+
+/// The farthest coordinate.
+const REACH: f64 = 32_767.0;
+
+/// The nearest near plane, in units of the scaled scene: there W is still right to one part in 8,192.
+const NEAREST: f64 = 1.0 / 16.0;
+
+/// A mesh in 16.16. The one that it was made from is kept, so that nothing else can be at its address.
+#[derive(Debug)]
+struct Converted {
+    mesh: Shared<Mesh>,
+    pivot: Vec3,
+    up_axis: UpAxis,
+    positions: Vec<Vector>,
+    normals: Vec<Vector>,
+    /// Its coordinates count 2^exponent of the object's.
+    exponent: i32,
+    /// No vertex is farther from the pivot, in 1/65,536 of its own unit.
+    radius: u64,
+    in_use: bool,
+}
+
+impl Converted {
+    fn new(object: &scene::Object) -> Self {
+        let mesh = object.shared_mesh();
+        let upright = |[x, y, z]: [f64; 3]| match object.up_axis {
+            UpAxis::Y => [x, y, z],
+            UpAxis::Z => [x, z, -y],
+        };
+        let from_pivot = |p: &Vec3| {
+            let (p, pivot) = (p.to_array(), object.pivot.to_array());
+            upright([0, 1, 2].map(|i| f64::from(p[i]) - f64::from(pivot[i])))
+        };
+        let farthest = mesh.positions().iter().flat_map(from_pivot).fold(0.0_f64, |far, c| far.max(libm::fabs(c)));
+        let exponent = exponent_to_reach(farthest);
+        let scale = libm::ldexp(1.0, exponent);
+        let positions: Vec<Vector> =
+            mesh.positions().iter().map(|p| from_pivot(p).map(|c| fixed(c * scale).unwrap_or_default())).collect();
+        let square = |v: &Vector| v.iter().map(|c| u64::from(c.to_bits().unsigned_abs()).pow(2)).sum::<u64>();
+        // At most 3 · 2⁶².
+        let radius = positions.iter().map(square).max().unwrap_or(0).isqrt() + 1;
+        let normal = |n: &Vec3| upright(n.to_array().map(f64::from)).map(|c| fixed(c).unwrap_or_default());
+        Self {
+            mesh: Shared::clone(mesh),
+            pivot: object.pivot,
+            up_axis: object.up_axis,
+            normals: mesh.normals().iter().map(normal).collect(),
+            positions,
+            exponent: -exponent,
+            radius,
+            in_use: true,
+        }
+    }
+
+    fn is_of(&self, object: &scene::Object) -> bool {
+        Shared::ptr_eq(&self.mesh, object.shared_mesh()) && self.pivot == object.pivot && self.up_axis == object.up_axis
+    }
+
+    /// How far the object's vertices may be from its position, in the scene's units.
+    fn reach(&self, object: &scene::Object) -> f64 {
+        // The radius is below 2³³.
+        f64::from(object.scale) * libm::ldexp(self.radius as f64 / 65_536.0, self.exponent)
+    }
+}
+
+/// The greatest power of two that takes `farthest` no farther than 32,767; 0 for 0.
+fn exponent_to_reach(farthest: f64) -> i32 {
+    if farthest <= 0.0 {
+        return 0;
+    }
+    let exponent = 14 - libm::ilogb(farthest);
+    if libm::ldexp(farthest, exponent) > REACH { exponent - 1 } else { exponent }
+}
+
+fn fixed(x: f64) -> Option<I16F16> {
+    I16F16::round_from_f64(x)
+}
+
+/// A direction of any length, as 30 bits.
+fn direction(v: [f64; 3]) -> Vector {
+    let greatest = v.iter().fold(0.0_f64, |greatest, c| greatest.max(libm::fabs(*c)));
+    v.map(|c| if greatest > 0.0 { fixed(c / greatest * 16_384.0).unwrap_or_default() } else { I16F16::default() })
+}
+
+/// The nearest binary angle. Of angles so large that their f64 no longer counts turns, some angle.
+fn binary_angle(radians: f64) -> Angle {
+    let turns = radians / core::f64::consts::TAU;
+    let part = turns - libm::floor(turns);
+    // 0 to 65,536, of which the last is a full turn; the casts truncate, and wrap that to 0.
+    Angle::from_bits((part * 65_536.0 + 0.5) as u32 as u16)
+}
+
+fn sun(light: &Light) -> Option<Sun> {
+    match *light {
+        Light::Sun { direction: towards, intensity } => {
+            Some(Sun { direction: direction(towards.to_array().map(f64::from)), intensity: fixed(intensity.into())? })
+        }
+    }
+}
+
+fn paint(material: &Material, scene: &Scene) -> Option<Paint> {
+    Some(Paint {
+        ambient: fixed(f64::from(material.ambient) * f64::from(scene.ambient))?,
+        diffuse: fixed(material.diffuse.into())?,
+        ramp: material.ramp.in_palette(scene.palette.as_ref()),
+    })
+}
+
+/// An object of the scene at hand.
+#[derive(Debug)]
+struct Prepared {
+    converted: usize,
+    exponent: i32,
+    placement: Placement,
+    paints: core::ops::Range<usize>,
+}
+
+/// The integer path's part of a renderer: meshes that were converted, and the scene at hand.
+#[derive(Debug, Default)]
+pub(super) struct IntegerPath {
+    meshes: Vec<Converted>,
+    view: Option<View>,
+    objects: Vec<Prepared>,
+    paints: Vec<Paint>,
+    suns: Vec<Sun>,
+    lit: Vec<LitVertex>,
+    beams: Vec<Beam>,
+}
+
+impl IntegerPath {
+    /// Converts a scene whose numbers are finite. What passes here can be drawn.
+    pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
+        self.suns.clear();
+        for (index, light) in scene.lights().iter().enumerate() {
+            let what = "its intensity is beyond ±32,767, or it is one of more than 4,096: too much for 16.16";
+            let sun = sun(light).filter(|_| index < Sun::MOST).ok_or(RenderError::Light { index, what })?;
+            self.suns.push(sun);
+        }
+        self.convert(scene.objects());
+
+        // Everything as seen from the eye.
+        let eye = scene.camera.eye;
+        let from_eye = |p: Vec3| {
+            let (p, eye) = (p.to_array(), eye.to_array());
+            [0, 1, 2].map(|i| f64::from(p[i]) - f64::from(eye[i]))
+        };
+        let near = f64::from(scene.camera.near);
+        let mut farthest = near;
+        for (object, prepared) in scene.objects().iter().zip(&self.objects) {
+            let distance = from_eye(object.position).iter().fold(0.0_f64, |far, c| far.max(libm::fabs(*c)));
+            farthest = farthest.max(distance + self.meshes[prepared.converted].reach(object));
+        }
+        let exponent = exponent_to_reach(farthest);
+        let scale = libm::ldexp(1.0, exponent);
+        if near * scale < NEAREST {
+            return Err(RenderError::Camera("the scene reaches too far beyond the near plane for 16.16"));
+        }
+        let camera = Camera {
+            eye: Vector::default(),
+            target: direction(from_eye(scene.camera.target)),
+            up: direction(scene.camera.up.to_array().map(f64::from)),
+            near: fixed(near * scale).unwrap_or(I16F16::ONE),
+        };
+        let of_camera = |error: IntegerError| RenderError::Camera(error.what());
+        let focal = screen.focal_lengths(scene.camera.field_of_view).map(fixed);
+        let [Some(fx), Some(fy)] = focal else { return Err(of_camera(IntegerError::FieldOfView)) };
+        let lens = Lens::with_focal_lengths(screen.width, screen.height, [fx, fy]).map_err(of_camera)?;
+        let view = View::new(&camera, lens).map_err(of_camera)?;
+
+        self.paints.clear();
+        for (index, object) in scene.objects().iter().enumerate() {
+            let first = self.paints.len();
+            for material in &object.materials {
+                let what = "a number of its materials, times the ambient light, is beyond ±32,767: too much for 16.16";
+                self.paints.push(paint(material, scene).ok_or(RenderError::Object { index, what })?);
+            }
+            let scaled = f64::from(object.scale);
+            let scale_exponent = if scaled > 0.0 { libm::ilogb(scaled) } else { 0 };
+            let prepared = &mut self.objects[index];
+            prepared.paints = first..self.paints.len();
+            prepared.exponent = self.meshes[prepared.converted].exponent + scale_exponent + exponent;
+            prepared.placement = Placement {
+                // No farther than the farthest.
+                position: from_eye(object.position).map(|c| fixed(c * scale).unwrap_or_default()),
+                pivot: Vector::default(),
+                angles: object.angles().map(binary_angle),
+                // 1 to 2.
+                scale: fixed(libm::ldexp(scaled, -scale_exponent)).unwrap_or_default(),
+            };
+            let mesh = fixed_mesh(&self.meshes, prepared, object);
+            let of_object = |error: IntegerError| RenderError::Object { index, what: error.what() };
+            view.check(&self.objects[index].placement, &mesh).map_err(of_object)?;
+        }
+        self.view = Some(view);
+        Ok(())
+    }
+
+    /// Finds the objects' meshes among those converted; converts those that are new, and lets go of
+    /// those that are no longer there.
+    fn convert(&mut self, objects: &[scene::Object]) {
+        self.meshes.iter_mut().for_each(|mesh| mesh.in_use = objects.iter().any(|object| mesh.is_of(object)));
+        self.meshes.retain(|mesh| mesh.in_use);
+        self.objects.clear();
+        for object in objects {
+            let converted = self.meshes.iter().position(|mesh| mesh.is_of(object)).unwrap_or_else(|| {
+                self.meshes.push(Converted::new(object));
+                self.meshes.len() - 1
+            });
+            self.objects.push(Prepared { converted, exponent: 0, placement: Placement::default(), paints: 0..0 });
+        }
+    }
+
+    /// Hands the triangles of an object of the prepared scene to `triangle`.
+    pub(super) fn triangles(
+        &mut self,
+        rung: Rung,
+        (index, object): (usize, &scene::Object),
+        stats: &mut Stats,
+        triangle: &mut impl FnMut(&[Vertex; 3], Shading),
+    ) {
+        let (Some(view), Some(prepared)) = (&self.view, self.objects.get(index)) else { return };
+        let mesh = fixed_mesh(&self.meshes, prepared, object);
+        self.lit.resize(mesh.vertices().max(self.lit.len()), LitVertex::default());
+        self.beams.resize(self.suns.len(), Beam::default());
+        let technique = match rung {
+            Rung::Flat => Technique::Flat,
+            Rung::Gouraud88 => Technique::Gouraud,
+            Rung::Gouraud88Reseeded => Technique::GouraudReseeded,
+            Rung::GouraudHyperbolic => Technique::GouraudHyperbolic,
+        };
+        let fixed_object =
+            Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
+        // `prepare` has checked the object, and here is room for all.
+        let Ok(stage) = Stage::new(view, fixed_object, &self.suns, technique, &mut self.lit, &mut self.beams) else {
+            return;
+        };
+        let vertices = mesh.vertices() as u64;
+        let faces = stage.faces(triangle);
+        stats.vertices += vertices;
+        stats.lit += if technique == Technique::Flat { faces.lit } else { vertices };
+        stats.faces += object.mesh().triangles().len() as u64;
+        stats.clipped += faces.clipped;
+        stats.culled += faces.culled;
+        stats.drawn += faces.drawn;
+    }
+}
+
+fn fixed_mesh<'a>(meshes: &'a [Converted], prepared: &Prepared, object: &'a scene::Object) -> FixedMesh<'a, u32> {
+    let converted = &meshes[prepared.converted];
+    // Sound, as the mesh that it was made from is.
+    FixedMesh {
+        positions: &converted.positions,
+        normals: &converted.normals,
+        triangles: object.mesh().triangles(),
+        closed: object.mesh().is_closed(),
+        exponent: prepared.exponent,
+        radius: converted.radius,
+        vertex_surfaces: object.vertex_surfaces(),
+        triangle_surfaces: object.mesh().triangle_surfaces(),
+        surfaces: object.mesh().surfaces().len(),
+    }
+}
