@@ -164,6 +164,20 @@ fn kept(case: &Case) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/pictures/{}.png", case.id.to_lowercase()))
 }
 
+#[test]
+fn show_the_list_of_hard_cases_shows_every_picture_with_its_sentence() {
+    let mut tried = Tried::new("show_the_list_of_hard_cases_shows_every_picture_with_its_sentence", 24);
+    let list = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/HARD_CASES.md");
+    let list = std::fs::read_to_string(list).expect("tests/HARD_CASES.md");
+    for Case { id, title, sentence, .. } in CASES {
+        let head = format!("### {id}: {title}\n\n{sentence}\n\n![");
+        let section = list.split(&head).nth(1).unwrap_or_else(|| panic!("{id}: no section {head}"));
+        let picture = format!("](pictures/{}.png)", id.to_lowercase());
+        assert!(section.lines().next().is_some_and(|line| line.ends_with(&picture)), "{id}: no picture");
+        tried.add(1);
+    }
+}
+
 /// `MODE13H_PICTURES=write` writes them anew, and fails, so that no run that does so passes.
 #[test]
 fn show_the_pictures_of_the_list_are_those_that_are_drawn() {

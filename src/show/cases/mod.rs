@@ -201,7 +201,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "D2",
         title: "faces that pass through each other",
-        sentence: "Half of each face lies in front of the other; painted in order, one hides the other whole.",
+        sentence: "Half of each face lies in front of the other; painted in order, one lies over the other throughout.",
         wrong: "painter's order: the farthest first",
         right: "a depth for every pixel",
         build: hidden::d2,
