@@ -42,7 +42,7 @@ fn triangles_of(scene: &Scene) -> Option<Record> {
 fn check(seed: u64, project: Project<'_>) -> Group {
     let mut group = Group::new("clipping");
     let mut random = Random::new(seed, "clipping");
-    floors(&mut group, &[1e4, 1e6, 1e12, 1e20, 1e30, f32::MAX / 2.0], project);
+    floors(&mut group, &[1e4, 1e6, 1e12, 1e20, 1e30, 1e38, f32::MAX / 2.0], project);
     // The 16.16 path has 30 bits from the nearest to the farthest.
     floors(&mut group, &[400.0, 1e3, 8e3], &|scene| {
         let mut renderer = Renderer::new();
@@ -81,7 +81,7 @@ fn counts(triangles: &[([Vertex; 3], Shading)]) -> Vec<u32> {
 /// horizon down are all floor, each pixel once, and no other is.
 fn floors(group: &mut Group, reaches: &[f32], project: Project<'_>) {
     for &reach in reaches {
-        for squares in [1, 2, 3] {
+        for squares in [1, 2, 3, 4, 5, 6, 7] {
             let Some(record) = floor(reach, squares).map(seen_from_origin).and_then(|scene| project(&scene)) else {
                 group.check(false, || format!("r7 a floor of {reach:e}: not drawn"));
                 continue;

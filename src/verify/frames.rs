@@ -23,7 +23,7 @@ pub struct Frames {
 impl Frames {
     /// What [`frames`] gives on every machine. It changes with the golden frames, and then stands in
     /// CHANGELOG.md.
-    pub const EXPECTED: Self = Self { count: 352, hash: 0xEA2C_BB23_8D65_37EE };
+    pub const EXPECTED: Self = Self { count: 352, hash: 0x9351_D246_BCE8_E903 };
 
     /// Whether they are the frames of every other machine.
     #[must_use]

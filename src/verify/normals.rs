@@ -72,8 +72,9 @@ fn check(seed: u64, normals: Normals<'_>, shades: Shades<'_>) -> Group {
 /// Every normal has length 1 within 2⁻¹⁴.
 fn unit(group: &mut Group, what: &str, normals: &[Vec3]) {
     let length = |n: &Vec3| libm::sqrt([n.x, n.y, n.z].map(|c| f64::from(c) * f64::from(c)).iter().sum::<f64>());
-    // Written so that NaN is wrong.
-    let wrong = normals.iter().find(|n| !((length(n) - 1.0).abs() < 1.0 / 16_384.0));
+    // NaN lies in no range.
+    let range = 1.0 - 1.0 / 16_384.0..1.0 + 1.0 / 16_384.0;
+    let wrong = normals.iter().find(|n| !range.contains(&length(n)));
     group.check(wrong.is_none() && !normals.is_empty(), || format!("n6 {what}: a normal is {wrong:?}"));
 }
 
@@ -119,7 +120,7 @@ fn folded(group: &mut Group, random: &mut Random, normals: Normals<'_>) {
             let cosine = (f64::from(is.x) * n[0] + f64::from(is.y) * n[1] + f64::from(is.z) * n[2]) / length * sign;
             // 1 but for the rounding of three f32: 2⁻²², and far more where the corners are all but on
             // a line, which 10⁻³ of the edges' product is not.
-            if length > 0.1 && !(cosine > 0.999_99) {
+            if length > 0.1 && !(0.999_99..1.000_01).contains(&cosine) {
                 wrong = Some(is);
             }
         }

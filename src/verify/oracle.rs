@@ -112,7 +112,7 @@ fn depth_at(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
     let [p0, p1, p2] = points(&order);
     let [d0, d1, d2] = order.each_ref().map(|v| i128::from(v.depth()));
     let area = edge(p0, p1, p2);
-    let nearest = |n: i128| ((n * area.signum() << 24) + area.abs() / 2).div_euclid(area.abs());
+    let nearest = |n: i128| (((n * area.signum()) << 24) + area.abs() / 2).div_euclid(area.abs());
     let gx = nearest((d1 - d0) * (p2.1 - p0.1) - (d2 - d0) * (p1.1 - p0.1));
     let gy = nearest((d2 - d0) * (p1.0 - p0.0) - (d1 - d0) * (p2.0 - p0.0));
     let c = centre(x, y);
