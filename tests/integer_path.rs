@@ -563,7 +563,11 @@ fn r7_any_legal_input_is_quiet() {
         match Stage::new(&view, object, &suns, technique, &mut lit, &mut beams) {
             Ok(stage) => {
                 let mut raster = Raster::new(Frame::new(&mut pixels, 64, 40, 64).expect("a frame"));
-                drawn += stage.faces(|vertices, shading| drop(raster.triangle(vertices, shading))).drawn;
+                drawn += stage
+                    .faces(|vertices, shading| {
+                        raster.triangle(vertices, shading);
+                    })
+                    .drawn;
             }
             Err(_) => refused += 1,
         }
