@@ -50,14 +50,17 @@ impl FromStr for Scale {
         match words {
             "1" => Ok(Scale::One),
             "2" => Ok(Scale::Double),
-            "5x6" => Ok(Scale::FiveBySix),
             _ => {
                 let side = |digits: &str| match digits.parse::<u16>() {
                     Ok(side) if (1..=MAX_SIDE).contains(&side) && !digits.starts_with('+') => Ok(side),
                     _ => Err(ScaleError),
                 };
                 let (width, height) = words.split_once('x').ok_or(ScaleError)?;
-                Ok(Scale::To { width: side(width)?, height: side(height)? })
+                // Whatever zeros stand before them.
+                match (side(width)?, side(height)?) {
+                    (5, 6) => Ok(Scale::FiveBySix),
+                    (width, height) => Ok(Scale::To { width, height }),
+                }
             }
         }
     }

@@ -48,8 +48,8 @@ pub enum ObjErrorKind {
     FewCorners(usize),
     /// The file holds no face.
     NoFaces,
-    /// More than [`Mesh::MOST`](crate::mesh::Mesh::MOST) of a kind, more than 2³² − 1 corners, more than 65,536 materials, or a concave face of
-    /// more than a million corners.
+    /// More than [`Mesh::MOST`](crate::mesh::Mesh::MOST) of a kind, more than 2³² − 1 corners, more than 65,536
+    /// materials, or a concave face of more than 20,000 corners.
     TooLarge(&'static str),
 }
 

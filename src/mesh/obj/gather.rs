@@ -11,10 +11,13 @@ use super::statement::{Corner, Model};
 use crate::mesh::{Mesh, Surface, Weight, normals, topology};
 
 /// The mesh. `surfaces` are those of `model.names`; those that no face uses are dropped.
-pub(super) fn mesh(model: Model, surfaces: Vec<Surface>) -> Result<Mesh, ObjErrorKind> {
+///
+/// # Errors
+/// What is wrong, and in which line if one is at fault.
+pub(super) fn mesh(model: Model, surfaces: Vec<Surface>) -> Result<Mesh, (Option<u64>, ObjErrorKind)> {
     let (triangles, triangle_surfaces, surfaces) = split(&model, surfaces)?;
     let Model { positions, texcoords, normals, corners, .. } = model;
-    let (triples, triangles) = vertices(&corners, triangles, positions.len())?;
+    let (triples, triangles) = vertices(&corners, triangles, positions.len()).map_err(|kind| (None, kind))?;
     drop(corners);
 
     let place = |triple: &Corner| positions[triple.position as usize];
@@ -41,7 +44,7 @@ pub(super) fn mesh(model: Model, surfaces: Vec<Surface>) -> Result<Mesh, ObjErro
 /// Triangles as numbers of corners, their surfaces, and the surfaces that are used.
 type Split = (Vec<[u32; 3]>, Vec<u16>, Vec<Surface>);
 
-fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, ObjErrorKind> {
+fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, (Option<u64>, ObjErrorKind)> {
     let count = model.corners.len() - 2 * model.sizes.len();
     let mut triangles = Vec::with_capacity(count);
     let mut triangle_surfaces = Vec::with_capacity(count);
@@ -59,13 +62,13 @@ fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, ObjErrorKind> {
         let surface = match numbers[name] {
             Some(number) => number,
             None => {
-                let number =
-                    u16::try_from(used.len()).map_err(|_| ObjErrorKind::TooLarge("more than 65,536 materials"))?;
+                let too_many = ObjErrorKind::TooLarge("more than 65,536 materials");
+                let number = u16::try_from(used.len()).map_err(|_| (None, too_many))?;
                 used.extend(surfaces[name].take());
                 *numbers[name].insert(number)
             }
         };
-        for &size in &model.sizes[from..to] {
+        for (place, &size) in (from..to).zip(&model.sizes[from..to]) {
             // Fewer than 2³² corners, see `statement`.
             let start = first as u32;
             let face = &model.corners[first..first + size as usize];
@@ -74,7 +77,8 @@ fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, ObjErrorKind> {
             } else {
                 places.clear();
                 places.extend(face.iter().map(|corner| model.positions[corner.position as usize]));
-                let pieces = splitter.split(&places)?;
+                let line = || model.large.iter().find(|large| large.0 == place).map(|large| large.1);
+                let pieces = splitter.split(&places).map_err(|kind| (line(), kind))?;
                 triangles.extend(pieces.iter().map(|piece| piece.map(|corner| start + corner)));
             }
             triangle_surfaces.resize(triangles.len(), surface);

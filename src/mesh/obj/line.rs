@@ -1,5 +1,6 @@
 //! Lines and words, of OBJ and MTL alike.
 
+use core::mem;
 use std::borrow::ToOwned;
 use std::io::{self, BufRead};
 use std::string::String;
@@ -7,7 +8,7 @@ use std::vec::Vec;
 
 use super::ObjErrorKind;
 
-/// Lines, with those joined that end in a backslash. One buffer serves them all.
+/// Lines, with those joined that end in a backslash. LF, CR LF and CR end a line. One buffer serves them all.
 pub(super) struct Lines<R> {
     reader: R,
     buffer: Vec<u8>,
@@ -15,35 +16,69 @@ pub(super) struct Lines<R> {
     number: u64,
     /// Lines read so far.
     read: u64,
+    /// The last line ended in CR: an LF that follows belongs to it.
+    after_cr: bool,
 }
 
 impl<R: BufRead> Lines<R> {
     pub(super) fn new(reader: R) -> Self {
-        Self { reader, buffer: Vec::new(), number: 0, read: 0 }
+        Self { reader, buffer: Vec::new(), number: 0, read: 0, after_cr: false }
     }
 
     /// The next line's number and its text without the end-of-line; `None` at the end.
     pub(super) fn next(&mut self) -> io::Result<Option<(u64, &[u8])>> {
         self.buffer.clear();
         self.number = self.read + 1;
+        // Where the first word begins, as far as lines were joined: what stands before it is looked at once, or a
+        // file of nothing but backslashes would take time by the square of its length.
+        let mut first_word = 0;
         loop {
-            if self.reader.read_until(b'\n', &mut self.buffer)? == 0 {
+            if !self.append_line()? {
                 // A backslash may stand at the very end.
                 return Ok((self.read >= self.number).then_some((self.number, &self.buffer)));
             }
-            self.read += 1;
             if self.read == 1 && self.buffer.starts_with(b"\xEF\xBB\xBF") {
                 self.buffer.drain(..3);
             }
-            for end in [b'\n', b'\r'] {
-                self.buffer.pop_if(|last| *last == end);
-            }
+            first_word += self.buffer[first_word..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
             // A path at the end of a comment joins nothing.
-            if !self.buffer.ends_with(b"\\") || self.buffer.trim_ascii_start().starts_with(b"#") {
+            if !self.buffer.ends_with(b"\\") || self.buffer[first_word] == b'#' {
                 return Ok(Some((self.number, &self.buffer)));
             }
             self.buffer.pop();
             self.buffer.push(b' ');
+        }
+    }
+
+    /// Appends a line of the file to the buffer, without its end. `false`: there is none.
+    fn append_line(&mut self) -> io::Result<bool> {
+        let mut begun = false;
+        loop {
+            let available = match self.reader.fill_buf() {
+                Ok(available) => available,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(error) => return Err(error),
+            };
+            let Some(&first) = available.first() else {
+                self.read += u64::from(begun);
+                return Ok(begun);
+            };
+            if mem::take(&mut self.after_cr) && first == b'\n' {
+                self.reader.consume(1);
+                continue;
+            }
+            begun = true;
+            let end = available.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+            let text = &available[..end.unwrap_or(available.len())];
+            self.buffer.extend_from_slice(text);
+            let used = text.len() + usize::from(end.is_some());
+            if let Some(end) = end {
+                self.after_cr = available[end] == b'\r';
+                self.reader.consume(used);
+                self.read += 1;
+                return Ok(true);
+            }
+            self.reader.consume(used);
         }
     }
 }

@@ -1,45 +1,52 @@
 //! MTL files, and which of their materials a model uses.
 
+use core::iter;
 use std::collections::HashMap;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::string::String;
 use std::vec::Vec;
 
 use super::line::{Lines, keyword, name, number, words};
 use super::statement::Model;
+use super::warnings::Warnings;
 use super::{ObjError, ObjErrorKind};
 use crate::mesh::Surface;
 
-/// The surfaces for `model.names`, in their order, and warnings.
+/// The surfaces for `model.names`, in their order.
 pub(super) fn surfaces(
     model: &Model,
     path: &Path,
-    mut library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
-) -> Result<(Vec<Surface>, Vec<String>), ObjError> {
+    library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    warnings: &mut Warnings,
+) -> Result<Vec<Surface>, ObjError> {
     let mut known = HashMap::new();
-    let mut warnings = Vec::new();
     let mut all_read = true;
     let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files = Files { folder, library, read: HashMap::new() };
     for (line, text) in &model.libraries {
         // One name that may hold blanks, or several names; a folder as Windows writes it.
         let slashed = text.replace('\\', "/");
-        let several: Vec<&str> = text.split_whitespace().collect();
-        let mut found = read_all(&[text], folder, &mut library)
-            .or_else(|error| if slashed == *text { Err(error) } else { read_all(&[&slashed], folder, &mut library) });
-        if found.is_err() && several.len() > 1 {
-            found = read_all(&several, folder, &mut library).or(found);
+        let mut found = files
+            .find(iter::once(text.as_str()))
+            .or_else(|error| if slashed == *text { Err(error) } else { files.find(iter::once(slashed.as_str())) });
+        if found.is_err() && text.split_whitespace().nth(1).is_some() {
+            found = files.find(text.split_whitespace()).or(found);
         }
         match found {
-            Ok(libraries) => {
-                for (path, bytes) in libraries {
-                    read(&bytes, &path, &mut known, &mut warnings)?;
+            Ok(paths) => {
+                for path in paths {
+                    if let Some(bytes) = files.read.get_mut(&path).and_then(Option::take) {
+                        read(&bytes, &path, &mut known, warnings)?;
+                    }
                 }
             }
             Err(error) => {
                 all_read = false;
                 let path = path.display();
-                warnings.push(format!("{path}:{line}: cannot read {text} ({error}); materials are white and matt"));
+                warnings.push(|| {
+                    format!("{path}:{line}: cannot read {text} ({error}); materials are white and matt") //
+                });
             }
         }
     }
@@ -49,28 +56,36 @@ pub(super) fn surfaces(
             // If a file is missing, that has been said.
             if all_read && !name.is_empty() {
                 let path = path.display();
-                warnings.push(format!("{path}:{line}: there is no material {name}; it is white and matt"));
+                warnings.push(|| format!("{path}:{line}: there is no material {name}; it is white and matt"));
             }
             Surface { name: name.clone(), ..Surface::default() }
         }));
     }
-    Ok((surfaces, warnings))
+    Ok(surfaces)
 }
 
-type Files = Vec<(std::path::PathBuf, Vec<u8>)>;
+/// The MTL files that were asked for. Each is read once, however often it is named.
+struct Files<'a, L> {
+    folder: &'a Path,
+    library: L,
+    /// What a file holds; `None` when its materials have been taken.
+    read: HashMap<PathBuf, Option<Vec<u8>>>,
+}
 
-fn read_all(
-    names: &[&str],
-    folder: &Path,
-    library: &mut impl FnMut(&Path) -> io::Result<Vec<u8>>,
-) -> io::Result<Files> {
-    names
-        .iter()
-        .map(|name| {
-            let path = folder.join(name);
-            library(&path).map(|bytes| (path, bytes))
-        })
-        .collect()
+impl<L: FnMut(&Path) -> io::Result<Vec<u8>>> Files<'_, L> {
+    /// The paths of these files, which all can be read.
+    fn find<'n>(&mut self, names: impl Iterator<Item = &'n str>) -> io::Result<Vec<PathBuf>> {
+        names
+            .map(|name| {
+                let path = self.folder.join(name);
+                if !self.read.contains_key(&path) {
+                    let bytes = (self.library)(&path)?;
+                    self.read.insert(path.clone(), Some(bytes));
+                }
+                Ok(path)
+            })
+            .collect()
+    }
 }
 
 /// The materials of one file; of two with the same name the later one holds.
@@ -78,7 +93,7 @@ fn read(
     bytes: &[u8],
     path: &Path,
     known: &mut HashMap<String, Surface>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<(), ObjError> {
     let mut lines = Lines::new(bytes);
     let mut current: Option<Surface> = None;
@@ -127,11 +142,11 @@ fn color(rest: &[u8]) -> Result<Option<[f32; 3]>, ObjErrorKind> {
     Ok(Some([red, green, blue]))
 }
 
-fn set(component: &mut [f32; 3], color: Option<[f32; 3]>, path: &Path, line: u64, warnings: &mut Vec<String>) {
+fn set(component: &mut [f32; 3], color: Option<[f32; 3]>, path: &Path, line: u64, warnings: &mut Warnings) {
     match color {
         Some(color) => *component = color,
         None => {
-            warnings.push(format!("{}:{line}: only red, green and blue are read; this is left alone", path.display()));
+            warnings.push(|| format!("{}:{line}: only red, green and blue are read; this is left alone", path.display()));
         }
     }
 }

@@ -8,8 +8,8 @@
 //! | `mtllib`, `usemtl` | surfaces: `Kd`, `Ks`, `Ns`, `map_Kd` of the MTL file |
 //! | all others, `l` and `p` among them | left alone |
 //!
-//! A backslash at the end of a line joins it to the next. A line need not be UTF-8 and may be of any
-//! length. Each different triple of position, texture coordinates and normal becomes a vertex; what
+//! A backslash at the end of a line joins it to the next. LF, CR LF and CR end a line, which need not be
+//! UTF-8 and may be of any length. Each different triple of position, texture coordinates and normal becomes a vertex; what
 //! no face uses does not. A face of n corners becomes n − 2 triangles, those without area among them.
 //!
 //! Corners without a normal, or with one of length 0, get the mean by angle over all faces at that
@@ -27,7 +27,9 @@ mod gather;
 mod line;
 mod material;
 mod polygon;
+mod progress;
 mod statement;
+mod warnings;
 
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader};
@@ -38,13 +40,15 @@ use std::vec::Vec;
 use super::Mesh;
 
 pub use error::{ObjError, ObjErrorKind};
+use progress::Counted;
+use warnings::Warnings;
 
 /// A model and what was found wanting while it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// The model.
     pub mesh: Mesh,
-    /// One line each, with the file and the line in it.
+    /// One line each, with the file and the line in it: the first hundred, and how many more there are.
     pub warnings: Vec<String>,
 }
 
@@ -53,20 +57,40 @@ pub struct Loaded {
 /// # Errors
 /// A file that cannot be read, or that is broken: see [`ObjErrorKind`].
 pub fn load(path: impl AsRef<Path>) -> Result<Loaded, ObjError> {
+    load_with_progress(path, |_, _| {})
+}
+
+/// As [`load`], and tells `progress` how much of the OBJ file has been read, in bytes, and how long the file is: after
+/// every 64 KiB or so, and at the end. What remains then, making a mesh of it, takes about as long again. Of a pipe or
+/// a device the length is 0; a file that grows meanwhile may be read beyond the length that it had.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_progress(path: impl AsRef<Path>, progress: impl FnMut(u64, u64)) -> Result<Loaded, ObjError> {
     let path = path.as_ref();
     let failed = |error: io::Error| ObjError::of_file(path, ObjErrorKind::Read(error));
     let file = File::open(path).map_err(failed)?;
-    if file.metadata().map_err(failed)?.is_dir() {
+    let metadata = file.metadata().map_err(failed)?;
+    if metadata.is_dir() {
         return Err(ObjError::of_file(path, ObjErrorKind::Directory));
     }
-    let mut loaded = parse(BufReader::with_capacity(1 << 16, file), path, |library| fs::read(library))?;
-    for surface in &mut loaded.mesh.surfaces {
+    let file = Counted::new(file, metadata.len(), progress);
+    let (mut mesh, mut warnings) = read(BufReader::with_capacity(1 << 16, file), path, library_file)?;
+    for surface in &mut mesh.surfaces {
         if let Some(texture) = surface.texture.take_if(|texture| !Path::new(texture).is_file()) {
             let name = &surface.name;
-            loaded.warnings.push(format!("{texture}: no such texture; material {name} is drawn without it"));
+            warnings.push(|| format!("{texture}: no such texture; material {name} is drawn without it"));
         }
     }
-    Ok(loaded)
+    Ok(Loaded { mesh, warnings: warnings.into_lines() })
+}
+
+/// The bytes of an MTL file. What is no ordinary file is refused: a model may name a device that never ends.
+fn library_file(path: &Path) -> io::Result<Vec<u8>> {
+    match fs::metadata(path)?.is_file() {
+        true => fs::read(path),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file")),
+    }
 }
 
 /// Reads a model from `reader`. `path` is what errors call it, and MTL files are looked for beside it:
@@ -91,9 +115,19 @@ pub fn parse(
     path: impl AsRef<Path>,
     library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
 ) -> Result<Loaded, ObjError> {
-    let path = path.as_ref();
+    let (mesh, warnings) = read(reader, path.as_ref(), library)?;
+    Ok(Loaded { mesh, warnings: warnings.into_lines() })
+}
+
+fn read(
+    reader: impl BufRead,
+    path: &Path,
+    library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+) -> Result<(Mesh, Warnings), ObjError> {
+    let mut warnings = Warnings::default();
     let model = statement::read(reader, path)?;
-    let (surfaces, warnings) = material::surfaces(&model, path, library)?;
-    let mesh = gather::mesh(model, surfaces).map_err(|kind| ObjError::of_file(path, kind))?;
-    Ok(Loaded { mesh, warnings })
+    let surfaces = material::surfaces(&model, path, library, &mut warnings)?;
+    let mesh =
+        gather::mesh(model, surfaces).map_err(|(line, kind)| ObjError { path: path.to_owned(), line, kind })?;
+    Ok((mesh, warnings))
 }

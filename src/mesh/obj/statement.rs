@@ -8,6 +8,7 @@ use std::vec::Vec;
 use glam::{Vec2, Vec3};
 
 use super::line::{Lines, keyword, name, number, numbers, shown, words};
+use super::polygon::MOST_CONCAVE;
 use super::{Mesh, ObjError, ObjErrorKind};
 
 /// Position, texture coordinates, normal, from 0; [`NONE`](Self::NONE) for one that was left out.
@@ -32,6 +33,8 @@ pub(super) struct Model {
     pub(super) corners: Vec<Corner>,
     /// How many of them each face has, three or more.
     pub(super) sizes: Vec<u32>,
+    /// Place in `sizes` and line of each face that is too large if it is concave.
+    pub(super) large: Vec<(usize, u64)>,
     /// From which face on which material, by its place in `names`.
     pub(super) runs: Vec<(usize, usize)>,
     /// Of `usemtl`, each once, in order. The first is that of faces before any `usemtl`: empty.
@@ -139,6 +142,9 @@ fn face(model: &mut Model, later: &mut Later, line: u64, rest: &[u8]) -> Result<
     }
     if model.corners.len() - 2 * model.sizes.len() > Mesh::MOST + 2 {
         return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 triangles"));
+    }
+    if size > MOST_CONCAVE {
+        model.large.push((model.sizes.len(), line));
     }
     // Fits by the lines above.
     model.sizes.push(size as u32);

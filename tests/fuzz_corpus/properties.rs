@@ -1,0 +1,313 @@
+//! What holds of every parser, whatever it is given. One function a parser, for the fuzzer
+//! (`fuzz/fuzz_targets`) and for the corpora (`tests/fuzz_corpus.rs`) alike; each panics where it does not hold.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::io::{self, BufReader};
+use std::path::Path;
+use std::str::FromStr;
+
+use mode13h::export::{MAX_SIDE, Scale};
+use mode13h::glam::{Vec2, Vec3};
+use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::palette::file::{self, FORMATS, Format, PaletteError, Place};
+use mode13h::palette::{Palette, builtin};
+use mode13h::render::Rung;
+use mode13h::span::Kernel;
+
+/// A parser's property: its name, which is that of its corpus and of its fuzz target, and the check.
+pub type Property = (&'static str, fn(&[u8]));
+
+pub const PROPERTIES: [Property; 7] = [
+    ("obj", obj),
+    ("mtl", mtl),
+    ("palette_jasc", palette_jasc),
+    ("palette_gimp", palette_gimp),
+    ("palette_hex", palette_hex),
+    ("palette_binary", palette_binary),
+    ("words", words),
+];
+
+/// Stands alone on a line between an OBJ file and the MTL file that it names, in one input.
+const MATERIALS: &[u8] = b"\n---\n";
+
+/// An OBJ file, and what stands behind a line of `---` as the MTL file `a.mtl`. Every other MTL file is missing.
+pub fn obj(bytes: &[u8]) {
+    let (model, materials) = match bytes.windows(MATERIALS.len()).position(|window| window == MATERIALS) {
+        Some(at) => (&bytes[..=at], Some(&bytes[at + MATERIALS.len()..])),
+        None => (bytes, None),
+    };
+    let library = |path: &Path| match materials {
+        Some(materials) if path == Path::new("a.mtl") => Ok(materials.to_vec()),
+        _ => Err(io::ErrorKind::NotFound.into()),
+    };
+    let result = obj::parse(model, "model.obj", library);
+    check_obj(&result, model, materials.unwrap_or_default());
+
+    // However the reader hands the bytes out.
+    let dribbled = obj::parse(BufReader::with_capacity(1, model), "model.obj", library);
+    assert_eq!(outcome(&dribbled), outcome(&result), "read byte by byte");
+    // Whatever ends the lines.
+    if !model.contains(&b'\r') {
+        for end in ["\r\n", "\r"] {
+            let ended = model.split(|&byte| byte == b'\n').collect::<Vec<_>>().join(end.as_bytes());
+            let ended = obj::parse(&ended[..], "model.obj", library);
+            assert_eq!(outcome(&ended), outcome(&result), "lines end with {end:?}");
+        }
+    }
+    if let Ok(Loaded { mesh, .. }) = &result {
+        check_written_again(mesh);
+    }
+}
+
+/// An MTL file, of a model that uses the first materials it names.
+pub fn mtl(bytes: &[u8]) {
+    let mut model = String::from("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    let mut names = Vec::new();
+    for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')) {
+        let Some(name) = line.trim_ascii().strip_prefix(b"newmtl ") else { continue };
+        let Ok(name) = str::from_utf8(name.trim_ascii()) else { continue };
+        // A name that ends in a backslash goes on in the next line.
+        if names.len() < 8 && !name.contains('\\') && !names.contains(&name) {
+            names.push(name);
+            writeln!(model, "usemtl {name}\nf 1 2 3").expect("a string takes all");
+        }
+    }
+    model.push_str("usemtl none of them\nf 3 2 1\n");
+    let library = |path: &Path| match path == Path::new("a.mtl") {
+        true => Ok(bytes.to_vec()),
+        false => Err(io::ErrorKind::NotFound.into()),
+    };
+    let result = obj::parse(model.as_bytes(), "model.obj", library);
+    check_obj(&result, model.as_bytes(), bytes);
+    if let Ok(Loaded { mesh, .. }) = result {
+        let found: Vec<&str> = mesh.surfaces().iter().map(|surface| surface.name.as_str()).collect();
+        let wanted: Vec<&str> = names.into_iter().chain(["none of them"]).collect();
+        assert_eq!(found, wanted);
+    }
+}
+
+/// What two ways of reading the same must agree in.
+fn outcome(result: &Result<Loaded, ObjError>) -> Result<&Loaded, String> {
+    result.as_ref().map_err(ToString::to_string)
+}
+
+fn check_obj(result: &Result<Loaded, ObjError>, model: &[u8], materials: &[u8]) {
+    match result {
+        Ok(Loaded { mesh, warnings }) => {
+            check_mesh(mesh);
+            for warning in warnings {
+                assert!(!warning.contains(['\n', '\r']), "a warning of more than one line: {warning:?}");
+            }
+        }
+        Err(error) => {
+            let text = if error.path == Path::new("model.obj") { model } else { materials };
+            if let Some(line) = error.line {
+                assert!(line >= 1 && line <= lines_in(text) as u64, "{error}: of {} lines", lines_in(text));
+            }
+            let whole_file = matches!(error.kind, ObjErrorKind::NoFaces | ObjErrorKind::TooLarge("more than 65,536 materials"));
+            assert_eq!(error.line.is_none(), whole_file, "{error}");
+            let said = error.to_string();
+            assert!(!said.contains(char::is_control) && said.len() < 300, "{said:?}");
+        }
+    }
+}
+
+/// LF, CR LF and CR end a line; an end of line at the end of the text begins no further line.
+fn lines_in(text: &[u8]) -> usize {
+    let mut lines = 0;
+    let mut before = b'\n';
+    for &byte in text {
+        let begins = matches!(before, b'\n' | b'\r') && !(before == b'\r' && byte == b'\n');
+        lines += usize::from(begins);
+        before = byte;
+    }
+    lines
+}
+
+/// What holds of every mesh that a file gives.
+fn check_mesh(mesh: &Mesh) {
+    let (positions, normals) = (mesh.positions(), mesh.normals());
+    assert!(!mesh.triangles().is_empty());
+    assert_eq!(positions.len(), normals.len());
+    assert!(positions.iter().all(|p| p.is_finite()));
+    for normal in normals {
+        let squares = normal.to_array().map(|x| f64::from(x) * f64::from(x));
+        let length = (squares[0] + squares[1] + squares[2]).sqrt();
+        // Each component is rounded once, by 2⁻²⁵ of a number up to 1: √3 · 2⁻²⁵ at most.
+        assert!((length - 1.0).abs() < 2f64.powi(-23), "a normal of length {length}");
+    }
+    let mut used = vec![false; positions.len()];
+    for &index in mesh.triangles().as_flattened() {
+        used[index as usize] = true;
+    }
+    assert!(used.iter().all(|&used| used), "a vertex that no triangle uses");
+    if let Some(texcoords) = mesh.texcoords() {
+        assert_eq!(texcoords.len(), positions.len());
+        assert!(texcoords.iter().all(|t| t.is_finite()));
+    }
+    assert_eq!(mesh.triangle_surfaces().len(), mesh.triangles().len());
+    assert!(mesh.triangle_surfaces().iter().all(|&surface| usize::from(surface) < mesh.surfaces().len()));
+    for surface in mesh.surfaces() {
+        assert!(surface.diffuse.iter().chain(&surface.specular).all(|x| x.is_finite()));
+        assert!(surface.shininess.is_finite());
+    }
+    let bounds = mesh.bounds();
+    assert!(bounds.centre.is_finite() && bounds.radius.is_finite() && bounds.radius >= 0.0);
+    assert!(positions.iter().all(|p| p.cmpge(bounds.min).all() && p.cmple(bounds.max).all()));
+    assert!(!mesh.is_convex() || mesh.is_closed());
+}
+
+/// A mesh written as OBJ, with all that it has, and read again: the same corners, in the same order.
+fn check_written_again(mesh: &Mesh) {
+    let mut text = String::new();
+    for p in mesh.positions() {
+        writeln!(text, "v {} {} {}", p.x, p.y, p.z).expect("a string takes all");
+    }
+    for n in mesh.normals() {
+        writeln!(text, "vn {} {} {}", n.x, n.y, n.z).expect("a string takes all");
+    }
+    for t in mesh.texcoords().unwrap_or_default() {
+        writeln!(text, "vt {} {}", t.x, t.y).expect("a string takes all");
+    }
+    for (triangle, surface) in mesh.triangles().iter().zip(mesh.triangle_surfaces()) {
+        let [a, b, c] = triangle.map(|i| i + 1);
+        let face = match mesh.texcoords() {
+            Some(_) => format!("f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}"),
+            None => format!("f {a}//{a} {b}//{b} {c}//{c}"),
+        };
+        writeln!(text, "usemtl {surface}\n{face}").expect("a string takes all");
+    }
+    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    let again = obj::parse(text.as_bytes(), "again.obj", none).expect("what was written is well formed").mesh;
+    check_mesh(&again);
+    assert_eq!(again.triangles().len(), mesh.triangles().len());
+    let bits = |p: Vec3| p.to_array().map(f32::to_bits);
+    let texcoord = |mesh: &Mesh, i: u32| mesh.texcoords().map(|t: &[Vec2]| t[i as usize].to_array().map(f32::to_bits));
+    let mut names = HashMap::new();
+    for (t, (&old, &new)) in mesh.triangles().iter().zip(again.triangles()).enumerate() {
+        for (old, new) in old.into_iter().zip(new) {
+            assert_eq!(bits(mesh.positions()[old as usize]), bits(again.positions()[new as usize]));
+            assert_eq!(texcoord(mesh, old), texcoord(&again, new));
+            let (old, new) = (mesh.normals()[old as usize], again.normals()[new as usize]);
+            // Each was made unit once more: a length off by 2⁻²⁴, and a rounding of 2⁻²⁵, in each component.
+            assert!((old - new).abs().max_element() <= 2f32.powi(-23), "{old} {new}");
+        }
+        let surface = again.triangle_surfaces()[t];
+        assert_eq!(*names.entry(mesh.triangle_surfaces()[t]).or_insert(surface), surface);
+    }
+    assert_eq!((again.is_closed(), again.is_convex()), (mesh.is_closed(), mesh.is_convex()));
+}
+
+pub fn palette_jasc(bytes: &[u8]) {
+    palette(bytes, &["jasc"], &["a.pal", "A.PAL"]);
+}
+
+pub fn palette_gimp(bytes: &[u8]) {
+    palette(bytes, &["gimp"], &["a.gpl"]);
+}
+
+pub fn palette_hex(bytes: &[u8]) {
+    palette(bytes, &["hex"], &["a.hex"]);
+}
+
+pub fn palette_binary(bytes: &[u8]) {
+    palette(bytes, &["vga", "act", "act-772"], &["a.vga", "a.raw", "a.col", "a.lmp", "a.act", "a.pal"]);
+}
+
+/// A palette file, read as these formats, under these names, and under none.
+fn palette(bytes: &[u8], formats: &[&str], names: &[&str]) {
+    let mut results: Vec<Result<Palette, PaletteError>> = Vec::new();
+    for name in formats {
+        results.push(Format::by_name(name).expect("a format").read(bytes));
+    }
+    for name in names {
+        results.push(file::parse_named(name, bytes));
+    }
+    results.push(file::parse_named("a", bytes));
+    results.push(file::parse(bytes));
+    assert_eq!(results[results.len() - 1], results[results.len() - 2], "an extension that is missing says nothing");
+    for result in &results {
+        match result {
+            Ok(palette) => check_palette(palette),
+            Err(error) => check_palette_error(error, bytes),
+        }
+    }
+}
+
+/// Written in any format and read again it is the same.
+fn check_palette(palette: &Palette) {
+    for format in &FORMATS {
+        let written = format.write(palette, "a name\nof two lines");
+        let expected = as_written(format, palette);
+        let read = format.read(&written).expect("what was written is well formed");
+        assert_eq!(read.colors(), expected.colors(), "{}", format.name);
+        assert_eq!(read, expected, "{}", format.name);
+        assert_eq!(format.write(&read, "a name\nof two lines"), written, "{}", format.name);
+        let recognized = Format::of_bytes(&written).map(|format| format.name);
+        match format.name {
+            // The bytes do not say what they are; and the colours of a binary file may spell a text.
+            "act" => {}
+            "vga" | "act-772" if matches!(recognized, Some("jasc" | "gimp" | "hex")) => {}
+            name => {
+                assert_eq!(recognized, Some(name));
+                assert_eq!(file::parse(&written).expect("recognised"), expected, "{name}");
+            }
+        }
+        let name = format!("a.{}", format.extensions[0]);
+        assert_eq!(file::parse_named(&name, &written).expect("read by name"), expected, "{}", format.name);
+    }
+}
+
+/// A raw file of colours below 64 that the DAC does not have is rounded down to six bits; nothing else is.
+fn as_written(format: &Format, palette: &Palette) -> Palette {
+    let dark = palette.colors().iter().all(|c| c.r.max(c.g).max(c.b) < 64);
+    // A file says nothing of ramps: they are looked for when it is read.
+    Palette::from_colors(if format.name == "vga" && dark { *palette.on_dac().colors() } else { *palette.colors() })
+}
+
+fn check_palette_error(error: &PaletteError, bytes: &[u8]) {
+    match error.place {
+        Place::Line(line) => {
+            let lines = lines_in(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes));
+            // One more where a line is missing.
+            assert!((1..=lines + 1).contains(&line), "{error}: of {lines} lines");
+        }
+        Place::Offset(offset) => assert!(offset <= bytes.len(), "{error}: of {} bytes", bytes.len()),
+    }
+    let said = error.to_string();
+    assert!(said.is_ascii() && !said.contains(char::is_control) && said.len() < 150, "{said:?}");
+}
+
+/// Words of the command line that the library reads.
+pub fn words(bytes: &[u8]) {
+    let words = String::from_utf8_lossy(bytes);
+    match Scale::from_str(&words) {
+        Ok(scale) => {
+            let (width, height) = scale.size(320, 200);
+            let sides = 1..=usize::from(MAX_SIDE);
+            assert!(sides.contains(&width) && sides.contains(&height), "{scale}");
+            assert_eq!(scale.to_string().parse(), Ok(scale));
+        }
+        Err(error) => assert_one_line(&error.to_string()),
+    }
+    match Rung::from_str(&words) {
+        Ok(rung) => assert_eq!(rung.name(), words),
+        Err(error) => assert_one_line(&error.to_string()),
+    }
+    match Kernel::by_name(&words) {
+        Ok(kernel) => assert_eq!(kernel.name(), words),
+        Err(error) => assert_one_line(&error.to_string()),
+    }
+    assert_eq!(shapes::by_name(&words).is_some(), shapes::NAMES.contains(&&*words));
+    assert_eq!(builtin::by_name(&words).map(|builtin| builtin.name), builtin::ALL.iter().map(|b| b.name).find(|n| *n == words));
+    if let Some(format) = Format::of_file_name(&words) {
+        let extension = words.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+        assert!(format.extensions.contains(&extension.as_str()), "{words}");
+    }
+}
+
+fn assert_one_line(said: &str) {
+    assert!(!said.is_empty() && !said.contains(char::is_control), "{said:?}");
+}
