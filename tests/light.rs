@@ -91,12 +91,15 @@ fn n5_a_thousand_lights_of_any_strength_are_clamped_once() {
     assert_eq!(shade(Vec3::Z, material(f32::MAX, 1.0), f32::MIN, &[]), U8F8::from_bits(0));
 }
 
+/// Puts a number that is not finite into a scene.
+type Change = fn(&mut Scene, Vec3);
+
 #[test]
 fn r9_what_is_not_finite_is_refused_where_it_enters() {
     let mut tried = Tried::new("r9_what_is_not_finite_is_refused_where_it_enters", 30);
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let at = Vec3::new(0.0, bad, 0.0);
-        let changes: [(&str, fn(&mut Scene, Vec3)); 12] = [
+        let changes: [(&str, Change); 12] = [
             ("camera", |scene, bad| scene.camera.eye = bad),
             ("camera", |scene, bad| scene.camera.target = bad),
             ("camera", |scene, bad| scene.camera.up = bad),
