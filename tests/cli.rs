@@ -1,6 +1,8 @@
 //! The program as its user meets it: what it writes, what it says, and how it ends.
 #![cfg(feature = "cli")]
 
+mod support;
+
 use std::ffi::OsStr;
 use std::fs;
 use std::io::Cursor;
@@ -9,6 +11,7 @@ use std::process::{Command, Output, Stdio};
 
 use mode13h::palette::{builtin, file};
 use mode13h::span::Kernel;
+use support::tried::Tried;
 use tempfile::TempDir;
 
 /// The program in a directory, with no display and no wishes from the environment.
@@ -64,6 +67,7 @@ fn png_header(bytes: &[u8]) -> ((u32, u32), png::ColorType, Option<(u32, u32)>) 
 
 #[test]
 fn f1_broken_input_is_one_line_with_file_and_place() {
+    let mut tried = Tried::new("f1_broken_input_is_one_line_with_file_and_place", 23);
     let directory = directory();
     let put = |name: &str, text: &[u8]| fs::write(directory.path().join(name), text).expect("written");
     put("empty.obj", b"");
@@ -106,8 +110,10 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
         (vec!["none.obj"], "none.obj: No such file"),
     ] {
         assert_fails(&run(&directory, &words), 1, says);
+        tried.add(1);
     }
     assert_eq!(names_in(directory.path()), before);
+    tried.add(1);
 }
 
 #[test]
@@ -149,6 +155,7 @@ fn wrong_words_end_with_2() {
 
 #[test]
 fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
+    let mut tried = Tried::new("f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind", 7);
     let directory = directory();
     fs::create_dir(directory.path().join("x.png")).expect("made");
     for (out, says) in [
@@ -157,20 +164,26 @@ fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
         ("x.png", "x.png: is a directory"),
     ] {
         assert_fails(&run(&directory, &["render", "torus", "-o", out]), 1, says);
+        tried.add(1);
     }
     assert_fails(
         &run(&directory, &["render", "torus", "-o", "none/%d.png", "--frames", "9"]),
         1,
         "none does not exist",
     );
+    tried.add(1);
     assert_fails(&run(&directory, &["palette", "grey", "-o", "none/x.pal"]), 1, "none does not exist");
+    tried.add(1);
     assert_eq!(names_in(directory.path()), ["x.png"]);
+    tried.add(1);
     assert!(names_in(&directory.path().join("x.png")).is_empty());
+    tried.add(1);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn f4_a_picture_that_no_longer_fits_leaves_the_old_one_whole() {
+    let mut tried = Tried::new("f4_a_picture_that_no_longer_fits_leaves_the_old_one_whole", 3);
     let directory = directory();
     fs::write(directory.path().join("x.png"), "what stood there").expect("written");
     // Files may grow to one block, which the picture does not fit in.
@@ -180,13 +193,17 @@ fn f4_a_picture_that_no_longer_fits_leaves_the_old_one_whole() {
         .output()
         .expect("started");
     assert_fails(&output, 1, "x.png: ");
+    tried.add(1);
     assert_eq!(read(&directory, "x.png"), b"what stood there");
+    tried.add(1);
     assert_eq!(names_in(directory.path()), ["x.png"]);
+    tried.add(1);
 }
 
 #[cfg(unix)]
 #[test]
 fn f4_an_interrupted_row_is_made_of_whole_pictures() {
+    let mut tried = Tried::new("f4_an_interrupted_row_is_made_of_whole_pictures", 20);
     let directory = directory();
     let mut child = program(&directory)
         .args(["render", "torus", "-o", "%06d.png", "--frames", "1000000", "--scale", "2"])
@@ -195,16 +212,21 @@ fn f4_an_interrupted_row_is_made_of_whole_pictures() {
         .expect("started");
     while names_in(directory.path()).iter().filter(|name| !name.starts_with('.')).count() < 20 {
         assert!(child.try_wait().expect("waited").is_none(), "ended by itself");
+        tried.add(1);
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("started");
     assert!(killed.success());
+    tried.add(1);
     let output = child.wait_with_output().expect("waited");
     assert_fails(&output, 130, "interrupted");
+    tried.add(1);
     for name in names_in(directory.path()) {
         assert!(name.ends_with(".png") && !name.starts_with('.'), "{name} is left");
+        tried.add(1);
         let bytes = read(&directory, &name);
         assert_eq!(&bytes[bytes.len() - 8..][..4], b"IEND", "{name} is not whole");
+        tried.add(1);
     }
 }
 
@@ -292,15 +314,19 @@ fn a_row_is_the_same_whatever_the_number_of_threads() {
 
 #[test]
 fn t1_a_frame_of_a_row_is_the_frame_drawn_alone() {
+    let mut tried = Tried::new("t1_a_frame_of_a_row_is_the_frame_drawn_alone", 3);
     let directory = directory();
     succeed(&directory, &["render", "teapot", "-o", "turn%d.png", "--frames", "4", "--turn", "360"]);
     succeed(&directory, &["render", "teapot", "-o", "alone.png", "--turn", "90"]);
     assert_eq!(read(&directory, "turn1.png"), read(&directory, "alone.png"));
+    tried.add(1);
 
     succeed(&directory, &["render", "teapot", "-o", "time%d.png", "--frames", "3", "--fps", "2", "--at", "7"]);
     succeed(&directory, &["render", "teapot", "-o", "alone.png", "--at", "8"]);
     assert_eq!(read(&directory, "time2.png"), read(&directory, "alone.png"));
+    tried.add(1);
     assert_ne!(read(&directory, "time0.png"), read(&directory, "alone.png"));
+    tried.add(1);
 }
 
 #[test]

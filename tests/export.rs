@@ -1,6 +1,8 @@
 //! Pictures on disk: what is in them, read back by a decoder, and that files are whole or not there (hard case F4).
 #![cfg(all(feature = "png", feature = "image"))]
 
+mod support;
+
 use std::fs;
 use std::io::{self, Cursor, Write};
 use std::path::Path;
@@ -12,6 +14,7 @@ use mode13h::export::{
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::vga::Vga;
 use png::{BitDepth, ColorType, Decoder, Transformations, Unit};
+use support::tried::Tried;
 
 /// A PNG file as its decoder reads it.
 struct Decoded {
@@ -239,6 +242,7 @@ fn scales_are_read_from_words() {
 
 #[test]
 fn f4_a_file_that_fails_half_way_leaves_the_old_one_whole() {
+    let mut tried = Tried::new("f4_a_file_that_fails_half_way_leaves_the_old_one_whole", 15);
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("frame.png");
     fs::write(&path, "what stood there").expect("written");
@@ -247,18 +251,24 @@ fn f4_a_file_that_fails_half_way_leaves_the_old_one_whole() {
             out.write_all(&[1; 100_000])?;
             out.flush()?;
             assert_eq!(names_in(folder.path()).len(), 2, "written beside its name");
+            tried.add(1);
             Err(kind.into())
         });
         let error = result.expect_err("failed");
         assert_eq!(error.path(), path);
+        tried.add(1);
         assert_eq!(matches!(error.kind(), ExportErrorKind::DiskFull), kind == io::ErrorKind::StorageFull);
+        tried.add(1);
         assert_eq!(fs::read(&path).expect("read"), b"what stood there");
+        tried.add(1);
         assert_eq!(names_in(folder.path()), ["frame.png"]);
+        tried.add(1);
     }
 }
 
 #[test]
 fn f4_a_writer_that_panics_leaves_the_old_one_whole() {
+    let mut tried = Tried::new("f4_a_writer_that_panics_leaves_the_old_one_whole", 3);
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("frame.png");
     fs::write(&path, "what stood there").expect("written");
@@ -269,12 +279,16 @@ fn f4_a_writer_that_panics_leaves_the_old_one_whole() {
         })
     });
     assert!(panic.is_err());
+    tried.add(1);
     assert_eq!(fs::read(&path).expect("read"), b"what stood there");
+    tried.add(1);
     assert_eq!(names_in(folder.path()), ["frame.png"]);
+    tried.add(1);
 }
 
 #[test]
 fn f4_each_reason_has_its_own_error_with_the_path() {
+    let mut tried = Tried::new("f4_each_reason_has_its_own_error_with_the_path", 13);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("file");
     fs::write(&file, "a file").expect("written");
@@ -286,12 +300,16 @@ fn f4_each_reason_has_its_own_error_with_the_path() {
     ] {
         let error = write_atomically(&path, nothing).expect_err("no such folder");
         assert!(matches!(error.kind(), ExportErrorKind::MissingDirectory), "{error}");
+        tried.add(1);
         assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
+        tried.add(1);
         assert!(error.to_string().ends_with(says), "{error}");
+        tried.add(1);
     }
     for path in [folder.path().to_path_buf(), folder.path().join(".."), folder.path().join("new/"), "".into()] {
         let error = write_atomically(&path, nothing).expect_err("a folder");
         assert!(matches!(error.kind(), ExportErrorKind::IsDirectory), "{error}");
+        tried.add(1);
     }
 
     let mut permissions = fs::metadata(&file).expect("metadata").permissions();
@@ -299,29 +317,39 @@ fn f4_each_reason_has_its_own_error_with_the_path() {
     fs::set_permissions(&file, permissions).expect("set");
     let error = write_atomically(&file, nothing).expect_err("read-only");
     assert!(matches!(error.kind(), ExportErrorKind::NotPermitted), "{error}");
+    tried.add(1);
     assert_eq!(fs::read(&file).expect("read"), b"a file");
+    tried.add(1);
     assert_eq!(names_in(folder.path()), ["file"]);
+    tried.add(1);
 }
 
 #[test]
 fn f4_a_picture_that_cannot_be_written_names_the_file() {
+    let mut tried = Tried::new("f4_a_picture_that_cannot_be_written_names_the_file", 2);
     let palette = Palette::default();
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("frame.png");
     let error = export::picture_png(&Picture::mode_13h(&[], &palette), Scale::One, &path).expect_err("no bytes");
     assert!(matches!(error.kind(), ExportErrorKind::Picture(PictureError::Bytes { .. })), "{error}");
+    tried.add(1);
     assert!(names_in(folder.path()).is_empty());
+    tried.add(1);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn f4_a_full_disk_is_an_error() {
+    let mut tried = Tried::new("f4_a_full_disk_is_an_error", 3);
     // A device that is always full. It is written to and not replaced.
     let error = export::png(&patterned(), "/dev/full").expect_err("full");
     assert!(matches!(error.kind(), ExportErrorKind::DiskFull), "{error}");
+    tried.add(1);
     assert_eq!(error.to_string(), "/dev/full: the disk is full");
+    tried.add(1);
     export::png(&patterned(), "/dev/null").expect("written");
     assert!(!fs::metadata("/dev/null").expect("metadata").is_file());
+    tried.add(1);
 }
 
 #[cfg(unix)]

@@ -1,6 +1,8 @@
 //! OBJ and MTL: what is read, what is refused and where, and the same as `tobj` where that can read.
 #![cfg(feature = "obj")]
 
+mod support;
+
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::io;
@@ -10,6 +12,8 @@ use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::Mesh;
 use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
 use proptest::prelude::*;
+use support::property::property;
+use support::tried::Tried;
 
 fn no_library(_: &Path) -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())
@@ -66,26 +70,35 @@ fn a_file_with_materials() {
 
 #[test]
 fn f1_broken_files() {
+    let mut tried = Tried::new("f1_broken_files", 7);
     let message = |name: &str| obj::load(data(name)).unwrap_err().to_string();
     let ends = |name: &str, end: &str| {
         let message = message(name);
         assert!(message.ends_with(end) && message.lines().count() == 1, "{message}");
     };
     ends("broken_nan.obj", "broken_nan.obj:4: `nan` is not a finite number");
+    tried.add(1);
     ends("broken_empty.obj", "broken_empty.obj: no faces");
+    tried.add(1);
     ends("broken_binary.obj", "broken_binary.obj:1: not a text file");
+    tried.add(1);
     ends("broken_library.obj", "broken_library.mtl:2: too few numbers for a colour (1 or 3)");
+    tried.add(1);
     assert!(matches!(
         obj::load(data("nowhere.obj")).unwrap_err(),
         ObjError { line: None, kind: ObjErrorKind::Read(error), .. } if error.kind() == io::ErrorKind::NotFound
     ));
+    tried.add(1);
     assert!(message("nowhere.obj").contains("nowhere.obj: "));
+    tried.add(1);
     let folder = obj::load(data("")).unwrap_err();
     assert!(matches!(folder.kind, ObjErrorKind::Directory), "{folder}");
+    tried.add(1);
 }
 
 #[test]
 fn f1_broken_lines() {
+    let mut tried = Tried::new("f1_broken_lines", 30);
     let with = |line: &str| refused(format!("{TRIANGLE}vt 0 0\nvn 0 0 1\n{line}\nf 1 2 3\n"));
     for (line, message) in [
         ("f 0 1 2", "index 0: indices count from 1"),
@@ -115,27 +128,38 @@ fn f1_broken_lines() {
         ("\u{0}\u{1}", "not a text file"),
     ] {
         assert_eq!(with(line), format!("model.obj:6: {message}"), "{line}");
+        tried.add(1);
     }
     assert_eq!(refused("v 0 0 0\n"), "model.obj: no faces");
+    tried.add(1);
     assert_eq!(refused(TRIANGLE), "model.obj: no faces");
+    tried.add(1);
     assert_eq!(refused(""), "model.obj: no faces");
+    tried.add(1);
     assert_eq!(refused("Dear reader,\nthis is no model.\n"), "model.obj: no faces");
+    tried.add(1);
     let long = format!("v {} 0 0", "9x".repeat(1000));
     assert_eq!(refused(&long), format!("model.obj:1: `{}…` is not a number", "9x".repeat(20)));
+    tried.add(1);
 }
 
 /// An index may name what follows; the first that never comes is the one at fault.
 #[test]
 fn f1_indices_that_look_ahead() {
+    let mut tried = Tried::new("f1_indices_that_look_ahead", 3);
     assert_eq!(mesh(format!("f 1 2 3\n{TRIANGLE}")).triangles(), [[0, 1, 2]]);
+    tried.add(1);
     let late = refused(format!("f 1 2 3\nf 1 2 5\nf 1 4 2\nf 1 2 9\n{TRIANGLE}"));
     assert_eq!(late, "model.obj:2: there is no vertex 5, only 3");
+    tried.add(1);
     let normal = refused(format!("f 1//2 2//2 3//2\nf 1 2 9\nvn 0 0 1\n{TRIANGLE}"));
     assert_eq!(normal, "model.obj:1: there is no normal 2, only 1");
+    tried.add(1);
 }
 
 #[test]
 fn f1_what_is_large_but_well_formed_loads() {
+    let mut tried = Tried::new("f1_what_is_large_but_well_formed_loads", 2);
     // A line of two megabytes: a convex face of 10,000 corners, spaced out.
     let corners = 10_000;
     let mut text = String::new();
@@ -149,6 +173,7 @@ fn f1_what_is_large_but_well_formed_loads() {
     }
     let disc = mesh(&text);
     assert_eq!((disc.triangles().len(), disc.positions().len()), (9_998, 10_000));
+    tried.add(1);
     // A concave one: a saw of 5,000 teeth.
     let mut text = String::from("v 9999 -1 0\nv 0 -1 0\n");
     for i in 0..corners {
@@ -160,6 +185,7 @@ fn f1_what_is_large_but_well_formed_loads() {
     }
     let saw = mesh(&text);
     assert_eq!(saw.triangles().len(), 10_000);
+    tried.add(1);
     let face: Vec<Vec3> = (1..=corners + 2).rev().map(saw_corner).collect();
     check_split(&saw, &face);
 }
@@ -275,16 +301,22 @@ fn library_names() {
 
 #[test]
 fn f1_broken_libraries() {
+    let mut tried = Tried::new("f1_broken_libraries", 5);
     let refused = |mtl: &'static str| {
         let text = format!("mtllib a.mtl\n{TRIANGLE}f 1 2 3\n");
         let error = obj::parse(text.as_bytes(), "model.obj", |_: &Path| Ok(mtl.into())).unwrap_err();
         error.to_string()
     };
     assert_eq!(refused("newmtl a\nKd\n"), "a.mtl:2: too few numbers for a colour (1 or 3)");
+    tried.add(1);
     assert_eq!(refused("newmtl a\nKd 1 1\n"), "a.mtl:2: too few numbers for a colour (1 or 3)");
+    tried.add(1);
     assert_eq!(refused("newmtl a\n\nKs red\n"), "a.mtl:3: `red` is not a number");
+    tried.add(1);
     assert_eq!(refused("newmtl a\nNs nan\n"), "a.mtl:2: `nan` is not a finite number");
+    tried.add(1);
     assert_eq!(refused("newmtl a\nNs\n"), "a.mtl:2: too few numbers for an exponent (1)");
+    tried.add(1);
 }
 
 /// A mesh of one face in the plane z = 0, against that face: n − 2 triangles, none turned over, whose
@@ -488,10 +520,13 @@ proptest! {
         face.rotate_left(middle);
         check_split(&mesh(face_text(&face)), &face);
     }
+}
 
-    /// Whatever the file says: a sound mesh, or an error on one line.
-    #[test]
-    fn f1_no_file_breaks_the_parser(text in prop::collection::vec(token(), 0..200)) {
+/// Whatever the file says: a sound mesh, or an error on one line.
+#[test]
+fn f1_no_file_breaks_the_parser() {
+    let tried = Tried::new("f1_no_file_breaks_the_parser", 256);
+    property(tried, prop::collection::vec(token(), 0..200), |text| {
         let text: String = text.concat();
         let library = |path: &Path| {
             if path == Path::new("a") { Ok(text.clone().into_bytes()) } else { no_library(path) }
@@ -506,14 +541,19 @@ proptest! {
             }
             Err(error) => prop_assert_eq!(error.to_string().lines().count(), 1),
         }
-    }
+        Ok(())
+    });
+}
 
-    #[test]
-    fn f1_no_bytes_break_the_parser(bytes in prop::collection::vec(any::<u8>(), 0..500)) {
+#[test]
+fn f1_no_bytes_break_the_parser() {
+    let tried = Tried::new("f1_no_bytes_break_the_parser", 256);
+    property(tried, prop::collection::vec(any::<u8>(), 0..500), |bytes| {
         if let Err(error) = parse(&bytes) {
             prop_assert_eq!(error.to_string().lines().count(), 1);
         }
-    }
+        Ok(())
+    });
 }
 
 /// Pieces of OBJ and MTL text; faces mostly of indices that there are.

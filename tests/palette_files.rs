@@ -3,7 +3,6 @@
 
 mod support;
 
-use std::cell::Cell;
 use std::collections::BTreeSet;
 
 use mode13h::fixed::U8F8;
@@ -11,7 +10,7 @@ use mode13h::palette::file::{self, FORMATS, Format, PaletteError, PaletteErrorKi
 use mode13h::palette::gradient::{Key, fill};
 use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, cube, expand, reduce};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use support::property::property;
 use support::tried::Tried;
 
 fn format(name: &str) -> &'static Format {
@@ -615,18 +614,11 @@ proptest! {
     }
 }
 
-/// Whatever the file holds: a palette, or an error at a place in it. By hand, so that the cases are counted.
+/// Whatever the file holds: a palette, or an error at a place in it.
 #[test]
 fn p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file() {
-    let mut seed = [0; 32];
-    seed[..8].copy_from_slice(&support::random::seed().to_le_bytes());
-    println!("MODE13H_SEED={}", support::random::seed());
-    let config = Config { failure_persistence: None, ..Config::default() };
-    let stated = config.cases.into();
-    let mut tried = Tried::new("p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file", stated);
-    let files = Cell::new(0);
-    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
-    let result = runner.run(&any_file(), |bytes| {
+    let tried = Tried::new("p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file", 256);
+    property(tried, any_file(), |bytes| {
         let mut results: Vec<_> = FORMATS.iter().map(|format| format.read(&bytes)).collect();
         results.push(file::parse(&bytes));
         results.extend(["a.pal", "a.gpl", "a.hex", "a.act", "a.vga", "a"].map(|name| file::parse_named(name, &bytes)));
@@ -640,11 +632,6 @@ fn p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file() {
             }
             prop_assert!(!error.to_string().contains(['\n', '\r']));
         }
-        files.set(files.get() + 1);
         Ok(())
     });
-    if let Err(error) = result {
-        panic!("{error}");
-    }
-    tried.add(files.get());
 }

@@ -4,6 +4,7 @@
 pub mod display;
 pub mod naive_span;
 pub mod oracle;
+pub mod property;
 pub mod random;
 pub mod triangles;
 pub mod tried;

@@ -20,6 +20,11 @@ impl Tried {
         Self { test: test.into(), stated, cases: 0 }
     }
 
+    /// How many cases the test states that it tries.
+    pub fn stated(&self) -> u64 {
+        self.stated
+    }
+
     /// `cases` more have been tried.
     pub fn add(&mut self, cases: u64) {
         self.cases += cases;
