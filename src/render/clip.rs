@@ -38,19 +38,17 @@ fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> f64 {
 }
 
 /// The point where an edge meets a plane.
+///
+/// It is the mean of the two ends, each weighted with the other's distance: of numbers of one sign,
+/// as w is, no digit is lost however far apart they are. The coordinate that the plane fixes is not
+/// interpolated at all. With ends at opposite sides, 10³⁸ away, that would leave nothing of it, and
+/// the next plane would throw the point away, and the face with it.
 fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_inside: f64, d_outside: f64) -> Corner {
-    let t = d_inside / (d_inside - d_outside);
-    let between = |a: f64, b: f64| a + (b - a) * t;
+    let whole = d_inside - d_outside;
+    let between = |a: f64, b: f64| (b * d_inside - a * d_outside) / whole;
     let (a, b) = (inside.at, outside.at);
-    let w = if plane == 0 { f64::from(view.near()) } else { between(a.w, b.w) };
-    // Shades are linear on the screen. On the edge's projection the point lies at t·wb / w. Where
-    // the other end has no projection, beyond the near plane, they are linear along the edge.
-    let on_screen = if plane == 0 { t } else { t * b.w / w };
-    let shade = inside.shade + (outside.shade - inside.shade) * on_screen;
-    // Rounding in `shade` must not leave the range of the two ends.
-    let (low, high) = (inside.shade.min(outside.shade), inside.shade.max(outside.shade));
-    // On its plane as exactly as f64 has it: of an edge that reaches to 10³⁸ the rounding of the sum
-    // would be more than the whole guard band, and the face be lost.
+    let (low, high) = (a.w.min(b.w), a.w.max(b.w));
+    let w = if plane == 0 { f64::from(view.near()) } else { between(a.w, b.w).max(low).min(high) };
     let (cx, cy) = view.centre();
     let limit = ObjectView::LIMIT;
     let x = match plane {
@@ -63,6 +61,13 @@ fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_ins
         4 => (limit - cy) * w,
         _ => between(a.y, b.y),
     };
+    // Shades are linear on the screen. On the edge's projection the point lies at t·wb / w. Where
+    // the other end has no projection, beyond the near plane, they are linear along the edge.
+    let t = d_inside / whole;
+    let on_screen = if plane == 0 { t } else { t * b.w / w };
+    let shade = inside.shade + (outside.shade - inside.shade) * on_screen;
+    // Rounding in `shade` must not leave the range of the two ends.
+    let (low, high) = (inside.shade.min(outside.shade), inside.shade.max(outside.shade));
     Corner { at: Homogeneous { x, y, w }, shade: shade.max(low).min(high), vertex: None }
 }
 

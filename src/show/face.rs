@@ -49,25 +49,23 @@ impl Corner {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Face {
     pub(super) corners: [Corner; 3],
-    /// One byte for all of it; `None`: linear between the corners.
-    pub(super) flat: Option<u8>,
+    pub(super) shading: Shading,
 }
 
 /// A face shaded linearly between its corners.
 pub(super) const fn gouraud(corners: [Corner; 3]) -> Face {
-    Face { corners, flat: None }
+    Face { corners, shading: Shading::GouraudReseeded }
 }
 
 /// A face of one byte.
 pub(super) const fn flat(corners: [Corner; 3], byte: u8) -> Face {
-    Face { corners, flat: Some(byte) }
+    Face { corners, shading: Shading::Flat(byte) }
 }
 
 impl Face {
     /// What the raster is given.
     pub(super) fn for_raster(&self) -> ([Vertex; 3], Shading) {
-        let shading = self.flat.map_or(Shading::GouraudReseeded, Shading::Flat);
-        (self.corners.map(Corner::vertex), shading)
+        (self.corners.map(Corner::vertex), self.shading)
     }
 
     /// Its three edges.
@@ -75,6 +73,11 @@ impl Face {
         let [a, b, c] = self.corners.map(|corner| (corner.x, corner.y));
         [[a, b], [b, c], [c, a]]
     }
+}
+
+/// Of the edges of quads, each of two faces (a, b, c) and (a, c, d), all but the diagonals.
+pub(super) fn without_diagonals(edges: &[Segment]) -> Vec<Segment> {
+    edges.iter().enumerate().filter(|(i, _)| ![2, 3].contains(&(i % 6))).map(|(_, edge)| *edge).collect()
 }
 
 /// A true edge: two points in pixels.

@@ -61,7 +61,7 @@ pub struct Comparison {
     pub right: Panel,
     /// What the engine's raster was given, in this order.
     pub triangles: Vec<Triangle>,
-    /// Whether with a depth buffer.
+    /// Whether faces may hide each other: whether depth decides which has a pixel.
     pub depth_tested: bool,
     /// The true edges.
     pub outline: Vec<Segment>,

@@ -43,8 +43,7 @@ pub(super) fn r7() -> Comparison {
     let triangles = [[0, 1, 2]];
     let drawn = engine::draw_scene(size, &scene(lit(&positions, &[0.75; 3], &triangles), view));
     let corners = positions.map(|point| view.project(point, 0.75 * 255.0));
-    let mut comparison =
-        of_scene(drawn, true, CUT, |panel| paint(panel, &[gouraud(cover::words_of_16_bits(&corners))]));
+    let mut comparison = of_scene(drawn, CUT, |panel| paint(panel, &[gouraud(cover::words_of_16_bits(&corners))]));
     comparison.outline = gouraud(corners).edges().to_vec();
     comparison
 }
@@ -71,7 +70,7 @@ fn on_the_floor(z: &[f64], wrong: impl Fn(&mut Panel, View, &[Vector], &[[usize;
     let (positions, triangles, intensities) = floor(z);
     let drawn = engine::draw_scene(size, &scene(lit(&positions, &intensities, &triangles), view));
     let shades: Vec<f64> = intensities.iter().map(|intensity| intensity * 255.0).collect();
-    of_scene(drawn, true, CUT, |panel| wrong(panel, view, &positions, &triangles, &shades))
+    of_scene(drawn, CUT, |panel| wrong(panel, view, &positions, &triangles, &shades))
 }
 
 pub(super) fn c1() -> Comparison {

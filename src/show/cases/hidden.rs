@@ -2,7 +2,7 @@
 
 use super::against_engine;
 use crate::show::Comparison;
-use crate::show::face::{Corner, Face, at, flat};
+use crate::show::face::{Corner, Face, at, flat, without_diagonals};
 use crate::show::fault::depth;
 use crate::show::panel::{Mark, Measure};
 
@@ -32,6 +32,7 @@ pub(super) fn c3() -> Comparison {
     let tilted = quad([leaning(5.6, 1.2), leaning(24.4, 1.2), leaning(24.4, 24.8), leaning(5.6, 24.8)], COLORS[1]);
     let faces = [level, tilted].concat();
     let mut comparison = against_engine((30, 26), &faces, BY_DEPTH, |panel| depth::buffer_of_16_bits(panel, &faces));
+    comparison.outline = without_diagonals(&comparison.outline);
     let meeting = |y: f64| (13.0 - 0.4 * (y - 13.0), y);
     comparison.outline.push([meeting(3.3), meeting(22.7)]);
     comparison
@@ -59,9 +60,11 @@ pub(super) fn d1() -> Comparison {
         quad([corner(-overhang, -half), corner(end, -half), corner(end, half), corner(-overhang, half)], color)
     });
     let faces = bars.concat();
-    against_engine((30, 28), &faces, BY_DEPTH, |panel| {
-        depth::painters_order(panel, &bars.each_ref().map(|bar| &bar[..]))
-    })
+    let mut comparison = against_engine((30, 28), &faces, BY_DEPTH, |panel| {
+        depth::painters_order(panel, &bars.each_ref().map(|bar| &bar[..]));
+    });
+    comparison.outline = without_diagonals(&comparison.outline);
+    comparison
 }
 
 pub(super) fn d2() -> Comparison {
@@ -77,6 +80,7 @@ pub(super) fn d2() -> Comparison {
     let faces = [first, second].concat();
     let mut comparison =
         against_engine((30, 26), &faces, BY_DEPTH, |panel| depth::painters_order(panel, &[&first, &second]));
+    comparison.outline = without_diagonals(&comparison.outline);
     comparison.outline.push([(15.0, 8.1), (15.0, 19.2)]);
     comparison
 }

@@ -8,10 +8,11 @@ use crate::mesh::{Mesh, shapes};
 use crate::scene::{Camera, Object, Scene};
 use crate::show::Comparison;
 use crate::show::engine;
+use crate::show::face::without_diagonals;
 use crate::show::fault::light::{Vector, View, cross, dot, lit_mesh, subtract, unit};
 use crate::show::panel::Measure;
 
-const SIZE: (usize, usize) = (30, 28);
+const SIZE: (usize, usize) = (28, 26);
 
 /// Matt surfaces: the fault's own view and light come to the same within this many shades.
 const LIT: Measure = Measure { shades: 12, ..EXACT };
@@ -43,12 +44,11 @@ struct Lit {
 
 fn compare(distance: f64, lit: Lit) -> Comparison {
     let view = View { size: SIZE, eye: [0.0, 0.0, distance], field_of_view: 2.0 * libm::atan(1.08 / distance) };
-    let depth_tested = !lit.mesh.as_ref().is_some_and(Mesh::is_convex);
     let mut scene = scene(lit.mesh, view);
     lit.suns.into_iter().for_each(|sun| scene.add_light(sun));
     let drawn = engine::draw_scene(SIZE, &scene);
     let measure = Measure { counts_writes: false, ..LIT };
-    of_scene(drawn, depth_tested, measure, |panel| {
+    of_scene(drawn, measure, |panel| {
         lit_mesh(panel, view, &lit.positions, &lit.triangles, lit.two_sided, &lit.shades);
     })
 }
@@ -203,7 +203,7 @@ pub(super) fn n6() -> Comparison {
     let shades: Vec<f64> = shades.collect();
     // Points at the middle of an edge or of a face have a 0 there, which adds nothing to the sum.
     let positions: Vec<Vector> = grid.iter().map(|p| turn(p.map(|c| c * 0.6))).collect();
-    compare(
+    let mut comparison = compare(
         4.0,
         Lit {
             mesh: mesh(&positions, &triangles),
@@ -213,5 +213,7 @@ pub(super) fn n6() -> Comparison {
             shades,
             two_sided: false,
         },
-    )
+    );
+    comparison.outline = without_diagonals(&comparison.outline);
+    comparison
 }

@@ -25,7 +25,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "R2",
         title: "slivers",
-        sentence: "Along a sliver the step of a single row has no bound: shades of 90 to 170 come out black and white.",
+        sentence: "Along a sliver the step of a single row has no bound: shades of 60 to 200 come out black and white.",
         wrong: "a step for each row, (Bs - As) / (Bx - Ax), wrapped in 8 bits",
         right: "exact starts and one step; every byte in range",
         build: shades::r2,
@@ -73,7 +73,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "R8",
         title: "drawing in bands",
-        sentence: "One face drawn in four bands of rows: cut at the bands and rounded anew, its edges break.",
+        sentence: "One face drawn in four bands of rows (level lines): cut at the bands and rounded anew, its edges break.",
         wrong: "the face cut at each band, new corners on whole pixels",
         right: "each band starts from the face as it is",
         build: triangles::r8,
@@ -89,7 +89,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "R13",
         title: "rounding of the corners",
-        sentence: "Sixteen blades of one width: with corners on whole pixels some are twice as wide as others, and some are gone.",
+        sentence: "Fourteen blades of one width: with corners on whole pixels they leave their true edges, some thick, some thin.",
         wrong: "corners rounded to whole pixels",
         right: "corners rounded to 1/256 pixel, once",
         build: triangles::r13,
@@ -125,6 +125,14 @@ pub static CASES: &[Case] = &[
         wrong: "a depth buffer of 16 bits",
         right: "30 bits of depth",
         build: hidden::c3,
+    },
+    Case {
+        id: "C5",
+        title: "shades in perspective",
+        sentence: "A floor, dark on its left and light on its right: linear on the screen, the shades leave the lines that run to the horizon and break along the diagonal.",
+        wrong: "linear on the screen",
+        right: "linear on the floor: weighted by 1/w, exactly",
+        build: shades::c5,
     },
     Case {
         id: "N1",
@@ -193,7 +201,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "D2",
         title: "faces that pass through each other",
-        sentence: "Half of each face lies in front of the other; painted in order, one hides the other whole.",
+        sentence: "Half of each face lies in front of the other; painted in order, one lies over the other throughout.",
         wrong: "painter's order: the farthest first",
         right: "a depth for every pixel",
         build: hidden::d2,
@@ -239,7 +247,6 @@ fn edges(faces: &[Face]) -> Vec<Segment> {
 /// Both sides of a scene in greys: the fault measured against the engine.
 fn of_scene(
     (right, triangles): (Panel, Vec<Triangle>),
-    depth_tested: bool,
     measure: Measure,
     wrong: impl FnOnce(&mut Panel),
 ) -> Comparison {
@@ -247,5 +254,5 @@ fn of_scene(
     wrong(&mut fault);
     fault.mark_against(&right, measure);
     let outline = engine::outline(&triangles);
-    Comparison { fault, right, triangles, depth_tested, outline, palette: &builtin::GREY }
+    Comparison { fault, right, triangles, depth_tested: true, outline, palette: &builtin::GREY }
 }

@@ -1,11 +1,12 @@
-//! Shades: R2, R14, N8, N9.
+//! Shades: R2, R14, C5, N8, N9.
 
 use super::{EXACT, against_engine, edges};
 use crate::palette::builtin;
+use crate::raster::Shading;
 use crate::show::Comparison;
 use crate::show::engine;
 use crate::show::face::{Corner, Face, at, gouraud};
-use crate::show::fault::shade;
+use crate::show::fault::{paint, shade};
 use crate::show::panel::{Measure, Panel};
 
 /// A byte may be a shade off: the engine's own rounding.
@@ -16,18 +17,15 @@ pub(super) fn r2() -> Comparison {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let across = width / libm::hypot(dx, dy);
         let middle = ((a.0 + b.0) / 2.0 - dy * across, (a.1 + b.1) / 2.0 + dx * across);
-        gouraud([at(a.0, a.1, 90.0), at(b.0, b.1, 90.0), at(middle.0, middle.1, 170.0)].map(Corner::rounded))
+        gouraud([at(a.0, a.1, 60.0), at(b.0, b.1, 60.0), at(middle.0, middle.1, 200.0)].map(Corner::rounded))
     };
-    let faces = [
-        sliver((1.0, 1.2), (29.0, 3.1), 0.35),
-        sliver((1.0, 3.4), (29.0, 7.6), 0.4),
-        sliver((1.0, 5.3), (29.0, 12.2), 0.4),
-        sliver((1.0, 7.6), (29.0, 17.1), 0.45),
-        sliver((1.0, 10.2), (29.0, 22.4), 0.5),
-        sliver((1.0, 13.1), (24.3, 25.0), 0.5),
-        sliver((1.0, 16.4), (17.2, 25.1), 0.5),
-        sliver((1.0, 20.3), (9.6, 25.2), 0.5),
-    ];
+    let faces: Vec<Face> = (0..9)
+        .map(|i| {
+            let (i, slope) = (f64::from(i), 0.05 + 0.095 * f64::from(i));
+            let (top, length) = (1.2 + 2.2 * i, 28.0_f64.min((23.6 - 2.2 * i) / slope));
+            sliver((1.0, top), (1.0 + length, top + slope * length), 0.3)
+        })
+        .collect();
     against_engine((30, 26), &faces, ROUNDED, |panel| {
         faces.iter().for_each(|face| shade::step_of_each_row(panel, &face.corners));
     })
@@ -41,6 +39,21 @@ pub(super) fn r14() -> Comparison {
     against_engine((31, 26), &faces, ROUNDED, |panel| {
         faces.iter().for_each(|face| shade::carried_on_beyond_the_edges(panel, &face.corners));
     })
+}
+
+pub(super) fn c5() -> Comparison {
+    // The horizon at y = 3; the floor lies 22 units of 1/w below it and is 28 wide.
+    let on_floor = |across: f64, w: f64| (15.0 + 14.0 * across / w, 3.0 + 22.0 / w);
+    let corner = |across: f64, w: f64| {
+        let (x, y) = on_floor(across, w);
+        at(x, y, 125.0 + 110.0 * across).deep(1.0 / w).rounded()
+    };
+    let [a, b, c, d] = [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, 6.0), corner(-1.0, 6.0)];
+    let faces = [[a, b, c], [a, c, d]].map(|corners| Face { shading: Shading::GouraudHyperbolic, ..gouraud(corners) });
+    let mut comparison = against_engine((30, 26), &faces, Measure { shades: 4, ..EXACT }, |panel| paint(panel, &faces));
+    // Lines of one shade.
+    comparison.outline.extend([-0.6, -0.2, 0.2, 0.6].map(|across| [on_floor(across, 1.0), on_floor(across, 6.0)]));
+    comparison
 }
 
 /// Pixels a side of the square that N8's quad lies and turns in.
@@ -84,7 +97,7 @@ pub(super) fn n8() -> Comparison {
 
 pub(super) fn n9() -> Comparison {
     // Ribs from the upper to the lower edge, dark and light in turn.
-    let ribs = [(1.2, 3.6), (8.1, 5.2), (10.4, 14.9), (20.6, 16.1), (28.8, 27.3)];
+    let ribs = [(1.2, 3.6), (9.1, 6.2), (12.4, 16.9), (23.6, 18.1)];
     let mut faces: Vec<Face> = Vec::new();
     for (i, pair) in ribs.windows(2).enumerate() {
         let shade = |i: usize| if i.is_multiple_of(2) { 15.0 } else { 240.0 };
@@ -93,7 +106,7 @@ pub(super) fn n9() -> Comparison {
         faces.extend([[a, b, c], [a, c, d]].map(|corners| gouraud(corners.map(Corner::rounded))));
     }
     let measure = Measure { shades: 16, ..EXACT };
-    let mut comparison = against_engine((30, 26), &faces, measure, |panel| {
+    let mut comparison = against_engine((25, 26), &faces, measure, |panel| {
         faces.iter().for_each(|face| shade::start_at_the_edge(panel, &face.corners));
     });
     comparison.outline = edges(&faces);

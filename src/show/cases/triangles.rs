@@ -4,7 +4,7 @@ use super::{EXACT, against_engine, edges};
 use crate::palette::builtin;
 use crate::show::Comparison;
 use crate::show::engine;
-use crate::show::face::{Corner, Face, at, gouraud};
+use crate::show::face::{Corner, Face, at, gouraud, without_diagonals};
 use crate::show::fault::{cover, paint};
 use crate::show::panel::{Measure, Panel};
 
@@ -66,11 +66,11 @@ pub(super) fn r4() -> Comparison {
 }
 
 pub(super) fn r5() -> Comparison {
-    const RIM: usize = 22;
-    let hub = (15.3, 13.6);
+    const RIM: usize = 18;
+    let hub = (14.3, 12.6);
     let rim = |i: usize| {
         let angle = (i % RIM) as f64 * std::f64::consts::TAU / RIM as f64 + 0.1;
-        let reach = if i.is_multiple_of(2) { 13.0 } else { 11.5 };
+        let reach = if i.is_multiple_of(2) { 12.2 } else { 10.9 };
         (hub.0 + reach * 1.08 * libm::cos(angle), hub.1 + reach * libm::sin(angle))
     };
     let faces: Vec<Face> = (0..RIM)
@@ -79,7 +79,7 @@ pub(super) fn r5() -> Comparison {
             gouraud(face.corners.map(Corner::rounded))
         })
         .collect();
-    against_engine((31, 27), &faces, EXACT, |panel| {
+    against_engine((29, 25), &faces, EXACT, |panel| {
         faces.iter().for_each(|face| cover::cut_slopes(panel, &face.corners));
     })
 }
@@ -98,7 +98,8 @@ pub(super) fn r6() -> Comparison {
     };
     let faces = |order: usize| triangles.map(|corners| gouraud(orders(corners)[order]));
     let (mut fault, mut right) = (drawn(0), engine::draw_faces(size, &faces(0), false));
-    fault.mark_against(&drawn(1), EXACT);
+    // Less than this is not to be seen, and would be marked everywhere.
+    fault.mark_against(&drawn(1), Measure { shades: 5, ..EXACT });
     right.mark_against(&engine::draw_faces(size, &faces(1), false), EXACT);
     Comparison {
         fault,
@@ -120,6 +121,9 @@ pub(super) fn r8() -> Comparison {
     let mut right = engine::draw_in_bands((30, 28), &comparison.triangles, ROWS);
     right.mark_against(&comparison.right, EXACT);
     comparison.right = right;
+    // The bands.
+    let bands = (1..4).map(|band| (ROWS * band) as f64);
+    comparison.outline.extend(bands.map(|y| [(0.0, y), (30.0, y)]));
     comparison
 }
 
@@ -171,7 +175,7 @@ pub(super) fn r11() -> Comparison {
 }
 
 pub(super) fn r13() -> Comparison {
-    const BLADES: u32 = 16;
+    const BLADES: u32 = 14;
     let hub = (15.2, 14.1);
     let blade = |k: u32| {
         let (sin, cos) = libm::sincos(f64::from(k) * std::f64::consts::TAU / f64::from(BLADES) + 0.11);
@@ -184,13 +188,6 @@ pub(super) fn r13() -> Comparison {
     let mut comparison = against_engine((30, 28), &faces, EXACT, |panel| {
         faces.iter().for_each(|face| paint(panel, &[gouraud(cover::whole_pixels(&face.corners))]));
     });
-    // Without the diagonals: of each half the two edges that are the blade's own.
-    comparison.outline = (0..)
-        .zip(&faces)
-        .flat_map(|(i, face)| {
-            let [first, second, third] = face.edges();
-            if i % 2 == 0 { [first, second] } else { [second, third] }
-        })
-        .collect();
+    comparison.outline = without_diagonals(&comparison.outline);
     comparison
 }

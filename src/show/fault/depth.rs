@@ -1,6 +1,6 @@
 //! Faults of depth: which face a pixel belongs to.
 
-use super::{Sample, samples, wrapped};
+use super::{Sample, samples};
 use crate::show::face::Face;
 use crate::show::panel::Panel;
 
@@ -39,8 +39,7 @@ fn buffered(panel: &mut Panel, faces: &[Face], depth: impl Fn(&Face, &Sample) ->
             let depth = depth(face, &sample);
             if depth > *held {
                 *held = depth;
-                let byte = face.flat.unwrap_or_else(|| wrapped(sample.of(face.corners.map(|c| c.shade))));
-                panel.write(sample.x, sample.y, byte);
+                panel.write(sample.x, sample.y, sample.byte(face));
             }
         }
     }

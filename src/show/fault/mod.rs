@@ -11,6 +11,7 @@ pub(super) mod shade;
 
 use super::face::{Corner, Face};
 use super::panel::Panel;
+use crate::raster::Shading;
 
 /// Twice the area of a → b → (x, y); positive if the point lies to the right of a → b on a screen
 /// whose y runs down.
@@ -41,6 +42,14 @@ impl Sample {
     fn of(&self, values: [f64; 3]) -> f64 {
         let [a, b, c] = self.weights;
         a * values[0] + b * values[1] + c * values[2]
+    }
+
+    /// The byte of its face there: the face's one, or linear over the screen.
+    fn byte(&self, face: &Face) -> u8 {
+        match face.shading {
+            Shading::Flat(byte) => byte,
+            _ => wrapped(self.of(face.corners.map(|corner| corner.shade))),
+        }
     }
 }
 
@@ -74,8 +83,7 @@ fn samples(size: (usize, usize), corners: &[Corner; 3]) -> Vec<Sample> {
 pub(super) fn paint(panel: &mut Panel, faces: &[Face]) {
     for face in faces {
         for sample in samples((panel.width(), panel.height()), &face.corners) {
-            let byte = face.flat.unwrap_or_else(|| wrapped(sample.of(face.corners.map(|corner| corner.shade))));
-            panel.write(sample.x, sample.y, byte);
+            panel.write(sample.x, sample.y, sample.byte(face));
         }
     }
 }
