@@ -19,9 +19,6 @@ use std::f64::consts::TAU;
 use support::random::Random;
 use support::tried::Tried;
 
-const WIDTH: usize = 320;
-const HEIGHT: usize = 200;
-
 fn bits(v: [i32; 3]) -> Vector {
     v.map(I16F16::from_bits)
 }
@@ -61,7 +58,7 @@ fn n6_unit_vectors_have_length_1() {
     let mut tried = Tried::new("n6_unit_vectors_have_length_1", 200_000);
     let mut random = Random::named("n6 unit");
     while tried.more() {
-        let mut component = || any(&mut random, i32::MAX) >> any(&mut random, 15).unsigned_abs() * 2;
+        let mut component = || any(&mut random, i32::MAX) >> (any(&mut random, 15).unsigned_abs() * 2);
         let v = [component(), component(), component()];
         check_unit(v);
     }
@@ -310,7 +307,7 @@ fn vertices_are_where_f64_has_them() {
         let steps = [0; 3].map(|_| random.next_u64() as u16);
         let exponent = random.within(-6, 6) as i8;
         // The scene's 1,000 units are so many of the mesh.
-        let most = (1000 * 64 >> (exponent + 6)).min(32_767);
+        let most = ((1000 * 64) >> (exponent + 6)).min(32_767);
         let (pivot, scale) = (units(&mut random, most), random.within(1, 2 * 65_536) as i32);
         let corners = [0; 3].map(|_| units(&mut random, most));
         // Near what the eye looks at, so that it is in the picture now and then.

@@ -212,7 +212,7 @@ impl ObjectView {
         // √3 · 2³² · 2³⁰ < 2⁶³.
         let position = widen(placement.position);
         let to_position = [0, 1, 2].map(|i| position[i] - view.eye[i]);
-        let translation = view.axes.map(|axis| round_shift_wide(axis, to_position));
+        let translation = view.axes.map(|axis| round_shift(dot(axis, to_position), SINE_BITS));
 
         // A position of 2¹⁶ in the mesh, times a scale of 2¹⁶, is 2^exponent of the scene.
         let shift = 16 - (exponent + mesh.exponent);
@@ -273,13 +273,6 @@ pub(super) fn vertex(x: i128, y: i128, shade: U8F8, depth: u32) -> Option<Vertex
     let limit = i128::from(ObjectView::LIMIT * 256 + 128);
     let within = |c: i128| (-limit..=limit).contains(&c).then_some(I24F8::from_bits(c as i32));
     Vertex::new(within(x)?, within(y)?, shade, depth).ok()
-}
-
-/// `axis · v`, without the axis' [`SINE_BITS`].
-fn round_shift_wide(axis: Wide, v: Wide) -> i64 {
-    // The half may carry what is just below 2⁶³ over it.
-    let half = 1 << (SINE_BITS - 1);
-    (dot(axis, v).saturating_add(half)) >> SINE_BITS
 }
 
 /// A scale as mantissa, 65,536 to 131,071, and exponent; of 0 the mantissa is 0.
