@@ -106,7 +106,8 @@ fn check_obj(result: &Result<Loaded, ObjError>, model: &[u8], materials: &[u8]) 
             if let Some(line) = error.line {
                 assert!(line >= 1 && line <= lines_in(text) as u64, "{error}: of {} lines", lines_in(text));
             }
-            let whole_file = matches!(error.kind, ObjErrorKind::NoFaces | ObjErrorKind::TooLarge("more than 65,536 materials"));
+            let whole_file =
+                matches!(error.kind, ObjErrorKind::NoFaces | ObjErrorKind::TooLarge("more than 65,536 materials"));
             assert_eq!(error.line.is_none(), whole_file, "{error}");
             let said = error.to_string();
             assert!(!said.contains(char::is_control) && said.len() < 300, "{said:?}");
@@ -301,7 +302,10 @@ pub fn words(bytes: &[u8]) {
         Err(error) => assert_one_line(&error.to_string()),
     }
     assert_eq!(shapes::by_name(&words).is_some(), shapes::NAMES.contains(&&*words));
-    assert_eq!(builtin::by_name(&words).map(|builtin| builtin.name), builtin::ALL.iter().map(|b| b.name).find(|n| *n == words));
+    assert_eq!(
+        builtin::by_name(&words).map(|builtin| builtin.name),
+        builtin::ALL.iter().map(|b| b.name).find(|n| *n == words)
+    );
     if let Some(format) = Format::of_file_name(&words) {
         let extension = words.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         assert!(format.extensions.contains(&extension.as_str()), "{words}");

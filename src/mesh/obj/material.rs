@@ -146,7 +146,8 @@ fn set(component: &mut [f32; 3], color: Option<[f32; 3]>, path: &Path, line: u64
     match color {
         Some(color) => *component = color,
         None => {
-            warnings.push(|| format!("{}:{line}: only red, green and blue are read; this is left alone", path.display()));
+            warnings
+                .push(|| format!("{}:{line}: only red, green and blue are read; this is left alone", path.display()));
         }
     }
 }

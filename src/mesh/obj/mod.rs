@@ -127,7 +127,6 @@ fn read(
     let mut warnings = Warnings::default();
     let model = statement::read(reader, path)?;
     let surfaces = material::surfaces(&model, path, library, &mut warnings)?;
-    let mesh =
-        gather::mesh(model, surfaces).map_err(|(line, kind)| ObjError { path: path.to_owned(), line, kind })?;
+    let mesh = gather::mesh(model, surfaces).map_err(|(line, kind)| ObjError { path: path.to_owned(), line, kind })?;
     Ok((mesh, warnings))
 }
