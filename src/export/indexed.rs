@@ -59,6 +59,47 @@ pub fn encode_png(picture: &Picture<'_>, scale: Scale) -> Result<Vec<u8>, Pictur
 }
 
 fn encode(picture: &Picture<'_>, scaled: &Scaled<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let mut out = Remembered { out, error: None };
+    let result = encode_into(picture, scaled, &mut out);
+    match out.error {
+        Some(error) => Err(error),
+        None => result,
+    }
+}
+
+/// A writer that keeps its first error: of those that arise amid a picture's data the encoder passes on the words alone,
+/// and a full disk would be an error like any other.
+struct Remembered<'a> {
+    out: &'a mut dyn Write,
+    error: Option<io::Error>,
+}
+
+impl Remembered<'_> {
+    fn keep<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
+        result.map_err(|error| {
+            let kind = error.kind();
+            // One that is to be tried again is no failure.
+            if kind != io::ErrorKind::Interrupted {
+                self.error.get_or_insert(error);
+            }
+            kind.into()
+        })
+    }
+}
+
+impl Write for Remembered<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let result = self.out.write(bytes);
+        self.keep(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = self.out.flush();
+        self.keep(result)
+    }
+}
+
+fn encode_into(picture: &Picture<'_>, scaled: &Scaled<'_>, out: &mut dyn Write) -> io::Result<()> {
     let mut encoder = Encoder::new(out, scaled.width, scaled.height);
     encoder.set_color(ColorType::Indexed);
     encoder.set_depth(BitDepth::Eight);

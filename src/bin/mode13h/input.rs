@@ -4,7 +4,9 @@ use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
+use std::time::{Duration, Instant};
 
+use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::mesh::{Mesh, obj, shapes};
 use mode13h::palette::{Palette, builtin, file};
 
@@ -27,7 +29,7 @@ pub(crate) fn model(words: &OsStr) -> Result<Model, Failure> {
     let (name, mesh) = if let Some(mesh) = words.to_str().and_then(shapes::by_name) {
         (words.to_string_lossy().into_owned(), mesh)
     } else if is_obj(path) {
-        let loaded = obj::load(path).map_err(Failure::work)?;
+        let loaded = load(path).map_err(Failure::work)?;
         for warning in loaded.warnings {
             eprintln!("mode13h: {}", Failure::work(warning));
         }
@@ -44,6 +46,39 @@ pub(crate) fn model(words: &OsStr) -> Result<Model, Failure> {
         return Err(Failure::work(format!("{}: {reason}", path.display())));
     };
     Ok(Model { name, mesh })
+}
+
+/// Loads a model; if that takes longer than a moment and standard error is a terminal, with a bar there.
+fn load(path: &Path) -> Result<obj::Loaded, obj::ObjError> {
+    const MOMENT: Duration = Duration::from_millis(300);
+    let begun = Instant::now();
+    let mut bar: Option<ProgressBar> = None;
+    let loaded = obj::load_with_progress(path, |read, total| {
+        if begun.elapsed() < MOMENT {
+            return;
+        }
+        let bar = bar.get_or_insert_with(|| reading(total));
+        bar.set_position(read);
+        // The last call is the one that finds the end of the file.
+        if read >= total {
+            bar.set_message(", making the mesh");
+        }
+    });
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    loaded
+}
+
+/// A bar on standard error, if that is a terminal.
+fn reading(bytes: u64) -> ProgressBar {
+    let bar = ProgressBar::new(bytes);
+    // It turns while the mesh is made, which cannot be said in bytes.
+    bar.enable_steady_tick(Duration::from_millis(100));
+    match ProgressStyle::with_template("{spinner} {bar:40} {bytes} of {total_bytes} read{msg}") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
 }
 
 fn is_obj(path: &Path) -> bool {
