@@ -283,8 +283,8 @@ fn e1_a_changed_mesh_is_converted_anew() {
 }
 
 #[test]
-fn r8_bands_give_the_bytes_of_the_whole() {
-    let mut tried = Tried::new("r8_bands_give_the_bytes_of_the_whole", 25);
+fn r8_bands_on_the_integer_path_give_the_bytes_of_the_whole() {
+    let mut tried = Tried::new("r8_bands_on_the_integer_path_give_the_bytes_of_the_whole", 25);
     let mut scene = Scene::showing(shapes::torus(24, 12));
     scene.objects_mut()[0].set_angles([steps(5000), steps(900), 0.0]);
     let mut renderer = renderer(VertexPath::Integer);
@@ -360,7 +360,7 @@ fn r7_a_floor_on_the_integer_path_is_closed_to_the_horizon() {
 
 #[test]
 fn c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0() {
-    let mut tried = Tried::new("c1_on_the_integer_path_corners_behind_the_eye", 4000);
+    let mut tried = Tried::new("c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000);
     let mut random = Random::named("c1 integer");
     let mut drawn = 0_u64;
     while tried.more() {
