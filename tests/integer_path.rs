@@ -247,9 +247,17 @@ fn r13_the_integer_paths_rounding_against_big_rationals() {
         }
         let positions = corners.map(bits);
         let mesh = FixedMesh::new(&positions, &normals, &[[0_u16, 1, 2]], false).expect("legal");
-        let object = Object { mesh, placement: Placement::default(), paints: &[PAINT] };
+        // A mesh in finer units: each of X, Y and W is rounded to the nearest 1/65,536, halves upward.
+        let finer = random.one_of(&[0, 0, 1, 2, 5]);
+        let object = Object { mesh: mesh.with_exponent(-finer), placement: Placement::default(), paints: &[PAINT] };
         let drawn = triangles(&view, object, &[]).expect("legal");
+        let units = |c: i32| ((i64::from(c) << 16) + (1 << (15 + finer))).div_euclid(1 << (16 + finer)) as i32;
         let expected = corners.map(|[x, y, z]| {
+            // The axes are right, down and forward.
+            let [x, y, z] = [units(x), -units(-y), -units(-z)];
+            if -z < near {
+                return None;
+            }
             let round = |size: u32, focal: i32, c: i32| {
                 // x = size/2 + focal · c / (65,536 · −z), floor(256 · x + 1/2).
                 let projected = BigRational::new(BigInt::from(focal) * c, BigInt::from(65_536) * -i64::from(z))
@@ -258,9 +266,11 @@ fn r13_the_integer_paths_rounding_against_big_rationals() {
                 (projected * BigRational::from_integer(256.into()) + half).floor().to_integer()
             };
             let depth = BigRational::new(BigInt::from(near) << 30, (-i64::from(z)).into());
-            (round(width, focal[0], x), round(height, focal[1], -y), depth.round().to_integer())
+            Some((round(width, focal[0], x), round(height, focal[1], -y), depth.round().to_integer()))
         });
         let limit = BigInt::from(4095 * 256 + 128);
+        let [Some(a), Some(b), Some(c)] = expected else { continue };
+        let expected = [a, b, c];
         let inside =
             expected.iter().all(|(x, y, _)| x.magnitude() <= limit.magnitude() && y.magnitude() <= limit.magnitude());
         let [(vertices, _)] = &drawn[..] else {
@@ -431,6 +441,70 @@ fn n4_shades_against_big_rationals() {
         let expected = above + i64::from(first) * 256;
         assert_eq!(BigInt::from(drawn[0].0[0].shade().to_bits()), expected, "{paint:?} {lights:?}");
     }
+}
+
+/// Faces of the guard band's size, near the eye, where a unit of 1/65,536 is a large part of a vertex's
+/// depth: cuts lie on the exact edges, with the shades that the unclipped face has there.
+#[test]
+fn c1_cuts_lie_on_the_edges_with_their_shades() {
+    let mut tried = Tried::new("c1_cuts_lie_on_the_edges_with_their_shades", 10_000);
+    let mut random = Random::named("integer cuts");
+    let focal = 300.0;
+    let view = straight_view(320, 200, [300 << 16; 2], 4096);
+    let sun = Sun { direction: bits([0, 0, 1]), intensity: I16F16::ONE };
+    let tilted =
+        [[0, 0, 1], [1, 0, 0], [0, 3, 4], [5, 0, 12], [0, -1, 1]].map(|n| unit_vector(bits(n)).expect("a unit"));
+    let mut cuts = 0;
+    while tried.more() {
+        let corners = [0; 3].map(|_| {
+            let bits = random.within(13, 20);
+            let w = random.within(4096, 1 << bits) as i32;
+            let most = (f64::from(w) * 12_000.0 / focal) as i32;
+            [any(&mut random, most), any(&mut random, most), -w]
+        });
+        let normals = [0; 3].map(|_| random.one_of(&tilted));
+        let positions = corners.map(bits);
+        let mesh = FixedMesh::new(&positions, &normals, &[[0_u16, 1, 2]], false).expect("legal");
+        let object = Object { mesh, placement: Placement::default(), paints: &[PAINT] };
+        let drawn = triangles(&view, object, &[sun]).expect("legal");
+
+        let at = corners.map(|[x, y, z]| {
+            let project = |c: i32| focal * f64::from(c) / f64::from(-z);
+            (160.0 + project(x), 100.0 + project(-y))
+        });
+        let area = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| (b.0 - a.0) * (c.1 - a.1) - (c.0 - a.0) * (b.1 - a.1);
+        let whole = area(at[0], at[1], at[2]);
+        if whole.abs() < 1e5 {
+            // Hardly more than a line: rounding to 1/256 pixel decides its shades.
+            continue;
+        }
+        // Seen from behind, the normal is turned round: no light.
+        let lit = |n: Vector| if whole < 0.0 { f64::from(n[2].to_bits().max(0)) / 65_536.0 * 65_280.0 } else { 0.0 };
+        let shades = normals.map(lit);
+        let plane = |p: (f64, f64)| {
+            (shades[0] * area(p, at[1], at[2]) + shades[1] * area(at[0], p, at[2]) + shades[2] * area(at[0], at[1], p))
+                / whole
+        };
+        for vertex in drawn.iter().flat_map(|(vertices, _)| vertices) {
+            let p = (f64::from(vertex.x().to_bits()) / 256.0, f64::from(vertex.y().to_bits()) / 256.0);
+            let slope = (plane((1.0, 0.0)) - plane((0.0, 0.0))).abs() + (plane((0.0, 1.0)) - plane((0.0, 0.0))).abs();
+            // Half a unit each way; 12 bits more than 1/65,536 of a depth of 4,096 leave 2⁻¹² pixel at
+            // the guard band; shades are rounded twice.
+            let off = 0.5 / 256.0 + 1.0 / 4096.0;
+            let error = (f64::from(vertex.shade().to_bits()) - plane(p)).abs();
+            assert!(error <= 1.01 + slope * off, "shade: {error} at {p:?} of {at:?}, {shades:?}");
+            let beyond = 4095.0 - 1.0 / 128.0;
+            if p.0.abs() > beyond && p.1.abs() > beyond {
+                continue;
+            }
+            let from_edge = |a: (f64, f64), b: (f64, f64)| area(a, b, p).abs() / (a.0 - b.0).hypot(a.1 - b.1);
+            let nearest =
+                [(0, 1), (1, 2), (2, 0)].map(|(a, b)| from_edge(at[a], at[b])).into_iter().fold(f64::MAX, f64::min);
+            assert!(nearest <= off * 2.0_f64.sqrt(), "{nearest} pixels from an edge: {p:?} of {at:?}");
+            cuts += u64::from(p.0.abs() > beyond || p.1.abs() > beyond);
+        }
+    }
+    assert!(cuts > 10_000, "{cuts} cuts");
 }
 
 // ------------------------------------------------------------------ what is refused; odd input
