@@ -1,5 +1,6 @@
 //! The four ways to leave out hidden surfaces, on whole scenes: which one is taken, and that all of
 //! them give the same picture where they are right.
+#![cfg(feature = "alloc")]
 
 mod support;
 
@@ -198,6 +199,7 @@ fn ways_are_typed_by_name() {
 }
 
 /// `MODE13H_MODEL=model.obj cargo test --release --test hidden_scenes a_model`: a full turn at 1°.
+#[cfg(feature = "obj")]
 #[test]
 fn a_model_of_your_own() {
     let Ok(path) = std::env::var("MODE13H_MODEL") else {

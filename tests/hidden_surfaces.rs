@@ -1,5 +1,6 @@
 //! Hidden surfaces in the raster: depth buffer against scan-line, byte for byte, on all input; depth
 //! order against exact planes. Whole scenes are in `hidden_scenes.rs`.
+#![cfg(feature = "alloc")]
 
 mod support;
 

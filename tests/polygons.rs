@@ -1,5 +1,6 @@
 //! Convex polygons by the table of rows, against an oracle that says the same in i128; and why faces
 //! are split into triangles instead (N8), whose shades agree along their edges (N9).
+#![cfg(feature = "alloc")]
 
 mod support;
 
