@@ -4,12 +4,15 @@
 //! The fuzzers themselves are run by `.ci/fuzz_long`.
 #![cfg(all(feature = "obj", feature = "png", feature = "image"))]
 
+#[path = "fuzz_corpus/counted.rs"]
+mod counted;
 #[path = "fuzz_corpus/properties.rs"]
 #[expect(unreachable_pub, reason = "the fuzz package shares it")]
 mod properties;
 mod support;
 
 use std::fs;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::{Path, PathBuf};
 
@@ -113,4 +116,53 @@ fn damage(bytes: &mut Vec<u8>, files: &[(PathBuf, Vec<u8>)], random: &mut Random
             bytes.truncate(at);
         }
     }
+}
+
+/// The most bytes that may be in memory at once while a model is read, for each byte of it. A face of corners that are
+/// all ` 1` makes a triangle of every two bytes, and a triangle takes 200 (tests/files.rs, F2).
+const BYTES_PER_BYTE: usize = 100;
+
+/// The reader's buffers, messages, and tables that are never empty.
+const BYTES_FOR_NOTHING: usize = 16 << 10;
+
+/// Memory is in proportion to the file, whatever numbers and names stand in it.
+#[test]
+fn f5_no_file_takes_memory_out_of_proportion() {
+    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    let mut tried = Tried::new("f5_no_file_takes_memory_out_of_proportion", 2_000);
+    let mut worst = 0;
+    let mut measure = |what: &Path, bytes: &[u8]| {
+        let peak = counted::peak(|| drop(mode13h::mesh::obj::parse(bytes, "model.obj", none)));
+        let most = BYTES_FOR_NOTHING + BYTES_PER_BYTE * bytes.len();
+        assert!(peak <= most, "{}: {peak} bytes for a file of {}", what.display(), bytes.len());
+        worst = worst.max(peak.saturating_sub(BYTES_FOR_NOTHING) / bytes.len().max(1));
+        tried.add(1);
+    };
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    let names: String = (0..5_000).map(|i| format!("usemtl {i}\nf 1 2 3\n")).collect();
+    for (what, text) in [
+        ("a great index", format!("{triangle}f 1 2 2147483647\n")),
+        ("a greater index", format!("{triangle}f 1 2 9223372036854775807\n")),
+        ("a face of 10⁶ corners", format!("{triangle}f{}", " 1".repeat(1_000_000))),
+        ("10⁵ faces", format!("{triangle}{}", "f 1 2 3\n".repeat(100_000))),
+        ("a sheet folded 10⁴ times", format!("{triangle}{}", "f 1 2 3\nf 3 2 1\n".repeat(10_000))),
+        ("a face wound 6,000 times", format!("{triangle}f{}", " 1 2 3".repeat(6_000))),
+        ("5,000 materials", format!("{triangle}{names}")),
+        ("10⁵ libraries", format!("{triangle}{}f 1 2 3\n", "mtllib a\n".repeat(100_000))),
+        ("a library of 10⁵ names", format!("{triangle}mtllib{}\nf 1 2 3\n", " a".repeat(100_000))),
+        ("a long name", format!("{triangle}usemtl {}\nf 1 2 3\n", "m".repeat(1 << 20))),
+        ("backslashes", "\\\n".repeat(100_000)),
+    ] {
+        measure(Path::new(what), text.as_bytes());
+    }
+    let files = corpus("obj");
+    let mut random = Random::new(510);
+    for _ in 0..2_000 {
+        let (path, mut bytes) = files[random.within(0, files.len() as i64 - 1) as usize].clone();
+        for _ in 0..random.log_uniform(4) {
+            damage(&mut bytes, &files, &mut random);
+        }
+        measure(&path, &bytes);
+    }
+    println!("at most {worst} bytes of memory for a byte of a file");
 }

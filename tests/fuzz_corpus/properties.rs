@@ -74,7 +74,11 @@ pub fn mtl(bytes: &[u8]) {
             writeln!(model, "usemtl {name}\nf 1 2 3").expect("a string takes all");
         }
     }
-    model.push_str("usemtl none of them\nf 3 2 1\n");
+    // One that there is not, unless the fuzzer thought of its name too.
+    if !names.contains(&"none of them") {
+        names.push("none of them");
+        model.push_str("usemtl none of them\nf 3 2 1\n");
+    }
     let library = |path: &Path| match path == Path::new("a.mtl") {
         true => Ok(bytes.to_vec()),
         false => Err(io::ErrorKind::NotFound.into()),
@@ -83,8 +87,7 @@ pub fn mtl(bytes: &[u8]) {
     check_obj(&result, model.as_bytes(), bytes);
     if let Ok(Loaded { mesh, .. }) = result {
         let found: Vec<&str> = mesh.surfaces().iter().map(|surface| surface.name.as_str()).collect();
-        let wanted: Vec<&str> = names.into_iter().chain(["none of them"]).collect();
-        assert_eq!(found, wanted);
+        assert_eq!(found, names);
     }
 }
 
@@ -229,8 +232,10 @@ fn palette(bytes: &[u8], formats: &[&str], names: &[&str]) {
     results.push(file::parse_named("a", bytes));
     results.push(file::parse(bytes));
     assert_eq!(results[results.len() - 1], results[results.len() - 2], "an extension that is missing says nothing");
-    for result in &results {
+    for (i, result) in results.iter().enumerate() {
         match result {
+            // Most are the same.
+            Ok(_) if results[..i].contains(result) => {}
             Ok(palette) => check_palette(palette),
             Err(error) => check_palette_error(error, bytes),
         }
