@@ -1,5 +1,6 @@
 //! Files that are broken, huge, or cannot be written: hard cases F1, F2, F4, and P5 through the program.
 #![cfg(feature = "cli")]
+#![cfg_attr(not(target_os = "linux"), expect(dead_code, unused_imports, reason = "much is tried on Linux alone"))]
 
 mod support;
 
