@@ -27,7 +27,6 @@ mod view;
 use alloc::vec::Vec;
 use core::fmt;
 
-#[cfg(feature = "std")]
 use self::integer::IntegerPath;
 use self::stage::{LitVertex, Paint, Stage};
 use self::view::{ObjectView, View};
