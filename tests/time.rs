@@ -58,7 +58,7 @@ fn t1_many_steps_are_one_angle() {
 }
 
 #[test]
-#[ignore = "the long run: a million frames of rotation"]
+#[ignore = "the long run: a million steps of rotation, 21 of them drawn"]
 fn t1_long_a_million_frames() {
     let mut tried = Tried::new("t1_long_a_million_frames", 1_000_000);
     rotation(1_000_000);
