@@ -10,11 +10,13 @@
 //! | [`palette`] | 256 colours, ramps of shades, file formats | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
+//! | [`texture`] | 8-bit images on surfaces | `alloc` |
 //! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes; OBJ models | `alloc` |
 //! | [`light`] | lights, materials, the intensity at a vertex | `alloc` |
 //! | [`scene`] | objects, camera, lights | `alloc` |
+//! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
 //! | `show` | hard cases as pictures: the right way beside the fault | `png`, `embedded-graphics` |
@@ -78,6 +80,10 @@ pub mod mesh;
 pub mod render;
 #[cfg(feature = "alloc")]
 pub mod scene;
+#[cfg(feature = "alloc")]
+pub mod texture;
+#[cfg(feature = "alloc")]
+mod view;
 
 #[cfg(feature = "std")]
 pub mod export;

@@ -5,7 +5,7 @@
 //! out what lies beyond them exactly. [`raster::clip`](crate::raster::clip) goes through the
 //! planes in an order that leaves no crack.
 
-use super::view::{Homogeneous, ObjectView};
+use crate::view::{Homogeneous, ObjectView};
 use crate::fixed::U8F8;
 use crate::raster::Vertex;
 use crate::raster::clip::{Clipped, clip as clip_triangle};

@@ -113,9 +113,11 @@ fn binary_angle(radians: f64) -> Angle {
 
 fn sun(light: &Light) -> Option<Sun> {
     match *light {
-        Light::Sun { direction: towards, intensity } => {
-            Some(Sun { direction: direction(towards.to_array().map(f64::from)), intensity: fixed(intensity.into())? })
-        }
+        Light::Sun { direction: towards, .. } => Some(Sun {
+            direction: direction(towards.to_array().map(f64::from)),
+            intensity: fixed(light.brightness().into())?,
+        }),
+        Light::Lamp { .. } => None,
     }
 }
 
@@ -248,6 +250,7 @@ impl IntegerPath {
             Rung::Gouraud88 => Technique::Gouraud,
             Rung::Gouraud88Reseeded => Technique::GouraudReseeded,
             Rung::GouraudHyperbolic => Technique::GouraudHyperbolic,
+            _ => Technique::GouraudReseeded,
         };
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };

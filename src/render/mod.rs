@@ -2,11 +2,9 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `view` | camera and object to one matrix; projection; the one rounding |
 //! | `stage` | an object's vertices, lit and projected, then its faces |
 //! | `clip` | near plane and guard band |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
-//! | `rung` | the techniques of shading |
 //! | `hidden`, `painter` | the ways to leave out hidden surfaces |
 //! | `stats` | what a frame came to |
 //!
@@ -18,29 +16,26 @@ mod clip;
 mod hidden;
 mod integer;
 mod painter;
-mod rung;
 mod stage;
 mod stats;
 mod vertex_path;
-mod view;
 
 use alloc::vec::Vec;
 use core::fmt;
 
 use self::integer::IntegerPath;
 use self::stage::{LitVertex, Paint, Stage};
-use self::view::{ObjectView, View};
 use crate::light::Beam;
 use crate::raster::scan_line::Lists;
 use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
 use crate::scene::Scene;
 use crate::span::Kernel;
 use crate::vga::Vga;
-pub use hidden::{HiddenSurfaces, UnknownHiddenSurfaces};
-pub use rung::{Rung, UnknownRung};
+pub use crate::scene::{HiddenSurfaces, Rung, UnknownHiddenSurfaces, UnknownRung};
 pub use stats::Stats;
 pub use vertex_path::{UnknownVertexPath, VertexPath};
-pub use view::Screen;
+pub use crate::view::Screen;
+use crate::view::{ObjectView, View};
 
 /// Why a scene could not be drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -233,7 +228,7 @@ impl Renderer {
             self.order.extend(0..scene.objects().len());
             return Ok(forced);
         }
-        Ok(HiddenSurfaces::called_for(scene, &self.views, &mut self.order))
+        Ok(hidden::called_for(scene, &self.views, &mut self.order))
     }
 
     fn fill(&mut self, scene: &Scene, way: HiddenSurfaces, mut frame: Frame<'_>) -> Stats {
@@ -303,7 +298,7 @@ impl Renderer {
                 continue;
             }
             self.beams.clear();
-            self.beams.extend(scene.lights().iter().filter_map(|light| light.beam(view)));
+            self.beams.extend(scene.lights().iter().filter_map(|light| stage::beam(light, view)));
             self.paints.clear();
             self.paints.extend(object.materials.iter().map(|material| Paint::new(material, scene)));
             let stage = Stage { rung: self.rung, object, view, beams: &self.beams, paints: &self.paints };

@@ -6,7 +6,7 @@
 
 use alloc::vec::Vec;
 
-use super::view::ObjectView;
+use crate::view::ObjectView;
 use crate::raster::{Shading, Vertex};
 use crate::scene::Object;
 

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::clip::{Corner, clip};
-use super::view::{Homogeneous, ObjectView};
+use crate::view::{Homogeneous, ObjectView};
 use super::{Rung, Stats};
 use crate::fixed::U8F8;
 use crate::light::{Beam, Light, Material, both_sides};
@@ -44,16 +44,12 @@ impl Paint {
     }
 }
 
-impl Light {
-    /// The light as the object of `view` sees it.
-    pub(super) fn beam(&self, view: &ObjectView) -> Option<Beam> {
-        match *self {
-            Self::Sun { direction, intensity } => {
-                let towards = view.direction_in_object(direction)?;
-                Some(Beam { towards, intensity })
-            }
-        }
-    }
+/// A sun as the object of `view` sees it.
+pub(super) fn beam(light: &Light, view: &ObjectView) -> Option<Beam> {
+    let Light::Sun { direction, intensity, color } = *light else { return None };
+    let towards = view.direction_in_object(direction)?;
+    let channels = color.map(|c| c * intensity);
+    Some(Beam { towards, intensity: light.brightness(), channels })
 }
 
 /// A vertex of the object at hand, lit and projected.
@@ -168,7 +164,6 @@ impl Stage<'_> {
     #[inline]
     fn shading(&self, indices: [u32; 3], surface: u16, turned: bool, stats: &mut Stats) -> Shading {
         match self.rung {
-            Rung::Gouraud88Reseeded => Shading::GouraudReseeded,
             Rung::Gouraud88 => Shading::Gouraud,
             Rung::GouraudHyperbolic => Shading::GouraudHyperbolic,
             Rung::Flat => {
@@ -180,6 +175,7 @@ impl Stage<'_> {
                 let (front, back) = self.paint(surface).shades(self.beams, normal);
                 Shading::Flat(if turned { back } else { front }.nearest())
             }
+            _ => Shading::GouraudReseeded,
         }
     }
 

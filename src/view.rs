@@ -33,7 +33,7 @@ impl Screen {
     pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
 
     /// fx and fy, in pixels; the field of view in radians.
-    pub(super) fn focal_lengths(self, field_of_view: f32) -> [f64; 2] {
+    pub(crate) fn focal_lengths(self, field_of_view: f32) -> [f64; 2] {
         let (pixel_width, pixel_height) = self.pixel_aspect;
         let fy = f64::from(self.height) / 2.0 / libm::tan(f64::from(field_of_view) / 2.0);
         [fy * f64::from(pixel_height) / f64::from(pixel_width), fy]
@@ -63,7 +63,7 @@ fn unit(v: Row) -> Option<Row> {
 
 /// The camera's part of the way: from the world to the screen.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct View {
+pub(crate) struct View {
     eye: Row,
     /// The rows that give X, Y and W.
     rows: Matrix,
@@ -73,7 +73,7 @@ pub(super) struct View {
 }
 
 impl View {
-    pub(super) fn new(camera: &Camera, screen: Screen) -> Result<Self, &'static str> {
+    pub(crate) fn new(camera: &Camera, screen: Screen) -> Result<Self, &'static str> {
         let Camera { eye, target, up, field_of_view, near } = *camera;
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
             return Err("its positions must be finite");
@@ -129,21 +129,21 @@ pub(crate) struct ObjectView {
 
 /// A vertex before its division: X, Y in pixels times W, W along the view.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Homogeneous {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) w: f64,
+pub(crate) struct Homogeneous {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) w: f64,
 }
 
 impl ObjectView {
     /// What is projected beyond this, in pixels either way, is clipped: inside the raster's guard
     /// band by a whole pixel, more than all rounding of a clipped point comes to.
-    pub(super) const LIMIT: f64 = 4095.0;
+    pub(crate) const LIMIT: f64 = 4095.0;
 
     /// Beyond this a sum of products might overflow f32, or, below its inverse, vanish in it.
     const FAST_REACH: f64 = 1e30;
 
-    pub(super) fn new(view: &View, object: &Object) -> Self {
+    pub(crate) fn new(view: &View, object: &Object) -> Self {
         let turn = object.turn();
         let scale = f64::from(object.scale);
         let matrix = matrix_product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
@@ -172,14 +172,14 @@ impl ObjectView {
         Some(Vec3::new(column(0), column(1), column(2)))
     }
 
-    pub(super) fn near(&self) -> f32 {
+    pub(crate) fn near(&self) -> f32 {
         self.near
     }
 
     /// A vertex before its division. The same numbers whoever asks, so that triangles that share
     /// the vertex agree on where it is.
     #[inline]
-    pub(super) fn homogeneous(&self, p: Vec3) -> Homogeneous {
+    pub(crate) fn homogeneous(&self, p: Vec3) -> Homogeneous {
         match self.fast {
             Some((matrix, offset)) => {
                 let v = matrix * p + offset;
@@ -195,7 +195,7 @@ impl ObjectView {
 
     /// The vertex on the screen, without its shade; `None` if it must be clipped.
     #[inline]
-    pub(super) fn project(&self, p: Vec3) -> Option<Vertex> {
+    pub(crate) fn project(&self, p: Vec3) -> Option<Vertex> {
         match self.fast {
             Some((matrix, offset)) => {
                 let v = matrix * p + offset;
@@ -216,13 +216,13 @@ impl ObjectView {
     /// The vertex on the screen of a point that is not nearer than the near plane; `None` if it
     /// lies beyond the limit.
     #[inline]
-    pub(super) fn divide(&self, h: Homogeneous, shade: U8F8) -> Option<Vertex> {
+    pub(crate) fn divide(&self, h: Homogeneous, shade: U8F8) -> Option<Vertex> {
         let (cx, cy) = (f64::from(self.centre.0), f64::from(self.centre.1));
         self.vertex(cx + h.x / h.w, cy + h.y / h.w, h.w, shade)
     }
 
     /// The middle of the screen, in pixels.
-    pub(super) fn centre(&self) -> (f64, f64) {
+    pub(crate) fn centre(&self) -> (f64, f64) {
         (f64::from(self.centre.0), f64::from(self.centre.1))
     }
 
@@ -246,7 +246,7 @@ impl ObjectView {
 
     /// The least and the greatest depth that a vertex within `bounds` may have, once what is nearer
     /// than the near plane is cut off; somewhat wider than they are.
-    pub(super) fn depths(&self, bounds: Bounds) -> (u32, u32) {
+    pub(crate) fn depths(&self, bounds: Bounds) -> (u32, u32) {
         let (row, offset) = (self.exact.0[2], self.exact.1[2]);
         let (min, max) = (widen(bounds.min), widen(bounds.max));
         let middle = dot(row, [0, 1, 2].map(|i| (min[i] + max[i]) / 2.0)) + offset;

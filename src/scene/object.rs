@@ -1,25 +1,13 @@
-//! What is to be drawn: objects, a camera, lights, a palette.
-//!
-//! A scene is plain data. Nothing in it is borrowed between frames: change it, draw it, change it
-//! again. What is wrong in it (a position that is not finite, a camera that looks nowhere) is
-//! refused when it is drawn.
+//! A mesh in a scene: where it is, how it is turned, what it is made of.
 
+use alloc::string::String;
 use alloc::vec::Vec;
-use core::ops::{Index, IndexMut};
 
 use glam::{Mat3, Vec3};
 
-use crate::light::{Light, Material};
+use super::Shared;
+use crate::light::Material;
 use crate::mesh::Mesh;
-use crate::palette::{Palette, builtin};
-
-/// A mesh that several objects, scenes and threads may share. Where the processor has no atomic
-/// counter (Cortex-M0) it stays within one thread.
-#[cfg(target_has_atomic = "ptr")]
-pub type Shared<T> = alloc::sync::Arc<T>;
-/// A mesh that several objects and scenes may share, within one thread.
-#[cfg(not(target_has_atomic = "ptr"))]
-pub type Shared<T> = alloc::rc::Rc<T>;
 
 /// Which axis of a mesh points up.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -35,6 +23,8 @@ pub enum UpAxis {
 /// A mesh in the scene: where it is, how it is turned, what it is made of.
 #[derive(Clone, Debug)]
 pub struct Object {
+    /// A name for people.
+    pub name: String,
     mesh: Shared<Mesh>,
     /// Of each vertex, its surface.
     vertex_surfaces: Vec<u16>,
@@ -61,6 +51,7 @@ impl Object {
         // At most 65,536 surfaces: triangles number them with a u16.
         let materials = (0_u16..).zip(mesh.surfaces()).map(|(i, s)| Material::from_surface(s, i)).collect();
         Self {
+            name: String::new(),
             vertex_surfaces: mesh.vertex_surfaces(),
             mesh,
             materials,
@@ -70,6 +61,13 @@ impl Object {
             up_axis: UpAxis::Y,
             angles: [0.0; 3],
         }
+    }
+
+    /// The same object under a name for people.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
     }
 
     /// The same object turning about the middle of its mesh, which lies at `position`.
@@ -179,154 +177,3 @@ pub(crate) fn matrix_product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3];
     a.map(|[x, y, z]| [0, 1, 2].map(|j| x * b[0][j] + y * b[1][j] + z * b[2][j]))
 }
 
-/// The eye: a perspective camera.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Camera {
-    /// Where the eye is.
-    pub eye: Vec3,
-    /// What it looks at: the middle of the picture.
-    pub target: Vec3,
-    /// What is up in the picture. Where it points along the view, another axis is taken.
-    pub up: Vec3,
-    /// The angle between the upper and the lower edge of the picture, in radians; above 0, below π.
-    pub field_of_view: f32,
-    /// Nothing nearer than this is drawn; in the scene's units, above 0. It also sets the unit of
-    /// depth, so it is best not much smaller than needed.
-    pub near: f32,
-}
-
-impl Camera {
-    /// 40°: about that of a 4:3 screen at the length of an arm and a half.
-    const FIELD_OF_VIEW: f32 = 40.0 * core::f32::consts::PI / 180.0;
-
-    /// Of the picture's height, how much a framed sphere fills.
-    const FILL: f32 = 15.0 / 16.0;
-
-    /// Looks along −z at a sphere, from where it fills fifteen sixteenths of the picture's height.
-    #[must_use]
-    pub fn framing(centre: Vec3, radius: f32) -> Self {
-        // Half the angle under which the sphere is seen, and the distance at which its sine is that.
-        // The distance is at most f32::MAX, so that a sphere of that size is still something to look
-        // at.
-        let half = libm::atanf(Self::FILL * libm::tanf(Self::FIELD_OF_VIEW / 2.0));
-        let distance = (radius / libm::sinf(half)).clamp(f32::MIN_POSITIVE, f32::MAX);
-        let eye = Vec3::new(centre.x, centre.y, (centre.z + distance).min(f32::MAX));
-        Self {
-            eye,
-            target: centre,
-            up: Vec3::Y,
-            field_of_view: Self::FIELD_OF_VIEW,
-            near: (distance / 128.0).max(f32::MIN_POSITIVE),
-        }
-    }
-}
-
-impl Default for Camera {
-    /// Looks along −z at the unit sphere round the origin, in which every shape lies.
-    fn default() -> Self {
-        Self::framing(Vec3::ZERO, 1.0)
-    }
-}
-
-/// Which object of a scene; what [`Scene::add`] gave for it.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub struct ObjectId(usize);
-
-/// Everything that is drawn.
-#[derive(Clone, Debug)]
-pub struct Scene {
-    /// The eye.
-    pub camera: Camera,
-    /// Ia: how much ambient light there is.
-    pub ambient: f32,
-    /// The index that the frame is cleared to.
-    pub background: u8,
-    /// What the DAC is set to when the scene is drawn; with `None` it is left alone.
-    pub palette: Option<Palette>,
-    objects: Vec<Object>,
-    lights: Vec<Light>,
-}
-
-impl Scene {
-    /// An empty scene, dark but for ambient light, in greys, seen by the default camera.
-    #[must_use]
-    pub fn new() -> Self {
-        Self {
-            camera: Camera::default(),
-            ambient: 1.0,
-            background: 0,
-            palette: Some(builtin::GREY.clone()),
-            objects: Vec::new(),
-            lights: Vec::new(),
-        }
-    }
-
-    /// A mesh to look at: in the middle, filling the picture, turning about its middle, one sun
-    /// from the upper right behind the eye.
-    #[must_use]
-    pub fn showing(mesh: impl Into<Shared<Mesh>>) -> Self {
-        let mut scene = Self::new();
-        let object = Object::new(mesh).centred();
-        scene.camera = Camera::framing(Vec3::ZERO, object.mesh().bounds().radius);
-        scene.add(object);
-        scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-        scene
-    }
-
-    /// Puts an object into the scene.
-    pub fn add(&mut self, object: Object) -> ObjectId {
-        self.objects.push(object);
-        ObjectId(self.objects.len() - 1)
-    }
-
-    /// Puts a light into the scene.
-    pub fn add_light(&mut self, light: Light) {
-        self.lights.push(light);
-    }
-
-    /// The objects, in the order in which they were put in.
-    #[must_use]
-    pub fn objects(&self) -> &[Object] {
-        &self.objects
-    }
-
-    /// The objects, to change them.
-    pub fn objects_mut(&mut self) -> &mut [Object] {
-        &mut self.objects
-    }
-
-    /// The lights, in the order in which they were put in: that of their sum.
-    #[must_use]
-    pub fn lights(&self) -> &[Light] {
-        &self.lights
-    }
-
-    /// The lights, to change them or take them away.
-    pub fn lights_mut(&mut self) -> &mut Vec<Light> {
-        &mut self.lights
-    }
-}
-
-impl Default for Scene {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Index<ObjectId> for Scene {
-    type Output = Object;
-
-    /// # Panics
-    /// If `id` was given by another scene that holds more objects.
-    fn index(&self, id: ObjectId) -> &Object {
-        &self.objects[id.0]
-    }
-}
-
-impl IndexMut<ObjectId> for Scene {
-    /// # Panics
-    /// If `id` was given by another scene that holds more objects.
-    fn index_mut(&mut self, id: ObjectId) -> &mut Object {
-        &mut self.objects[id.0]
-    }
-}
