@@ -77,6 +77,8 @@ pub mod light;
 #[cfg(feature = "alloc")]
 pub mod mesh;
 #[cfg(feature = "alloc")]
+pub mod plan;
+#[cfg(feature = "alloc")]
 pub mod render;
 #[cfg(feature = "alloc")]
 pub mod scene;
