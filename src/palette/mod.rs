@@ -23,6 +23,8 @@ pub mod cube;
 pub mod file;
 pub mod gradient;
 #[cfg(feature = "alloc")]
+pub(crate) mod median_cut;
+#[cfg(feature = "alloc")]
 mod nearest;
 mod ramp;
 mod rgb;
