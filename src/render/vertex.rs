@@ -130,8 +130,7 @@ pub(super) fn texture_coordinates(geometry: &Geometry<'_>, paints: &[Paint], ext
     let Some(texcoords) = geometry.texcoords else { return };
     for ((extra, uv), &surface) in extras.iter_mut().zip(texcoords).zip(geometry.vertex_surfaces) {
         if let Some([width, height]) = paints[usize::from(surface)].texture_size {
-            // v runs up, rows down.
-            extra.front.texture = [texels(uv.x, width), texels(1.0 - uv.y, height)];
+            extra.front.texture = [texels(uv.x, width), texels(uv.y, height)];
         }
     }
 }
@@ -161,7 +160,7 @@ pub(super) fn environment_coordinates(
             let seen = to_eye * normal;
             // To the centres of the outermost texels, so that no coordinate is another image's.
             let within = |c: f32, size: u32| texels(0.5 + 0.5 * c * (1.0 - 1.0 / size as f32), size);
-            extra.front.texture = [within(seen.x, width), within(-seen.y, height)];
+            extra.front.texture = [within(seen.x, width), within(seen.y, height)];
         }
     }
 }
