@@ -11,7 +11,6 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::rc::Rc;
 
-use gif::{ColorOutput, DecodeOptions, DisposalMethod, Repeat};
 use mode13h::export::{
     ExportErrorKind, Film, FrameRate, GifError, GifFile, GifWriter, Picture, PictureError, PixelShape, Scale,
 };
@@ -19,6 +18,7 @@ use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::vga::Vga;
 use num_bigint::BigInt;
 use num_rational::BigRational;
+use support::film::{Image, decode};
 use support::random::Random;
 use support::tried::Tried;
 
@@ -54,62 +54,6 @@ impl Given {
         }
         colors
     }
-}
-
-/// One image of the file: where it lies, what is to be seen once it is drawn, and for how long.
-struct Image {
-    left: usize,
-    top: usize,
-    width: usize,
-    height: usize,
-    delay: u64,
-    has_palette: bool,
-    indices: Vec<u8>,
-    shown: Vec<Rgb>,
-}
-
-struct Decoded {
-    width: usize,
-    height: usize,
-    palette: Vec<Rgb>,
-    images: Vec<Image>,
-}
-
-fn colors_of(table: &[u8]) -> Vec<Rgb> {
-    table.chunks_exact(3).map(|color| Rgb::new(color[0], color[1], color[2])).collect()
-}
-
-fn decode(file: &[u8]) -> Decoded {
-    assert!(file.starts_with(b"GIF89a") && file.ends_with(&[0x3B]));
-    let mut options = DecodeOptions::new();
-    options.set_color_output(ColorOutput::Indexed);
-    options.check_frame_consistency(true);
-    let mut decoder = options.read_info(file).expect("a GIF");
-    let (width, height) = (usize::from(decoder.width()), usize::from(decoder.height()));
-    let palette = colors_of(decoder.global_palette().expect("a palette of the film"));
-    let mut canvas: Vec<Option<Rgb>> = vec![None; width * height];
-    let mut images = Vec::new();
-    while let Some(frame) = decoder.read_next_frame().expect("an image") {
-        assert_eq!((frame.dispose, frame.transparent), (DisposalMethod::Keep, None));
-        assert!(!frame.needs_user_input);
-        let [left, top, w, h] = [frame.left, frame.top, frame.width, frame.height].map(usize::from);
-        let own = frame.palette.as_deref().map(colors_of);
-        for (i, &index) in frame.buffer.iter().enumerate() {
-            canvas[(top + i / w) * width + left + i % w] = Some(own.as_ref().unwrap_or(&palette)[usize::from(index)]);
-        }
-        images.push(Image {
-            left,
-            top,
-            width: w,
-            height: h,
-            delay: frame.delay.into(),
-            has_palette: own.is_some(),
-            indices: frame.buffer.to_vec(),
-            shown: canvas.iter().map(|color| color.expect("the first image covers the film")).collect(),
-        });
-    }
-    assert_eq!(decoder.repeat(), Repeat::Infinite);
-    Decoded { width, height, palette, images }
 }
 
 fn write(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<u8>, Film) {
