@@ -1,9 +1,9 @@
 //! GIF films, written frame by frame: each frame cropped to what it changes, with a palette of its own only where the
 //! colours that it uses are not the first frame's.
 //!
-//! A frame that changes nothing is not written: the one before it stays longer. (A frame of one pixel would do as well,
-//! but takes 20 bytes, and some programs that turn GIFs into films lose the time of such frames.) How long a frame stays is
-//! therefore known only when the next change comes, so the last one is held back until then.
+//! A frame that changes nothing is not written: the one before it stays longer. (A frame of one pixel would keep the time
+//! as well, at 25 bytes and one more image for every reader.) How long a frame stays is therefore known only when the next
+//! change comes, so the last one is held back until then.
 
 use std::collections::BTreeMap;
 use std::error::Error;
