@@ -9,11 +9,13 @@
 //! | `rung` | the techniques of shading |
 //! | `hidden`, `painter` | the ways to leave out hidden surfaces |
 //! | `stats` | what a frame came to |
+//! | `automatic` | a palette for a model, from what is seen of it over a turn |
 //!
 //! A frame goes through three stages for every object: its vertices are transformed, lit and
 //! rounded, each once; its faces pick theirs, are clipped where they must be and left out where
 //! they are turned away; the [`raster`](crate::raster) draws what is left.
 
+mod automatic;
 mod clip;
 mod hidden;
 mod integer;
@@ -36,6 +38,7 @@ use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
 use crate::scene::Scene;
 use crate::span::Kernel;
 use crate::vga::Vga;
+pub use automatic::{Seen, automatic, seen};
 pub use hidden::{HiddenSurfaces, UnknownHiddenSurfaces};
 pub use rung::{Rung, UnknownRung};
 pub use stats::Stats;
