@@ -37,7 +37,7 @@ enum Command {
     Demo(demo::Options),
     /// Write a picture of a model, a numbered row of them, or a film
     Render(render::Options),
-    /// Look at a palette, or convert it
+    /// Look at a palette, convert it, or make one for a model
     Palette(palette::Options),
     /// Draw a hard case 16 times enlarged: the right way beside the fault it guards against
     Show(show::Options),
