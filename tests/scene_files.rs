@@ -11,11 +11,11 @@ use std::path::Path as FilePath;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, RampChoice};
 use mode13h::palette::{Ramp, Rgb, builtin};
-use mode13h::scene::file::{self, LONGEST, Loaded, MOST_TRIANGLES, Place, SceneError, SceneErrorKind};
+use mode13h::scene::file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
 use mode13h::scene::{HiddenSurfaces, Mapping, Motion, Moving, PaletteAnimation, Path, Rung, Scene, UpAxis};
 use support::tried::Tried;
 
-const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\nusemtl oak\nf 3 2 1\n";
+const TRIANGLE: &str = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\nusemtl oak\nf 3 2 1\n";
 
 /// The files that there are beside the scenes of these tests, in the folder `folder`.
 fn open(path: &FilePath) -> io::Result<Box<dyn BufRead>> {
@@ -23,6 +23,7 @@ fn open(path: &FilePath) -> io::Result<Box<dyn BufRead>> {
         ("folder/triangle.obj", TRIANGLE.as_bytes()),
         ("folder/broken.obj", &b"v 0 0 0\nf 1 2 3\n"[..]),
         ("folder/with_texture.obj", b"mtllib it.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl tin\nf 1/1 2/1 3/1\n"),
+        ("folder/two.mtl", b"newmtl tin\nnewmtl oak\n"),
         ("folder/it.mtl", b"newmtl tin\nmap_Kd none.png\n"),
         ("folder/broken.pal", b"JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n"),
         ("folder/two.hex", b"102030\nffffff\n"),
@@ -325,4 +326,348 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         tried.add(1);
     }
     assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn f3_what_is_no_text_or_too_long_is_refused() {
+    let mut tried = Tried::new("f3_what_is_no_text_or_too_long_is_refused", 6);
+    let of = |bytes: &[u8]| Scene::from_toml_bytes(bytes, "a.toml", open).expect_err("no scene");
+    let error = of(b"name = '\xC3\xA9'\nname = '\xFF'");
+    assert!(matches!(error.kind, SceneErrorKind::NotText));
+    assert_eq!(error.to_string(), "a.toml:2:9: not text in UTF-8");
+    tried.add(1);
+    assert_eq!(of(b"\xFF").place, Some(Place { line: 1, column: 1 }));
+    tried.add(1);
+
+    let longest = CUBE.to_owned() + &"#".repeat(LONGEST - CUBE.len());
+    assert!(loaded(&longest).is_ok());
+    tried.add(1);
+    let error = loaded(&(longest.clone() + "#")).expect_err("too long");
+    assert_eq!(error.to_string(), "folder/scene.toml: longer than a scene may be, 1 MiB");
+    tried.add(1);
+
+    // The same of files.
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("long.toml");
+    fs::write(&path, &longest).expect("written");
+    assert!(file::load(&path).is_ok());
+    tried.add(1);
+    fs::write(&path, longest + "#").expect("written");
+    assert!(matches!(file::load(&path).expect_err("too long").kind, SceneErrorKind::TooLong));
+    tried.add(1);
+}
+
+#[test]
+fn f3_files_that_are_missing_or_no_files() {
+    let mut tried = Tried::new("f3_files_that_are_missing_or_no_files", 7);
+    let directory = tempfile::tempdir().expect("a directory");
+    let folder = directory.path();
+    let said = |path: &FilePath| file::load(path).expect_err("no scene").to_string();
+    let none = folder.join("none.toml");
+    assert!(said(&none).starts_with(&format!("{}: No such file", none.display())), "{}", said(&none));
+    tried.add(1);
+    assert_eq!(said(folder), format!("{}: is a directory", folder.display()));
+    tried.add(1);
+
+    // What a scene names lies beside it, wherever the program runs.
+    let path = folder.join("scene.toml");
+    fs::write(folder.join("triangle.obj"), TRIANGLE).expect("written");
+    fs::write(&path, "[[objects]]\nmodel = 'triangle.obj'").expect("written");
+    assert_eq!(file::load(&path).expect("a scene").scene.objects()[0].mesh().triangles().len(), 2);
+    tried.add(1);
+    fs::create_dir(folder.join("directory.obj")).expect("made");
+    for (text, says) in [
+        ("[[objects]]\nmodel = 'none.obj'", "2:9: key `objects[0].model`: F/none.obj: No such file"),
+        ("[[objects]]\nmodel = 'directory.obj'", "2:9: key `objects[0].model`: F/directory.obj: not a file"),
+        ("palette = 'none.pal'\nobjects = [{ shape = 'cube' }]", "1:11: key `palette`: F/none.pal: No such file"),
+        ("palette = '/dev/zero'\nobjects = [{ shape = 'cube' }]", "1:11: key `palette`: /dev/zero: not a file"),
+    ] {
+        if cfg!(not(unix)) && text.contains("/dev/zero") {
+            continue;
+        }
+        fs::write(&path, text).expect("written");
+        let expected = format!("{}:{}", path.display(), says.replace('F', &folder.display().to_string()));
+        assert!(said(&path).starts_with(&expected), "{}\nnot {expected}", said(&path));
+        tried.add(1);
+    }
+}
+
+/// A scene that has every key.
+const EVERYTHING: &str = r##"
+name = "everything"
+duration = 8
+ambient = 0.25
+background = "#102030"
+palette = "two.hex"
+animation = { fade = "copper", rounds = 2 }
+fog = { color = [0.2, 0.4, 0.6], start = 2, end = 9.5 }
+
+[camera]
+eye = [0, 1, 9]
+target = [0, 1, 0]
+up = [0, 0.5, 0]
+field-of-view = 90
+near = 0.5
+eye-path = { line = [[0, 1, 9], [0, 1, 5]], back = true, rounds = 2 }
+target-path = { circle = { centre = [0, 1, 0], from = [1, 0, 0], towards = [0, 2, 0] } }
+
+[wishes]
+rung = "phong"
+hidden-surfaces = "scan-line"
+mapping = "every-16"
+tessellation = 1.5
+dither = true
+max-error = 2
+
+[[objects]]
+name = "bar"
+shape = "wall"
+subdivisions = [4, 2]
+position = [1, 2, 3]
+scale = [4, 2, 1]
+angles = [90, 0, -45]
+up-axis = "z"
+pivot = [0.25, 0, 0]
+spin = [1, 0, -2]
+path = { line = [[1, 2, 3], [4, 5, 6]], rounds = -1 }
+material = { ambient = 0.1, diffuse = 0.2, specular = 0.3, shininess = 40, ramp = { first = 64, entries = 32 }, color = "#ff8000", blend = 0.5 }
+
+[[objects]]
+model = "triangle.obj"
+positions = [[1, 0, 0], [0, 1, 0]]
+scale = 3
+spin = 2
+material = { ramp = 5 }
+materials = { oak = { ramp = 7, blend = "add" } }
+
+[[lights]]
+sun = [0, 1, 0]
+intensity = 2
+color = "#00ff00"
+
+[[lights]]
+lamp = [1, 1, 1]
+range = 5
+path = { circle = { centre = [0, 1, 0], radius = 2, axis = "z", start = 90 }, rounds = -4 }
+"##;
+
+#[test]
+fn what_a_file_says_is_what_is_in_the_scene() {
+    let scene = scene(EVERYTHING);
+    assert_eq!((scene.name.as_str(), scene.duration, scene.ambient), ("everything", 8.0, 0.25));
+    let palette = scene.palette.as_ref().expect("a palette");
+    assert_eq!(palette.color(0), Rgb::new(0x10, 0x20, 0x30));
+    assert_eq!((scene.background, scene.background_color), (0, Some(Rgb::new(0x10, 0x20, 0x30))));
+    let copper = builtin::COPPER.clone();
+    assert_eq!(scene.palette_animation, Some(PaletteAnimation::Fade { to: copper, period: 4.0 }));
+    let fog = scene.fog.expect("fog");
+    assert_eq!((fog.color, fog.start, fog.end), (Rgb::new(51, 102, 153), 2.0, 9.5));
+
+    let camera = &scene.camera;
+    assert_eq!((camera.eye, camera.target), (Vec3::new(0.0, 1.0, 9.0), Vec3::new(1.0, 1.0, 0.0)));
+    assert_eq!((camera.up, camera.near), (Vec3::new(0.0, 0.5, 0.0), 0.5));
+    assert_eq!(camera.field_of_view, std::f32::consts::FRAC_PI_2);
+
+    assert_eq!(scene.wishes.rung, Some(Rung::Phong));
+    assert_eq!(scene.wishes.hidden_surfaces, Some(HiddenSurfaces::ScanLine));
+    assert_eq!(scene.wishes.mapping, Some(Mapping::Every16));
+    assert_eq!((scene.wishes.tessellation, scene.wishes.max_error), (Some(1.5), Some(2.0)));
+    assert!(scene.wishes.dither && !scene.wishes.auto_palette);
+
+    let [bar, first, second] = scene.objects() else { panic!("{} objects", scene.objects().len()) };
+    assert_eq!((bar.name.as_str(), bar.mesh().triangles().len()), ("bar", 16));
+    // A wall's edges are √2 long.
+    let bounds = bar.mesh().bounds();
+    assert!((bounds.max - Vec3::new(4.0, 2.0, 0.0) * 0.5_f32.sqrt()).length() < 1e-6, "{bounds:?}");
+    assert_eq!((bar.position, bar.scale, bar.up_axis), (Vec3::new(4.0, 5.0, 6.0), 1.0, UpAxis::Z));
+    assert_eq!(bar.pivot, Vec3::new(1.0, 0.0, 0.0));
+    assert_eq!(bar.angles(), [90_f64, 0.0, -45.0].map(f64::to_radians));
+    let material = &bar.materials[0];
+    assert_eq!((material.ambient, material.diffuse, material.specular), (0.1, 0.2, 0.3));
+    assert_eq!((material.shininess, material.blend), (40.0, Blend::Mix(128)));
+    assert_eq!(material.ramp, RampChoice::Entries(Ramp::new(64, 32).expect("legal")));
+    assert_eq!(material.color, [1.0, 128.0 / 255.0, 0.0]);
+
+    assert_eq!((first.position, second.position), (Vec3::X, Vec3::Y));
+    assert!(std::ptr::eq(first.mesh(), second.mesh()), "the mesh is there twice");
+    for object in [first, second] {
+        assert_eq!((object.name.as_str(), object.scale), ("triangle", 3.0));
+        assert_eq!(object.pivot, object.mesh().bounds().centre);
+        assert_eq!(object.materials[0].ramp, RampChoice::Number(5));
+        assert_eq!((object.materials[1].ramp, object.materials[1].blend), (RampChoice::Number(7), Blend::Add));
+    }
+
+    assert_eq!(scene.lights()[0], Light::sun([0.0, 1.0, 0.0]).with_intensity(2.0).with_color([0.0, 1.0, 0.0]));
+    let Light::Lamp { range, .. } = scene.lights()[1] else { panic!("a lamp") };
+    assert_eq!(range, 5.0);
+}
+
+#[test]
+fn things_move_as_a_file_says() {
+    let mut scene = scene(EVERYTHING);
+    let near = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-5, "{a} is not {b}");
+    // A quarter of the round of eight seconds.
+    scene.set_time(2.0);
+    // The eye goes to and fro in half a round: there it is at the far end.
+    near(scene.camera.eye, Vec3::new(0.0, 1.0, 5.0));
+    near(scene.camera.target, Vec3::new(0.0, 3.0, 0.0));
+    // Backwards from (4, 5, 6) to (1, 2, 3).
+    near(scene.objects()[0].position, Vec3::new(3.25, 4.25, 5.25));
+    let [x, y, z] = scene.objects()[0].angles();
+    assert!(
+        (x - 180_f64.to_radians()).abs() < 1e-9
+            && y == 0.0
+            && (z + 225_f64.to_radians()).rem_euclid(360_f64.to_radians()) < 1e-9,
+        "{x} {y} {z}"
+    );
+    assert!((scene.objects()[1].angles()[1] - 180_f64.to_radians()).abs() < 1e-9);
+    // Four rounds clockwise: after a quarter of the time it is where it began, at the top.
+    let lamp = |scene: &Scene| match scene.lights()[1] {
+        Light::Lamp { position, .. } => position,
+        _ => panic!("a lamp"),
+    };
+    near(lamp(&scene), Vec3::new(0.0, 3.0, 0.0));
+    scene.set_time(0.5);
+    near(lamp(&scene), Vec3::new(2.0, 1.0, 0.0));
+    // A round later all is as it was.
+    let (eye, angles) = (scene.camera.eye, scene.objects()[0].angles());
+    scene.set_time(8.5);
+    near(scene.camera.eye, eye);
+    for (a, b) in scene.objects()[0].angles().into_iter().zip(angles) {
+        assert!((a - b).abs() < 1e-9);
+    }
+    assert_eq!(scene.motions.len(), 7);
+    assert!(matches!(scene.motions[6], Motion::Path { what: Moving::Target, path: Path::Circle { .. } }));
+}
+
+#[test]
+fn what_is_left_out_has_a_default() {
+    let scene = scene("objects = [{ shape = 'torus' }]");
+    let showing = Scene::new();
+    assert_eq!((scene.duration, scene.ambient, scene.background), (4.0, 1.0, 0));
+    assert_eq!(scene.palette, showing.palette);
+    assert_eq!((scene.fog, scene.wishes), (None, showing.wishes));
+    assert!(scene.lights().is_empty() && scene.motions.is_empty() && scene.palette_animation.is_none());
+    let torus = &scene.objects()[0];
+    assert_eq!((torus.name.as_str(), torus.scale, torus.position), ("torus", 1.0, Vec3::ZERO));
+    // Seen as a model is.
+    assert_eq!(scene.camera, mode13h::scene::Camera::framing(Vec3::ZERO, torus.mesh().bounds().radius));
+}
+
+#[test]
+fn a_camera_without_a_place_sees_everything() {
+    let text = "objects = [{ shape = 'sphere', positions = [[3, 0, 0], [-1, 0, 0]], scale = 0.5 }]\n";
+    let Scene { camera, .. } = scene(text);
+    // Both lie within a sphere of radius 2.5 about (1, 0, 0), but for rounding of the mesh.
+    let expected = mode13h::scene::Camera::framing(Vec3::X, 2.5);
+    assert!((camera.eye - expected.eye).length() < 1e-4, "{} {}", camera.eye, expected.eye);
+    let from = scene(&format!("{text}camera.from = [2, 0, 0]")).camera;
+    assert!((from.eye - Vec3::new(1.0 + expected.eye.z, 0.0, 0.0)).length() < 1e-4, "{}", from.eye);
+    // A wider view from nearer.
+    let wide = scene(&format!("{text}camera.field-of-view = 90")).camera;
+    assert!(wide.eye.z > 2.5 && wide.eye.z < expected.eye.z);
+    // What moves is in the picture wherever it goes.
+    let moving = "objects = [{ shape = 'sphere', path = { line = [[3, 0, 0], [-1, 0, 0]] }, scale = 0.5 }]";
+    assert_eq!(scene(moving).camera, camera);
+}
+
+#[test]
+fn fog_and_background_are_one_color_unless_both_are_given() {
+    let fog = |text: &str| {
+        let scene = scene(&format!("{CUBE}{text}"));
+        (scene.background, scene.fog.expect("fog").color)
+    };
+    assert_eq!(fog("fog = { end = 9, color = '#808080' }"), (128, Rgb::new(128, 128, 128)));
+    assert_eq!(fog("background = 7\nfog.end = 9"), (7, Rgb::new(7, 7, 7)));
+    assert_eq!(fog("background = '#0a0b0a'\nfog.end = 9"), (10, Rgb::new(10, 11, 10)));
+    assert_eq!(fog("background = 7\nfog = { end = 9, color = '#808080' }"), (7, Rgb::new(128, 128, 128)));
+}
+
+#[test]
+fn a_palette_is_a_name_a_file_or_left_to_the_program() {
+    let palette = |text: &str| scene(&format!("{CUBE}palette = {text}"));
+    assert_eq!(palette("'copper'").palette, Some(builtin::COPPER.clone()));
+    assert_eq!(palette("'two.hex'").palette.map(|palette| palette.color(1)), Some(Rgb::WHITE));
+    assert!(palette("'auto'").wishes.auto_palette);
+}
+
+#[test]
+fn a_texture_of_a_model_that_is_missing_is_a_warning() {
+    let Loaded { scene, warnings } = loaded("objects = [{ model = 'with_texture.obj' }]").expect("a scene");
+    assert_eq!(warnings, ["folder/none.png: entity not found; material tin is drawn without it"]);
+    assert!(scene.objects()[0].materials[0].texture.is_none());
+}
+
+#[test]
+fn objects_of_one_shape_share_its_mesh() {
+    let scene =
+        scene("objects = [{ shape = 'cone' }, { shape = 'cone', scale = 3 }, { shape = 'cone', scale = [1, 2, 1] }]");
+    let [a, b, c] = scene.objects() else { panic!() };
+    assert!(std::ptr::eq(a.mesh(), b.mesh()) && !std::ptr::eq(a.mesh(), c.mesh()));
+}
+
+#[test]
+fn f3_scenes_cut_at_every_byte_are_a_scene_or_one_line() {
+    let mut tried = Tried::new("f3_scenes_cut_at_every_byte_are_a_scene_or_one_line", 1_200);
+    for (at, _) in EVERYTHING.char_indices() {
+        check(&loaded(&EVERYTHING[..at]), at);
+        tried.add(1);
+    }
+}
+
+#[test]
+fn f3_scenes_with_one_byte_changed_are_a_scene_or_one_line() {
+    let mut tried = Tried::new("f3_scenes_with_one_byte_changed_are_a_scene_or_one_line", 6_000);
+    let mut kinds = [0; 2];
+    for at in 0..EVERYTHING.len() {
+        for byte in *b"0]\"\n=" {
+            let mut bytes = EVERYTHING.as_bytes().to_vec();
+            bytes[at] = byte;
+            let result = Scene::from_toml_bytes(&bytes, "folder/scene.toml", open);
+            check(&result, at);
+            kinds[usize::from(result.is_ok())] += 1;
+            tried.add(1);
+        }
+    }
+    // In a comment or a name anything may stand.
+    assert!(kinds[0] > 1_000 && kinds[1] > 100, "{kinds:?}");
+}
+
+/// What holds of every outcome: an error is one line that begins with the file.
+#[track_caller]
+fn check(result: &Result<Loaded, SceneError>, at: usize) {
+    if let Err(error) = result {
+        let said = error.to_string();
+        assert!(said.starts_with("folder/scene.toml:") && !said.contains(char::is_control), "{at}: {said:?}");
+        assert!(said.len() < 1_000, "{at}: {said}");
+    }
+}
+
+/// README.md of the scenes, from here on: its table of a part of a scene names every key that the part has.
+#[test]
+fn every_key_is_documented() {
+    let readme = include_str!("../scenes/README.md");
+    let mut tried = 0;
+    for (section, text) in [
+        ("A scene", "x = 1"),
+        ("camera", "camera.x = 1"),
+        ("objects", "objects = [{ x = 1 }]"),
+        ("material", "objects = [{ material.x = 1 }]"),
+        ("lights", "lights = [{ x = 1 }]"),
+        ("path", "objects = [{ path.x = 1 }]"),
+        ("circle", "objects = [{ path.circle.x = 1 }]"),
+        ("fog", "fog.x = 1"),
+        ("animation", "animation.x = 1"),
+        ("wishes", "wishes.x = 1"),
+    ] {
+        let error = loaded(text).expect_err("no such key");
+        let SceneErrorKind::UnknownKey { known } = error.kind else { panic!("{error}") };
+        let heading = format!("\n### {section}\n");
+        let (_, rest) = readme.split_once(&heading).unwrap_or_else(|| panic!("no section {section}"));
+        let table = rest.split("\n#").next().expect("the section");
+        let rows: Vec<&str> = table.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
+        assert_eq!(rows, known.split(", ").collect::<Vec<_>>(), "{section}");
+        tried += rows.len();
+    }
+    assert!(tried > 50, "{tried} keys");
 }
