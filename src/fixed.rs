@@ -19,6 +19,17 @@ pub(crate) const HAS_F64: bool = cfg!(any(
     all(target_arch = "x86", target_feature = "sse2")
 ));
 
+/// The whole number nearest to a value within ±2⁵¹, halves to even; of anything else some number.
+///
+/// Only where [`HAS_F64`]. SSE2 has no rounding instruction, and a cast to i64 would saturate, at the
+/// cost of two comparisons.
+#[inline]
+pub(crate) fn nearest_whole(x: f64) -> i64 {
+    // 1.5 · 2⁵²: adding it leaves the nearest integer in the low bits of the mantissa.
+    const MAGIC: f64 = 6_755_399_441_055_744.0;
+    (x + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()) as i64
+}
+
 /// A screen coordinate in 1/256 pixel: 24 bits before the point, 8 behind it.
 ///
 /// Pixel `p` has its centre at `256·p + 128` units.

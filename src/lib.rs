@@ -10,7 +10,7 @@
 //! | [`palette`] | 256 colours, ramps of shades, file formats | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
-//! | [`texture`] | 8-bit images on surfaces | `alloc` |
+//! | [`texture`] | 8-bit texels with colours of their own: from pictures, from files, compiled in | `alloc` |
 //! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes; OBJ models | `alloc` |
@@ -77,13 +77,15 @@ pub mod light;
 #[cfg(feature = "alloc")]
 pub mod mesh;
 #[cfg(feature = "alloc")]
+pub mod plan;
+#[cfg(feature = "alloc")]
 pub mod render;
 #[cfg(feature = "alloc")]
 pub mod scene;
 #[cfg(feature = "alloc")]
-pub mod texture;
-#[cfg(feature = "alloc")]
 mod view;
+#[cfg(feature = "alloc")]
+pub mod texture;
 
 #[cfg(feature = "std")]
 pub mod export;

@@ -67,6 +67,10 @@ pub(crate) struct View {
     eye: Row,
     /// The rows that give X, Y and W.
     rows: Matrix,
+    /// Right, up and towards the eye, unit.
+    axes: Matrix,
+    /// The screen, in pixels.
+    size: (f64, f64),
     /// The middle of the screen, in pixels.
     centre: (f32, f32),
     near: f32,
@@ -108,6 +112,8 @@ impl View {
         Ok(Self {
             eye,
             rows: [right.map(|c| fx * c), up.map(|c| -fy * c), forward],
+            axes: [right, up, forward.map(|c| -c)],
+            size: (width, height),
             // Halves of whole numbers up to 4,096: exact.
             centre: ((width / 2.0) as f32, (height / 2.0) as f32),
             near,
@@ -115,8 +121,18 @@ impl View {
     }
 }
 
+impl View {
+    /// A direction of the world as the eye sees it (right, up, towards the eye), unit; `None` for the
+    /// zero vector.
+    pub(crate) fn direction_to_eye(&self, world: Vec3) -> Option<Vec3> {
+        let world = unit(widen(world))?;
+        let [x, y, z] = self.axes.map(|axis| dot(axis, world) as f32);
+        Some(Vec3::new(x, y, z))
+    }
+}
+
 /// An object's whole way: from its mesh to the screen.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ObjectView {
     exact: (Matrix, Row),
     /// The same in f32, unless the object reaches so far that f32 could overflow.
@@ -125,6 +141,28 @@ pub(crate) struct ObjectView {
     near: f32,
     /// The turn alone: from the object's directions to the world's.
     turn: Matrix,
+    /// From the object's directions to the eye's: right, up, towards the eye.
+    to_eye: Matrix,
+    /// The eye, in the object's own space.
+    eye: Row,
+    position: Row,
+    pivot: Row,
+    scale: f64,
+    size: (f64, f64),
+}
+
+/// Where an object may be seen, once what is nearer than the near plane is cut off: somewhat more than
+/// where it is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Reach {
+    /// The least distance along the view; may be negative.
+    pub(crate) nearest: f64,
+    /// The greatest.
+    pub(crate) farthest: f64,
+    /// Whether some of it may be nearer than the near plane.
+    pub(crate) crosses_near: bool,
+    /// Whether some of it may be projected beyond the screen's edges.
+    pub(crate) leaves_screen: bool,
 }
 
 /// A vertex before its division: X, Y in pixels times W, W along the view.
@@ -162,7 +200,106 @@ impl ObjectView {
             let narrow = |[x, y, z]: Row| Vec3::new(x as f32, y as f32, z as f32);
             (Mat3::from_cols(narrow(matrix[0]), narrow(matrix[1]), narrow(matrix[2])).transpose(), narrow(offset))
         });
-        Self { exact: (matrix, offset), fast, centre: view.centre, near: view.near, turn }
+        let mut this = Self {
+            exact: (matrix, offset),
+            fast,
+            centre: view.centre,
+            near: view.near,
+            turn,
+            to_eye: matrix_product(&view.axes, &turn),
+            eye: [0.0; 3],
+            position,
+            pivot,
+            scale,
+            size: view.size,
+        };
+        this.eye = this.point_in_object(view.eye);
+        this
+    }
+
+    /// A point of the world in the object's own space. Of an object without size, the pivot.
+    pub(crate) fn point_in_object(&self, world: [f64; 3]) -> [f64; 3] {
+        if self.scale <= 0.0 {
+            return self.pivot;
+        }
+        let from = [world[0] - self.position[0], world[1] - self.position[1], world[2] - self.position[2]];
+        core::array::from_fn(|j| {
+            self.pivot[j] + dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], from) / self.scale
+        })
+    }
+
+    /// The eye in the object's own space.
+    pub(crate) fn eye(&self) -> [f64; 3] {
+        self.eye
+    }
+
+    /// How many times as large as its mesh the object is.
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The matrix from the object's directions to the eye's: right, up, towards the eye.
+    pub(crate) fn directions_to_eye(&self) -> Mat3 {
+        Mat3::from_cols_array_2d(&self.to_eye.map(|row| row.map(|c| c as f32))).transpose()
+    }
+
+    /// Where the box `bounds` of the object's mesh may be seen.
+    pub(crate) fn reach(&self, bounds: Bounds) -> Reach {
+        let (matrix, offset) = &self.exact;
+        let (min, max) = (widen(bounds.min), widen(bounds.max));
+        let far: Row = core::array::from_fn(|i| min[i].abs().max(max[i].abs()));
+        let reach = |i: usize| dot(matrix[i].map(f64::abs), far) + offset[i].abs();
+        // As in `depths`: more than either vertex path is off by.
+        let slack: Row = core::array::from_fn(|i| reach(i) / 4096.0);
+        let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for corner in 0..8 {
+            let p: Row = core::array::from_fn(|i| if corner >> i & 1 == 0 { min[i] } else { max[i] });
+            let at = |i: usize| dot(matrix[i], p) + offset[i];
+            let w = at(2);
+            nearest = nearest.min(w);
+            farthest = farthest.max(w);
+            // Of a corner that is in front. Where one is not, the object crosses the near plane, and
+            // these are not looked at.
+            for i in 0..2 {
+                low[i] = low[i].min(at(i) / w);
+                high[i] = high[i].max(at(i) / w);
+            }
+        }
+        let (nearest, farthest) = (nearest - slack[2], farthest + slack[2]);
+        let crosses_near = !(nearest > f64::from(self.near));
+        // A box in front of the eye is projected into the convex hull of its corners. What x = X/W is
+        // off by is what X is, and |x| times what W is, over W; a pixel for rounding.
+        let (centre, size) = ([f64::from(self.centre.0), f64::from(self.centre.1)], [self.size.0, self.size.1]);
+        let inside = |i: usize| {
+            let off = (slack[i] + low[i].abs().max(high[i].abs()) * slack[2]) / nearest + 1.0;
+            centre[i] + low[i] - off >= 0.0 && centre[i] + high[i] + off <= size[i]
+        };
+        Reach { nearest, farthest, crosses_near, leaves_screen: crosses_near || !(inside(0) && inside(1)) }
+    }
+
+    /// The vertex on the screen, of an object that neither crosses the near plane nor leaves the
+    /// screen. The same numbers as [`project`](Self::project) gives.
+    #[inline]
+    pub(crate) fn project_inside(&self, p: Vec3) -> Vertex {
+        match self.fast {
+            Some((matrix, offset)) => {
+                let v = matrix * p + offset;
+                let inverse = 1.0 / v.z;
+                let (x, y) = (self.centre.0 + v.x * inverse, self.centre.1 + v.y * inverse);
+                self.vertex_inside(f64::from(x), f64::from(y), f64::from(v.z))
+            }
+            None => {
+                let h = self.homogeneous(p);
+                self.vertex_inside(f64::from(self.centre.0) + h.x / h.w, f64::from(self.centre.1) + h.y / h.w, h.w)
+            }
+        }
+    }
+
+    #[inline]
+    fn vertex_inside(&self, x: f64, y: f64, w: f64) -> Vertex {
+        let at = |c: f64| I24F8::round_from_f64(c).unwrap_or_default();
+        Vertex::new(at(x), at(y), U8F8::default(), self.depth(w)).unwrap_or_default()
     }
 
     /// A direction of the world in the object's own space, unit; `None` for the zero vector.
@@ -172,6 +309,7 @@ impl ObjectView {
         Some(Vec3::new(column(0), column(1), column(2)))
     }
 
+    /// The near plane's distance.
     pub(crate) fn near(&self) -> f32 {
         self.near
     }

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::mesh::Bounds;
+
 type Wide = [f64; 3];
 
 /// A sun as an object sees it: its direction turned into the object's own space.
@@ -23,6 +25,14 @@ pub(crate) struct LampBeam {
     pub(crate) channels: [f32; 3],
     /// 1 / range².
     pub(crate) inverse_square: f64,
+}
+
+/// Whether a lamp reaches anything within `bounds`.
+pub(crate) fn lamp_reaches(lamp: &LampBeam, bounds: Bounds) -> bool {
+    let (min, max) = (widen(bounds.min), widen(bounds.max));
+    // From the lamp to the nearest point of the box.
+    let apart: Wide = core::array::from_fn(|i| (min[i] - lamp.position[i]).max(lamp.position[i] - max[i]).max(0.0));
+    dot(apart, apart) * lamp.inverse_square < 1.0
 }
 
 /// All light that reaches an object.

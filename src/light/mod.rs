@@ -21,6 +21,6 @@ mod intensity;
 mod material;
 mod source;
 
-pub(crate) use intensity::{Answer, Beam, LampBeam, Lights, both_sides};
+pub(crate) use intensity::{Answer, Beam, LampBeam, Lights, both_sides, lamp_reaches};
 pub use material::{Blend, Material, RampChoice};
 pub use source::Light;

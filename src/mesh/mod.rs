@@ -192,6 +192,11 @@ impl Mesh {
         &self.surfaces
     }
 
+    /// For each vertex the number of its point: vertices in one place have the same.
+    pub(crate) fn points(&self) -> Vec<u32> {
+        topology::weld(&self.positions)
+    }
+
     /// The box and the sphere around all vertices that a triangle uses.
     #[must_use]
     pub fn bounds(&self) -> Bounds {

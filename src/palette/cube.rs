@@ -7,7 +7,7 @@
 use super::{Palette, Rgb, expand};
 
 /// The six levels of a channel, in the DAC's 6 bits: `63·k/5` to the nearest.
-const LEVELS: [u8; 6] = [0, 13, 25, 38, 50, 63];
+pub(crate) const LEVELS: [u8; 6] = [0, 13, 25, 38, 50, 63];
 
 /// The first of the greys.
 const FIRST_GREY: usize = 216;

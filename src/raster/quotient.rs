@@ -16,7 +16,7 @@
 //! where there is no f64 unit the integer division is used, and nothing of this module links a
 //! soft-float routine.
 
-use crate::fixed::HAS_F64;
+use crate::fixed::{HAS_F64, nearest_whole};
 
 /// A divisor, 1 to 2⁴⁴, with its reciprocal.
 #[derive(Clone, Copy, Debug)]
@@ -55,11 +55,7 @@ impl Divisor {
         if !HAS_F64 {
             return (n.div_euclid(self.divisor), n.rem_euclid(self.divisor));
         }
-        // 1.5 · 2⁵²: adding it leaves the nearest integer in the low bits of the mantissa, for
-        // values within ±2⁵¹. SSE2 has no rounding instruction, and a cast to i64 would saturate,
-        // at the cost of two comparisons.
-        const MAGIC: f64 = 6_755_399_441_055_744.0;
-        let nearest = (n as f64 * self.reciprocal + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()) as i64;
+        let nearest = nearest_whole(n as f64 * self.reciprocal);
         let rest = n.wrapping_sub(nearest.wrapping_mul(self.divisor));
         let below = rest >> 63; // −1 where the nearest was above, else 0
         (nearest + below, rest + (below & self.divisor))

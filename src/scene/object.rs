@@ -28,6 +28,7 @@ pub struct Object {
     mesh: Shared<Mesh>,
     /// Of each vertex, its surface.
     vertex_surfaces: Vec<u16>,
+    longest_edges: (f32, f32),
     /// One for each surface of the mesh.
     pub materials: Vec<Material>,
     /// The point of the mesh, in its own coordinates, that it turns about.
@@ -53,6 +54,7 @@ impl Object {
         Self {
             name: String::new(),
             vertex_surfaces: mesh.vertex_surfaces(),
+            longest_edges: longest_edges(&mesh),
             mesh,
             materials,
             pivot: Vec3::ZERO,
@@ -92,6 +94,11 @@ impl Object {
     #[must_use]
     pub fn vertex_surfaces(&self) -> &[u16] {
         &self.vertex_surfaces
+    }
+
+    /// The longest edge of the mesh, in its own units, and the longest in its texture coordinates.
+    pub(crate) fn longest_edges(&self) -> (f32, f32) {
+        self.longest_edges
     }
 
     /// What is wrong with it, if anything.
@@ -161,6 +168,22 @@ impl Object {
             UpAxis::Z => turn(self.angles).map(|[x, y, z]| [x, -z, y]),
         }
     }
+}
+
+/// The longest edge in space and in texture coordinates. Rounded; infinite beyond f32.
+fn longest_edges(mesh: &Mesh) -> (f32, f32) {
+    let (mut edge, mut texture_edge) = (0.0_f32, 0.0_f32);
+    for &[a, b, c] in mesh.triangles() {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            // In range, as every mesh is.
+            let (from, to) = (from as usize, to as usize);
+            edge = edge.max(mesh.positions()[from].distance(mesh.positions()[to]));
+            if let Some(texcoords) = mesh.texcoords() {
+                texture_edge = texture_edge.max(texcoords[from].distance(texcoords[to]));
+            }
+        }
+    }
+    (edge, texture_edge)
 }
 
 /// The turn of angles about x, y and z, by rows: z first, then y, then x.

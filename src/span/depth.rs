@@ -70,11 +70,35 @@ pub fn fill_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], shade: u16, step: u
 /// The same for a row of bytes that is there already: copies `bytes` where the depth is greater.
 #[inline]
 pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i64, dz: i64) -> u32 {
-    let (mut z, mut written) = (z, 0);
-    for ((pixel, nearest), byte) in row.iter_mut().zip(depth).zip(bytes) {
-        let d = D::of_depth((z >> 24) as u32);
-        if d > *nearest {
+    copy_where(row, depth, bytes, z, dz, |nearest, d: D| {
+        let nearer = d > *nearest;
+        if nearer {
             *nearest = d;
+        }
+        nearer
+    })
+}
+
+/// The same, but the buffer keeps what it holds: for faces that one sees through, of which many may lie
+/// before one another.
+#[inline]
+pub fn copy_before<D: Cell>(row: &mut [u8], depth: &[D], bytes: &[u8], z: i64, dz: i64) -> u32 {
+    copy_where(row, depth, bytes, z, dz, |nearest, d: D| d > *nearest)
+}
+
+/// Copies `bytes` where `nearer` says so of the cell and the depth.
+#[inline]
+fn copy_where<C, D: Cell>(
+    row: &mut [u8],
+    depth: impl IntoIterator<Item = C>,
+    bytes: &[u8],
+    z: i64,
+    dz: i64,
+    mut nearer: impl FnMut(C, D) -> bool,
+) -> u32 {
+    let (mut z, mut written) = (z, 0);
+    for ((pixel, cell), byte) in row.iter_mut().zip(depth).zip(bytes) {
+        if nearer(cell, D::of_depth((z >> 24) as u32)) {
             *pixel = *byte;
             written += 1;
         }

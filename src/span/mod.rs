@@ -21,15 +21,31 @@
 //! | `simd-avx2` | 32 pixels a turn | x86-64 with AVX2 and feature `simd` |
 //! | `simd-avx512` | 64 pixels a turn | x86-64 with AVX-512 BW, BMI2 and feature `simd` |
 //!
-//! `simd` can be forced down to one of its levels, for tests and measurements. Other loops that write
-//! pixels will each be a type of this pattern: a portable specification, faster twins, one table.
+//! `simd` can be forced down to one of its levels, for tests and measurements. With `std` the processor is
+//! asked what it has; without, what the compiler was told counts.
 //!
-//! With `std` the processor is asked what it has; without, what the compiler was told counts.
+//! What a span alone cannot draw is made of other loops, over short rows of bytes. Each has a portable
+//! specification; where a faster twin was worth its code, the loop of the plain name takes it, and the
+//! specification is beside it as `…_portable`.
+//!
+//! | loop | what |
+//! |---|---|
+//! | [`hyperbolic::fill_quotients`] | perspective-correct shades |
+//! | [`dither::fill_dithered`] | the span with ordered dither |
+//! | [`texture::fill_affine`], [`texture::fill_perspective`] | rows of texels |
+//! | [`lookup()`] | shades of texels, fog, transparency, Phong's table: one byte of two |
+//! | [`channels::mix_cube`], [`channels::mix_nearest`] | red, green and blue to an index, with dither |
+//! | [`depth::fill_nearer`], [`depth::copy_nearer`], [`depth::copy_before`] | with a depth test |
+//! | [`lit::interpolate`] | writes no pixels: normals and positions for Phong's shading |
 
 use core::fmt;
 
+pub mod channels;
 pub mod depth;
+pub mod dither;
 pub mod hyperbolic;
+pub mod lit;
+mod lookup;
 mod portable;
 #[cfg(feature = "simd")]
 #[cfg_attr(
@@ -37,9 +53,12 @@ mod portable;
     expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
 )]
 mod simd;
+pub mod texture;
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
 mod x86;
+
+pub use lookup::lookup;
 
 /// The bare assembly entries, for the tests that call them with rubbish in their registers and read
 /// their instructions. No part of the interface.

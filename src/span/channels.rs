@@ -1,0 +1,171 @@
+//! Three rows of shades, red, green and blue, to one row of palette indices, with ordered dither.
+//!
+//! Each loop writes as many pixels as the shortest of its rows has. `thresholds` and `x` are as in
+//! [`dither`](super::dither): 0 to 255 by the pixel's place in the frame.
+
+use crate::palette::{cube, expand};
+
+/// The six levels of a channel in the colour cube: 0, 52, 101, 154, 203, 255.
+const LEVELS: [u8; 6] = {
+    let mut levels = [0; 6];
+    let mut i = 0;
+    while i < 6 {
+        levels[i] = expand(cube::LEVELS[i]);
+        i += 1;
+    }
+    levels
+};
+
+/// Where a channel value lies among the levels.
+#[derive(Clone, Copy)]
+struct Between {
+    /// The number of the highest level that is not above the value.
+    level: u8,
+    /// It takes the next level at thresholds below this one; 0 where it is a level itself.
+    next_below: u8,
+}
+
+/// Every channel value between its levels.
+static BETWEEN: [Between; 256] = {
+    let mut table = [Between { level: 0, next_below: 0 }; 256];
+    let (mut value, mut level) = (0, 0);
+    while value < 256 {
+        if level < 5 && value == LEVELS[level + 1] as usize {
+            level += 1;
+        }
+        if level < 5 {
+            let (a, b) = (LEVELS[level] as usize, LEVELS[level + 1] as usize);
+            // 256·(c − a) > t·(b − a) if and only if t is below this quotient: at most ⌈256·52/53⌉ = 252.
+            table[value].next_below = (256 * (value - a)).div_ceil(b - a) as u8;
+        }
+        // At most 5.
+        table[value].level = level as u8;
+        value += 1;
+    }
+    table
+};
+
+/// Mixes three channels into the colour cube ([`palette::cube`](crate::palette::cube)), entry
+/// 36·r + 6·g + b, with the fastest loop of this build.
+///
+/// A channel value c lies between two neighbouring levels of the cube, a ≤ c < b. At threshold t
+///
+/// ```text
+/// it becomes b   if 256·(c − a) > t·(b − a)
+///            a   else
+/// ```
+///
+/// so a value that is a level stays what it is at every threshold. At a threshold of 128 throughout each
+/// value goes to the nearest level, of two equally near to the lower, which is
+/// [`nearest_mixture`](crate::palette::cube::nearest_mixture); at 127 it is the same, but of two equally
+/// near (26 and 229 are the only such values) the higher.
+pub fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
+    #[cfg(feature = "simd")]
+    blocks::mix_cube(row, red, green, blue, thresholds, x);
+    #[cfg(not(feature = "simd"))]
+    mix_cube_portable(row, red, green, blue, thresholds, x);
+}
+
+/// The specification of [`mix_cube`].
+pub fn mix_cube_portable(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
+    let mut x = x;
+    for (((pixel, red), green), blue) in row.iter_mut().zip(red).zip(green).zip(blue) {
+        let threshold = thresholds[x % 8];
+        let level = |value: u8| {
+            let between = BETWEEN[usize::from(value)];
+            between.level + u8::from(threshold < between.next_below)
+        };
+        // At most 36·5 + 6·5 + 5 = 215.
+        *pixel = 36 * level(*red) + 6 * level(*green) + level(*blue);
+        x = x.wrapping_add(1);
+    }
+}
+
+/// Plain arrays that the compiler vectorises.
+#[cfg(feature = "simd")]
+mod blocks {
+    use super::{LEVELS, mix_cube_portable};
+
+    /// Pixels a turn: the thresholds twice.
+    const BLOCK: usize = 16;
+
+    /// The mixture without a table: a value's level is the number of switches that it has passed.
+    ///
+    /// ```text
+    /// switch i:   a + (t·(b − a) >> 8)        a and b being levels i and i + 1
+    /// level(c) =  number of i with c > switch i
+    /// ```
+    ///
+    /// 256·(c − a) > t·(b − a) says the same as c > switch, c being whole. Switch i lies at or above a and
+    /// below b, so a value has passed those of the levels below its own, and none of those above.
+    pub(super) fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
+        let n = row.len().min(red.len()).min(green.len()).min(blue.len());
+        if n < BLOCK {
+            return mix_cube_portable(row, red, green, blue, thresholds, x);
+        }
+        // Those of the row's pixels 0 to 7: turned by x mod 8 places.
+        let thresholds = u64::from_le_bytes(*thresholds).rotate_right(8 * (x % 8) as u32).to_le_bytes();
+        let switches = [0, 1, 2, 3, 4].map(|i| {
+            let (a, b) = (LEVELS[i], LEVELS[i + 1]);
+            // The shifted product is below b − a.
+            let switches = thresholds.map(|t| a + ((u16::from(t) * u16::from(b - a)) >> 8) as u8);
+            core::array::from_fn(|k| switches[k % 8])
+        });
+        let (blocks, rest) = row[..n].as_chunks_mut::<BLOCK>();
+        let (red, rest_red) = red[..n].as_chunks::<BLOCK>();
+        let (green, rest_green) = green[..n].as_chunks::<BLOCK>();
+        let (blue, rest_blue) = blue[..n].as_chunks::<BLOCK>();
+        for (((block, red), green), blue) in blocks.iter_mut().zip(red).zip(green).zip(blue) {
+            *block = mixed(&switches, red, green, blue);
+        }
+        // A block is a multiple of 8, so the thresholds begin anew.
+        mix_cube_portable(rest, rest_red, rest_green, rest_blue, &thresholds, 0);
+    }
+
+    #[inline]
+    fn mixed(switches: &[[u8; BLOCK]; 5], red: &[u8; BLOCK], green: &[u8; BLOCK], blue: &[u8; BLOCK]) -> [u8; BLOCK] {
+        let mut block = [0; BLOCK];
+        for switch in switches {
+            for (k, pixel) in block.iter_mut().enumerate() {
+                let passed = |channel: &[u8; BLOCK], by: u8| if channel[k] > switch[k] { by } else { 0 };
+                *pixel += passed(red, 36) + passed(green, 6) + passed(blue, 1);
+            }
+        }
+        block
+    }
+}
+
+/// Mixes three channels into any palette, by a table of the nearest entries.
+///
+/// ```text
+/// c'     = clamp(c + (t·spread >> 8) − ⌊spread / 2⌋, 0, 255)        for each channel c at threshold t
+/// row[k] = map[(r' >> 3) << 10 | (g' >> 3) << 5 | b' >> 3]
+/// ```
+///
+/// `map` holds an entry for every colour of 5 bits a channel, red on top. `spread` is how far the
+/// thresholds move a value, from the lowest to the highest: about the distance of neighbouring colours in
+/// the palette; 0 is no dither.
+///
+/// Blocks of plain arrays, places first and then the look-ups, take 44 ns at 64 pixels where this takes
+/// 104. A palette that is not the cube is for few programs, and the list of loops is short.
+#[expect(clippy::too_many_arguments, reason = "three rows in, one out, and what the pixels share")]
+pub fn mix_nearest(
+    row: &mut [u8],
+    red: &[u8],
+    green: &[u8],
+    blue: &[u8],
+    thresholds: &[u8; 8],
+    x: usize,
+    spread: u8,
+    map: &[u8; 32_768],
+) {
+    let mut x = x;
+    for (((pixel, red), green), blue) in row.iter_mut().zip(red).zip(green).zip(blue) {
+        let threshold = i32::from(thresholds[x % 8]);
+        let offset = ((threshold * i32::from(spread)) >> 8) - i32::from(spread / 2);
+        // 0 to 31.
+        let five_bits = |value: u8| ((i32::from(value) + offset).clamp(0, 255) >> 3) as usize;
+        *pixel = map[five_bits(*red) << 10 | five_bits(*green) << 5 | five_bits(*blue)];
+        x = x.wrapping_add(1);
+    }
+}
