@@ -11,6 +11,7 @@ use std::{error, fmt, io};
 use super::place::{Place, key_at};
 use crate::mesh::obj::ObjError;
 use crate::palette::file::PaletteError;
+use crate::texture::LoadError;
 
 /// Why a scene file is refused. Nothing of it is used.
 ///
@@ -69,12 +70,7 @@ pub enum SceneErrorKind {
         error: PaletteError,
     },
     /// A texture that the scene names is broken.
-    Texture {
-        /// Its path.
-        path: PathBuf,
-        /// What is wrong with it.
-        what: String,
-    },
+    Texture(LoadError),
     /// The scene has no object.
     NoObject,
 }
@@ -197,7 +193,7 @@ impl fmt::Display for SceneErrorKind {
             Self::File { path, error } => write!(f, "{}: {error}", path.display()),
             Self::Model(error) => write!(f, "{error}"),
             Self::Palette { path, error } => write!(f, "{}: {error}", path.display()),
-            Self::Texture { path, what } => write!(f, "{}: {what}", path.display()),
+            Self::Texture(error) => write!(f, "{error}"),
             Self::NoObject => write!(f, "no object: a scene needs at least one [[objects]]"),
         }
     }
@@ -209,6 +205,7 @@ impl error::Error for SceneError {
             SceneErrorKind::Read(error) | SceneErrorKind::File { error, .. } => Some(error),
             SceneErrorKind::Model(error) => Some(error),
             SceneErrorKind::Palette { error, .. } => Some(error),
+            SceneErrorKind::Texture(error) => Some(error),
             _ => None,
         }
     }

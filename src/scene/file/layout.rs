@@ -63,6 +63,7 @@ pub(super) struct ObjectLayout {
     pub(super) position: Option<Vector>,
     pub(super) positions: Option<Spanned<Vec<Vector>>>,
     pub(super) scale: Option<Spanned<OneOrThree<Positive>>>,
+    pub(super) repeat: Option<Spanned<List<Positive, 2>>>,
     pub(super) angles: Option<List<Angle, 3>>,
     pub(super) up_axis: Option<Name<Up>>,
     pub(super) pivot: Option<Vector>,

@@ -1,7 +1,7 @@
 //! The files that a scene names: models, palettes, textures; each read once.
 
 use std::collections::BTreeMap;
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::string::String;
 use std::vec::Vec;
@@ -14,7 +14,7 @@ use super::{LONGEST, SceneErrorKind};
 use crate::mesh::{Mesh, obj};
 use crate::palette::{Palette, builtin, file as palette_file};
 use crate::scene::Shared;
-use crate::texture::Texture;
+use crate::texture::{self, LoadError, LoadErrorKind, Texture};
 
 /// How the caller opens a file.
 pub(super) type Open<'a> = dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>> + 'a;
@@ -84,8 +84,9 @@ impl<'a> Named<'a> {
             Some(builtin) => builtin,
             None => {
                 let bytes = self.bytes(&path, name, LONGEST_TEXTURE)?;
-                decoded(&bytes)
-                    .map_err(|what| Fault::of(name.span(), SceneErrorKind::Texture { path: path.clone(), what }))?
+                texture::decode(Cursor::new(bytes)).map_err(|kind| {
+                    Fault::of(name.span(), SceneErrorKind::Texture(LoadError { path: path.clone(), kind }))
+                })?
             }
         };
         let texture = Shared::new(texture);
@@ -102,7 +103,7 @@ impl<'a> Named<'a> {
         }
         let mut bytes = Vec::new();
         let read = (self.open)(&path).and_then(|file| file.take(LONGEST_TEXTURE).read_to_end(&mut bytes));
-        let decoded = read.map_err(|error| std::format!("{error}")).and_then(|_| decoded(&bytes));
+        let decoded = read.map_err(LoadErrorKind::Read).and_then(|_| texture::decode(Cursor::new(bytes)));
         match decoded {
             Ok(texture) => {
                 let texture = Shared::new(texture);
@@ -137,9 +138,4 @@ fn not_read(path: &Path, name: &Spanned<FileName>, error: io::Error) -> Fault {
 
 fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
-}
-
-/// The texture of a PNG file.
-fn decoded(_bytes: &[u8]) -> Result<Texture, String> {
-    Err(String::from("textures are not read yet"))
 }

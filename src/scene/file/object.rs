@@ -1,10 +1,12 @@
 //! Objects: a mesh, its place, its materials.
 
+use core::ops::Range;
 use std::collections::BTreeMap;
+use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use toml::Spanned;
 
 use super::error::Fault;
@@ -15,8 +17,27 @@ use super::{MOST_TRIANGLES, material};
 use crate::mesh::Mesh;
 use crate::scene::{Object, Shared};
 
-/// A shape by its name, its subdivisions, and the bits of how it is stretched.
-type ShapeKey = (&'static str, Vec<u32>, [u32; 3]);
+/// What is done to a mesh before it is used.
+#[derive(Clone, Copy, PartialEq)]
+struct Change {
+    /// How many times as long it becomes along x, y and z.
+    stretch: Vec3,
+    /// How often textures repeat over it, along u and v.
+    repeat: Vec2,
+}
+
+impl Change {
+    const NONE: Self = Self { stretch: Vec3::ONE, repeat: Vec2::ONE };
+
+    /// What it is told apart by.
+    fn bits(self) -> [u32; 5] {
+        let ([x, y, z], [u, v]) = (self.stretch.to_array(), self.repeat.to_array());
+        [x, y, z, u, v].map(f32::to_bits)
+    }
+}
+
+/// A shape by its name, its subdivisions and its change.
+type ShapeKey = (&'static str, Vec<u32>, [u32; 5]);
 
 /// Makes objects. Those of the same shape share its mesh.
 #[derive(Default)]
@@ -53,14 +74,19 @@ impl Objects {
             (None, Some(positions)) => positions.get_ref().iter().map(List::vec3).collect(),
             (position, None) => [position.map_or(Vec3::ZERO, |position| position.vec3())].into(),
         };
+        let repeat = layout.repeat.as_ref().map_or(Vec2::ONE, |repeat| {
+            let List([u, v]) = *repeat.get_ref();
+            Vec2::new(u.0, v.0)
+        });
+        let change = Change { stretch, repeat };
         let mesh = match (&layout.shape, &layout.model) {
-            (Some(_), None) => self.shape(layout, &span, stretch, positions.len())?,
+            (Some(_), None) => self.shape(layout, &span, change, positions.len())?,
             (None, Some(model)) => {
                 if let Some(subdivisions) = &layout.subdivisions {
                     return Err(Fault::value(subdivisions.span(), "only a shape has subdivisions"));
                 }
                 let mesh = named.model(model)?;
-                if stretch == Vec3::ONE { mesh } else { Shared::new(stretched(&mesh, stretch, layout, &span)?) }
+                if change == Change::NONE { mesh } else { Shared::new(changed(&mesh, change, layout, &span)?) }
             }
             (Some(_), Some(model)) => {
                 return Err(Fault::value(model.span(), "beside a `shape`: an object is one of both"));
@@ -99,8 +125,8 @@ impl Objects {
     fn shape(
         &mut self,
         layout: &ObjectLayout,
-        span: &core::ops::Range<usize>,
-        stretch: Vec3,
+        span: &Range<usize>,
+        change: Change,
         count: usize,
     ) -> Result<Shared<Mesh>, Fault> {
         let Some(shape) = layout.shape.as_ref().map(|name| name.0) else {
@@ -113,15 +139,15 @@ impl Objects {
         // Neither has more than 2²⁶.
         self.triangles = self.triangles.saturating_add(shape.triangles(&subdivisions).saturating_mul(count as u64));
         if self.triangles > MOST_TRIANGLES {
-            let what = format_args!("more than {MOST_TRIANGLES} triangles in the shapes of a scene").to_string();
-            return Err(Fault::value(layout.subdivisions.as_ref().map_or(span.clone(), Spanned::span), what));
+            let span = layout.subdivisions.as_ref().map_or(span.clone(), Spanned::span);
+            return Err(Fault::value(span, format!("more than {MOST_TRIANGLES} triangles in the shapes of a scene")));
         }
-        let key = (shape.name, subdivisions, stretch.to_array().map(f32::to_bits));
+        let key = (shape.name, subdivisions, change.bits());
         if let Some(known) = self.shapes.get(&key) {
             return Ok(known.clone());
         }
         let mesh = shape.mesh(&key.1);
-        let mesh = if stretch == Vec3::ONE { mesh } else { stretched(&mesh, stretch, layout, span)? };
+        let mesh = if change == Change::NONE { mesh } else { changed(&mesh, change, layout, span)? };
         let mesh = Shared::new(mesh);
         self.shapes.insert(key, mesh.clone());
         Ok(mesh)
@@ -153,7 +179,7 @@ impl Objects {
                 let names: Vec<&str> = object.materials.iter().map(|material| material.name.as_str()).collect();
                 let what = match names.as_slice() {
                     [""] => String::from("the object's only material has no name; write `material`"),
-                    names => std::format!("no material of the object; it has {}", names.join(", ")),
+                    names => format!("no material of the object; it has {}", names.join(", ")),
                 };
                 return Err(Fault::value(name.span(), what));
             }
@@ -162,9 +188,19 @@ impl Objects {
     }
 }
 
-fn stretched(mesh: &Mesh, factors: Vec3, layout: &ObjectLayout, span: &core::ops::Range<usize>) -> Result<Mesh, Fault> {
-    mesh.stretched(factors)
-        .map_err(|error| Fault::value(layout.scale.as_ref().map_or(span.clone(), Spanned::span), error))
+fn changed(mesh: &Mesh, change: Change, layout: &ObjectLayout, span: &Range<usize>) -> Result<Mesh, Fault> {
+    let mut mesh = mesh.stretched(change.stretch).map_err(|error| {
+        let span = layout.scale.as_ref().map_or(span.clone(), Spanned::span);
+        Fault::value(span, error)
+    })?;
+    if let Some(repeat) = &layout.repeat {
+        let Some(texcoords) = mesh.texcoords() else {
+            return Err(Fault::value(repeat.span(), "the object has no texture coordinates"));
+        };
+        let texcoords = texcoords.iter().map(|t| *t * change.repeat).collect();
+        mesh = mesh.with_texcoords(texcoords).map_err(|error| Fault::value(repeat.span(), error))?;
+    }
+    Ok(mesh)
 }
 
 /// A file's name without its folder and its extension.
