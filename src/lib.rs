@@ -18,7 +18,7 @@
 //! | [`scene`] | objects, camera, lights | `alloc` |
 //! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
-//! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
+//! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
 //! | `show` | hard cases as pictures: the right way beside the fault | `png`, `embedded-graphics` |
 //! | [`record`] | a frame's triangles in a file, to be replayed | `std` |
 //! | [`verify`] | the hard cases on this machine; a recorded frame through every kernel and method | `std` |
@@ -50,7 +50,7 @@
 //!
 //! The default, `program`, brings all that the program of the same name needs. A library user
 //! writes `default-features = false, features = ["std"]` and adds what is wanted: `asm` and `simd`
-//! (faster spans; without both the crate forbids `unsafe` code), `png`, `image`, `obj`, `window`,
+//! (faster spans; without both the crate forbids `unsafe` code), `png`, `gif`, `image`, `obj`, `window`,
 //! `embedded-graphics` (text and shapes on a frame). With no feature at all `fixed`, `palette`,
 //! `vga`, `span`, `raster` and `integer` remain, which need neither `std` nor an allocator; `alloc`
 //! adds the engine.

@@ -9,8 +9,9 @@ use std::io::Cursor;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use mode13h::palette::{builtin, file};
+use mode13h::palette::{Rgb, builtin, file};
 use mode13h::span::Kernel;
+use support::film::{Decoded, decode};
 use support::tried::Tried;
 use tempfile::TempDir;
 
@@ -125,7 +126,7 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.png", "--kernel", "mmx"], "no such kernel; this machine has portable"),
         (vec!["--kernel", "mmx"], "no such kernel; this machine has portable"),
         (vec!["render", "torus", "-o", "x.png", "--rung", "mirror"], "there are flat, gouraud-8.8"),
-        (vec!["render", "torus", "-o", "x.gif"], "x.gif: "),
+        (vec!["render", "torus", "-o", "x.tif"], "x.tif: no kind of picture"),
         (vec!["render", "torus", "-o", "x"], "x: "),
         (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a row of pictures needs"),
         (vec!["render", "torus", "-o", "x%d.png", "--frames", "0"], "--frames"),
@@ -135,7 +136,14 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.png", "--turn", "NaN"], "--turn"),
         (vec!["render", "torus", "-o", "x.png", "--at", "inf"], "--at"),
         (vec!["render", "torus", "-o", "x.png", "--fps", "0"], "--fps"),
+        (vec!["render", "torus", "-o", "x.png", "--turn", "9", "--fps", "9"], "x.png: both --turn and --fps"),
         (vec!["render", "torus", "-o", "x.png", "--up", "x"], "--up"),
+        (vec!["render", "torus", "-o", "x.gif", "--rgb"], "x.gif: a GIF has a palette"),
+        (vec!["render", "torus", "-o", "x%04d.gif"], "x%04d.gif: a film is one file"),
+        (vec!["render", "torus", "-o", "x.gif", "--fps", "60"], "x.gif: a GIF shows 0.1 to 50 frames a second, not 60"),
+        (vec!["render", "torus", "-o", "x.gif", "--fps", "0.05"], "x.gif: a GIF shows 0.1 to 50 frames a second"),
+        (vec!["render", "torus", "-o", "x.gif", "--frames", "0"], "--frames"),
+        (vec!["render", "torus", "-o", "x.gif", "--record", "r.txt"], "r.txt: a row of records needs"),
         (vec!["palette", "grey", "-o", "x.txt"], "x.txt: "),
         (vec!["verify", "--xml"], "--xml"),
         (vec!["torus", "cube"], "unexpected argument 'cube' found"),
@@ -155,7 +163,7 @@ fn wrong_words_end_with_2() {
 
 #[test]
 fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
-    let mut tried = Tried::new("f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind", 7);
+    let mut tried = Tried::new("f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind", 8);
     let directory = directory();
     fs::create_dir(directory.path().join("x.png")).expect("made");
     for (out, says) in [
@@ -170,6 +178,12 @@ fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
         &run(&directory, &["render", "torus", "-o", "none/%d.png", "--frames", "9"]),
         1,
         "none does not exist",
+    );
+    tried.add(1);
+    assert_fails(
+        &run(&directory, &["render", "torus", "-o", "none/x.gif"]),
+        1,
+        "none/x.gif: the directory none does not",
     );
     tried.add(1);
     assert_fails(&run(&directory, &["palette", "grey", "-o", "none/x.pal"]), 1, "none does not exist");
@@ -326,6 +340,168 @@ fn t1_a_frame_of_a_row_is_the_frame_drawn_alone() {
     assert_eq!(read(&directory, "time2.png"), read(&directory, "alone.png"));
     tried.add(1);
     assert_ne!(read(&directory, "time0.png"), read(&directory, "alone.png"));
+    tried.add(1);
+}
+
+/// As [`succeed`], for a film: the line that was printed, and the film.
+#[track_caller]
+fn film(directory: &TempDir, words: &[&str]) -> (String, Decoded) {
+    let output = run(directory, &[&["render"], words].concat());
+    assert!(output.status.success() && output.stderr.is_empty(), "{words:?}: {output:?}");
+    let line = String::from_utf8(output.stdout).expect("text");
+    assert_eq!(line.find('\n'), Some(line.len() - 1), "more than one line: {line}");
+    (line, decode(&read(directory, "x.gif")))
+}
+
+#[test]
+fn a_film_is_one_turn_of_four_seconds_in_the_shape_of_the_screen() {
+    let directory = directory();
+    let (line, film) = film(&directory, &["cube", "-o", "x.gif"]);
+    assert_eq!(names_in(directory.path()), ["x.gif"]);
+    let bytes = read(&directory, "x.gif").len();
+    let figures = "640 x 480 pixels, 140 frames, 4.00 s, delays 120 x 30 ms + 20 x 20 ms";
+    assert_eq!(line, format!("x.gif: {figures}, {bytes} bytes\n"));
+    assert_eq!((film.width, film.height, film.images.len()), (640, 480, 140));
+    for (i, image) in film.images.iter().enumerate() {
+        assert_eq!(image.delay, if i % 7 == 6 { 2 } else { 3 }, "image {i}");
+    }
+}
+
+#[test]
+fn a_film_is_as_long_fast_large_and_colorful_as_asked_for() {
+    let directory = directory();
+    for (words, size, frames, hundredths) in [
+        (vec!["--fps", "10"], (640, 480), 40, 400),
+        (vec!["--fps", "50", "--frames", "4"], (640, 480), 4, 8),
+        (vec!["--frames", "3", "--scale", "1"], (320, 200), 3, 9),
+        (vec!["--frames", "1", "--scale", "5x6"], (1600, 1200), 1, 3),
+        (vec!["--frames", "5", "--scale", "33x44", "--palette", "copper"], (33, 44), 5, 15),
+    ] {
+        let (line, film) = film(&directory, &[&["teapot", "-o", "x.gif"], &words[..]].concat());
+        assert_eq!((film.width, film.height, film.images.len()), (size.0, size.1, frames), "{words:?}");
+        assert_eq!(film.images.iter().map(|image| image.delay).sum::<u64>(), hundredths, "{words:?}");
+        let palette = if words.contains(&"copper") { "copper" } else { "grey" };
+        let palette = builtin::by_name(palette).expect("a built-in").palette.on_dac();
+        assert_eq!(film.palette, palette.colors());
+        let said = format!(": {} x {} pixels, {frames} frame", size.0, size.1);
+        assert!(line.contains(&said), "{line}");
+    }
+    let (line, film) = film(&directory, &["teapot", "-o", "x.gif", "--turn", "0", "--fps", "20"]);
+    assert!(line.contains("80 frames in 1 image, 4.00 s, delays 1 x 4000 ms,"), "{line}");
+    assert_eq!((film.images.len(), film.images[0].delay), (1, 400));
+}
+
+#[test]
+fn a_film_shows_the_frames_of_the_row_of_pictures() {
+    let directory = directory();
+    let colors = |name: &str| -> Vec<Rgb> {
+        let mut reader = png::Decoder::new(Cursor::new(read(&directory, name))).read_info().expect("a PNG");
+        let palette = reader.info().palette.as_deref().expect("a palette").to_vec();
+        let mut pixels = vec![0; 333 * 222];
+        reader.next_frame(&mut pixels).expect("its pixels");
+        let color = |&index: &u8| {
+            Rgb::new(
+                palette[usize::from(index) * 3],
+                palette[usize::from(index) * 3 + 1],
+                palette[usize::from(index) * 3 + 2],
+            )
+        };
+        pixels.iter().map(color).collect()
+    };
+    let look = ["--scale", "333x222", "--palette", "copper", "--frames", "9"];
+    for (of_film, of_row) in [
+        (vec![], vec!["--turn", "360"]),
+        (vec!["--turn", "-40", "--at", "0.7"], vec!["--turn", "-40", "--at", "0.7"]),
+        (vec!["--fps", "12"], vec!["--turn", "360"]),
+    ] {
+        succeed(&directory, &[&["render", "torus", "-o", "x%d.png"], &look[..], &of_row[..]].concat());
+        let (_, film) = film(&directory, &[&["torus", "-o", "x.gif"], &look[..], &of_film[..]].concat());
+        assert_eq!(film.images.len(), 9);
+        for (i, image) in film.images.iter().enumerate() {
+            assert!(image.shown == colors(&format!("x{i}.png")), "frame {i} of {of_film:?}");
+        }
+    }
+}
+
+#[test]
+fn a_film_is_the_same_whatever_the_number_of_threads() {
+    let directory = directory();
+    let films = ["1", "2", "7"].map(|threads| {
+        let words = ["torus", "-o", "x.gif", "--frames", "61", "--scale", "1", "--threads", threads];
+        let (_, film) = film(&directory, &words);
+        assert_eq!(film.images.len(), 61);
+        read(&directory, "x.gif")
+    });
+    assert!(films.iter().all(|film| *film == films[0]));
+}
+
+#[test]
+fn a_film_has_its_figures_and_records() {
+    let directory = directory();
+    let words = ["render", "cube", "-o", "x.gif", "--frames", "3", "--stats", "--record", "r%d.txt"];
+    let output = run(&directory, &words);
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(String::from_utf8(output.stderr).expect("text").lines().count(), 3);
+    assert_eq!(names_in(directory.path()), ["r0.txt", "r1.txt", "r2.txt", "x.gif"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn f4_an_interrupted_film_leaves_nothing_behind() {
+    let mut tried = Tried::new("f4_an_interrupted_film_leaves_nothing_behind", 6);
+    for (before, signal) in [(None, "-INT"), (Some("what stood there"), "-TERM")] {
+        let directory = directory();
+        if let Some(before) = before {
+            fs::write(directory.path().join("x.gif"), before).expect("written");
+        }
+        let names = names_in(directory.path());
+        let mut child = program(&directory)
+            .args(["render", "torus", "-o", "x.gif", "--frames", "1000000", "--record", "r%d.txt"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("started");
+        // Until some of it is there, beside its name.
+        let is_begun = |name: &str| {
+            let length = fs::metadata(directory.path().join(name)).map_or(0, |metadata| metadata.len());
+            name.starts_with('.') && length > 100_000
+        };
+        while !names_in(directory.path()).iter().any(|name| is_begun(name)) {
+            assert!(child.try_wait().expect("waited").is_none(), "ended by itself");
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("started");
+        assert!(killed.success());
+        let output = child.wait_with_output().expect("waited");
+        assert_fails(&output, 130, "interrupted");
+        tried.add(1);
+        let mut left = names_in(directory.path());
+        // Of the records each is whole.
+        left.retain(|name| !(name.starts_with('r') && name.ends_with(".txt")));
+        assert_eq!(left, names);
+        tried.add(1);
+        assert_eq!(fs::read_to_string(directory.path().join("x.gif")).ok().as_deref(), before);
+        tried.add(1);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn f4_a_film_that_no_longer_fits_leaves_the_old_one_whole() {
+    let mut tried = Tried::new("f4_a_film_that_no_longer_fits_leaves_the_old_one_whole", 3);
+    let directory = directory();
+    fs::write(directory.path().join("x.gif"), "what stood there").expect("written");
+    // Files may grow to 200 blocks of 512 or 1,024 bytes, which the first frames fit in and the film does not.
+    let output = Command::new("sh")
+        .args(["-c", r#"ulimit -f 200; trap "" XFSZ; exec "$0" render torus -o x.gif"#, env!("CARGO_BIN_EXE_mode13h")])
+        .current_dir(&directory)
+        .output()
+        .expect("started");
+    assert_fails(&output, 1, "x.gif: ");
+    tried.add(1);
+    assert_eq!(read(&directory, "x.gif"), b"what stood there");
+    tried.add(1);
+    assert_eq!(names_in(directory.path()), ["x.gif"]);
     tried.add(1);
 }
 

@@ -11,12 +11,15 @@
 //! | [`builtin`] | the palettes that are compiled in, by name |
 //! | [`Search`], [`Nearest`] | the nearest entry of any palette: exactly, and by a table of 5 bits a channel (`alloc`) |
 //! | [`Table`] | 64 KiB from two bytes to a third: shaded texels, fog, glass (`alloc`) |
+//! | [`auto`] | a palette made for the materials of a model (`alloc`) |
 //! | [`mod@file`] | JASC, GIMP, Adobe, Lospec and raw VGA files |
 //!
 //! A palette has 8 bits a channel, the card 6. A palette keeps the 8 bits it was given, so that a
 //! file is written as it was read; [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down
 //! to 6, and the scan-out expands to 8 again. [`Palette::on_dac`] shows what comes out.
 
+#[cfg(feature = "alloc")]
+pub mod auto;
 mod bios;
 pub mod builtin;
 pub mod cube;

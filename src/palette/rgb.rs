@@ -105,6 +105,13 @@ impl Rgb {
         Self::new(mix(self.r, other.r, share), mix(self.g, other.g, share), mix(self.b, other.b, share))
     }
 
+    /// This colour in a light, or on a surface, of the other: `a·b/255` a channel, to the nearest.
+    #[must_use]
+    #[inline]
+    pub const fn modulate(self, other: Self) -> Self {
+        Self::new(mix(0, self.r, other.r), mix(0, self.g, other.g), mix(0, self.b, other.b))
+    }
+
     /// The sum of two colours, each channel at most 255.
     #[must_use]
     #[inline]

@@ -146,7 +146,7 @@ impl Rules<'_> {
             Since::New => Decision::on(Why::FirstFrame),
             Since::Changed => Decision::on(Why::Changed),
             Since::Unchanged if self.inputs.keeps => Decision::off(Why::Unchanged),
-            Since::Unchanged => Decision::on(Why::Forced),
+            Since::Unchanged => Decision::on(Why::NotKept),
         }
     }
 
@@ -217,7 +217,7 @@ impl Rules<'_> {
         }
         match self.inputs.rung {
             Rung::Flat => Decision::off(Why::FlatAsked),
-            Rung::PhongTable | Rung::Phong => Decision::off(Why::Asked).choosing(self.inputs.rung.name()),
+            rung if rung.lights_pixels() && !self.inputs.integer => Decision::off(Why::Asked).choosing(rung.name()),
             rung => Decision::on(Why::ShadesDiffer).choosing(rung.name()),
         }
     }
@@ -234,7 +234,7 @@ impl Rules<'_> {
 
     fn phong(&self) -> Decision {
         match self.inputs.rung {
-            rung @ (Rung::PhongTable | Rung::Phong) => Decision::on(Why::Asked).choosing(rung.name()),
+            rung if rung.lights_pixels() => Decision::on(Why::Asked).choosing(rung.name()),
             _ => Decision::off(Why::NotAsked).choosing(""),
         }
     }

@@ -17,6 +17,8 @@ pub enum Why {
     Changed,
     /// Nothing that it depends on changed since the last frame.
     Unchanged,
+    /// Vertices are not kept from frame to frame.
+    NotKept,
     /// How near the object comes, and where the near plane is.
     Nearest {
         /// The least distance of its bounds along the view.
@@ -151,6 +153,7 @@ impl Why {
             Self::FirstFrame => "the first frame".to_string(),
             Self::Changed => "it, the camera or its light changed since the last frame".to_string(),
             Self::Unchanged => "nothing it depends on changed since the last frame".to_string(),
+            Self::NotKept => "vertices are not kept".to_string(),
             Self::Nearest { nearest, near } if nearest > near => {
                 format!("its bounds come no nearer than {nearest:.3}; the near plane is at {near:.3}")
             }

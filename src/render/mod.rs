@@ -9,11 +9,13 @@
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `stats` | what a frame came to |
+//! | `automatic` | a palette for a model, from what is seen of it over a turn |
 //!
 //! The [`plan`](crate::plan) says which stages an object goes through: its vertices are transformed,
 //! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
 //! be and left out where they are turned away; the [`raster`](crate::raster) draws what is left.
 
+mod automatic;
 mod clip;
 mod face;
 mod integer;
@@ -41,10 +43,11 @@ use crate::plan::{Effect, Forced, Inputs, Plan, Since, decide, sort_by_depth};
 use crate::raster::effects::Attributes;
 use crate::raster::scan_line::Lists;
 use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
-use crate::scene::Scene;
+use crate::scene::{Scene, Wishes};
 pub use crate::scene::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung};
 use crate::span::Kernel;
 use crate::vga::Vga;
+pub use automatic::{Seen, automatic, seen};
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use stats::Stats;
@@ -122,6 +125,8 @@ struct Drawing {
     screen: Screen,
     background: u8,
     hidden_surfaces: HiddenSurfaces,
+    mapping: Option<Mapping>,
+    wishes: Wishes,
     order: Vec<usize>,
     /// As tables are made from it, and ramps lie in it.
     palette: Option<Palette>,
@@ -355,23 +360,23 @@ impl Renderer {
             mapping: self.mapping.or(scene.wishes.mapping),
             whole,
             integer: self.vertex_path == VertexPath::Integer,
-            keeps: self.may_keep(),
+            keeps: self.may_keep() && self.vertex_path == VertexPath::Float,
         };
         let states = &self.states;
         decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.plan);
 
-        let drawing = (screen, scene.background, self.plan.hidden_surfaces());
+        let drawing = (screen, scene.background, self.plan.hidden_surfaces(), self.mapping, scene.wishes);
         let palette = scene.palette.as_ref().or(shown);
         let same = self.drawing.as_ref().is_some_and(|last| {
-            (last.screen, last.background, last.hidden_surfaces) == drawing
+            (last.screen, last.background, last.hidden_surfaces, last.mapping, last.wishes) == drawing
                 && last.order == self.plan.order
                 && last.palette.as_ref() == palette
         });
         let mut changed = !same;
         if !same {
-            let (screen, background, hidden_surfaces) = drawing;
+            let (screen, background, hidden_surfaces, mapping, wishes) = drawing;
             let (order, palette) = (self.plan.order.clone(), palette.cloned());
-            self.drawing = Some(Drawing { screen, background, hidden_surfaces, order, palette });
+            self.drawing = Some(Drawing { screen, background, hidden_surfaces, mapping, wishes, order, palette });
         }
 
         let mut stats = Stats::new(rung, self.vertex_path, self.kernel, self.plan.hidden_surfaces());

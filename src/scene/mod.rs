@@ -14,6 +14,7 @@
 //! | `wishes` | [`Wishes`]: rung, hidden surfaces, mapping, tessellation, dither |
 //! | `names` | choices that are typed by name |
 //! | `file` | scenes as TOML files (feature `scene-files`) |
+//! | `shipped` | those that are compiled in (feature `scene-files`) |
 
 mod animation;
 mod camera;
@@ -23,6 +24,8 @@ mod fog;
 mod motion;
 mod names;
 mod object;
+#[cfg(feature = "scene-files")]
+pub mod shipped;
 mod wishes;
 
 use alloc::string::String;

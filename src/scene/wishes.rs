@@ -61,6 +61,14 @@ named! {
     pub struct UnknownMapping;
 }
 
+impl Rung {
+    /// Whether light is worked out at every pixel, and not at the vertices or for a face.
+    #[must_use]
+    pub const fn lights_pixels(self) -> bool {
+        matches!(self, Self::PhongTable | Self::Phong)
+    }
+}
+
 /// What a scene asks for. The default asks for nothing: the plan then chooses the cheapest that is
 /// right.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]

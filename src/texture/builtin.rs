@@ -76,7 +76,7 @@ fn noise(x: i32, y: i32, bits: (u32, u32), seed: u32) -> i32 {
     // How far into the cell, 0 to 255, eased: 3t² − 2t³.
     let ease = |v: i32, bits: u32| {
         let t = ((v & ((1 << bits) - 1)) << 8) >> bits;
-        t * t * (768 - 2 * t) >> 16
+        (t * t * (768 - 2 * t)) >> 16
     };
     let (tx, ty) = (ease(x, bits.0), ease(y, bits.1));
     let at = |dx: i32, dy: i32| hash((cx + dx) & (columns - 1), (cy + dy) & (rows - 1), seed);

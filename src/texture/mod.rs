@@ -146,7 +146,7 @@ impl Texture {
         // Sides are at most 4,096.
         let mut pixels = resample::by_area(pixels, width as usize, 1 << width_bits, 1 << height_bits);
         // Bottom row first.
-        let half = pixels.len() / 2 >> width_bits << width_bits;
+        let half = pixels.len() >> (width_bits + 1) << width_bits;
         let (top, bottom) = pixels.split_at_mut(half);
         let rows = top.chunks_exact_mut(1 << width_bits).zip(bottom.rchunks_exact_mut(1 << width_bits));
         rows.for_each(|(row, other)| row.swap_with_slice(other));
@@ -174,6 +174,13 @@ impl Texture {
     #[inline]
     pub fn colors(&self) -> &[Rgb; 256] {
         &self.colors
+    }
+
+    /// Its colours on a surface of another: [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White
+    /// leaves them as they are.
+    #[must_use]
+    pub fn tinted(&self, tint: Rgb) -> [Rgb; 256] {
+        self.colors.map(|color| color.modulate(tint))
     }
 
     /// The logarithm of the width: 0 to 8.

@@ -2,6 +2,8 @@
 #![expect(dead_code, unreachable_pub, reason = "each test file is a program of its own and uses its part")]
 
 pub mod display;
+#[cfg(feature = "gif")]
+pub mod film;
 pub mod naive_span;
 pub mod oracle;
 pub mod property;

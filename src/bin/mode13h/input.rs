@@ -1,5 +1,6 @@
 //! From the words INPUT and FILE|NAME to a mesh and a palette.
 
+use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Read};
@@ -9,6 +10,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::mesh::{Mesh, obj, shapes};
 use mode13h::palette::{Palette, builtin, file};
+use mode13h::texture::{self, Texture};
 
 use crate::failure::Failure;
 
@@ -46,6 +48,21 @@ pub(crate) fn model(words: &OsStr) -> Result<Model, Failure> {
         return Err(Failure::work(format!("{}: {reason}", path.display())));
     };
     Ok(Model { name, mesh })
+}
+
+/// For each surface of a model its texture, if it names one that can be read. One that cannot is a warning, a line on
+/// standard error, and the surface is drawn without it. Files named by several surfaces are read once.
+pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Texture>> {
+    let mut read: HashMap<&str, Option<Texture>> = HashMap::new();
+    let textures = mesh.surfaces().iter().map(|surface| {
+        let path = surface.texture.as_deref()?;
+        let texture = read.entry(path).or_insert_with(|| {
+            let loaded = texture::load(path);
+            loaded.map_err(|error| eprintln!("mode13h: {}", Failure::work(format!("{error}; drawn without")))).ok()
+        });
+        texture.clone()
+    });
+    textures.collect()
 }
 
 /// Loads a model; if that takes longer than a moment and standard error is a terminal, with a bar there.

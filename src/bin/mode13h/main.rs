@@ -2,6 +2,7 @@
 
 mod demo;
 mod failure;
+mod film;
 mod input;
 mod options;
 mod output;
@@ -34,9 +35,9 @@ enum Command {
     /// Turn a model in a window; so do `mode13h` and `mode13h INPUT`
     #[command(after_help = demo::KEYS)]
     Demo(demo::Options),
-    /// Write a picture of a model, or a numbered row of them
+    /// Write a picture of a model, a numbered row of them, or a film
     Render(render::Options),
-    /// Look at a palette, or convert it
+    /// Look at a palette, convert it, or make one for a model
     Palette(palette::Options),
     /// Draw a hard case 16 times enlarged: the right way beside the fault it guards against
     Show(show::Options),

@@ -30,9 +30,18 @@ pub(crate) struct Drawing {
 
 /// The axis of a model that points up: y in most, z in those from CAD and geography.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Up {
+pub(crate) enum Up {
     Y,
     Z,
+}
+
+impl From<Up> for UpAxis {
+    fn from(up: Up) -> UpAxis {
+        match up {
+            Up::Y => UpAxis::Y,
+            Up::Z => UpAxis::Z,
+        }
+    }
 }
 
 impl Drawing {
@@ -56,10 +65,7 @@ impl Drawing {
     }
 
     pub(crate) fn up_axis(&self) -> UpAxis {
-        match self.up {
-            Up::Y => UpAxis::Y,
-            Up::Z => UpAxis::Z,
-        }
+        self.up.into()
     }
 
     /// The palette, and what to call it.
