@@ -16,6 +16,7 @@ pub mod obj;
 mod orientation;
 pub mod shapes;
 mod split;
+mod stretch;
 mod surface;
 mod topology;
 mod wide;

@@ -13,13 +13,19 @@
 //! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
 //! | `wishes` | [`Wishes`]: rung, hidden surfaces, mapping, tessellation, dither |
 //! | `names` | choices that are typed by name |
+//! | `file` | scenes as TOML files (feature `scene-files`) |
+//! | `shipped` | those that are compiled in (feature `scene-files`) |
 
 mod animation;
 mod camera;
+#[cfg(feature = "scene-files")]
+pub mod file;
 mod fog;
 mod motion;
 mod names;
 mod object;
+#[cfg(feature = "scene-files")]
+pub mod shipped;
 mod wishes;
 
 use alloc::string::String;
@@ -30,7 +36,7 @@ use glam::Vec3;
 
 use crate::light::Light;
 use crate::mesh::Mesh;
-use crate::palette::{Palette, builtin};
+use crate::palette::{Palette, Rgb, builtin};
 use crate::vga::Vga;
 pub use animation::PaletteAnimation;
 pub use camera::Camera;
@@ -74,6 +80,9 @@ pub struct Scene {
     pub ambient: f32,
     /// The index that the frame is cleared to.
     pub background: u8,
+    /// The colour that [`background`](Self::background) was chosen for, if it was: with another palette another entry
+    /// is nearest to it.
+    pub background_color: Option<Rgb>,
     /// What the DAC is set to when the scene is drawn; with `None` it is left alone.
     pub palette: Option<Palette>,
     /// What happens to the palette as time passes.
@@ -84,13 +93,16 @@ pub struct Scene {
     pub wishes: Wishes,
     /// How things move; [`set_time`](Self::set_time) puts them where they are.
     pub motions: Vec<Motion>,
+    /// How long one round of it takes, in seconds; above 0. A film of that length that is played again and again has
+    /// no seam, if its motions take whole parts of it.
+    pub duration: f64,
     time: f64,
     objects: Vec<Object>,
     lights: Vec<Light>,
 }
 
 impl Scene {
-    /// An empty scene, dark but for ambient light, in greys, seen by the default camera.
+    /// An empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four seconds.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -98,11 +110,13 @@ impl Scene {
             camera: Camera::default(),
             ambient: 1.0,
             background: 0,
+            background_color: None,
             palette: Some(builtin::GREY.clone()),
             palette_animation: None,
             fog: None,
             wishes: Wishes::default(),
             motions: Vec::new(),
+            duration: 4.0,
             time: 0.0,
             objects: Vec::new(),
             lights: Vec::new(),

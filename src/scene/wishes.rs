@@ -86,6 +86,8 @@ pub struct Wishes {
     pub dither: bool,
     /// How many shades of error are accepted. Kept for the budget; nothing looks at it yet.
     pub max_error: Option<f32>,
+    /// The palette is to be made from the scene's materials.
+    pub auto_palette: bool,
 }
 
 impl Wishes {

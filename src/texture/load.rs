@@ -2,7 +2,7 @@
 
 use core::fmt;
 use std::fs::File;
-use std::io::{self, BufReader};
+use std::io::{self, BufRead, BufReader, Seek};
 use std::path::{Path, PathBuf};
 use std::string::{String, ToString};
 use std::vec::Vec;
@@ -38,12 +38,17 @@ pub enum LoadErrorKind {
 
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: ", self.path.display())?;
-        match &self.kind {
-            LoadErrorKind::Read(error) => write!(f, "{error}"),
-            LoadErrorKind::NotAFile => f.write_str("not a file"),
-            LoadErrorKind::Picture(reason) => write!(f, "no PNG that can be read: {reason}"),
-            LoadErrorKind::Texture(error) => write!(f, "{error}"),
+        write!(f, "{}: {}", self.path.display(), self.kind)
+    }
+}
+
+impl fmt::Display for LoadErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read(error) => write!(f, "{error}"),
+            Self::NotAFile => f.write_str("not a file"),
+            Self::Picture(reason) => write!(f, "no PNG that can be read: {reason}"),
+            Self::Texture(error) => write!(f, "{error}"),
         }
     }
 }
@@ -75,7 +80,15 @@ fn read(path: &Path) -> Result<Texture, LoadErrorKind> {
     if !file.metadata().map_err(LoadErrorKind::Read)?.is_file() {
         return Err(LoadErrorKind::NotAFile);
     }
-    let mut reader = ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(LoadErrorKind::Read)?;
+    decode(BufReader::new(file))
+}
+
+/// As [`load`], of a file that is in memory or comes from elsewhere.
+///
+/// # Errors
+/// As [`load`].
+pub fn decode(file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
+    let mut reader = ImageReader::new(file).with_guessed_format().map_err(LoadErrorKind::Read)?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(Texture::MAX_PICTURE_SIDE);
     limits.max_image_height = Some(Texture::MAX_PICTURE_SIDE);

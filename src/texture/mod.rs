@@ -5,7 +5,7 @@
 //! | [`Texture`] | texels of powers of two, and up to 256 colours of their own |
 //! | [`Texture::from_rgb`] | from a picture of any size: resampled, its colours reduced |
 //! | [`Texture::by_name`] | those that are compiled in: crate, checker, bricks, sky |
-//! | `load` | from a PNG file (feature `image`) |
+//! | `load`, `decode` | from a PNG file (feature `image`) |
 //!
 //! A texel is shaded by a table that [`Table::shades`](crate::palette::Table::shades) makes from a
 //! palette and the texture's colours, so a texture knows nothing of any palette.
@@ -22,7 +22,7 @@ use core::fmt;
 use crate::palette::median_cut::MedianCut;
 use crate::palette::{Rgb, Search};
 #[cfg(feature = "image")]
-pub use load::{LoadError, LoadErrorKind, load};
+pub use load::{LoadError, LoadErrorKind, decode, load};
 
 /// Why texels, or pixels, are no texture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
