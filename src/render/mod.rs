@@ -621,9 +621,13 @@ impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
             self.transparent.push(Kept { vertices, attributes, object: self.object, surface });
             return;
         }
-        *self.drawn += self
-            .looks
-            .with(self.object, surface, |look| self.raster.triangle_with_effects(vertices, attributes, look));
+        *self.drawn += self.looks.with(self.object, surface, |look| {
+            if CLIPS {
+                self.raster.triangle_with_effects(vertices, attributes, look)
+            } else {
+                self.raster.triangle_with_effects_inside(vertices, attributes, look)
+            }
+        });
     }
 }
 

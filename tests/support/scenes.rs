@@ -66,7 +66,11 @@ pub fn all() -> Vec<(&'static str, Scene)> {
     columns.fog = Some(Fog { color: Rgb::new(128, 128, 128), start: 3.0, end: 10.0 });
     scenes.push(("fog", columns));
 
-    let mut crates = showing("wall");
+    let mut near = showing("torus");
+    near.camera.eye *= 0.6;
+    scenes.push(("beyond the edges", near));
+
+    let mut crates = Scene::showing(shapes::wall(1, 1));
     material(&mut crates, 0).texture = texture("crate");
     crates.objects_mut()[0].set_angles([0.0, 1.1, 0.0]);
     scenes.push(("texture", crates.clone()));
