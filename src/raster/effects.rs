@@ -533,8 +533,28 @@ pub(crate) fn paint_row(
 impl<D: Cell> Raster<'_, D> {
     /// Draws a triangle with effects. The order of the corners and their winding make no difference; a
     /// triangle without area draws nothing.
-    #[inline(never)]
     pub fn triangle_with_effects(
+        &mut self,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        look: &Look<'_>,
+    ) -> Drawn {
+        self.draw_effects::<true>(vertices, attributes, look)
+    }
+
+    /// The same for a triangle that lies wholly inside the frame, as
+    /// [`triangle_inside`](Self::triangle_inside).
+    pub fn triangle_with_effects_inside(
+        &mut self,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        look: &Look<'_>,
+    ) -> Drawn {
+        self.draw_effects::<false>(vertices, attributes, look)
+    }
+
+    #[inline(never)]
+    fn draw_effects<const CLIPS: bool>(
         &mut self,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
@@ -543,7 +563,8 @@ impl<D: Cell> Raster<'_, D> {
         let triangle = Ordered::new(vertices);
         let mut drawn = Drawn::default();
         let (mut paint, mut plane) = (None, None);
-        triangle.rows(self.frame.width(), self.clip, |row| {
+        let (width, clip) = (self.frame.width(), self.clip);
+        let draw = |row: Row| {
             drawn.covered += (row.x1 - row.x0) as u32;
             let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };
@@ -554,7 +575,8 @@ impl<D: Cell> Raster<'_, D> {
             let Some(depths) = depth.row_mut(y) else { return };
             let plane = &*plane.get_or_insert_with(|| DepthPlane::new(&triangle));
             paint.row(&row, pixels, Some((depths, plane)), self.kernel, &mut drawn);
-        });
+        };
+        if CLIPS { triangle.rows(width, clip, draw) } else { triangle.rows_inside(draw) }
         drawn
     }
 }

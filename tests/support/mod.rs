@@ -8,5 +8,6 @@ pub mod naive_span;
 pub mod oracle;
 pub mod property;
 pub mod random;
+pub mod scenes;
 pub mod triangles;
 pub mod tried;

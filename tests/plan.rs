@@ -1,0 +1,232 @@
+//! The plan: only what a scene calls for is computed, and that changes no picture.
+
+mod support;
+
+use mode13h::plan::{Class, Effect};
+use mode13h::render::{HiddenSurfaces, Renderer, Stats};
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+use support::scenes;
+use support::tried::Tried;
+
+/// The frame of a new renderer, prepared by `prepare`.
+fn draw(scene: &Scene, prepare: impl FnOnce(&mut Renderer)) -> (Vec<u8>, Stats, Renderer) {
+    let mut renderer = Renderer::new();
+    prepare(&mut renderer);
+    let mut vga = Vga::new();
+    let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
+    (vga.pixels().to_vec(), stats, renderer)
+}
+
+fn differing(a: &[u8], b: &[u8]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
+}
+
+/// Which effects a scene's objects call for.
+fn called_for(renderer: &Renderer, effect: Effect) -> bool {
+    renderer.plan().is_on_anywhere(effect)
+}
+
+#[test]
+fn every_effect_is_called_for_by_a_scene_and_not_by_another() {
+    let mut tried = Tried::new("every_effect_is_called_for_by_a_scene_and_not_by_another", 19);
+    let plans: Vec<_> = scenes::all().iter().map(|(_, scene)| draw(scene, |_| ()).2).collect();
+    for effect in Effect::ALL {
+        let on = plans.iter().filter(|renderer| called_for(renderer, effect)).count();
+        if effect == Effect::Transform {
+            assert_eq!(on, plans.len(), "every first frame is transformed");
+        } else {
+            assert!(on > 0 && on < plans.len(), "{effect}: on in {on} of {} scenes", plans.len());
+        }
+        tried.add(1);
+    }
+}
+
+/// Proof (a) for effects that save work: always doing the full work changes no byte.
+#[test]
+fn the_full_work_gives_the_same_bytes() {
+    let mut tried = Tried::new("the_full_work_gives_the_same_bytes", 200);
+    for (name, scene) in scenes::all() {
+        let (expected, stats, chosen) = draw(&scene, |_| ());
+        // What saves work by being on: culling, and hidden surfaces without depths.
+        let (full, _, _) = draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
+        let covered_twice = differing(&expected, &full);
+        assert!(covered_twice == 0, "{name}, depth buffer: {covered_twice} pixels differ");
+        for effect in Effect::ALL {
+            if effect.class() != Class::SavesWork {
+                continue;
+            }
+            let on = effect != Effect::BackFaceCulling;
+            if !on && called_for(&chosen, Effect::NearClipping) {
+                // The near plane cuts the body open, and its inside, which is never drawn, would show.
+                continue;
+            }
+            let (bytes, forced, renderer) = draw(&scene, |renderer| {
+                renderer.force(effect, Some(on));
+                if !on {
+                    renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+                }
+            });
+            assert!(renderer.plan().objects().iter().all(|plan| plan.is_on(effect) == on), "{name}: {effect} is forced");
+            let differ = differing(&expected, &bytes);
+            // Neither side of a face that is seen on its edge to within rounding is nearer: of equal depths
+            // the first submitted is drawn, and a back face may be that.
+            let allowed = if on { 0 } else { forced.faces as usize / 100 };
+            assert!(differ <= allowed, "{name}, {effect} forced: {differ} pixels differ");
+            tried.add(1);
+        }
+        assert_eq!(stats.hidden_surfaces, chosen.plan().hidden_surfaces());
+    }
+}
+
+/// Proof (a) for effects that change the picture: on neutral input they change no byte.
+#[test]
+fn neutral_input_gives_the_same_bytes() {
+    let mut tried = Tried::new("neutral_input_gives_the_same_bytes", 80);
+    for (name, scene) in scenes::all() {
+        let (expected, _, chosen) = draw(&scene, |_| ());
+        for effect in
+            [Effect::Texture, Effect::EnvironmentMap, Effect::Transparency, Effect::Dither, Effect::PaletteAnimation]
+        {
+            if called_for(&chosen, effect) {
+                continue;
+            }
+            let (bytes, stats, renderer) = draw(&scene, |renderer| renderer.force(effect, Some(true)));
+            assert!(called_for(&renderer, effect), "{name}: {effect} is forced");
+            let differ = differing(&expected, &bytes);
+            assert!(differ == 0, "{name}, {effect} on neutral input: {differ} pixels differ");
+            let ran = match effect {
+                // An image that is mixed from channels is the channels themselves.
+                Effect::Texture | Effect::EnvironmentMap => stats.raster.textured + stats.raster.mixed,
+                Effect::Transparency => stats.raster.blended,
+                Effect::Dither => stats.raster.dithered,
+                _ => 1,
+            };
+            assert!(ran > 0, "{name}, {effect}: it ran");
+            tried.add(1);
+        }
+    }
+}
+
+/// Proof (b): the counters of what is off are zero, and those of what is on are not.
+#[test]
+fn counters_of_what_is_off_are_zero() {
+    let mut tried = Tried::new("counters_of_what_is_off_are_zero", 20);
+    for (name, scene) in scenes::all() {
+        let (_, stats, renderer) = draw(&scene, |_| ());
+        let raster = stats.raster;
+        let on = |effect| called_for(&renderer, effect);
+        let counters = [
+            (Effect::Transform, stats.vertices),
+            (Effect::Texture, if on(Effect::EnvironmentMap) { 0 } else { u64::from(raster.textured) }),
+            (Effect::EnvironmentMap, if on(Effect::Texture) { 0 } else { u64::from(raster.textured) }),
+            (Effect::Fog, u64::from(raster.fogged)),
+            (Effect::Transparency, u64::from(raster.blended)),
+            (Effect::RgbChannels, u64::from(raster.mixed)),
+            (Effect::Dither, u64::from(raster.dithered)),
+            (Effect::Phong, u64::from(raster.lit)),
+        ];
+        for (effect, count) in counters {
+            assert_eq!(count > 0, on(effect), "{name}, {effect}: {count}, in {stats}");
+        }
+        let depth = renderer.plan().hidden_surfaces() == HiddenSurfaces::DepthBuffer;
+        assert_eq!(raster.tested > 0, depth, "{name}: {stats}");
+        if !on(Effect::Lighting) {
+            assert_eq!(stats.lit, 0, "{name}: {stats}");
+        }
+        if !on(Effect::NearClipping) && !on(Effect::ScreenClipping) {
+            assert_eq!(stats.clipped, 0, "{name}: {stats}");
+        }
+        tried.add(1);
+    }
+}
+
+/// Proof (d): where an effect that changes the picture is called for, leaving it out changes the picture.
+#[test]
+fn leaving_out_what_is_called_for_changes_the_picture() {
+    let mut tried = Tried::new("leaving_out_what_is_called_for_changes_the_picture", 15);
+    let mut changed = [false; Effect::COUNT];
+    for (name, mut scene) in scenes::all() {
+        // Of a cycle, a moment at which it has moved.
+        scene.set_time(0.3);
+        let frame = |force: Option<Effect>| {
+            let mut renderer = Renderer::new();
+            if let Some(effect) = force {
+                renderer.force(effect, Some(effect == Effect::BackFaceCulling));
+            }
+            let mut vga = Vga::new();
+            renderer.draw(&scene, &mut vga).expect("a legal scene");
+            let called = Effect::ALL.map(|effect| called_for(&renderer, effect));
+            (vga.pixels().to_vec(), vga.palette(), called)
+        };
+        let (bytes, palette, called) = frame(None);
+        for (i, effect) in Effect::ALL.into_iter().enumerate() {
+            let needed = if effect == Effect::BackFaceCulling { !called[i] } else { called[i] };
+            if needed && !matches!(effect, Effect::Transform | Effect::HiddenSurfaces | Effect::NearClipping) {
+                let (without, other_palette, _) = frame(Some(effect));
+                changed[i] |= differing(&bytes, &without) > 0 || palette != other_palette;
+                tried.add(1);
+            }
+        }
+        let _ = name;
+    }
+    for (i, effect) in Effect::ALL.into_iter().enumerate() {
+        // These three are shown in their own tests: what is kept, what is hidden, what lies behind the eye.
+        let elsewhere = matches!(effect, Effect::Transform | Effect::HiddenSurfaces | Effect::NearClipping);
+        assert!(changed[i] || elsewhere, "no scene needs {effect}");
+    }
+}
+
+/// D1: the plan never picks painter's order where objects overlap in depth.
+#[test]
+fn d1_the_plan_never_picks_painters_order_for_what_overlaps() {
+    let mut tried = Tried::new("d1_the_plan_never_picks_painters_order_for_what_overlaps", 20);
+    for (name, scene) in scenes::all() {
+        let (_, stats, _) = draw(&scene, |_| ());
+        if stats.hidden_surfaces == HiddenSurfaces::PainterOrder {
+            let (depth, _, _) = draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
+            assert_eq!(differing(&draw(&scene, |_| ()).0, &depth), 0, "{name}");
+        }
+        tried.add(1);
+    }
+}
+
+/// E1: where nothing changes nothing is drawn, and whatever changes is.
+#[test]
+fn e1_what_stays_is_not_drawn_again() {
+    let mut tried = Tried::new("e1_what_stays_is_not_drawn_again", 40);
+    for (name, mut scene) in scenes::all() {
+        let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+        let first = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        let bytes = vga.pixels().to_vec();
+        let second = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert!(first.redrawn && !second.redrawn, "{name}: {second}");
+        assert_eq!((second.vertices, second.raster.pixels, second.allocated), (0, 0, 0), "{name}");
+        // Somebody touches the frame.
+        vga.pixels_mut()[5000] ^= 1;
+        let third = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert!(third.redrawn && third.vertices == 0, "{name}: the vertices are kept: {third}");
+        assert_eq!(vga.pixels(), bytes, "{name}");
+        // Something moves.
+        scene.objects_mut()[0].rotate_y(0.3);
+        let moved = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert!(moved.redrawn && moved.vertices > 0, "{name}: {moved}");
+        assert_eq!(vga.pixels(), draw(&scene, |_| ()).0, "{name}: as a new renderer draws it");
+        tried.add(2);
+    }
+}
+
+/// The plan's words are there for every decision, and the same every time.
+#[test]
+fn every_decision_has_a_reason() {
+    let mut tried = Tried::new("every_decision_has_a_reason", 300);
+    for (name, scene) in scenes::all() {
+        let rows = draw(&scene, |_| ()).2.plan().rows(&scene);
+        assert_eq!(rows, draw(&scene, |_| ()).2.plan().rows(&scene), "{name}");
+        assert_eq!(rows.len(), scene.objects().len() * Effect::COUNT);
+        for row in rows {
+            assert!(!row.why.is_empty() && !row.why.contains('\n') && !row.object.is_empty(), "{name}: {row:?}");
+            tried.add(1);
+        }
+    }
+}
