@@ -251,7 +251,9 @@ fn r14_shades_at_both_ends() {
 #[test]
 fn r7_outside_the_guard_band_is_refused() {
     let mut tried = Tried::new("r7_outside_the_guard_band_is_refused", 12);
-    let (zero, edge) = (I24F8::from_bits(0), Vertex::GUARD_BAND);
+    // 4,096 pixels, as is stated, in which all of the raster's sums are proved to fit.
+    let (zero, edge) = (I24F8::from_bits(0), 4096 * 256);
+    assert_eq!(Vertex::GUARD_BAND, edge);
     for (bits, legal) in
         [(edge, true), (-edge, true), (edge + 1, false), (-edge - 1, false), (i32::MAX, false), (i32::MIN, false)]
     {
