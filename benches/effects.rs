@@ -36,63 +36,73 @@ struct Memory {
 
 type Draw = fn(&mut Memory, start: usize, length: usize);
 
-/// A loop under its name; a portable one comes before its twin.
+type Fill = fn(&mut [u8], u16, u16, &[u8; 8], usize);
+type Affine = fn(&mut [u8], Texels<'_>, u32, u32, u32, u32);
+type Perspective = fn(&mut [u8], Texels<'_>, [i128; 2], [i128; 2], i128, i128);
+type Lookup = fn(&mut [u8], &[u8], &[u8; 65_536]);
+type MixCube = fn(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize);
+type MixNearest = fn(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize, u8, &[u8; 32_768]);
+type Nearer = fn(&mut [u8], &mut [u32], &[u8], i64, i64) -> u32;
+type Before = fn(&mut [u8], &[u32], &[u8], i64, i64) -> u32;
+type Quotients = fn(&mut [u8], i128, i128, i128, i128);
+type Interpolate = fn(&mut [[f32; 6]], [f64; 6], [f64; 6], f64, f64);
+
+/// A loop under its name; a portable one comes before its twin. Each is called by its address, which the
+/// compiler is not told: so that none is inlined and made for these numbers alone, and `nm -S` shows its size.
 const LOOPS: [(&str, Draw); 14] = [
-    ("span", |m, start, n| Kernel::fastest().fill(&mut m.row[start..start + n], 0x1234, black_box(0x56))),
-    ("dither portable", |m, start, n| {
-        fill_dithered_portable(&mut m.row[start..start + n], 0x1234, black_box(0x56), black_box(&BAYER[3]), start);
-    }),
-    ("dither", |m, start, n| {
-        fill_dithered(&mut m.row[start..start + n], 0x1234, black_box(0x56), black_box(&BAYER[3]), start)
-    }),
+    ("span", |m, start, n| Kernel::fastest().fill(&mut m.row[start..start + n], 0x1234, 0x56)),
+    ("dither portable", |m, start, n| dither(fill_dithered_portable, m, start, n)),
+    ("dither", |m, start, n| dither(fill_dithered, m, start, n)),
     ("affine", |m, start, n| {
-        fill_affine(&mut m.row[start..start + n], texels(&m.texture), 0x12_3456, 0x34_5678, black_box(0xC000), 0x5432);
+        let fill = black_box(fill_affine as Affine);
+        fill(&mut m.row[start..start + n], texels(&m.texture), 0x12_3456, 0x34_5678, 0xC000, 0x5432);
     }),
     ("perspective portable", |m, start, n| perspective(fill_perspective_portable, m, start, n)),
     ("perspective", |m, start, n| perspective(fill_perspective, m, start, n)),
     ("lookup", |m, start, n| {
-        lookup(&mut m.row[start..start + n], &m.channels[0][start..start + n], &m.table);
+        black_box(lookup as Lookup)(&mut m.row[start..start + n], &m.channels[0][start..start + n], &m.table);
     }),
-    ("mix_cube portable", |m, start, n| {
-        let [r, g, b] = m.channels.each_ref().map(|channel| &channel[start..start + n]);
-        mix_cube_portable(&mut m.row[start..start + n], r, g, b, black_box(&BAYER[3]), start);
-    }),
-    ("mix_cube", |m, start, n| {
-        let [r, g, b] = m.channels.each_ref().map(|channel| &channel[start..start + n]);
-        mix_cube(&mut m.row[start..start + n], r, g, b, black_box(&BAYER[3]), start);
-    }),
+    ("mix_cube portable", |m, start, n| cube(mix_cube_portable, m, start, n)),
+    ("mix_cube", |m, start, n| cube(mix_cube, m, start, n)),
     ("mix_nearest", |m, start, n| {
         let [r, g, b] = m.channels.each_ref().map(|channel| &channel[start..start + n]);
-        mix_nearest(&mut m.row[start..start + n], r, g, b, black_box(&BAYER[3]), start, black_box(32), &m.map);
+        black_box(mix_nearest as MixNearest)(&mut m.row[start..start + n], r, g, b, &BAYER[3], start, 32, &m.map);
     }),
     ("copy_nearer", |m, start, n| {
         let (depth, bytes) = (&mut m.depth[start..start + n], &m.channels[0][start..start + n]);
-        black_box(copy_nearer(&mut m.row[start..start + n], depth, bytes, 1 << 52, black_box(1 << 44)));
+        black_box(copy_nearer as Nearer)(&mut m.row[start..start + n], depth, bytes, 1 << 52, 1 << 44);
     }),
     ("copy_before", |m, start, n| {
         let (depth, bytes) = (&m.depth[start..start + n], &m.channels[0][start..start + n]);
-        black_box(copy_before(&mut m.row[start..start + n], depth, bytes, 1 << 52, black_box(1 << 44)));
+        black_box(copy_before as Before)(&mut m.row[start..start + n], depth, bytes, 1 << 52, 1 << 44);
     }),
     ("quotients", |m, start, n| {
-        fill_quotients(&mut m.row[start..start + n], 13 << 70, black_box(1 << 69), 1 << 70, black_box(1 << 62));
+        black_box(fill_quotients as Quotients)(&mut m.row[start..start + n], 13 << 70, 1 << 69, 1 << 70, 1 << 62);
     }),
     ("lit", |m, start, n| {
         let (a, da) = ([0.3, -0.5, 0.8, 4.0, -3.0, 9.0], [0.01, 0.02, -0.01, 0.1, 0.05, -0.02]);
-        interpolate(&mut m.points[start..start + n], a, da, black_box(0.4), 0.001);
+        black_box(interpolate as Interpolate)(&mut m.points[start..start + n], a, da, 0.4, 0.001);
     }),
 ];
 
-fn texels(texture: &[u8]) -> Texels<'_> {
-    Texels::new(texture, black_box(8), 8).expect("256 × 256")
+fn dither(fill: Fill, memory: &mut Memory, start: usize, n: usize) {
+    black_box(fill)(&mut memory.row[start..start + n], 0x1234, 0x56, &BAYER[3], start);
 }
 
-type Perspective = fn(&mut [u8], Texels<'_>, [i128; 2], [i128; 2], i128, i128);
+fn cube(mix: MixCube, memory: &mut Memory, start: usize, n: usize) {
+    let [r, g, b] = memory.channels.each_ref().map(|channel| &channel[start..start + n]);
+    black_box(mix)(&mut memory.row[start..start + n], r, g, b, &BAYER[3], start);
+}
+
+fn texels(texture: &[u8]) -> Texels<'_> {
+    Texels::new(texture, 8, 8).expect("256 × 256")
+}
 
 /// A floor under the eye: the divisor half again as large at the end of 320 pixels.
 fn perspective(fill: Perspective, memory: &mut Memory, start: usize, n: usize) {
-    let (d, dd) = (1_i128 << 70, black_box(1_i128 << 61) + 12_345);
+    let (d, dd) = (1_i128 << 70, (1_i128 << 61) + 12_345);
     let (u, v) = (0x12_3456 * d + 77, -0x23_4567 * d + 99);
-    fill(&mut memory.row[start..start + n], texels(&memory.texture), [u, v], [1 << 86, 1 << 85], d, dd);
+    black_box(fill)(&mut memory.row[start..start + n], texels(&memory.texture), [u, v], [1 << 86, 1 << 85], d, dd);
 }
 
 fn main() {
