@@ -1,4 +1,4 @@
-//! `mode13h demo`: a model that turns in a window.
+//! `mode13h demo`: a scene, or a model that turns, in a window.
 
 use std::ffi::OsString;
 use std::time::Instant;
@@ -13,7 +13,7 @@ use mode13h::window::{Flow, Input, Key, Window};
 use crate::failure::Failure;
 use crate::options::Drawing;
 use crate::overlay::{self, Place};
-use crate::stage::{Pose, SPEED, Stage};
+use crate::stage::{Pose, Stage};
 use crate::{input, output};
 
 /// What the help says below the options.
@@ -108,19 +108,26 @@ impl Demo {
     fn new(options: &Options) -> Result<Demo, Failure> {
         let Options { input, drawing } = options;
         let kernel = drawing.kernel()?;
-        let (palette_name, palette) = drawing.palette()?;
-        let input::Model { name, mesh } = input::model(input)?;
+        let shown = input::input(input)?;
+        let name = shown.name().to_string();
+        let of_model = matches!(shown, input::Input::Model(_));
+        let stage = drawing.stage(shown)?;
+        let rung = drawing.rung(stage.scene.wishes.rung);
+        // A scene that has none leaves the DAC alone.
+        let palette = stage.scene.palette.clone().unwrap_or_default();
+        let usual_palette = if of_model { "grey" } else { "the scene's" };
+        let palette_name = drawing.palette_name().unwrap_or(usual_palette.to_string());
         // A palette without ramps has no order of shades: such a one is shown only if it was asked for.
         let builtin = builtin::ALL.iter().filter(|builtin| builtin.palette.ramps() > 0);
         let palettes = builtin.map(|builtin| (builtin.name.to_string(), builtin.palette.clone()));
         Ok(Demo {
-            triangles: mesh.triangles().len(),
-            stage: Stage::new(mesh, drawing.up_axis(), palette.clone()),
+            triangles: stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum(),
+            stage,
             name,
-            renderer: Renderer::new(),
-            rungs: Choice::new(Rung::ALL.iter().copied(), drawing.rung(), |a, b| a == b),
+            renderer: drawing.renderer(kernel),
+            rungs: Choice::new(Rung::ALL.iter().copied(), rung, |a, b| a == b),
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
-            palettes: Choice::new(palettes, (palette_name, palette), |a, b| a == b),
+            palettes: Choice::new(palettes, (palette_name, palette), |(a, _), (b, _)| a == b),
             motion: Motion::new(),
             help: false,
             timing: Timing::default(),
@@ -147,7 +154,7 @@ impl Demo {
         }
         if input.pressed(Key::P) {
             self.palettes.go_round();
-            self.stage.scene.palette = Some(self.palettes.chosen().1.clone());
+            self.stage.set_palette(self.palettes.chosen().1.clone());
         }
         if input.pressed(Key::H) {
             self.help = !self.help;
@@ -162,7 +169,7 @@ impl Demo {
     }
 
     fn draw(&mut self, vga: &mut Vga) -> Result<(), Failure> {
-        self.stage.pose(self.motion.pose());
+        self.stage.show(self.motion.seconds(), self.motion.pose);
         self.renderer.set_rung(*self.rungs.chosen());
         self.renderer.set_kernel(*self.kernels.chosen());
         let start = Instant::now();
@@ -198,7 +205,7 @@ impl Demo {
             format!("rung    {}", self.rungs.chosen().name()),
             format!("kernel  {}", self.kernels.chosen()),
             format!("palette {}", self.palettes.chosen().0),
-            format!("zoom    {:.2}", self.motion.pose().zoom),
+            format!("zoom    {:.2}", self.motion.pose.zoom),
         ];
         if let Some(Stats { hidden_surfaces, vertices, drawn, raster, .. }) = &self.stats {
             lines.push(format!("{hidden_surfaces}: {vertices} vertices, {drawn} drawn"));
@@ -214,28 +221,26 @@ const HELP: [&str; 3] = [
     "arrows, mouse turn      wheel, + - zoom",
 ];
 
-/// How the model moves: by the clock unless it is stopped, and by the user.
+/// What moves: the scene's time, by the clock unless it is stopped, and what the user has turned.
 struct Motion {
-    /// The turn at the time `since`.
-    turn: f64,
-    /// When the clock began to turn it, in seconds; nothing while it is stopped.
+    /// The scene's time at the time `since`, in seconds.
+    time: f64,
+    /// When the clock began to move it, in seconds; nothing while it is stopped.
     since: Option<f64>,
-    tilt: f64,
-    zoom: f64,
+    pose: Pose,
     now: f64,
 }
 
 impl Motion {
     fn new() -> Motion {
-        let Pose { turn, tilt, zoom } = Pose::FIRST;
-        Motion { turn, since: Some(0.0), tilt, zoom, now: 0.0 }
+        Motion { time: 0.0, since: Some(0.0), pose: Pose::FIRST, now: 0.0 }
     }
 
     fn follow(&mut self, input: &Input, seconds: f64) {
         let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);
         self.now = seconds;
         if input.pressed(Key::Space) {
-            self.turn = self.pose().turn;
+            self.time = self.seconds();
             self.since = if self.since.is_none() { Some(seconds) } else { None };
         }
         let arrow = |key| {
@@ -243,8 +248,8 @@ impl Motion {
             held + if input.pressed(key) { ARROW_TAP } else { 0.0 }
         };
         let (right, down) = input.drag();
-        self.turn += arrow(Key::Right) - arrow(Key::Left) + DRAG * f64::from(right);
-        self.tilt += arrow(Key::Down) - arrow(Key::Up) + DRAG * PIXEL_HEIGHT * f64::from(down);
+        self.pose.turn += arrow(Key::Right) - arrow(Key::Left) + DRAG * f64::from(right);
+        self.pose.tilt += arrow(Key::Down) - arrow(Key::Up) + DRAG * PIXEL_HEIGHT * f64::from(down);
 
         let typed = |characters: &[char]| input.typed().contains(characters);
         let mut notches = f64::from(input.wheel());
@@ -254,14 +259,13 @@ impl Motion {
         if input.pressed(Key::NumPadMinus) || typed(&['-', '_']) {
             notches -= 1.0;
         }
-        self.zoom = (self.zoom * NOTCH.powf(notches)).clamp(ZOOM.0, ZOOM.1);
+        self.pose.zoom = (self.pose.zoom * NOTCH.powf(notches)).clamp(ZOOM.0, ZOOM.1);
     }
 
-    /// At the time of the last [`follow`](Self::follow). The turn comes from the clock and not from the frames that
-    /// were drawn since.
-    fn pose(&self) -> Pose {
-        let by_clock = self.since.map_or(0.0, |since| SPEED * (self.now - since));
-        Pose { turn: self.turn + by_clock, tilt: self.tilt, zoom: self.zoom }
+    /// The scene's time at the time of the last [`follow`](Self::follow). It comes from the clock and not from the frames
+    /// that were drawn since.
+    fn seconds(&self) -> f64 {
+        self.time + self.since.map_or(0.0, |since| self.now - since)
     }
 }
 
@@ -338,22 +342,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_turn_comes_from_the_clock_and_not_from_the_frames() {
-        let turn_after = |times: &[f64]| {
+    fn the_time_comes_from_the_clock_and_not_from_the_frames() {
+        let time_after = |times: &[f64]| {
             let mut motion = Motion::new();
             times.iter().for_each(|&seconds| motion.follow(&Input::default(), seconds));
-            motion.pose()
+            (motion.seconds(), motion.pose)
         };
         let many: Vec<f64> = (0..=1_000_000).map(|i| f64::from(i) / 1000.0).collect();
-        assert_eq!(turn_after(&many), turn_after(&[1000.0]));
+        assert_eq!(time_after(&many), time_after(&[1000.0]));
     }
 
     #[test]
-    fn an_hour_in_one_frame_is_an_hour_of_turning() {
+    fn an_hour_in_one_frame_is_an_hour_of_the_scene() {
         let mut motion = Motion::new();
-        for (seconds, turn) in [(0.0, 0.0), (0.0, 0.0), (3600.0, 3600.0 * SPEED), (3599.0, 3599.0 * SPEED)] {
+        for seconds in [0.0, 0.0, 3600.0, 3599.0] {
             motion.follow(&Input::default(), seconds);
-            assert_eq!(motion.pose().turn, turn);
+            assert_eq!(motion.seconds(), seconds);
         }
     }
 

@@ -28,25 +28,32 @@ impl Frame {
 pub(crate) struct Film {
     out: PathBuf,
     frames: u32,
+    /// Whether somebody said how many frames.
+    is_told: bool,
     rate: FrameRate,
     scale: Scale,
 }
 
 impl Film {
-    /// How long a film is when nothing is said, in seconds: one turn.
-    const SECONDS: f64 = 4.0;
     /// 4:3 in square pixels, as browsers show them.
     const SCALE: Scale = Scale::To { width: 640, height: 480 };
 
-    /// A film of so many frames, or of four seconds.
+    /// A film of so many frames, or of one.
     pub(crate) fn new(out: &Path, frames: Option<u32>, rate: FrameRate, scale: Option<Scale>) -> Film {
-        // 0.4 to 200.
-        let of_usual_length = (Self::SECONDS * rate.frames_per_second()).round().max(1.0) as u32;
         Film {
             out: out.to_path_buf(),
-            frames: frames.unwrap_or(of_usual_length),
+            frames: frames.unwrap_or(1),
+            is_told: frames.is_some(),
             rate,
             scale: scale.unwrap_or(Self::SCALE),
+        }
+    }
+
+    /// Where nobody said how many frames, as many as so many seconds hold.
+    pub(crate) fn lasts(&mut self, seconds: f64) {
+        if !self.is_told {
+            // Saturates.
+            self.frames = (seconds * self.rate.frames_per_second()).round().max(1.0) as u32;
         }
     }
 

@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::export::{FrameRate, Scale};
 use mode13h::record::Record;
-use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats};
+use mode13h::render::{Renderer, Screen, Stats};
 use mode13h::vga::Vga;
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -15,7 +15,7 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use crate::failure::Failure;
 use crate::film::{self, Film};
 use crate::options::Drawing;
-use crate::stage::{Pose, SPEED, Stage};
+use crate::stage::{Pose, Stage};
 use crate::{input, output};
 
 #[derive(Args)]
@@ -26,24 +26,23 @@ pub(crate) struct Options {
     /// ending in .gif
     #[arg(short, long, value_name = "OUT")]
     out: PathBuf,
-    /// How many frames, numbered from 0 [default: 1; a film, four seconds of them]
+    /// How many frames, numbered from 0 [default: 1; a film, those of one round: four seconds, or what the scene says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
     /// One frame: turn the model by so much. N frames: spread so much over them, frame i being turned by i/N of it;
-    /// 360 makes a seamless turn [default for a film: 360]
+    /// 360 makes a seamless turn [default for a film: 360]. Of a scene that moves 360 are one round; round one that
+    /// does not the camera goes
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
     turn: Option<f64>,
-    /// The time of the first frame: the model turns 90 degrees a second
+    /// The time of the first frame, of a scene or of a model, which turns 90 degrees a second
     #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, default_value_t = 0.0)]
     at: f64,
-    /// Frames a second: of a film, up to 50; of pictures, they say how far the model turns from one to the next where
+    /// Frames a second: of a film, up to 50; of pictures, they say how much time passes from one to the next where
     /// --turn does not [default: 35]
     #[arg(long, value_name = "N", value_parser = rate)]
     fps: Option<f64>,
     #[command(flatten)]
     drawing: Drawing,
-    #[arg(long, value_name = "WAY", help = help_on_hidden_surfaces())]
-    hidden: Option<HiddenSurfaces>,
     /// Enlarge: 1, 2, 5x6 (exactly 4:3 in square pixels), or a width and height such as 640x480 [default: 1; 5x6 with
     /// --rgb; a film, 640x480]
     #[arg(long, value_name = "SCALE")]
@@ -63,11 +62,6 @@ pub(crate) struct Options {
     stats: bool,
 }
 
-fn help_on_hidden_surfaces() -> String {
-    let names = HiddenSurfaces::ALL.map(HiddenSurfaces::name);
-    format!("How hidden surfaces are left out: {} [default: as the scene calls for]", names.join(", "))
-}
-
 fn finite(words: &str) -> Result<f64, String> {
     match words.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
@@ -83,26 +77,18 @@ fn rate(words: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let out = Out::new(options)?;
+    let mut out = Out::new(options)?;
+    let stage = options.drawing.stage(input::input(&options.input)?)?;
+    out.lasts(stage.seconds());
     let frames = out.frames();
     let records = options.record.as_deref().map(|record| Names::new(record, frames, "records")).transpose()?;
     if options.record.as_ref() == Some(&options.out) {
         return Err(Failure::words(format!("{}: one name for the picture and its record", options.out.display())));
     }
     let kernel = options.drawing.kernel()?;
-    let (_, palette) = options.drawing.palette()?;
-    let model = input::model(&options.input)?;
-    let stage = Stage::new(model.mesh, options.drawing.up_axis(), palette);
-
     let progress = progress(frames);
     let motion = Motion::new(options, &out);
-    let artist = || {
-        let mut renderer = Renderer::new();
-        renderer.set_kernel(kernel);
-        renderer.set_rung(options.drawing.rung());
-        renderer.set_hidden_surfaces(options.hidden);
-        Artist { renderer, stage: stage.clone(), vga: Vga::new() }
-    };
+    let artist = || Artist { renderer: options.drawing.renderer(kernel), stage: stage.clone(), vga: Vga::new() };
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
         let stats = artist.draw(&motion, number)?;
         if let Some(records) = &records {
@@ -169,6 +155,13 @@ impl Out {
         }
     }
 
+    /// A film of which nobody says how many frames it has lasts so many seconds.
+    fn lasts(&mut self, seconds: f64) {
+        if let Out::Film(film) = self {
+            film.lasts(seconds);
+        }
+    }
+
     fn frames(&self) -> u32 {
         match self {
             Out::Pictures(_, frames) => *frames,
@@ -177,7 +170,7 @@ impl Out {
     }
 }
 
-/// How the model turns from frame to frame.
+/// What moves from frame to frame.
 struct Motion {
     frames: u32,
     /// Over all frames, in degrees.
@@ -196,14 +189,14 @@ impl Motion {
         Motion { frames, turn: options.turn.or(whole_turn), at: options.at, rate }
     }
 
-    /// How far the model is turned in a frame, in radians. From the frame's number alone: nothing adds up.
-    fn turn(&self, number: u32) -> f64 {
+    /// The time and the pose in a frame. From the frame's number alone: nothing adds up.
+    fn of(&self, number: u32, stage: &Stage) -> (f64, Pose) {
         let Motion { frames, turn, at, rate } = *self;
         let number = f64::from(number);
         match turn {
-            Some(degrees) if frames == 1 => at * SPEED + degrees.to_radians(),
-            Some(degrees) => at * SPEED + (degrees * number / f64::from(frames)).to_radians(),
-            None => (at + number / rate) * SPEED,
+            Some(degrees) if frames == 1 => stage.turned(at, degrees),
+            Some(degrees) => stage.turned(at, degrees * number / f64::from(frames)),
+            None => (at + number / rate, Pose::FIRST),
         }
     }
 }
@@ -218,7 +211,8 @@ struct Artist {
 
 impl Artist {
     fn draw(&mut self, motion: &Motion, number: u32) -> Result<Stats, Failure> {
-        self.stage.pose(Pose { turn: motion.turn(number), ..Pose::FIRST });
+        let (seconds, pose) = motion.of(number, &self.stage);
+        self.stage.show(seconds, pose);
         self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::work)
     }
 
