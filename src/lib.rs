@@ -14,8 +14,8 @@
 //! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes; OBJ models | `alloc` |
-//! | [`light`] | lights, materials, the intensity at a vertex | `alloc` |
-//! | [`scene`] | objects, camera, lights | `alloc` |
+//! | [`light`] | suns and lamps, materials, the intensity at a point | `alloc` |
+//! | [`scene`] | objects, camera, lights, fog, motion, what is asked for | `alloc` |
 //! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |

@@ -560,6 +560,44 @@ fn palettes_are_looked_at() {
 }
 
 #[test]
+fn palettes_are_made_for_models() {
+    let directory = directory();
+    let data = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name).display().to_string();
+    let house = data("house.obj");
+    succeed(&directory, &["palette", "--from", &house, "-o", "house.gpl"]);
+    succeed(&directory, &["palette", "--from", &house, "--up", "z", "-o", "lying.gpl"]);
+    succeed(&directory, &["palette", "--from", "torus", "-o", "chart.png"]);
+    let [upright, lying] = ["house.gpl", "lying.gpl"].map(|name| {
+        let palette = file::parse_named(name, &read(&directory, name)).expect("a palette");
+        assert_eq!((palette.color(0), palette.color(255)), (Rgb::BLACK, Rgb::WHITE));
+        palette
+    });
+    assert_ne!(upright.colors(), lying.colors(), "other sides are seen");
+
+    let output = run(&directory, &["palette", "--from", &house]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.starts_with("house: no ramps"), "{text}");
+    let surfaces: Vec<&str> =
+        text.lines().skip(33).map(|line| line.split(", entries").next().expect("a line")).collect();
+    assert_eq!(surfaces, ["grass: a ramp", "bricks: colours of textures", "tiles: a ramp"]);
+
+    // A texture that cannot be read is a warning; the surface has a ramp then.
+    let output = run(&directory, &["palette", "--from", &data("chest.obj")]);
+    assert!(output.status.success(), "{output:?}");
+    let warnings = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(warnings.lines().count(), 1, "{warnings}");
+    assert!(warnings.contains("chest planks.ppm: no PNG that can be read: "), "{warnings}");
+    assert!(String::from_utf8(output.stdout).expect("text").contains("wood: a ramp, entries 1 to "));
+
+    assert_fails(&run(&directory, &["palette"]), 2, "<FILE|NAME>");
+    assert_fails(&run(&directory, &["palette", "grey", "--from", "torus"]), 2, "--from");
+    assert_fails(&run(&directory, &["palette", "grey", "--up", "z"]), 2, "--up");
+    assert_fails(&run(&directory, &["palette", "--from", "none.obj"]), 1, "none.obj: No such file");
+    assert_fails(&run(&directory, &["palette", "--from", "torus", "-o", "x.txt"]), 2, "x.txt: ");
+}
+
+#[test]
 fn help_and_version_succeed() {
     let directory = directory();
     for words in [vec!["--help"], vec!["-h"], vec!["--version"], vec!["help", "render"], vec!["palette", "--help"]] {

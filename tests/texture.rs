@@ -209,7 +209,7 @@ fn walls_repeat_without_a_seam() {
     for name in ["checker", "bricks"] {
         let texture = Texture::by_name(name).expect("built in");
         let change =
-            |of: &dyn Fn(u32) -> [Rgb; 2]| -> u32 { (0..128).map(|i| of(i)).map(|[a, b]| a.distance_squared(b)).sum() };
+            |of: &dyn Fn(u32) -> [Rgb; 2]| -> u32 { (0..128).map(of).map(|[a, b]| a.distance_squared(b)).sum() };
         let right_of = |x: u32| change(&|y| [texture.color(x, y), texture.color(x + 1, y)]);
         let above = |y: u32| change(&|x| [texture.color(x, y), texture.color(x, y + 1)]);
         let (last_column, last_row) = (texture.width() - 1, texture.height() - 1);

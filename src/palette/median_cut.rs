@@ -228,7 +228,8 @@ mod tests {
         let mut cut = MedianCut::new(colors);
         cut.cut_to(256);
         let mut means: Vec<Rgb> = cut.means().collect();
-        (expected.sort(), means.sort());
+        expected.sort();
+        means.sort();
         assert_eq!(means, expected);
         assert!(cut.gain().is_none() && !cut.cut());
     }

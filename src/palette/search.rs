@@ -6,7 +6,8 @@
 //! box lists the colours that remain, a tenth or so, in their order: the first of those equally near
 //! remains the first.
 //!
-//! 16 boxes a side leave shorter lists, which take longer to make than 65,536 searches save.
+//! Making the lists takes 0.3 ms for 256 colours, and a table of 65,536 searches 2 to 6 ms in all. With
+//! 16 boxes a side the lists take 2.3 ms, and the searches save less than that.
 
 use alloc::vec::Vec;
 
@@ -21,8 +22,8 @@ const WIDTH: u8 = 32;
 /// A search for the nearest of some colours.
 ///
 /// ```
-/// use mode13h::palette::{Rgb, builtin, Search};
-/// let search = Search::new(builtin::BIOS.palette.colors());
+/// use mode13h::palette::{BIOS, Rgb, Search};
+/// let search = Search::new(BIOS.colors());
 /// assert_eq!(search.nearest(Rgb::new(1, 2, 170)), 1);
 /// ```
 #[derive(Clone, Debug)]
@@ -95,7 +96,10 @@ impl Search {
         let side = |v: u8| usize::from(v / WIDTH);
         let i = (side(color.r) * SIDE + side(color.g)) * SIDE + side(color.b);
         let candidates = &self.candidates[self.starts[i]..self.starts[i + 1]];
-        candidates.iter().min_by_key(|candidate| candidate.color.distance_squared(color)).map_or(0, |c| c.index)
+        // A square is below 2¹⁸. With the index behind it the least is the first of the nearest, and the
+        // loop has no branch.
+        let key = |c: &Candidate| c.color.distance_squared(color) << 8 | u32::from(c.index);
+        (candidates.iter().map(key).min().unwrap_or(0) & 255) as u8
     }
 }
 

@@ -185,16 +185,18 @@ impl Faces<'_> {
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
     #[inline]
     fn shading(&self, indices: [u32; 3], surface: u16, turned: bool, stats: &mut Stats) -> Shading {
-        if !self.is_lit && !self.runs {
-            return Shading::Flat(self.paints[usize::from(surface)].constant().nearest());
+        if self.flat && self.is_lit {
+            stats.lit += 1;
+            return Shading::Flat(self.face_shade(indices, surface, turned).nearest());
+        }
+        if !self.runs {
+            // All corners have the same, wherever the plan says so.
+            let LitVertex { vertex, back, .. } = self.lit[indices[0] as usize];
+            return Shading::Flat(if turned { back } else { vertex.shade() }.nearest());
         }
         match self.rung {
             Rung::Gouraud88 => Shading::Gouraud,
             Rung::GouraudHyperbolic => Shading::GouraudHyperbolic,
-            Rung::Flat => {
-                stats.lit += 1;
-                Shading::Flat(self.face_shade(indices, surface, turned).nearest())
-            }
             _ => Shading::GouraudReseeded,
         }
     }

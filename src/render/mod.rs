@@ -269,7 +269,12 @@ impl Renderer {
         let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
         let before = self.bytes();
         let (mut stats, changed) = self.prepare(scene, Screen::MODE_13H, shown.as_ref(), true)?;
-        scene.load_palette(vga);
+        // Of a scene without objects nothing was decided.
+        if self.plan.is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
+            scene.load_palette(vga);
+        } else if let Some(palette) = &scene.palette {
+            vga.set_palette(palette);
+        }
         match self.last {
             Some((stamp, last)) if !changed && stamp == vga.stamp() && self.may_keep() => {
                 stats.redrawn = false;

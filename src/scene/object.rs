@@ -49,8 +49,9 @@ impl Object {
     pub fn new(mesh: impl Into<Shared<Mesh>>) -> Self {
         let mesh = mesh.into();
         let mesh = if mesh.has_one_surface_a_vertex() { mesh } else { Shared::new(mesh.with_one_surface_a_vertex()) };
-        // At most 65,536 surfaces: triangles number them with a u16.
-        let materials = (0_u16..).zip(mesh.surfaces()).map(|(i, s)| Material::from_surface(s, i)).collect();
+        // A palette has at most 256 ramps, a power of two, and they are counted round.
+        let numbers = (0..=u16::MAX).cycle();
+        let materials = numbers.zip(mesh.surfaces()).map(|(i, s)| Material::from_surface(s, i)).collect();
         Self {
             name: String::new(),
             vertex_surfaces: mesh.vertex_surfaces(),

@@ -25,8 +25,9 @@ macro_rules! shipped {
 }
 
 /// All of them, in the order in which they are best looked at.
-pub static ALL: [Shipped; 1] = shipped! {
-    "torus"
+pub static ALL: [Shipped; 18] = shipped! {
+    "torus" "cube" "teapot" "cone" "phong" "phong-table" "flash" "flash-tessellated" "two-lights" "fog" "rgb" "crate"
+    "mirror" "interlock" "glenz" "fade" "cycle" "still"
 };
 
 /// The scene of a name, exactly as in [`ALL`]. Returns `None` if there is none.

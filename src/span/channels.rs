@@ -68,16 +68,14 @@ pub fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], threshold
 
 /// The specification of [`mix_cube`].
 pub fn mix_cube_portable(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
-    let mut x = x;
-    for (((pixel, red), green), blue) in row.iter_mut().zip(red).zip(green).zip(blue) {
-        let threshold = thresholds[x % 8];
+    for (k, (((pixel, red), green), blue)) in row.iter_mut().zip(red).zip(green).zip(blue).enumerate() {
+        let threshold = thresholds[x.wrapping_add(k) % 8];
         let level = |value: u8| {
             let between = BETWEEN[usize::from(value)];
             between.level + u8::from(threshold < between.next_below)
         };
         // At most 36·5 + 6·5 + 5 = 215.
         *pixel = 36 * level(*red) + 6 * level(*green) + level(*blue);
-        x = x.wrapping_add(1);
     }
 }
 
@@ -99,10 +97,10 @@ mod blocks {
     /// 256·(c − a) > t·(b − a) says the same as c > switch, c being whole. Switch i lies at or above a and
     /// below b, so a value has passed those of the levels below its own, and none of those above.
     pub(super) fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
-        let n = row.len().min(red.len()).min(green.len()).min(blue.len());
-        if n < BLOCK {
+        if row.len() < BLOCK {
             return mix_cube_portable(row, red, green, blue, thresholds, x);
         }
+        let n = row.len().min(red.len()).min(green.len()).min(blue.len());
         // Those of the row's pixels 0 to 7: turned by x mod 8 places.
         let thresholds = u64::from_le_bytes(*thresholds).rotate_right(8 * (x % 8) as u32).to_le_bytes();
         let switches = [0, 1, 2, 3, 4].map(|i| {
@@ -159,13 +157,11 @@ pub fn mix_nearest(
     spread: u8,
     map: &[u8; 32_768],
 ) {
-    let mut x = x;
-    for (((pixel, red), green), blue) in row.iter_mut().zip(red).zip(green).zip(blue) {
-        let threshold = i32::from(thresholds[x % 8]);
+    for (k, (((pixel, red), green), blue)) in row.iter_mut().zip(red).zip(green).zip(blue).enumerate() {
+        let threshold = i32::from(thresholds[x.wrapping_add(k) % 8]);
         let offset = ((threshold * i32::from(spread)) >> 8) - i32::from(spread / 2);
         // 0 to 31.
         let five_bits = |value: u8| ((i32::from(value) + offset).clamp(0, 255) >> 3) as usize;
         *pixel = map[five_bits(*red) << 10 | five_bits(*green) << 5 | five_bits(*blue)];
-        x = x.wrapping_add(1);
     }
 }

@@ -61,11 +61,11 @@ pub fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8]
 
 /// The specification of [`fill_dithered`].
 pub fn fill_dithered_portable(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize) {
-    let (mut ax, mut x) = (shade, x);
-    for pixel in row {
-        let [ah, _al] = ax.wrapping_add(u16::from(thresholds[x % 8])).to_be_bytes();
+    let mut ax = shade;
+    for (k, pixel) in row.iter_mut().enumerate() {
+        let threshold = thresholds[x.wrapping_add(k) % 8];
+        let [ah, _al] = ax.wrapping_add(u16::from(threshold)).to_be_bytes();
         *pixel = ah;
         ax = ax.wrapping_add(step);
-        x = x.wrapping_add(1);
     }
 }

@@ -70,14 +70,17 @@ impl<'a> Texels<'a> {
         self.bytes[self.place(u, v)]
     }
 
-    /// Where it lies: below the length, so that there is nothing left to check.
+    /// Where it lies, below the length: the compiler sees that from the last mask, for bytes that it knows not
+    /// to be empty, and leaves out the check (if all is in usize; for a u32 it did not).
     #[inline]
     fn place(self, u: u32, v: u32) -> usize {
+        let last = self.bytes.len() - 1;
         let columns = (1 << self.ubits) - 1;
-        let column = (u >> 16) & columns;
-        // Shifted once instead of down and up. What lies above vbits the mask cuts off.
-        let row = (v >> (16 - self.ubits)) & !columns;
-        (row | column) as usize & (self.bytes.len() - 1)
+        // What a narrow usize cuts off the masks cut off anyway.
+        let column = (u >> 16) as usize & columns;
+        // Shifted once instead of down and up.
+        let row = (v >> (16 - self.ubits)) as usize & (last & !columns);
+        (row | column) & last
     }
 }
 
@@ -124,7 +127,7 @@ impl core::error::Error for TexelsError {}
 /// eight gathered loads a turn (AVX2), 26, and many times slower on processors that were patched against
 /// gather data sampling.
 pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, u: u32, v: u32, du: u32, dv: u32) {
-    // It never is, but so the compiler sees that the place is below the length: no check in the loop.
+    // They never are, but now the compiler knows.
     if texels.bytes.is_empty() {
         return;
     }
@@ -143,7 +146,8 @@ pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, u: u32, v: u32, du: u32, 
 /// ```
 ///
 /// in exact arithmetic, modulo 2³²; negative coordinates wrap as others do. Along the row every divisor is
-/// positive, every quotient within ±2³² and every value within ±2¹²⁶: the raster sees to it.
+/// positive (what is less counts as 1), every quotient within ±2³² and every value within ±2¹²⁶: the raster
+/// sees to it.
 pub fn fill_perspective(
     row: &mut [u8],
     texels: Texels<'_>,
@@ -171,8 +175,9 @@ pub fn fill_perspective_portable(
 ) {
     let ([mut u, mut v], mut d) = (numerators, d);
     for pixel in row {
+        let divisor = d.max(1);
         // Modulo 2³²: the mask leaves less of it.
-        *pixel = texels.at(u.div_euclid(d) as u32, v.div_euclid(d) as u32);
+        *pixel = texels.at(u.div_euclid(divisor) as u32, v.div_euclid(divisor) as u32);
         // What is added after the last pixel may be anything.
         u = u.wrapping_add(steps[0]);
         v = v.wrapping_add(steps[1]);
@@ -207,10 +212,10 @@ fn fill_perspective_estimated(
     const LANES: usize = 8;
     const MAX_RATIO: f64 = 32_768.0;
 
-    // As in `fill_affine`.
-    if texels.bytes.is_empty() {
-        return;
-    }
+    // `Texels::place` in u32, for twice the lanes.
+    let columns = (1_u32 << texels.ubits) - 1;
+    let rows = ((1_u32 << texels.vbits) - 1) << texels.ubits;
+    let to_row = 16 - texels.ubits;
     let [du, dv] = steps.map(|step| step as f64);
     let f64_dd = dd as f64;
     let ([mut u, mut v], mut d) = (numerators, d);
@@ -232,8 +237,8 @@ fn fill_perspective_estimated(
                     // Modulo 2³². Lanes beyond the piece may hold anything.
                     let u = nearest_whole((first_u + *k * du) * reciprocal) as u32;
                     let v = nearest_whole((first_v + *k * dv) * reciprocal) as u32;
-                    // Below 65,536.
-                    *place = texels.place(u, v) as u16;
+                    // At most columns + rows, which is below 65,536.
+                    *place = (((v >> to_row) & rows) | ((u >> 16) & columns)) as u16;
                     bounds |= u32::from(u & 0xFFFF == 0) | u32::from(v & 0xFFFF == 0);
                     *k += LANES as f64;
                 }
@@ -242,7 +247,7 @@ fn fill_perspective_estimated(
         }
         if sure {
             for (pixel, place) in piece.iter_mut().zip(&places) {
-                *pixel = texels.bytes[usize::from(*place) & (texels.bytes.len() - 1)];
+                *pixel = texels.bytes[usize::from(*place)];
             }
         } else {
             fill_perspective_portable(piece, texels, [u, v], steps, d, dd);

@@ -3,7 +3,7 @@
 //!
 //! | group | what | file |
 //! |---|---|---|
-//! | spans | S: every kernel against the definition | `spans` |
+//! | spans | S: every kernel against the definition, twins of other loops against theirs | `spans`, `twins` |
 //! | triangles | R: cover, bytes and range against the definition; shared edges, clip rectangles, bands | `triangles` |
 //! | clipping | C: the near plane, the guard band, odd views; what is not finite is refused | `clipping` |
 //! | normals | N: normals of length 1, light within its range | `normals` |
@@ -36,6 +36,7 @@ mod shrink;
 mod spans;
 mod time;
 mod triangles;
+mod twins;
 
 pub use clipping::clipping;
 pub use files::files;
@@ -55,7 +56,7 @@ use crate::record::Record;
 pub const GROUPS: [fn(u64) -> Group; 9] =
     [spans, triangles, clipping, normals, time, hidden_surfaces, machine, reuse, files];
 
-/// No more failures of a group are kept (of spans: of a kernel): one fault shows in many cases.
+/// No more failures of a group are kept (of spans: of a kernel, of a loop): one fault shows in many cases.
 const FAILURES: usize = 4;
 
 /// What one group of checks found.

@@ -1,12 +1,13 @@
-//! Group S: every span kernel of this machine against the definition.
+//! Group S: every span kernel of this machine against the definition, and the twins of other loops.
 
 use super::random::Random;
+use super::twins::twins;
 use super::{FAILURES, Group};
 use crate::span::Kernel;
 
 /// Bytes before and behind a row that have to stay as they were.
-const GUARD: usize = 64;
-const GUARD_BYTE: u8 = 0xA5;
+pub(super) const GUARD: usize = 64;
+pub(super) const GUARD_BYTE: u8 = 0xA5;
 
 /// Every span kernel of this machine against the definition, in the manner of hard cases S1 to S6; under 2 s.
 ///
@@ -16,7 +17,8 @@ const GUARD_BYTE: u8 = 0xA5;
 ///
 /// Tried are no pixel, one and two (S1 to S3); random and extreme starts and steps at 191 pixels (S4);
 /// every length to 320 and those around 65,536, at changing alignments (S5); and whole rows with the least
-/// steps (S6). The same `seed` tries the same cases.
+/// steps (S6). Other loops that have a faster twin (dither, perspective-correct texels, the colour cube) are
+/// tried against their portable specification, at every length to 320. The same `seed` tries the same cases.
 ///
 /// ```
 /// let group = mode13h::verify::spans(13);
@@ -66,6 +68,7 @@ pub fn spans(seed: u64) -> Group {
         group.cases += spans.cases;
         group.failures.append(&mut spans.failures);
     }
+    twins(&mut group, seed);
     group
 }
 

@@ -108,7 +108,7 @@ pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Texture>> {
         let path = surface.texture.as_deref()?;
         let texture = read.entry(path).or_insert_with(|| {
             let loaded = texture::load(path);
-            loaded.map_err(|error| eprintln!("mode13h: {}", Failure::work(format!("{error}; drawn without")))).ok()
+            loaded.map_err(|error| eprintln!("mode13h: {}", Failure::work(format!("{error}; drawn without it")))).ok()
         });
         texture.clone()
     });

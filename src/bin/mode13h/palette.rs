@@ -24,7 +24,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "MODEL", conflicts_with = "palette")]
     from: Option<OsString>,
     /// The axis of that model that points up
-    #[arg(long, value_name = "AXIS", value_enum, default_value = "y", requires = "from")]
+    #[arg(long, value_name = "AXIS", value_enum, default_value = "y", conflicts_with = "palette")]
     up: Up,
     /// Write it to a file, in the format of its extension; .png makes a chart of the colours
     #[arg(short, long, value_name = "OUT")]

@@ -1,0 +1,178 @@
+//! The loops beside the span, portable against twin, at the lengths that spans have.
+//!
+//! ```text
+//! cargo bench --bench effects
+//! ```
+//!
+//! As in the table of `spans`: each round times every loop once, in a new order, and the figure is the
+//! median over the rounds. The first row is the span's fastest kernel, for comparison.
+
+use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
+use mode13h::span::depth::{copy_before, copy_nearer};
+use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
+use mode13h::span::hyperbolic::fill_quotients;
+use mode13h::span::lit::interpolate;
+use mode13h::span::texture::{Texels, fill_affine, fill_perspective, fill_perspective_portable};
+use mode13h::span::{Kernel, lookup};
+use std::hint::black_box;
+use std::time::Instant;
+
+const LENGTHS: [usize; 13] = [1, 2, 4, 8, 12, 16, 24, 32, 48, 64, 100, 160, 320];
+/// Rows in a batch: one from each place in a cache line, as spans start anywhere.
+const ROWS: usize = 64;
+/// Bytes of a row, with room for every start.
+const ROOM: usize = 320 + 64;
+
+/// What the loops read and write. The tables are larger than a first-level cache, as they are in use.
+struct Memory {
+    row: Vec<u8>,
+    channels: [Vec<u8>; 3],
+    depth: Vec<u32>,
+    points: Vec<[f32; 6]>,
+    texture: Vec<u8>,
+    table: Box<[u8; 65_536]>,
+    map: Box<[u8; 32_768]>,
+}
+
+type Draw = fn(&mut Memory, start: usize, length: usize);
+
+type Fill = fn(&mut [u8], u16, u16, &[u8; 8], usize);
+type Affine = fn(&mut [u8], Texels<'_>, u32, u32, u32, u32);
+type Perspective = fn(&mut [u8], Texels<'_>, [i128; 2], [i128; 2], i128, i128);
+type Lookup = fn(&mut [u8], &[u8], &[u8; 65_536]);
+type MixCube = fn(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize);
+type MixNearest = fn(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize, u8, &[u8; 32_768]);
+type Nearer = fn(&mut [u8], &mut [u32], &[u8], i64, i64) -> u32;
+type Before = fn(&mut [u8], &[u32], &[u8], i64, i64) -> u32;
+type Quotients = fn(&mut [u8], i128, i128, i128, i128);
+type Interpolate = fn(&mut [[f32; 6]], [f64; 6], [f64; 6], f64, f64);
+
+/// A loop under its name; a portable one comes before its twin. Each is called by its address, which the
+/// compiler is not told: so that none is inlined and made for these numbers alone, and `nm -S` shows its size.
+const LOOPS: [(&str, Draw); 14] = [
+    ("span", |m, start, n| Kernel::fastest().fill(&mut m.row[start..start + n], 0x1234, 0x56)),
+    ("dither portable", |m, start, n| dither(fill_dithered_portable, m, start, n)),
+    ("dither", |m, start, n| dither(fill_dithered, m, start, n)),
+    ("affine", |m, start, n| {
+        let fill = black_box(fill_affine as Affine);
+        fill(&mut m.row[start..start + n], texels(&m.texture), 0x12_3456, 0x34_5678, 0xC000, 0x5432);
+    }),
+    ("perspective portable", |m, start, n| perspective(fill_perspective_portable, m, start, n)),
+    ("perspective", |m, start, n| perspective(fill_perspective, m, start, n)),
+    ("lookup", |m, start, n| {
+        black_box(lookup as Lookup)(&mut m.row[start..start + n], &m.channels[0][start..start + n], &m.table);
+    }),
+    ("mix_cube portable", |m, start, n| cube(mix_cube_portable, m, start, n)),
+    ("mix_cube", |m, start, n| cube(mix_cube, m, start, n)),
+    ("mix_nearest", |m, start, n| {
+        let [r, g, b] = m.channels.each_ref().map(|channel| &channel[start..start + n]);
+        black_box(mix_nearest as MixNearest)(&mut m.row[start..start + n], r, g, b, &BAYER[3], start, 32, &m.map);
+    }),
+    ("copy_nearer", |m, start, n| {
+        let (depth, bytes) = (&mut m.depth[start..start + n], &m.channels[0][start..start + n]);
+        black_box(copy_nearer as Nearer)(&mut m.row[start..start + n], depth, bytes, 1 << 52, 1 << 44);
+    }),
+    ("copy_before", |m, start, n| {
+        let (depth, bytes) = (&m.depth[start..start + n], &m.channels[0][start..start + n]);
+        black_box(copy_before as Before)(&mut m.row[start..start + n], depth, bytes, 1 << 52, 1 << 44);
+    }),
+    ("quotients", |m, start, n| {
+        black_box(fill_quotients as Quotients)(&mut m.row[start..start + n], 13 << 70, 1 << 69, 1 << 70, 1 << 62);
+    }),
+    ("lit", |m, start, n| {
+        let (a, da) = ([0.3, -0.5, 0.8, 4.0, -3.0, 9.0], [0.01, 0.02, -0.01, 0.1, 0.05, -0.02]);
+        black_box(interpolate as Interpolate)(&mut m.points[start..start + n], a, da, 0.4, 0.001);
+    }),
+];
+
+fn dither(fill: Fill, memory: &mut Memory, start: usize, n: usize) {
+    black_box(fill)(&mut memory.row[start..start + n], 0x1234, 0x56, &BAYER[3], start);
+}
+
+fn cube(mix: MixCube, memory: &mut Memory, start: usize, n: usize) {
+    let [r, g, b] = memory.channels.each_ref().map(|channel| &channel[start..start + n]);
+    black_box(mix)(&mut memory.row[start..start + n], r, g, b, &BAYER[3], start);
+}
+
+fn texels(texture: &[u8]) -> Texels<'_> {
+    Texels::new(texture, 8, 8).expect("256 × 256")
+}
+
+/// A floor under the eye: the divisor half again as large at the end of 320 pixels.
+fn perspective(fill: Perspective, memory: &mut Memory, start: usize, n: usize) {
+    let (d, dd) = (1_i128 << 70, (1_i128 << 61) + 12_345);
+    let (u, v) = (0x12_3456 * d + 77, -0x23_4567 * d + 99);
+    black_box(fill)(&mut memory.row[start..start + n], texels(&memory.texture), [u, v], [1 << 86, 1 << 85], d, dd);
+}
+
+fn main() {
+    let mut state = 13_u32;
+    let mut bytes = |count: usize| -> Vec<u8> {
+        let mut byte = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8
+        };
+        (0..count).map(|_| byte()).collect()
+    };
+    let mut memory = Memory {
+        row: bytes(ROOM),
+        channels: [bytes(ROOM), bytes(ROOM), bytes(ROOM)],
+        // Above and below the depths drawn, at random: half of the pixels are nearer, at first.
+        depth: bytes(ROOM).into_iter().map(|byte| u32::from(byte) << 21).collect(),
+        points: vec![[0.0; 6]; ROOM],
+        texture: bytes(65_536),
+        table: bytes(65_536).try_into().expect("as long"),
+        map: bytes(32_768).try_into().expect("as long"),
+    };
+    // `cargo bench` passes --bench; under `cargo test` the benches only have to run.
+    let rounds = if std::env::args().any(|argument| argument == "--bench") { 101 } else { 1 };
+    println!("ns per row, median of {rounds} rounds, every round all loops in turn");
+    print!("{:>22}", "pixels");
+    for length in LENGTHS {
+        print!("{length:>9}");
+    }
+    println!();
+    let mut medians = vec![Vec::new(); LOOPS.len()];
+    for length in LENGTHS {
+        let turns = (400 / length.max(10)).max(2);
+        let mut times = vec![Vec::new(); LOOPS.len()];
+        for round in 0..rounds {
+            for i in 0..LOOPS.len() {
+                // 5 and the number of loops have no common factor.
+                let which = (i * 5 + round) % LOOPS.len();
+                let started = Instant::now();
+                for _ in 0..turns {
+                    batch(LOOPS[which].1, &mut memory, black_box(length));
+                }
+                times[which].push(started.elapsed().as_secs_f64() * 1e9 / (turns * ROWS) as f64);
+            }
+        }
+        for (medians, mut times) in medians.iter_mut().zip(times) {
+            times.sort_by(f64::total_cmp);
+            medians.push(times[times.len() / 2]);
+        }
+    }
+    for (i, (name, _)) in LOOPS.iter().enumerate() {
+        line(name, &medians[i], 1);
+        if i > 0 && LOOPS[i - 1].0 == format!("{name} portable") {
+            let ratios: Vec<f64> =
+                medians[i - 1].iter().zip(&medians[i]).map(|(portable, twin)| portable / twin).collect();
+            line("portable ÷ twin", &ratios, 2);
+        }
+    }
+}
+
+#[inline(never)]
+fn batch(draw: Draw, memory: &mut Memory, length: usize) {
+    for i in 0..ROWS {
+        draw(memory, i * 13 % 64, length);
+    }
+}
+
+fn line(name: &str, figures: &[f64], digits: usize) {
+    print!("{name:>22}");
+    for figure in figures {
+        print!("{figure:>9.digits$}");
+    }
+    println!();
+}
