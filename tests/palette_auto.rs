@@ -7,7 +7,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Material, RampChoice};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::auto::{Automatic, Entries, Use, share};
-use mode13h::palette::{Palette, Ramp, Rgb, Search, Table, builtin};
+use mode13h::palette::{Palette, Ramp, Rgb, Search, builtin};
 use mode13h::render::{Renderer, Seen, automatic, seen};
 use mode13h::scene::{Scene, UpAxis};
 use mode13h::texture::Texture;
@@ -518,7 +518,7 @@ fn the_house_has_two_ramps_and_bricks() {
     assert!(matches!(walls, Entries::Textures { block } if block.entries() > 64), "{walls:?}");
     // Texels in full light: in the mean off by less than a step of the card, 4.05 a channel.
     let colors = bricks.tinted(surfaces[1].color());
-    let table = Table::shades(&made.palette, &colors);
+    let table = mode13h::palette::Table::shades(&made.palette, &colors);
     let off: u32 = bricks
         .texels()
         .iter()

@@ -4,6 +4,8 @@
 pub mod display;
 #[cfg(feature = "gif")]
 pub mod film;
+#[cfg(feature = "png")]
+pub mod golden;
 pub mod naive_span;
 pub mod oracle;
 pub mod property;

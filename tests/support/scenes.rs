@@ -33,8 +33,19 @@ fn lamp_on_wall(slices: u32) -> Scene {
     scene
 }
 
-/// Every scene under its name; together they call for every effect.
-pub fn all() -> Vec<(&'static str, Scene)> {
+/// Every scene under its name, those that are shipped too; together they call for every effect.
+pub fn all() -> Vec<(String, Scene)> {
+    let mut all: Vec<(String, Scene)> = small().into_iter().map(|(name, scene)| (name.to_string(), scene)).collect();
+    #[cfg(feature = "scene-files")]
+    for shipped in &mode13h::scene::shipped::ALL {
+        let mut scene = shipped.load().expect("a scene that loads").scene;
+        scene.set_time(0.4 * scene.duration);
+        all.push((format!("scene {}", shipped.name), scene));
+    }
+    all
+}
+
+fn small() -> Vec<(&'static str, Scene)> {
     let mut scenes: Vec<(&'static str, Scene)> =
         ["cube", "torus", "cone", "teapot", "wall"].map(|name| (name, showing(name))).into();
 

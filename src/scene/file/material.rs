@@ -6,6 +6,9 @@ use super::named::Named;
 use crate::light::{Material, RampChoice};
 use crate::palette::Ramp;
 
+/// Where nothing is said: neither broad nor a point.
+const SHININESS: f32 = 20.0;
+
 /// Changes `material` where the layout has something to say. `has_texcoords`: whether a texture can lie on the mesh.
 pub(super) fn apply(
     layout: &MaterialLayout,
@@ -18,6 +21,10 @@ pub(super) fn apply(
     set(&mut material.diffuse, layout.diffuse.map(|share| share.0));
     set(&mut material.specular, layout.specular.map(|share| share.0));
     set(&mut material.shininess, layout.shininess.map(|exponent| exponent.0));
+    // What never was shiny has no exponent.
+    if material.shininess <= 0.0 {
+        material.shininess = SHININESS;
+    }
     if let Some(color) = layout.color {
         material.color = color.0;
     }
