@@ -125,7 +125,10 @@ impl Lights<'_> {
         let (mut front, mut back) = (Side::DARK, Side::DARK);
         let at = widen(position);
         let wide_normal = widen(normal);
-        let to_eye = (answer.specular != 0.0).then(|| unit(sub(self.eye, at))).flatten();
+        // A build that leaves them out (`plan::Effect::is_left_out`) has neither highlights nor lamps.
+        let is_specular = !cfg!(mode13h_leave_out = "specular") && answer.specular != 0.0;
+        let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
+        let to_eye = is_specular.then(|| unit(sub(self.eye, at))).flatten();
         for sun in self.suns {
             let cosine = f64::from(normal.dot(sun.towards));
             let highlight = highlight(to_eye, wide_normal, widen(sun.towards), cosine, answer.shininess);
@@ -135,7 +138,7 @@ impl Lights<'_> {
                 back.add(of_sun(sun), -cosine, highlight);
             }
         }
-        for lamp in self.lamps {
+        for lamp in lamps {
             let to_lamp = sub(lamp.position, at);
             let square = dot(to_lamp, to_lamp) * lamp.inverse_square;
             // Beyond the range; NaN, of what is too far to be squared, too.

@@ -19,6 +19,8 @@ pub enum Why {
     Unchanged,
     /// Vertices are not kept from frame to frame.
     NotKept,
+    /// This build has no such effect.
+    LeftOut,
     /// How near the object comes, and where the near plane is.
     Nearest {
         /// The least distance of its bounds along the view.
@@ -154,6 +156,7 @@ impl Why {
             Self::Changed => "it, the camera or its light changed since the last frame".to_string(),
             Self::Unchanged => "nothing it depends on changed since the last frame".to_string(),
             Self::NotKept => "vertices are not kept".to_string(),
+            Self::LeftOut => "this build leaves it out".to_string(),
             Self::Nearest { nearest, near } if nearest > near => {
                 format!("its bounds come no nearer than {nearest:.3}; the near plane is at {near:.3}")
             }
