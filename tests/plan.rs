@@ -3,7 +3,7 @@
 mod support;
 
 use mode13h::plan::{Class, Effect};
-use mode13h::render::{HiddenSurfaces, Renderer, Rung, Stats};
+use mode13h::render::{HiddenSurfaces, Renderer, Rung, Screen, Stats};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use support::scenes;
@@ -214,6 +214,76 @@ fn e1_what_stays_is_not_drawn_again() {
         assert_eq!(vga.pixels(), draw(&scene, |_| ()).0, "{name}: as a new renderer draws it");
         tried.add(2);
     }
+}
+
+/// A plan that is made and not drawn is the plan of the next frame, and leaves that frame as it would have been.
+#[test]
+fn a_plan_alone_is_that_of_the_next_frame() {
+    let mut tried = Tried::new("a_plan_alone_is_that_of_the_next_frame", 60);
+    for (name, mut scene) in scenes::all() {
+        let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+        let (mut plain, mut plain_vga) = (Renderer::new(), Vga::new());
+        // The first frame, one that moves, and one that stays.
+        for turn in [0.0, 0.1, 0.0] {
+            scene.objects_mut()[0].rotate_y(turn);
+            for _ in 0..2 {
+                renderer.make_plan(&scene, Screen::MODE_13H).expect("a legal scene");
+            }
+            let plan = renderer.plan().clone();
+            let mut stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
+            let plain_stats = plain.draw(&scene, &mut plain_vga).expect("a legal scene");
+            assert_eq!(&plan, plain.plan(), "{name}");
+            assert_eq!(renderer.plan(), plain.plan(), "{name}");
+            // Memory that the plan takes was taken before.
+            stats.allocated = plain_stats.allocated;
+            assert_eq!(stats, plain_stats, "{name}");
+            assert_eq!(differing(vga.pixels(), plain_vga.pixels()), 0, "{name}");
+            tried.add(1);
+        }
+    }
+}
+
+/// Vertices that were kept by force while the object moved are made as soon as nobody forces that.
+#[test]
+fn vertices_that_were_kept_by_force_are_made_when_they_are_let_go() {
+    let mut tried = Tried::new("vertices_that_were_kept_by_force_are_made_when_they_are_let_go", 20);
+    for (name, mut scene) in scenes::all() {
+        let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        let before = vga.pixels().to_vec();
+        scene.objects_mut()[0].rotate_y(0.01);
+        renderer.force(Effect::Transform, Some(false));
+        let kept = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert_eq!(kept.vertices, 0, "{name}");
+        assert_eq!(differing(vga.pixels(), &before), 0, "{name}");
+        renderer.force(Effect::Transform, None);
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert_eq!(differing(vga.pixels(), &draw(&scene, |_| ()).0), 0, "{name}");
+        tried.add(1);
+    }
+}
+
+#[test]
+fn an_effect_is_switched_for_one_object_or_for_all() {
+    let scenes = scenes::all();
+    let (_, scene) = scenes.iter().find(|(name, _)| *name == "fog").expect("listed");
+    let is_on = |prepare: &dyn Fn(&mut Renderer)| -> Vec<bool> {
+        let (_, _, renderer) = draw(scene, prepare);
+        renderer.plan().objects().iter().map(|plan| plan.is_on(Effect::Fog)).collect()
+    };
+    assert_eq!(is_on(&|_| ()), [true; 5]);
+    assert_eq!(is_on(&|r| r.force_for(2, Effect::Fog, Some(false))), [true, true, false, true, true]);
+    let one_of_all = |r: &mut Renderer| {
+        r.force(Effect::Fog, Some(false));
+        r.force_for(2, Effect::Fog, Some(true));
+    };
+    assert_eq!(is_on(&one_of_all), [false, false, true, false, false]);
+    let taken_back = |r: &mut Renderer| {
+        one_of_all(r);
+        r.force_for(2, Effect::Fog, None);
+        r.force_for(1, Effect::Dither, Some(true));
+    };
+    assert_eq!(is_on(&taken_back), [false; 5]);
 }
 
 /// The plan's words are there for every decision, and the same every time.

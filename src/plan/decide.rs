@@ -50,6 +50,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     for (place, object) in inputs.scene.objects().iter().enumerate() {
         let rules = Rules {
             scene: inputs.scene,
+            place,
             object,
             view: &inputs.views[place],
             reach: inputs.views[place].reach(object.mesh().bounds()),
@@ -80,6 +81,7 @@ const fn in_integers(effect: Effect) -> bool {
 /// One object, and what the rules look at.
 struct Rules<'a> {
     scene: &'a Scene,
+    place: usize,
     object: &'a Object,
     view: &'a ObjectView,
     reach: Reach,
@@ -94,11 +96,15 @@ impl Rules<'_> {
         let mut plan = ObjectPlan { decisions, rung: self.inputs.rung };
         for effect in Effect::ALL {
             let mut decision = self.decision(effect, lamps_in_range, &plan);
+            if effect.is_left_out() {
+                plan.set(effect, Decision::off(Why::LeftOut));
+                continue;
+            }
             if self.inputs.integer && !in_integers(effect) {
                 plan.set(effect, Decision::off(Why::NotInIntegers));
                 continue;
             }
-            if let Some(on) = self.inputs.forced.get(effect)
+            if let Some(on) = self.inputs.forced.get_for(self.place, effect)
                 && on != decision.on
             {
                 decision = Decision { on, why: Why::Forced, choice: if on { decision.choice } else { "" } };
@@ -143,6 +149,7 @@ impl Rules<'_> {
 
     fn transform(&self) -> Decision {
         match self.since {
+            _ if self.inputs.integer => Decision::on(Why::NotKept),
             Since::New => Decision::on(Why::FirstFrame),
             Since::Changed => Decision::on(Why::Changed),
             Since::Unchanged if self.inputs.keeps => Decision::off(Why::Unchanged),
@@ -285,7 +292,7 @@ impl Rules<'_> {
         if let Some(light) = self.scene.lights().iter().position(|light| light.is_colored() && light.intensity() != 0.0) {
             return Decision::on(Why::ColoredLight { light });
         }
-        match self.object.materials.iter().position(Material::is_colored) {
+        match self.object.materials.iter().position(Material::takes_channels) {
             Some(material) => Decision::on(Why::ColoredMaterial { material }),
             None => Decision::off(Why::NoColor),
         }

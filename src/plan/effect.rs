@@ -87,6 +87,33 @@ impl Effect {
         }
     }
 
+    /// Whether this build leaves it out: then it is off, whatever a scene calls for, and the compiler drops its stages.
+    /// For the proof that what is off costs nothing (`.ci/off_is_free`); no feature of this crate does that.
+    #[inline]
+    pub(crate) const fn is_left_out(self) -> bool {
+        match self {
+            Self::Transform => cfg!(mode13h_leave_out = "transform"),
+            Self::NearClipping => cfg!(mode13h_leave_out = "near-clipping"),
+            Self::ScreenClipping => cfg!(mode13h_leave_out = "screen-clipping"),
+            Self::BackFaceCulling => cfg!(mode13h_leave_out = "back-face-culling"),
+            Self::HiddenSurfaces => cfg!(mode13h_leave_out = "hidden-surfaces"),
+            Self::Lighting => cfg!(mode13h_leave_out = "lighting"),
+            Self::PositionalLights => cfg!(mode13h_leave_out = "positional-lights"),
+            Self::Specular => cfg!(mode13h_leave_out = "specular"),
+            Self::Gouraud => cfg!(mode13h_leave_out = "gouraud"),
+            Self::Fog => cfg!(mode13h_leave_out = "fog"),
+            Self::Phong => cfg!(mode13h_leave_out = "phong"),
+            Self::Tessellation => cfg!(mode13h_leave_out = "tessellation"),
+            Self::Perspective => cfg!(mode13h_leave_out = "perspective"),
+            Self::RgbChannels => cfg!(mode13h_leave_out = "rgb-channels"),
+            Self::Texture => cfg!(mode13h_leave_out = "texture"),
+            Self::EnvironmentMap => cfg!(mode13h_leave_out = "environment-map"),
+            Self::Transparency => cfg!(mode13h_leave_out = "transparency"),
+            Self::Dither => cfg!(mode13h_leave_out = "dither"),
+            Self::PaletteAnimation => cfg!(mode13h_leave_out = "palette-animation"),
+        }
+    }
+
     /// Its place among all.
     #[must_use]
     pub(crate) const fn index(self) -> usize {

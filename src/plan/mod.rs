@@ -68,9 +68,10 @@ impl ObjectPlan {
     }
 
     /// Whether an effect is on.
+    #[inline]
     #[must_use]
     pub fn is_on(&self, effect: Effect) -> bool {
-        self.decision(effect).on
+        !effect.is_left_out() && self.decision(effect).on
     }
 
     /// How it is shaded.
@@ -85,19 +86,37 @@ impl ObjectPlan {
 }
 
 /// What is switched by hand: `None` leaves it to the plan.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Forced([Option<bool>; Effect::COUNT]);
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Forced {
+    everywhere: [Option<bool>; Effect::COUNT],
+    /// Objects that differ from that, by their places.
+    single: Vec<(usize, Effect, bool)>,
+}
 
 impl Forced {
     /// Switches an effect on or off for every object, or leaves it to the plan.
     pub fn set(&mut self, effect: Effect, on: Option<bool>) {
-        self.0[effect.index()] = on;
+        self.everywhere[effect.index()] = on;
     }
 
-    /// How an effect is switched.
+    /// How an effect is switched for every object.
     #[must_use]
     pub fn get(&self, effect: Effect) -> Option<bool> {
-        self.0[effect.index()]
+        self.everywhere[effect.index()]
+    }
+
+    /// Switches an effect on or off for one object, by its place in the scene, whatever holds for every object;
+    /// `None` takes that back.
+    pub fn set_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
+        self.single.retain(|(place, of, _)| (*place, *of) != (object, effect));
+        self.single.extend(on.map(|on| (object, effect, on)));
+    }
+
+    /// How an effect is switched for an object.
+    #[must_use]
+    pub fn get_for(&self, object: usize, effect: Effect) -> Option<bool> {
+        let single = self.single.iter().find(|(place, of, _)| (*place, *of) == (object, effect));
+        single.map(|(_, _, on)| *on).or(self.get(effect))
     }
 }
 
@@ -121,7 +140,7 @@ impl Plan {
     /// How hidden surfaces are left out.
     #[must_use]
     pub fn hidden_surfaces(&self) -> HiddenSurfaces {
-        self.hidden_surfaces
+        if Effect::HiddenSurfaces.is_left_out() { HiddenSurfaces::BackFaces } else { self.hidden_surfaces }
     }
 
     /// Whether the plan chose how hidden surfaces are left out, and nobody asked for it.

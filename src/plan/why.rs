@@ -19,6 +19,8 @@ pub enum Why {
     Unchanged,
     /// Vertices are not kept from frame to frame.
     NotKept,
+    /// This build has no such effect.
+    LeftOut,
     /// How near the object comes, and where the near plane is.
     Nearest {
         /// The least distance of its bounds along the view.
@@ -125,7 +127,7 @@ pub enum Why {
         /// Its place in the scene.
         light: usize,
     },
-    /// A material is coloured.
+    /// A material is coloured, or drawn in the nearest entries.
     ColoredMaterial {
         /// Its place among the object's materials.
         material: usize,
@@ -154,6 +156,7 @@ impl Why {
             Self::Changed => "it, the camera or its light changed since the last frame".to_string(),
             Self::Unchanged => "nothing it depends on changed since the last frame".to_string(),
             Self::NotKept => "vertices are not kept".to_string(),
+            Self::LeftOut => "this build leaves it out".to_string(),
             Self::Nearest { nearest, near } if nearest > near => {
                 format!("its bounds come no nearer than {nearest:.3}; the near plane is at {near:.3}")
             }
@@ -195,7 +198,7 @@ impl Why {
             Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
             Self::NoTexture => "nothing follows the perspective".to_string(),
             Self::ColoredLight { light } => format!("light {light} is coloured"),
-            Self::ColoredMaterial { material: i } => format!("{} is coloured", material(i)),
+            Self::ColoredMaterial { material: i } => format!("{} is drawn in its own colours", material(i)),
             Self::NotInIntegers => "the 16.16 vertex path has none".to_string(),
             Self::NoColor => "neither light nor material is coloured".to_string(),
         }

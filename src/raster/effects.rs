@@ -138,6 +138,34 @@ pub struct Look<'a> {
     pub keeps_depth: bool,
 }
 
+/// The stages. One that a build leaves out (`plan::Effect::is_left_out`) is not there, and the compiler knows.
+impl<'a> Look<'a> {
+    #[inline]
+    fn channels(&self) -> Option<Mix<'a>> {
+        self.channels.filter(|_| !cfg!(mode13h_leave_out = "rgb-channels"))
+    }
+
+    #[inline]
+    fn dither(&self) -> Option<&'a [[u8; 8]; 8]> {
+        self.dither.filter(|_| !cfg!(mode13h_leave_out = "dither"))
+    }
+
+    #[inline]
+    fn texture(&self) -> Option<&TextureLook<'a>> {
+        self.texture.as_ref().filter(|_| !cfg!(all(mode13h_leave_out = "texture", mode13h_leave_out = "environment-map")))
+    }
+
+    #[inline]
+    fn fog(&self) -> Option<&'a [u8; 65_536]> {
+        self.fog.filter(|_| !cfg!(mode13h_leave_out = "fog"))
+    }
+
+    #[inline]
+    fn blend(&self) -> Option<&'a [u8; 65_536]> {
+        self.blend.filter(|_| !cfg!(mode13h_leave_out = "transparency"))
+    }
+}
+
 impl Look<'_> {
     /// Linear shades and nothing else.
     pub const PLAIN: Self = Self {
@@ -273,15 +301,15 @@ impl<'a> EffectPaint<'a> {
         let plane = |value: fn(&Attributes) -> U8F8| {
             ShadePlane::of_values(triangle, corners.map(|corner| i64::from(value(corner).to_bits())))
         };
-        let planes = match (look.source, look.channels) {
+        let planes = match (look.source, look.channels()) {
             (Source::Lit(_), _) => Planes::Lit(LitPlane::new(triangle, corners)),
             (_, Some(_)) => Planes::Channels([plane(|c| c.channels[0]), plane(|c| c.channels[1]), plane(|c| c.channels[2])]),
             (Source::Linear { .. }, None) => Planes::Shade(ShadePlane::new(triangle)),
             (Source::Hyperbolic, None) => Planes::Hyperbolic(HyperbolicPlane::new(triangle)),
             (Source::NormalTable(_), None) => Planes::Slope([plane(|c| c.slope[0]), plane(|c| c.slope[1])]),
         };
-        let texture = look.texture.map(|texture| TexturePlane::new(triangle, corners, texture.mapping));
-        Self { look, planes, texture, fog: look.fog.map(|_| plane(|c| c.fog)) }
+        let texture = look.texture().map(|texture| TexturePlane::new(triangle, corners, texture.mapping));
+        Self { look, planes, texture, fog: look.fog().map(|_| plane(|c| c.fog)) }
     }
 
     /// Paints `row` into `pixels`, the frame's whole row; if there are `depths`, the buffer's whole row,
@@ -304,7 +332,7 @@ impl<'a> EffectPaint<'a> {
             let skipped = (x - seed) as usize;
             let piece = &mut bytes[..length];
             self.shades(row, seed, piece, kernel);
-            if let (Some(fog), Some(table)) = (&self.fog, self.look.fog) {
+            if let (Some(fog), Some(table)) = (&self.fog, self.look.fog()) {
                 let mut levels: Piece = [0; PIECE];
                 kernel.fill(&mut levels[..length], fog.start(seed, row.y), fog.step());
                 lookup(piece, &levels[..length], table);
@@ -313,7 +341,7 @@ impl<'a> EffectPaint<'a> {
             let range = x as usize..end as usize;
             let Some(pixels) = pixels.get_mut(range.clone()) else { return };
             let piece = &mut piece[skipped..];
-            if let Some(table) = self.look.blend {
+            if let Some(table) = self.look.blend() {
                 // The table's row is the triangle's own index.
                 let mut behind: Piece = [0; PIECE];
                 let behind = &mut behind[..pixels.len()];
@@ -334,18 +362,18 @@ impl<'a> EffectPaint<'a> {
         let pixels = pixels as u32;
         drawn.spans += 1;
         let add = |on: bool, count: &mut u32| *count += if on { pixels } else { 0 };
-        add(self.look.texture.is_some(), &mut drawn.textured);
-        add(self.look.dither.is_some(), &mut drawn.dithered);
-        add(self.look.fog.is_some(), &mut drawn.fogged);
-        add(self.look.blend.is_some(), &mut drawn.blended);
-        add(self.look.channels.is_some(), &mut drawn.mixed);
+        add(self.look.texture().is_some(), &mut drawn.textured);
+        add(self.look.dither().is_some(), &mut drawn.dithered);
+        add(self.look.fog().is_some(), &mut drawn.fogged);
+        add(self.look.blend().is_some(), &mut drawn.blended);
+        add(self.look.channels().is_some(), &mut drawn.mixed);
         add(matches!(self.planes, Planes::Lit(_) | Planes::Slope(_)), &mut drawn.lit);
     }
 
     /// The bytes from pixel `seed` on: shades, with their texture, or mixed.
     fn shades(&self, row: &Row, seed: i32, piece: &mut [u8], kernel: Kernel) {
-        let thresholds = &self.look.dither.unwrap_or(&HALVES)[(row.y & 7) as usize];
-        let dithered = self.look.dither.is_some();
+        let thresholds = &self.look.dither().unwrap_or(&HALVES)[(row.y & 7) as usize];
+        let dithered = self.look.dither().is_some();
         // A column.
         let column = seed as usize;
         let linear = |plane: &ShadePlane, start: u16, piece: &mut [u8]| {
@@ -398,7 +426,7 @@ impl<'a> EffectPaint<'a> {
                 plane.points(seed, row.y, &mut points[..length]);
                 let Source::Lit(lighting) = self.look.source else { return };
                 let mut shades = [[0_u16; PIECE]; 3];
-                if self.look.channels.is_some() {
+                if self.look.channels().is_some() {
                     let [red, green, blue] = &mut shades;
                     let rows = [&mut red[..length], &mut green[..length], &mut blue[..length]];
                     lighting.channels(&points[..length], rows);
@@ -412,7 +440,7 @@ impl<'a> EffectPaint<'a> {
                 to_bytes(&shades[0][..length], thresholds, column, piece);
             }
         }
-        if let Some(texture) = &self.look.texture {
+        if let Some(texture) = self.look.texture() {
             let mut texels: Piece = [0; PIECE];
             let texels = &mut texels[..length];
             self.texels(row, seed, texels);
@@ -424,7 +452,7 @@ impl<'a> EffectPaint<'a> {
     /// Channels to indices, through the texture if there is one.
     fn mix(&self, row: &Row, seed: i32, mut channels: [Piece; 3], thresholds: &[u8; 8], piece: &mut [u8]) {
         let length = piece.len();
-        if let Some(texture) = &self.look.texture {
+        if let Some(texture) = self.look.texture() {
             let mut texels: Piece = [0; PIECE];
             self.texels(row, seed, &mut texels[..length]);
             for (channel, table) in channels.iter_mut().zip(texture.tables) {
@@ -436,7 +464,7 @@ impl<'a> EffectPaint<'a> {
         let [red, green, blue] = channels.each_ref().map(|channel| &channel[..length]);
         // A column.
         let column = seed as usize;
-        match self.look.channels {
+        match self.look.channels() {
             Some(Mix::Nearest { map, spread }) => {
                 mix_nearest(piece, red, green, blue, thresholds, column, spread, map);
             }
@@ -446,7 +474,7 @@ impl<'a> EffectPaint<'a> {
 
     /// The texels from pixel `seed` on.
     fn texels(&self, row: &Row, seed: i32, texels: &mut [u8]) {
-        let (Some(look), Some(plane)) = (&self.look.texture, &self.texture) else { return };
+        let (Some(look), Some(plane)) = (self.look.texture(), &self.texture) else { return };
         let y = row.y;
         match look.mapping {
             TextureMapping::Affine => {
@@ -569,7 +597,8 @@ impl<D: Cell> Raster<'_, D> {
             let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };
             let paint = paint.get_or_insert_with(|| EffectPaint::new(&triangle, vertices, attributes, look));
-            let Some(depth) = &mut self.depth else {
+            let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+            let Some(depth) = depth else {
                 return paint.row::<D>(&row, pixels, None, self.kernel, &mut drawn);
             };
             let Some(depths) = depth.row_mut(y) else { return };

@@ -152,7 +152,9 @@ impl<'a, D: Cell> Raster<'a, D> {
             let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };
             let paint = paint.get_or_insert_with(|| Paint::new(&triangle, shading));
-            let Some(depth) = &mut self.depth else {
+            // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
+            let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+            let Some(depth) = depth else {
                 return paint.row(&row, pixels, self.kernel, &mut drawn);
             };
             let Some(depths) = depth.row_mut(y) else { return };

@@ -86,7 +86,8 @@ impl Looks<'_> {
 
     /// Whether a surface shines through.
     pub(super) fn is_transparent(&self, object: usize, surface: u16) -> bool {
-        self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
+        self.plan.is_on(object, Effect::Transparency)
+            && self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
     }
 
     /// Hands the look of a surface to `draw`. Of one that is not there, nothing is drawn.

@@ -253,7 +253,13 @@ impl Renderer {
         self.forced.set(effect, on);
     }
 
-    /// The plan of the frame that was drawn last.
+    /// The same for one object, by its place in the scene, whatever holds for every object; `None` takes that back.
+    /// Palette animation is on as soon as it is for one.
+    pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
+        self.forced.set_for(object, effect, on);
+    }
+
+    /// The plan that was made last: of the frame that was drawn last, or by [`make_plan`](Self::make_plan).
     #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.plan
@@ -288,6 +294,30 @@ impl Renderer {
         }
         let faces = self.states.get(object)?.faces(scene.objects().get(object)?, plan)?;
         Some(bound::linear_error(&faces.geometry, &faces.lights, faces.paints, !faces.culls))
+    }
+
+    /// Makes the plan of the frame that [`draw`](Self::draw) would draw next, and draws nothing. The frames that are
+    /// drawn after it are those that would have been drawn without it.
+    ///
+    /// ```
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::plan::Effect;
+    /// use mode13h::render::{Renderer, Screen};
+    /// use mode13h::scene::Scene;
+    ///
+    /// let scene = Scene::showing(shapes::torus(48, 24));
+    /// let mut renderer = Renderer::new();
+    /// let plan = renderer.make_plan(&scene, Screen::MODE_13H)?;
+    /// assert!(plan.is_on(0, Effect::HiddenSurfaces) && !plan.is_on(0, Effect::Fog));
+    /// # Ok::<(), mode13h::render::RenderError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`draw`](Self::draw), but for what 16.16 can't hold, which shows only when it is drawn.
+    pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
+        let view = checked(scene, screen)?;
+        self.decide(scene, &view, true);
+        Ok(&self.plan)
     }
 
     /// Draws `scene` on the machine: sets its DAC to the scene's palette, if it has one, clears its
@@ -376,33 +406,11 @@ impl Renderer {
         shown: Option<&Palette>,
         whole: bool,
     ) -> Result<(Stats, bool), RenderError> {
-        check(scene)?;
-        let view = View::new(&scene.camera, screen).map_err(RenderError::Camera)?;
-        self.views.clear();
-        self.views.extend(scene.objects().iter().map(|object| ObjectView::new(&view, object)));
+        let view = checked(scene, screen)?;
         if self.vertex_path == VertexPath::Integer {
             self.integer.prepare(scene, screen)?;
         }
-        let rung = self.rung.or(scene.wishes.rung).unwrap_or_default();
-        self.states.resize_with(scene.objects().len(), ObjectState::default);
-        self.since.clear();
-        for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {
-            self.since.push(state.renew(scene, object, view, rung));
-        }
-        let inputs = Inputs {
-            scene,
-            views: &self.views,
-            since: &self.since,
-            forced: &self.forced,
-            rung,
-            hidden_surfaces: self.hidden_surfaces.or(scene.wishes.hidden_surfaces),
-            mapping: self.mapping.or(scene.wishes.mapping),
-            whole,
-            integer: self.vertex_path == VertexPath::Integer,
-            keeps: self.may_keep() && self.vertex_path == VertexPath::Float,
-        };
-        let states = &self.states;
-        decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.plan);
+        let rung = self.decide(scene, &view, whole);
 
         let drawing = (screen, scene.background, self.plan.hidden_surfaces(), self.mapping, scene.wishes);
         let palette = scene.palette.as_ref().or(shown);
@@ -434,6 +442,33 @@ impl Renderer {
         }
         look::need(&mut self.tables, scene, palette.unwrap_or(&BIOS), &self.plan, &self.states);
         Ok((stats, changed))
+    }
+
+    /// Makes the plan of a scene that has been checked. Returns the rung that shades.
+    fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Rung {
+        self.views.clear();
+        self.views.extend(scene.objects().iter().map(|object| ObjectView::new(view, object)));
+        let rung = self.rung.or(scene.wishes.rung).unwrap_or_default();
+        self.states.resize_with(scene.objects().len(), ObjectState::default);
+        self.since.clear();
+        for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {
+            self.since.push(state.renew(scene, object, view, rung));
+        }
+        let inputs = Inputs {
+            scene,
+            views: &self.views,
+            since: &self.since,
+            forced: &self.forced,
+            rung,
+            hidden_surfaces: self.hidden_surfaces.or(scene.wishes.hidden_surfaces),
+            mapping: self.mapping.or(scene.wishes.mapping),
+            whole,
+            integer: self.vertex_path == VertexPath::Integer,
+            keeps: self.may_keep() && self.vertex_path == VertexPath::Float,
+        };
+        let states = &self.states;
+        decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.plan);
+        rung
     }
 
     fn fill(&mut self, scene: &Scene, stats: &mut Stats, mut frame: Frame<'_>) {
@@ -603,6 +638,12 @@ impl Default for Renderer {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// The view of a scene in which nothing is wrong.
+fn checked(scene: &Scene, screen: Screen) -> Result<View, RenderError> {
+    check(scene)?;
+    View::new(&scene.camera, screen).map_err(RenderError::Camera)
 }
 
 /// What is wrong with a scene, if anything.

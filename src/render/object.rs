@@ -104,6 +104,8 @@ pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
 #[derive(Debug, Default)]
 pub(super) struct ObjectState {
     source: Option<Source>,
+    /// Whether the source has changed since the vertices were made.
+    stale: bool,
     /// The plan that the vertices were made by, its reasons aside.
     made_by: Option<[bool; Effect::COUNT]>,
     paints: Vec<Paint>,
@@ -119,16 +121,10 @@ pub(super) struct ObjectState {
 }
 
 impl ObjectState {
-    /// Takes on what the object is now.
+    /// Takes on what the object is now. Says what became of it since its vertices were made.
     pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, rung: Rung) -> Since {
         match &mut self.source {
-            Some(source) => {
-                if source.renew(scene, object, view, rung) {
-                    Since::Changed
-                } else {
-                    Since::Unchanged
-                }
-            }
+            Some(source) => self.stale |= source.renew(scene, object, view, rung),
             None => {
                 let mut source = Source {
                     mesh: Shared::clone(object.shared_mesh()),
@@ -144,8 +140,12 @@ impl ObjectState {
                 };
                 source.renew(scene, object, view, rung);
                 self.source = Some(source);
-                Since::New
             }
+        }
+        match self.made_by {
+            None => Since::New,
+            Some(_) if self.stale => Since::Changed,
+            Some(_) => Since::Unchanged,
         }
     }
 
@@ -171,7 +171,7 @@ impl ObjectState {
         if !plan.is_on(Effect::Transform) && self.made_by == Some(on) {
             return false;
         }
-        self.made_by = Some(on);
+        (self.made_by, self.stale) = (Some(on), false);
         let Some(source) = &self.source else { return false };
         self.paints.clear();
         let palette = scene.palette.as_ref();
