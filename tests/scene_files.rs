@@ -671,3 +671,36 @@ fn every_key_is_documented() {
     }
     assert!(tried > 50, "{tried} keys");
 }
+
+#[test]
+fn a_texture_is_a_png_beside_the_scene() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let mut png_file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png_file, 2, 1);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(&[255, 0, 0, 0, 0, 255]).expect("a picture");
+    writer.finish().expect("an end");
+    fs::write(directory.path().join("flag.png"), png_file).expect("written");
+    // The model names it in its material; the wall's scene does so itself.
+    fs::write(directory.path().join("it.mtl"), "newmtl tin\nmap_Kd flag.png\n").expect("written");
+    let model = "mtllib it.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl tin\nf 1/1 2/1 3/1\n";
+    fs::write(directory.path().join("it.obj"), model).expect("written");
+    let path = directory.path().join("scene.toml");
+    let text = "objects = [{ shape = 'wall', material.texture = 'flag.png' }, { model = 'it.obj' }]";
+    fs::write(&path, text).expect("written");
+    let Loaded { scene, warnings } = file::load(&path).expect("a scene");
+    assert_eq!(warnings, [""; 0]);
+    for object in scene.objects() {
+        let texture = object.materials[0].texture.as_ref().expect("a texture");
+        assert_eq!((texture.width(), texture.height()), (2, 1));
+        assert_eq!((texture.color(0, 0), texture.color(1, 0)), (Rgb::new(255, 0, 0), Rgb::new(0, 0, 255)));
+    }
+}
+
+#[test]
+fn textures_repeat_as_often_as_a_scene_says() {
+    let scene = scene("objects = [{ shape = 'wall', subdivisions = [1, 1], repeat = [3, 0.5] }]");
+    let texcoords = scene.objects()[0].mesh().texcoords().expect("a wall has them");
+    assert_eq!(texcoords[3], mode13h::glam::Vec2::new(3.0, 0.5));
+}
