@@ -3,7 +3,7 @@
 mod support;
 
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex, VertexError};
+use mode13h::raster::{DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex, VertexError};
 use support::oracle;
 use support::random::Random;
 use support::triangles::{draw, triangle, vertex};
@@ -301,6 +301,7 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
         let twin = triangles[0].map(|v| vertex(v.x().to_bits().into(), v.y().to_bits().into(), 0, v.depth().into()));
         let all: Vec<_> = triangles.iter().copied().chain([twin]).collect();
         let (mut expected, mut nearest) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
+        let (mut covered, mut written) = (0, 0);
         for vertices in &all {
             for oracle::Pixel { x, y, byte } in
                 oracle::pixels(vertices, Shading::GouraudReseeded, WIDTH as i32, HEIGHT as i32)
@@ -310,7 +311,9 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
                     vertices.iter().fold((u32::MAX, 0), |(low, high), v| (low.min(v.depth()), high.max(v.depth())));
                 assert!((low..=high).contains(&depth), "depth within the vertices' at ({x}, {y}) of {vertices:?}");
                 let place = y as usize * WIDTH as usize + x as usize;
+                covered += 1;
                 if depth > nearest[place] {
+                    written += 1;
                     replaced += u32::from(nearest[place] != 0);
                     (nearest[place], expected[place]) = (depth, byte);
                 }
@@ -320,9 +323,11 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
         let frame = Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
         let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
         let mut raster = Raster::new(frame).with_depth(depth);
+        let mut drawn = Drawn::default();
         for vertices in &all {
-            raster.triangle(vertices, Shading::GouraudReseeded);
+            drawn += raster.triangle(vertices, Shading::GouraudReseeded);
         }
+        assert_eq!((drawn.covered, drawn.pixels), (covered, written), "{all:?}");
         assert_eq!(bytes, expected, "{all:?}");
         assert_eq!(depths, nearest, "{all:?}");
     }

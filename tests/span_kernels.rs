@@ -356,6 +356,22 @@ fn kernels_are_chosen_by_name() {
         assert_eq!((again.name(), again.level()), (kernel.name(), kernel.level()));
     }
     assert_eq!(Kernel::available().next().map(Kernel::name), Some("portable"));
+    let machine = if cfg!(target_arch = "x86_64") { "x86-64" } else { "i686" };
+    let mut best = "arrays";
+    for kernel in Kernel::available().filter(|kernel| kernel.name() != "simd") {
+        let level = match kernel.name() {
+            "asm" | "asm-unrolled" => machine,
+            name => name.trim_start_matches("simd-"),
+        };
+        assert_eq!((kernel.level(), kernel.to_string()), (level, kernel.name().to_owned()));
+        if kernel.name().starts_with("simd-") {
+            best = level;
+        }
+    }
+    if let Ok(simd) = Kernel::by_name("simd") {
+        assert_eq!((simd.level(), simd.to_string()), (best, format!("simd ({best})")));
+        assert_eq!(format!("{simd:?}"), format!("Kernel(simd ({best}))"));
+    }
     let names: Vec<_> = Kernel::available().map(Kernel::name).collect();
     let error = Kernel::by_name("mmx").expect_err("no such kernel").to_string();
     assert_eq!(error, format!("no such kernel; this machine has {}", names.join(", ")));
