@@ -122,7 +122,7 @@ impl Rules<'_> {
             Effect::ScreenClipping => self.screen_clipping(before),
             Effect::BackFaceCulling => self.back_face_culling(),
             Effect::HiddenSurfaces => self.hidden_surfaces(),
-            Effect::Lighting => self.lighting(),
+            Effect::Lighting => self.lighting(lamps_in_range),
             Effect::PositionalLights => self.positional_lights(lamps_in_range, before),
             Effect::Specular => self.specular(before),
             Effect::Gouraud => self.gouraud(before),
@@ -136,10 +136,7 @@ impl Rules<'_> {
             }
             Effect::Perspective => self.perspective(),
             Effect::Transparency => self.material_has(|material| material.blend != crate::light::Blend::Opaque),
-            Effect::Dither => match self.scene.wishes.dither {
-                true => Decision::on(Why::Asked).choosing("ordered 8 x 8"),
-                false => Decision::off(Why::NotAsked),
-            },
+            Effect::Dither => self.dither(before),
             Effect::PaletteAnimation => match self.scene.palette_animation {
                 Some(_) => Decision::on(Why::Asked),
                 None => Decision::off(Why::SceneHasNone),
@@ -189,12 +186,15 @@ impl Rules<'_> {
         Decision { on: way != HiddenSurfaces::BackFaces, choice: way.name(), why }
     }
 
-    fn lighting(&self) -> Decision {
-        let count = self.scene.lights().iter().filter(|light| light.intensity() != 0.0).count();
+    fn lighting(&self, lamps_in_range: usize) -> Decision {
+        let bright = || self.scene.lights().iter().filter(|light| light.intensity() != 0.0);
+        let count = bright().count();
         if count == 0 {
             Decision::off(Why::NoLight)
         } else if self.object.materials.iter().all(|m| m.diffuse == 0.0 && m.specular == 0.0) {
             Decision::off(Why::NoResponse)
+        } else if lamps_in_range == 0 && bright().all(|light| matches!(light, Light::Lamp { .. })) {
+            Decision::off(Why::LampsOutOfRange { count })
         } else {
             Decision::on(Why::Lights { count })
         }
@@ -295,6 +295,19 @@ impl Rules<'_> {
         match self.object.materials.iter().position(Material::takes_channels) {
             Some(material) => Decision::on(Why::ColoredMaterial { material }),
             None => Decision::off(Why::NoColor),
+        }
+    }
+
+    fn dither(&self, before: &ObjectPlan) -> Decision {
+        if !self.scene.wishes.dither {
+            Decision::off(Why::NotAsked)
+        } else if before.is_on(Effect::Phong)
+            && self.inputs.rung == Rung::PhongTable
+            && !before.is_on(Effect::RgbChannels)
+        {
+            Decision::off(Why::WholeShades)
+        } else {
+            Decision::on(Why::Asked).choosing("ordered 8 x 8")
         }
     }
 

@@ -134,6 +134,8 @@ pub enum Why {
     },
     /// Neither light nor material is coloured.
     NoColor,
+    /// Shades come from a table of whole ones: nothing lies between two of them.
+    WholeShades,
     /// The vertex path in 16.16 does not know it.
     NotInIntegers,
 }
@@ -199,6 +201,7 @@ impl Why {
             Self::NoTexture => "nothing follows the perspective".to_string(),
             Self::ColoredLight { light } => format!("light {light} is coloured"),
             Self::ColoredMaterial { material: i } => format!("{} is drawn in its own colours", material(i)),
+            Self::WholeShades => "the table of normals holds whole shades".to_string(),
             Self::NotInIntegers => "the 16.16 vertex path has none".to_string(),
             Self::NoColor => "neither light nor material is coloured".to_string(),
         }

@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use clap::Args;
 use mode13h::palette::{Palette, builtin};
-use mode13h::render::{Renderer, Rung, Stats};
+use mode13h::plan::Effect;
+use mode13h::render::{Mapping, Renderer, Rung, Screen, Stats};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window};
@@ -14,12 +15,14 @@ use crate::failure::Failure;
 use crate::options::Drawing;
 use crate::overlay::{self, Place};
 use crate::stage::{Pose, Stage};
+use crate::switches::Switch;
 use crate::{input, output};
 
 /// What the help says below the options.
 pub(crate) const KEYS: &str = "\
 Keys in the window: Esc quits, Space stops and goes on, arrows and mouse turn, wheel and + - zoom, [ and ] step through
-the rungs, K next kernel, P next palette, S saves a PNG in the current directory, H shows help and figures.
+the rungs, K next kernel, P next palette, M next mapping of textures; L lights, O fog, T texture and D dither off and on;
+S saves a PNG in the current directory, H shows help, the plan and figures.
 With no display one frame is saved as a PNG.";
 
 #[derive(Args)]
@@ -95,9 +98,13 @@ struct Demo {
     rungs: Choice<Rung>,
     kernels: Choice<Kernel>,
     palettes: Choice<(String, Palette)>,
+    /// `None` leaves it to the plan.
+    mappings: Choice<Option<Mapping>>,
     motion: Motion,
     help: bool,
     timing: Timing,
+    /// Of making the plan, while it is shown.
+    planning: Timing,
     stats: Option<Stats>,
     /// What the title says besides, and until when.
     notice: Option<(String, f64)>,
@@ -128,9 +135,15 @@ impl Demo {
             rungs: Choice::new(Rung::ALL.iter().copied(), rung, |a, b| a == b),
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
             palettes: Choice::new(palettes, (palette_name, palette), |(a, _), (b, _)| a == b),
+            mappings: Choice::new(
+                [None].into_iter().chain(Mapping::ALL.map(Some)),
+                drawing.mapping(),
+                |a, b| a == b,
+            ),
             motion: Motion::new(),
             help: false,
             timing: Timing::default(),
+            planning: Timing::default(),
             stats: None,
             notice: None,
             seconds: 0.0,
@@ -156,6 +169,14 @@ impl Demo {
             self.palettes.go_round();
             self.stage.set_palette(self.palettes.chosen().1.clone());
         }
+        if input.pressed(Key::M) {
+            self.mappings.go_round();
+        }
+        for (key, switch) in Switch::KEYS {
+            if input.pressed(key) {
+                switch.turn(&mut self.stage.scene, &mut self.renderer);
+            }
+        }
         if input.pressed(Key::H) {
             self.help = !self.help;
         }
@@ -172,6 +193,12 @@ impl Demo {
         self.stage.show(self.motion.seconds(), self.motion.pose);
         self.renderer.set_rung(*self.rungs.chosen());
         self.renderer.set_kernel(*self.kernels.chosen());
+        self.renderer.set_mapping(*self.mappings.chosen());
+        if self.help {
+            let start = Instant::now();
+            self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+            self.planning.add(start.elapsed().as_secs_f64(), self.seconds);
+        }
         let start = Instant::now();
         let stats = self.renderer.draw(&self.stage.scene, vga).map_err(Failure::work)?;
         self.timing.add(start.elapsed().as_secs_f64(), self.seconds);
@@ -199,25 +226,58 @@ impl Demo {
     }
 
     fn figures(&self) -> Vec<String> {
+        let mapping = self.mappings.chosen().map_or("by plan", Mapping::name);
         let mut lines = vec![
-            format!("{}: {} triangles", self.name, self.triangles),
-            format!("{}, {:.0} a second", self.timing, self.timing.rate),
-            format!("rung    {}", self.rungs.chosen().name()),
-            format!("kernel  {}", self.kernels.chosen()),
-            format!("palette {}", self.palettes.chosen().0),
-            format!("zoom    {:.2}", self.motion.pose.zoom),
+            format!("{}: {} triangles, zoom {:.2}", self.name, self.triangles, self.motion.pose.zoom),
+            format!("{}, {:.0} a second, plan {:.1} us", self.timing, self.timing.rate, self.planning.frame * 1e6),
+            format!("rung {}, mapping {mapping}", self.rungs.chosen().name()),
+            format!("kernel {}, palette {}", self.kernels.chosen(), self.palettes.chosen().0),
         ];
         if let Some(Stats { hidden_surfaces, vertices, drawn, raster, .. }) = &self.stats {
             lines.push(format!("{hidden_surfaces}: {vertices} vertices, {drawn} drawn"));
             lines.push(format!("{} spans, {} pixels", raster.spans, raster.pixels));
         }
+        let on = in_columns(&self.effects_on());
+        lines.push(format!("on, of {} effects and {} objects:", Effect::COUNT, self.stage.scene.objects().len()));
+        lines.extend(on);
         lines
+    }
+
+    /// The effects that are on: each with its choice, unless the lines above say that, and, if not for all objects, for
+    /// how many.
+    fn effects_on(&self) -> Vec<String> {
+        let objects = self.renderer.plan().objects();
+        let entry = |effect: Effect| {
+            let on: Vec<_> = objects.iter().map(|plan| plan.decision(effect)).filter(|decision| decision.on).collect();
+            let mut entry = effect.name().to_string();
+            let is_said = matches!(effect, Effect::HiddenSurfaces | Effect::Gouraud | Effect::Phong);
+            if !is_said && !on.first()?.choice.is_empty() {
+                entry += &format!(" {}", on[0].choice);
+            }
+            if on.len() < objects.len() {
+                entry += &format!(" {}/{}", on.len(), objects.len());
+            }
+            Some(entry)
+        };
+        Effect::ALL.into_iter().filter_map(entry).collect()
     }
 }
 
-const HELP: [&str; 3] = [
-    "Esc quit   Space stop   S save   H hide this",
-    "[ ] rung   K kernel     P palette",
+/// The characters of a line that fits on the frame.
+const LINE: usize = 52;
+
+/// Entries in two columns, down the first and then the second.
+fn in_columns(entries: &[String]) -> Vec<String> {
+    let half = LINE / 2;
+    let (left, right) = entries.split_at(entries.len().div_ceil(2));
+    let right = right.iter().map(String::as_str).chain([""]);
+    left.iter().zip(right).map(|(left, right)| format!("{left:half$.half$}{right}")).collect()
+}
+
+const HELP: [&str; 4] = [
+    "Esc quit   Space stop   S save     H hide this",
+    "[ ] rung   K kernel     P palette  M mapping",
+    "L lights   O fog        T texture  D dither",
     "arrows, mouse turn      wheel, + - zoom",
 ];
 

@@ -8,10 +8,13 @@ mod options;
 mod output;
 mod overlay;
 mod palette;
+mod plan;
+mod price;
 mod render;
 mod scenes;
 mod show;
 mod stage;
+mod switches;
 mod verify;
 
 use std::process::ExitCode;
@@ -40,6 +43,8 @@ enum Command {
     Render(render::Options),
     /// List the scenes that are compiled in, or copy one to edit it
     Scenes(scenes::Options),
+    /// Say what a scene calls for, object by object, and why
+    Plan(plan::Options),
     /// Look at a palette, convert it, or make one for a model
     Palette(palette::Options),
     /// Draw a hard case 16 times enlarged: the right way beside the fault it guards against
@@ -65,6 +70,7 @@ fn run(words: Words) -> Result<(), Failure> {
         Some(Command::Demo(options)) => demo::run(&options),
         Some(Command::Render(options)) => render::run(&options),
         Some(Command::Scenes(options)) => scenes::run(&options),
+        Some(Command::Plan(options)) => plan::run(&options),
         Some(Command::Palette(options)) => palette::run(&options),
         Some(Command::Show(options)) => show::run(&options),
         Some(Command::Verify(options)) => verify::run(&options),

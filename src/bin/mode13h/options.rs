@@ -100,6 +100,11 @@ impl Drawing {
         self.rung.or(wish).unwrap_or_default()
     }
 
+    /// The mapping that was asked for.
+    pub(crate) fn mapping(&self) -> Option<Mapping> {
+        self.mapping
+    }
+
     /// What draws as was asked for.
     pub(crate) fn renderer(&self, kernel: Kernel) -> Renderer {
         let mut renderer = Renderer::new();
@@ -111,6 +116,14 @@ impl Drawing {
             renderer.set_rung(rung);
         }
         renderer
+    }
+}
+
+/// A number on the command line.
+pub(crate) fn finite(words: &str) -> Result<f64, String> {
+    match words.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("not a number".to_string()),
     }
 }
 

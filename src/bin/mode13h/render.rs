@@ -14,7 +14,7 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::failure::Failure;
 use crate::film::{self, Film};
-use crate::options::Drawing;
+use crate::options::{Drawing, finite};
 use crate::stage::{Pose, Stage};
 use crate::{input, output};
 
@@ -60,13 +60,6 @@ pub(crate) struct Options {
     /// Say on standard error what was drawn, and by which kernel, a line for each frame
     #[arg(long)]
     stats: bool,
-}
-
-fn finite(words: &str) -> Result<f64, String> {
-    match words.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err("not a number".to_string()),
-    }
 }
 
 fn rate(words: &str) -> Result<f64, String> {
