@@ -83,9 +83,9 @@ pub mod render;
 #[cfg(feature = "alloc")]
 pub mod scene;
 #[cfg(feature = "alloc")]
-mod view;
-#[cfg(feature = "alloc")]
 pub mod texture;
+#[cfg(feature = "alloc")]
+mod view;
 
 #[cfg(feature = "std")]
 pub mod export;

@@ -267,7 +267,7 @@ impl ObjectView {
             }
         }
         let (nearest, farthest) = (nearest - slack[2], farthest + slack[2]);
-        let crosses_near = !(nearest > f64::from(self.near));
+        let crosses_near = nearest <= f64::from(self.near) || nearest.is_nan();
         // A box in front of the eye is projected into the convex hull of its corners. What x = X/W is
         // off by is what X is, and |x| times what W is, over W; a pixel for rounding.
         let (centre, size) = ([f64::from(self.centre.0), f64::from(self.centre.1)], [self.size.0, self.size.1]);

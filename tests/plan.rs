@@ -67,7 +67,10 @@ fn the_full_work_gives_the_same_bytes() {
                     renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
                 }
             });
-            assert!(renderer.plan().objects().iter().all(|plan| plan.is_on(effect) == on), "{name}: {effect} is forced");
+            assert!(
+                renderer.plan().objects().iter().all(|plan| plan.is_on(effect) == on),
+                "{name}: {effect} is forced"
+            );
             let differ = differing(&expected, &bytes);
             // Neither side of a face that is seen on its edge to within rounding is nearer: of equal depths
             // the first submitted is drawn, and a back face may be that.
@@ -184,7 +187,8 @@ fn d1_the_plan_never_picks_painters_order_for_what_overlaps() {
     for (name, scene) in scenes::all() {
         let (_, stats, _) = draw(&scene, |_| ());
         if stats.hidden_surfaces == HiddenSurfaces::PainterOrder {
-            let (depth, _, _) = draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
+            let (depth, _, _) =
+                draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
             assert_eq!(differing(&draw(&scene, |_| ()).0, &depth), 0, "{name}");
         }
         tried.add(1);

@@ -13,8 +13,8 @@ use mode13h::span::dither::BAYER;
 use mode13h::span::texture::Texels;
 use support::oracle::{self, Point, Ratio};
 use support::random::Random;
-use support::tried::Tried;
 use support::triangles;
+use support::tried::Tried;
 
 const WIDTH: i32 = 150;
 const HEIGHT: i32 = 60;
@@ -228,8 +228,7 @@ impl Naive<'_> {
         let mut bytes = vec![BEFORE; (WIDTH * HEIGHT) as usize];
         let mut covered = vec![false; bytes.len()];
         for y in 0..HEIGHT {
-            let row: Vec<i32> =
-                (0..WIDTH).filter(|&x| oracle::covers(self.corners, oracle::centre(x, y))).collect();
+            let row: Vec<i32> = (0..WIDTH).filter(|&x| oracle::covers(self.corners, oracle::centre(x, y))).collect();
             let (Some(&first), Some(&last)) = (row.first(), row.last()) else { continue };
             for x in row {
                 let place = (y * WIDTH + x) as usize;
@@ -274,8 +273,12 @@ fn triangles_with_effects_are_the_oracles() {
         let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
         let attributes = attributes(&mut random);
         let look = look(&mut random, &stock);
-        let naive =
-            Naive { corners: vertices.each_ref().map(oracle::point), vertices: &vertices, attributes: &attributes, look: &look };
+        let naive = Naive {
+            corners: vertices.each_ref().map(oracle::point),
+            vertices: &vertices,
+            attributes: &attributes,
+            look: &look,
+        };
         if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
             assert!(draw(&vertices, &attributes, &look, None, kernels[0]).iter().all(|byte| *byte == BEFORE));
             continue;

@@ -333,7 +333,7 @@ fn f3_what_is_no_text_or_too_long_is_refused() {
     let mut tried = Tried::new("f3_what_is_no_text_or_too_long_is_refused", 6);
     let of = |bytes: &[u8]| Scene::from_toml_bytes(bytes, "a.toml", open).expect_err("no scene");
     let error = of(b"name = '\xC3\xA9'\nname = '\xFF'");
-    assert!(matches!(error.kind, SceneErrorKind::NotText));
+    assert!(matches!(*error.kind, SceneErrorKind::NotText));
     assert_eq!(error.to_string(), "a.toml:2:9: not text in UTF-8");
     tried.add(1);
     assert_eq!(of(b"\xFF").place, Some(Place { line: 1, column: 1 }));
@@ -353,7 +353,7 @@ fn f3_what_is_no_text_or_too_long_is_refused() {
     assert!(file::load(&path).is_ok());
     tried.add(1);
     fs::write(&path, longest + "#").expect("written");
-    assert!(matches!(file::load(&path).expect_err("too long").kind, SceneErrorKind::TooLong));
+    assert!(matches!(*file::load(&path).expect_err("too long").kind, SceneErrorKind::TooLong));
     tried.add(1);
 }
 
@@ -661,7 +661,7 @@ fn every_key_is_documented() {
         ("wishes", "wishes.x = 1"),
     ] {
         let error = loaded(text).expect_err("no such key");
-        let SceneErrorKind::UnknownKey { known } = error.kind else { panic!("{error}") };
+        let SceneErrorKind::UnknownKey { known } = &*error.kind else { panic!("{error}") };
         let heading = format!("\n### {section}\n");
         let (_, rest) = readme.split_once(&heading).unwrap_or_else(|| panic!("no section {section}"));
         let table = rest.split("\n#").next().expect("the section");

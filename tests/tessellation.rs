@@ -24,14 +24,17 @@ fn triangles(scene: &Scene) -> (Vec<[Vertex; 3]>, u64) {
     (triangles, stats.clipped)
 }
 
-fn point(v: &Vertex) -> (i32, i32) {
+/// In 1/256 pixel.
+type Place = (i32, i32);
+
+fn point(v: &Vertex) -> Place {
     (v.x().to_bits(), v.y().to_bits())
 }
 
 /// The outline of triangles that turn the same way: the edges that no neighbour runs through the other
 /// way, as loops.
 fn outlines(triangles: &[[Vertex; 3]]) -> Vec<Vec<Point>> {
-    let mut edges: HashMap<((i32, i32), (i32, i32)), i32> = HashMap::new();
+    let mut edges: HashMap<(Place, Place), i32> = HashMap::new();
     for [a, b, c] in triangles {
         for (a, b) in [(a, b), (b, c), (c, a)] {
             let (a, b) = (point(a), point(b));
@@ -41,7 +44,7 @@ fn outlines(triangles: &[[Vertex; 3]]) -> Vec<Vec<Point>> {
             }
         }
     }
-    let mut next: HashMap<(i32, i32), Vec<(i32, i32)>> = HashMap::new();
+    let mut next: HashMap<Place, Vec<Place>> = HashMap::new();
     for ((a, b), times) in edges {
         (0..times).for_each(|_| next.entry(a).or_default().push(b));
     }

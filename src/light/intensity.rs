@@ -132,7 +132,6 @@ impl Lights<'_> {
     }
 
     /// What falls on the front and on the back.
-
     #[inline]
     fn sum<const N: usize>(
         &self,
@@ -162,7 +161,7 @@ impl Lights<'_> {
             let to_lamp = sub(lamp.position, at);
             let square = dot(to_lamp, to_lamp) * lamp.inverse_square;
             // Beyond the range; NaN, of what is too far to be squared, too.
-            if !(square < 1.0) {
+            if square >= 1.0 || square.is_nan() {
                 continue;
             }
             // A lamp at the point itself lies in the plane of any face through it, and lights none.

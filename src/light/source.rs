@@ -110,8 +110,7 @@ impl Light {
             Self::Lamp { position, range, .. } if !(position.is_finite() && range.is_finite()) => {
                 Err("its position, intensity, range and colour must be finite")
             }
-            // Written so that NaN fails it, though none comes here.
-            Self::Lamp { range, .. } if !(range > 0.0) => Err("its range must be above 0"),
+            Self::Lamp { range, .. } if range <= 0.0 => Err("its range must be above 0"),
             _ => Ok(()),
         }
     }

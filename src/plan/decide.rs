@@ -280,16 +280,20 @@ impl Rules<'_> {
     fn affine_error(&self) -> f64 {
         let nearest = self.reach.nearest.max(f64::from(self.view.near()));
         let (edge, texture_edge) = self.object.longest_edges();
-        let size = self.object.materials.iter().filter_map(|material| material.texture.as_ref()).fold(0, |size, t| {
-            size.max(1_u32 << t.width_bits()).max(1 << t.height_bits())
-        });
+        let size = self
+            .object
+            .materials
+            .iter()
+            .filter_map(|material| material.texture.as_ref())
+            .fold(0, |size, t| size.max(1_u32 << t.width_bits()).max(1 << t.height_bits()));
         let ratio = 1.0 + f64::from(edge) * self.view.scale() / nearest;
         let root = libm::sqrt(ratio);
         (root - 1.0) / (root + 1.0) * f64::from(texture_edge) * f64::from(size)
     }
 
     fn rgb_channels(&self) -> Decision {
-        if let Some(light) = self.scene.lights().iter().position(|light| light.is_colored() && light.intensity() != 0.0) {
+        if let Some(light) = self.scene.lights().iter().position(|light| light.is_colored() && light.intensity() != 0.0)
+        {
             return Decision::on(Why::ColoredLight { light });
         }
         match self.object.materials.iter().position(Material::takes_channels) {

@@ -162,7 +162,9 @@ impl Why {
             Self::Nearest { nearest, near } if nearest > near => {
                 format!("its bounds come no nearer than {nearest:.3}; the near plane is at {near:.3}")
             }
-            Self::Nearest { nearest, near } => format!("its bounds come as near as {nearest:.3}; the near plane is at {near:.3}"),
+            Self::Nearest { nearest, near } => {
+                format!("its bounds come as near as {nearest:.3}; the near plane is at {near:.3}")
+            }
             Self::CrossesNear => "its bounds reach the near plane".to_string(),
             Self::LeavesScreen => "its bounds reach the screen's edge".to_string(),
             Self::OnScreen => "its bounds lie on the screen".to_string(),
@@ -195,8 +197,12 @@ impl Why {
             Self::FlatAsked => "one shade a face was asked for".to_string(),
             Self::OneShade => "every vertex has the same shade".to_string(),
             Self::SceneHasNone => "the scene has none".to_string(),
-            Self::ReachesInto { farthest, start } => format!("it begins at {start:.3}, the object reaches {farthest:.3}"),
-            Self::NearerThan { farthest, start } => format!("it begins at {start:.3}, the object ends at {farthest:.3}"),
+            Self::ReachesInto { farthest, start } => {
+                format!("it begins at {start:.3}, the object reaches {farthest:.3}")
+            }
+            Self::NearerThan { farthest, start } => {
+                format!("it begins at {start:.3}, the object ends at {farthest:.3}")
+            }
             Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
             Self::NoTexture => "nothing follows the perspective".to_string(),
             Self::ColoredLight { light } => format!("light {light} is coloured"),

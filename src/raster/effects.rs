@@ -152,7 +152,9 @@ impl<'a> Look<'a> {
 
     #[inline]
     fn texture(&self) -> Option<&TextureLook<'a>> {
-        self.texture.as_ref().filter(|_| !cfg!(all(mode13h_leave_out = "texture", mode13h_leave_out = "environment-map")))
+        self.texture
+            .as_ref()
+            .filter(|_| !cfg!(all(mode13h_leave_out = "texture", mode13h_leave_out = "environment-map")))
     }
 
     #[inline]
@@ -303,7 +305,9 @@ impl<'a> EffectPaint<'a> {
         };
         let planes = match (look.source, look.channels()) {
             (Source::Lit(_), _) => Planes::Lit(LitPlane::new(triangle, corners)),
-            (_, Some(_)) => Planes::Channels([plane(|c| c.channels[0]), plane(|c| c.channels[1]), plane(|c| c.channels[2])]),
+            (_, Some(_)) => {
+                Planes::Channels([plane(|c| c.channels[0]), plane(|c| c.channels[1]), plane(|c| c.channels[2])])
+            }
             (Source::Linear { .. }, None) => Planes::Shade(ShadePlane::new(triangle)),
             (Source::Hyperbolic, None) => Planes::Hyperbolic(HyperbolicPlane::new(triangle)),
             (Source::NormalTable(_), None) => Planes::Slope([plane(|c| c.slope[0]), plane(|c| c.slope[1])]),
@@ -605,7 +609,11 @@ impl<D: Cell> Raster<'_, D> {
             let plane = &*plane.get_or_insert_with(|| DepthPlane::new(&triangle));
             paint.row(&row, pixels, Some((depths, plane)), self.kernel, &mut drawn);
         };
-        if CLIPS { triangle.rows(width, clip, draw) } else { triangle.rows_inside(draw) }
+        if CLIPS {
+            triangle.rows(width, clip, draw)
+        } else {
+            triangle.rows_inside(draw)
+        }
         drawn
     }
 }

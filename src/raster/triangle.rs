@@ -161,7 +161,11 @@ impl<'a, D: Cell> Raster<'a, D> {
             let plane = plane.get_or_insert_with(|| DepthPlane::new(&triangle));
             paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
         };
-        if CLIPS { triangle.rows(width, clip, draw) } else { triangle.rows_inside(draw) }
+        if CLIPS {
+            triangle.rows(width, clip, draw)
+        } else {
+            triangle.rows_inside(draw)
+        }
         drawn
     }
 }

@@ -40,8 +40,8 @@ pub use error::{RecordError, RecordErrorKind};
 
 use crate::export::{ExportError, write_atomically};
 use crate::palette::Palette;
-use crate::raster::{Frame, FrameError, Rect, Shading, Vertex};
 use crate::plan::Effect;
+use crate::raster::{Frame, FrameError, Rect, Shading, Vertex};
 use crate::render::{HiddenSurfaces, RenderError, Renderer, Screen};
 use crate::scene::Scene;
 

@@ -38,8 +38,7 @@ impl Range {
     }
 
     fn times(self, other: Self) -> Self {
-        let products =
-            [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
+        let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
         Self {
             low: products.iter().copied().fold(f64::INFINITY, f64::min),
             high: products.iter().copied().fold(f64::NEG_INFINITY, f64::max),

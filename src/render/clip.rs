@@ -137,10 +137,7 @@ fn cut<C: Carried>(
 }
 
 /// Clips a triangle. Returns `None` if nothing is left, else the polygon and what its corners carry.
-pub(super) fn clip<C: Carried>(
-    view: &ObjectView,
-    corners: [Corner<C>; 3],
-) -> Option<(Clipped, impl Fn(usize) -> C)> {
+pub(super) fn clip<C: Carried>(view: &ObjectView, corners: [Corner<C>; 3]) -> Option<(Clipped, impl Fn(usize) -> C)> {
     let left = clip_triangle(
         corners,
         |plane, corner| distance(view, plane, corner),

@@ -114,17 +114,17 @@ impl Faces<'_> {
         let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
         let turned = !CULLS && is_turned_away(&at);
         if EFFECTS && self.paints[usize::from(surface)].has_effects {
-            let carried = indices.map(|i| WithEffects {
-                attributes: self.extras[i as usize].side(turned),
-                affine: self.affine,
-            });
+            let carried =
+                indices.map(|i| WithEffects { attributes: self.extras[i as usize].side(turned), affine: self.affine });
             self.parts::<CULLS, _>(at, corners, carried, turned, stats, |vertices, carried, stats| {
                 let attributes = carried.map(|carried| carried.attributes);
                 self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
             });
         } else {
             let shading = self.shading(indices, surface, turned, stats);
-            self.parts::<CULLS, _>(at, corners, [(); 3], turned, stats, |vertices, _, _| sink.plain(&vertices, shading));
+            self.parts::<CULLS, _>(at, corners, [(); 3], turned, stats, |vertices, _, _| {
+                sink.plain(&vertices, shading)
+            });
         }
     }
 

@@ -117,8 +117,10 @@ impl Looks<'_> {
             }
             None if neutral_image(plan) && channels.is_none() => {
                 let texels = Texels::new(&ONE_TEXEL, 0, 0).ok();
-                texels.zip(self.tables.shades(None)).map(|(texels, tables)| {
-                    TextureLook { texels, mapping: TextureMapping::Affine, tables }
+                texels.zip(self.tables.shades(None)).map(|(texels, tables)| TextureLook {
+                    texels,
+                    mapping: TextureMapping::Affine,
+                    tables,
                 })
             }
             None => None,

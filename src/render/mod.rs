@@ -12,7 +12,7 @@
 //! | `stats` | what a frame came to |
 //! | `automatic` | a palette for a model, from what is seen of it over a turn |
 //!
-//! The [`plan`](crate::plan) says which stages an object goes through: its vertices are transformed,
+//! The [`plan`] says which stages an object goes through: its vertices are transformed,
 //! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
 //! be and left out where they are turned away; the [`raster`](crate::raster) draws what is left.
 
@@ -46,13 +46,13 @@ use crate::plan::{self, Effect, Forced, Inputs, Plan, Since, decide, sort_by_dep
 use crate::raster::effects::Attributes;
 use crate::raster::scan_line::Lists;
 use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
-use crate::scene::{Scene, Wishes};
 pub use crate::scene::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung};
+use crate::scene::{Scene, Wishes};
 use crate::span::Kernel;
 use crate::vga::Vga;
-pub use automatic::{Seen, automatic, seen};
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
+pub use automatic::{Seen, automatic, seen};
 pub use stats::Stats;
 pub use vertex_path::{UnknownVertexPath, VertexPath};
 
@@ -508,12 +508,22 @@ impl Renderer {
                 integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain.0);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], plan) {
                 if plan.is_on(Effect::ScreenClipping) {
-                    let mut sink =
-                        Direct::<true> { raster: &mut raster, drawn: &mut drawn, looks: &looks, object, transparent: &mut transparent };
+                    let mut sink = Direct::<true> {
+                        raster: &mut raster,
+                        drawn: &mut drawn,
+                        looks: &looks,
+                        object,
+                        transparent: &mut transparent,
+                    };
                     faces.draw(stats, &mut sink);
                 } else {
-                    let mut sink =
-                        Direct::<false> { raster: &mut raster, drawn: &mut drawn, looks: &looks, object, transparent: &mut transparent };
+                    let mut sink = Direct::<false> {
+                        raster: &mut raster,
+                        drawn: &mut drawn,
+                        looks: &looks,
+                        object,
+                        transparent: &mut transparent,
+                    };
                     faces.draw(stats, &mut sink);
                 }
             }
@@ -546,7 +556,8 @@ impl Renderer {
         for &object in &self.plan.order {
             if self.vertex_path == VertexPath::Integer {
                 self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut sink.0);
-            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object]) {
+            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
+            {
                 faces.draw(stats, sink);
             }
         }
@@ -568,7 +579,8 @@ impl Renderer {
                     places.push(None);
                 };
                 self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
-            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object]) {
+            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
+            {
                 let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
                 let mut sink = Gathered {
                     triangles: &mut triangles,
@@ -613,7 +625,15 @@ impl Renderer {
             .scan_line_with(&self.triangles, scratch, |i, row, pixels, kernel, drawn| {
                 let Some(face) = places[i].and_then(|place| kept.get(place as usize)) else { return false };
                 looks.with(face.object, face.surface, |look| {
-                    crate::raster::effects::paint_row(&face.vertices, &face.attributes, look, row, pixels, kernel, drawn);
+                    crate::raster::effects::paint_row(
+                        &face.vertices,
+                        &face.attributes,
+                        look,
+                        row,
+                        pixels,
+                        kernel,
+                        drawn,
+                    );
                     Drawn::default()
                 });
                 true
@@ -691,8 +711,11 @@ struct Direct<'a, 'b, const CLIPS: bool> {
 impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
     #[inline]
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        *self.drawn +=
-            if CLIPS { self.raster.triangle(vertices, shading) } else { self.raster.triangle_inside(vertices, shading) };
+        *self.drawn += if CLIPS {
+            self.raster.triangle(vertices, shading)
+        } else {
+            self.raster.triangle_inside(vertices, shading)
+        };
     }
 
     fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16) {

@@ -166,7 +166,14 @@ impl ObjectState {
     }
 
     /// Makes the vertices, if they are not those of last frame. Returns whether it did.
-    pub(super) fn vertices(&mut self, scene: &Scene, object: &Object, view: &View, plan: &ObjectPlan, stats: &mut Stats) -> bool {
+    pub(super) fn vertices(
+        &mut self,
+        scene: &Scene,
+        object: &Object,
+        view: &View,
+        plan: &ObjectPlan,
+        stats: &mut Stats,
+    ) -> bool {
         let on = Effect::ALL.map(|effect| effect != Effect::Transform && plan.is_on(effect));
         if !plan.is_on(Effect::Transform) && self.made_by == Some(on) {
             return false;
@@ -266,7 +273,7 @@ impl ObjectState {
                     Light::Lamp { position, range, .. } => {
                         let away = position - object.position;
                         let part = away.length_squared() / (range * range);
-                        if !(part < 1.0) {
+                        if part >= 1.0 || part.is_nan() {
                             return None;
                         }
                         (away, (1.0 - part) * (1.0 - part))

@@ -63,10 +63,12 @@ impl Extra {
 #[inline(never)]
 pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, lit: &mut Vec<LitVertex>) {
     lit.clear();
-    lit.extend(geometry.positions.iter().map(|&position| LitVertex {
-        vertex: view.project_inside(position),
-        ..LitVertex::default()
-    }));
+    lit.extend(
+        geometry
+            .positions
+            .iter()
+            .map(|&position| LitVertex { vertex: view.project_inside(position), ..LitVertex::default() }),
+    );
 }
 
 /// Every vertex on the screen, with a mark on those that need clipping.

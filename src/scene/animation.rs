@@ -9,6 +9,7 @@ use crate::vga::Vga;
 /// What happens to the palette as time passes.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
+#[expect(clippy::large_enum_variant, reason = "a scene has one at most")]
 pub enum PaletteAnimation {
     /// To another palette and back.
     Fade {

@@ -19,7 +19,7 @@ impl Fog {
         if !(self.start.is_finite() && self.end.is_finite()) {
             return Err("its start and end must be finite");
         }
-        if !(self.end > self.start) {
+        if self.end <= self.start {
             return Err("its end must lie beyond its start");
         }
         Ok(())

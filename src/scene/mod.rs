@@ -43,11 +43,9 @@ pub use camera::Camera;
 pub use fog::Fog;
 pub use motion::{Motion, Moving, Path};
 pub(crate) use names::named;
-pub(crate) use object::{matrix_product, turn};
 pub use object::{Object, UpAxis};
-pub use wishes::{
-    HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung, Wishes,
-};
+pub(crate) use object::{matrix_product, turn};
+pub use wishes::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung, Wishes};
 
 /// A mesh or a texture that several objects, scenes and threads may share. Where the processor has no
 /// atomic counter (Cortex-M0) it stays within one thread.
@@ -188,7 +186,9 @@ impl Scene {
                             }
                         }
                         Moving::Light(index) => match self.lights.get_mut(index) {
-                            Some(Light::Sun { direction: place, .. } | Light::Lamp { position: place, .. }) => *place = at,
+                            Some(Light::Sun { direction: place, .. } | Light::Lamp { position: place, .. }) => {
+                                *place = at
+                            }
                             None => {}
                         },
                         Moving::Eye => self.camera.eye = at,

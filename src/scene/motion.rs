@@ -91,7 +91,8 @@ impl Path {
             }
             Self::Circle { centre, from, towards, period } => {
                 let (sine, cosine) = libm::sincos(part(seconds, period) * TAU);
-                let along = |c: f32, a: f32, b: f32| (f64::from(c) + f64::from(a) * cosine + f64::from(b) * sine) as f32;
+                let along =
+                    |c: f32, a: f32, b: f32| (f64::from(c) + f64::from(a) * cosine + f64::from(b) * sine) as f32;
                 Vec3::new(
                     along(centre.x, from.x, towards.x),
                     along(centre.y, from.y, towards.y),

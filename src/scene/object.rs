@@ -200,4 +200,3 @@ pub(crate) fn turn(angles: [f64; 3]) -> [[f64; 3]; 3] {
 pub(crate) fn matrix_product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     a.map(|[x, y, z]| [0, 1, 2].map(|j| x * b[0][j] + y * b[1][j] + z * b[2][j]))
 }
-

@@ -325,7 +325,7 @@ pub fn scene(bytes: &[u8]) {
                 // One more than there are: at the end of the line.
                 assert!((1..=line.chars().count() + 1).contains(&place.column), "{said}");
             }
-            if matches!(error.kind, SceneErrorKind::UnknownKey { .. } | SceneErrorKind::MissingKey) {
+            if matches!(*error.kind, SceneErrorKind::UnknownKey { .. } | SceneErrorKind::MissingKey) {
                 assert!(error.key.is_some(), "{said}");
             }
         }

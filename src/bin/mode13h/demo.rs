@@ -135,11 +135,7 @@ impl Demo {
             rungs: Choice::new(Rung::ALL.iter().copied(), rung, |a, b| a == b),
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
             palettes: Choice::new(palettes, (palette_name, palette), |(a, _), (b, _)| a == b),
-            mappings: Choice::new(
-                [None].into_iter().chain(Mapping::ALL.map(Some)),
-                drawing.mapping(),
-                |a, b| a == b,
-            ),
+            mappings: Choice::new([None].into_iter().chain(Mapping::ALL.map(Some)), drawing.mapping(), |a, b| a == b),
             motion: Motion::new(),
             help: false,
             timing: Timing::default(),

@@ -156,7 +156,9 @@ impl Head<'_> {
         let why = hidden.map(|row| format!(" ({})", row.why)).unwrap_or_default();
         let Stats { rung, vertex_path, kernel, hidden_surfaces, .. } = stats;
         let mut paragraph = |line: &str| text.push_str(&wrapped(line, 0, WIDTH));
-        paragraph(&format!("all: {rung}, {vertex_path} vertices, kernel {kernel}, hidden surfaces by {hidden_surfaces}{why}"));
+        paragraph(&format!(
+            "all: {rung}, {vertex_path} vertices, kernel {kernel}, hidden surfaces by {hidden_surfaces}{why}"
+        ));
         if !stats.redrawn {
             paragraph("nothing changed since the frame before, so this one is not drawn again");
         }
@@ -184,6 +186,9 @@ struct Widths {
     price: usize,
 }
 
+/// Objects of which the same is to be said, by name, and what that is: decisions, each with its words.
+type Group<'a> = (Vec<String>, Vec<(&'a Row, String)>);
+
 /// A table for each object. If there are several and nothing was measured, what is the same for all comes first, and
 /// objects with the same rest share a table.
 fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
@@ -207,7 +212,8 @@ fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
     let said = |row: &Row| (row.effect, row.on, row.choice, row.why.clone());
     let common: Vec<(&Row, String)> = match objects.as_slice() {
         [first, rest @ ..] if !rest.is_empty() && prices.is_none() => {
-            let same = |(row, _): &&(&Row, String)| rest.iter().all(|of| of.iter().any(|(other, _)| said(row) == said(other)));
+            let same =
+                |(row, _): &&(&Row, String)| rest.iter().all(|of| of.iter().any(|(other, _)| said(row) == said(other)));
             first.iter().filter(same).cloned().collect()
         }
         _ => Vec::new(),
@@ -222,11 +228,12 @@ fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
         _ => format!("{} (object {})", row.object, row.place),
     };
     let is_common = |row: &Row| common.iter().any(|(other, _)| row.effect == other.effect);
-    let mut groups: Vec<(Vec<String>, Vec<(&Row, String)>)> = Vec::new();
+    let mut groups: Vec<Group<'_>> = Vec::new();
     for object in &objects {
         let rest: Vec<(&Row, String)> = object.iter().filter(|(row, _)| !is_common(row)).cloned().collect();
         let name = heading(object[0].0);
-        let same = |of: &[(&Row, String)]| of.iter().map(|(row, _)| said(row)).eq(rest.iter().map(|(row, _)| said(row)));
+        let same =
+            |of: &[(&Row, String)]| of.iter().map(|(row, _)| said(row)).eq(rest.iter().map(|(row, _)| said(row)));
         match groups.iter_mut().find(|(_, of)| prices.is_none() && same(of)) {
             Some((names, _)) => names.push(name),
             None => groups.push((vec![name], rest)),

@@ -1,6 +1,7 @@
 //! Why a scene file is refused, and where in it.
 
 use core::ops::Range;
+use std::boxed::Box;
 use std::fmt::Write as _;
 use std::format;
 use std::path::{Path, PathBuf};
@@ -25,8 +26,8 @@ pub struct SceneError {
     /// The key at fault with those it lies in, as `objects[0].material.ramp`: lists count from 0. `None` where
     /// none is.
     pub key: Option<String>,
-    /// What is wrong.
-    pub kind: SceneErrorKind,
+    /// What is wrong. In a box, because what succeeds would carry its size about too.
+    pub kind: Box<SceneErrorKind>,
 }
 
 /// What is wrong with a scene file.
@@ -113,7 +114,7 @@ impl Fault {
             }
             _ => {}
         }
-        SceneError { path: path.to_owned(), place, key, kind }
+        SceneError { path: path.to_owned(), place, key, kind: Box::new(kind) }
     }
 }
 
@@ -201,7 +202,7 @@ impl fmt::Display for SceneErrorKind {
 
 impl error::Error for SceneError {
     fn source(&self) -> Option<&(dyn error::Error + 'static)> {
-        match &self.kind {
+        match &*self.kind {
             SceneErrorKind::Read(error) | SceneErrorKind::File { error, .. } => Some(error),
             SceneErrorKind::Model(error) => Some(error),
             SceneErrorKind::Palette { error, .. } => Some(error),

@@ -43,6 +43,7 @@ mod place;
 mod shape;
 mod value;
 
+use std::boxed::Box;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -80,7 +81,7 @@ pub struct Loaded {
 /// A file that cannot be read, or that is broken: see [`SceneErrorKind`].
 pub fn load(path: impl AsRef<Path>) -> Result<Loaded, SceneError> {
     let path = path.as_ref();
-    let failed = |kind| SceneError { path: path.to_owned(), place: None, key: None, kind };
+    let failed = |kind| SceneError { path: path.to_owned(), place: None, key: None, kind: Box::new(kind) };
     let mut file = File::open(path).map_err(|error| failed(SceneErrorKind::Read(error)))?;
     let mut bytes = Vec::new();
     // One byte more than may be, to see that there are more.
@@ -132,7 +133,12 @@ impl Scene {
                 // Whole characters up to there.
                 let text = str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default();
                 let place = Some(Place::of(text, text.len()));
-                Err(SceneError { path: path.as_ref().to_owned(), place, key: None, kind: SceneErrorKind::NotText })
+                Err(SceneError {
+                    path: path.as_ref().to_owned(),
+                    place,
+                    key: None,
+                    kind: Box::new(SceneErrorKind::NotText),
+                })
             }
         }
     }
