@@ -45,6 +45,7 @@ impl Linear {
     }
 }
 
+#[cfg(feature = "alloc")]
 impl Linear {
     /// What it changes by from one pixel to the next.
     pub(super) fn per_column(&self) -> i128 {
@@ -70,6 +71,7 @@ impl HyperbolicPlane {
     }
 
     /// Numerator and denominator of the exact shade at pixel (`x`, `y`), in 1/256.
+    #[cfg(feature = "alloc")]
     pub(super) fn shade(&self, x: i32, y: i32) -> (i128, i128) {
         (self.numerator.at(x, y), self.denominator.at(x, y))
     }
