@@ -43,10 +43,10 @@ pub use camera::Camera;
 pub use fog::Fog;
 pub use motion::{Motion, Moving, Path};
 pub(crate) use names::named;
-pub use object::{Object, UpAxis};
 pub(crate) use object::matrix_product;
 #[cfg(feature = "std")]
 pub(crate) use object::turn;
+pub use object::{Object, UpAxis};
 pub use wishes::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung, Wishes};
 
 /// A mesh or a texture that several objects, scenes and threads may share. Where the processor has no
