@@ -296,6 +296,8 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
     let mut random = Random::named("d*");
     let mut replaced = 0;
     while tried.more() {
+        let shading =
+            random.one_of(&[Shading::GouraudReseeded, Shading::Gouraud, Shading::GouraudHyperbolic, Shading::Flat(7)]);
         let triangles: Vec<_> = (0..6).map(|_| triangle(&mut random, WIDTH.into(), HEIGHT.into())).collect();
         // The last is the first again with other shades: of equal depths the first submitted wins.
         let twin = triangles[0].map(|v| vertex(v.x().to_bits().into(), v.y().to_bits().into(), 0, v.depth().into()));
@@ -303,9 +305,7 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
         let (mut expected, mut nearest) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
         let (mut covered, mut written) = (0, 0);
         for vertices in &all {
-            for oracle::Pixel { x, y, byte } in
-                oracle::pixels(vertices, Shading::GouraudReseeded, WIDTH as i32, HEIGHT as i32)
-            {
+            for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, shading, WIDTH as i32, HEIGHT as i32) {
                 let depth = oracle::depth_at(vertices, x, y);
                 let (low, high) =
                     vertices.iter().fold((u32::MAX, 0), |(low, high), v| (low.min(v.depth()), high.max(v.depth())));
@@ -325,7 +325,7 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
         let mut raster = Raster::new(frame).with_depth(depth);
         let mut drawn = Drawn::default();
         for vertices in &all {
-            drawn += raster.triangle(vertices, Shading::GouraudReseeded);
+            drawn += raster.triangle(vertices, shading);
         }
         assert_eq!((drawn.covered, drawn.pixels), (covered, written), "{all:?}");
         assert_eq!(bytes, expected, "{all:?}");

@@ -9,6 +9,7 @@
 mod support;
 
 use mode13h::span::Kernel;
+use mode13h::span::hyperbolic::fill_quotients;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::fmt;
@@ -382,6 +383,30 @@ fn kernels_are_chosen_by_name() {
     assert!(names.contains(&Kernel::fastest().name()));
     if cfg!(feature = "simd") {
         assert_eq!(Kernel::fastest().name(), "simd");
+    }
+}
+
+/// Numerators one beside a multiple of the divisor, where f64 cannot tell the quotient from the whole number.
+#[test]
+fn c5_quotients_beside_whole_numbers() {
+    let mut tried = Tried::new("c5_quotients_beside_whole_numbers", 200_000);
+    let mut random = Random::named("c5 quotients");
+    while tried.more() {
+        let wide = |random: &mut Random, bits: u32| {
+            let number = u128::from(random.next_u64()) << 64 | u128::from(random.next_u64());
+            // Below 2¹¹⁷.
+            (number >> (128 - bits)) as i128
+        };
+        let bits = random.within(1, 116) as u32;
+        let (d, dd) = (wide(&mut random, bits).max(1), wide(&mut random, bits) >> 2);
+        let quotient = i128::from(random.within(0, 255));
+        let beside = random.one_of(&[-1, 0, 1, d / 2, d - 1]).clamp(-quotient * d, d - 1);
+        let mut row = [0; 5];
+        fill_quotients(&mut row, quotient * d + beside, quotient * dd, d, dd);
+        for (k, byte) in (0..).zip(row) {
+            let (n, d) = (quotient * (d + k * dd) + beside, d + k * dd);
+            assert_eq!(i128::from(byte), n.div_euclid(d), "{n} / {d}");
+        }
     }
 }
 
