@@ -27,15 +27,19 @@ struct Indexed {
     colors: Vec<Rgb>,
 }
 
-fn frame(name: &str, rung: Rung, kernel: Kernel) -> Indexed {
+fn shape(name: &str, rung: Rung) -> Scene {
     let mut scene = Scene::showing(shapes::by_name(name).expect("listed"));
     scene.palette = Some(builtin::COPPER.clone());
     scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1]);
+    scene.wishes.rung = Some(rung);
+    scene
+}
+
+fn frame(scene: &Scene, kernel: Kernel) -> Indexed {
     let mut renderer = Renderer::new();
-    renderer.set_rung(rung);
     renderer.set_kernel(kernel);
     let mut vga = Vga::new();
-    renderer.draw(&scene, &mut vga).expect("a legal scene");
+    renderer.draw(scene, &mut vga).expect("a legal scene");
     Indexed { pixels: vga.pixels().to_vec(), colors: vga.palette().colors().to_vec() }
 }
 
@@ -71,17 +75,14 @@ fn side_by_side(path: &Path, expected: &Indexed, actual: &Indexed) {
     encoder.write_header().expect("a header").write_image_data(&bytes).expect("a picture");
 }
 
-#[test]
-fn golden_frames() {
-    let mut tried = Tried::new("golden_frames", 9);
+/// Compares the frames of scenes with the files of their names, or writes these.
+fn compare(tried: &mut Tried, scenes: &[(String, Scene)]) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden");
-    let mut all: Vec<(&str, Rung)> = shapes::NAMES.iter().map(|&name| (name, Rung::default())).collect();
-    all.extend([("torus", Rung::Flat), ("torus", Rung::Gouraud88)]);
     let mut wrong: Vec<PathBuf> = Vec::new();
-    for (name, rung) in all {
-        let path = folder.join(format!("{name}-{rung}.png"));
+    for (name, scene) in scenes {
+        let path = folder.join(format!("{name}.png"));
         if std::env::var_os("MODE13H_WRITE_GOLDEN").is_some() {
-            let Indexed { pixels, colors } = frame(name, rung, Kernel::PORTABLE);
+            let Indexed { pixels, colors } = frame(scene, Kernel::PORTABLE);
             fs::create_dir_all(&folder).expect("a folder");
             let mut encoder = png::Encoder::new(BufWriter::new(File::create(&path).expect("a file")), 320, 200);
             encoder.set_color(png::ColorType::Indexed);
@@ -92,9 +93,9 @@ fn golden_frames() {
         }
         let expected = read(&path);
         for kernel in Kernel::available() {
-            let actual = frame(name, rung, kernel);
+            let actual = frame(scene, kernel);
             if actual != expected {
-                let shown = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{rung}-{}.png", kernel.name()));
+                let shown = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}.png", kernel.name()));
                 side_by_side(&shown, &expected, &actual);
                 wrong.push(shown);
             }
@@ -102,4 +103,64 @@ fn golden_frames() {
         }
     }
     assert!(wrong.is_empty(), "frames that differ from their golden ones, or were written anew: {wrong:#?}");
+}
+
+#[test]
+fn golden_frames() {
+    let mut tried = Tried::new("golden_frames", 9);
+    let mut all: Vec<(&str, Rung)> = shapes::NAMES.iter().map(|&name| (name, Rung::default())).collect();
+    all.extend([("torus", Rung::Flat), ("torus", Rung::Gouraud88)]);
+    let scenes: Vec<_> = all.into_iter().map(|(name, rung)| (format!("{name}-{rung}"), shape(name, rung))).collect();
+    compare(&mut tried, &scenes);
+}
+
+/// Grass, bricks and glazed tiles, each in its own colours, from three sides; and once in the nearest entries of the
+/// cube, and in ramps that know nothing of them.
+#[cfg(all(feature = "obj", feature = "image"))]
+#[test]
+fn golden_frames_of_a_house() {
+    use mode13h::light::Light;
+    use mode13h::mesh::obj;
+    use mode13h::palette::Palette;
+    use mode13h::render::automatic;
+    use mode13h::scene::{Camera, Motion, Object, Shared};
+
+    let mut tried = Tried::new("golden_frames_of_a_house", 5);
+    let loaded = obj::load(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/house.obj")).expect("a model");
+    let mut object = Object::new(loaded.mesh).centred();
+    for (material, surface) in object.materials.iter_mut().zip(object.mesh().surfaces().to_vec()) {
+        if let Some(path) = &surface.texture {
+            let map = Shared::new(mode13h::texture::load(path).expect("a picture"));
+            *material = material.clone().with_map(&surface, &map);
+        }
+    }
+    let mut house = Scene::new();
+    house.camera = Camera::framing(object.pivot * 0.0, object.mesh().bounds().radius * 0.8);
+    house.add_light(Light::sun([0.4, 0.6, 1.0]));
+    let id = house.add(object);
+    house.motions.push(Motion::Spin { object: id, start: [0.35, 0.0, 0.0], turns: [0.0, 0.25, 0.0] });
+
+    let mut auto = house.clone();
+    automatic(&house).expect("a scene").apply(&mut auto);
+    let in_palette = |palette: &Palette| Scene { palette: Some(palette.clone()), ..house.clone() };
+    let mut in_cube = in_palette(&builtin::by_name("cube").expect("a palette").palette);
+    in_cube.wishes.dither = true;
+    let surfaces = house[id].mesh().surfaces();
+    let own = in_cube[id].materials.iter().zip(surfaces).map(|(material, surface)| material.in_own_colors(surface));
+    let own: Vec<_> = own.collect();
+    in_cube[id].materials = own;
+    let in_ramps = in_palette(&builtin::by_name("materials-8x32").expect("a palette").palette);
+    // A round takes four seconds.
+    let at = |mut scene: Scene, degrees: f64| {
+        scene.set_time(degrees / 90.0);
+        scene
+    };
+    let scenes = [
+        ("house-auto-20".to_string(), at(auto.clone(), 20.0)),
+        ("house-auto-70".to_string(), at(auto.clone(), 70.0)),
+        ("house-auto-200".to_string(), at(auto, 200.0)),
+        ("house-cube-20".to_string(), at(in_cube, 20.0)),
+        ("house-materials-8x32-20".to_string(), at(in_ramps, 20.0)),
+    ];
+    compare(&mut tried, &scenes);
 }
