@@ -4,12 +4,12 @@
 mod support;
 
 use mode13h::glam::Vec3;
-use mode13h::light::{Material, RampChoice};
+use mode13h::light::{Light, RampChoice};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::auto::{Automatic, Entries, Use, share};
 use mode13h::palette::{Palette, Ramp, Rgb, Search, builtin};
 use mode13h::render::{Renderer, Seen, automatic, seen};
-use mode13h::scene::{Scene, UpAxis};
+use mode13h::scene::{Camera, Motion, Object, ObjectId, Scene, UpAxis};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use support::random::Random;
@@ -374,6 +374,22 @@ fn a_texture_of_few_colours_leaves_the_rest_to_the_ramps() {
 
 // What is seen
 
+/// A model that turns about its upward axis once a round, leaning towards the eye.
+fn turning(object: Object) -> (Scene, ObjectId) {
+    let mut scene = Scene::new();
+    let id = scene.add(object.centred());
+    scene.camera = Camera::framing(Vec3::ZERO, scene[id].mesh().bounds().radius);
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    scene.motions.push(Motion::Spin { object: id, start: [0.35, 0.0, 0.0], turns: [0.0, 0.25, 0.0] });
+    (scene, id)
+}
+
+fn seen_turning(mesh: Mesh, up_axis: UpAxis) -> Vec<Seen> {
+    let mut object = Object::new(mesh);
+    object.up_axis = up_axis;
+    seen(&turning(object).0).expect("a mesh").remove(0)
+}
+
 /// `mesh` with `surfaces` surfaces, of which face i has number `number(i)`.
 fn numbered(mesh: &Mesh, surfaces: usize, number: impl Fn(usize) -> usize) -> Mesh {
     let numbers = (0..mesh.triangles().len()).map(|i| number(i) as u16).collect();
@@ -388,8 +404,8 @@ fn any_number_of_surfaces_is_counted() {
     let mesh = shapes::torus(48, 24);
     // So many numbers, so far apart, among so many.
     for (count, apart, surfaces) in [(250, 1, 250), (260, 1, 260), (1000, 1, 1000), (1024, 64, 65_536)] {
-        let of_ten = seen(numbered(&mesh, 10, |i| i % count % 10), UpAxis::Y).expect("a mesh");
-        let each = seen(numbered(&mesh, surfaces, |i| i % count * apart + apart - 1), UpAxis::Y).expect("a mesh");
+        let of_ten = seen_turning(numbered(&mesh, 10, |i| i % count % 10), UpAxis::Y);
+        let each = seen_turning(numbered(&mesh, surfaces, |i| i % count * apart + apart - 1), UpAxis::Y);
         let one_by_one: Vec<Seen> = each.iter().skip(apart - 1).step_by(apart).copied().collect();
         assert_eq!(one_by_one.len(), count);
         for (i, whole) in of_ten.iter().enumerate() {
@@ -430,7 +446,7 @@ fn scaled(mesh: &Mesh, by: f32) -> Mesh {
 fn what_is_hidden_is_not_seen() {
     let sphere = shapes::sphere(32, 16);
     let within = joined(&sphere, &scaled(&sphere, 0.5));
-    let [outer, inner] = seen(within, UpAxis::Y).expect("a mesh")[..] else { panic!("two") };
+    let [outer, inner] = seen_turning(within, UpAxis::Y)[..] else { panic!("two") };
     assert_eq!((outer.area, inner.area), (1.0, 0.0));
     assert_eq!((inner.darkest, inner.brightest), (0.0, 0.0));
     // Lit from the upper right behind the eye: the sphere has its darkest and its brightest spot in sight.
@@ -446,7 +462,7 @@ fn a_floor_has_one_brightness() {
     };
     for axis in [UpAxis::Y, UpAxis::Z] {
         let mesh = Mesh::new(up(axis).to_vec(), vec![[0, 1, 2], [0, 2, 3]]).expect("a mesh");
-        let [floor] = seen(mesh, axis).expect("a mesh")[..] else { panic!("one") };
+        let [floor] = seen_turning(mesh, axis)[..] else { panic!("one") };
         let (sine, cosine) = 0.35_f64.sin_cos();
         let expected = 0.15 + 0.85 * (0.6 * cosine + 1.0 * sine) / (0.16_f64 + 0.36 + 1.0).sqrt();
         // Half a shade of 255, and f32.
@@ -470,26 +486,28 @@ fn p2_no_pixel_has_an_index_of_another_ramp() {
         })
         .collect();
     let mesh = mesh.clone().with_surfaces(surfaces, mesh.triangle_surfaces().to_vec()).expect("as many");
-    let made = automatic(mesh.clone(), UpAxis::Y, &[]).expect("a mesh");
-    let mut scene = Scene::showing(mesh);
-    scene.palette = Some(made.palette.clone());
+    let (mut scene, id) = turning(Object::new(mesh));
+    let made = automatic(&scene).expect("a scene");
+    scene.motions.clear();
+    made.apply(&mut scene);
+    let materials = scene[id].materials.clone();
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     for turn in 0..4 {
-        let object = &mut scene.objects_mut()[0];
-        object.set_angles([0.35, f64::from(turn), 0.0]);
-        for (number, material) in (1..).zip(&mut object.materials) {
+        scene[id].set_angles([0.35, f64::from(turn), 0.0]);
+        for (number, material) in (1..).zip(&mut scene[id].materials) {
             material.ramp = RampChoice::Entries(Ramp::single(number));
         }
         renderer.draw(&scene, &mut vga).expect("a scene");
         let numbers = vga.pixels().to_vec();
-        for (entries, material) in made.entries.iter().zip(&mut scene.objects_mut()[0].materials) {
+        scene[id].materials.clone_from(&materials);
+        for material in &mut scene[id].materials {
             // Brighter than white in places.
-            *material =
-                Material { ambient: 0.1, diffuse: 1.5, ramp: RampChoice::Entries(ramp(*entries)), ..material.clone() };
+            (material.ambient, material.diffuse) = (0.1, 1.5);
         }
         renderer.draw(&scene, &mut vga).expect("a scene");
         for (&number, &pixel) in numbers.iter().zip(vga.pixels()).filter(|(number, _)| **number > 0) {
-            assert!(ramp(made.entries[usize::from(number) - 1]).contains(pixel), "surface {number} has entry {pixel}");
+            let ramp = ramp(made.entries[0][usize::from(number) - 1]);
+            assert!(ramp.contains(pixel), "surface {number} has entry {pixel}");
             tried.add(1);
         }
     }
@@ -505,8 +523,11 @@ fn the_house_has_two_ramps_and_bricks() {
     let names: Vec<&str> = surfaces.iter().map(|surface| &*surface.name).collect();
     assert_eq!(names, ["grass", "bricks", "tiles"]);
     let bricks = mode13h::texture::load(surfaces[1].texture.as_ref().expect("a texture")).expect("a picture");
-    let made = automatic(house.mesh, UpAxis::Y, &[None, Some(&bricks), None]).expect("a mesh");
-    let [grass, walls, tiles] = made.entries[..] else { panic!("three") };
+    let mut object = Object::new(house.mesh);
+    let bricks = mode13h::scene::Shared::new(bricks);
+    object.materials[1] = object.materials[1].clone().with_map(&surfaces[1], &bricks);
+    let made = automatic(&turning(object).0).expect("a mesh");
+    let [grass, walls, tiles] = made.entries[0][..] else { panic!("three") };
     let color = |entries, place: f32| {
         let ramp = ramp(entries);
         made.palette.color(ramp.index((place * f32::from(ramp.entries() - 1)).round() as u16))

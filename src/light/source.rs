@@ -82,7 +82,8 @@ impl Light {
     }
 
     /// Its intensity on one channel: of a coloured light the luminance after ITU-R BT.601.
-    pub(crate) fn brightness(&self) -> f32 {
+    #[must_use]
+    pub fn brightness(&self) -> f32 {
         let color = self.color();
         let share = if self.is_colored() { luminance(color) } else { color[0] };
         share * self.intensity()

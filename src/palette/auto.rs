@@ -11,6 +11,9 @@
 //!   what it wins. All textures share one block: their shades look for the nearest entry of the whole
 //!   palette ([`Table::shades`](super::Table::shades)), and so use the ramps' entries too.
 //!
+//! - Colours that are mixed on the screen and lie on no ramp (in fog, behind glass, under coloured light) are points of
+//!   the same cloud, as they are.
+//!
 //! As the gain of a ramp's next entry shrinks with each, giving one entry at a time to who gains most
 //! is best for the ramps. A ramp never gets more than there are colours on it that the card can show.
 //!
@@ -118,9 +121,24 @@ const FARTHER_THAN_ANY: u32 = 400_000;
 /// ```
 #[must_use]
 pub fn share(uses: &[Use<'_>]) -> Automatic {
-    let areas = areas(uses);
-    let mut textures = MedianCut::new(cloud(uses, &areas));
-    let kept = if uses.iter().any(|of| of.texels.is_some()) { LEAST_FOR_TEXTURES } else { 0 };
+    share_beside(uses, &[])
+}
+
+/// Shares the palette out with room for colours that stand on the screen as they are, each with the area that it covers
+/// there, in the unit of [`Use::area`]: mixtures, which lie on no ramp. They go into the block of the textures.
+///
+/// ```
+/// use mode13h::palette::{Rgb, auto};
+/// let haze = Rgb::from_dac([40, 42, 45]);
+/// let automatic = auto::share_beside(&[], &[(haze, 1.0)]);
+/// assert!(automatic.palette.colors().contains(&haze));
+/// ```
+#[must_use]
+pub fn share_beside(uses: &[Use<'_>], mixtures: &[(Rgb, f32)]) -> Automatic {
+    let (areas, mixed) = areas(uses, mixtures);
+    let mut textures = MedianCut::new(cloud(uses, &areas, &mixed));
+    let is_needed = !mixed.is_empty() || uses.iter().any(|of| of.texels.is_some());
+    let kept = if is_needed { LEAST_FOR_TEXTURES } else { 0 };
     textures.cut_to(kept);
     let (mut ramps, ramp_of) = choose(uses, &areas, (ROOM - kept) / LEAST);
     give(&mut ramps, &mut textures);
@@ -306,12 +324,15 @@ fn not_negative(v: f32) -> f64 {
     f64::from(v.max(0.0))
 }
 
-/// The share of each use in the area of all, at least [`UNSEEN`].
-fn areas(uses: &[Use<'_>]) -> Vec<f64> {
+/// The share of each use in the area of all, at least [`UNSEEN`], and that of each mixture.
+fn areas(uses: &[Use<'_>], mixtures: &[(Rgb, f32)]) -> (Vec<f64>, Vec<(Rgb, f64)>) {
     // An infinite area counts as a very large one.
-    let area = |of: &Use<'_>| not_negative(of.area).min(1e30);
-    let whole: f64 = uses.iter().map(area).sum();
-    uses.iter().map(|of| (area(of) / whole.max(f64::MIN_POSITIVE)).max(UNSEEN)).collect()
+    let area = |area: f32| not_negative(area).min(1e30);
+    let of_uses: f64 = uses.iter().map(|of| area(of.area)).sum();
+    let whole = of_uses + mixtures.iter().map(|mixture| area(mixture.1)).sum::<f64>();
+    let share = |of: f32| (area(of) / whole.max(f64::MIN_POSITIVE)).max(UNSEEN);
+    let mixed = mixtures.iter().map(|&(color, of)| (color, share(of))).collect();
+    (uses.iter().map(|of| share(of.area)).collect(), mixed)
 }
 
 /// At most `most` ramps, and for each use without a texture which one it has.
@@ -347,8 +368,8 @@ fn choose(uses: &[Use<'_>], areas: &[f64], most: usize) -> (Vec<Wanted>, Vec<Opt
 }
 
 /// The colours of the textures at the brightnesses at which they are seen, as the card can show them,
-/// with their shares of the area.
-fn cloud(uses: &[Use<'_>], areas: &[f64]) -> Vec<(Rgb, u32)> {
+/// with their shares of the area; and the mixtures.
+fn cloud(uses: &[Use<'_>], areas: &[f64], mixed: &[(Rgb, f64)]) -> Vec<(Rgb, u32)> {
     let mut textured: Vec<usize> = (0..uses.len()).filter(|&i| uses[i].texels.is_some()).collect();
     textured.sort_by(|&a, &b| areas[b].total_cmp(&areas[a]));
     textured.truncate(MOST_TEXTURED);
@@ -368,6 +389,8 @@ fn cloud(uses: &[Use<'_>], areas: &[f64]) -> Vec<(Rgb, u32)> {
             }
         }
     }
+    // At most 2²⁴.
+    points.extend(mixed.iter().map(|&(color, share)| (color.nearest_on_dac(), (share * WHOLE + 0.5) as u32)));
     points.sort_unstable();
     let same = points.chunk_by(|a, b| a.0 == b.0);
     same.map(|same| (same[0].0, same.iter().map(|(_, weight)| weight).sum::<u32>().max(1))).collect()

@@ -10,7 +10,7 @@
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `stats` | what a frame came to |
-//! | `automatic` | a palette for a model, from what is seen of it over a turn |
+//! | `automatic` | a palette for a scene, from what is seen of it over a round |
 //!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed,
 //! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
@@ -52,7 +52,7 @@ use crate::span::Kernel;
 use crate::vga::Vga;
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
-pub use automatic::{Seen, automatic, seen};
+pub use automatic::{AutomaticPalette, Seen, automatic, seen};
 pub use stats::Stats;
 pub use vertex_path::{UnknownVertexPath, VertexPath};
 

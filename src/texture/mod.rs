@@ -186,7 +186,13 @@ impl Texture {
     /// The same texture in its [tinted](Self::tinted) colours.
     #[must_use]
     pub fn modulated(&self, tint: Rgb) -> Self {
-        Self { colors: self.tinted(tint), ..self.clone() }
+        self.recolored(self.tinted(tint))
+    }
+
+    /// The same texels in other colours.
+    #[must_use]
+    pub fn recolored(&self, colors: [Rgb; 256]) -> Self {
+        Self { texels: self.texels.clone(), colors, ..*self }
     }
 
     /// The logarithm of the width: 0 to 8.

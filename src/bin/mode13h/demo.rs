@@ -12,6 +12,7 @@ use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window};
 
 use crate::failure::Failure;
+use crate::input::Colors;
 use crate::options::Drawing;
 use crate::overlay::{self, Place};
 use crate::stage::{Pose, Stage};
@@ -64,7 +65,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     let mut title = String::new();
     loop {
-        let wish = demo.follow(window.input(), window.seconds());
+        let wish = demo.follow(window.input(), window.seconds())?;
         demo.draw(&mut vga)?;
         match wish {
             Wish::Nothing => {}
@@ -97,7 +98,7 @@ struct Demo {
     renderer: Renderer,
     rungs: Choice<Rung>,
     kernels: Choice<Kernel>,
-    palettes: Choice<(String, Palette)>,
+    palettes: Choice<(String, Colors)>,
     /// `None` leaves it to the plan.
     mappings: Choice<Option<Mapping>>,
     motion: Motion,
@@ -120,13 +121,20 @@ impl Demo {
         let of_model = matches!(shown, input::Input::Model(_));
         let stage = drawing.stage(shown)?;
         let rung = drawing.rung(stage.scene.wishes.rung);
+        // A palette without ramps has no order of shades: what has no colours of its own is shown in such a one only if
+        // that was asked for.
+        let has_colors = stage.has_colors();
+        let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
+        let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::Palette(builtin.palette.clone())));
+        let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
         // A scene that has none leaves the DAC alone.
-        let palette = stage.scene.palette.clone().unwrap_or_default();
-        let usual_palette = if of_model { "grey" } else { "the scene's" };
-        let palette_name = drawing.palette_name().unwrap_or(usual_palette.to_string());
-        // A palette without ramps has no order of shades: such a one is shown only if it was asked for.
-        let builtin = builtin::ALL.iter().filter(|builtin| builtin.palette.ramps() > 0);
-        let palettes = builtin.map(|builtin| (builtin.name.to_string(), builtin.palette.clone()));
+        let colors = stage.colors.clone().unwrap_or(Colors::Palette(Palette::default()));
+        let usual = match colors {
+            Colors::Auto => input::AUTO,
+            _ if of_model => "grey",
+            _ => "the scene's",
+        };
+        let palette = (drawing.palette_name().unwrap_or(usual.to_string()), colors);
         Ok(Demo {
             triangles: stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum(),
             stage,
@@ -134,7 +142,7 @@ impl Demo {
             renderer: drawing.renderer(kernel),
             rungs: Choice::new(Rung::ALL.iter().copied(), rung, |a, b| a == b),
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
-            palettes: Choice::new(palettes, (palette_name, palette), |(a, _), (b, _)| a == b),
+            palettes: Choice::new(palettes, palette, |(a, _), (b, _)| a == b),
             mappings: Choice::new([None].into_iter().chain(Mapping::ALL.map(Some)), drawing.mapping(), |a, b| a == b),
             motion: Motion::new(),
             help: false,
@@ -147,7 +155,7 @@ impl Demo {
     }
 
     /// Does what the user asks for in the frame that shows the time `seconds`.
-    fn follow(&mut self, input: &Input, seconds: f64) -> Wish {
+    fn follow(&mut self, input: &Input, seconds: f64) -> Result<Wish, Failure> {
         self.seconds = seconds;
         self.notice.take_if(|(_, until)| *until < seconds);
         self.motion.follow(input, seconds);
@@ -163,7 +171,7 @@ impl Demo {
         }
         if input.pressed(Key::P) {
             self.palettes.go_round();
-            self.stage.set_palette(self.palettes.chosen().1.clone());
+            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::work)?;
         }
         if input.pressed(Key::M) {
             self.mappings.go_round();
@@ -176,13 +184,13 @@ impl Demo {
         if input.pressed(Key::H) {
             self.help = !self.help;
         }
-        if input.pressed(Key::Escape) {
+        Ok(if input.pressed(Key::Escape) {
             Wish::End
         } else if input.pressed(Key::S) {
             Wish::Picture
         } else {
             Wish::Nothing
-        }
+        })
     }
 
     fn draw(&mut self, vga: &mut Vga) -> Result<(), Failure> {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::mesh::{Mesh, obj, shapes};
 use mode13h::palette::{Palette, builtin, file};
-use mode13h::scene::{self, Scene, shipped};
+use mode13h::scene::{self, Scene, Shared, shipped};
 use mode13h::texture::{self, Texture};
 
 use crate::failure::Failure;
@@ -100,14 +100,15 @@ fn model_or(words: &OsStr, kinds: &str, known: &dyn Fn() -> String) -> Result<Mo
     Ok(Model { name, mesh })
 }
 
-/// For each surface of a model its texture, if it names one that can be read. One that cannot is a warning, a line on
-/// standard error, and the surface is drawn without it. Files named by several surfaces are read once.
-pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Texture>> {
-    let mut read: HashMap<&str, Option<Texture>> = HashMap::new();
+/// For each surface of a model its texture, if it names one that can be read and the model says where it lies. One that
+/// cannot is a warning, a line on standard error, and the surface is drawn without it. Files named by several surfaces
+/// are read once.
+pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
+    let mut read: HashMap<&str, Option<Shared<Texture>>> = HashMap::new();
     let textures = mesh.surfaces().iter().map(|surface| {
-        let path = surface.texture.as_deref()?;
+        let path = surface.texture.as_deref().filter(|_| mesh.texcoords().is_some())?;
         let texture = read.entry(path).or_insert_with(|| {
-            let loaded = texture::load(path);
+            let loaded = texture::load(path).map(Shared::new);
             loaded.map_err(|error| eprintln!("mode13h: {}", Failure::work(format!("{error}; drawn without it")))).ok()
         });
         texture.clone()
@@ -168,6 +169,26 @@ pub(crate) fn palette_extensions() -> String {
         }
     }
     extensions.join(", ")
+}
+
+/// What the entries of the frame's bytes are.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) enum Colors {
+    /// Those of a palette.
+    Palette(Palette),
+    /// Those that are made for what is seen.
+    Auto,
+}
+
+/// The name of the palette that is made for what is seen.
+pub(crate) const AUTO: &str = "auto";
+
+/// The palette of a name or a file, and what to call it; or the one that is made for what is seen.
+pub(crate) fn colors(words: &OsStr) -> Result<(String, Colors), Failure> {
+    if words == AUTO {
+        return Ok((AUTO.to_string(), Colors::Auto));
+    }
+    palette(words).map(|(name, palette)| (name, Colors::Palette(palette)))
 }
 
 /// The palette of a name or a file, and what to call it.

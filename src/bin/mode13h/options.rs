@@ -10,7 +10,7 @@ use mode13h::scene::UpAxis;
 use mode13h::span::Kernel;
 
 use crate::failure::Failure;
-use crate::input::{self, Input, Model};
+use crate::input::{self, Colors, Input, Model};
 use crate::stage::Stage;
 
 /// The environment variable that stands in for `--kernel`. The library reads none.
@@ -21,7 +21,7 @@ const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 pub(crate) struct Drawing {
     #[arg(long, value_name = "RUNG", help = help_on_rungs())]
     rung: Option<Rung>,
-    #[arg(long, value_name = "FILE|NAME", help = help_on_palettes())]
+    #[arg(long, value_name = "FILE|NAME|auto", help = help_on_palettes())]
     palette: Option<OsString>,
     #[arg(long, value_name = "NAME", value_parser = Kernel::by_name, help = help_on_kernels())]
     kernel: Option<Kernel>,
@@ -69,24 +69,33 @@ impl Drawing {
 
     /// What INPUT shows, drawn as was asked for.
     pub(crate) fn stage(&self, input: Input) -> Result<Stage, Failure> {
-        let palette = self.palette.as_deref().map(input::palette).transpose()?.map(|(_, palette)| palette);
-        match input {
+        let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
+        let (mut stage, usual) = match input {
             Input::Model(Model { mesh, .. }) => {
-                let up = self.up.unwrap_or(Up::Y);
-                Ok(Stage::of_model(mesh, up.into(), palette.unwrap_or_else(|| builtin::GREY.clone())))
+                let textures = input::textures(&mesh);
+                let stage = Stage::of_model(mesh, self.up.unwrap_or(Up::Y).into(), &textures);
+                let colors = if stage.has_colors() { Colors::Auto } else { Colors::Palette(builtin::GREY.clone()) };
+                (stage, Some(colors))
             }
-            Input::Scene { .. } if self.up.is_some() => Err(Failure::words(
-                "--up is for models: a scene says itself which axis of each of its models points up",
-            )),
+            Input::Scene { .. } if self.up.is_some() => {
+                return Err(Failure::words(
+                    "--up is for models: a scene says itself which axis of each of its models points up",
+                ));
+            }
             Input::Scene { scene, .. } => {
-                let mut stage = Stage::of_scene(*scene);
-                if let Some(palette) = palette {
-                    stage.scene.wishes.auto_palette = false;
-                    stage.set_palette(palette);
-                }
-                Ok(stage)
+                let auto = scene.wishes.auto_palette.then_some(Colors::Auto);
+                let colors = auto.or(scene.palette.clone().map(Colors::Palette));
+                (Stage::of_scene(*scene), colors)
             }
+        };
+        let colors = asked.or(usual);
+        if colors == Some(Colors::Auto) && self.vertex_path == Some(VertexPath::Integer) {
+            stage.only_what_integers_draw();
         }
+        if let Some(colors) = &colors {
+            stage.set_colors(colors).map_err(Failure::work)?;
+        }
+        Ok(stage)
     }
 
     /// What the palette is called that was asked for.
@@ -149,7 +158,9 @@ fn help_on_vertex_paths() -> String {
 
 fn help_on_palettes() -> String {
     let (names, extensions) = (input::palette_names(), input::palette_extensions());
-    format!("The palette: {names}, or a file ({extensions}) [default: the scene's; of a model, grey]")
+    format!(
+        "The palette: auto, made for what is seen; {names}; or a file ({extensions}) [default: the scene's; of a model, auto if it has colours of its own, else grey]"
+    )
 }
 
 fn help_on_kernels() -> String {

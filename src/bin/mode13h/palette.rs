@@ -8,11 +8,10 @@ use mode13h::export::{self, Picture, PixelShape, Scale};
 use mode13h::palette::auto::Entries;
 use mode13h::palette::file::Format;
 use mode13h::palette::{Palette, builtin};
-use mode13h::render::automatic;
-use mode13h::texture::Texture;
 
 use crate::failure::Failure;
 use crate::options::Up;
+use crate::stage::Stage;
 use crate::{input, output};
 
 #[derive(Args)]
@@ -53,18 +52,18 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 fn make(model: &OsStr, up: Up) -> Result<(String, Palette, String), Failure> {
     let input::Model { name, mesh } = input::model(model)?;
     let textures = input::textures(&mesh);
-    let textures: Vec<Option<&Texture>> = textures.iter().map(Option::as_ref).collect();
-    let surfaces = mesh.surfaces().to_vec();
-    let automatic = automatic(mesh, up.into(), &textures).map_err(Failure::work)?;
+    let mut stage = Stage::of_model(mesh, up.into(), &textures);
+    let automatic = stage.automatic().map_err(Failure::work)?.clone();
     let mut lines = String::new();
-    for (surface, entries) in surfaces.iter().zip(&automatic.entries) {
+    let materials = stage.scene.objects().iter().flat_map(|object| &object.materials);
+    for (material, entries) in materials.zip(automatic.entries.iter().flatten()) {
         let (entries, what) = match entries {
             Entries::Ramp { ramp, .. } => (ramp, "a ramp"),
             Entries::Textures { block } => (block, "colours of textures"),
             _ => continue,
         };
-        let surface = if surface.name.is_empty() { &name } else { &surface.name };
-        let line = format!("{surface}: {what}, entries {} to {}", entries.first(), entries.last());
+        let material = if material.name.is_empty() { &name } else { &material.name };
+        let line = format!("{material}: {what}, entries {} to {}", entries.first(), entries.last());
         // A name may hold anything; no terminal is sent it.
         lines.extend(line.chars().map(|c| if c.is_control() { ' ' } else { c }).chain(['\n']));
     }

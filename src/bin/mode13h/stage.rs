@@ -3,10 +3,13 @@
 use std::f64::consts::TAU;
 
 use mode13h::glam::Vec3;
-use mode13h::light::Light;
+use mode13h::light::{Blend, Light, Material};
 use mode13h::mesh::Mesh;
-use mode13h::palette::Palette;
-use mode13h::scene::{Camera, Object, ObjectId, Scene, UpAxis};
+use mode13h::render::{AutomaticPalette, RenderError, automatic};
+use mode13h::scene::{Camera, Motion, Object, ObjectId, Scene, Shared, UpAxis};
+use mode13h::texture::Texture;
+
+use crate::input::Colors;
 
 /// How fast a model turns when nothing is said: once in four seconds, in radians a second.
 const SPEED: f64 = TAU / 4.0;
@@ -35,6 +38,14 @@ impl Pose {
 pub(crate) struct Stage {
     pub(crate) scene: Scene,
     shown: Shown,
+    /// The objects' materials, whatever the palette.
+    materials: Vec<Vec<Material>>,
+    /// Whether the scene wishes for dither, whatever the palette.
+    dithers: bool,
+    /// Made when first asked for.
+    automatic: Option<AutomaticPalette>,
+    /// What was chosen last.
+    pub(crate) colors: Option<Colors>,
 }
 
 #[derive(Clone)]
@@ -46,23 +57,39 @@ enum Shown {
 }
 
 impl Stage {
-    /// A model about the origin, a sun, and a camera that frames it.
-    pub(crate) fn of_model(mesh: Mesh, up: UpAxis, palette: Palette) -> Stage {
+    /// A model about the origin, a sun, and a camera that frames it; in greys. `textures` are those of its surfaces.
+    pub(crate) fn of_model(mesh: Mesh, up: UpAxis, textures: &[Option<Shared<Texture>>]) -> Stage {
         let radius = mesh.bounds().radius;
         let mut scene = Scene::new();
         let mut object = Object::new(mesh).centred();
         object.up_axis = up;
+        for (i, texture) in textures.iter().enumerate() {
+            if let Some(texture) = texture {
+                // One for each surface.
+                object.materials[i] = object.materials[i].clone().with_map(&object.mesh().surfaces()[i], texture);
+            }
+        }
         let object = scene.add(object);
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-        scene.palette = Some(palette);
-        let mut stage = Stage { scene, shown: Shown::Model { object, radius } };
+        let mut stage = Stage::new(scene, Shown::Model { object, radius });
         stage.show(0.0, Pose::FIRST);
         stage
     }
 
     pub(crate) fn of_scene(scene: Scene) -> Stage {
         let camera = scene.camera;
-        Stage { scene, shown: Shown::Scene { camera } }
+        Stage::new(scene, Shown::Scene { camera })
+    }
+
+    fn new(scene: Scene, shown: Shown) -> Stage {
+        let materials = scene.objects().iter().map(|object| object.materials.clone()).collect();
+        let dithers = scene.wishes.dither;
+        Stage { scene, shown, materials, dithers, automatic: None, colors: None }
+    }
+
+    /// Whether any of its objects has colours of its own: a texture, or a surface that is not grey.
+    pub(crate) fn has_colors(&self) -> bool {
+        self.scene.objects().iter().zip(&self.materials).any(|(object, materials)| has_colors(object, materials))
     }
 
     /// How long a round takes, in seconds: of a model a turn.
@@ -98,13 +125,74 @@ impl Stage {
         }
     }
 
-    /// Another palette. What the frame is cleared to stays the colour it was chosen for.
-    pub(crate) fn set_palette(&mut self, palette: Palette) {
-        if let Some(color) = self.scene.background_color {
-            self.scene.background = palette.nearest(color);
+    /// Other colours. What the frame is cleared to stays the colour it was chosen for. Where a palette has no ramps,
+    /// objects that have colours of their own are drawn in them; of a model, which wishes for nothing itself, with dither,
+    /// as no palette for everything has many shades of one colour.
+    pub(crate) fn set_colors(&mut self, colors: &Colors) -> Result<(), RenderError> {
+        let mut dithers = self.dithers;
+        for (object, materials) in self.scene.objects_mut().iter_mut().zip(&self.materials) {
+            object.materials.clone_from(materials);
+            if matches!(colors, Colors::Palette(palette) if palette.ramps() == 0) && has_colors(object, materials) {
+                let own = materials.iter().zip(object.mesh().surfaces());
+                object.materials = own.map(|(material, surface)| material.in_own_colors(surface)).collect();
+                dithers |= matches!(self.shown, Shown::Model { .. });
+            }
         }
-        self.scene.palette = Some(palette);
+        self.scene.wishes.dither = dithers;
+        self.scene.wishes.auto_palette = false;
+        match colors {
+            Colors::Palette(palette) => {
+                if let Some(color) = self.scene.background_color {
+                    self.scene.background = palette.nearest(color);
+                }
+                self.scene.palette = Some(palette.clone());
+            }
+            Colors::Auto => self.automatic()?.clone().apply(&mut self.scene),
+        }
+        self.colors = Some(colors.clone());
+        Ok(())
     }
+
+    /// The palette that is made for what is seen over a round.
+    pub(crate) fn automatic(&mut self) -> Result<&AutomaticPalette, RenderError> {
+        let made = match self.automatic.take() {
+            Some(made) => made,
+            None => automatic(&self.round())?,
+        };
+        Ok(self.automatic.insert(made))
+    }
+
+    /// The scene as it moves by itself.
+    fn round(&self) -> Scene {
+        let mut stage = self.clone();
+        stage.show(0.0, Pose::FIRST);
+        let mut scene = stage.scene;
+        for (object, materials) in scene.objects_mut().iter_mut().zip(&self.materials) {
+            object.materials.clone_from(materials);
+        }
+        if let Shown::Model { object, .. } = self.shown {
+            let (start, turns) = (scene[object].angles(), [0.0, SPEED / TAU, 0.0]);
+            scene.motions.push(Motion::Spin { object, start, turns });
+        }
+        scene
+    }
+
+    /// Leaves out what the 16.16 path does not draw, so that no palette is made for it.
+    pub(crate) fn only_what_integers_draw(&mut self) {
+        self.scene.fog = None;
+        for light in self.scene.lights_mut() {
+            *light = light.with_intensity(light.brightness()).with_color([1.0; 3]);
+        }
+        for material in self.materials.iter_mut().flatten() {
+            (material.texture, material.environment, material.blend) = (None, None, Blend::Opaque);
+        }
+    }
+}
+
+fn has_colors(object: &Object, materials: &[Material]) -> bool {
+    let is_colored = |[red, green, blue]: [f32; 3]| red != green || green != blue;
+    object.mesh().surfaces().iter().any(|surface| is_colored(surface.diffuse))
+        || materials.iter().any(|material| material.texture.is_some())
 }
 
 /// To enlarge what it sees, a camera's view is narrowed, as going nearer would end inside the model; to make it smaller
@@ -166,8 +254,7 @@ mod tests {
     #[test]
     fn the_scene_of_the_torus_is_the_model_on_its_stage() {
         let mesh = mode13h::mesh::shapes::by_name("torus").expect("a shape");
-        let grey = mode13h::palette::builtin::GREY.clone();
-        let mut model = Stage::of_model(mesh, UpAxis::Y, grey);
+        let mut model = Stage::of_model(mesh, UpAxis::Y, &[]);
         let scene = shipped::by_name("torus").expect("a scene").load().expect("a scene that loads").scene;
         let mut scene = Stage::of_scene(scene);
         let mut renderer = mode13h::render::Renderer::new();

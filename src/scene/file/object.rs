@@ -160,8 +160,11 @@ impl Objects {
             let Some(texture) = object.mesh().surfaces().get(i).and_then(|surface| surface.texture.clone()) else {
                 continue;
             };
-            if has_texcoords {
-                object.materials[i].texture = named.texture_of_model(&texture, &object.materials[i].name);
+            if !has_texcoords {
+                continue;
+            }
+            if let Some(texture) = named.texture_of_model(&texture, &object.materials[i].name) {
+                object.materials[i] = object.materials[i].clone().with_map(&object.mesh().surfaces()[i], &texture);
             }
         }
         if let Some(all) = &layout.material {

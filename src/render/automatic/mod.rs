@@ -1,0 +1,212 @@
+//! A palette for a scene: what is seen of each of its materials over a round, and from that the entries.
+//!
+//! | file | what |
+//! |---|---|
+//! | `seen` | area and brightness of every material, from pictures in which shades are intensities, or numbers |
+//! | `mixed` | colours that lie on no ramp, from pictures in true colour |
+
+mod mixed;
+mod seen;
+
+use alloc::vec::Vec;
+
+use super::RenderError;
+use crate::light::{Material, RampChoice};
+use crate::mesh::Surface;
+use crate::palette::auto::{Automatic, Entries, Use, share_beside};
+use crate::palette::{Palette, Rgb};
+use crate::scene::{Object, Scene, Shared};
+use crate::texture::Texture;
+use mixed::OwnColors;
+pub use seen::{Seen, seen};
+
+/// Pictures over one round.
+const POSES: u32 = 16;
+
+/// A palette for a scene, and the scene's materials in it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct AutomaticPalette {
+    /// The colours.
+    pub palette: Palette,
+    /// For each object, for each of its materials, its entries.
+    pub entries: Vec<Vec<Entries>>,
+    materials: Vec<Vec<Material>>,
+}
+
+impl AutomaticPalette {
+    /// Gives `scene` the palette, and its objects their materials in it. It is the scene that the palette was made for,
+    /// or one with the same objects; objects with other numbers of materials stay as they are.
+    pub fn apply(&self, scene: &mut Scene) {
+        if let Some(color) = scene.background_color {
+            scene.background = self.palette.nearest(color);
+        }
+        scene.palette = Some(self.palette.clone());
+        for (object, materials) in scene.objects_mut().iter_mut().zip(&self.materials) {
+            if object.materials.len() == materials.len() {
+                object.materials.clone_from(materials);
+            }
+        }
+    }
+}
+
+/// A palette for a scene, by [`share_beside`], and its materials in it.
+///
+/// Area and brightness are those of [`seen`]. A material's colour is its [own](Material::own_colors), in the light that
+/// it gives back in full light, ambient and diffuse together; its highlight adds to that. On its ramp that colour stands
+/// at the intensity `full_light` of [`Entries::Ramp`], so its ambient and diffuse shares are divided up to that, in the
+/// proportion that they have, and what is left is the highlight's. It then needs no channels any more, as its colour is
+/// in the ramp, and a `ramp` that it named is another one now. A material with an image keeps its shares; the image's
+/// colours, tinted by the material's, are the base of entries at the brightnesses seen.
+///
+/// What is mixed on the screen lies on no ramp: colours in fog and behind bodies that shine through, and all colours
+/// where a light is coloured. These are measured in true colour, and share the block of the textures. Under coloured
+/// light there are no ramps: materials keep their own colours, are lit on three channels, and drawn in the nearest of
+/// the colours so found.
+///
+/// ```
+/// use mode13h::mesh::shapes;
+/// use mode13h::palette::auto::Entries;
+/// use mode13h::render::automatic;
+/// use mode13h::scene::Scene;
+///
+/// let mut scene = Scene::showing(shapes::torus(48, 24));
+/// scene.objects_mut()[0].materials[0].color = [0.9, 0.5, 0.2];
+/// let made = automatic(&scene)?;
+/// let Entries::Ramp { ramp, full_light: 1.0, .. } = made.entries[0][0] else { unreachable!("it is matt") };
+/// made.apply(&mut scene);
+/// assert_eq!(scene.palette, Some(made.palette));
+/// assert_eq!(scene.objects()[0].materials[0].ramp, mode13h::light::RampChoice::Entries(ramp));
+/// # Ok::<(), mode13h::render::RenderError>(())
+/// ```
+///
+/// # Errors
+/// As [`Renderer::draw`](super::Renderer::draw).
+pub fn automatic(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
+    let in_channels = mixed::has_colored_light(scene);
+    let mut tints = Tints::default();
+    let bodies: Vec<Vec<Body>> =
+        scene.objects().iter().map(|object| bodies(object, scene.ambient, &mut tints)).collect();
+    let mut texels: Vec<Option<Vec<(Rgb, u32)>>> = Vec::new();
+    for body in bodies.iter().flatten() {
+        texels.push(match &body.image {
+            _ if in_channels => Some(Vec::new()),
+            Some(image) => Some(image.colors().iter().copied().zip(image.histogram()).collect()),
+            None => None,
+        });
+    }
+    let seen = seen(scene)?;
+    let mut uses: Vec<Use<'_>> = Vec::new();
+    for ((body, seen), texels) in bodies.iter().flatten().zip(seen.iter().flatten()).zip(&texels) {
+        // An image's shades are not divided anew.
+        let part = if body.image.is_some() { body.full } else { 1.0 };
+        uses.push(Use {
+            color: body.color,
+            highlight: body.highlight,
+            area: seen.area,
+            darkest: seen.darkest * part,
+            brightest: seen.brightest * part,
+            texels: texels.as_deref(),
+        });
+    }
+    let own: Vec<OwnColors> = bodies.iter().flatten().map(|body| body.own).collect();
+    let Automatic { palette, entries } = share_beside(&uses, &mixed::colors(scene, &own)?);
+
+    let mut entries = entries.into_iter();
+    let mut automatic = AutomaticPalette { palette, entries: Vec::new(), materials: Vec::new() };
+    for (object, bodies) in scene.objects().iter().zip(&bodies) {
+        // One for each body.
+        let own: Vec<Entries> = entries.by_ref().take(bodies.len()).collect();
+        let materials = object.materials.iter().zip(bodies).zip(&own);
+        automatic.materials.push(materials.map(|((m, body), own)| body.material(m, *own, in_channels)).collect());
+        automatic.entries.push(own);
+    }
+    Ok(automatic)
+}
+
+/// What a material of an object is to look like.
+struct Body {
+    /// Of 1, what it gives back in full light: its ambient and diffuse shares.
+    full: f32,
+    /// On three channels.
+    own: OwnColors,
+    color: Rgb,
+    highlight: Option<Rgb>,
+    /// Its texture, or what it mirrors, in its colour.
+    image: Option<Shared<Texture>>,
+}
+
+/// A body for each material.
+fn bodies(object: &Object, ambient: f32, tints: &mut Tints) -> Vec<Body> {
+    let plain = Surface::default();
+    let surfaces = object.mesh().surfaces().iter().chain(core::iter::repeat(&plain));
+    object
+        .materials
+        .iter()
+        .zip(surfaces)
+        .map(|(material, surface)| Body::new(material, surface, ambient, tints))
+        .collect()
+}
+
+impl Body {
+    fn new(material: &Material, surface: &Surface, ambient: f32, tints: &mut Tints) -> Self {
+        let full = full_light(material, ambient);
+        let own = material.own_colors(surface);
+        let color = Rgb::from_intensities(own.0.map(|channel| channel * full));
+        // With the exponent 0 a highlight would be everywhere.
+        let is_shiny = material.specular > 0.0 && material.shininess > 0.0;
+        let light = Rgb::from_intensities(own.1.map(|channel| channel * material.specular));
+        let image = material.texture.as_ref().or(material.environment.as_ref());
+        Self {
+            full,
+            own,
+            color,
+            highlight: (is_shiny && light != Rgb::BLACK).then(|| color.saturating_add(light)),
+            image: image.map(|image| tints.tinted(image, Rgb::from_intensities(own.0))),
+        }
+    }
+
+    fn material(&self, material: &Material, entries: Entries, in_channels: bool) -> Material {
+        let (color, highlight) = self.own;
+        if in_channels {
+            return Material { ramp: RampChoice::Nearest, color, highlight, ..material.clone() };
+        }
+        let plain = Material { color: [1.0; 3], highlight: [1.0; 3], ..material.clone() };
+        match (entries, &self.image) {
+            (Entries::Ramp { ramp, full_light }, None) => Material {
+                ramp: RampChoice::Entries(ramp),
+                ambient: material.ambient / self.full * full_light,
+                diffuse: material.diffuse / self.full * full_light,
+                specular: if self.highlight.is_some() { 1.0 - full_light } else { 0.0 },
+                ..plain
+            },
+            (_, Some(image)) if material.texture.is_some() => Material { texture: Some(Shared::clone(image)), ..plain },
+            (_, image) => Material { environment: image.clone(), ..plain },
+        }
+    }
+}
+
+/// What a material gives back of ambient and diffuse light in full light. At most 1, as no more is shown, and 1 where it
+/// gives nothing back.
+fn full_light(material: &Material, ambient: f32) -> f32 {
+    let full = material.ambient * ambient + material.diffuse;
+    if full > 0.0 { full.min(1.0) } else { 1.0 }
+}
+
+/// Images in the colours of their materials, each once.
+#[derive(Default)]
+struct Tints(Vec<(Shared<Texture>, Rgb, Shared<Texture>)>);
+
+impl Tints {
+    fn tinted(&mut self, image: &Shared<Texture>, tint: Rgb) -> Shared<Texture> {
+        if tint == Rgb::WHITE {
+            return Shared::clone(image);
+        }
+        let known = self.0.iter().find(|(of, by, _)| Shared::ptr_eq(of, image) && *by == tint);
+        if let Some((_, _, tinted)) = known {
+            return Shared::clone(tinted);
+        }
+        let tinted = Shared::new(image.modulated(tint));
+        self.0.push((Shared::clone(image), tint, Shared::clone(&tinted)));
+        tinted
+    }
+}
