@@ -60,7 +60,6 @@ fn golden_frames_of_every_scene() {
 fn golden_frames_of_a_house() {
     use mode13h::light::Light;
     use mode13h::mesh::obj;
-    use mode13h::palette::Palette;
     use mode13h::render::automatic;
     use mode13h::scene::{Camera, Motion, Object, Shared};
 
@@ -83,14 +82,18 @@ fn golden_frames_of_a_house() {
 
     let mut auto = house.clone();
     automatic(&house).expect("a scene").apply(&mut auto);
-    let in_palette = |palette: &Palette| Scene { palette: Some(palette.clone()), ..house.clone() };
-    let mut in_cube = in_palette(&builtin::by_name("cube").expect("a palette").palette);
+    let in_palette = |name: &str| {
+        let mut scene = house.clone();
+        scene.palette = builtin::by_name(name).map(|found| found.palette.clone());
+        scene
+    };
+    let mut in_cube = in_palette("cube");
     in_cube.wishes.dither = true;
     let surfaces = house[id].mesh().surfaces();
     let own = in_cube[id].materials.iter().zip(surfaces).map(|(material, surface)| material.in_own_colors(surface));
     let own: Vec<_> = own.collect();
     in_cube[id].materials = own;
-    let in_ramps = in_palette(&builtin::by_name("materials-8x32").expect("a palette").palette);
+    let in_ramps = in_palette("materials-8x32");
     // A round takes four seconds.
     let at = |mut scene: Scene, degrees: f64| {
         scene.set_time(degrees / 90.0);
