@@ -122,16 +122,18 @@ fn golden_frames_of_a_house() {
     use mode13h::light::Light;
     use mode13h::mesh::obj;
     use mode13h::palette::Palette;
+    use mode13h::palette::cube::CUBE;
     use mode13h::render::automatic;
     use mode13h::scene::{Camera, Motion, Object, Shared};
 
     let mut tried = Tried::new("golden_frames_of_a_house", 5);
     let loaded = obj::load(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/house.obj")).expect("a model");
     let mut object = Object::new(loaded.mesh).centred();
-    for (material, surface) in object.materials.iter_mut().zip(object.mesh().surfaces().to_vec()) {
+    let surfaces = object.mesh().surfaces().to_vec();
+    for (material, surface) in object.materials.iter_mut().zip(&surfaces) {
         if let Some(path) = &surface.texture {
             let map = Shared::new(mode13h::texture::load(path).expect("a picture"));
-            *material = material.clone().with_map(&surface, &map);
+            *material = material.clone().with_map(surface, &map);
         }
     }
     let mut house = Scene::new();
@@ -142,14 +144,17 @@ fn golden_frames_of_a_house() {
 
     let mut auto = house.clone();
     automatic(&house).expect("a scene").apply(&mut auto);
-    let in_palette = |palette: &Palette| Scene { palette: Some(palette.clone()), ..house.clone() };
-    let mut in_cube = in_palette(&builtin::by_name("cube").expect("a palette").palette);
+    let in_palette = |palette: &Palette| {
+        let mut scene = house.clone();
+        scene.palette = Some(palette.clone());
+        scene
+    };
+    let mut in_cube = in_palette(&CUBE);
     in_cube.wishes.dither = true;
-    let surfaces = house[id].mesh().surfaces();
-    let own = in_cube[id].materials.iter().zip(surfaces).map(|(material, surface)| material.in_own_colors(surface));
-    let own: Vec<_> = own.collect();
-    in_cube[id].materials = own;
-    let in_ramps = in_palette(&builtin::by_name("materials-8x32").expect("a palette").palette);
+    for (material, surface) in in_cube[id].materials.iter_mut().zip(&surfaces) {
+        *material = material.in_own_colors(surface);
+    }
+    let in_ramps = in_palette(&builtin::MATERIALS_8X32);
     // A round takes four seconds.
     let at = |mut scene: Scene, degrees: f64| {
         scene.set_time(degrees / 90.0);
