@@ -328,7 +328,7 @@ fn highlights_are_shown_in_their_colours() {
             f64::from((body + material.highlight[i] * material.specular).min(1.0)) * 255.0
         });
         scene.wishes.rung = Some(mode13h::render::Rung::Phong);
-        let middle = 100 * Vga::WIDTH as usize + 160;
+        let middle = 100 * Vga::WIDTH + 160;
         let mut own = scene.clone();
         let made = made(&mut scene);
         let (colors, objects) = shown(&scene);
