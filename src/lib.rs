@@ -10,13 +10,15 @@
 //! | [`palette`] | 256 colours, ramps of shades, file formats | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
+//! | [`texture`] | 8-bit texels with colours of their own: from pictures, from files, compiled in | `alloc` |
 //! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes; OBJ models | `alloc` |
-//! | [`light`] | lights, materials, the intensity at a vertex | `alloc` |
-//! | [`scene`] | objects, camera, lights | `alloc` |
+//! | [`light`] | suns and lamps, materials, the intensity at a point | `alloc` |
+//! | [`scene`] | objects, camera, lights, fog, motion, what is asked for | `alloc` |
+//! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
-//! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
+//! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
 //! | `show` | hard cases as pictures: the right way beside the fault | `png`, `embedded-graphics` |
 //! | [`record`] | a frame's triangles in a file, to be replayed | `std` |
 //! | [`verify`] | the hard cases on this machine; a recorded frame through every kernel and method | `std` |
@@ -48,7 +50,7 @@
 //!
 //! The default, `program`, brings all that the program of the same name needs. A library user
 //! writes `default-features = false, features = ["std"]` and adds what is wanted: `asm` and `simd`
-//! (faster spans; without both the crate forbids `unsafe` code), `png`, `image`, `obj`, `window`,
+//! (faster spans; without both the crate forbids `unsafe` code), `png`, `gif`, `image`, `obj`, `window`,
 //! `embedded-graphics` (text and shapes on a frame). With no feature at all `fixed`, `palette`,
 //! `vga`, `span`, `raster` and `integer` remain, which need neither `std` nor an allocator; `alloc`
 //! adds the engine.
@@ -75,9 +77,15 @@ pub mod light;
 #[cfg(feature = "alloc")]
 pub mod mesh;
 #[cfg(feature = "alloc")]
+pub mod plan;
+#[cfg(feature = "alloc")]
 pub mod render;
 #[cfg(feature = "alloc")]
 pub mod scene;
+#[cfg(feature = "alloc")]
+mod view;
+#[cfg(feature = "alloc")]
+pub mod texture;
 
 #[cfg(feature = "std")]
 pub mod export;

@@ -9,8 +9,10 @@ use std::io::Cursor;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use mode13h::palette::{builtin, file};
+use mode13h::palette::{Rgb, builtin, file};
+use mode13h::scene::shipped;
 use mode13h::span::Kernel;
+use support::film::{Decoded, decode};
 use support::tried::Tried;
 use tempfile::TempDir;
 
@@ -95,9 +97,10 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
         (model("index.obj"), "index.obj:5: there is no vertex 4"),
         (model("zero.obj"), "zero.obj:4: index 0"),
         (model("binary.obj"), "binary.obj"),
-        (model("model.stl"), "model.stl: no model that can be read"),
-        (model("toroid"), "toroid: neither a file nor a shape; shapes are cube, sphere, torus"),
-        (model(""), ": neither a file nor a shape"),
+        (model("model.stl"), "model.stl: nothing that can be read: models are .obj files, scenes .toml"),
+        (model("toroid"), "toroid: neither a file nor a scene nor a shape; scenes are torus, cube, "),
+        (model("toroid"), "; shapes are cube, sphere, torus"),
+        (model(""), ": neither a file nor a scene nor a shape"),
         (palette("broken.pal"), "broken.pal: line 5"),
         (palette("short.vga"), "short.vga: "),
         (palette("empty.gpl"), "empty.gpl: "),
@@ -125,7 +128,7 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.png", "--kernel", "mmx"], "no such kernel; this machine has portable"),
         (vec!["--kernel", "mmx"], "no such kernel; this machine has portable"),
         (vec!["render", "torus", "-o", "x.png", "--rung", "mirror"], "there are flat, gouraud-8.8"),
-        (vec!["render", "torus", "-o", "x.gif"], "x.gif: "),
+        (vec!["render", "torus", "-o", "x.tif"], "x.tif: no kind of picture"),
         (vec!["render", "torus", "-o", "x"], "x: "),
         (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a row of pictures needs"),
         (vec!["render", "torus", "-o", "x%d.png", "--frames", "0"], "--frames"),
@@ -135,8 +138,20 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.png", "--turn", "NaN"], "--turn"),
         (vec!["render", "torus", "-o", "x.png", "--at", "inf"], "--at"),
         (vec!["render", "torus", "-o", "x.png", "--fps", "0"], "--fps"),
+        (vec!["render", "torus", "-o", "x.png", "--turn", "9", "--fps", "9"], "x.png: both --turn and --fps"),
         (vec!["render", "torus", "-o", "x.png", "--up", "x"], "--up"),
+        (vec!["render", "torus", "-o", "x.gif", "--rgb"], "x.gif: a GIF has a palette"),
+        (vec!["render", "torus", "-o", "x%04d.gif"], "x%04d.gif: a film is one file"),
+        (vec!["render", "torus", "-o", "x.gif", "--fps", "60"], "x.gif: a GIF shows 0.1 to 50 frames a second, not 60"),
+        (vec!["render", "torus", "-o", "x.gif", "--fps", "0.05"], "x.gif: a GIF shows 0.1 to 50 frames a second"),
+        (vec!["render", "torus", "-o", "x.gif", "--frames", "0"], "--frames"),
+        (vec!["render", "torus", "-o", "x.gif", "--record", "r.txt"], "r.txt: a row of records needs"),
         (vec!["palette", "grey", "-o", "x.txt"], "x.txt: "),
+        (vec!["render", "torus", "-o", "x.png", "--up", "z"], "--up is for models"),
+        (vec!["render", "torus", "-o", "x.png", "--mapping", "best"], "there are affine, every-16, perspective"),
+        (vec!["render", "torus", "-o", "x.png", "--vertex-path", "best"], "there are float, integer"),
+        (vec!["demo", "torus", "--hidden", "best"], "there are back-faces, painter"),
+        (vec!["scenes", "-o", "x.toml"], "--copy"),
         (vec!["verify", "--xml"], "--xml"),
         (vec!["torus", "cube"], "unexpected argument 'cube' found"),
         (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
@@ -155,7 +170,7 @@ fn wrong_words_end_with_2() {
 
 #[test]
 fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
-    let mut tried = Tried::new("f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind", 7);
+    let mut tried = Tried::new("f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind", 8);
     let directory = directory();
     fs::create_dir(directory.path().join("x.png")).expect("made");
     for (out, says) in [
@@ -170,6 +185,12 @@ fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
         &run(&directory, &["render", "torus", "-o", "none/%d.png", "--frames", "9"]),
         1,
         "none does not exist",
+    );
+    tried.add(1);
+    assert_fails(
+        &run(&directory, &["render", "torus", "-o", "none/x.gif"]),
+        1,
+        "none/x.gif: the directory none does not",
     );
     tried.add(1);
     assert_fails(&run(&directory, &["palette", "grey", "-o", "none/x.pal"]), 1, "none does not exist");
@@ -329,6 +350,168 @@ fn t1_a_frame_of_a_row_is_the_frame_drawn_alone() {
     tried.add(1);
 }
 
+/// As [`succeed`], for a film: the line that was printed, and the film.
+#[track_caller]
+fn film(directory: &TempDir, words: &[&str]) -> (String, Decoded) {
+    let output = run(directory, &[&["render"], words].concat());
+    assert!(output.status.success() && output.stderr.is_empty(), "{words:?}: {output:?}");
+    let line = String::from_utf8(output.stdout).expect("text");
+    assert_eq!(line.find('\n'), Some(line.len() - 1), "more than one line: {line}");
+    (line, decode(&read(directory, "x.gif")))
+}
+
+#[test]
+fn a_film_is_one_turn_of_four_seconds_in_the_shape_of_the_screen() {
+    let directory = directory();
+    let (line, film) = film(&directory, &["cube", "-o", "x.gif"]);
+    assert_eq!(names_in(directory.path()), ["x.gif"]);
+    let bytes = read(&directory, "x.gif").len();
+    let figures = "640 x 480 pixels, 140 frames, 4.00 s, delays 120 x 30 ms + 20 x 20 ms";
+    assert_eq!(line, format!("x.gif: {figures}, {bytes} bytes\n"));
+    assert_eq!((film.width, film.height, film.images.len()), (640, 480, 140));
+    for (i, image) in film.images.iter().enumerate() {
+        assert_eq!(image.delay, if i % 7 == 6 { 2 } else { 3 }, "image {i}");
+    }
+}
+
+#[test]
+fn a_film_is_as_long_fast_large_and_colorful_as_asked_for() {
+    let directory = directory();
+    for (words, size, frames, hundredths) in [
+        (vec!["--fps", "10"], (640, 480), 40, 400),
+        (vec!["--fps", "50", "--frames", "4"], (640, 480), 4, 8),
+        (vec!["--frames", "3", "--scale", "1"], (320, 200), 3, 9),
+        (vec!["--frames", "1", "--scale", "5x6"], (1600, 1200), 1, 3),
+        (vec!["--frames", "5", "--scale", "33x44", "--palette", "copper"], (33, 44), 5, 15),
+    ] {
+        let (line, film) = film(&directory, &[&["sphere", "-o", "x.gif"], &words[..]].concat());
+        assert_eq!((film.width, film.height, film.images.len()), (size.0, size.1, frames), "{words:?}");
+        assert_eq!(film.images.iter().map(|image| image.delay).sum::<u64>(), hundredths, "{words:?}");
+        let palette = if words.contains(&"copper") { "copper" } else { "grey" };
+        let palette = builtin::by_name(palette).expect("a built-in").palette.on_dac();
+        assert_eq!(film.palette, palette.colors());
+        let said = format!(": {} x {} pixels, {frames} frame", size.0, size.1);
+        assert!(line.contains(&said), "{line}");
+    }
+    let (line, film) = film(&directory, &["teapot", "-o", "x.gif", "--turn", "0", "--fps", "20"]);
+    assert!(line.contains("80 frames in 1 image, 4.00 s, delays 1 x 4000 ms,"), "{line}");
+    assert_eq!((film.images.len(), film.images[0].delay), (1, 400));
+}
+
+#[test]
+fn a_film_shows_the_frames_of_the_row_of_pictures() {
+    let directory = directory();
+    let colors = |name: &str| -> Vec<Rgb> {
+        let mut reader = png::Decoder::new(Cursor::new(read(&directory, name))).read_info().expect("a PNG");
+        let palette = reader.info().palette.as_deref().expect("a palette").to_vec();
+        let mut pixels = vec![0; 333 * 222];
+        reader.next_frame(&mut pixels).expect("its pixels");
+        let color = |&index: &u8| {
+            Rgb::new(
+                palette[usize::from(index) * 3],
+                palette[usize::from(index) * 3 + 1],
+                palette[usize::from(index) * 3 + 2],
+            )
+        };
+        pixels.iter().map(color).collect()
+    };
+    let look = ["--scale", "333x222", "--palette", "copper", "--frames", "9"];
+    for (of_film, of_row) in [
+        (vec![], vec!["--turn", "360"]),
+        (vec!["--turn", "-40", "--at", "0.7"], vec!["--turn", "-40", "--at", "0.7"]),
+        (vec!["--fps", "12"], vec!["--turn", "360"]),
+    ] {
+        succeed(&directory, &[&["render", "torus", "-o", "x%d.png"], &look[..], &of_row[..]].concat());
+        let (_, film) = film(&directory, &[&["torus", "-o", "x.gif"], &look[..], &of_film[..]].concat());
+        assert_eq!(film.images.len(), 9);
+        for (i, image) in film.images.iter().enumerate() {
+            assert!(image.shown == colors(&format!("x{i}.png")), "frame {i} of {of_film:?}");
+        }
+    }
+}
+
+#[test]
+fn a_film_is_the_same_whatever_the_number_of_threads() {
+    let directory = directory();
+    let films = ["1", "2", "7"].map(|threads| {
+        let words = ["torus", "-o", "x.gif", "--frames", "61", "--scale", "1", "--threads", threads];
+        let (_, film) = film(&directory, &words);
+        assert_eq!(film.images.len(), 61);
+        read(&directory, "x.gif")
+    });
+    assert!(films.iter().all(|film| *film == films[0]));
+}
+
+#[test]
+fn a_film_has_its_figures_and_records() {
+    let directory = directory();
+    let words = ["render", "cube", "-o", "x.gif", "--frames", "3", "--stats", "--record", "r%d.txt"];
+    let output = run(&directory, &words);
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(String::from_utf8(output.stderr).expect("text").lines().count(), 3);
+    assert_eq!(names_in(directory.path()), ["r0.txt", "r1.txt", "r2.txt", "x.gif"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn f4_an_interrupted_film_leaves_nothing_behind() {
+    let mut tried = Tried::new("f4_an_interrupted_film_leaves_nothing_behind", 6);
+    for (before, signal) in [(None, "-INT"), (Some("what stood there"), "-TERM")] {
+        let directory = directory();
+        if let Some(before) = before {
+            fs::write(directory.path().join("x.gif"), before).expect("written");
+        }
+        let names = names_in(directory.path());
+        let mut child = program(&directory)
+            .args(["render", "torus", "-o", "x.gif", "--frames", "1000000", "--record", "r%d.txt"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("started");
+        // Until some of it is there, beside its name.
+        let is_begun = |name: &str| {
+            let length = fs::metadata(directory.path().join(name)).map_or(0, |metadata| metadata.len());
+            name.starts_with('.') && length > 100_000
+        };
+        while !names_in(directory.path()).iter().any(|name| is_begun(name)) {
+            assert!(child.try_wait().expect("waited").is_none(), "ended by itself");
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("started");
+        assert!(killed.success());
+        let output = child.wait_with_output().expect("waited");
+        assert_fails(&output, 130, "interrupted");
+        tried.add(1);
+        let mut left = names_in(directory.path());
+        // Of the records each is whole.
+        left.retain(|name| !(name.starts_with('r') && name.ends_with(".txt")));
+        assert_eq!(left, names);
+        tried.add(1);
+        assert_eq!(fs::read_to_string(directory.path().join("x.gif")).ok().as_deref(), before);
+        tried.add(1);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn f4_a_film_that_no_longer_fits_leaves_the_old_one_whole() {
+    let mut tried = Tried::new("f4_a_film_that_no_longer_fits_leaves_the_old_one_whole", 3);
+    let directory = directory();
+    fs::write(directory.path().join("x.gif"), "what stood there").expect("written");
+    // Files may grow to 200 blocks of 512 or 1,024 bytes, which the first frames fit in and the film does not.
+    let output = Command::new("sh")
+        .args(["-c", r#"ulimit -f 200; trap "" XFSZ; exec "$0" render torus -o x.gif"#, env!("CARGO_BIN_EXE_mode13h")])
+        .current_dir(&directory)
+        .output()
+        .expect("started");
+    assert_fails(&output, 1, "x.gif: ");
+    tried.add(1);
+    assert_eq!(read(&directory, "x.gif"), b"what stood there");
+    tried.add(1);
+    assert_eq!(names_in(directory.path()), ["x.gif"]);
+    tried.add(1);
+}
+
 #[test]
 fn with_no_display_one_frame_is_saved() {
     let directory = directory();
@@ -384,6 +567,44 @@ fn palettes_are_looked_at() {
 }
 
 #[test]
+fn palettes_are_made_for_models() {
+    let directory = directory();
+    let data = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name).display().to_string();
+    let house = data("house.obj");
+    succeed(&directory, &["palette", "--from", &house, "-o", "house.gpl"]);
+    succeed(&directory, &["palette", "--from", &house, "--up", "z", "-o", "lying.gpl"]);
+    succeed(&directory, &["palette", "--from", "torus", "-o", "chart.png"]);
+    let [upright, lying] = ["house.gpl", "lying.gpl"].map(|name| {
+        let palette = file::parse_named(name, &read(&directory, name)).expect("a palette");
+        assert_eq!((palette.color(0), palette.color(255)), (Rgb::BLACK, Rgb::WHITE));
+        palette
+    });
+    assert_ne!(upright.colors(), lying.colors(), "other sides are seen");
+
+    let output = run(&directory, &["palette", "--from", &house]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.starts_with("house: no ramps"), "{text}");
+    let surfaces: Vec<&str> =
+        text.lines().skip(33).map(|line| line.split(", entries").next().expect("a line")).collect();
+    assert_eq!(surfaces, ["grass: a ramp", "bricks: colours of textures", "tiles: a ramp"]);
+
+    // A texture that cannot be read is a warning; the surface has a ramp then.
+    let output = run(&directory, &["palette", "--from", &data("chest.obj")]);
+    assert!(output.status.success(), "{output:?}");
+    let warnings = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(warnings.lines().count(), 1, "{warnings}");
+    assert!(warnings.contains("chest planks.ppm: no PNG that can be read: "), "{warnings}");
+    assert!(String::from_utf8(output.stdout).expect("text").contains("wood: a ramp, entries 1 to "));
+
+    assert_fails(&run(&directory, &["palette"]), 2, "<FILE|NAME>");
+    assert_fails(&run(&directory, &["palette", "grey", "--from", "torus"]), 2, "--from");
+    assert_fails(&run(&directory, &["palette", "grey", "--up", "z"]), 2, "--up");
+    assert_fails(&run(&directory, &["palette", "--from", "none.obj"]), 1, "none.obj: No such file");
+    assert_fails(&run(&directory, &["palette", "--from", "torus", "-o", "x.txt"]), 2, "x.txt: ");
+}
+
+#[test]
 fn help_and_version_succeed() {
     let directory = directory();
     for words in [vec!["--help"], vec!["-h"], vec!["--version"], vec!["help", "render"], vec!["palette", "--help"]] {
@@ -415,4 +636,127 @@ fn names_need_not_be_text() {
     let missing = OsStr::from_bytes(b"line\nend\x1B[2J\xFF.obj");
     let output = run(&directory, &[OsStr::new("render"), missing, OsStr::new("-o"), OsStr::new("x.png")]);
     assert_fails(&output, 1, "line end [2J");
+}
+
+#[test]
+fn f3_broken_scenes_are_one_line_and_status_1() {
+    let mut tried = Tried::new("f3_broken_scenes_are_one_line_and_status_1", 12);
+    let directory = directory();
+    let put = |name: &str, text: &[u8]| fs::write(directory.path().join(name), text).expect("written");
+    put("key.toml", b"[[objects]]\nshape = 'cube'\nmaterial = { shyness = 3 }\n");
+    put("type.toml", b"objects = [{ shape = 'cube', scale = 'large' }]\n");
+    put("missing.toml", b"[[objects]]\nshape = 'wall'\nmaterial.texture = 'none.png'\n");
+    put("model.toml", b"[[objects]]\nmodel = 'nan.obj'\n");
+    put("nan.obj", b"v 0 0 0\nv 1 NaN 0\nv 0 1 0\nf 1 2 3\n");
+    put("no.toml", b"name = 'nothing'\n");
+    put("syntax.toml", b"name = \n");
+    put("binary.toml", b"\x89PNG\r\n\x1a\n\0");
+    put("control.toml", b"objects = [{ shape = \"\x5cu001b[2J\" }]\n");
+    fs::create_dir(directory.path().join("directory.toml")).expect("made");
+    let before = names_in(directory.path());
+    for (input, says) in [
+        ("key.toml", "key.toml:3:14: key `objects[0].material.shyness`: unknown key; known are ambient, "),
+        (
+            "type.toml",
+            "type.toml:1:38: key `objects[0].scale`: expected a number above 0, or three in a list, found string",
+        ),
+        ("missing.toml", "missing.toml:3:20: key `objects[0].material.texture`: none.png: No such file"),
+        ("model.toml", "model.toml:2:9: key `objects[0].model`: nan.obj:2: `NaN`"),
+        ("no.toml", "no.toml: no object: a scene needs at least one"),
+        ("syntax.toml", "syntax.toml:1:8: not TOML: "),
+        ("binary.toml", "binary.toml:1:1: not text in UTF-8"),
+        ("control.toml", "control.toml:1:22: key `objects[0].shape`: "),
+        ("directory.toml", "directory.toml: is a directory"),
+        ("none.toml", "none.toml: No such file"),
+    ] {
+        assert_fails(&run(&directory, &["render", input, "-o", "x.png"]), 1, says);
+        tried.add(1);
+    }
+    assert_fails(&run(&directory, &["key.toml"]), 1, "key.toml:3:14: ");
+    tried.add(1);
+    assert_eq!(names_in(directory.path()), before);
+    tried.add(1);
+}
+
+#[test]
+fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
+    let directory = directory();
+    let output = run(&directory, &["scenes"]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    let list = String::from_utf8(output.stdout).expect("text");
+    assert_eq!(list.lines().count(), shipped::ALL.len());
+    for (line, scene) in list.lines().zip(&shipped::ALL) {
+        let (name, shows) = line.split_once(' ').expect("two columns");
+        assert_eq!((name, shows.trim_start()), (scene.name, scene.shows()));
+    }
+    succeed(&directory, &["scenes", "--copy", "fog"]);
+    succeed(&directory, &["scenes", "--copy", "fog", "-o", "other.toml"]);
+    assert_eq!(names_in(directory.path()), ["fog.toml", "other.toml"]);
+    let text = shipped::by_name("fog").expect("a scene").text;
+    assert!(read(&directory, "fog.toml") == text.as_bytes() && read(&directory, "other.toml") == text.as_bytes());
+    fs::write(directory.path().join("fog.toml"), "what stood there").expect("written");
+    assert_fails(&run(&directory, &["scenes", "--copy", "fog"]), 1, "fog.toml: is there already");
+    assert_eq!(read(&directory, "fog.toml"), b"what stood there");
+    assert_fails(&run(&directory, &["scenes", "--copy", "frog"]), 1, "frog: no such scene; there are torus, cube, ");
+    assert_fails(&run(&directory, &["scenes", "--copy", "fog", "-o", "none/x.toml"]), 1, "none does not exist");
+    // A copy is the scene.
+    succeed(&directory, &["render", "other.toml", "-o", "copy.png", "--at", "1"]);
+    succeed(&directory, &["render", "fog", "-o", "fog.png", "--at", "1"]);
+    assert!(read(&directory, "copy.png") == read(&directory, "fog.png"));
+}
+
+#[test]
+fn every_shipped_scene_is_drawn_and_a_scene_comes_before_a_shape() {
+    let directory = directory();
+    for scene in &shipped::ALL {
+        succeed(&directory, &["render", scene.name, "-o", "x.png", "--at", "1.5"]);
+        assert_eq!(png_header(&read(&directory, "x.png")).0, (320, 200), "{}", scene.name);
+    }
+    // The teapot of the scene has its palette, not that of a shape.
+    succeed(&directory, &["render", "teapot", "-o", "x.png"]);
+    let png = read(&directory, "x.png");
+    let reader = png::Decoder::new(Cursor::new(&png)).read_info().expect("a PNG");
+    let Rgb { r, g, b } = builtin::COPPER.on_dac().color(200);
+    assert_eq!(reader.info().palette.as_deref().map(|palette| palette[3 * 200..3 * 201].to_vec()), Some(vec![r, g, b]));
+}
+
+/// What is asked for on the command line has the last word over what the scene asks for.
+#[test]
+fn words_have_the_last_word_over_a_scene() {
+    let directory = directory();
+    let stats = |words: &[&str]| {
+        let output = run(&directory, &[&["render"], words, &["-o", "x.png", "--stats"]].concat());
+        assert!(output.status.success(), "{words:?}: {output:?}");
+        (String::from_utf8(output.stderr).expect("text"), read(&directory, "x.png"))
+    };
+    let (said, own) = stats(&["phong"]);
+    assert!(said.contains(": phong, float vertices,"), "{said}");
+    let (said, _) = stats(&["phong", "--rung", "flat", "--hidden", "scan-line", "--vertex-path", "integer"]);
+    assert!(said.contains(": flat, integer vertices,") && said.contains(" scan-line: "), "{said}");
+    let (_, grey) = stats(&["phong", "--palette", "grey"]);
+    assert!(grey != own);
+    let (_, perspective) = stats(&["crate", "--at", "0.3"]);
+    for mapping in ["affine", "every-16"] {
+        assert!(stats(&["crate", "--at", "0.3", "--mapping", mapping]).1 != perspective, "{mapping}");
+    }
+    assert!(stats(&["crate", "--at", "0.3", "--mapping", "perspective"]).1 == perspective);
+}
+
+/// A scene has a time; `--turn` takes one that moves further in its round, and leads the camera round another.
+#[test]
+fn scenes_are_drawn_at_their_time() {
+    let directory = directory();
+    let picture = |words: &[&str]| {
+        succeed(&directory, &[&["render"], words, &["-o", "x.png"]].concat());
+        read(&directory, "x.png")
+    };
+    assert!(picture(&["rgb", "--at", "1"]) == picture(&["rgb", "--turn", "90"]));
+    assert!(picture(&["rgb", "--at", "1"]) == picture(&["rgb", "--at", "5"]));
+    assert!(picture(&["rgb", "--at", "1"]) != picture(&["rgb"]));
+    assert!(picture(&["still", "--at", "1"]) == picture(&["still"]));
+    assert!(picture(&["still", "--turn", "90"]) != picture(&["still"]));
+    // The scene lasts three seconds, not four.
+    assert!(picture(&["flash", "--turn", "120"]) == picture(&["flash", "--at", "1"]));
+    let (line, _) = film(&directory, &["flash", "-o", "x.gif", "--fps", "10", "--scale", "1"]);
+    assert!(line.contains(" 30 frames ") && line.contains(", 3.00 s, "), "{line}");
 }

@@ -74,9 +74,9 @@ fn turned(mesh: Mesh, degrees: f64) -> Scene {
 
 #[test]
 fn every_shape_on_every_rung_is_the_oracles_frame() {
-    let mut tried = Tried::new("every_shape_on_every_rung_is_the_oracles_frame", 7 * 4);
+    let mut tried = Tried::new("every_shape_on_every_rung_is_the_oracles_frame", 7 * 5);
     for name in shapes::NAMES {
-        for rung in Rung::ALL {
+        for rung in Rung::ALL.into_iter().filter(|rung| !rung.lights_pixels()) {
             let pixels = check(&turned(shapes::by_name(name).expect("listed"), 33.0), rung);
             assert!(pixels > 5000, "{name} is in the picture: {pixels} pixels");
             tried.add(1);

@@ -2,7 +2,7 @@
 //! targets check; the same with each file cut short, repeated and damaged.
 //!
 //! The fuzzers themselves are run by `.ci/fuzz_long`.
-#![cfg(all(feature = "obj", feature = "png", feature = "image"))]
+#![cfg(all(feature = "obj", feature = "png", feature = "image", feature = "scene-files"))]
 
 #[path = "fuzz_corpus/counted.rs"]
 mod counted;

@@ -247,6 +247,23 @@ fn every_hard_case_has_tests_that_report() {
     );
 }
 
+/// The long run's table in the README is that of the tests there are.
+#[test]
+fn every_long_test_is_in_the_readme() {
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let readme = fs::read_to_string(readme).expect("README.md");
+    let table = readme.split("<!-- tried -->").nth(1).and_then(|rest| rest.split("<!-- /tried -->").next());
+    let table = table.expect("a table between two marks");
+    let mut functions = Vec::new();
+    read_sources("tests", &mut functions);
+    let long = functions.iter().filter(|function| function.is_test && function.name.split('_').nth(1) == Some("long"));
+    let mut names: Vec<_> = long.map(|function| function.name.as_str()).collect();
+    names.sort_unstable();
+    let mut listed: Vec<_> = table.split('`').skip(1).step_by(2).collect();
+    listed.sort_unstable();
+    assert_eq!(listed, names, "run the long tests, then .ci/tried_table README.md");
+}
+
 // The checks can fail.
 
 /// A list and a file in order.

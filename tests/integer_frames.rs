@@ -163,8 +163,9 @@ fn both_paths_draw_the_same_picture() {
 
 #[test]
 fn every_rung_and_odd_scene_is_drawn_and_counted_alike() {
-    let mut tried = Tried::new("every_rung_and_odd_scene_is_drawn_and_counted_alike", 3 * 4);
-    for rung in Rung::ALL {
+    let mut tried = Tried::new("every_rung_and_odd_scene_is_drawn_and_counted_alike", 4 * 4);
+    // The others are not known to the 16.16 path.
+    for rung in [Rung::Flat, Rung::Gouraud88, Rung::Gouraud88Reseeded, Rung::GouraudHyperbolic] {
         // A size and place of its own, the pivot aside, the mesh laid back; three materials.
         for (scale, place) in [(1.0_f32, 0.0_f32), (1e-5, 1e-6), (3.7e8, -2e9), (0.001, 5.0)] {
             let mut scene = Scene::new();

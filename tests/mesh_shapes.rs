@@ -64,7 +64,9 @@ fn n6_normals_are_unit() {
     let mut tried = Tried::new("n6_normals_are_unit", 5_664);
     for (name, mesh) in all() {
         for &normal in mesh.normals() {
-            assert!((length(normal) - 1.0).abs() < 1.0 / f64::from(1 << 23), "{name}: {normal}");
+            let off = (length(normal) - 1.0).abs();
+            tried.worst("off from length 1", off);
+            assert!(off < 1.0 / f64::from(1 << 23), "{name}: {normal}");
             tried.add(1);
         }
     }
@@ -225,4 +227,65 @@ fn teapot_has_no_cracks() {
         assert_eq!(open as u32, 4 * n + 4 * n + 2 * (2 * n) + 2 * (2 * n));
         assert!(edges.values().all(|&count| count == 1));
     }
+}
+
+#[test]
+fn textures_lie_upright_and_the_right_way_round() {
+    for (name, mesh) in all() {
+        let Some(texcoords) = mesh.texcoords() else {
+            assert!(!matches!(name, "cube" | "wall"), "{name}");
+            continue;
+        };
+        for triangle in mesh.triangles() {
+            let [a, b, c] = triangle.map(|i| mesh.positions()[i as usize]);
+            let [ta, tb, tc] = triangle.map(|i| texcoords[i as usize]);
+            // Counter-clockwise on the picture as on the face: no mirror writing.
+            assert!((tb - ta).perp_dot(tc - ta) > 0.0, "{name}: {triangle:?}");
+            let normal = face_normal(a, b, c).expect("it has an area");
+            for (i, p) in [(0, a), (1, b), (2, c)] {
+                let t = [ta, tb, tc][i];
+                assert!(t.min_element() >= 0.0 && t.max_element() <= 1.0, "{name}: {t}");
+                // On upright faces v runs up.
+                if normal.y == 0.0 {
+                    let (low, high) = (mesh.bounds().min.y, mesh.bounds().max.y);
+                    assert!(((p.y - low) / (high - low) - t.y).abs() < 1e-6, "{name}: {p} {t}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn stretched_meshes_keep_their_normals_upright_on_their_faces() {
+    for (name, mesh) in all() {
+        for factors in [Vec3::ONE, Vec3::new(2.0, 0.25, 8.0), Vec3::new(1.0, 3.3, 0.1)] {
+            let stretched = mesh.stretched(factors).expect("legal factors");
+            assert_eq!(stretched.triangles(), mesh.triangles());
+            assert_eq!(stretched.texcoords(), mesh.texcoords());
+            assert_eq!(stretched.is_closed(), mesh.is_closed());
+            // By powers of two nothing is rounded.
+            if factors.y != 3.3 {
+                assert_eq!(stretched.is_convex(), mesh.is_convex(), "{name}");
+            }
+            for (i, (&p, &normal)) in stretched.positions().iter().zip(stretched.normals()).enumerate() {
+                assert_eq!(p, mesh.positions()[i] * factors);
+                // A plane n·p = c is n/f · f·p = c: the direction is n/f. Here in f64, there with components rounded
+                // to 2⁻²⁵ at most, before and after they are made unit.
+                let wide = |v: Vec3| v.to_array().map(f64::from);
+                let (given, factors) = (wide(mesh.normals()[i]), wide(factors));
+                let expected = [0, 1, 2].map(|i| given[i] / factors[i]);
+                let size = expected.iter().map(|c| c * c).sum::<f64>().sqrt();
+                let off =
+                    [0, 1, 2].map(|i| (wide(normal)[i] - expected[i] / size).abs()).into_iter().fold(0.0, f64::max);
+                assert!(off < 1.0 / f64::from(1 << 22), "{name}: {normal}, off by {off}");
+            }
+        }
+    }
+    let cube = shapes::cube();
+    assert_eq!(cube.stretched(Vec3::ONE), Ok(cube.clone()));
+    for factors in [Vec3::ZERO, Vec3::NEG_ONE, Vec3::NAN, Vec3::INFINITY, Vec3::new(1.0, 0.0, 1.0)] {
+        assert!(cube.stretched(factors).is_err(), "{factors}");
+    }
+    let great = cube.stretched(Vec3::splat(1e38)).expect("it fits");
+    assert!(great.stretched(Vec3::splat(1e38)).is_err(), "beyond f32");
 }

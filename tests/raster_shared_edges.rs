@@ -19,7 +19,7 @@ struct Parted {
 }
 
 /// Counts how often each pixel is drawn, and compares with the outline.
-fn check(parted: &Parted) {
+fn check(parted: &Parted, tried: &mut Tried) {
     let mut counts = vec![0_u32; (WIDTH * HEIGHT) as usize];
     let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
     for corners in &parted.triangles {
@@ -31,13 +31,23 @@ fn check(parted: &Parted) {
         });
     }
     let outline: Vec<Point> = parted.outline.iter().map(|&(x, y)| (i128::from(x), i128::from(y))).collect();
+    let (mut holes, mut doubles, mut outside, mut first) = (0_u32, 0_u32, 0_u32, None);
     for y in 0..HEIGHT {
         for x in 0..WIDTH {
             let inside = oracle::polygon_covers(&outline, oracle::centre(x, y));
             let times = counts[(y * WIDTH + x) as usize];
-            assert_eq!(times, u32::from(inside), "pixel ({x}, {y}), triangles {:?}", parted.triangles);
+            if times != u32::from(inside) {
+                first.get_or_insert((x, y));
+                holes += u32::from(inside && times == 0);
+                doubles += u32::from(times > 1);
+                outside += u32::from(!inside);
+            }
         }
     }
+    tried.worst("holes", f64::from(holes));
+    tried.worst("double pixels", f64::from(doubles));
+    tried.worst("pixels outside", f64::from(outside));
+    assert_eq!(first, None, "a pixel that is not as it should be, triangles {:?}", parted.triangles);
 }
 
 fn place(random: &mut Random) -> (i64, i64) {
@@ -159,7 +169,7 @@ fn shared_edges(mut tried: Tried, at_least: u64) {
         let kind = random.within(0, 3) as usize;
         let made = [fan, strip, grid, split][kind](&mut random);
         let Some(parted) = made else { continue };
-        check(&parted);
+        check(&parted, &mut tried);
         kinds[kind] += parted.triangles.len() as u64;
     }
     tried.add(kinds.iter().sum());

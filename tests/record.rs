@@ -192,11 +192,15 @@ fn f5_any_text_is_refused_or_read() {
 /// renderer gives, and the oracle too.
 #[test]
 fn d4_recorded_frames_replay() {
-    let mut tried = Tried::new("d4_recorded_frames_replay", 28);
+    let mut tried = Tried::new("d4_recorded_frames_replay", 35);
     for name in shapes::NAMES {
         for rung in Rung::ALL {
             let mut renderer = Renderer::new();
             renderer.set_rung(rung);
+            if rung.lights_pixels() {
+                assert!(Record::of_scene(&mut renderer, &scene(name), Screen::MODE_13H).is_err());
+                continue;
+            }
             let record = Record::of_scene(&mut renderer, &scene(name), Screen::MODE_13H).expect("legal");
             let mut vga = mode13h::vga::Vga::new();
             let stats = renderer.draw(&scene(name), &mut vga).expect("legal");
@@ -266,7 +270,7 @@ mod program {
         assert!(run(directory.path(), &format!("{row} x%04d.rec")).status.success());
         for number in 0..3 {
             let record = Record::load(directory.path().join(format!("x{number:04}.rec"))).expect("a record");
-            assert!(record.triangles.len() >= 4);
+            assert!(record.triangles.len() >= 2, "a front face at least");
         }
         assert!(run(directory.path(), "render cube -o x.png --turn 30 --record alone.rec").status.success());
         let read = |name: &str| std::fs::read(directory.path().join(name)).expect(name);

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::ffi::OsString;
 use std::fmt;
-use std::fs::{self, File};
+use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -44,8 +44,11 @@ pub enum ExportErrorKind {
     /// The disk, or the user's share of it, is full.
     DiskFull,
     /// The picture itself cannot be written.
-    #[cfg(any(feature = "png", feature = "image"))]
+    #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
     Picture(super::PictureError),
+    /// A film without a frame.
+    #[cfg(feature = "gif")]
+    NoFrames,
     /// Any other failure that the system reports.
     Io(io::Error),
 }
@@ -62,7 +65,7 @@ impl ExportErrorKind {
     }
 
     /// From writing into an open file. That something does not exist is then no word about the directory.
-    fn from_writing(error: io::Error) -> ExportErrorKind {
+    pub(super) fn from_writing(error: io::Error) -> ExportErrorKind {
         match error.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ExportErrorKind::DiskFull,
             _ => ExportErrorKind::Io(error),
@@ -80,8 +83,10 @@ impl fmt::Display for ExportError {
             ExportErrorKind::IsDirectory => f.write_str("is a directory"),
             ExportErrorKind::NotPermitted => f.write_str("no right to write there"),
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),
-            #[cfg(any(feature = "png", feature = "image"))]
+            #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
             ExportErrorKind::Picture(error) => write!(f, "{error}"),
+            #[cfg(feature = "gif")]
+            ExportErrorKind::NoFrames => f.write_str("a film without a frame"),
             ExportErrorKind::Io(error) => write!(f, "{error}"),
         }
     }
@@ -90,7 +95,7 @@ impl fmt::Display for ExportError {
 impl Error for ExportError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match &self.kind {
-            #[cfg(any(feature = "png", feature = "image"))]
+            #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
             ExportErrorKind::Picture(error) => Some(error),
             ExportErrorKind::Io(error) => Some(error),
             _ => None,
@@ -123,41 +128,92 @@ pub fn write_atomically(
     path: impl AsRef<Path>,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), ExportError> {
-    let path = path.as_ref();
-    let fail = |error: io::Error| ExportError::new(path, ExportErrorKind::from_opening(error));
-    let fail_to_write = |error: io::Error| ExportError::new(path, ExportErrorKind::from_writing(error));
+    let mut file = AtomicFile::create(path.as_ref())?;
+    match write(&mut file) {
+        Ok(()) => file.commit(),
+        Err(error) => Err(file.failed(error)),
+    }
+}
 
-    // A link is followed, so that the file behind it is replaced and not the link. One that leads nowhere yet is
-    // replaced itself.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    let before = fs::metadata(&target).ok();
-    if let Some(before) = &before {
-        if before.is_dir() {
+/// A file in the making, as [`write_atomically`] has it: there under its name once it is committed, and removed if it is
+/// dropped before.
+pub(super) struct AtomicFile {
+    /// As the caller named it, for errors.
+    path: PathBuf,
+    /// Where it is to stand.
+    target: PathBuf,
+    out: BufWriter<File>,
+    /// Nothing for a device or a pipe.
+    temporary: Option<Temporary>,
+    /// Those of the file that is replaced.
+    permissions: Option<Permissions>,
+}
+
+impl AtomicFile {
+    pub(super) fn create(path: &Path) -> Result<AtomicFile, ExportError> {
+        let fail = |error: io::Error| ExportError::new(path, ExportErrorKind::from_opening(error));
+        let begun = |target: &Path, file, temporary, permissions| AtomicFile {
+            path: path.to_path_buf(),
+            target: target.to_path_buf(),
+            out: BufWriter::new(file),
+            temporary,
+            permissions,
+        };
+
+        // A link is followed, so that the file behind it is replaced and not the link. One that leads nowhere yet is
+        // replaced itself.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let before = fs::metadata(&target).ok();
+        if let Some(before) = &before {
+            if before.is_dir() {
+                return Err(ExportError::new(path, ExportErrorKind::IsDirectory));
+            }
+            if !before.is_file() {
+                let device = File::options().write(true).open(&target).map_err(fail)?;
+                return Ok(begun(&target, device, None, None));
+            }
+            if before.permissions().readonly() {
+                return Err(ExportError::new(path, ExportErrorKind::NotPermitted));
+            }
+        }
+        let named_as_directory = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
+        if named_as_directory || target.file_name().is_none() {
             return Err(ExportError::new(path, ExportErrorKind::IsDirectory));
         }
-        if !before.is_file() {
-            let mut device = BufWriter::new(File::options().write(true).open(&target).map_err(fail)?);
-            return write(&mut device).and_then(|()| device.flush()).map_err(fail_to_write);
-        }
-        if before.permissions().readonly() {
-            return Err(ExportError::new(path, ExportErrorKind::NotPermitted));
-        }
-    }
-    let named_as_directory = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
-    if named_as_directory || target.file_name().is_none() {
-        return Err(ExportError::new(path, ExportErrorKind::IsDirectory));
+
+        let (temporary, file) = Temporary::create(directory_of(&target)).map_err(fail)?;
+        Ok(begun(&target, file, Some(temporary), before.map(|before| before.permissions())))
     }
 
-    let (temporary, file) = Temporary::create(directory_of(&target)).map_err(fail)?;
-    let mut out = BufWriter::new(file);
-    write(&mut out).map_err(fail_to_write)?;
-    let file = out.into_inner().map_err(|error| fail_to_write(error.into_error()))?;
-    if let Some(before) = before {
-        file.set_permissions(before.permissions()).map_err(fail)?;
+    /// Flushes the file to the disk and gives it its name.
+    pub(super) fn commit(self) -> Result<(), ExportError> {
+        let AtomicFile { path, target, out, temporary, permissions } = self;
+        let fail = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_opening(error));
+        let fail_to_write = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_writing(error));
+        let file = out.into_inner().map_err(|error| fail_to_write(error.into_error()))?;
+        let Some(temporary) = temporary else { return Ok(()) };
+        if let Some(permissions) = permissions {
+            file.set_permissions(permissions).map_err(fail)?;
+        }
+        file.sync_all().map_err(fail_to_write)?;
+        drop(file);
+        temporary.rename(&target).map_err(fail)
     }
-    file.sync_all().map_err(fail_to_write)?;
-    drop(file);
-    temporary.rename(&target).map_err(fail)
+
+    /// What to report of an error that writing into it gave.
+    fn failed(&self, error: io::Error) -> ExportError {
+        ExportError::new(&self.path, ExportErrorKind::from_writing(error))
+    }
+}
+
+impl Write for AtomicFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
 }
 
 /// The directory that a file of this name stands in.

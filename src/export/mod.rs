@@ -1,24 +1,36 @@
-//! Pictures on disk: the frame as an indexed PNG, true colour, and files that are never half-written.
+//! Pictures on disk: the frame as an indexed PNG, true colour, films, and files that are never half-written.
 //!
 //! Every file goes through [`write_atomically`]: it is written beside its name and then renamed, so that whatever
 //! stood under the name before is whole until the new file is.
 
 mod atomic;
+#[cfg(feature = "gif")]
+mod frame_rate;
+#[cfg(feature = "gif")]
+mod gif;
+#[cfg(feature = "gif")]
+mod gif_file;
 #[cfg(feature = "png")]
 mod indexed;
-#[cfg(any(feature = "png", feature = "image"))]
+#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
 mod picture;
 #[cfg(feature = "image")]
 mod rgb;
-#[cfg(any(feature = "png", feature = "image"))]
+#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
 mod scale;
 
+#[cfg(feature = "gif")]
+pub use self::gif::{Film, GifError, GifWriter};
 pub use atomic::{ExportError, ExportErrorKind, write_atomically};
+#[cfg(feature = "gif")]
+pub use frame_rate::{FrameRate, FrameRateError};
+#[cfg(feature = "gif")]
+pub use gif_file::GifFile;
 #[cfg(feature = "png")]
 pub use indexed::{encode_png, picture_png, png};
-#[cfg(any(feature = "png", feature = "image"))]
+#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
 pub use picture::{Picture, PictureError, PixelShape};
 #[cfg(feature = "image")]
 pub use rgb::{encode_rgb_png, picture_rgb_png, rgb_png};
-#[cfg(any(feature = "png", feature = "image"))]
+#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
 pub use scale::{MAX_SIDE, Scale, ScaleError};

@@ -84,6 +84,13 @@ pub enum PictureError {
         /// The pitch that was given.
         pitch: usize,
     },
+    /// A frame of a film that has not the size of the film's first.
+    OtherSize {
+        /// Pixels in a row, and rows, of the first frame.
+        first: (usize, usize),
+        /// Of this one.
+        now: (usize, usize),
+    },
     /// The picture does not fit in memory.
     Memory {
         /// The bytes that were asked for.
@@ -99,6 +106,9 @@ impl fmt::Display for PictureError {
             }
             PictureError::Bytes { bytes, pitch } => {
                 write!(f, "{bytes} bytes do not hold the picture's rows at a pitch of {pitch}")
+            }
+            PictureError::OtherSize { first, now } => {
+                write!(f, "a frame of {} x {} pixels in a film that began with {} x {}", now.0, now.1, first.0, first.1)
             }
             PictureError::Memory { bytes } => write!(f, "no memory for a picture of {bytes} bytes"),
         }

@@ -2,9 +2,13 @@
 
 use std::error::Error;
 use std::fmt;
+#[cfg(feature = "gif")]
+use std::ops::Range;
 use std::str::FromStr;
 
-use super::{Picture, PixelShape};
+use super::Picture;
+#[cfg(any(feature = "png", feature = "image"))]
+use super::PixelShape;
 
 /// The longest side of an exported picture, in pixels.
 pub const MAX_SIDE: u16 = 16_384;
@@ -97,6 +101,8 @@ pub(super) struct Scaled<'a> {
     pub(super) height: u32,
     /// The frame's column of each column of the result.
     columns: Vec<usize>,
+    /// The frame's row of each row of the result.
+    rows: Vec<usize>,
 }
 
 impl<'a> Scaled<'a> {
@@ -108,23 +114,44 @@ impl<'a> Scaled<'a> {
         match (u32::try_from(width), u32::try_from(height)) {
             (Ok(w), Ok(h)) if limit.contains(&w) && limit.contains(&h) => {
                 let columns = (0..width).map(|x| source(x, width, picture.width)).collect();
-                Ok(Scaled { picture: *picture, width: w, height: h, columns })
+                let rows = (0..height).map(|y| source(y, height, picture.height)).collect();
+                Ok(Scaled { picture: *picture, width: w, height: h, columns, rows })
             }
             _ => Err(too_large),
         }
     }
 
     /// The palette indices of each row of the result, from the top.
+    #[cfg(any(feature = "png", feature = "image"))]
     pub(super) fn rows(&self) -> impl Iterator<Item = Vec<u8>> + '_ {
-        let height = self.height as usize;
-        (0..height).map(move |y| {
-            let row = self.picture.row(source(y, height, self.picture.height));
+        self.rows.iter().map(|&y| {
+            let row = self.picture.row(y);
             self.columns.iter().map(|&x| row[x]).collect()
         })
     }
 
+    /// The palette indices of a part of the result, row by row. The part lies within the result.
+    #[cfg(feature = "gif")]
+    pub(super) fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<u8>, super::PictureError> {
+        let bytes = columns.len() * rows.len();
+        let mut part = Vec::new();
+        part.try_reserve_exact(bytes).map_err(|_| super::PictureError::Memory { bytes })?;
+        for &y in &self.rows[rows] {
+            let row = self.picture.row(y);
+            part.extend(self.columns[columns.clone()].iter().map(|&x| row[x]));
+        }
+        Ok(part)
+    }
+
+    /// The picture itself, and which of its columns and rows the columns and rows of the result are.
+    #[cfg(feature = "gif")]
+    pub(super) fn sources(&self) -> (&Picture<'a>, &[usize], &[usize]) {
+        (&self.picture, &self.columns, &self.rows)
+    }
+
     /// Pixels per unit of length, across and down, in lowest terms: what `pHYs` says. The picture keeps its shape
     /// whatever its size, so that 320 × 200 pixels of 5:6 are 6 across to 5 down, and 1600 × 1200 are square.
+    #[cfg(any(feature = "png", feature = "image"))]
     pub(super) fn density(&self) -> (u32, u32) {
         let PixelShape { width: across, height: down } = self.picture.shape;
         let x = u64::from(self.width) * u64::from(down) * self.picture.height as u64;
@@ -146,6 +173,7 @@ fn source(at: usize, to: usize, from: usize) -> usize {
     (2 * at + 1) * from / (2 * to)
 }
 
+#[cfg(any(feature = "png", feature = "image"))]
 fn greatest_common_divisor(mut a: u64, mut b: u64) -> u64 {
     while b != 0 {
         (a, b) = (b, a % b);

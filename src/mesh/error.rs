@@ -40,6 +40,8 @@ pub enum MeshError {
         /// Which.
         triangle: usize,
     },
+    /// A factor to stretch by that is not finite or not above 0.
+    Factors,
     /// Two lists that belong together are of different lengths.
     Count {
         /// Of the list that was given.
@@ -64,6 +66,7 @@ impl fmt::Display for MeshError {
             }
             Self::IndexOutOfRange { triangle } => write!(f, "triangle {triangle} names a vertex that there is not"),
             Self::SurfaceOutOfRange { triangle } => write!(f, "triangle {triangle} names a surface that there is not"),
+            Self::Factors => write!(f, "factors must be finite and above 0"),
             Self::Count { what, given, needed } => write!(f, "{given} {what}, but {needed} are needed"),
         }
     }

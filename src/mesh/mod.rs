@@ -16,6 +16,7 @@ pub mod obj;
 mod orientation;
 pub mod shapes;
 mod split;
+mod stretch;
 mod surface;
 mod topology;
 mod wide;
@@ -189,6 +190,11 @@ impl Mesh {
     #[must_use]
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces
+    }
+
+    /// For each vertex the number of its point: vertices in one place have the same.
+    pub(crate) fn points(&self) -> Vec<u32> {
+        topology::weld(&self.positions)
     }
 
     /// The box and the sphere around all vertices that a triangle uses.

@@ -53,7 +53,7 @@ pub fn face_normal(p1: Vec3, p2: Vec3, p3: Vec3) -> Option<Vec3> {
 }
 
 /// Any finite vector but zero, made unit; `None` for others.
-pub(super) fn unit(v: Vec3) -> Option<Vec3> {
+pub(crate) fn unit(v: Vec3) -> Option<Vec3> {
     let wide = widen(v);
     let length = length(wide);
     (length > 0.0 && length.is_finite()).then(|| narrow(scale(wide, 1.0 / length)))

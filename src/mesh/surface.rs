@@ -2,6 +2,8 @@
 
 use alloc::string::String;
 
+use crate::palette::Rgb;
+
 /// What a face is made of, in the terms of an MTL file. The default is white and matt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
@@ -20,5 +22,33 @@ pub struct Surface {
 impl Default for Surface {
     fn default() -> Self {
         Self { name: String::new(), diffuse: [1.0; 3], specular: [0.0; 3], shininess: 0.0, texture: None }
+    }
+}
+
+impl Surface {
+    /// Its colour in full light: `Kd`, each channel to the nearest of 0 to 255. What is below 0 or NaN
+    /// counts as 0, what is above 1 as 1.
+    #[must_use]
+    pub fn color(&self) -> Rgb {
+        Rgb::from_intensities(self.diffuse)
+    }
+
+    /// The colour in the middle of a highlight: `Kd` and `Ks` together, each channel at most 255. `None`
+    /// for a matt surface: if `Ks` is black, or if `Ns`, the exponent, is not above 0, with which a
+    /// highlight would be everywhere.
+    ///
+    /// ```
+    /// use mode13h::mesh::Surface;
+    /// use mode13h::palette::Rgb;
+    /// let brass = Surface { diffuse: [0.6, 0.4, 0.2], specular: [0.5; 3], shininess: 20.0, ..Surface::default() };
+    /// assert_eq!(brass.color(), Rgb::new(153, 102, 51));
+    /// assert_eq!(brass.highlight(), Some(Rgb::new(255, 230, 179)));
+    /// assert_eq!(Surface::default().highlight(), None);
+    /// ```
+    #[must_use]
+    pub fn highlight(&self) -> Option<Rgb> {
+        let specular = Rgb::from_intensities(self.specular);
+        let is_shiny = specular != Rgb::BLACK && self.shininess > 0.0;
+        is_shiny.then(|| self.color().saturating_add(specular))
     }
 }

@@ -44,7 +44,8 @@ pub const fn fill(colors: &mut [Rgb; 256], ramp: Ramp, keys: &[Key]) {
     }
 }
 
-const fn color_at(i: u16, entries: u16, keys: &[Key]) -> Option<Rgb> {
+/// The colour of entry `i` of `entries`, which are at most 1,025 (the products of [`between`]).
+pub(super) const fn color_at(i: u16, entries: u16, keys: &[Key]) -> Option<Rgb> {
     if keys.is_empty() {
         return None;
     }
@@ -75,8 +76,8 @@ const fn color_at(i: u16, entries: u16, keys: &[Key]) -> Option<Rgb> {
     ))
 }
 
-/// `a + (b − a)·along/length`, to the nearest, halves upward. `length` is at most 255·255, so that
-/// all products stay below 2²⁶; the result lies between `a` and `b`.
+/// `a + (b − a)·along/length`, to the nearest, halves upward. `length` is at most 255·1,024, so that
+/// all products stay below 2²⁸; the result lies between `a` and `b`.
 const fn between(a: u8, b: u8, along: i32, length: i32) -> u8 {
     let twice = 2 * (a as i32 * length + (b as i32 - a as i32) * along) + length;
     (twice / (2 * length)) as u8

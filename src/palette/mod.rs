@@ -9,23 +9,42 @@
 //! | [`cube`] | the 6 × 6 × 6 colour cube with greys, and its nearest entry without a search |
 //! | [`BIOS`] | the colours that mode 13h starts with |
 //! | [`builtin`] | the palettes that are compiled in, by name |
+//! | [`Search`], [`Nearest`] | the nearest entry of any palette: exactly, and by a table of 5 bits a channel (`alloc`) |
+//! | [`Table`] | 64 KiB from two bytes to a third: shaded texels, fog, glass (`alloc`) |
+//! | [`auto`] | a palette made for the materials of a model (`alloc`) |
 //! | [`mod@file`] | JASC, GIMP, Adobe, Lospec and raw VGA files |
 //!
 //! A palette has 8 bits a channel, the card 6. A palette keeps the 8 bits it was given, so that a
 //! file is written as it was read; [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down
 //! to 6, and the scan-out expands to 8 again. [`Palette::on_dac`] shows what comes out.
 
+#[cfg(feature = "alloc")]
+pub mod auto;
 mod bios;
 pub mod builtin;
 pub mod cube;
 pub mod file;
 pub mod gradient;
+#[cfg(feature = "alloc")]
+pub(crate) mod median_cut;
+#[cfg(feature = "alloc")]
+mod nearest;
 mod ramp;
 mod rgb;
+#[cfg(feature = "alloc")]
+mod search;
+#[cfg(feature = "alloc")]
+mod table;
 
 pub use bios::BIOS;
+#[cfg(feature = "alloc")]
+pub use nearest::Nearest;
 pub use ramp::Ramp;
 pub use rgb::{Rgb, expand, reduce};
+#[cfg(feature = "alloc")]
+pub use search::Search;
+#[cfg(feature = "alloc")]
+pub use table::Table;
 
 /// 256 colours, and into how many equal shade ramps they fall.
 ///

@@ -30,6 +30,13 @@ impl Ramp {
         Some(Self { first, entries })
     }
 
+    /// The ramp of one entry: whatever the shade, that.
+    #[must_use]
+    #[inline]
+    pub const fn single(entry: u8) -> Self {
+        Self { first: entry, entries: 1 }
+    }
+
     /// The darkest entry's palette index.
     #[must_use]
     #[inline]

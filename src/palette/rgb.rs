@@ -27,6 +27,18 @@ pub const fn reduce(eight: u8) -> u8 {
     eight >> 2
 }
 
+/// The 6 bits whose [`expand`] is nearest. `expand` is at most a half from `255·six/63`, so that is
+/// the nearest of `63·v/255`; `p1_every_colour_has_a_nearest_one_on_the_dac` tries all values.
+const fn nearest_six(v: u8) -> u8 {
+    // At most 63.
+    ((v as u16 * 63 + 127) / 255) as u8
+}
+
+/// Between `a` and `b`, so it fits in 8 bits; the sums stay below 2¹⁷.
+const fn mix(a: u8, b: u8, share: u8) -> u8 {
+    ((a as u32 * (255 - share as u32) + b as u32 * share as u32 + 127) / 255) as u8
+}
+
 impl Rgb {
     /// 0, 0, 0.
     pub const BLACK: Self = Self::new(0, 0, 0);
@@ -38,6 +50,15 @@ impl Rgb {
     #[inline]
     pub const fn new(r: u8, g: u8, b: u8) -> Self {
         Self { r, g, b }
+    }
+
+    /// From intensities, as a rule 0 to 1: each channel to the nearest of 0 to 255. What is below 0 or NaN counts as
+    /// 0, what is above 1 as 1.
+    #[must_use]
+    pub const fn from_intensities(intensities: [f32; 3]) -> Self {
+        let [r, g, b] = intensities;
+        // `as` keeps the whole part, stays within 0 to 255, and gives 0 for NaN.
+        Self::new((r * 255.0 + 0.5) as u8, (g * 255.0 + 0.5) as u8, (b * 255.0 + 0.5) as u8)
     }
 
     /// From the DAC's red, green and blue, 0 to 63 each; higher bits are dropped.
@@ -64,6 +85,47 @@ impl Rgb {
     #[inline]
     pub const fn on_dac(self) -> Self {
         Self::from_dac(self.to_dac())
+    }
+
+    /// The colour nearest to this one that the card can show. [`on_dac`](Self::on_dac) is what it
+    /// shows when it is given this one, which may be a step darker.
+    ///
+    /// ```
+    /// use mode13h::palette::Rgb;
+    /// let color = Rgb::new(3, 254, 100);
+    /// assert_eq!(color.nearest_on_dac(), Rgb::new(4, 255, 101));
+    /// assert_eq!(color.on_dac(), Rgb::new(0, 255, 101));
+    /// ```
+    #[must_use]
+    pub const fn nearest_on_dac(self) -> Self {
+        Self::from_dac([nearest_six(self.r), nearest_six(self.g), nearest_six(self.b)])
+    }
+
+    /// What lies on the way to `other`: 0 is this colour, 255 the other. Each channel is
+    /// `(a·(255 − share) + b·share) / 255`, to the nearest; a sum of 255ths is never half way.
+    ///
+    /// ```
+    /// use mode13h::palette::Rgb;
+    /// assert_eq!(Rgb::new(0, 100, 255).mix(Rgb::new(255, 0, 255), 51), Rgb::new(51, 80, 255));
+    /// ```
+    #[must_use]
+    #[inline]
+    pub const fn mix(self, other: Self, share: u8) -> Self {
+        Self::new(mix(self.r, other.r, share), mix(self.g, other.g, share), mix(self.b, other.b, share))
+    }
+
+    /// This colour in a light, or on a surface, of the other: `a·b/255` a channel, to the nearest.
+    #[must_use]
+    #[inline]
+    pub const fn modulate(self, other: Self) -> Self {
+        Self::new(mix(0, self.r, other.r), mix(0, self.g, other.g), mix(0, self.b, other.b))
+    }
+
+    /// The sum of two colours, each channel at most 255.
+    #[must_use]
+    #[inline]
+    pub const fn saturating_add(self, other: Self) -> Self {
+        Self::new(self.r.saturating_add(other.r), self.g.saturating_add(other.g), self.b.saturating_add(other.b))
     }
 
     /// From `0x00RRGGBB`; the top byte is dropped.

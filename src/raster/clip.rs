@@ -90,16 +90,23 @@ pub struct Clipped {
 }
 
 impl Clipped {
-    /// The triangles of the fan from this corner.
-    fn fan(&self, apex: usize) -> impl Iterator<Item = [Vertex; 3]> {
-        let corner = move |i: usize| self.vertices[(apex + i) % self.count];
+    /// The triangles of the fan from this corner: which corners each has.
+    fn fan(&self, apex: usize) -> impl Iterator<Item = [usize; 3]> {
+        let corner = move |i: usize| (apex + i) % self.count;
         (2..self.count).map(move |i| [corner(0), corner(i - 1), corner(i)])
+    }
+
+    /// The triangle of these corners.
+    #[must_use]
+    pub fn triangle(&self, corners: [usize; 3]) -> [Vertex; 3] {
+        // Below the number of corners, which is no greater than that of places.
+        corners.map(|i| self.vertices[i % MOST_CORNERS])
     }
 
     /// Twice the area, as [`doubled_area`] has it of a triangle.
     #[must_use]
     pub fn doubled_area(&self) -> i64 {
-        self.fan(0).map(|part| doubled_area(&part)).sum()
+        self.fan(0).map(|part| doubled_area(&self.triangle(part))).sum()
     }
 
     /// The polygon in triangles that turn the same way as the whole.
@@ -109,8 +116,13 @@ impl Clipped {
     /// fan from the dent does not. Triangles that still turn the other way, of polygons that are
     /// hardly more than a line, are left out.
     pub fn parts(&self) -> impl Iterator<Item = [Vertex; 3]> {
+        self.part_corners().map(|corners| self.triangle(corners))
+    }
+
+    /// The same by the places of their corners.
+    pub fn part_corners(&self) -> impl Iterator<Item = [usize; 3]> {
         let sign = self.doubled_area().signum();
-        let turns = move |part: &[Vertex; 3]| doubled_area(part).signum() * sign;
+        let turns = move |part: &[usize; 3]| doubled_area(&self.triangle(*part)).signum() * sign;
         let whole = |apex: &usize| self.fan(*apex).all(|part| turns(&part) >= 0);
         let apex = (0..self.count).find(whole).unwrap_or(0);
         self.fan(apex).filter(move |part| turns(part) > 0)

@@ -18,17 +18,17 @@ use super::cover::Ordered;
 
 /// A function that is linear over the screen, at pixel centres.
 #[derive(Clone, Copy, Debug)]
-struct Linear {
+pub(super) struct Linear {
     origin: i128,
     per_column: i128,
     per_row: i128,
 }
 
 impl Linear {
-    fn new(triangle: &Ordered, values: [i64; 3]) -> Self {
+    /// Of a triangle that is not degenerate, with these values at its vertices; each below 2⁶⁴.
+    pub(super) fn new(triangle: &Ordered, [v0, v1, v2]: [i128; 3]) -> Self {
         let [(x0, y0), (x1, y1), (x2, y2)] =
             triangle.vertices.each_ref().map(|v| (i128::from(v.x().to_bits()), i128::from(v.y().to_bits())));
-        let [v0, v1, v2] = values.map(i128::from);
         let sign = i128::from(triangle.doubled_area.signum());
         let gx = ((v1 - v0) * (y2 - y0) - (v2 - v0) * (y1 - y0)) * sign;
         let gy = ((v2 - v0) * (x1 - x0) - (v1 - v0) * (x2 - x0)) * sign;
@@ -39,8 +39,16 @@ impl Linear {
         }
     }
 
-    fn at(&self, x: i32, y: i32) -> i128 {
+    /// The value times the triangle's doubled area at the centre of pixel (`x`, `y`).
+    pub(super) fn at(&self, x: i32, y: i32) -> i128 {
         self.origin + self.per_column * i128::from(x) + self.per_row * i128::from(y)
+    }
+}
+
+impl Linear {
+    /// What it changes by from one pixel to the next.
+    pub(super) fn per_column(&self) -> i128 {
+        self.per_column
     }
 }
 
@@ -55,10 +63,15 @@ impl HyperbolicPlane {
     /// The shades of a triangle that is not degenerate. A depth of 0 counts as 1.
     #[must_use]
     pub fn new(triangle: &Ordered) -> Self {
-        let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1)));
-        let shades = triangle.vertices.each_ref().map(|v| i64::from(v.shade().to_bits()));
+        let depths = triangle.vertices.each_ref().map(|v| i128::from(v.depth().max(1)));
+        let shades = triangle.vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
         let weighted = [0, 1, 2].map(|i| depths[i] * shades[i]);
         Self { numerator: Linear::new(triangle, weighted), denominator: Linear::new(triangle, depths) }
+    }
+
+    /// Numerator and denominator of the exact shade at pixel (`x`, `y`), in 1/256.
+    pub(super) fn shade(&self, x: i32, y: i32) -> (i128, i128) {
+        (self.numerator.at(x, y), self.denominator.at(x, y))
     }
 
     /// Numerator and denominator of the byte at pixel (`x`, `y`), whose centre lies in the triangle.

@@ -18,6 +18,7 @@
 //! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
 //! | [`edge`], [`cover`] | which pixels |
 //! | [`shade`], [`hyperbolic`], [`depth`] | which byte, and whether it is in front |
+//! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
 //! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
 //! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
@@ -41,6 +42,8 @@ pub mod depth;
 #[cfg(feature = "embedded-graphics")]
 mod draw_target;
 pub mod edge;
+#[cfg(feature = "alloc")]
+pub mod effects;
 pub mod frame;
 pub mod hyperbolic;
 mod paint;

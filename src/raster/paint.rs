@@ -111,6 +111,8 @@ impl<D: Cell> Tested<'_, D> {
         let depths = self.depths.get_mut(range.clone());
         if let (Some(pixels), Some(depths)) = (self.pixels.get_mut(range), depths) {
             self.drawn.spans += 1;
+            // At most 4,096.
+            self.drawn.tested += pixels.len() as u32;
             self.drawn.pixels += fill(pixels, depths, z, self.plane.step());
         }
     }

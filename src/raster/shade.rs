@@ -61,7 +61,14 @@ impl ShadePlane {
     #[must_use]
     #[inline]
     pub fn new(triangle: &Ordered) -> Self {
-        let shades = triangle.vertices.each_ref().map(|v| i64::from(v.shade().to_bits()));
+        Self::of_values(triangle, triangle.vertices.each_ref().map(|v| i64::from(v.shade().to_bits())))
+    }
+
+    /// The plane of any three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate,
+    /// in the order of its vertices.
+    #[must_use]
+    #[inline]
+    pub fn of_values(triangle: &Ordered, shades: [i64; 3]) -> Self {
         // At most 2³⁸ both.
         let (gx, gy) = triangle.gradient(shades);
         let first = &triangle.vertices[0];

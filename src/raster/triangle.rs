@@ -1,6 +1,6 @@
 //! A triangle, from three vertices to bytes.
 
-use super::cover::Ordered;
+use super::cover::{Ordered, Row};
 use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::frame::{Frame, Rect};
 use super::paint::Paint;
@@ -33,14 +33,36 @@ pub struct Drawn {
     pub covered: u32,
     /// Pixels written: those covered, less those behind what the depth buffer holds.
     pub pixels: u32,
+    /// Pixels whose depth was compared with the depth buffer's.
+    pub tested: u32,
+    /// Pixels that got a texel.
+    pub textured: u32,
+    /// Pixels that got a threshold of the dither pattern.
+    pub dithered: u32,
+    /// Pixels looked up in a fog table.
+    pub fogged: u32,
+    /// Pixels looked up in a table with what was behind them.
+    pub blended: u32,
+    /// Pixels mixed from three channels.
+    pub mixed: u32,
+    /// Pixels that were lit each for itself.
+    pub lit: u32,
 }
 
 impl core::ops::AddAssign for Drawn {
     /// Counts wrap at 2³²; a frame of 4,096 × 4,096 would have to be filled 256 times over.
     fn add_assign(&mut self, other: Self) {
-        self.spans = self.spans.wrapping_add(other.spans);
-        self.covered = self.covered.wrapping_add(other.covered);
-        self.pixels = self.pixels.wrapping_add(other.pixels);
+        let add = |count: &mut u32, more: u32| *count = count.wrapping_add(more);
+        add(&mut self.spans, other.spans);
+        add(&mut self.covered, other.covered);
+        add(&mut self.pixels, other.pixels);
+        add(&mut self.tested, other.tested);
+        add(&mut self.textured, other.textured);
+        add(&mut self.dithered, other.dithered);
+        add(&mut self.fogged, other.fogged);
+        add(&mut self.blended, other.blended);
+        add(&mut self.mixed, other.mixed);
+        add(&mut self.lit, other.lit);
     }
 }
 
@@ -108,22 +130,38 @@ impl<'a, D: Cell> Raster<'a, D> {
     /// without area draws nothing.
     #[inline]
     pub fn triangle(&mut self, vertices: &[Vertex; 3], shading: Shading) -> Drawn {
+        self.draw::<true>(vertices, shading)
+    }
+
+    /// The same for a triangle that lies wholly inside the frame, all of which is drawn: its rows are not
+    /// compared with any edge. What lies outside all the same is not drawn, or some of it.
+    #[inline]
+    pub fn triangle_inside(&mut self, vertices: &[Vertex; 3], shading: Shading) -> Drawn {
+        self.draw::<false>(vertices, shading)
+    }
+
+    #[inline]
+    fn draw<const CLIPS: bool>(&mut self, vertices: &[Vertex; 3], shading: Shading) -> Drawn {
         let triangle = Ordered::new(vertices);
         let mut drawn = Drawn::default();
         // Made when the first row is there: half of the triangles of a fine model cover no pixel.
         let (mut paint, mut plane) = (None, None);
-        triangle.rows(self.frame.width(), self.clip, |row| {
+        let (width, clip) = (self.frame.width(), self.clip);
+        let draw = |row: Row| {
             drawn.covered += (row.x1 - row.x0) as u32;
             let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };
             let paint = paint.get_or_insert_with(|| Paint::new(&triangle, shading));
-            let Some(depth) = &mut self.depth else {
+            // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
+            let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+            let Some(depth) = depth else {
                 return paint.row(&row, pixels, self.kernel, &mut drawn);
             };
             let Some(depths) = depth.row_mut(y) else { return };
             let plane = plane.get_or_insert_with(|| DepthPlane::new(&triangle));
             paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
-        });
+        };
+        if CLIPS { triangle.rows(width, clip, draw) } else { triangle.rows_inside(draw) }
         drawn
     }
 }

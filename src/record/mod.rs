@@ -41,6 +41,7 @@ pub use error::{RecordError, RecordErrorKind};
 use crate::export::{ExportError, write_atomically};
 use crate::palette::Palette;
 use crate::raster::{Frame, FrameError, Rect, Shading, Vertex};
+use crate::plan::Effect;
 use crate::render::{HiddenSurfaces, RenderError, Renderer, Screen};
 use crate::scene::Scene;
 
@@ -102,12 +103,28 @@ impl Record {
     /// The frame that `renderer` makes of `scene`.
     ///
     /// # Errors
-    /// As [`Renderer::draw`]. A screen whose sides are no frame's counts as the camera's error.
+    /// As [`Renderer::draw`]. A record holds positions, shades and depths: a scene whose pixels pass through
+    /// more (textures, fog, light at every pixel) is refused, by the first object that calls for it. A screen whose sides are no frame's counts as the camera's error.
     pub fn of_scene(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Result<Self, RenderError> {
         let mut record = Self::new(screen.width, screen.height)
             .map_err(|_| RenderError::Camera("the frame's sides must be 1 to 4,096"))?;
         let stats = renderer
             .for_each_triangle(scene, screen, |vertices, shading| record.triangles.push((*vertices, shading)))?;
+        let effects = [
+            Effect::Fog,
+            Effect::Phong,
+            Effect::RgbChannels,
+            Effect::Texture,
+            Effect::EnvironmentMap,
+            Effect::Transparency,
+            Effect::Dither,
+        ];
+        for effect in effects {
+            if let Some(index) = renderer.plan().objects().iter().position(|plan| plan.is_on(effect)) {
+                let what = "a record holds no textures, fog, channels, dither, transparency or light at every pixel";
+                return Err(RenderError::Object { index, what });
+            }
+        }
         record.background = scene.background;
         record.hidden_surfaces = stats.hidden_surfaces;
         record.palette.clone_from(&scene.palette);

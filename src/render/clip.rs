@@ -5,24 +5,77 @@
 //! out what lies beyond them exactly. [`raster::clip`](crate::raster::clip) goes through the
 //! planes in an order that leaves no crack.
 
-use super::view::{Homogeneous, ObjectView};
 use crate::fixed::U8F8;
 use crate::raster::Vertex;
 use crate::raster::clip::{Clipped, clip as clip_triangle};
+use crate::raster::effects::Attributes;
+use crate::view::{Homogeneous, ObjectView};
+
+/// The values that a corner carries beside its shade.
+pub(super) trait Carried: Copy {
+    /// The value at `on_face` of the way from `self` to `other` along the edge in space, which is
+    /// `on_screen` of the way on the screen.
+    fn between(&self, other: &Self, on_face: f64, on_screen: f64) -> Self;
+}
+
+/// Nothing.
+impl Carried for () {
+    fn between(&self, (): &Self, _: f64, _: f64) -> Self {}
+}
+
+/// What effects need, and whether the image's coordinates are linear on the screen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WithEffects {
+    pub(super) attributes: Attributes,
+    pub(super) affine: bool,
+}
+
+impl Carried for WithEffects {
+    fn between(&self, other: &Self, on_face: f64, on_screen: f64) -> Self {
+        let (a, b) = (&self.attributes, &other.attributes);
+        let shade = |from: U8F8, to: U8F8| {
+            let (from, to) = (f64::from(from.to_bits()), f64::from(to.to_bits()));
+            let (low, high) = (from.min(to), from.max(to));
+            // At most 0xFF00: between two values that are. The cast truncates after the half.
+            U8F8::from_bits(((from + (to - from) * on_screen).max(low).min(high) + 0.5) as u16)
+        };
+        let coordinate = |from: i32, to: i32| {
+            let part = if self.affine { on_screen } else { on_face };
+            let (from, to) = (f64::from(from), f64::from(to));
+            let (low, high) = (from.min(to), from.max(to));
+            // Between two i32.
+            libm::floor((from + (to - from) * part).max(low).min(high) + 0.5) as i32
+        };
+        Self {
+            attributes: Attributes {
+                texture: core::array::from_fn(|i| coordinate(a.texture[i], b.texture[i])),
+                fog: shade(a.fog, b.fog),
+                channels: core::array::from_fn(|i| shade(a.channels[i], b.channels[i])),
+                slope: core::array::from_fn(|i| shade(a.slope[i], b.slope[i])),
+                lit: core::array::from_fn(|i| {
+                    let (from, to) = (f64::from(a.lit[i]), f64::from(b.lit[i]));
+                    (from + (to - from) * on_face) as f32
+                }),
+            },
+            affine: self.affine,
+        }
+    }
+}
 
 /// A corner of the polygon that is being clipped.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
+pub(super) struct Corner<C> {
     pub(super) at: Homogeneous,
     /// In 1/256 shade, 0 to 0xFF00.
     pub(super) shade: f64,
     /// The projected vertex, of a corner of the mesh that needs no clipping. It is kept as it is,
     /// because a neighbour that needs none either draws with it.
     pub(super) vertex: Option<Vertex>,
+    pub(super) carried: C,
 }
 
 /// The distance of a corner from a plane, 0 or more inside.
-fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> f64 {
+fn distance<C>(view: &ObjectView, plane: usize, corner: &Corner<C>) -> f64 {
     let Homogeneous { x, y, w } = corner.at;
     let (cx, cy) = view.centre();
     let limit = ObjectView::LIMIT;
@@ -43,7 +96,14 @@ fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> f64 {
 /// as w is, no digit is lost however far apart they are. The coordinate that the plane fixes is not
 /// interpolated at all. With ends at opposite sides, 10³⁸ away, that would leave nothing of it, and
 /// the next plane would throw the point away, and the face with it.
-fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_inside: f64, d_outside: f64) -> Corner {
+fn cut<C: Carried>(
+    view: &ObjectView,
+    plane: usize,
+    inside: &Corner<C>,
+    outside: &Corner<C>,
+    d_inside: f64,
+    d_outside: f64,
+) -> Corner<C> {
     let whole = d_inside - d_outside;
     let between = |a: f64, b: f64| (b * d_inside - a * d_outside) / whole;
     let (a, b) = (inside.at, outside.at);
@@ -68,19 +128,29 @@ fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_ins
     let shade = inside.shade + (outside.shade - inside.shade) * on_screen;
     // Rounding in `shade` must not leave the range of the two ends.
     let (low, high) = (inside.shade.min(outside.shade), inside.shade.max(outside.shade));
-    Corner { at: Homogeneous { x, y, w }, shade: shade.max(low).min(high), vertex: None }
+    Corner {
+        at: Homogeneous { x, y, w },
+        shade: shade.max(low).min(high),
+        vertex: None,
+        carried: inside.carried.between(&outside.carried, t, on_screen),
+    }
 }
 
-/// Clips a triangle. Returns `None` if nothing is left.
-pub(super) fn clip(view: &ObjectView, corners: [Corner; 3]) -> Option<Clipped> {
+/// Clips a triangle. Returns `None` if nothing is left, else the polygon and what its corners carry.
+pub(super) fn clip<C: Carried>(
+    view: &ObjectView,
+    corners: [Corner<C>; 3],
+) -> Option<(Clipped, impl Fn(usize) -> C)> {
     let left = clip_triangle(
         corners,
         |plane, corner| distance(view, plane, corner),
         |plane, inside, outside, d_inside, d_outside| cut(view, plane, inside, outside, d_inside, d_outside),
     )?;
-    left.project(|corner| {
+    let polygon = left.project(|corner| {
         // At most 0xFF00: between two shades that are. The cast truncates after the half.
         let shade = U8F8::from_bits((corner.shade + 0.5) as u16);
         corner.vertex.or_else(|| view.divide(corner.at, shade))
-    })
+    })?;
+    // Asked for corners of the polygon alone.
+    Some((polygon, move |place: usize| left.as_slice().get(place).unwrap_or(&corners[0]).carried))
 }

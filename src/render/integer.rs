@@ -113,9 +113,11 @@ fn binary_angle(radians: f64) -> Angle {
 
 fn sun(light: &Light) -> Option<Sun> {
     match *light {
-        Light::Sun { direction: towards, intensity } => {
-            Some(Sun { direction: direction(towards.to_array().map(f64::from)), intensity: fixed(intensity.into())? })
-        }
+        Light::Sun { direction: towards, .. } => Some(Sun {
+            direction: direction(towards.to_array().map(f64::from)),
+            intensity: fixed(light.brightness().into())?,
+        }),
+        Light::Lamp { .. } => None,
     }
 }
 
@@ -152,7 +154,9 @@ impl IntegerPath {
     /// Converts a scene whose numbers are finite. What passes here can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();
-        for (index, light) in scene.lights().iter().enumerate() {
+        // Lamps are left out: the plan says so.
+        let suns = scene.lights().iter().enumerate().filter(|(_, light)| matches!(light, Light::Sun { .. }));
+        for (index, light) in suns {
             let what = "its intensity is beyond ±32,767, or it is one of more than 4,096: too much for 16.16";
             let sun = sun(light).filter(|_| index < Sun::MOST).ok_or(RenderError::Light { index, what })?;
             self.suns.push(sun);
@@ -248,6 +252,7 @@ impl IntegerPath {
             Rung::Gouraud88 => Technique::Gouraud,
             Rung::Gouraud88Reseeded => Technique::GouraudReseeded,
             Rung::GouraudHyperbolic => Technique::GouraudHyperbolic,
+            _ => Technique::GouraudReseeded,
         };
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };

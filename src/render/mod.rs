@@ -2,45 +2,59 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `view` | camera and object to one matrix; projection; the one rounding |
-//! | `stage` | an object's vertices, lit and projected, then its faces |
-//! | `clip` | near plane and guard band |
+//! | `object` | what is kept of an object: its vertices, and what they were made from |
+//! | `vertex` | the stages of vertices: projected, lit, given what effects need |
+//! | `tessellate` | faces split along their edges |
+//! | `face` | the stage of faces, with `clip`: near plane and guard band |
+//! | `bound` | how far linear shades may be from light at every pixel |
+//! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
-//! | `rung` | the techniques of shading |
-//! | `hidden`, `painter` | the ways to leave out hidden surfaces |
 //! | `stats` | what a frame came to |
+//! | `automatic` | a palette for a model, from what is seen of it over a turn |
 //!
-//! A frame goes through three stages for every object: its vertices are transformed, lit and
-//! rounded, each once; its faces pick theirs, are clipped where they must be and left out where
-//! they are turned away; the [`raster`](crate::raster) draws what is left.
+//! The [`plan`](crate::plan) says which stages an object goes through: its vertices are transformed,
+//! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
+//! be and left out where they are turned away; the [`raster`](crate::raster) draws what is left.
 
+mod automatic;
+mod bound;
 mod clip;
-mod hidden;
+mod face;
 mod integer;
-mod painter;
-mod rung;
-mod stage;
+mod look;
+mod object;
+mod paint;
+mod pixel_light;
 mod stats;
+mod tables;
+mod tessellate;
+mod vertex;
 mod vertex_path;
-mod view;
 
+use alloc::format;
 use alloc::vec::Vec;
 use core::fmt;
+use core::mem;
 
+use self::face::Sink;
 use self::integer::IntegerPath;
-use self::stage::{LitVertex, Paint, Stage};
-use self::view::{ObjectView, View};
-use crate::light::Beam;
+use self::look::Looks;
+use self::object::ObjectState;
+use self::tables::Tables;
+use crate::palette::{BIOS, Palette};
+use crate::plan::{self, Effect, Forced, Inputs, Plan, Since, decide, sort_by_depth};
+use crate::raster::effects::Attributes;
 use crate::raster::scan_line::Lists;
 use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
-use crate::scene::Scene;
+use crate::scene::{Scene, Wishes};
+pub use crate::scene::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung};
 use crate::span::Kernel;
 use crate::vga::Vga;
-pub use hidden::{HiddenSurfaces, UnknownHiddenSurfaces};
-pub use rung::{Rung, UnknownRung};
+pub use automatic::{Seen, automatic, seen};
+pub use crate::view::Screen;
+use crate::view::{ObjectView, View};
 pub use stats::Stats;
 pub use vertex_path::{UnknownVertexPath, VertexPath};
-pub use view::Screen;
 
 /// Why a scene could not be drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -64,6 +78,12 @@ pub enum RenderError {
     },
     /// The scene's ambient light is not finite.
     Ambient,
+    /// The fog.
+    Fog(&'static str),
+    /// The palette's animation.
+    PaletteAnimation(&'static str),
+    /// What is asked for.
+    Wishes(&'static str),
 }
 
 impl fmt::Display for RenderError {
@@ -73,30 +93,76 @@ impl fmt::Display for RenderError {
             Self::Object { index, what } => write!(f, "object {index}: {what}"),
             Self::Light { index, what } => write!(f, "light {index}: {what}"),
             Self::Ambient => f.write_str("the ambient light must be finite"),
+            Self::Fog(what) => write!(f, "fog: {what}"),
+            Self::PaletteAnimation(what) => write!(f, "palette animation: {what}"),
+            Self::Wishes(what) => write!(f, "wishes: {what}"),
         }
     }
 }
 
 impl core::error::Error for RenderError {}
 
-/// Draws scenes. It keeps nothing of a frame but the memory that the next one will need too.
+/// A face with effects that is drawn when all are known.
+#[derive(Clone, Copy, Debug)]
+struct Kept {
+    vertices: [Vertex; 3],
+    attributes: [Attributes; 3],
+    object: usize,
+    surface: u16,
+}
+
+impl Kept {
+    fn depth(&self) -> u64 {
+        depth_of(&self.vertices)
+    }
+}
+
+/// The sum of a face's depths.
+fn depth_of(vertices: &[Vertex; 3]) -> u64 {
+    vertices.iter().map(|v| u64::from(v.depth())).sum()
+}
+
+/// What the frame that was drawn last depends on, beside its objects.
+#[derive(Clone, PartialEq, Debug)]
+struct Drawing {
+    screen: Screen,
+    background: u8,
+    hidden_surfaces: HiddenSurfaces,
+    mapping: Option<Mapping>,
+    wishes: Wishes,
+    order: Vec<usize>,
+    /// As tables are made from it, and ramps lie in it.
+    palette: Option<Palette>,
+}
+
+/// Draws scenes. It keeps the memory that the next frame will need too, and the vertices of objects that
+/// do not change; the bytes are those of a new renderer.
 #[derive(Debug)]
 pub struct Renderer {
-    rung: Rung,
+    rung: Option<Rung>,
+    mapping: Option<Mapping>,
     vertex_path: VertexPath,
     kernel: Kernel,
-    forced: Option<HiddenSurfaces>,
+    hidden_surfaces: Option<HiddenSurfaces>,
+    forced: Forced,
     views: Vec<ObjectView>,
+    since: Vec<Since>,
+    states: Vec<ObjectState>,
+    tables: Tables,
+    plan: Plan,
     integer: IntegerPath,
-    /// The objects as they are drawn.
-    order: Vec<usize>,
-    beams: Vec<Beam>,
-    paints: Vec<Paint>,
-    lit: Vec<LitVertex>,
     depths: Vec<u32>,
-    /// Of a frame that must be known whole before it is drawn.
+    /// Of a frame that must be known whole before it is drawn; beside each face its place in `kept`,
+    /// if it has effects.
     triangles: Vec<([Vertex; 3], Shading)>,
+    kept_places: Vec<Option<u32>>,
+    kept: Vec<Kept>,
+    /// Faces that shine through.
+    transparent: Vec<Kept>,
     lists: Lists,
+    drawing: Option<Drawing>,
+    /// The machine's stamp after the last frame, and what it came to.
+    last: Option<(u64, Stats)>,
 }
 
 impl Renderer {
@@ -104,31 +170,43 @@ impl Renderer {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            rung: Rung::default(),
+            rung: None,
+            mapping: None,
             vertex_path: VertexPath::default(),
             kernel: Kernel::fastest(),
-            forced: None,
+            hidden_surfaces: None,
+            forced: Forced::default(),
             views: Vec::new(),
+            since: Vec::new(),
+            states: Vec::new(),
+            tables: Tables::default(),
+            plan: Plan::new(),
             integer: IntegerPath::default(),
-            order: Vec::new(),
-            beams: Vec::new(),
-            paints: Vec::new(),
-            lit: Vec::new(),
             depths: Vec::new(),
             triangles: Vec::new(),
+            kept_places: Vec::new(),
+            kept: Vec::new(),
+            transparent: Vec::new(),
             lists: Lists::default(),
+            drawing: None,
+            last: None,
         }
     }
 
-    /// Chooses the technique of shading.
+    /// Chooses the technique of shading, whatever the scene asks for.
     pub fn set_rung(&mut self, rung: Rung) {
-        self.rung = rung;
+        self.rung = Some(rung);
     }
 
-    /// The technique of shading.
+    /// The technique of shading, where it is not the scene's choice; the default's name where it is.
     #[must_use]
     pub fn rung(&self) -> Rung {
-        self.rung
+        self.rung.unwrap_or_default()
+    }
+
+    /// Chooses how textures are mapped, whatever the scene asks for; `None` leaves it to the scene.
+    pub fn set_mapping(&mut self, mapping: Option<Mapping>) {
+        self.mapping = mapping;
     }
 
     /// Chooses the way from mesh to vertices.
@@ -156,27 +234,123 @@ impl Renderer {
     /// Forces a way to leave out hidden surfaces, right or wrong; with `None`, as a new renderer has it,
     /// the cheapest that is right for the scene is taken.
     pub fn set_hidden_surfaces(&mut self, way: Option<HiddenSurfaces>) {
-        self.forced = way;
+        self.hidden_surfaces = way;
     }
 
     /// The way that is forced, if one is.
     #[must_use]
     pub fn hidden_surfaces(&self) -> Option<HiddenSurfaces> {
-        self.forced
+        self.hidden_surfaces
+    }
+
+    /// Switches an effect on or off for every object, or leaves it to the plan, as a new renderer does.
+    ///
+    /// Of effects that save work, on or off gives the same bytes; that of hidden surfaces is switched by
+    /// [`set_hidden_surfaces`](Self::set_hidden_surfaces). Where an effect that changes the picture is
+    /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
+    /// image that changes nothing).
+    pub fn force(&mut self, effect: Effect, on: Option<bool>) {
+        self.forced.set(effect, on);
+    }
+
+    /// The same for one object, by its place in the scene, whatever holds for every object; `None` takes that back.
+    /// Palette animation is on as soon as it is for one.
+    pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
+        self.forced.set_for(object, effect, on);
+    }
+
+    /// The plan that was made last: of the frame that was drawn last, or by [`make_plan`](Self::make_plan).
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The plan of the frame that was drawn last, in words: [`Plan::rows`] of `scene`, which it must have
+    /// been drawn from, and how far the picture may be off where light at every pixel or splitting is not
+    /// on. That is worked out here, face by face, and only here.
+    #[must_use]
+    pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
+        let mut rows = self.plan.rows(scene);
+        for row in &mut rows {
+            if !row.on
+                && matches!(row.effect, Effect::Phong | Effect::Tessellation)
+                && let Some(shades) = self.linear_error(scene, row.place)
+            {
+                row.why = format!("{}; linear shades are off by at most {shades:.2}", row.why);
+            }
+        }
+        rows
+    }
+
+    /// How far the shades of an object, by its place, may be from light at every pixel, in shades of 1/255
+    /// of full intensity and rounding aside: a bound, from normals, lights and vertices, for the frame
+    /// that was drawn last. `None` of an object that has one shade a face, that is not there, or on the
+    /// 16.16 path.
+    #[must_use]
+    pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
+        let plan = self.plan.objects().get(object)?;
+        if plan.is_on(Effect::Phong) || (plan.is_on(Effect::Lighting) && !plan.is_on(Effect::Gouraud)) {
+            return None;
+        }
+        let faces = self.states.get(object)?.faces(scene.objects().get(object)?, plan)?;
+        Some(bound::linear_error(&faces.geometry, &faces.lights, faces.paints, !faces.culls))
+    }
+
+    /// Makes the plan of the frame that [`draw`](Self::draw) would draw next, and draws nothing. The frames that are
+    /// drawn after it are those that would have been drawn without it.
+    ///
+    /// ```
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::plan::Effect;
+    /// use mode13h::render::{Renderer, Screen};
+    /// use mode13h::scene::Scene;
+    ///
+    /// let scene = Scene::showing(shapes::torus(48, 24));
+    /// let mut renderer = Renderer::new();
+    /// let plan = renderer.make_plan(&scene, Screen::MODE_13H)?;
+    /// assert!(plan.is_on(0, Effect::HiddenSurfaces) && !plan.is_on(0, Effect::Fog));
+    /// # Ok::<(), mode13h::render::RenderError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`draw`](Self::draw), but for what 16.16 can't hold, which shows only when it is drawn.
+    pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
+        let view = checked(scene, screen)?;
+        self.decide(scene, &view, true);
+        Ok(&self.plan)
     }
 
     /// Draws `scene` on the machine: sets its DAC to the scene's palette, if it has one, clears its
     /// pixels and draws.
     ///
+    /// Where nothing has changed since this renderer's last frame, and nobody has touched the machine's
+    /// memory, that frame is left as it is.
+    ///
     /// # Errors
     /// A number in the scene that is not finite or not in its range; on the integer path one that 16.16
     /// can't hold beside the others. The machine is then left as it was.
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {
-        let way = self.prepare(scene, Screen::MODE_13H)?;
-        if let Some(palette) = &scene.palette {
+        let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
+        let before = self.bytes();
+        let (mut stats, changed) = self.prepare(scene, Screen::MODE_13H, shown.as_ref(), true)?;
+        // Of a scene without objects nothing was decided.
+        if self.plan.is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
+            scene.load_palette(vga);
+        } else if let Some(palette) = &scene.palette {
             vga.set_palette(palette);
         }
-        Ok(self.fill(scene, way, Frame::from(vga)))
+        match self.last {
+            Some((stamp, last)) if !changed && stamp == vga.stamp() && self.may_keep() => {
+                stats.redrawn = false;
+                stats.hidden_surfaces = last.hidden_surfaces;
+                return Ok(stats);
+            }
+            _ => {}
+        }
+        self.fill(scene, &mut stats, Frame::from(&mut *vga));
+        stats.allocated = self.bytes().saturating_sub(before) as u64;
+        self.last = Some((vga.stamp(), stats));
+        Ok(stats)
     }
 
     /// Draws `scene` into any frame, or into a band of one, whose pixels have this width to height.
@@ -189,14 +363,20 @@ impl Renderer {
         frame: Frame<'_>,
         pixel_aspect: (u32, u32),
     ) -> Result<Stats, RenderError> {
-        let way = self.prepare(scene, Screen { width: frame.width(), height: frame.height(), pixel_aspect })?;
-        Ok(self.fill(scene, way, frame))
+        let screen = Screen { width: frame.width(), height: frame.height(), pixel_aspect };
+        let rows = frame.rows();
+        let before = self.bytes();
+        let (mut stats, _) = self.prepare(scene, screen, None, rows.end - rows.start == frame.height())?;
+        self.last = None;
+        self.fill(scene, &mut stats, frame);
+        stats.allocated = self.bytes().saturating_sub(before) as u64;
+        Ok(stats)
     }
 
     /// Hands every triangle that is to be drawn to `triangle`, as the raster would get it: object by
     /// object, far to near where the scene calls for that, each in the order of its faces; a forced
-    /// painter's order does not sort them here. The counts of the work are returned, without the
-    /// raster's.
+    /// painter's order does not sort them here. What effects need besides is left out. The counts of the
+    /// work are returned, without the raster's.
     ///
     /// # Errors
     /// As [`draw`](Self::draw), before the first triangle.
@@ -206,116 +386,356 @@ impl Renderer {
         screen: Screen,
         triangle: impl FnMut(&[Vertex; 3], Shading),
     ) -> Result<Stats, RenderError> {
-        let way = self.prepare(scene, screen)?;
-        Ok(self.triangles(scene, way, triangle))
+        let (mut stats, _) = self.prepare(scene, screen, None, true)?;
+        self.last = None;
+        self.faces(scene, &mut stats, &mut Bare(triangle));
+        Ok(stats)
     }
 
-    /// Checks the scene, makes the way to the screen for every object, and chooses how hidden surfaces
-    /// are left out.
-    fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<HiddenSurfaces, RenderError> {
-        if !scene.ambient.is_finite() {
-            return Err(RenderError::Ambient);
-        }
-        for (index, light) in scene.lights().iter().enumerate() {
-            light.check().map_err(|what| RenderError::Light { index, what })?;
-        }
-        for (index, object) in scene.objects().iter().enumerate() {
-            object.check().map_err(|what| RenderError::Object { index, what })?;
-        }
-        let view = View::new(&scene.camera, screen).map_err(RenderError::Camera)?;
-        self.views.clear();
-        self.views.extend(scene.objects().iter().map(|object| ObjectView::new(&view, object)));
+    /// Whether vertices are kept from frame to frame.
+    fn may_keep(&self) -> bool {
+        self.forced.get(Effect::Transform) != Some(true)
+    }
+
+    /// Checks the scene, makes the plan, and the vertices by it. Says whether anything has changed that
+    /// the picture depends on.
+    fn prepare(
+        &mut self,
+        scene: &Scene,
+        screen: Screen,
+        shown: Option<&Palette>,
+        whole: bool,
+    ) -> Result<(Stats, bool), RenderError> {
+        let view = checked(scene, screen)?;
         if self.vertex_path == VertexPath::Integer {
             self.integer.prepare(scene, screen)?;
         }
-        if let Some(forced) = self.forced {
-            self.order.clear();
-            self.order.extend(0..scene.objects().len());
-            return Ok(forced);
+        let rung = self.decide(scene, &view, whole);
+
+        let drawing = (screen, scene.background, self.plan.hidden_surfaces(), self.mapping, scene.wishes);
+        let palette = scene.palette.as_ref().or(shown);
+        let same = self.drawing.as_ref().is_some_and(|last| {
+            (last.screen, last.background, last.hidden_surfaces, last.mapping, last.wishes) == drawing
+                && last.order == self.plan.order
+                && last.palette.as_ref() == palette
+        });
+        let mut changed = !same;
+        if !same {
+            let (screen, background, hidden_surfaces, mapping, wishes) = drawing;
+            let (order, palette) = (self.plan.order.clone(), palette.cloned());
+            self.drawing = Some(Drawing { screen, background, hidden_surfaces, mapping, wishes, order, palette });
         }
-        Ok(HiddenSurfaces::called_for(scene, &self.views, &mut self.order))
-    }
 
-    fn fill(&mut self, scene: &Scene, way: HiddenSurfaces, mut frame: Frame<'_>) -> Stats {
-        frame.clear(scene.background);
-        let mut raster = Raster::new(frame).with_kernel(self.kernel);
-        match way {
-            HiddenSurfaces::BackFaces => self.one_by_one(scene, way, raster),
-            // Chosen, the objects lie far to near, and in a convex one no face hides another.
-            HiddenSurfaces::PainterOrder if self.forced.is_none() => self.one_by_one(scene, way, raster),
-            HiddenSurfaces::DepthBuffer => {
-                let mut depths = core::mem::take(&mut self.depths);
-                let stats = self.one_by_one(scene, way, raster.with_cleared_depth(&mut depths));
-                self.depths = depths;
-                stats
-            }
-            HiddenSurfaces::PainterOrder => self.all_at_once(scene, way, |triangles, _| {
-                painter::sort(triangles);
-                let mut drawn = Drawn::default();
-                for (vertices, shading) in triangles {
-                    drawn += raster.triangle(vertices, *shading);
-                }
-                drawn
-            }),
-            HiddenSurfaces::ScanLine => self.all_at_once(scene, way, |triangles, lists| {
-                let scratch = lists.scratch(triangles.len());
-                // There is room for all.
-                raster.scan_line(triangles, scratch).unwrap_or_default()
-            }),
-        }
-    }
-
-    /// Draws each triangle as it comes.
-    fn one_by_one(&mut self, scene: &Scene, way: HiddenSurfaces, mut raster: Raster<'_>) -> Stats {
-        let mut drawn = Drawn::default();
-        let mut stats = self.triangles(scene, way, |vertices, shading| drawn += raster.triangle(vertices, shading));
-        stats.raster = drawn;
-        stats
-    }
-
-    /// Draws when all triangles are known.
-    fn all_at_once(
-        &mut self,
-        scene: &Scene,
-        way: HiddenSurfaces,
-        draw: impl FnOnce(&mut [([Vertex; 3], Shading)], &mut Lists) -> Drawn,
-    ) -> Stats {
-        let mut triangles = core::mem::take(&mut self.triangles);
-        triangles.clear();
-        let mut stats = self.triangles(scene, way, |vertices, shading| triangles.push((*vertices, shading)));
-        stats.raster = draw(&mut triangles, &mut self.lists);
-        self.triangles = triangles;
-        stats
-    }
-
-    fn triangles(
-        &mut self,
-        scene: &Scene,
-        way: HiddenSurfaces,
-        mut triangle: impl FnMut(&[Vertex; 3], Shading),
-    ) -> Stats {
-        let mut stats = Stats::new(self.rung, self.vertex_path, self.kernel, way);
-        for &index in &self.order {
-            // One for each object, by `prepare`.
-            let (object, view) = (&scene.objects()[index], &self.views[index]);
+        let mut stats = Stats::new(rung, self.vertex_path, self.kernel, self.plan.hidden_surfaces());
+        for (i, (object, state)) in scene.objects().iter().zip(&mut self.states).enumerate() {
+            let plan = &self.plan.objects[i];
             if self.vertex_path == VertexPath::Integer {
-                self.integer.triangles(self.rung, (index, object), &mut stats, &mut triangle);
+                changed = true;
+                state.forget();
                 continue;
             }
-            self.beams.clear();
-            self.beams.extend(scene.lights().iter().filter_map(|light| light.beam(view)));
-            self.paints.clear();
-            self.paints.extend(object.materials.iter().map(|material| Paint::new(material, scene)));
-            let stage = Stage { rung: self.rung, object, view, beams: &self.beams, paints: &self.paints };
-            stage.vertices(&mut self.lit, &mut stats);
-            stage.faces(&self.lit, &mut stats, &mut triangle);
+            if state.vertices(scene, object, &view, plan, &mut stats) {
+                changed = true;
+            } else {
+                stats.kept += 1;
+            }
         }
-        stats
+        look::need(&mut self.tables, scene, palette.unwrap_or(&BIOS), &self.plan, &self.states);
+        Ok((stats, changed))
+    }
+
+    /// Makes the plan of a scene that has been checked. Returns the rung that shades.
+    fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Rung {
+        self.views.clear();
+        self.views.extend(scene.objects().iter().map(|object| ObjectView::new(view, object)));
+        let rung = self.rung.or(scene.wishes.rung).unwrap_or_default();
+        self.states.resize_with(scene.objects().len(), ObjectState::default);
+        self.since.clear();
+        for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {
+            self.since.push(state.renew(scene, object, view, rung));
+        }
+        let inputs = Inputs {
+            scene,
+            views: &self.views,
+            since: &self.since,
+            forced: &self.forced,
+            rung,
+            hidden_surfaces: self.hidden_surfaces.or(scene.wishes.hidden_surfaces),
+            mapping: self.mapping.or(scene.wishes.mapping),
+            whole,
+            integer: self.vertex_path == VertexPath::Integer,
+            keeps: self.may_keep() && self.vertex_path == VertexPath::Float,
+        };
+        let states = &self.states;
+        decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.plan);
+        rung
+    }
+
+    fn fill(&mut self, scene: &Scene, stats: &mut Stats, mut frame: Frame<'_>) {
+        frame.clear(scene.background);
+        let mut raster = Raster::new(frame).with_kernel(self.kernel);
+        let mut depths = mem::take(&mut self.depths);
+        match self.plan.hidden_surfaces() {
+            HiddenSurfaces::BackFaces => self.one_by_one(scene, stats, raster),
+            // Chosen, the objects lie far to near, and in a convex one no face hides another.
+            HiddenSurfaces::PainterOrder if self.plan.is_chosen() => self.one_by_one(scene, stats, raster),
+            HiddenSurfaces::DepthBuffer => self.one_by_one(scene, stats, raster.with_cleared_depth(&mut depths)),
+            HiddenSurfaces::PainterOrder => {
+                self.gather(scene, stats);
+                self.painter(scene, stats, &mut raster);
+                self.draw_transparent(scene, stats, &mut raster);
+            }
+            HiddenSurfaces::ScanLine => {
+                self.gather(scene, stats);
+                self.scan_line(scene, stats, &mut raster);
+                self.draw_transparent(scene, stats, &mut raster);
+            }
+        }
+        self.depths = depths;
+    }
+
+    /// Draws each face as it comes, then those that shine through.
+    fn one_by_one(&mut self, scene: &Scene, stats: &mut Stats, mut raster: Raster<'_>) {
+        let mut transparent = mem::take(&mut self.transparent);
+        transparent.clear();
+        let mut integer = mem::take(&mut self.integer);
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        for &object in &self.plan.order {
+            let plan = &self.plan.objects[object];
+            let mut drawn = Drawn::default();
+            if self.vertex_path == VertexPath::Integer {
+                let mut plain = Bare(|vertices: &[Vertex; 3], shading| drawn += raster.triangle(vertices, shading));
+                integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain.0);
+            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], plan) {
+                if plan.is_on(Effect::ScreenClipping) {
+                    let mut sink =
+                        Direct::<true> { raster: &mut raster, drawn: &mut drawn, looks: &looks, object, transparent: &mut transparent };
+                    faces.draw(stats, &mut sink);
+                } else {
+                    let mut sink =
+                        Direct::<false> { raster: &mut raster, drawn: &mut drawn, looks: &looks, object, transparent: &mut transparent };
+                    faces.draw(stats, &mut sink);
+                }
+            }
+            stats.raster += drawn;
+        }
+        self.integer = integer;
+        self.transparent = transparent;
+        self.draw_transparent(scene, stats, &mut raster);
+    }
+
+    /// Faces that shine through, far to near, over all others.
+    fn draw_transparent(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
+        if self.transparent.is_empty() {
+            return;
+        }
+        let mut transparent = mem::take(&mut self.transparent);
+        sort_by_depth(&mut transparent, Kept::depth);
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        for face in &transparent {
+            stats.raster += looks.with(face.object, face.surface, |look| {
+                raster.triangle_with_effects(&face.vertices, &face.attributes, look)
+            });
+        }
+        transparent.clear();
+        self.transparent = transparent;
+    }
+
+    /// Hands every face to `sink`.
+    fn faces(&mut self, scene: &Scene, stats: &mut Stats, sink: &mut Bare<impl FnMut(&[Vertex; 3], Shading)>) {
+        for &object in &self.plan.order {
+            if self.vertex_path == VertexPath::Integer {
+                self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut sink.0);
+            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object]) {
+                faces.draw(stats, sink);
+            }
+        }
+    }
+
+    /// Keeps every face for when all are known.
+    fn gather(&mut self, scene: &Scene, stats: &mut Stats) {
+        let mut triangles = mem::take(&mut self.triangles);
+        let (mut places, mut kept) = (mem::take(&mut self.kept_places), mem::take(&mut self.kept));
+        let mut transparent = mem::take(&mut self.transparent);
+        triangles.clear();
+        places.clear();
+        kept.clear();
+        transparent.clear();
+        for &object in &self.plan.order {
+            if self.vertex_path == VertexPath::Integer {
+                let mut plain = |vertices: &[Vertex; 3], shading| {
+                    triangles.push((*vertices, shading));
+                    places.push(None);
+                };
+                self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
+            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object]) {
+                let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+                let mut sink = Gathered {
+                    triangles: &mut triangles,
+                    places: &mut places,
+                    kept: &mut kept,
+                    transparent: &mut transparent,
+                    looks: &looks,
+                    object,
+                };
+                faces.draw(stats, &mut sink);
+            }
+        }
+        (self.triangles, self.kept_places, self.kept, self.transparent) = (triangles, places, kept, transparent);
+    }
+
+    /// Far to near, each over what is there.
+    fn painter(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        let mut order: Vec<usize> = (0..self.triangles.len()).collect();
+        sort_by_depth(&mut order, |&i| depth_of(&self.triangles[i].0));
+        for i in order {
+            let (vertices, shading) = &self.triangles[i];
+            stats.raster += match self.kept_places[i] {
+                Some(place) => {
+                    let face = &self.kept[place as usize];
+                    looks.with(face.object, face.surface, |look| {
+                        raster.triangle_with_effects(vertices, &face.attributes, look)
+                    })
+                }
+                None => raster.triangle(vertices, *shading),
+            };
+        }
+    }
+
+    /// All at once, each pixel once.
+    fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        let scratch = self.lists.scratch(self.triangles.len());
+        let (places, kept) = (&self.kept_places, &self.kept);
+        // There is room for all.
+        stats.raster += raster
+            .scan_line_with(&self.triangles, scratch, |i, row, pixels, kernel, drawn| {
+                let Some(face) = places[i].and_then(|place| kept.get(place as usize)) else { return false };
+                looks.with(face.object, face.surface, |look| {
+                    crate::raster::effects::paint_row(&face.vertices, &face.attributes, look, row, pixels, kernel, drawn);
+                    Drawn::default()
+                });
+                true
+            })
+            .unwrap_or_default();
+    }
+
+    /// Bytes that the renderer holds.
+    fn bytes(&self) -> usize {
+        self.views.capacity() * size_of::<ObjectView>()
+            + self.states.iter().map(ObjectState::bytes).sum::<usize>()
+            + self.tables.bytes()
+            + self.depths.capacity() * 4
+            + self.triangles.capacity() * size_of::<([Vertex; 3], Shading)>()
+            + self.kept_places.capacity() * size_of::<Option<u32>>()
+            + (self.kept.capacity() + self.transparent.capacity()) * size_of::<Kept>()
+            + self.lists.bytes()
     }
 }
 
 impl Default for Renderer {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// The view of a scene in which nothing is wrong.
+fn checked(scene: &Scene, screen: Screen) -> Result<View, RenderError> {
+    check(scene)?;
+    View::new(&scene.camera, screen).map_err(RenderError::Camera)
+}
+
+/// What is wrong with a scene, if anything.
+fn check(scene: &Scene) -> Result<(), RenderError> {
+    if !scene.ambient.is_finite() {
+        return Err(RenderError::Ambient);
+    }
+    for (index, light) in scene.lights().iter().enumerate() {
+        light.check().map_err(|what| RenderError::Light { index, what })?;
+    }
+    for (index, object) in scene.objects().iter().enumerate() {
+        object.check().map_err(|what| RenderError::Object { index, what })?;
+    }
+    if let Some(fog) = &scene.fog {
+        fog.check().map_err(RenderError::Fog)?;
+    }
+    if let Some(animation) = &scene.palette_animation {
+        animation.check().map_err(RenderError::PaletteAnimation)?;
+    }
+    scene.wishes.check().map_err(RenderError::Wishes)
+}
+
+/// Faces without what effects need.
+struct Bare<F>(F);
+
+impl<F: FnMut(&[Vertex; 3], Shading)> Sink for Bare<F> {
+    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
+        (self.0)(vertices, shading);
+    }
+
+    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16) {
+        (self.0)(vertices, Shading::default());
+    }
+}
+
+/// Draws faces as they come; keeps those that shine through.
+struct Direct<'a, 'b, const CLIPS: bool> {
+    raster: &'a mut Raster<'b>,
+    drawn: &'a mut Drawn,
+    looks: &'a Looks<'a>,
+    object: usize,
+    transparent: &'a mut Vec<Kept>,
+}
+
+impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
+    #[inline]
+    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
+        *self.drawn +=
+            if CLIPS { self.raster.triangle(vertices, shading) } else { self.raster.triangle_inside(vertices, shading) };
+    }
+
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16) {
+        if self.looks.is_transparent(self.object, surface) {
+            let (vertices, attributes) = (*vertices, *attributes);
+            self.transparent.push(Kept { vertices, attributes, object: self.object, surface });
+            return;
+        }
+        *self.drawn += self.looks.with(self.object, surface, |look| {
+            if CLIPS {
+                self.raster.triangle_with_effects(vertices, attributes, look)
+            } else {
+                self.raster.triangle_with_effects_inside(vertices, attributes, look)
+            }
+        });
+    }
+}
+
+/// Keeps faces for when all are known.
+struct Gathered<'a> {
+    triangles: &'a mut Vec<([Vertex; 3], Shading)>,
+    places: &'a mut Vec<Option<u32>>,
+    kept: &'a mut Vec<Kept>,
+    transparent: &'a mut Vec<Kept>,
+    looks: &'a Looks<'a>,
+    object: usize,
+}
+
+impl Sink for Gathered<'_> {
+    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
+        self.triangles.push((*vertices, shading));
+        self.places.push(None);
+    }
+
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16) {
+        let face = Kept { vertices: *vertices, attributes: *attributes, object: self.object, surface };
+        if self.looks.is_transparent(self.object, surface) {
+            self.transparent.push(face);
+            return;
+        }
+        self.triangles.push((*vertices, Shading::default()));
+        // Fewer than 2³² faces.
+        self.places.push(Some(self.kept.len() as u32));
+        self.kept.push(face);
     }
 }

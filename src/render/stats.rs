@@ -18,6 +18,12 @@ pub struct Stats {
     pub kernel: &'static str,
     /// How hidden surfaces were left out.
     pub hidden_surfaces: HiddenSurfaces,
+    /// Whether anything was drawn: where nothing changed, the last frame is left as it is.
+    pub redrawn: bool,
+    /// Objects whose vertices are last frame's.
+    pub kept: u64,
+    /// Bytes allocated for this frame.
+    pub allocated: u64,
     /// Vertices transformed.
     pub vertices: u64,
     /// Vertices lit, or faces where shading is flat.
@@ -41,6 +47,9 @@ impl Stats {
             vertex_path,
             kernel: kernel.name(),
             hidden_surfaces,
+            redrawn: true,
+            kept: 0,
+            allocated: 0,
             vertices: 0,
             lit: 0,
             faces: 0,
@@ -54,13 +63,28 @@ impl Stats {
 
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { rung, vertex_path, kernel, hidden_surfaces, vertices, lit, faces, clipped, culled, drawn, raster } =
-            self;
+        let Self { rung, vertex_path, kernel, hidden_surfaces, redrawn, kept, allocated, .. } = self;
+        let Self { vertices, lit, faces, clipped, culled, drawn, raster, .. } = self;
         write!(
             f,
             "{rung}, {vertex_path} vertices, kernel {kernel}, {hidden_surfaces}: {vertices} vertices, {lit} lit, {faces} faces, \
              {clipped} clipped, {culled} culled, {drawn} drawn, {} spans, {} pixels covered, {} written",
             raster.spans, raster.covered, raster.pixels
-        )
+        )?;
+        let counts = [
+            (u64::from(raster.tested), "tested for depth"),
+            (u64::from(raster.textured), "textured"),
+            (u64::from(raster.mixed), "mixed from channels"),
+            (u64::from(raster.lit), "lit as pixels"),
+            (u64::from(raster.fogged), "fogged"),
+            (u64::from(raster.blended), "blended"),
+            (u64::from(raster.dithered), "dithered"),
+            (*kept, "objects kept"),
+            (*allocated, "bytes allocated"),
+        ];
+        for (count, what) in counts.into_iter().filter(|(count, _)| *count > 0) {
+            write!(f, ", {count} {what}")?;
+        }
+        if *redrawn { Ok(()) } else { f.write_str(", not drawn again") }
     }
 }

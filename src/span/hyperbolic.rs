@@ -25,7 +25,7 @@ pub fn fill_quotients(row: &mut [u8], n: i128, dn: i128, d: i128, dd: i128) {
 
 /// The floor of n / d for a quotient below 2³² and a positive d.
 #[inline]
-fn floor_quotient(n: i128, d: i128) -> i64 {
+pub(crate) fn floor_quotient(n: i128, d: i128) -> i64 {
     if !HAS_F64 {
         return n.div_euclid(d) as i64;
     }

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 use std::fmt::Write;
-use std::io::{self, BufReader};
+use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 use std::str::FromStr;
 
@@ -13,19 +13,23 @@ use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::file::{self, FORMATS, Format, PaletteError, Place};
 use mode13h::palette::{Palette, builtin};
-use mode13h::render::Rung;
+use mode13h::render::{Renderer, Rung};
+use mode13h::scene::Scene;
+use mode13h::scene::file::{MOST_TRIANGLES, SceneErrorKind};
 use mode13h::span::Kernel;
+use mode13h::vga::Vga;
 
 /// A parser's property: its name, which is that of its corpus and of its fuzz target, and the check.
 pub type Property = (&'static str, fn(&[u8]));
 
-pub const PROPERTIES: [Property; 7] = [
+pub const PROPERTIES: [Property; 8] = [
     ("obj", obj),
     ("mtl", mtl),
     ("palette_jasc", palette_jasc),
     ("palette_gimp", palette_gimp),
     ("palette_hex", palette_hex),
     ("palette_binary", palette_binary),
+    ("scene", scene),
     ("words", words),
 ];
 
@@ -284,6 +288,63 @@ fn check_palette_error(error: &PaletteError, bytes: &[u8]) {
     }
     let said = error.to_string();
     assert!(said.is_ascii() && !said.contains(char::is_control) && said.len() < 150, "{said:?}");
+}
+
+/// A scene file. Beside it lie a model, a palette and a texture.
+pub fn scene(bytes: &[u8]) {
+    // A texture of one black texel, as PNG.
+    const TEXEL: &[u8] = &[
+        0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
+        0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00, 0x00, 0x3a, 0x7e, 0x9b, 0x55, 0x00, 0x00, 0x00,
+        0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0x60, 0x00, 0x00, 0x00, 0x02, 0x00, 0x01, 0xe5, 0x27, 0xde,
+        0xfc, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82,
+    ];
+    let open = |path: &Path| -> io::Result<Box<dyn BufRead>> {
+        let file: &[u8] = match path.to_str() {
+            Some("a.obj") => {
+                b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl tin\nf 1/1 2/2 3/3\nusemtl oak\nf 3 2 1\n"
+            }
+            Some("a.hex") => b"000000\nff8000\nffffff\n",
+            Some("a.png") => TEXEL,
+            _ => return Err(io::ErrorKind::NotFound.into()),
+        };
+        Ok(Box::new(file))
+    };
+    match Scene::from_toml_bytes(bytes, "scene.toml", open) {
+        Ok(loaded) => {
+            loaded.warnings.iter().for_each(|warning| assert_one_line(warning));
+            check_scene(loaded.scene);
+        }
+        Err(error) => {
+            let said = error.to_string();
+            assert!(said.starts_with("scene.toml:") && said.len() < 10_000, "{said:?}");
+            assert_one_line(&said);
+            if let Some(place) = error.place {
+                let text = String::from_utf8_lossy(bytes);
+                let line = text.split('\n').nth(place.line - 1).expect("a line of the file");
+                // One more than there are: at the end of the line.
+                assert!((1..=line.chars().count() + 1).contains(&place.column), "{said}");
+            }
+            if matches!(error.kind, SceneErrorKind::UnknownKey { .. } | SceneErrorKind::MissingKey) {
+                assert!(error.key.is_some(), "{said}");
+            }
+        }
+    }
+}
+
+/// What holds of every scene that a file gives: its numbers are legal, at any time, so that it can be drawn.
+fn check_scene(mut scene: Scene) {
+    assert!(!scene.objects().is_empty() && scene.duration > 0.0 && scene.duration <= 3600.0);
+    let triangles: usize = scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
+    assert!(triangles as u64 <= MOST_TRIANGLES + 2 * scene.objects().len() as u64);
+    for seconds in [0.0, 0.3 * scene.duration, 1e9, -1.0] {
+        scene.set_time(seconds);
+        // What is still too large for f32, a camera that comes to its target, or a sun to zero, is refused when it is
+        // drawn. Great scenes take long.
+        if triangles < 500 && scene.objects().len() < 20 && scene.wishes.tessellation.is_none() {
+            let _ = Renderer::new().draw(&scene, &mut Vga::new());
+        }
+    }
 }
 
 /// Words of the command line that the library reads.

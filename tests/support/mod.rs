@@ -2,9 +2,14 @@
 #![expect(dead_code, unreachable_pub, reason = "each test file is a program of its own and uses its part")]
 
 pub mod display;
+#[cfg(feature = "gif")]
+pub mod film;
+#[cfg(feature = "png")]
+pub mod golden;
 pub mod naive_span;
 pub mod oracle;
 pub mod property;
 pub mod random;
+pub mod scenes;
 pub mod triangles;
 pub mod tried;

@@ -1,7 +1,8 @@
-//! The table of how many cases each test tried: none, or fewer than stated, is a failure.
+//! The table of how many cases each test tried, and the worst that it saw: no case, or fewer than stated,
+//! is a failure.
 //!
 //! A test's row is printed, and kept in the target directory as `tmp/tried/<test>`, so that
-//! `cat target/tmp/tried/*` is the table of all of them.
+//! `cat target/tmp/tried/*` is the table of all of them; `.ci/tried_table` makes Markdown of it.
 
 use std::fs;
 use std::path::Path;
@@ -12,12 +13,14 @@ pub struct Tried {
     test: String,
     stated: u64,
     cases: u64,
+    /// What was measured, and the greatest value.
+    worst: Vec<(&'static str, f64)>,
 }
 
 impl Tried {
     /// A row for `test`, which states that it tries at least `stated` cases.
     pub fn new(test: impl Into<String>, stated: u64) -> Self {
-        Self { test: test.into(), stated, cases: 0 }
+        Self { test: test.into(), stated, cases: 0, worst: Vec::new() }
     }
 
     /// How many cases the test states that it tries.
@@ -37,28 +40,57 @@ impl Tried {
         more
     }
 
+    /// `measure` came to `value` in a case: the report says the greatest of its values.
+    pub fn worst(&mut self, measure: &'static str, value: f64) {
+        assert!(!value.is_nan(), "{}: {measure} is not a number", self.test);
+        match self.worst.iter_mut().find(|(name, _)| *name == measure) {
+            Some((_, greatest)) => *greatest = greatest.max(value),
+            None => self.worst.push((measure, value)),
+        }
+    }
+
     /// Reports now.
     pub fn done(self) {}
 }
 
 impl Drop for Tried {
-    /// Prints and keeps the row, unless the test has failed.
+    /// Prints and keeps the row; that of a test that fails says so.
     ///
     /// # Panics
     /// If no case was tried, or fewer than stated.
     fn drop(&mut self) {
-        if std::thread::panicking() {
-            return;
+        let failed = std::thread::panicking() || self.cases < self.stated.max(1);
+        let mut row = format!("{:<56} {:>15} cases", self.test, grouped(self.cases));
+        for (i, (measure, value)) in self.worst.iter().enumerate() {
+            row += if i == 0 { "; " } else { ", " };
+            row += &format!("{measure}: {}", figure(*value));
         }
-        let row = format!("{:<56} {:>15} cases", self.test, grouped(self.cases));
+        if failed {
+            row += "; FAILED";
+        }
         println!("{row}");
         let table = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tried");
         let file = table.join(self.test.replace([':', '/', '*', ' '], "_"));
         if let Err(error) = fs::create_dir_all(&table).and_then(|()| fs::write(&file, row + "\n")) {
             println!("{}: {error}", file.display());
         }
+        if std::thread::panicking() {
+            return;
+        }
         assert!(self.cases > 0, "{}: no case was tried", self.test);
         assert!(self.cases >= self.stated, "{}: {} cases tried, {} stated", self.test, self.cases, self.stated);
+    }
+}
+
+/// A count in full; anything else to four places, or to two digits if it is small.
+fn figure(value: f64) -> String {
+    if value.fract() == 0.0 && value < 1e15 {
+        // A whole number below 2⁵³.
+        grouped(value as u64)
+    } else if value >= 0.001 {
+        format!("{value:.4}")
+    } else {
+        format!("{value:.1e}")
     }
 }
 

@@ -1,11 +1,12 @@
-//! `mode13h demo`: a model that turns in a window.
+//! `mode13h demo`: a scene, or a model that turns, in a window.
 
 use std::ffi::OsString;
 use std::time::Instant;
 
 use clap::Args;
 use mode13h::palette::{Palette, builtin};
-use mode13h::render::{Renderer, Rung, Stats};
+use mode13h::plan::Effect;
+use mode13h::render::{Mapping, Renderer, Rung, Screen, Stats};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window};
@@ -13,13 +14,15 @@ use mode13h::window::{Flow, Input, Key, Window};
 use crate::failure::Failure;
 use crate::options::Drawing;
 use crate::overlay::{self, Place};
-use crate::stage::{Pose, SPEED, Stage};
+use crate::stage::{Pose, Stage};
+use crate::switches::Switch;
 use crate::{input, output};
 
 /// What the help says below the options.
 pub(crate) const KEYS: &str = "\
 Keys in the window: Esc quits, Space stops and goes on, arrows and mouse turn, wheel and + - zoom, [ and ] step through
-the rungs, K next kernel, P next palette, S saves a PNG in the current directory, H shows help and figures.
+the rungs, K next kernel, P next palette, M next mapping of textures; L lights, O fog, T texture and D dither off and on;
+S saves a PNG in the current directory, H shows help, the plan and figures.
 With no display one frame is saved as a PNG.";
 
 #[derive(Args)]
@@ -95,9 +98,13 @@ struct Demo {
     rungs: Choice<Rung>,
     kernels: Choice<Kernel>,
     palettes: Choice<(String, Palette)>,
+    /// `None` leaves it to the plan.
+    mappings: Choice<Option<Mapping>>,
     motion: Motion,
     help: bool,
     timing: Timing,
+    /// Of making the plan, while it is shown.
+    planning: Timing,
     stats: Option<Stats>,
     /// What the title says besides, and until when.
     notice: Option<(String, f64)>,
@@ -108,22 +115,35 @@ impl Demo {
     fn new(options: &Options) -> Result<Demo, Failure> {
         let Options { input, drawing } = options;
         let kernel = drawing.kernel()?;
-        let (palette_name, palette) = drawing.palette()?;
-        let input::Model { name, mesh } = input::model(input)?;
+        let shown = input::input(input)?;
+        let name = shown.name().to_string();
+        let of_model = matches!(shown, input::Input::Model(_));
+        let stage = drawing.stage(shown)?;
+        let rung = drawing.rung(stage.scene.wishes.rung);
+        // A scene that has none leaves the DAC alone.
+        let palette = stage.scene.palette.clone().unwrap_or_default();
+        let usual_palette = if of_model { "grey" } else { "the scene's" };
+        let palette_name = drawing.palette_name().unwrap_or(usual_palette.to_string());
         // A palette without ramps has no order of shades: such a one is shown only if it was asked for.
         let builtin = builtin::ALL.iter().filter(|builtin| builtin.palette.ramps() > 0);
         let palettes = builtin.map(|builtin| (builtin.name.to_string(), builtin.palette.clone()));
         Ok(Demo {
-            triangles: mesh.triangles().len(),
-            stage: Stage::new(mesh, drawing.up_axis(), palette.clone()),
+            triangles: stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum(),
+            stage,
             name,
-            renderer: Renderer::new(),
-            rungs: Choice::new(Rung::ALL.iter().copied(), drawing.rung(), |a, b| a == b),
+            renderer: drawing.renderer(kernel),
+            rungs: Choice::new(Rung::ALL.iter().copied(), rung, |a, b| a == b),
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
-            palettes: Choice::new(palettes, (palette_name, palette), |a, b| a == b),
+            palettes: Choice::new(palettes, (palette_name, palette), |(a, _), (b, _)| a == b),
+            mappings: Choice::new(
+                [None].into_iter().chain(Mapping::ALL.map(Some)),
+                drawing.mapping(),
+                |a, b| a == b,
+            ),
             motion: Motion::new(),
             help: false,
             timing: Timing::default(),
+            planning: Timing::default(),
             stats: None,
             notice: None,
             seconds: 0.0,
@@ -147,7 +167,15 @@ impl Demo {
         }
         if input.pressed(Key::P) {
             self.palettes.go_round();
-            self.stage.scene.palette = Some(self.palettes.chosen().1.clone());
+            self.stage.set_palette(self.palettes.chosen().1.clone());
+        }
+        if input.pressed(Key::M) {
+            self.mappings.go_round();
+        }
+        for (key, switch) in Switch::KEYS {
+            if input.pressed(key) {
+                switch.turn(&mut self.stage.scene, &mut self.renderer);
+            }
         }
         if input.pressed(Key::H) {
             self.help = !self.help;
@@ -162,9 +190,15 @@ impl Demo {
     }
 
     fn draw(&mut self, vga: &mut Vga) -> Result<(), Failure> {
-        self.stage.pose(self.motion.pose());
+        self.stage.show(self.motion.seconds(), self.motion.pose);
         self.renderer.set_rung(*self.rungs.chosen());
         self.renderer.set_kernel(*self.kernels.chosen());
+        self.renderer.set_mapping(*self.mappings.chosen());
+        if self.help {
+            let start = Instant::now();
+            self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+            self.planning.add(start.elapsed().as_secs_f64(), self.seconds);
+        }
         let start = Instant::now();
         let stats = self.renderer.draw(&self.stage.scene, vga).map_err(Failure::work)?;
         self.timing.add(start.elapsed().as_secs_f64(), self.seconds);
@@ -192,50 +226,81 @@ impl Demo {
     }
 
     fn figures(&self) -> Vec<String> {
+        let mapping = self.mappings.chosen().map_or("by plan", Mapping::name);
         let mut lines = vec![
-            format!("{}: {} triangles", self.name, self.triangles),
-            format!("{}, {:.0} a second", self.timing, self.timing.rate),
-            format!("rung    {}", self.rungs.chosen().name()),
-            format!("kernel  {}", self.kernels.chosen()),
-            format!("palette {}", self.palettes.chosen().0),
-            format!("zoom    {:.2}", self.motion.pose().zoom),
+            format!("{}: {} triangles, zoom {:.2}", self.name, self.triangles, self.motion.pose.zoom),
+            format!("{}, {:.0} a second, plan {:.1} us", self.timing, self.timing.rate, self.planning.frame * 1e6),
+            format!("rung {}, mapping {mapping}", self.rungs.chosen().name()),
+            format!("kernel {}, palette {}", self.kernels.chosen(), self.palettes.chosen().0),
         ];
         if let Some(Stats { hidden_surfaces, vertices, drawn, raster, .. }) = &self.stats {
             lines.push(format!("{hidden_surfaces}: {vertices} vertices, {drawn} drawn"));
             lines.push(format!("{} spans, {} pixels", raster.spans, raster.pixels));
         }
+        let on = in_columns(&self.effects_on());
+        lines.push(format!("on, of {} effects and {} objects:", Effect::COUNT, self.stage.scene.objects().len()));
+        lines.extend(on);
         lines
+    }
+
+    /// The effects that are on: each with its choice, unless the lines above say that, and, if not for all objects, for
+    /// how many.
+    fn effects_on(&self) -> Vec<String> {
+        let objects = self.renderer.plan().objects();
+        let entry = |effect: Effect| {
+            let on: Vec<_> = objects.iter().map(|plan| plan.decision(effect)).filter(|decision| decision.on).collect();
+            let mut entry = effect.name().to_string();
+            let is_said = matches!(effect, Effect::HiddenSurfaces | Effect::Gouraud | Effect::Phong);
+            if !is_said && !on.first()?.choice.is_empty() {
+                entry += &format!(" {}", on[0].choice);
+            }
+            if on.len() < objects.len() {
+                entry += &format!(" {}/{}", on.len(), objects.len());
+            }
+            Some(entry)
+        };
+        Effect::ALL.into_iter().filter_map(entry).collect()
     }
 }
 
-const HELP: [&str; 3] = [
-    "Esc quit   Space stop   S save   H hide this",
-    "[ ] rung   K kernel     P palette",
+/// The characters of a line that fits on the frame.
+const LINE: usize = 52;
+
+/// Entries in two columns, down the first and then the second.
+fn in_columns(entries: &[String]) -> Vec<String> {
+    let half = LINE / 2;
+    let (left, right) = entries.split_at(entries.len().div_ceil(2));
+    let right = right.iter().map(String::as_str).chain([""]);
+    left.iter().zip(right).map(|(left, right)| format!("{left:half$.half$}{right}")).collect()
+}
+
+const HELP: [&str; 4] = [
+    "Esc quit   Space stop   S save     H hide this",
+    "[ ] rung   K kernel     P palette  M mapping",
+    "L lights   O fog        T texture  D dither",
     "arrows, mouse turn      wheel, + - zoom",
 ];
 
-/// How the model moves: by the clock unless it is stopped, and by the user.
+/// What moves: the scene's time, by the clock unless it is stopped, and what the user has turned.
 struct Motion {
-    /// The turn at the time `since`.
-    turn: f64,
-    /// When the clock began to turn it, in seconds; nothing while it is stopped.
+    /// The scene's time at the time `since`, in seconds.
+    time: f64,
+    /// When the clock began to move it, in seconds; nothing while it is stopped.
     since: Option<f64>,
-    tilt: f64,
-    zoom: f64,
+    pose: Pose,
     now: f64,
 }
 
 impl Motion {
     fn new() -> Motion {
-        let Pose { turn, tilt, zoom } = Pose::FIRST;
-        Motion { turn, since: Some(0.0), tilt, zoom, now: 0.0 }
+        Motion { time: 0.0, since: Some(0.0), pose: Pose::FIRST, now: 0.0 }
     }
 
     fn follow(&mut self, input: &Input, seconds: f64) {
         let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);
         self.now = seconds;
         if input.pressed(Key::Space) {
-            self.turn = self.pose().turn;
+            self.time = self.seconds();
             self.since = if self.since.is_none() { Some(seconds) } else { None };
         }
         let arrow = |key| {
@@ -243,8 +308,8 @@ impl Motion {
             held + if input.pressed(key) { ARROW_TAP } else { 0.0 }
         };
         let (right, down) = input.drag();
-        self.turn += arrow(Key::Right) - arrow(Key::Left) + DRAG * f64::from(right);
-        self.tilt += arrow(Key::Down) - arrow(Key::Up) + DRAG * PIXEL_HEIGHT * f64::from(down);
+        self.pose.turn += arrow(Key::Right) - arrow(Key::Left) + DRAG * f64::from(right);
+        self.pose.tilt += arrow(Key::Down) - arrow(Key::Up) + DRAG * PIXEL_HEIGHT * f64::from(down);
 
         let typed = |characters: &[char]| input.typed().contains(characters);
         let mut notches = f64::from(input.wheel());
@@ -254,14 +319,13 @@ impl Motion {
         if input.pressed(Key::NumPadMinus) || typed(&['-', '_']) {
             notches -= 1.0;
         }
-        self.zoom = (self.zoom * NOTCH.powf(notches)).clamp(ZOOM.0, ZOOM.1);
+        self.pose.zoom = (self.pose.zoom * NOTCH.powf(notches)).clamp(ZOOM.0, ZOOM.1);
     }
 
-    /// At the time of the last [`follow`](Self::follow). The turn comes from the clock and not from the frames that
-    /// were drawn since.
-    fn pose(&self) -> Pose {
-        let by_clock = self.since.map_or(0.0, |since| SPEED * (self.now - since));
-        Pose { turn: self.turn + by_clock, tilt: self.tilt, zoom: self.zoom }
+    /// The scene's time at the time of the last [`follow`](Self::follow). It comes from the clock and not from the frames
+    /// that were drawn since.
+    fn seconds(&self) -> f64 {
+        self.time + self.since.map_or(0.0, |since| self.now - since)
     }
 }
 
@@ -338,22 +402,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_turn_comes_from_the_clock_and_not_from_the_frames() {
-        let turn_after = |times: &[f64]| {
+    fn the_time_comes_from_the_clock_and_not_from_the_frames() {
+        let time_after = |times: &[f64]| {
             let mut motion = Motion::new();
             times.iter().for_each(|&seconds| motion.follow(&Input::default(), seconds));
-            motion.pose()
+            (motion.seconds(), motion.pose)
         };
         let many: Vec<f64> = (0..=1_000_000).map(|i| f64::from(i) / 1000.0).collect();
-        assert_eq!(turn_after(&many), turn_after(&[1000.0]));
+        assert_eq!(time_after(&many), time_after(&[1000.0]));
     }
 
     #[test]
-    fn an_hour_in_one_frame_is_an_hour_of_turning() {
+    fn an_hour_in_one_frame_is_an_hour_of_the_scene() {
         let mut motion = Motion::new();
-        for (seconds, turn) in [(0.0, 0.0), (0.0, 0.0), (3600.0, 3600.0 * SPEED), (3599.0, 3599.0 * SPEED)] {
+        for seconds in [0.0, 0.0, 3600.0, 3599.0] {
             motion.follow(&Input::default(), seconds);
-            assert_eq!(motion.pose().turn, turn);
+            assert_eq!(motion.seconds(), seconds);
         }
     }
 

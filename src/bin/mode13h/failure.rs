@@ -34,6 +34,6 @@ impl fmt::Display for Failure {
 
 /// File names and the contents of files may hold line ends and worse; an error is one line, and no terminal is sent
 /// what a file says.
-fn on_one_line(text: &str) -> String {
+pub(crate) fn on_one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

@@ -1,5 +1,6 @@
-//! From the words INPUT and FILE|NAME to a mesh and a palette.
+//! From the words INPUT and FILE|NAME to a scene or a mesh, and to a palette.
 
+use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Read};
@@ -9,6 +10,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::mesh::{Mesh, obj, shapes};
 use mode13h::palette::{Palette, builtin, file};
+use mode13h::scene::{self, Scene, shipped};
+use mode13h::texture::{self, Texture};
 
 use crate::failure::Failure;
 
@@ -18,17 +21,68 @@ pub(crate) struct Model {
     pub(crate) mesh: Mesh,
 }
 
+/// What INPUT says.
+pub(crate) enum Input {
+    Model(Model),
+    Scene { name: String, scene: Box<Scene> },
+}
+
+impl Input {
+    /// What to call it.
+    pub(crate) fn name(&self) -> &str {
+        match self {
+            Self::Model(Model { name, .. }) | Self::Scene { name, .. } => name,
+        }
+    }
+}
+
 /// What INPUT may be, for the help.
 pub(crate) fn help() -> String {
-    format!("A model (.obj) or the name of a shape: {}", shapes::NAMES.join(", "))
+    let scenes: Vec<&str> = shipped::ALL.iter().map(|scene| scene.name).collect();
+    let shapes: Vec<&str> = shapes::NAMES.into_iter().filter(|name| !scenes.contains(name)).collect();
+    let (scenes, shapes) = (scenes.join(", "), shapes.join(", "));
+    format!("A scene (.toml), a model (.obj), the name of a shipped scene: {scenes}; or of a shape: {shapes}")
+}
+
+/// The scene or the model of a file or of a name; of a name that both have, the scene. Warnings go to standard error, a
+/// line each.
+pub(crate) fn input(words: &OsStr) -> Result<Input, Failure> {
+    let loaded = if let Some(shipped) = words.to_str().and_then(shipped::by_name) {
+        shipped.load()
+    } else if has_extension(Path::new(words), "toml") {
+        scene::file::load(words)
+    } else {
+        let known = || {
+            let scenes: Vec<&str> = shipped::ALL.iter().map(|scene| scene.name).collect();
+            format!(
+                "neither a file nor a scene nor a shape; scenes are {}; shapes are {}",
+                scenes.join(", "),
+                shapes::NAMES.join(", ")
+            )
+        };
+        return model_or(words, "models are .obj files, scenes .toml", &known).map(Input::Model);
+    };
+    let scene::file::Loaded { scene, warnings } = loaded.map_err(Failure::work)?;
+    for warning in warnings {
+        eprintln!("mode13h: {}", Failure::work(warning));
+    }
+    let name = Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned();
+    Ok(Input::Scene { name, scene: Box::new(scene) })
 }
 
 /// The model of a file or the shape of a name. Warnings go to standard error, a line each.
 pub(crate) fn model(words: &OsStr) -> Result<Model, Failure> {
+    model_or(words, "models are .obj files", &|| {
+        format!("neither a file nor a shape; shapes are {}", shapes::NAMES.join(", "))
+    })
+}
+
+/// A model; `kinds` says what files there are, `known` what names, where it is none of them.
+fn model_or(words: &OsStr, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
     let path = Path::new(words);
     let (name, mesh) = if let Some(mesh) = words.to_str().and_then(shapes::by_name) {
         (words.to_string_lossy().into_owned(), mesh)
-    } else if is_obj(path) {
+    } else if has_extension(path, "obj") {
         let loaded = load(path).map_err(Failure::work)?;
         for warning in loaded.warnings {
             eprintln!("mode13h: {}", Failure::work(warning));
@@ -37,15 +91,28 @@ pub(crate) fn model(words: &OsStr) -> Result<Model, Failure> {
     } else {
         let reason = match path.metadata() {
             Ok(metadata) if metadata.is_dir() => "is a directory, not a model".to_string(),
-            Ok(_) => "no model that can be read: models are .obj files".to_string(),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                format!("neither a file nor a shape; shapes are {}", shapes::NAMES.join(", "))
-            }
+            Ok(_) => format!("nothing that can be read: {kinds}"),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => known(),
             Err(error) => error.to_string(),
         };
         return Err(Failure::work(format!("{}: {reason}", path.display())));
     };
     Ok(Model { name, mesh })
+}
+
+/// For each surface of a model its texture, if it names one that can be read. One that cannot is a warning, a line on
+/// standard error, and the surface is drawn without it. Files named by several surfaces are read once.
+pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Texture>> {
+    let mut read: HashMap<&str, Option<Texture>> = HashMap::new();
+    let textures = mesh.surfaces().iter().map(|surface| {
+        let path = surface.texture.as_deref()?;
+        let texture = read.entry(path).or_insert_with(|| {
+            let loaded = texture::load(path);
+            loaded.map_err(|error| eprintln!("mode13h: {}", Failure::work(format!("{error}; drawn without it")))).ok()
+        });
+        texture.clone()
+    });
+    textures.collect()
 }
 
 /// Loads a model; if that takes longer than a moment and standard error is a terminal, with a bar there.
@@ -81,8 +148,8 @@ fn reading(bytes: u64) -> ProgressBar {
     }
 }
 
-fn is_obj(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"))
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
 }
 
 /// The names of the palettes that are compiled in.

@@ -1,15 +1,20 @@
-//! `mode13h`: a model in a window, or a picture of it.
+//! `mode13h`: a scene or a model in a window, or a picture of it.
 
 mod demo;
 mod failure;
+mod film;
 mod input;
 mod options;
 mod output;
 mod overlay;
 mod palette;
+mod plan;
+mod price;
 mod render;
+mod scenes;
 mod show;
 mod stage;
+mod switches;
 mod verify;
 
 use std::process::ExitCode;
@@ -19,7 +24,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
 
-/// Draws models as a 386 with a VGA card did: 320 x 200 bytes, 256 colours, fixed point.
+/// Draws scenes and models as a 386 with a VGA card did: 320 x 200 bytes, 256 colours, fixed point.
 #[derive(Parser)]
 #[command(version, args_conflicts_with_subcommands = true, after_help = demo::KEYS)]
 struct Words {
@@ -31,12 +36,16 @@ struct Words {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Turn a model in a window; so do `mode13h` and `mode13h INPUT`
+    /// Show a scene, or turn a model, in a window; so do `mode13h` and `mode13h INPUT`
     #[command(after_help = demo::KEYS)]
     Demo(demo::Options),
-    /// Write a picture of a model, or a numbered row of them
+    /// Write a picture of a scene or a model, a numbered row of them, or a film
     Render(render::Options),
-    /// Look at a palette, or convert it
+    /// List the scenes that are compiled in, or copy one to edit it
+    Scenes(scenes::Options),
+    /// Say what a scene calls for, object by object, and why
+    Plan(plan::Options),
+    /// Look at a palette, convert it, or make one for a model
     Palette(palette::Options),
     /// Draw a hard case 16 times enlarged: the right way beside the fault it guards against
     Show(show::Options),
@@ -60,6 +69,8 @@ fn run(words: Words) -> Result<(), Failure> {
         None => demo::run(&words.demo),
         Some(Command::Demo(options)) => demo::run(&options),
         Some(Command::Render(options)) => render::run(&options),
+        Some(Command::Scenes(options)) => scenes::run(&options),
+        Some(Command::Plan(options)) => plan::run(&options),
         Some(Command::Palette(options)) => palette::run(&options),
         Some(Command::Show(options)) => show::run(&options),
         Some(Command::Verify(options)) => verify::run(&options),

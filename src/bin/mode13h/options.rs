@@ -1,46 +1,58 @@
 //! Options that several commands share, and what may stand behind them.
 
 use std::ffi::OsString;
+use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use mode13h::palette::Palette;
-use mode13h::render::Rung;
+use mode13h::palette::builtin;
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, VertexPath};
 use mode13h::scene::UpAxis;
 use mode13h::span::Kernel;
 
 use crate::failure::Failure;
-use crate::input;
+use crate::input::{self, Input, Model};
+use crate::stage::Stage;
 
 /// The environment variable that stands in for `--kernel`. The library reads none.
 const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 
-/// How a model is drawn.
+/// How a model or a scene is drawn. What is not said here the scene says, or else the library chooses.
 #[derive(Args)]
 pub(crate) struct Drawing {
     #[arg(long, value_name = "RUNG", help = help_on_rungs())]
     rung: Option<Rung>,
-    #[arg(long, value_name = "FILE|NAME", default_value = "grey", help = help_on_palettes())]
-    palette: OsString,
+    #[arg(long, value_name = "FILE|NAME", help = help_on_palettes())]
+    palette: Option<OsString>,
     #[arg(long, value_name = "NAME", value_parser = Kernel::by_name, help = help_on_kernels())]
     kernel: Option<Kernel>,
-    /// The axis of the model that points up
-    #[arg(long, value_name = "AXIS", value_enum, default_value = "y")]
-    up: Up,
+    #[arg(long, value_name = "WAY", help = help_on_hidden_surfaces())]
+    hidden: Option<HiddenSurfaces>,
+    #[arg(long, value_name = "WAY", help = help_on_mappings())]
+    mapping: Option<Mapping>,
+    #[arg(long, value_name = "PATH", help = help_on_vertex_paths())]
+    vertex_path: Option<VertexPath>,
+    /// The axis of a model that points up [default: y]
+    #[arg(long, value_name = "AXIS", value_enum)]
+    up: Option<Up>,
 }
 
 /// The axis of a model that points up: y in most, z in those from CAD and geography.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Up {
+pub(crate) enum Up {
     Y,
     Z,
 }
 
-impl Drawing {
-    /// The rung that was asked for, or the library's own choice.
-    pub(crate) fn rung(&self) -> Rung {
-        self.rung.unwrap_or_default()
+impl From<Up> for UpAxis {
+    fn from(up: Up) -> UpAxis {
+        match up {
+            Up::Y => UpAxis::Y,
+            Up::Z => UpAxis::Z,
+        }
     }
+}
 
+impl Drawing {
     /// The kernel that was asked for by option or else by environment, or the fastest.
     pub(crate) fn kernel(&self) -> Result<Kernel, Failure> {
         if let Some(kernel) = self.kernel {
@@ -55,26 +67,89 @@ impl Drawing {
         }
     }
 
-    pub(crate) fn up_axis(&self) -> UpAxis {
-        match self.up {
-            Up::Y => UpAxis::Y,
-            Up::Z => UpAxis::Z,
+    /// What INPUT shows, drawn as was asked for.
+    pub(crate) fn stage(&self, input: Input) -> Result<Stage, Failure> {
+        let palette = self.palette.as_deref().map(input::palette).transpose()?.map(|(_, palette)| palette);
+        match input {
+            Input::Model(Model { mesh, .. }) => {
+                let up = self.up.unwrap_or(Up::Y);
+                Ok(Stage::of_model(mesh, up.into(), palette.unwrap_or_else(|| builtin::GREY.clone())))
+            }
+            Input::Scene { .. } if self.up.is_some() => Err(Failure::words(
+                "--up is for models: a scene says itself which axis of each of its models points up",
+            )),
+            Input::Scene { scene, .. } => {
+                let mut stage = Stage::of_scene(*scene);
+                if let Some(palette) = palette {
+                    stage.scene.wishes.auto_palette = false;
+                    stage.set_palette(palette);
+                }
+                Ok(stage)
+            }
         }
     }
 
-    /// The palette, and what to call it.
-    pub(crate) fn palette(&self) -> Result<(String, Palette), Failure> {
-        input::palette(&self.palette)
+    /// What the palette is called that was asked for.
+    pub(crate) fn palette_name(&self) -> Option<String> {
+        let words = self.palette.as_deref()?;
+        Some(Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned())
+    }
+
+    /// The rung of a scene that wishes for this one.
+    pub(crate) fn rung(&self, wish: Option<Rung>) -> Rung {
+        self.rung.or(wish).unwrap_or_default()
+    }
+
+    /// The mapping that was asked for.
+    pub(crate) fn mapping(&self) -> Option<Mapping> {
+        self.mapping
+    }
+
+    /// What draws as was asked for.
+    pub(crate) fn renderer(&self, kernel: Kernel) -> Renderer {
+        let mut renderer = Renderer::new();
+        renderer.set_kernel(kernel);
+        renderer.set_hidden_surfaces(self.hidden);
+        renderer.set_mapping(self.mapping);
+        renderer.set_vertex_path(self.vertex_path.unwrap_or_default());
+        if let Some(rung) = self.rung {
+            renderer.set_rung(rung);
+        }
+        renderer
+    }
+}
+
+/// A number on the command line.
+pub(crate) fn finite(words: &str) -> Result<f64, String> {
+    match words.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("not a number".to_string()),
     }
 }
 
 fn help_on_rungs() -> String {
-    let names: Vec<&str> = Rung::ALL.iter().map(|rung| rung.name()).collect();
-    format!("How faces are shaded: {} [default: {}]", names.join(", "), Rung::default().name())
+    let names = Rung::ALL.map(Rung::name).join(", ");
+    format!("How faces are shaded: {names} [default: the scene's, or {}]", Rung::default())
+}
+
+fn help_on_hidden_surfaces() -> String {
+    let names = HiddenSurfaces::ALL.map(HiddenSurfaces::name).join(", ");
+    format!("How hidden surfaces are left out: {names} [default: as the scene calls for]")
+}
+
+fn help_on_mappings() -> String {
+    let names = Mapping::ALL.map(Mapping::name).join(", ");
+    format!("How textures are mapped: {names} [default: as the scene calls for]")
+}
+
+fn help_on_vertex_paths() -> String {
+    let names = VertexPath::ALL.map(VertexPath::name).join(", ");
+    format!("The numbers that vertices are made in: {names} (16.16) [default: {}]", VertexPath::default())
 }
 
 fn help_on_palettes() -> String {
-    format!("The palette: {}, or a file ({})", input::palette_names(), input::palette_extensions())
+    let (names, extensions) = (input::palette_names(), input::palette_extensions());
+    format!("The palette: {names}, or a file ({extensions}) [default: the scene's; of a model, grey]")
 }
 
 fn help_on_kernels() -> String {

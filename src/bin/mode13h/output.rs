@@ -2,7 +2,8 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{PoisonError, RwLock};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError, RwLock};
 
 use mode13h::export::{self, ExportError, Picture, Scale};
 use mode13h::vga::Vga;
@@ -12,11 +13,20 @@ use crate::failure::Failure;
 /// Held while a file is written, by any number of threads.
 static WRITING: RwLock<()> = RwLock::new(());
 
+/// Held while a file is written that may take long, and is given up when the program is told to end.
+static WRITING_LONG: Mutex<()> = Mutex::new(());
+
+/// That the program has been told to end.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
 /// Makes Ctrl-C, and what else asks a program to end, wait for the files that are being written: each is then whole
-/// under its name, and none is left beside it.
+/// under its name, or gone if it takes long, and none is left beside it.
 pub(crate) fn finish_files_when_interrupted() {
     let end = || {
-        // No file is begun from here on; those begun are waited for. The lock is never given back.
+        INTERRUPTED.store(true, Ordering::Relaxed);
+        // First the long file, which ends by the flag: while it does, others may still be begun.
+        let _no_long = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
+        // No file is begun from here on; those begun are waited for. The locks are never given back.
         let _none = WRITING.write().unwrap_or_else(PoisonError::into_inner);
         eprintln!("mode13h: interrupted");
         // 128 + SIGINT, as shells count.
@@ -30,6 +40,24 @@ pub(crate) fn finish_files_when_interrupted() {
 pub(crate) fn file<T>(write: impl FnOnce() -> T) -> T {
     let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
     write()
+}
+
+/// Writes a file that takes long. `write` looks at [`is_interrupted`] every moment, and gives the file up then: in that
+/// case this never returns, and the program ends as interrupted.
+pub(crate) fn long_file<T>(write: impl FnOnce() -> T) -> T {
+    let writing = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
+    let result = write();
+    drop(writing);
+    while is_interrupted() {
+        // The thread that was told ends the program.
+        std::thread::park();
+    }
+    result
+}
+
+/// Whether the program has been told to end.
+pub(crate) fn is_interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
 }
 
 /// Writes what `vga` shows as a PNG: indexed, or in true colour if `rgb`.

@@ -1,20 +1,31 @@
-//! `mode13h palette`: look at a palette, or convert it.
+//! `mode13h palette`: look at a palette, convert it, or make one for a model.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use mode13h::export::{self, Picture, PixelShape, Scale};
+use mode13h::palette::auto::Entries;
 use mode13h::palette::file::Format;
 use mode13h::palette::{Palette, builtin};
+use mode13h::render::automatic;
+use mode13h::texture::Texture;
 
 use crate::failure::Failure;
+use crate::options::Up;
 use crate::{input, output};
 
 #[derive(Args)]
 pub(crate) struct Options {
-    #[arg(value_name = "FILE|NAME", help = help())]
-    palette: OsString,
+    #[arg(value_name = "FILE|NAME", required_unless_present = "from", help = help())]
+    palette: Option<OsString>,
+    /// Make one for a model: black, a ramp for each of its materials by how much of it is seen over a turn, colours for
+    /// its textures, white
+    #[arg(long, value_name = "MODEL", conflicts_with = "palette")]
+    from: Option<OsString>,
+    /// The axis of that model that points up
+    #[arg(long, value_name = "AXIS", value_enum, default_value = "y", conflicts_with = "palette")]
+    up: Up,
     /// Write it to a file, in the format of its extension; .png makes a chart of the colours
     #[arg(short, long, value_name = "OUT")]
     out: Option<PathBuf>,
@@ -25,11 +36,39 @@ fn help() -> String {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let (name, palette) = input::palette(&options.palette)?;
+    let (name, palette, made) = match (&options.from, &options.palette) {
+        (Some(model), _) => make(model, options.up)?,
+        (None, words) => {
+            let (name, palette) = input::palette(words.as_deref().unwrap_or_default())?;
+            (name, palette, String::new())
+        }
+    };
     match &options.out {
-        None => output::print(&look(&name, &palette)),
+        None => output::print(&(look(&name, &palette) + &made)),
         Some(out) => convert(&name, &palette, out),
     }
+}
+
+/// A palette for a model: what to call it, the palette, and what is where in it, a line for each surface.
+fn make(model: &OsStr, up: Up) -> Result<(String, Palette, String), Failure> {
+    let input::Model { name, mesh } = input::model(model)?;
+    let textures = input::textures(&mesh);
+    let textures: Vec<Option<&Texture>> = textures.iter().map(Option::as_ref).collect();
+    let surfaces = mesh.surfaces().to_vec();
+    let automatic = automatic(mesh, up.into(), &textures).map_err(Failure::work)?;
+    let mut lines = String::new();
+    for (surface, entries) in surfaces.iter().zip(&automatic.entries) {
+        let (entries, what) = match entries {
+            Entries::Ramp { ramp, .. } => (ramp, "a ramp"),
+            Entries::Textures { block } => (block, "colours of textures"),
+            _ => continue,
+        };
+        let surface = if surface.name.is_empty() { &name } else { &surface.name };
+        let line = format!("{surface}: {what}, entries {} to {}", entries.first(), entries.last());
+        // A name may hold anything; no terminal is sent it.
+        lines.extend(line.chars().map(|c| if c.is_control() { ' ' } else { c }).chain(['\n']));
+    }
+    Ok((name, automatic.palette, lines))
 }
 
 fn convert(name: &str, palette: &Palette, out: &Path) -> Result<(), Failure> {

@@ -1,51 +1,53 @@
-//! `mode13h render`: one picture, or a numbered row of them.
+//! `mode13h render`: one picture, a numbered row of them, or a film.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::export::Scale;
+use mode13h::export::{FrameRate, Scale};
 use mode13h::record::Record;
-use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats};
+use mode13h::render::{Renderer, Screen, Stats};
 use mode13h::vga::Vga;
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::failure::Failure;
-use crate::options::Drawing;
-use crate::stage::{Pose, SPEED, Stage};
+use crate::film::{self, Film};
+use crate::options::{Drawing, finite};
+use crate::stage::{Pose, Stage};
 use crate::{input, output};
 
 #[derive(Args)]
 pub(crate) struct Options {
     #[arg(help = input::help())]
     input: OsString,
-    /// The picture: a name ending in .png; with --frames, one that holds %04d or the like for the number
+    /// The picture: a name ending in .png; with --frames, one that holds %04d or the like for the number. A film: a name
+    /// ending in .gif
     #[arg(short, long, value_name = "OUT")]
     out: PathBuf,
-    /// How many frames, numbered from 0
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    frames: u32,
+    /// How many frames, numbered from 0 [default: 1; a film, those of one round: four seconds, or what the scene says]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    frames: Option<u32>,
     /// One frame: turn the model by so much. N frames: spread so much over them, frame i being turned by i/N of it;
-    /// 360 makes a seamless turn
-    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true, conflicts_with = "fps")]
+    /// 360 makes a seamless turn [default for a film: 360]. Of a scene that moves 360 are one round; round one that
+    /// does not the camera goes
+    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
     turn: Option<f64>,
-    /// The time of the first frame: the model turns 90 degrees a second
+    /// The time of the first frame, of a scene or of a model, which turns 90 degrees a second
     #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, default_value_t = 0.0)]
     at: f64,
-    /// Frames a second, which say how far the model turns from one to the next where --turn does not
-    #[arg(long, value_name = "N", value_parser = rate, default_value_t = 35.0)]
-    fps: f64,
+    /// Frames a second: of a film, up to 50; of pictures, they say how much time passes from one to the next where
+    /// --turn does not [default: 35]
+    #[arg(long, value_name = "N", value_parser = rate)]
+    fps: Option<f64>,
     #[command(flatten)]
     drawing: Drawing,
-    #[arg(long, value_name = "WAY", help = help_on_hidden_surfaces())]
-    hidden: Option<HiddenSurfaces>,
     /// Enlarge: 1, 2, 5x6 (exactly 4:3 in square pixels), or a width and height such as 640x480 [default: 1; 5x6 with
-    /// --rgb]
+    /// --rgb; a film, 640x480]
     #[arg(long, value_name = "SCALE")]
     scale: Option<Scale>,
-    /// True colour instead of a palette
+    /// True colour instead of a palette; PNG only
     #[arg(long)]
     rgb: bool,
     /// How many frames are drawn at a time [default: one for each processor]
@@ -60,18 +62,6 @@ pub(crate) struct Options {
     stats: bool,
 }
 
-fn help_on_hidden_surfaces() -> String {
-    let names = HiddenSurfaces::ALL.map(HiddenSurfaces::name);
-    format!("How hidden surfaces are left out: {} [default: as the scene calls for]", names.join(", "))
-}
-
-fn finite(words: &str) -> Result<f64, String> {
-    match words.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err("not a number".to_string()),
-    }
-}
-
 fn rate(words: &str) -> Result<f64, String> {
     match finite(words) {
         Ok(number) if number > 0.0 && number <= 1e6 => Ok(number),
@@ -80,75 +70,150 @@ fn rate(words: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let names = Names::pictures(&options.out, options.frames)?;
-    let records = options.record.as_deref().map(|record| Names::new(record, options.frames, "records")).transpose()?;
+    let mut out = Out::new(options)?;
+    let stage = options.drawing.stage(input::input(&options.input)?)?;
+    out.lasts(stage.seconds());
+    let frames = out.frames();
+    let records = options.record.as_deref().map(|record| Names::new(record, frames, "records")).transpose()?;
     if options.record.as_ref() == Some(&options.out) {
         return Err(Failure::words(format!("{}: one name for the picture and its record", options.out.display())));
     }
     let kernel = options.drawing.kernel()?;
-    let (_, palette) = options.drawing.palette()?;
-    let model = input::model(&options.input)?;
-    let stage = Stage::new(model.mesh, options.drawing.up_axis(), palette);
-
-    let film = Film { options, names, records, stage };
-    let progress = progress(options.frames);
-    let artist = || {
-        let mut renderer = Renderer::new();
-        renderer.set_kernel(kernel);
-        renderer.set_rung(options.drawing.rung());
-        renderer.set_hidden_surfaces(options.hidden);
-        (renderer, film.stage.clone(), Vga::new())
-    };
-    let frame = |(renderer, stage, vga): &mut (Renderer, Stage, Vga), number: u32| {
-        let stats = film.draw(number, renderer, stage, vga)?;
+    let progress = progress(frames);
+    let motion = Motion::new(options, &out);
+    let artist = || Artist { renderer: options.drawing.renderer(kernel), stage: stage.clone(), vga: Vga::new() };
+    let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
+        let stats = artist.draw(&motion, number)?;
+        if let Some(records) = &records {
+            artist.record(&records.of(number))?;
+        }
         if options.stats {
             progress.suspend(|| eprintln!("mode13h: frame {number}: {stats}"));
         }
+        Ok(())
+    };
+    let picture = |names: &Names, artist: &mut Artist, number| {
+        draw(artist, number)?;
+        output::picture(&artist.vga, &names.of(number), options.rgb, options.scale).map_err(Failure::work)?;
         progress.inc(1);
         Ok(())
     };
-    let result = if options.frames == 1 {
-        frame(&mut artist(), 0)
-    } else {
+    let frame = |artist: &mut Artist, number| {
+        draw(artist, number)?;
+        Ok(film::Frame::of(&artist.vga))
+    };
+    let pool = || {
         let threads = options.threads.map_or(0, usize::from);
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::work)?;
-        pool.install(|| (0..options.frames).into_par_iter().try_for_each_init(artist, frame))
+        ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::work)
+    };
+    let result = match &out {
+        Out::Pictures(names, 1) => picture(names, &mut artist(), 0),
+        Out::Pictures(names, frames) => pool()?
+            .install(|| (0..*frames).into_par_iter().try_for_each_init(artist, |a, number| picture(names, a, number))),
+        Out::Film(film) => pool()?.install(|| film.write(&progress, artist, frame)),
     };
     progress.finish_and_clear();
     result
 }
 
-/// What all frames of a row have in common. Each is drawn from its own number alone, never from the frame before it:
-/// that is why the order, and the number of threads, change nothing.
-struct Film<'a> {
-    options: &'a Options,
-    names: Names,
-    records: Option<Names>,
-    stage: Stage,
+/// What is written.
+enum Out {
+    /// So many pictures.
+    Pictures(Names, u32),
+    Film(Film),
 }
 
-impl Film<'_> {
-    fn draw(&self, number: u32, renderer: &mut Renderer, stage: &mut Stage, vga: &mut Vga) -> Result<Stats, Failure> {
-        stage.pose(Pose { turn: self.turn(number), ..Pose::FIRST });
-        let stats = renderer.draw(&stage.scene, vga).map_err(Failure::work)?;
-        if let Some(records) = &self.records {
-            let record = Record::of_scene(renderer, &stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
-            output::file(|| record.save(records.of(number))).map_err(Failure::work)?;
+impl Out {
+    fn new(options: &Options) -> Result<Out, Failure> {
+        let Options { out, frames, turn, fps, rgb, scale, .. } = options;
+        let wrong = |reason: &dyn std::fmt::Display| Failure::words(format!("{}: {reason}", out.display()));
+        let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
+        if ends_in("png") {
+            if turn.is_some() && fps.is_some() {
+                return Err(wrong(&"both --turn and --fps say how far the model turns between pictures: give one"));
+            }
+            let frames = frames.unwrap_or(1);
+            Ok(Out::Pictures(Names::new(out, frames, "pictures")?, frames))
+        } else if ends_in("gif") {
+            if *rgb {
+                return Err(wrong(&"a GIF has a palette: --rgb is for .png"));
+            }
+            if out.file_name().and_then(|name| number_in(name.to_str()?)).is_some() {
+                return Err(wrong(&"a film is one file: its name needs no number"));
+            }
+            let rate = fps.map_or(Ok(FrameRate::default()), FrameRate::new).map_err(|error| wrong(&error))?;
+            Ok(Out::Film(Film::new(out, *frames, rate, *scale)))
+        } else {
+            Err(wrong(&"no kind of picture that can be written: the name must end in .png or .gif"))
         }
-        let path = self.names.of(number);
-        output::picture(vga, &path, self.options.rgb, self.options.scale).map_err(Failure::work)?;
-        Ok(stats)
     }
 
-    /// How far the model is turned in a frame, in radians. From the frame's number alone: nothing adds up.
-    fn turn(&self, number: u32) -> f64 {
-        let Options { frames, turn, at, fps, .. } = *self.options;
+    /// A film of which nobody says how many frames it has lasts so many seconds.
+    fn lasts(&mut self, seconds: f64) {
+        if let Out::Film(film) = self {
+            film.lasts(seconds);
+        }
+    }
+
+    fn frames(&self) -> u32 {
+        match self {
+            Out::Pictures(_, frames) => *frames,
+            Out::Film(film) => film.frames(),
+        }
+    }
+}
+
+/// What moves from frame to frame.
+struct Motion {
+    frames: u32,
+    /// Over all frames, in degrees.
+    turn: Option<f64>,
+    /// Of the first frame, in seconds.
+    at: f64,
+    /// Frames a second, where there is no `turn`.
+    rate: f64,
+}
+
+impl Motion {
+    fn new(options: &Options, out: &Out) -> Motion {
+        let frames = out.frames();
+        let whole_turn = (matches!(out, Out::Film(_)) && frames > 1).then_some(360.0);
+        let rate = options.fps.unwrap_or(FrameRate::default().frames_per_second());
+        Motion { frames, turn: options.turn.or(whole_turn), at: options.at, rate }
+    }
+
+    /// The time and the pose in a frame. From the frame's number alone: nothing adds up.
+    fn of(&self, number: u32, stage: &Stage) -> (f64, Pose) {
+        let Motion { frames, turn, at, rate } = *self;
         let number = f64::from(number);
         match turn {
-            Some(degrees) if frames == 1 => at * SPEED + degrees.to_radians(),
-            Some(degrees) => at * SPEED + (degrees * number / f64::from(frames)).to_radians(),
-            None => (at + number / fps) * SPEED,
+            Some(degrees) if frames == 1 => stage.turned(at, degrees),
+            Some(degrees) => stage.turned(at, degrees * number / f64::from(frames)),
+            None => (at + number / rate, Pose::FIRST),
         }
+    }
+}
+
+/// What draws frames, one after the other. Each is drawn from its own number alone, never from the frame before it: that
+/// is why the order, and the number of threads, change nothing.
+struct Artist {
+    renderer: Renderer,
+    stage: Stage,
+    vga: Vga,
+}
+
+impl Artist {
+    fn draw(&mut self, motion: &Motion, number: u32) -> Result<Stats, Failure> {
+        let (seconds, pose) = motion.of(number, &self.stage);
+        self.stage.show(seconds, pose);
+        self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::work)
+    }
+
+    /// Keeps the triangles of the frame that was drawn last.
+    fn record(&mut self, path: &Path) -> Result<(), Failure> {
+        let record =
+            Record::of_scene(&mut self.renderer, &self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+        output::file(|| record.save(path)).map_err(Failure::work)
     }
 }
 
@@ -161,14 +226,6 @@ struct Names {
 }
 
 impl Names {
-    fn pictures(out: &Path, frames: u32) -> Result<Names, Failure> {
-        if !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            let reason = "no kind of picture that can be written: the name must end in .png";
-            return Err(Failure::words(format!("{}: {reason}", out.display())));
-        }
-        Names::new(out, frames, "pictures")
-    }
-
     fn new(out: &Path, frames: u32, of: &str) -> Result<Names, Failure> {
         let numbered = out.file_name().and_then(|name| number_in(name.to_str()?));
         if frames > 1 && numbered.is_none() {
@@ -226,13 +283,13 @@ mod tests {
             ("50%-%09d-x.PNG", "50%-000000007-x.PNG"),
             ("100%d%d.png", "1007%d.png"),
         ] {
-            let names = Names::pictures(Path::new(out), 8).expect("a number");
+            let names = Names::new(Path::new(out), 8, "pictures").expect("a number");
             assert_eq!(names.of(7), Path::new(name));
         }
         for out in ["a.png", "%.png", "%4d.png", "%0d.png", "%0xd.png", "%04x.png", "%04d/a.png", "%0"] {
-            assert!(Names::pictures(Path::new(out), 8).is_err(), "{out}");
+            assert!(Names::new(Path::new(out), 8, "pictures").is_err(), "{out}");
         }
-        let one = Names::pictures(Path::new("a.png"), 1).expect("one picture");
+        let one = Names::new(Path::new("a.png"), 1, "pictures").expect("one picture");
         assert_eq!(one.of(0), Path::new("a.png"));
     }
 }

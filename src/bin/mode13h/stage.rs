@@ -1,4 +1,4 @@
-//! The scene that a model is shown in: the model about the origin, a lamp, and a camera that frames it.
+//! What is shown: a model in a scene made for it, or a scene of its own.
 
 use std::f64::consts::TAU;
 
@@ -9,34 +9,45 @@ use mode13h::palette::Palette;
 use mode13h::scene::{Camera, Object, ObjectId, Scene, UpAxis};
 
 /// How fast a model turns when nothing is said: once in four seconds, in radians a second.
-pub(crate) const SPEED: f64 = TAU / 4.0;
+const SPEED: f64 = TAU / 4.0;
 
-/// How a model stands and how near it is.
+/// How far a model's upper end is tilted towards the camera, in radians, so that a flat model is not a line.
+const TILT: f64 = 0.35;
+
+/// How the user has turned what is shown, and how near it is, beyond what the clock does.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Pose {
     /// About its own upward axis, counter-clockwise seen from above, in radians.
     pub(crate) turn: f64,
     /// Its upper end towards the camera, in radians.
     pub(crate) tilt: f64,
-    /// How many times as large as when the frame just holds it.
+    /// How many times as large as at first.
     pub(crate) zoom: f64,
 }
 
 impl Pose {
-    /// As every picture begins: seen a little from above, so that a flat model is not a line.
-    pub(crate) const FIRST: Pose = Pose { turn: 0.0, tilt: 0.35, zoom: 1.0 };
+    /// As every picture begins.
+    pub(crate) const FIRST: Pose = Pose { turn: 0.0, tilt: 0.0, zoom: 1.0 };
 }
 
-/// A scene with one model.
+/// A scene, and what moves in it.
 #[derive(Clone)]
 pub(crate) struct Stage {
     pub(crate) scene: Scene,
-    object: ObjectId,
-    radius: f32,
+    shown: Shown,
+}
+
+#[derive(Clone)]
+enum Shown {
+    /// One model, which turns under a light that stands still, as in a hand.
+    Model { object: ObjectId, radius: f32 },
+    /// A scene with its own motion, which the camera goes round. This is where it stands by itself.
+    Scene { camera: Camera },
 }
 
 impl Stage {
-    pub(crate) fn new(mesh: Mesh, up: UpAxis, palette: Palette) -> Stage {
+    /// A model about the origin, a sun, and a camera that frames it.
+    pub(crate) fn of_model(mesh: Mesh, up: UpAxis, palette: Palette) -> Stage {
         let radius = mesh.bounds().radius;
         let mut scene = Scene::new();
         let mut object = Object::new(mesh).centred();
@@ -44,18 +55,143 @@ impl Stage {
         let object = scene.add(object);
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
         scene.palette = Some(palette);
-        let mut stage = Stage { scene, object, radius };
-        stage.pose(Pose::FIRST);
+        let mut stage = Stage { scene, shown: Shown::Model { object, radius } };
+        stage.show(0.0, Pose::FIRST);
         stage
     }
 
-    /// Puts the model as `pose` says. To enlarge it the camera's view is narrowed, as going nearer would end inside
-    /// the model; to make it smaller the camera goes farther away, as a wider view would bend it.
-    pub(crate) fn pose(&mut self, Pose { turn, tilt, zoom }: Pose) {
-        self.scene[self.object].set_angles([tilt, turn, 0.0]);
-        let mut camera = Camera::framing(Vec3::ZERO, self.radius / zoom.min(1.0) as f32);
-        let half = f64::from(camera.field_of_view) / 2.0;
-        camera.field_of_view = (2.0 * libm::atan(libm::tan(half) / zoom.max(1.0))) as f32;
-        self.scene.camera = camera;
+    pub(crate) fn of_scene(scene: Scene) -> Stage {
+        let camera = scene.camera;
+        Stage { scene, shown: Shown::Scene { camera } }
+    }
+
+    /// How long a round takes, in seconds: of a model a turn.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.scene.duration
+    }
+
+    /// What `--turn` means by so many degrees at a time: the time and the pose. A model is turned. A scene that moves by
+    /// itself goes on, 360 degrees being one round of it; one that does not is gone round by the camera.
+    pub(crate) fn turned(&self, seconds: f64, degrees: f64) -> (f64, Pose) {
+        let moves = !self.scene.motions.is_empty() || self.scene.palette_animation.is_some();
+        match self.shown {
+            Shown::Scene { .. } if moves => (seconds + degrees / 360.0 * self.scene.duration, Pose::FIRST),
+            _ => (seconds, Pose { turn: degrees.to_radians(), ..Pose::FIRST }),
+        }
+    }
+
+    /// Puts everything where it is at a time, in seconds, seen as `pose` says.
+    pub(crate) fn show(&mut self, seconds: f64, pose: Pose) {
+        let Pose { turn, tilt, zoom } = pose;
+        match self.shown {
+            Shown::Model { object, radius } => {
+                self.scene[object].set_angles([TILT + tilt, turn + SPEED * seconds, 0.0]);
+                self.scene.camera = zoomed(Camera::framing(Vec3::ZERO, radius), zoom);
+            }
+            Shown::Scene { camera } => {
+                self.scene.camera = camera;
+                self.scene.set_time(seconds);
+                if pose != Pose::FIRST {
+                    self.scene.camera = zoomed(gone_round(self.scene.camera, turn, tilt), zoom);
+                }
+            }
+        }
+    }
+
+    /// Another palette. What the frame is cleared to stays the colour it was chosen for.
+    pub(crate) fn set_palette(&mut self, palette: Palette) {
+        if let Some(color) = self.scene.background_color {
+            self.scene.background = palette.nearest(color);
+        }
+        self.scene.palette = Some(palette);
+    }
+}
+
+/// To enlarge what it sees, a camera's view is narrowed, as going nearer would end inside the model; to make it smaller
+/// it goes farther away, as a wider view would bend it.
+fn zoomed(mut camera: Camera, zoom: f64) -> Camera {
+    let half = f64::from(camera.field_of_view) / 2.0;
+    camera.field_of_view = (2.0 * libm::atan(libm::tan(half) / zoom.max(1.0))) as f32;
+    if zoom < 1.0 {
+        camera.eye = camera.target + (camera.eye - camera.target) / zoom as f32;
+    }
+    camera
+}
+
+/// A camera that has gone round its target: what it sees seems to have turned by `turn` about the camera's upward axis,
+/// and its upper end to have come nearer by `tilt`.
+fn gone_round(mut camera: Camera, turn: f64, tilt: f64) -> Camera {
+    let up = camera.up.normalize_or(Vec3::Y);
+    let out = camera.eye - camera.target;
+    // Where it looks along its upward axis any axis across will do.
+    let right = up.cross(out).normalize_or(up.any_orthonormal_vector());
+    let turned = |v: Vec3| about(up, -turn, about(right, -tilt, v));
+    camera.eye = camera.target + turned(out);
+    camera.up = turned(up);
+    camera
+}
+
+/// `v` turned about a unit axis, counter-clockwise seen from its end (Rodrigues' formula).
+fn about(axis: Vec3, angle: f64, v: Vec3) -> Vec3 {
+    let (sine, cosine) = libm::sincos(angle);
+    let (sine, cosine) = (sine as f32, cosine as f32);
+    v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mode13h::scene::shipped;
+
+    fn near(a: Vec3, b: Vec3) -> bool {
+        (a - b).length() < 1e-5
+    }
+
+    #[test]
+    fn a_camera_goes_round_so_that_its_target_seems_to_turn() {
+        let camera = Camera { target: Vec3::new(1.0, 2.0, 3.0), ..Camera::framing(Vec3::ZERO, 1.0) };
+        let camera = Camera { eye: camera.target + Vec3::Z * 4.0, ..camera };
+        // A quarter turn counter-clockwise seen from above brings what was at the left to the front.
+        let left = gone_round(camera, TAU / 4.0, 0.0);
+        assert!(near(left.eye, camera.target - Vec3::X * 4.0), "{}", left.eye);
+        assert!(near(left.up, Vec3::Y));
+        // A quarter turn of the upper end towards the camera shows it from above.
+        let above = gone_round(camera, 0.0, TAU / 4.0);
+        assert!(near(above.eye, camera.target + Vec3::Y * 4.0), "{}", above.eye);
+        assert!(near(above.up, Vec3::NEG_Z), "{}", above.up);
+        assert!(near(gone_round(camera, TAU, TAU).eye, camera.eye));
+    }
+
+    /// The scene of the torus is the model of the torus as it was always shown.
+    #[test]
+    fn the_scene_of_the_torus_is_the_model_on_its_stage() {
+        let mesh = mode13h::mesh::shapes::by_name("torus").expect("a shape");
+        let grey = mode13h::palette::builtin::GREY.clone();
+        let mut model = Stage::of_model(mesh, UpAxis::Y, grey);
+        let scene = shipped::by_name("torus").expect("a scene").load().expect("a scene that loads").scene;
+        let mut scene = Stage::of_scene(scene);
+        let mut renderer = mode13h::render::Renderer::new();
+        let mut frame = |stage: &Stage| {
+            let mut vga = mode13h::vga::Vga::new();
+            renderer.draw(&stage.scene, &mut vga).expect("a legal scene");
+            (vga.pixels().to_vec(), vga.palette())
+        };
+        for (at, degrees) in [(0.0, 0.0), (0.0, 45.0), (1.0, 0.0), (2.5, 0.0), (7.0, 90.0), (-0.5, 360.0 / 7.0)] {
+            for stage in [&mut model, &mut scene] {
+                let (seconds, pose) = stage.turned(at, degrees);
+                stage.show(seconds, pose);
+            }
+            assert!(frame(&model) == frame(&scene), "{degrees} degrees at {at} s");
+        }
+    }
+
+    #[test]
+    fn a_scene_that_moves_goes_on_and_another_is_gone_round() {
+        let torus = shipped::by_name("torus").expect("a scene").load().expect("a scene that loads").scene;
+        assert_eq!(Stage::of_scene(torus.clone()).turned(1.0, 90.0), (2.0, Pose::FIRST));
+        let mut still = torus;
+        still.motions.clear();
+        let stage = Stage::of_scene(still);
+        assert_eq!(stage.turned(1.0, 90.0), (1.0, Pose { turn: TAU / 4.0, ..Pose::FIRST }));
     }
 }

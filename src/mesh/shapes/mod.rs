@@ -2,7 +2,7 @@
 //!
 //! All normals are analytic (S2) but for the cube's, which are those of its faces. Numbers of slices,
 //! stacks and segments that are too small are raised to the least that makes the shape, and those
-//! over 4,096 lowered to that.
+//! over 4,096 lowered to that. Cube and wall have texture coordinates.
 //!
 //! | shape | closed | convex | axis |
 //! |---|---|---|---|

@@ -2,20 +2,25 @@
 
 use alloc::vec::Vec;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::{MOST, toward_zero};
 use crate::mesh::Mesh;
 
 /// A square in the plane z = 0 with its corners on the unit sphere, facing +z, cut into
-/// `columns` × `rows` rectangles of two triangles each. At least 1 × 1.
+/// `columns` × `rows` rectangles of two triangles each. At least 1 × 1. Texture coordinates run from
+/// (0, 0) in its lower left corner to (1, 1).
 #[must_use]
 pub fn wall(columns: u32, rows: u32) -> Mesh {
     let (columns, rows) = (columns.clamp(1, MOST), rows.clamp(1, MOST));
     let half = libm::sqrt(0.5);
     let place = |i: u32, of: u32| toward_zero(half * (2.0 * f64::from(i) / f64::from(of) - 1.0));
+    // Both at most 4,096: exact.
+    let part = |i: u32, of: u32| i as f32 / of as f32;
     let mut positions = Vec::new();
+    let mut texcoords = Vec::new();
     for row in 0..=rows {
+        texcoords.extend((0..=columns).map(|column| Vec2::new(part(column, columns), part(row, rows))));
         positions.extend((0..=columns).map(|column| Vec3::new(place(column, columns), place(row, rows), 0.0)));
     }
     let mut triangles = Vec::new();
@@ -28,5 +33,5 @@ pub fn wall(columns: u32, rows: u32) -> Mesh {
         }
     }
     let normals = positions.iter().map(|_| Vec3::Z).collect();
-    Mesh::assemble(positions, normals, triangles)
+    Mesh { texcoords: Some(texcoords), ..Mesh::assemble(positions, normals, triangles) }
 }

@@ -31,6 +31,8 @@ pub struct EdgePair {
     pub(super) x0: i32,
     /// The pixel after the row's last; not after `x0` where the row has none.
     pub(super) x1: i32,
+    /// The row's last pixel inside the frame.
+    pub(super) last: i32,
     /// Whether it hides the background wherever it is: the depths of its vertices are above 0.
     pub(super) hides_background: bool,
     paint: Option<Paint>,
@@ -68,6 +70,7 @@ impl EdgePair {
         self.origin = left.max(0);
         self.x0 = self.origin.max(clip.x0 as i32);
         self.x1 = right.min(frame_width.min(clip.x1) as i32);
+        self.last = right.min(frame_width as i32) - 1;
     }
 
     /// On to row `y`, the next. Returns whether it has that row.

@@ -37,6 +37,7 @@ use super::cover::{Ordered, Row};
 use super::depth::Cell;
 use super::triangle::{Drawn, Raster, Shading};
 use super::vertex::Vertex;
+use crate::span::Kernel;
 
 /// The memory of the scan-line method, lent by the caller. What it holds between two frames makes no
 /// difference.
@@ -67,6 +68,11 @@ pub struct Lists {
 
 #[cfg(feature = "alloc")]
 impl Lists {
+    /// Bytes that it holds.
+    pub(crate) fn bytes(&self) -> usize {
+        self.list.capacity() * size_of::<u64>() + self.pairs.capacity() * size_of::<EdgePair>()
+    }
+
     /// Memory for so many faces.
     pub fn scratch(&mut self, faces: usize) -> Scratch<'_> {
         let least = |length: usize, needed: usize| length.max(needed);
@@ -148,6 +154,21 @@ impl<D: Cell> Raster<'_, D> {
     /// # Errors
     /// `scratch` is too small for so many faces. Nothing is drawn then.
     pub fn scan_line(&mut self, faces: &[([Vertex; 3], Shading)], scratch: Scratch<'_>) -> Result<Drawn, ScratchError> {
+        self.scan_line_with(faces, scratch, |_, _, _, _, _| false)
+    }
+
+    /// The same, where faces may be painted otherwise: `paint` is handed a face's place among `faces`, a
+    /// row of it, the frame's whole row, the kernel and the counts, and returns whether it painted; if
+    /// not, the face is painted as its shading says.
+    ///
+    /// # Errors
+    /// As [`scan_line`](Self::scan_line).
+    pub fn scan_line_with(
+        &mut self,
+        faces: &[([Vertex; 3], Shading)],
+        scratch: Scratch<'_>,
+        mut paint: impl FnMut(usize, &Row, &mut [u8], Kernel, &mut Drawn) -> bool,
+    ) -> Result<Drawn, ScratchError> {
         let count = faces.len();
         let Scratch { list, pairs } = scratch;
         let room = pairs.len().min(list.len() / Scratch::LIST_EACH);
@@ -172,12 +193,17 @@ impl<D: Cell> Raster<'_, D> {
             let enter = coming[next..].iter().take_while(|key| Key(**key).place() == y).count();
             list.enter(y, &mut coming[next..next + enter], faces);
             next += enter;
-            sweep.row(self, &mut list, open, y);
+            sweep.row(self, &mut list, open, y, &mut paint);
             list.down();
         }
         Ok(sweep.drawn)
     }
 }
+
+/// Paints a face's row otherwise than its shading says, or returns `false`.
+trait Painter: FnMut(usize, &Row, &mut [u8], Kernel, &mut Drawn) -> bool {}
+
+impl<F: FnMut(usize, &Row, &mut [u8], Kernel, &mut Drawn) -> bool> Painter for F {}
 
 /// The pixels from `x0` to `x1` of a row that one face has.
 #[derive(Clone, Copy)]
@@ -195,7 +221,14 @@ struct Sweep {
 }
 
 impl Sweep {
-    fn row<D: Cell>(&mut self, raster: &mut Raster<'_, D>, list: &mut active::List<'_>, open: &mut [u64], y: i32) {
+    fn row<D: Cell>(
+        &mut self,
+        raster: &mut Raster<'_, D>,
+        list: &mut active::List<'_>,
+        open: &mut [u64],
+        y: i32,
+        paint: &mut impl Painter,
+    ) {
         let (mut next, mut opened, mut x) = (0, 0, 0);
         loop {
             if opened == 0 {
@@ -220,7 +253,7 @@ impl Sweep {
             while !faces.is_empty() && x < end {
                 let (slot, until) = nearest::lead(faces, list, x, end, y);
                 if let Some(slot) = slot {
-                    self.extend(Run { slot, x0: x, x1: until }, raster, list, y);
+                    self.extend(Run { slot, x0: x, x1: until }, raster, list, y, paint);
                 }
                 x = until;
             }
@@ -234,27 +267,43 @@ impl Sweep {
             opened = kept;
         }
         if let Some(run) = self.run.take() {
-            self.paint(run, raster, list, y);
+            self.paint(run, raster, list, y, paint);
         }
     }
 
     #[inline]
-    fn extend<D: Cell>(&mut self, run: Run, raster: &mut Raster<'_, D>, list: &mut active::List<'_>, y: i32) {
+    fn extend<D: Cell>(
+        &mut self,
+        run: Run,
+        raster: &mut Raster<'_, D>,
+        list: &mut active::List<'_>,
+        y: i32,
+        paint: &mut impl Painter,
+    ) {
         match &mut self.run {
             Some(last) if last.slot == run.slot && last.x1 == run.x0 => last.x1 = run.x1,
             last => {
                 if let Some(last) = last.replace(run) {
-                    self.paint(last, raster, list, y);
+                    self.paint(last, raster, list, y, paint);
                 }
             }
         }
     }
 
-    fn paint<D: Cell>(&mut self, run: Run, raster: &mut Raster<'_, D>, list: &mut active::List<'_>, y: i32) {
+    fn paint<D: Cell>(
+        &mut self,
+        run: Run,
+        raster: &mut Raster<'_, D>,
+        list: &mut active::List<'_>,
+        y: i32,
+        paint: &mut impl Painter,
+    ) {
         let Some(pixels) = raster.frame.row_mut(y as u32) else { return };
         let Run { slot, x0, x1 } = run;
         let pair = list.pair_mut(slot);
-        let row = Row { y, origin: pair.origin, x0, x1 };
-        pair.paint().row(&row, pixels, raster.kernel, &mut self.drawn);
+        let row = Row { y, origin: pair.origin, x0, x1, last: pair.last };
+        if !paint(pair.order, &row, pixels, raster.kernel, &mut self.drawn) {
+            pair.paint().row(&row, pixels, raster.kernel, &mut self.drawn);
+        }
     }
 }

@@ -1,0 +1,297 @@
+//! `mode13h plan`: what a scene calls for, object by object, and why.
+
+use std::ffi::OsString;
+use std::time::Duration;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use mode13h::plan::{Effect, Plan, Row};
+use mode13h::render::{Renderer, Stats};
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+use serde::Serialize;
+
+use crate::failure::Failure;
+use crate::options::{Drawing, finite};
+use crate::price::Meter;
+use crate::stage::Pose;
+use crate::{input, output};
+
+/// From one frame to the next, in seconds: films have 35 a second.
+const STEP: f64 = 1.0 / 35.0;
+
+/// How long all prices together take to measure, and one at least and at most.
+const TIME: Duration = Duration::from_secs(6);
+const TIME_OF_ONE: (Duration, Duration) = (Duration::from_millis(5), Duration::from_millis(100));
+
+#[derive(Args)]
+pub(crate) struct Options {
+    #[arg(help = input::help())]
+    input: OsString,
+    /// As JSON, for programs: the same on every run, times excepted
+    #[arg(long)]
+    json: bool,
+    /// Measure each effect: what a frame is shorter by without it, or, of one that is off, longer by with it
+    #[arg(long)]
+    time: bool,
+    /// The time of the frame, in seconds. It follows one 1/35 s before it, so that one sees what is kept
+    #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, default_value_t = 0.0)]
+    at: f64,
+    #[command(flatten)]
+    drawing: Drawing,
+}
+
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let Options { input, json, time, at, drawing } = options;
+    let kernel = drawing.kernel()?;
+    let input = input::input(input)?;
+    let name = input.name().to_string();
+    let mut stage = drawing.stage(input)?;
+    let frames = [at - STEP, *at].map(|seconds| {
+        stage.show(seconds, Pose::FIRST);
+        stage.scene.clone()
+    });
+
+    let (mut renderer, mut vga) = (drawing.renderer(kernel), Vga::new());
+    let mut draw = |scene: &Scene| renderer.draw(scene, &mut vga).map_err(Failure::work);
+    draw(&frames[0])?;
+    let stats = draw(&frames[1])?;
+    let rows = renderer.plan().rows(&frames[1]);
+
+    let effects = rows.len().max(1);
+    let of_one = (TIME / u32::try_from(effects).unwrap_or(u32::MAX)).clamp(TIME_OF_ONE.0, TIME_OF_ONE.1);
+    let meter = Meter { renderer: || drawing.renderer(kernel), frames: &frames, time: of_one };
+    let prices = if *time { Some(prices(&meter, &rows)?) } else { None };
+    output::print(&if *json {
+        as_json(&name, &rows, prices.as_deref())?
+    } else {
+        let plan = renderer.plan();
+        let head = Head { name: &name, at: *at, plan, stats: &stats, planning: meter.plan()? };
+        let frame = if *time { Some(meter.frame()?) } else { None };
+        head.text(&rows, frame) + &tables(&rows, prices.as_deref())
+    })
+}
+
+/// The price of each row, in nanoseconds a frame.
+fn prices<Make: Fn() -> Renderer>(meter: &Meter<'_, Make>, rows: &[Row]) -> Result<Vec<Option<u64>>, Failure> {
+    let bar = ProgressBar::new(rows.len() as u64);
+    let bar = match ProgressStyle::with_template("{bar:40} {pos}/{len} effects measured") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    };
+    let mut prices: Vec<Option<u64>> = Vec::with_capacity(rows.len());
+    for row in rows {
+        // Those of all objects are measured once.
+        let of_all = matches!(row.effect, Effect::HiddenSurfaces | Effect::PaletteAnimation);
+        let measured = rows.iter().zip(&prices).find(|(other, _)| of_all && other.effect == row.effect);
+        prices.push(match measured {
+            Some((_, price)) => *price,
+            None => meter.price(row.place, row.effect, row.on)?,
+        });
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok(prices)
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    schema: u32,
+    scene: &'a str,
+    objects: Vec<JsonObject<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonObject<'a> {
+    object: &'a str,
+    effects: Vec<JsonEffect<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonEffect<'a> {
+    effect: &'static str,
+    on: bool,
+    choice: &'static str,
+    why: &'a str,
+    /// Only if asked for; then null where it cannot be measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ns_per_frame: Option<Option<u64>>,
+}
+
+fn as_json(name: &str, rows: &[Row], prices: Option<&[Option<u64>]>) -> Result<String, Failure> {
+    let objects = rows.chunk_by(|a, b| a.place == b.place).scan(0, |first, rows| {
+        let prices = prices.map(|prices| &prices[*first..][..rows.len()]);
+        *first += rows.len();
+        let effects = rows.iter().enumerate().map(|(i, row)| JsonEffect {
+            effect: row.effect.name(),
+            on: row.on,
+            choice: row.choice,
+            why: &row.why,
+            ns_per_frame: prices.map(|prices| prices[i]),
+        });
+        Some(JsonObject { object: &rows[0].object, effects: effects.collect() })
+    });
+    let json = Json { schema: 1, scene: name, objects: objects.collect() };
+    let text = serde_json::to_string_pretty(&json).map_err(Failure::work)?;
+    Ok(text + "\n")
+}
+
+/// What holds for all objects.
+struct Head<'a> {
+    name: &'a str,
+    at: f64,
+    plan: &'a Plan,
+    stats: &'a Stats,
+    /// What making the plan takes, in nanoseconds.
+    planning: f64,
+}
+
+impl Head<'_> {
+    fn text(&self, rows: &[Row], frame: Option<f64>) -> String {
+        let Head { name, at, plan, stats, planning } = self;
+        let objects = plan.objects().len();
+        let of = if objects == 1 { "1 object".to_string() } else { format!("{objects} objects") };
+        let mut text = format!("{name} at {at} s, 1/35 s after the frame before it: {of}\n");
+        let hidden = rows.iter().find(|row| row.effect == Effect::HiddenSurfaces);
+        let why = hidden.map(|row| format!(" ({})", row.why)).unwrap_or_default();
+        let Stats { rung, vertex_path, kernel, hidden_surfaces, .. } = stats;
+        let mut paragraph = |line: &str| text.push_str(&wrapped(line, 0, WIDTH));
+        paragraph(&format!("all: {rung}, {vertex_path} vertices, kernel {kernel}, hidden surfaces by {hidden_surfaces}{why}"));
+        if !stats.redrawn {
+            paragraph("nothing changed since the frame before, so this one is not drawn again");
+        }
+        let each = if objects > 1 { format!(", {:.0} ns an object", planning / objects as f64) } else { String::new() };
+        paragraph(&format!("making the plan takes {planning:.0} ns{each}, the median of many"));
+        if let Some(frame) = frame {
+            paragraph(&format!("drawing the frame takes {frame:.0} ns, even where it need not be drawn again"));
+            paragraph(
+                "ns: by how much the frame is longer with the effect than without it, on this object alone; in brackets \
+                 what one that is off would cost; 0 is less than can be told from noise. Hidden surfaces and palette \
+                 animation are measured for all objects together",
+            );
+        }
+        text
+    }
+}
+
+/// Columns of text.
+const WIDTH: usize = 100;
+
+/// The widths of a table's columns but the last.
+struct Widths {
+    effect: usize,
+    choice: usize,
+    price: usize,
+}
+
+/// A table for each object. If there are several and nothing was measured, what is the same for all comes first, and
+/// objects with the same rest share a table.
+fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
+    let priced: Vec<(&Row, String)> = rows
+        .iter()
+        .enumerate()
+        .map(|(i, row)| match prices.map(|prices| prices[i]) {
+            Some(Some(price)) if row.on => (row, price.to_string()),
+            Some(Some(price)) => (row, format!("({price})")),
+            Some(None) => (row, "-".to_string()),
+            None => (row, String::new()),
+        })
+        .collect();
+    let widest = |of: &dyn Fn(&(&Row, String)) -> usize| priced.iter().map(of).max().unwrap_or_default();
+    let widths = Widths {
+        effect: widest(&|(row, _)| row.effect.name().len()),
+        choice: widest(&|(row, _)| row.choice.len()),
+        price: widest(&|(_, price)| price.len()),
+    };
+    let objects: Vec<&[(&Row, String)]> = priced.chunk_by(|(a, _), (b, _)| a.place == b.place).collect();
+    let said = |row: &Row| (row.effect, row.on, row.choice, row.why.clone());
+    let common: Vec<(&Row, String)> = match objects.as_slice() {
+        [first, rest @ ..] if !rest.is_empty() && prices.is_none() => {
+            let same = |(row, _): &&(&Row, String)| rest.iter().all(|of| of.iter().any(|(other, _)| said(row) == said(other)));
+            first.iter().filter(same).cloned().collect()
+        }
+        _ => Vec::new(),
+    };
+    let mut text = String::new();
+    if !common.is_empty() {
+        text += &table("all objects", &common, &widths);
+    }
+    // Several objects may have one name.
+    let heading = |row: &Row| match objects.iter().filter(|object| object[0].0.object == row.object).count() {
+        1 => row.object.clone(),
+        _ => format!("{} (object {})", row.object, row.place),
+    };
+    let is_common = |row: &Row| common.iter().any(|(other, _)| row.effect == other.effect);
+    let mut groups: Vec<(Vec<String>, Vec<(&Row, String)>)> = Vec::new();
+    for object in &objects {
+        let rest: Vec<(&Row, String)> = object.iter().filter(|(row, _)| !is_common(row)).cloned().collect();
+        let name = heading(object[0].0);
+        let same = |of: &[(&Row, String)]| of.iter().map(|(row, _)| said(row)).eq(rest.iter().map(|(row, _)| said(row)));
+        match groups.iter_mut().find(|(_, of)| prices.is_none() && same(of)) {
+            Some((names, _)) => names.push(name),
+            None => groups.push((vec![name], rest)),
+        }
+    }
+    for (names, rows) in groups.iter().filter(|(_, rows)| !rows.is_empty()) {
+        text += &table(&names.join(", "), rows, &widths);
+    }
+    text
+}
+
+fn table(heading: &str, rows: &[(&Row, String)], widths: &Widths) -> String {
+    let Widths { effect, choice, price } = *widths;
+    let columns = |name: &str, on: &str, of: &str, ns: &str| {
+        let mut line = format!("  {name:effect$}  {on:3}");
+        if choice > 0 {
+            line += &format!("  {of:choice$}");
+        }
+        if price > 0 {
+            line += &format!("  {ns:>price$}");
+        }
+        line + "  "
+    };
+    let mut text = format!("\n{}", wrapped(heading, 0, WIDTH));
+    for (row, price) in rows {
+        let columns = columns(row.effect.name(), if row.on { "on" } else { "off" }, row.choice, price);
+        text += &columns;
+        text += &wrapped(&row.why, columns.chars().count(), WIDTH);
+    }
+    text
+}
+
+/// Words in lines that end before `width`. They begin at `indent`: so do those after the first, which stands behind
+/// what is there.
+fn wrapped(words: &str, indent: usize, width: usize) -> String {
+    let mut text = String::new();
+    let mut column = indent;
+    for word in words.split_whitespace() {
+        let length = word.chars().count();
+        if column > indent {
+            if column + 1 + length > width {
+                text += "\n";
+                text += &" ".repeat(indent);
+                column = indent;
+            } else {
+                text.push(' ');
+                column += 1;
+            }
+        }
+        text += word;
+        column += length;
+    }
+    text + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_wrapped_where_their_column_begins() {
+        assert_eq!(wrapped("one two three", 0, 100), "one two three\n");
+        assert_eq!(wrapped("one two three", 0, 7), "one two\nthree\n");
+        assert_eq!(wrapped("one two three", 2, 9), "one two\n  three\n");
+        assert_eq!(wrapped("unbreakable one", 0, 4), "unbreakable\none\n");
+        assert_eq!(wrapped("", 5, 9), "\n");
+    }
+}

@@ -1,0 +1,135 @@
+//! What an effect costs: measured on the spot, against the frame as the plan has it.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use mode13h::plan::Effect;
+use mode13h::render::{HiddenSurfaces, Renderer, Screen};
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+
+use crate::failure::Failure;
+
+/// The least and the most differences that a price is made from.
+const ROUNDS: (usize, usize) = (15, 1_001);
+
+/// Times frames of a scene that moves: the two come in turn, each after the other.
+pub(crate) struct Meter<'a, Make: Fn() -> Renderer> {
+    /// What draws as the user asked for.
+    pub(crate) renderer: Make,
+    /// 1/35 s apart.
+    pub(crate) frames: &'a [Scene; 2],
+    /// How long an effect is measured.
+    pub(crate) time: Duration,
+}
+
+/// A renderer with its machine.
+struct Artist {
+    renderer: Renderer,
+    vga: Vga,
+}
+
+impl Artist {
+    fn new(renderer: Renderer) -> Artist {
+        Artist { renderer, vga: Vga::new() }
+    }
+
+    /// Nanoseconds for a frame. It is drawn even where nothing changed: else there would be nothing to measure.
+    fn draw(&mut self, scene: &Scene) -> Result<f64, Failure> {
+        black_box(self.vga.pixels_mut());
+        let start = Instant::now();
+        self.renderer.draw(scene, &mut self.vga).map_err(Failure::work)?;
+        Ok(nanoseconds(start.elapsed()))
+    }
+}
+
+impl<Make: Fn() -> Renderer> Meter<'_, Make> {
+    /// What a frame takes, in nanoseconds: the median of many.
+    pub(crate) fn frame(&self) -> Result<f64, Failure> {
+        let mut artist = Artist::new((self.renderer)());
+        let times = self.rounds(|scene, _| artist.draw(scene))?;
+        Ok(median(times))
+    }
+
+    /// What making the plan takes, in nanoseconds: the median of many, each of ten plans.
+    pub(crate) fn plan(&self) -> Result<f64, Failure> {
+        const PLANS: usize = 10;
+        let mut renderer = (self.renderer)();
+        // The vertices of the first are there; those of the second never.
+        renderer.draw(&self.frames[0], &mut Vga::new()).map_err(Failure::work)?;
+        let times = self.rounds(|_, _| {
+            let start = Instant::now();
+            for i in 0..PLANS {
+                black_box(renderer.make_plan(&self.frames[i % 2], Screen::MODE_13H)).map_err(Failure::work)?;
+            }
+            Ok(nanoseconds(start.elapsed()) / PLANS as f64)
+        })?;
+        Ok(median(times))
+    }
+
+    /// By how many nanoseconds a frame is longer with an effect on one object than without it. `on`: whether it is on
+    /// as the plan has it, for otherwise it is switched on. Hidden surfaces and palette animation are those of all
+    /// objects. `None` where it cannot be switched.
+    ///
+    /// The frame as it is and the frame with the effect switched are drawn in turn; the price is the median of the
+    /// differences. The median of n differences scatters by about 1.2533·σ/√n, and σ is 1.4826 times the median of
+    /// their distances from the median (both for a normal distribution). A price below three times that, or below 0,
+    /// is noise, and counts as 0.
+    pub(crate) fn price(&self, object: usize, effect: Effect, on: bool) -> Result<Option<u64>, Failure> {
+        let mut usual = Artist::new((self.renderer)());
+        let mut switched = Artist::new((self.renderer)());
+        match effect {
+            Effect::HiddenSurfaces => {
+                let way = if on { HiddenSurfaces::BackFaces } else { HiddenSurfaces::DepthBuffer };
+                switched.renderer.set_hidden_surfaces(Some(way));
+            }
+            Effect::PaletteAnimation => switched.renderer.force(effect, Some(!on)),
+            _ => switched.renderer.force_for(object, effect, Some(!on)),
+        }
+        let differences = self.rounds(|scene, round| {
+            // In turn, so that neither always finds the caches as the other left them.
+            let (usual, switched) = if round / 2 % 2 == 0 {
+                let usual = usual.draw(scene)?;
+                (usual, switched.draw(scene)?)
+            } else {
+                let switched = switched.draw(scene)?;
+                (usual.draw(scene)?, switched)
+            };
+            Ok(if on { usual - switched } else { switched - usual })
+        })?;
+        if switched.renderer.plan().is_on(object, effect) == on {
+            return Ok(None);
+        }
+        let count = differences.len() as f64;
+        let price = median(differences.clone());
+        let scatter = median(differences.iter().map(|difference| (difference - price).abs()).collect());
+        let noise = 3.0 * 1.2533 * 1.4826 * scatter / count.sqrt();
+        // Far below 2⁵³.
+        Ok(Some(if price > noise { price.round() as u64 } else { 0 }))
+    }
+
+    /// What `measure` gives for the two frames in turn, over and over, as long as there is time. The first four
+    /// times do not count: tables and vertices are made then.
+    fn rounds(&self, mut measure: impl FnMut(&Scene, usize) -> Result<f64, Failure>) -> Result<Vec<f64>, Failure> {
+        for round in 0..4 {
+            measure(&self.frames[round % 2], round)?;
+        }
+        let start = Instant::now();
+        let mut measured = Vec::new();
+        while measured.len() < ROUNDS.0 || (measured.len() < ROUNDS.1 && start.elapsed() < self.time) {
+            let round = measured.len();
+            measured.push(measure(&self.frames[round % 2], round)?);
+        }
+        Ok(measured)
+    }
+}
+
+fn nanoseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e9
+}
+
+/// The one in the middle. Of none it is 0.
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    numbers.get(numbers.len() / 2).copied().unwrap_or_default()
+}

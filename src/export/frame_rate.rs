@@ -1,0 +1,84 @@
+//! Frames a second, and how long each frame then stays in hundredths of a second, the unit of GIF.
+
+use std::error::Error;
+use std::fmt;
+
+/// How many frames of a film are shown a second, 0.1 to 50.
+///
+/// Browsers show a frame that is to stay for less than 2/100 s for 10/100 s instead: 50 frames a second is the most
+/// that they keep to. 35, the default, is every second retrace of the machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameRate(f64);
+
+impl FrameRate {
+    /// The lowest rate: a frame stays for ten seconds.
+    pub const LOWEST: FrameRate = FrameRate(0.1);
+    /// The highest rate.
+    pub const HIGHEST: FrameRate = FrameRate(50.0);
+
+    /// So many frames a second.
+    ///
+    /// # Errors
+    ///
+    /// [`FrameRateError`] if that is not 0.1 to 50.
+    pub fn new(frames_per_second: f64) -> Result<FrameRate, FrameRateError> {
+        // NaN lies in no range.
+        match (Self::LOWEST.0..=Self::HIGHEST.0).contains(&frames_per_second) {
+            true => Ok(FrameRate(frames_per_second)),
+            false => Err(FrameRateError { frames_per_second }),
+        }
+    }
+
+    /// Frames a second.
+    pub fn frames_per_second(self) -> f64 {
+        self.0
+    }
+
+    /// How long frame `number` stays, counted from 0, in 1/100 s: 2 to 1,000. A frame begins at the first hundredth that
+    /// is not before its time, ⌈100·number / rate⌉, whatever the frames before it: nothing adds up.
+    ///
+    /// ```
+    /// use mode13h::export::FrameRate;
+    /// let delays: Vec<u16> = (0..8).map(|number| FrameRate::default().delay(number)).collect();
+    /// assert_eq!(delays, [3, 3, 3, 3, 3, 3, 2, 3]);
+    /// ```
+    pub fn delay(self, number: u64) -> u16 {
+        // A rate of 0.1 or more has its last bit at 2⁻⁵⁶ or before it: this is a whole number, below 2⁶².
+        let rate = (self.0 * (1_u64 << 56) as f64) as u128;
+        // 100 · 2⁶⁴ · 2⁵⁶ is below 2¹²⁷.
+        let begins = |number: u128| ((100 * number) << 56).div_ceil(rate);
+        let number = u128::from(number);
+        // 100 / rate is 2 to 1,000; so is the difference of two sums that are that far apart, each rounded up.
+        (begins(number + 1) - begins(number)) as u16
+    }
+}
+
+impl Default for FrameRate {
+    fn default() -> FrameRate {
+        FrameRate(35.0)
+    }
+}
+
+/// A rate that is no [`FrameRate`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameRateError {
+    frames_per_second: f64,
+}
+
+impl fmt::Display for FrameRateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "a GIF shows {} to {} frames a second, not {}",
+            FrameRate::LOWEST.0,
+            FrameRate::HIGHEST.0,
+            self.frames_per_second
+        )?;
+        match self.frames_per_second > FrameRate::HIGHEST.0 {
+            true => f.write_str(": browsers slow down anything faster"),
+            false => Ok(()),
+        }
+    }
+}
+
+impl Error for FrameRateError {}

@@ -1,0 +1,210 @@
+//! The sum of all light at a point, in an object's own space.
+
+use glam::Vec3;
+
+use crate::mesh::Bounds;
+
+type Wide = [f64; 3];
+
+/// A sun as an object sees it: its direction turned into the object's own space.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Beam {
+    /// Unit, towards the light.
+    pub(crate) towards: Vec3,
+    /// On one channel.
+    pub(crate) intensity: f32,
+    /// On three.
+    pub(crate) channels: [f32; 3],
+}
+
+/// A lamp as an object sees it, in the object's own space and units.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct LampBeam {
+    pub(crate) position: Wide,
+    pub(crate) intensity: f32,
+    pub(crate) channels: [f32; 3],
+    /// 1 / range².
+    pub(crate) inverse_square: f64,
+}
+
+/// Whether a lamp reaches anything within `bounds`.
+pub(crate) fn lamp_reaches(lamp: &LampBeam, bounds: Bounds) -> bool {
+    let (min, max) = (widen(bounds.min), widen(bounds.max));
+    // From the lamp to the nearest point of the box.
+    let apart: Wide = core::array::from_fn(|i| (min[i] - lamp.position[i]).max(lamp.position[i] - max[i]).max(0.0));
+    dot(apart, apart) * lamp.inverse_square < 1.0
+}
+
+/// All light that reaches an object.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lights<'a> {
+    pub(crate) suns: &'a [Beam],
+    pub(crate) lamps: &'a [LampBeam],
+    /// Where the eye is, in the object's own space.
+    pub(crate) eye: Wide,
+}
+
+/// What a material answers, in f64.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Answer {
+    /// ka·Ia.
+    pub(crate) ambient: f64,
+    pub(crate) diffuse: f64,
+    pub(crate) specular: f64,
+    pub(crate) shininess: f64,
+    /// On three channels, what the body gives back is multiplied with this,
+    pub(crate) color: Wide,
+    /// and its highlight with this.
+    pub(crate) highlight: Wide,
+}
+
+/// ka·Ia + kd·Σ Id·max(0, n·l), not yet clamped, for the side of the surface that `normal` (unit)
+/// points away from it, and for the other side: suns alone, on one channel, of a matt material.
+///
+/// The sum is taken in f64, in the order of the lights: a thousand lights of the greatest f32 stay
+/// finite there, whatever their signs.
+#[inline]
+pub(crate) fn both_sides(ambient: f64, diffuse: f64, suns: &[Beam], normal: Vec3) -> (f64, f64) {
+    let (mut front, mut back) = (0.0, 0.0);
+    for sun in suns {
+        let cosine = normal.dot(sun.towards);
+        // Of −0.0 and NaN neither side has any.
+        if cosine > 0.0 {
+            front += f64::from(sun.intensity) * f64::from(cosine);
+        } else if cosine < 0.0 {
+            back -= f64::from(sun.intensity) * f64::from(cosine);
+        }
+    }
+    (ambient + diffuse * front, ambient + diffuse * back)
+}
+
+/// The sums of one side of a surface, for each channel.
+#[derive(Clone, Copy)]
+struct Side<const N: usize> {
+    diffuse: [f64; N],
+    specular: [f64; N],
+}
+
+impl<const N: usize> Side<N> {
+    const DARK: Self = Self { diffuse: [0.0; N], specular: [0.0; N] };
+
+    fn add(&mut self, light: [f64; N], cosine: f64, highlight: f64) {
+        for (i, intensity) in light.into_iter().enumerate() {
+            self.diffuse[i] += intensity * cosine;
+            self.specular[i] += intensity * highlight;
+        }
+    }
+
+    /// What the body gives back, and its highlight.
+    fn answer(&self, answer: &Answer) -> ([f64; N], [f64; N]) {
+        let body = self.diffuse.map(|light| answer.ambient + answer.diffuse * light);
+        (body, self.specular.map(|light| answer.specular * light))
+    }
+}
+
+impl Lights<'_> {
+    /// The whole sum on one channel, not yet clamped, for the side that `normal` (unit) points away
+    /// from and for the other: first the suns, then the lamps, each in their order. Where there are no
+    /// lamps and no highlight these are the numbers of [`both_sides`].
+    #[inline(never)]
+    pub(crate) fn one_channel(&self, answer: &Answer, position: Vec3, normal: Vec3) -> (f64, f64) {
+        let of_sun = |sun: &Beam| [f64::from(sun.intensity)];
+        let of_lamp = |lamp: &LampBeam| [f64::from(lamp.intensity)];
+        let sides = self.sum(answer, position, normal, of_sun, of_lamp);
+        let [front, back] = sides.map(|side| {
+            let ([body], [highlight]) = side.answer(answer);
+            body + highlight
+        });
+        (front, back)
+    }
+
+    /// The same on three channels: red, green, blue.
+    #[inline(never)]
+    pub(crate) fn three_channels(&self, answer: &Answer, position: Vec3, normal: Vec3) -> (Wide, Wide) {
+        let of_sun = |sun: &Beam| sun.channels.map(f64::from);
+        let of_lamp = |lamp: &LampBeam| lamp.channels.map(f64::from);
+        let sides = self.sum(answer, position, normal, of_sun, of_lamp);
+        let [front, back] = sides.map(|side| {
+            let (body, highlight) = side.answer(answer);
+            core::array::from_fn(|i| body[i] * answer.color[i] + highlight[i] * answer.highlight[i])
+        });
+        (front, back)
+    }
+
+    /// What falls on the front and on the back.
+
+    #[inline]
+    fn sum<const N: usize>(
+        &self,
+        answer: &Answer,
+        position: Vec3,
+        normal: Vec3,
+        of_sun: impl Fn(&Beam) -> [f64; N],
+        of_lamp: impl Fn(&LampBeam) -> [f64; N],
+    ) -> [Side<N>; 2] {
+        let (mut front, mut back) = (Side::DARK, Side::DARK);
+        let at = widen(position);
+        let wide_normal = widen(normal);
+        // A build that leaves them out (`plan::Effect::is_left_out`) has neither highlights nor lamps.
+        let is_specular = !cfg!(mode13h_leave_out = "specular") && answer.specular != 0.0;
+        let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
+        let to_eye = is_specular.then(|| unit(sub(self.eye, at))).flatten();
+        for sun in self.suns {
+            let cosine = f64::from(normal.dot(sun.towards));
+            let highlight = highlight(to_eye, wide_normal, widen(sun.towards), cosine, answer.shininess);
+            if cosine > 0.0 {
+                front.add(of_sun(sun), cosine, highlight);
+            } else if cosine < 0.0 {
+                back.add(of_sun(sun), -cosine, highlight);
+            }
+        }
+        for lamp in lamps {
+            let to_lamp = sub(lamp.position, at);
+            let square = dot(to_lamp, to_lamp) * lamp.inverse_square;
+            // Beyond the range; NaN, of what is too far to be squared, too.
+            if !(square < 1.0) {
+                continue;
+            }
+            // A lamp at the point itself lies in the plane of any face through it, and lights none.
+            let Some(towards) = unit(to_lamp) else { continue };
+            let cosine = dot(wide_normal, towards);
+            let highlight = highlight(to_eye, wide_normal, towards, cosine, answer.shininess);
+            let fall_off = (1.0 - square) * (1.0 - square);
+            let light = of_lamp(lamp).map(|intensity| intensity * fall_off);
+            if cosine > 0.0 {
+                front.add(light, cosine, highlight);
+            } else if cosine < 0.0 {
+                back.add(light, -cosine, highlight);
+            }
+        }
+        [front, back]
+    }
+}
+
+/// max(0, r·v)^s, r being the light's direction mirrored at the surface; 0 where nobody asks.
+///
+/// The normal comes in twice, so both sides of a surface have the same.
+#[inline]
+fn highlight(to_eye: Option<Wide>, normal: Wide, towards: Wide, cosine: f64, shininess: f64) -> f64 {
+    let Some(to_eye) = to_eye else { return 0.0 };
+    let along = 2.0 * cosine * dot(normal, to_eye) - dot(towards, to_eye);
+    if along > 0.0 { libm::pow(along, shininess) } else { 0.0 }
+}
+
+fn widen(v: Vec3) -> Wide {
+    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
+}
+
+fn sub(a: Wide, b: Wide) -> Wide {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: Wide, b: Wide) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// `None` for the zero vector.
+fn unit(v: Wide) -> Option<Wide> {
+    let length = libm::sqrt(dot(v, v));
+    (length > 0.0).then(|| v.map(|c| c / length))
+}

@@ -1,0 +1,191 @@
+//! How a surface answers light.
+
+use alloc::string::String;
+
+use super::source::{is_colored, luminance};
+use crate::mesh::Surface;
+use crate::palette::{Palette, Ramp, Rgb};
+use crate::scene::Shared;
+use crate::texture::Texture;
+
+/// Where a material's shades lie in the palette.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
+pub enum RampChoice {
+    /// The palette's ramp of this number, counted round: of a palette with one ramp always that.
+    Number(u16),
+    /// These entries, whatever the palette.
+    Entries(Ramp),
+    /// None: whatever the palette, it is lit on three channels in its own colour, grey or not, and drawn in the
+    /// nearest entries.
+    Nearest,
+}
+
+impl RampChoice {
+    /// The entries in `palette`. A palette without ramps, or none at all, counts as one ramp of 256, and so does what
+    /// needs no ramp.
+    #[must_use]
+    pub fn in_palette(self, palette: Option<&Palette>) -> Ramp {
+        match (self, palette) {
+            (Self::Entries(ramp), _) => ramp,
+            (Self::Number(number), Some(palette)) if palette.ramps() > 0 => {
+                palette.ramp(usize::from(number) % palette.ramps()).unwrap_or(Ramp::WHOLE)
+            }
+            _ => Ramp::WHOLE,
+        }
+    }
+}
+
+/// How a surface answers light.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Material {
+    /// A name for people.
+    pub name: String,
+    /// ka: the share of the scene's ambient light that it gives back.
+    pub ambient: f32,
+    /// kd: the share of a light that it gives back in all directions.
+    pub diffuse: f32,
+    /// ks: the share of a light that it mirrors; with 0 there is no highlight.
+    pub specular: f32,
+    /// s: how narrow the highlight is, above 0; 1 is broad, 100 a point.
+    pub shininess: f32,
+    /// Its entries of the palette, of a material that is lit on one channel and has no texture.
+    pub ramp: RampChoice,
+    /// Its own red, green and blue. Where the three differ it is lit on three channels, its ambient and diffuse light
+    /// multiplied with its own on each, and drawn in the palette's nearest colours.
+    pub color: [f32; 3],
+    /// Red, green and blue of its highlight, on three channels: white, as a rule, and so of the light's colour.
+    pub highlight: [f32; 3],
+    /// An image on it, by the mesh's texture coordinates; its shades are those of the image.
+    pub texture: Option<Shared<Texture>>,
+    /// An image of what is around it: where its normal points, as the eye sees it, that is mirrored.
+    /// Only where it has no texture.
+    pub environment: Option<Shared<Texture>>,
+    /// How it lies over what is behind it.
+    pub blend: Blend,
+}
+
+/// How a body lies over what is behind it, by a table of 256 × 256 colours.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[non_exhaustive]
+pub enum Blend {
+    /// It hides it.
+    #[default]
+    Opaque,
+    /// So many 255ths of its own colour, the rest of what is behind.
+    Mix(u8),
+    /// Its colour is added to what is behind: the glenz of the demos.
+    Add,
+}
+
+impl Material {
+    /// Of white light, how much a white surface gives back as ambient light; the rest is diffuse.
+    const AMBIENT_SHARE: f32 = 0.15;
+
+    /// A material that gives back all light, matt, in the palette's first ramp.
+    #[must_use]
+    pub fn white() -> Self {
+        Self::from_surface(&Surface::default(), 0)
+    }
+
+    /// What an MTL file says, on one channel: Kd's and Ks's luminance; a seventh of Kd's ambient.
+    /// `number` chooses the ramp. The texture is left to the caller, who can read files:
+    /// [`with_map`](Self::with_map).
+    #[must_use]
+    pub fn from_surface(surface: &Surface, number: u16) -> Self {
+        let diffuse = luminance(surface.diffuse);
+        Self {
+            name: surface.name.clone(),
+            ambient: Self::AMBIENT_SHARE * diffuse,
+            diffuse: (1.0 - Self::AMBIENT_SHARE) * diffuse,
+            specular: luminance(surface.specular),
+            shininess: surface.shininess,
+            ramp: RampChoice::Number(number),
+            color: [1.0; 3],
+            highlight: [1.0; 3],
+            texture: None,
+            environment: None,
+            blend: Blend::Opaque,
+        }
+    }
+
+    /// The same with the picture that an MTL file's `map_Kd` names. As Kd tints it, a coloured Kd goes into a copy of
+    /// the picture; a grey one leaves it as it is, to be shared.
+    #[must_use]
+    pub fn with_map(self, surface: &Surface, map: &Shared<Texture>) -> Self {
+        let most = surface.diffuse.iter().copied().fold(0.0, f32::max);
+        if !is_colored(surface.diffuse) || most == 0.0 {
+            return Self { texture: Some(Shared::clone(map)), ..self };
+        }
+        let tinted = map.modulated(Rgb::from_intensities(surface.diffuse.map(|channel| channel / most)));
+        Self {
+            ambient: Self::AMBIENT_SHARE * most,
+            diffuse: (1.0 - Self::AMBIENT_SHARE) * most,
+            texture: Some(Shared::new(tinted)),
+            ..self
+        }
+    }
+
+    /// Its own colour and its highlight's, on three channels. Where the material says none, they are those of the
+    /// surface that it was made from: Kd and Ks without their luminance, which the material's shares of light have. A
+    /// texture has its colours itself.
+    #[must_use]
+    pub fn own_colors(&self, surface: &Surface) -> ([f32; 3], [f32; 3]) {
+        let or_else = |own: [f32; 3], of: [f32; 3]| if own == [1.0; 3] { hue(of) } else { own };
+        let color = if self.texture.is_some() { self.color } else { or_else(self.color, surface.diffuse) };
+        (color, or_else(self.highlight, surface.specular))
+    }
+
+    /// The same in its [own colours](Self::own_colors) where it has a ramp by number only: for a palette that has no
+    /// ramps.
+    #[must_use]
+    pub fn in_own_colors(&self, surface: &Surface) -> Self {
+        if !matches!(self.ramp, RampChoice::Number(_)) {
+            return self.clone();
+        }
+        let (color, highlight) = self.own_colors(surface);
+        Self { ramp: RampChoice::Nearest, color, highlight, ..self.clone() }
+    }
+
+    /// Whether its three channels differ.
+    #[must_use]
+    pub fn is_colored(&self) -> bool {
+        is_colored(self.color) || (self.is_specular() && is_colored(self.highlight))
+    }
+
+    /// Whether it takes three channels to light it: whether it is coloured, or drawn in the nearest entries. An image
+    /// alone takes but one.
+    #[must_use]
+    pub fn takes_channels(&self) -> bool {
+        let has_image = self.texture.is_some() || self.environment.is_some();
+        self.is_colored() || (self.ramp == RampChoice::Nearest && !has_image)
+    }
+
+    /// Whether it has a highlight.
+    #[must_use]
+    pub fn is_specular(&self) -> bool {
+        self.specular != 0.0
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        let Self { ambient, diffuse, specular, shininess, color, highlight, .. } = self;
+        let numbers = [ambient, diffuse, specular, shininess].into_iter().chain(color).chain(highlight);
+        numbers.into_iter().all(|number| number.is_finite())
+    }
+}
+
+/// A colour without its luminance; of a grey, of what has none, and of what is beyond f32, white.
+fn hue(color: [f32; 3]) -> [f32; 3] {
+    let hue = color.map(|channel| channel / luminance(color));
+    if is_colored(color) && luminance(color) > 0.0 && hue.iter().all(|channel| channel.is_finite()) {
+        hue
+    } else {
+        [1.0; 3]
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self::white()
+    }
+}

@@ -1,0 +1,26 @@
+//! Lights, materials, and the intensity at a vertex or a pixel.
+//!
+//! From S1, for each channel:
+//!
+//! ```text
+//! I = ka·Ia + Σ over lights of (kd·max(0, n·l) + ks·max(0, r·v)^s) · Id · fall-off
+//! ```
+//!
+//! n is the unit normal, l points to the light, v to the eye, r = 2·(n·l)·n − l is l mirrored at the
+//! surface. A light behind a face adds nothing, never a negative amount. The sum is clamped once, at
+//! its end: S1 clamps each component after summing, and so several lights together may fill what one
+//! alone would not. Intensities are values of the DAC, with no gamma, as they were then.
+//!
+//! | file | what |
+//! |---|---|
+//! | `source` | [`Light`]: suns, and lamps with a position and a fall-off (S0) |
+//! | `material` | [`Material`]: what a surface answers |
+//! | `intensity` | the sum |
+
+mod intensity;
+mod material;
+mod source;
+
+pub(crate) use intensity::{Answer, Beam, LampBeam, Lights, both_sides, lamp_reaches};
+pub use material::{Blend, Material, RampChoice};
+pub use source::Light;

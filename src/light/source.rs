@@ -1,0 +1,128 @@
+//! Sources of light.
+
+use glam::Vec3;
+
+/// A source of light.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Light {
+    /// So far away that it comes from one direction everywhere.
+    Sun {
+        /// Towards the light, in the world; any length but zero.
+        direction: Vec3,
+        /// Id: 1 lights a white surface that faces it fully.
+        intensity: f32,
+        /// Red, green, blue, as a rule 0 to 1.
+        color: [f32; 3],
+    },
+    /// At a place, falling off with the distance (S0: the flash of a shot on a wall).
+    ///
+    /// At a distance d below `range` it has (1 − d²/range²)² of its intensity, beyond it nothing: all
+    /// of it at the lamp itself, 9/16 at half the range, and it ends without an edge.
+    Lamp {
+        /// Where it is, in the world.
+        position: Vec3,
+        /// Id at the lamp itself.
+        intensity: f32,
+        /// How far it reaches, in the world's units; above 0.
+        range: f32,
+        /// Red, green, blue, as a rule 0 to 1.
+        color: [f32; 3],
+    },
+}
+
+/// Neither red nor green nor blue.
+const WHITE: [f32; 3] = [1.0; 3];
+
+impl Light {
+    /// A white sun of intensity 1 in `direction`, which points **towards** it; any length but zero.
+    #[must_use]
+    pub fn sun(direction: [f32; 3]) -> Self {
+        Self::Sun { direction: Vec3::from_array(direction), intensity: 1.0, color: WHITE }
+    }
+
+    /// A white lamp of intensity 1 at `position` that reaches as far as `range`, above 0.
+    #[must_use]
+    pub fn lamp(position: [f32; 3], range: f32) -> Self {
+        Self::Lamp { position: Vec3::from_array(position), intensity: 1.0, range, color: WHITE }
+    }
+
+    /// The same light with this intensity.
+    #[must_use]
+    pub fn with_intensity(mut self, new: f32) -> Self {
+        match &mut self {
+            Self::Sun { intensity, .. } | Self::Lamp { intensity, .. } => *intensity = new,
+        }
+        self
+    }
+
+    /// The same light in this colour: red, green, blue, as a rule 0 to 1.
+    #[must_use]
+    pub fn with_color(mut self, new: [f32; 3]) -> Self {
+        match &mut self {
+            Self::Sun { color, .. } | Self::Lamp { color, .. } => *color = new,
+        }
+        self
+    }
+
+    /// Its intensity.
+    #[must_use]
+    pub fn intensity(&self) -> f32 {
+        match *self {
+            Self::Sun { intensity, .. } | Self::Lamp { intensity, .. } => intensity,
+        }
+    }
+
+    /// Its red, green and blue.
+    #[must_use]
+    pub fn color(&self) -> [f32; 3] {
+        match *self {
+            Self::Sun { color, .. } | Self::Lamp { color, .. } => color,
+        }
+    }
+
+    /// Its intensity on one channel: of a coloured light the luminance after ITU-R BT.601.
+    pub(crate) fn brightness(&self) -> f32 {
+        let color = self.color();
+        let share = if self.is_colored() { luminance(color) } else { color[0] };
+        share * self.intensity()
+    }
+
+    /// Whether its three channels differ: whether it takes three to light by it.
+    #[must_use]
+    pub fn is_colored(&self) -> bool {
+        is_colored(self.color())
+    }
+
+    /// What is wrong with it, if anything.
+    pub(crate) fn check(&self) -> Result<(), &'static str> {
+        if !(self.intensity().is_finite() && self.color().iter().all(|c| c.is_finite())) {
+            return Err(match self {
+                Self::Sun { .. } => "its direction, intensity and colour must be finite",
+                Self::Lamp { .. } => "its position, intensity, range and colour must be finite",
+            });
+        }
+        match *self {
+            Self::Sun { direction, .. } if !direction.is_finite() => {
+                Err("its direction, intensity and colour must be finite")
+            }
+            Self::Sun { direction, .. } if direction == Vec3::ZERO => Err("its direction must not be zero"),
+            Self::Lamp { position, range, .. } if !(position.is_finite() && range.is_finite()) => {
+                Err("its position, intensity, range and colour must be finite")
+            }
+            // Written so that NaN fails it, though none comes here.
+            Self::Lamp { range, .. } if !(range > 0.0) => Err("its range must be above 0"),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// After ITU-R BT.601, the weights of a television of the time.
+pub(super) fn luminance([red, green, blue]: [f32; 3]) -> f32 {
+    0.299 * red + 0.587 * green + 0.114 * blue
+}
+
+/// Whether the three channels differ.
+pub(super) fn is_colored([red, green, blue]: [f32; 3]) -> bool {
+    red != green || green != blue
+}

@@ -1,0 +1,36 @@
+//! A mesh made longer, wider or higher.
+
+use glam::Vec3;
+
+use super::wide::{narrow, widen};
+use super::{Mesh, MeshError, normals};
+
+impl Mesh {
+    /// The same mesh with every x, y and z multiplied with its factor, each finite and above 0. Normals are divided by
+    /// them and made unit again, so that they stay upright on their faces. It is exact, and what was
+    /// [convex](Self::is_convex) stays so, where the factors are powers of two.
+    ///
+    /// # Errors
+    /// A factor that may not be; a position that is then beyond the range of f32.
+    pub fn stretched(&self, factors: Vec3) -> Result<Self, MeshError> {
+        if !(factors.is_finite() && factors.min_element() > 0.0) {
+            return Err(MeshError::Factors);
+        }
+        let positions = self.positions.iter().map(|p| *p * factors).collect();
+        let [fx, fy, fz] = widen(factors);
+        // In f64, as a factor may be as small as any; only the direction counts.
+        let least = fx.min(fy).min(fz);
+        let normals = self.normals.iter().map(|n| {
+            let [x, y, z] = widen(*n);
+            // A part that is divided by far more than the least factor vanishes; a normal of that part alone keeps
+            // its direction.
+            normals::unit(narrow([x * (least / fx), y * (least / fy), z * (least / fz)])).unwrap_or(*n)
+        });
+        let normals = normals.collect();
+        let mut mesh = Self::with_normals(positions, normals, self.triangles.clone())?;
+        mesh.texcoords = self.texcoords.clone();
+        mesh.surfaces = self.surfaces.clone();
+        mesh.triangle_surfaces = self.triangle_surfaces.clone();
+        Ok(mesh)
+    }
+}

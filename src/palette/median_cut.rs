@@ -1,0 +1,243 @@
+//! A few colours for many.
+//!
+//! Median cut after Heckbert ("Color image quantization for frame buffer display", SIGGRAPH 1982): a
+//! box around all colours is cut in two, then one of the two, and so on; each box becomes the mean of
+//! its colours. Where Heckbert cuts the longest side of the fullest box at the median, here that cut
+//! is made, of all boxes, sides and places, which lowers the sum of the squared distances most (after
+//! Wu, "Efficient statistical computations for optimal color quantization", Graphics Gems II, 1991).
+//!
+//! Crates that do this (`quantette`, `imagequant`, `color_quant`) need `std`, choose by chance or do
+//! not say what the next colour would win, which is what [`auto`](super::auto) asks.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use super::Rgb;
+
+/// The boxes after some cuts.
+#[derive(Clone, Debug)]
+pub(crate) struct MedianCut {
+    /// Colours with their weights, box by box.
+    colors: Vec<(Rgb, u32)>,
+    boxes: Vec<ColorBox>,
+}
+
+#[derive(Clone, Debug)]
+struct ColorBox {
+    range: Range<usize>,
+    /// All weights, and the weighted sums of red, green and blue.
+    moments: Moments,
+    /// `None` if there is but one colour.
+    cut: Option<Cut>,
+}
+
+/// The best cut through a box.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    channel: usize,
+    /// The least value of the upper part.
+    from: u8,
+    /// By how much the sum of the weighted squares of the distances falls.
+    gain: f64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    weight: u64,
+    sums: [u64; 3],
+}
+
+impl MedianCut {
+    /// One box around colours with their weights; what weighs nothing is left out. At most 2²⁴ of them,
+    /// so that no sum passes 2⁶⁴.
+    pub(crate) fn new(mut colors: Vec<(Rgb, u32)>) -> Self {
+        colors.retain(|&(_, weight)| weight > 0);
+        debug_assert!(colors.len() <= 1 << 24, "a texture has 65,536 at most");
+        let whole = 0..colors.len();
+        let boxes = if colors.is_empty() { Vec::new() } else { vec![ColorBox::new(&colors, whole)] };
+        Self { colors, boxes }
+    }
+
+    /// The box with the best cut; of equally good ones the first.
+    fn best(&self) -> Option<(usize, Cut)> {
+        let cuts = self.boxes.iter().enumerate().filter_map(|(i, b)| Some((i, b.cut?)));
+        cuts.reduce(|best, next| if next.1.gain > best.1.gain { next } else { best })
+    }
+
+    /// By how much the next cut lowers the sum of weight × squared distance to the mean. `None` if every
+    /// colour has a box of its own.
+    pub(crate) fn gain(&self) -> Option<f64> {
+        self.best().map(|(_, cut)| cut.gain)
+    }
+
+    /// Makes the next cut. Returns whether there was one.
+    pub(crate) fn cut(&mut self) -> bool {
+        let Some((i, cut)) = self.best() else { return false };
+        let range = self.boxes[i].range.clone();
+        let part = &mut self.colors[range.clone()];
+        part.sort_unstable_by_key(|(color, _)| channels(*color)[cut.channel] >= cut.from);
+        let middle = range.start + part.partition_point(|(color, _)| channels(*color)[cut.channel] < cut.from);
+        self.boxes[i] = ColorBox::new(&self.colors, range.start..middle);
+        self.boxes.push(ColorBox::new(&self.colors, middle..range.end));
+        true
+    }
+
+    /// Cuts until there are `boxes` of them, or as many as there are different colours.
+    pub(crate) fn cut_to(&mut self, boxes: usize) {
+        while self.boxes.len() < boxes && self.cut() {}
+    }
+
+    /// How many boxes there are.
+    pub(crate) fn len(&self) -> usize {
+        self.boxes.len()
+    }
+
+    /// The mean colour of each box, each channel to the nearest; a box of one colour gives that.
+    pub(crate) fn means(&self) -> impl Iterator<Item = Rgb> + '_ {
+        self.boxes.iter().map(|b| b.moments.mean())
+    }
+}
+
+impl ColorBox {
+    fn new(colors: &[(Rgb, u32)], range: Range<usize>) -> Self {
+        // Of each channel, for each of its values.
+        let mut by_value = vec![[Moments::default(); 256]; 3];
+        let mut moments = Moments::default();
+        for &(color, weight) in &colors[range.clone()] {
+            let one = Moments::of(color, weight);
+            moments += one;
+            for (values, v) in by_value.iter_mut().zip(channels(color)) {
+                values[usize::from(v)] += one;
+            }
+        }
+        let mut best: Option<Cut> = None;
+        for (channel, values) in by_value.iter().enumerate() {
+            let mut lower = Moments::default();
+            for (from, value) in (1..=255).zip(values) {
+                lower += *value;
+                let upper = moments - lower;
+                if value.weight == 0 || upper.weight == 0 {
+                    continue;
+                }
+                let gain = lower.gain_beside(upper);
+                if best.is_none_or(|best| gain > best.gain) {
+                    best = Some(Cut { channel, from, gain });
+                }
+            }
+        }
+        Self { range, moments, cut: best }
+    }
+}
+
+impl Moments {
+    fn of(color: Rgb, weight: u32) -> Self {
+        let weight = u64::from(weight);
+        Self { weight, sums: channels(color).map(|v| weight * u64::from(v)) }
+    }
+
+    /// By how much the squares about two means are less than about the one of both together:
+    /// W₁·W₂/(W₁ + W₂) times the square of the distance between the two.
+    fn gain_beside(self, other: Self) -> f64 {
+        let (w1, w2) = (self.weight as f64, other.weight as f64);
+        let d = [0, 1, 2].map(|i| self.sums[i] as f64 / w1 - other.sums[i] as f64 / w2);
+        w1 * w2 / (w1 + w2) * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+    }
+
+    fn mean(self) -> Rgb {
+        // At most 255, as every colour is. The sums are below 2⁶⁴, so twice them may not be.
+        let [r, g, b] = self.sums.map(|sum| ((sum + self.weight / 2) / self.weight.max(1)) as u8);
+        Rgb::new(r, g, b)
+    }
+}
+
+impl core::ops::AddAssign for Moments {
+    fn add_assign(&mut self, other: Self) {
+        self.weight += other.weight;
+        for (sum, more) in self.sums.iter_mut().zip(other.sums) {
+            *sum += more;
+        }
+    }
+}
+
+impl core::ops::Sub for Moments {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { weight: self.weight - other.weight, sums: [0, 1, 2].map(|i| self.sums[i] - other.sums[i]) }
+    }
+}
+
+fn channels(color: Rgb) -> [u8; 3] {
+    [color.r, color.g, color.b]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sum of weight × squared distance to the mean, in fractions: Σw·c² − (Σw·c)²/Σw, times Σw.
+    fn squares_times_weight(colors: &[(Rgb, u32)]) -> i128 {
+        let sum = |of: &dyn Fn([u8; 3], i128) -> i128| -> i128 {
+            colors.iter().map(|&(color, weight)| of(channels(color), i128::from(weight))).sum()
+        };
+        let weight = sum(&|_, w| w);
+        (0..3)
+            .map(|i| weight * sum(&|c, w| w * i128::from(c[i]).pow(2)) - sum(&|c, w| w * i128::from(c[i])).pow(2))
+            .sum()
+    }
+
+    fn squares(colors: &[(Rgb, u32)]) -> f64 {
+        let weight: f64 = colors.iter().map(|&(_, weight)| f64::from(weight)).sum();
+        squares_times_weight(colors) as f64 / weight
+    }
+
+    fn hashed(count: u32, seed: u32) -> Vec<(Rgb, u32)> {
+        let hash =
+            |i: u32| (i + 1).wrapping_mul(0x9E37_79B9).wrapping_add(seed).wrapping_mul(0x85EB_CA6B).rotate_left(13);
+        (0..count).map(|i| (Rgb::from_u32(hash(i)), hash(i + count) >> 24)).collect()
+    }
+
+    /// The first cut against every way to split the colours by one channel's value.
+    #[test]
+    fn the_cut_is_the_one_that_lowers_the_squares_most() {
+        for seed in 0..50 {
+            let colors: Vec<_> = hashed(20, seed).into_iter().filter(|&(_, weight)| weight > 0).collect();
+            let best = (0..3)
+                .flat_map(|channel| (1..=255_u8).map(move |from| (channel, from)))
+                .filter_map(|(channel, from)| {
+                    let (upper, lower): (Vec<_>, Vec<_>) =
+                        colors.iter().partition(|(color, _)| channels(*color)[channel] >= from);
+                    (!upper.is_empty() && !lower.is_empty()).then(|| squares(&upper) + squares(&lower))
+                })
+                .fold(f64::INFINITY, f64::min);
+            let mut cut = MedianCut::new(colors.clone());
+            let gain = cut.gain().expect("different colours");
+            // Sums of 20 terms below 2²⁴, each operation within 2⁻⁵³ of it.
+            assert!((squares(&colors) - best - gain).abs() < 1e-6, "{gain}");
+            assert!(cut.cut());
+            let after: f64 = cut.boxes.iter().map(|b| squares(&cut.colors[b.range.clone()])).sum();
+            assert!((after - best).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn few_colours_are_kept_as_they_are() {
+        let colors = hashed(40, 7);
+        let mut expected: Vec<Rgb> = colors.iter().filter(|(_, weight)| *weight > 0).map(|(color, _)| *color).collect();
+        let mut cut = MedianCut::new(colors);
+        cut.cut_to(256);
+        let mut means: Vec<Rgb> = cut.means().collect();
+        expected.sort();
+        means.sort();
+        assert_eq!(means, expected);
+        assert!(cut.gain().is_none() && !cut.cut());
+    }
+
+    #[test]
+    fn nothing_has_no_colours() {
+        let mut cut = MedianCut::new(vec![(Rgb::WHITE, 0)]);
+        cut.cut_to(4);
+        assert_eq!((cut.len(), cut.means().count()), (0, 0));
+    }
+}

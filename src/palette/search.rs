@@ -1,0 +1,116 @@
+//! The nearest of up to 256 colours, exactly, without looking at all of them.
+//!
+//! The RGB cube is cut into 8 × 8 × 8 boxes. Somewhere among the colours is one whose *farthest*
+//! point of a box is nearest; whatever lies in the box has a colour at most that far away. So a
+//! colour whose *nearest* point of the box is farther than that is nearest to nothing in it. Each
+//! box lists the colours that remain, a tenth or so, in their order: the first of those equally near
+//! remains the first.
+//!
+//! Making the lists takes 0.3 ms for 256 colours, and a table of 65,536 searches 2 to 6 ms in all. With
+//! 16 boxes a side the lists take 2.3 ms, and the searches save less than that.
+
+use alloc::vec::Vec;
+
+use super::{Palette, Rgb};
+
+/// Boxes a side.
+const SIDE: usize = 8;
+
+/// Values of a channel in a box.
+const WIDTH: u8 = 32;
+
+/// A search for the nearest of some colours.
+///
+/// ```
+/// use mode13h::palette::{BIOS, Rgb, Search};
+/// let search = Search::new(BIOS.colors());
+/// assert_eq!(search.nearest(Rgb::new(1, 2, 170)), 1);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Search {
+    /// Of box `i` those from `starts[i]` up to `starts[i + 1]`.
+    candidates: Vec<Candidate>,
+    starts: Vec<usize>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    color: Rgb,
+    index: u8,
+}
+
+/// The squares of the distances from a colour to the nearest and to the farthest point of something.
+#[derive(Clone, Copy, Debug, Default)]
+struct Reach {
+    nearest: u32,
+    farthest: u32,
+}
+
+impl Search {
+    /// Among `colors`, of which the first 256 count.
+    #[must_use]
+    pub fn new(colors: &[Rgb]) -> Self {
+        let mut distinct: Vec<Candidate> = Vec::new();
+        for (index, &color) in (0..=255).zip(colors) {
+            if distinct.iter().all(|other| other.color != color) {
+                distinct.push(Candidate { color, index });
+            }
+        }
+        let mut search = Self { candidates: Vec::new(), starts: Vec::with_capacity(SIDE * SIDE * SIDE + 1) };
+        search.starts.push(0);
+        let edges = || (0..=u8::MAX).step_by(usize::from(WIDTH));
+        for r in edges() {
+            let in_red: Vec<Reach> = distinct.iter().map(|c| Reach::default().and(c.color.r, r)).collect();
+            for g in edges() {
+                let in_green: Vec<Reach> =
+                    in_red.iter().zip(&distinct).map(|(reach, c)| reach.and(c.color.g, g)).collect();
+                for b in edges() {
+                    search.push_box(&distinct, &in_green, b);
+                }
+            }
+        }
+        search
+    }
+
+    /// Among the colours that the card shows for a palette's: what is nearest is nearest on the
+    /// screen.
+    #[must_use]
+    pub fn of_shown(palette: &Palette) -> Self {
+        Self::new(palette.on_dac().colors())
+    }
+
+    /// Lists the candidates of the box from `b` on in blue, whose other two sides are in `reaches`.
+    fn push_box(&mut self, colors: &[Candidate], reaches: &[Reach], b: u8) {
+        let reaches = || reaches.iter().zip(colors).map(|(reach, c)| reach.and(c.color.b, b));
+        let bound = reaches().map(|reach| reach.farthest).min().unwrap_or(0);
+        let near = reaches().zip(colors).filter(|(reach, _)| reach.nearest <= bound);
+        self.candidates.extend(near.map(|(_, &candidate)| candidate));
+        self.starts.push(self.candidates.len());
+    }
+
+    /// The nearest to `color` by [`Rgb::distance_squared`]; of those equally near, the first. 0 if
+    /// there are none.
+    #[must_use]
+    #[inline]
+    pub fn nearest(&self, color: Rgb) -> u8 {
+        let side = |v: u8| usize::from(v / WIDTH);
+        let i = (side(color.r) * SIDE + side(color.g)) * SIDE + side(color.b);
+        let candidates = &self.candidates[self.starts[i]..self.starts[i + 1]];
+        // A square is below 2¹⁸. With the index behind it the least is the first of the nearest, and the
+        // loop has no branch.
+        let key = |c: &Candidate| c.color.distance_squared(color) << 8 | u32::from(c.index);
+        (candidates.iter().map(key).min().unwrap_or(0) & 255) as u8
+    }
+}
+
+impl Reach {
+    /// With one side more: the values from `low` on, where the colour has `v`.
+    fn and(self, v: u8, low: u8) -> Self {
+        // At most 255: the last box begins at 224.
+        let high = low + (WIDTH - 1);
+        let square = |d: u8| u32::from(d) * u32::from(d);
+        let nearest = low.saturating_sub(v).max(v.saturating_sub(high));
+        let farthest = v.abs_diff(low).max(v.abs_diff(high));
+        Self { nearest: self.nearest + square(nearest), farthest: self.farthest + square(farthest) }
+    }
+}

@@ -1,0 +1,111 @@
+//! Tables of 64 KiB: from two bytes to a third, as the pixel effects look them up.
+//!
+//! A row holds 256 bytes; `high` chooses the row, `low` the column, and the byte stands at
+//! `high << 8 | low`. Every colour in a table made from a palette is the nearest entry to an exact
+//! mixture rounded once, by the colours that the card shows ([`Palette::on_dac`]): what is nearest is
+//! nearest on the screen, and of entries equally near the first is taken. Where a mixture is one of
+//! its two parts, the table gives that part's own byte, whatever other entries look the same.
+
+use alloc::boxed::Box;
+use core::fmt;
+
+use super::{Palette, Rgb, Search};
+
+/// A table of 256 × 256 bytes.
+///
+/// ```
+/// use mode13h::palette::{Rgb, Table, builtin};
+/// let fog = Table::fog(&builtin::GREY, Rgb::new(128, 128, 128));
+/// assert_eq!(fog.get(0, 77), 77);
+/// assert_eq!(fog.get(255, 77), fog.get(255, 200));
+/// assert_eq!(fog.as_array()[255 << 8 | 77], fog.get(255, 77));
+/// ```
+#[derive(Clone, PartialEq, Eq)]
+pub struct Table(Box<[u8; Table::BYTES]>);
+
+impl Table {
+    /// 64 KiB.
+    pub const BYTES: usize = 65_536;
+
+    /// From a byte for every row and column: `byte(high, low)`. For one, Phong's table of shades.
+    #[must_use]
+    pub fn from_fn(mut byte: impl FnMut(u8, u8) -> u8) -> Self {
+        let mut table = Box::new([0; Self::BYTES]);
+        for (high, row) in (0..=255).zip(table.chunks_exact_mut(256)) {
+            for (low, entry) in (0..=255).zip(row) {
+                *entry = byte(high, low);
+            }
+        }
+        Self(table)
+    }
+
+    /// Shaded texels. Row: a shade, of 255 the full light; column: a texel. The entry is the nearest to
+    /// `colors[texel]·shade/255`.
+    #[must_use]
+    pub fn shades(palette: &Palette, colors: &[Rgb; 256]) -> Self {
+        let search = Search::of_shown(palette);
+        Self::from_fn(|shade, texel| search.nearest(Rgb::BLACK.mix(colors[usize::from(texel)], shade)))
+    }
+
+    /// Fog. Row: how much of it, 0 none and 255 nothing else; column: the byte without fog. The entry
+    /// is the nearest to the mixture of what that byte shows with `fog`. Row 0 leaves every byte as it
+    /// is.
+    #[must_use]
+    pub fn fog(palette: &Palette, fog: Rgb) -> Self {
+        let shown = palette.on_dac();
+        let search = Search::of_shown(palette);
+        Self::from_fn(|level, byte| match level {
+            0 => byte,
+            _ => search.nearest(shown.color(byte).mix(fog, level)),
+        })
+    }
+
+    /// Glass. Row: the new byte; column: the byte that is there. The entry is the nearest to the
+    /// mixture in which the new one has `opacity`, 0 to 255: at 255 it is the new byte itself, at 0 the
+    /// old one. A byte over itself stays.
+    #[must_use]
+    pub fn blend(palette: &Palette, opacity: u8) -> Self {
+        let shown = palette.on_dac();
+        let search = Search::of_shown(palette);
+        Self::from_fn(|new, old| match opacity {
+            255 => new,
+            0 => old,
+            _ if new == old => new,
+            _ => search.nearest(shown.color(old).mix(shown.color(new), opacity)),
+        })
+    }
+
+    /// Glenz, glass that shines: the entry nearest to the sum of both, each channel at most 255. Row and
+    /// column as in [`blend`](Self::blend), but which is which makes no difference to what shows. What
+    /// shows black adds nothing: the other byte stays, of two such the old one.
+    #[must_use]
+    pub fn add(palette: &Palette) -> Self {
+        let shown = palette.on_dac();
+        let search = Search::of_shown(palette);
+        Self::from_fn(|new, old| match (shown.color(new), shown.color(old)) {
+            (Rgb::BLACK, _) => old,
+            (_, Rgb::BLACK) => new,
+            (new, old) => search.nearest(new.saturating_add(old)),
+        })
+    }
+
+    /// All of it: the byte of row `high` and column `low` at `high << 8 | low`.
+    #[must_use]
+    #[inline]
+    pub fn as_array(&self) -> &[u8; Self::BYTES] {
+        &self.0
+    }
+
+    /// The byte of a row and a column.
+    #[must_use]
+    #[inline]
+    pub fn get(&self, high: u8, low: u8) -> u8 {
+        self.0[usize::from(high) << 8 | usize::from(low)]
+    }
+}
+
+impl fmt::Debug for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Table").finish_non_exhaustive()
+    }
+}

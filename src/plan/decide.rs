@@ -1,0 +1,320 @@
+//! The rules: for every effect a function that says whether an object calls for it, and why.
+
+use super::hidden;
+use super::why::Why;
+use super::{Decision, Effect, Forced, ObjectPlan, Plan};
+use crate::light::{LampBeam, Light, Material, lamp_reaches};
+use crate::scene::{HiddenSurfaces, Mapping, Object, Rung, Scene};
+use crate::view::{ObjectView, Reach};
+
+/// How far an affine mapping may be off before it is given up, in texels: half of one.
+const AFFINE_TOLERANCE: f64 = 0.5;
+
+/// The shades that [`Rung::GouraudTessellated`] asks for.
+pub(crate) const LEAST_TESSELLATION: f32 = 1.0;
+
+/// What decisions are made from.
+pub(crate) struct Inputs<'a> {
+    pub(crate) scene: &'a Scene,
+    /// One for each object.
+    pub(crate) views: &'a [ObjectView],
+    /// One for each object: whether it was drawn before, and is as it was.
+    pub(crate) since: &'a [Since],
+    pub(crate) forced: &'a Forced,
+    pub(crate) rung: Rung,
+    pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
+    pub(crate) mapping: Option<Mapping>,
+    /// Whether the frame holds the whole screen.
+    pub(crate) whole: bool,
+    /// Whether vertices are made in 16.16.
+    pub(crate) integer: bool,
+    /// Whether an object may keep what was made of its vertices.
+    pub(crate) keeps: bool,
+}
+
+/// What became of an object since the last frame.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Since {
+    New,
+    Changed,
+    Unchanged,
+}
+
+/// Makes the plan of a frame, in place.
+#[inline(never)]
+pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [LampBeam], plan: &mut Plan) {
+    let (way, why) = hidden::choose(inputs.scene, inputs.views, inputs.hidden_surfaces, &mut plan.order);
+    plan.hidden_surfaces = way;
+    plan.chosen = why != Why::Asked;
+    plan.objects.clear();
+    for (place, object) in inputs.scene.objects().iter().enumerate() {
+        let rules = Rules {
+            scene: inputs.scene,
+            place,
+            object,
+            view: &inputs.views[place],
+            reach: inputs.views[place].reach(object.mesh().bounds()),
+            since: inputs.since.get(place).copied().unwrap_or(Since::New),
+            inputs,
+            way: (way, why),
+        };
+        let in_range = lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count();
+        plan.objects.push(rules.all(in_range));
+    }
+}
+
+/// Whether the 16.16 path knows an effect.
+const fn in_integers(effect: Effect) -> bool {
+    matches!(
+        effect,
+        Effect::Transform
+            | Effect::NearClipping
+            | Effect::ScreenClipping
+            | Effect::BackFaceCulling
+            | Effect::HiddenSurfaces
+            | Effect::Lighting
+            | Effect::Gouraud
+            | Effect::PaletteAnimation
+    )
+}
+
+/// One object, and what the rules look at.
+struct Rules<'a> {
+    scene: &'a Scene,
+    place: usize,
+    object: &'a Object,
+    view: &'a ObjectView,
+    reach: Reach,
+    since: Since,
+    inputs: &'a Inputs<'a>,
+    way: (HiddenSurfaces, Why),
+}
+
+impl Rules<'_> {
+    fn all(&self, lamps_in_range: usize) -> ObjectPlan {
+        let decisions = [Decision::off(Why::SceneHasNone); Effect::COUNT];
+        let mut plan = ObjectPlan { decisions, rung: self.inputs.rung };
+        for effect in Effect::ALL {
+            let mut decision = self.decision(effect, lamps_in_range, &plan);
+            if effect.is_left_out() {
+                plan.set(effect, Decision::off(Why::LeftOut));
+                continue;
+            }
+            if self.inputs.integer && !in_integers(effect) {
+                plan.set(effect, Decision::off(Why::NotInIntegers));
+                continue;
+            }
+            if let Some(on) = self.inputs.forced.get_for(self.place, effect)
+                && on != decision.on
+            {
+                decision = Decision { on, why: Why::Forced, choice: if on { decision.choice } else { "" } };
+            }
+            plan.set(effect, decision);
+        }
+        plan
+    }
+
+    /// `before`: what has been decided so far, in the order of [`Effect::ALL`].
+    fn decision(&self, effect: Effect, lamps_in_range: usize, before: &ObjectPlan) -> Decision {
+        match effect {
+            Effect::Transform => self.transform(),
+            Effect::NearClipping => self.near_clipping(),
+            Effect::ScreenClipping => self.screen_clipping(before),
+            Effect::BackFaceCulling => self.back_face_culling(),
+            Effect::HiddenSurfaces => self.hidden_surfaces(),
+            Effect::Lighting => self.lighting(lamps_in_range),
+            Effect::PositionalLights => self.positional_lights(lamps_in_range, before),
+            Effect::Specular => self.specular(before),
+            Effect::Gouraud => self.gouraud(before),
+            Effect::Fog => self.fog(),
+            Effect::Phong => self.phong(),
+            Effect::Tessellation => self.tessellation(),
+            Effect::RgbChannels => self.rgb_channels(),
+            Effect::Texture => self.material_has(|material| material.texture.is_some()),
+            Effect::EnvironmentMap => {
+                self.material_has(|material| material.environment.is_some() && material.texture.is_none())
+            }
+            Effect::Perspective => self.perspective(),
+            Effect::Transparency => self.material_has(|material| material.blend != crate::light::Blend::Opaque),
+            Effect::Dither => self.dither(before),
+            Effect::PaletteAnimation => match self.scene.palette_animation {
+                Some(_) => Decision::on(Why::Asked),
+                None => Decision::off(Why::SceneHasNone),
+            },
+        }
+    }
+
+    fn transform(&self) -> Decision {
+        match self.since {
+            _ if self.inputs.integer => Decision::on(Why::NotKept),
+            Since::New => Decision::on(Why::FirstFrame),
+            Since::Changed => Decision::on(Why::Changed),
+            Since::Unchanged if self.inputs.keeps => Decision::off(Why::Unchanged),
+            Since::Unchanged => Decision::on(Why::NotKept),
+        }
+    }
+
+    fn near_clipping(&self) -> Decision {
+        let why = Why::Nearest { nearest: self.reach.nearest, near: f64::from(self.view.near()) };
+        if self.reach.crosses_near { Decision::on(why) } else { Decision::off(why) }
+    }
+
+    fn screen_clipping(&self, before: &ObjectPlan) -> Decision {
+        if before.is_on(Effect::NearClipping) {
+            Decision::on(Why::CrossesNear)
+        } else if self.reach.leaves_screen {
+            Decision::on(Why::LeavesScreen)
+        } else if !self.inputs.whole {
+            Decision::on(Why::Band)
+        } else {
+            Decision::off(Why::OnScreen)
+        }
+    }
+
+    fn back_face_culling(&self) -> Decision {
+        if hidden::is_transparent(self.object) {
+            Decision::off(Why::SeenThrough)
+        } else if self.object.mesh().is_closed() {
+            Decision::on(Why::Closed)
+        } else {
+            Decision::off(Why::Open)
+        }
+    }
+
+    fn hidden_surfaces(&self) -> Decision {
+        let (way, why) = self.way;
+        Decision { on: way != HiddenSurfaces::BackFaces, choice: way.name(), why }
+    }
+
+    fn lighting(&self, lamps_in_range: usize) -> Decision {
+        let bright = || self.scene.lights().iter().filter(|light| light.intensity() != 0.0);
+        let count = bright().count();
+        if count == 0 {
+            Decision::off(Why::NoLight)
+        } else if self.object.materials.iter().all(|m| m.diffuse == 0.0 && m.specular == 0.0) {
+            Decision::off(Why::NoResponse)
+        } else if lamps_in_range == 0 && bright().all(|light| matches!(light, Light::Lamp { .. })) {
+            Decision::off(Why::LampsOutOfRange { count })
+        } else {
+            Decision::on(Why::Lights { count })
+        }
+    }
+
+    fn positional_lights(&self, in_range: usize, before: &ObjectPlan) -> Decision {
+        let count = self.scene.lights().iter().filter(|light| matches!(light, Light::Lamp { .. })).count();
+        match (count, in_range) {
+            (0, _) => Decision::off(Why::NoLamp),
+            (_, 0) => Decision::off(Why::LampsOutOfRange { count }),
+            _ if !before.is_on(Effect::Lighting) => Decision::off(before.decision(Effect::Lighting).why),
+            _ => Decision::on(Why::LampsInRange { count: in_range }),
+        }
+    }
+
+    fn specular(&self, before: &ObjectPlan) -> Decision {
+        let decision = self.material_has(Material::is_specular);
+        if decision.on && !before.is_on(Effect::Lighting) {
+            return Decision::off(before.decision(Effect::Lighting).why);
+        }
+        decision
+    }
+
+    fn gouraud(&self, before: &ObjectPlan) -> Decision {
+        if !before.is_on(Effect::Lighting) {
+            return Decision::off(Why::OneShade);
+        }
+        match self.inputs.rung {
+            Rung::Flat => Decision::off(Why::FlatAsked),
+            rung if rung.lights_pixels() && !self.inputs.integer => Decision::off(Why::Asked).choosing(rung.name()),
+            rung => Decision::on(Why::ShadesDiffer).choosing(rung.name()),
+        }
+    }
+
+    fn fog(&self) -> Decision {
+        let Some(fog) = &self.scene.fog else { return Decision::off(Why::SceneHasNone) };
+        let (farthest, start) = (self.reach.farthest, f64::from(fog.start));
+        if farthest > start {
+            Decision::on(Why::ReachesInto { farthest, start })
+        } else {
+            Decision::off(Why::NearerThan { farthest, start })
+        }
+    }
+
+    fn phong(&self) -> Decision {
+        match self.inputs.rung {
+            rung if rung.lights_pixels() => Decision::on(Why::Asked).choosing(rung.name()),
+            _ => Decision::off(Why::NotAsked).choosing(""),
+        }
+    }
+
+    fn tessellation(&self) -> Decision {
+        if self.inputs.rung == Rung::GouraudTessellated || self.scene.wishes.tessellation.is_some() {
+            Decision::on(Why::Asked)
+        } else {
+            Decision::off(Why::NotAsked)
+        }
+    }
+
+    fn perspective(&self) -> Decision {
+        if !self.object.materials.iter().any(|material| material.texture.is_some()) {
+            return Decision::off(Why::NoTexture).choosing("");
+        }
+        let texels = self.affine_error();
+        match self.inputs.mapping {
+            Some(Mapping::Affine) => Decision::off(Why::Asked).choosing(Mapping::Affine.name()),
+            Some(mapping) => Decision::on(Why::Asked).choosing(mapping.name()),
+            None if texels > AFFINE_TOLERANCE => {
+                Decision::on(Why::AffineError { texels }).choosing(Mapping::Perspective.name())
+            }
+            None => Decision::off(Why::AffineError { texels }).choosing(Mapping::Affine.name()),
+        }
+    }
+
+    /// No triangle's texture is off by more than this if it is mapped linearly on the screen, in texels.
+    ///
+    /// Linear on the screen and linear on the face weigh the three corners differently: one with a, the
+    /// other with a/w, made to add up to 1. The weights that go to the wrong corners are at most
+    /// (√ρ − 1) / (√ρ + 1), ρ being the greatest ratio of two w (with the mass m at the nearer end that
+    /// is mρ/(mρ + 1 − m) − m, greatest at m = 1/(1 + √ρ)), and no two corners' texels lie farther apart
+    /// than the longest edge in the texture. Between two vertices of a triangle w differs by no more than
+    /// the longest edge of the mesh.
+    fn affine_error(&self) -> f64 {
+        let nearest = self.reach.nearest.max(f64::from(self.view.near()));
+        let (edge, texture_edge) = self.object.longest_edges();
+        let size = self.object.materials.iter().filter_map(|material| material.texture.as_ref()).fold(0, |size, t| {
+            size.max(1_u32 << t.width_bits()).max(1 << t.height_bits())
+        });
+        let ratio = 1.0 + f64::from(edge) * self.view.scale() / nearest;
+        let root = libm::sqrt(ratio);
+        (root - 1.0) / (root + 1.0) * f64::from(texture_edge) * f64::from(size)
+    }
+
+    fn rgb_channels(&self) -> Decision {
+        if let Some(light) = self.scene.lights().iter().position(|light| light.is_colored() && light.intensity() != 0.0) {
+            return Decision::on(Why::ColoredLight { light });
+        }
+        match self.object.materials.iter().position(Material::takes_channels) {
+            Some(material) => Decision::on(Why::ColoredMaterial { material }),
+            None => Decision::off(Why::NoColor),
+        }
+    }
+
+    fn dither(&self, before: &ObjectPlan) -> Decision {
+        if !self.scene.wishes.dither {
+            Decision::off(Why::NotAsked)
+        } else if before.is_on(Effect::Phong)
+            && self.inputs.rung == Rung::PhongTable
+            && !before.is_on(Effect::RgbChannels)
+        {
+            Decision::off(Why::WholeShades)
+        } else {
+            Decision::on(Why::Asked).choosing("ordered 8 x 8")
+        }
+    }
+
+    fn material_has(&self, has: impl Fn(&Material) -> bool) -> Decision {
+        match self.object.materials.iter().position(has) {
+            Some(material) => Decision::on(Why::MaterialHas { material }),
+            None => Decision::off(Why::NoMaterialHas),
+        }
+    }
+}

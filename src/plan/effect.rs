@@ -1,0 +1,122 @@
+//! The effects, and what each of them may change.
+
+use crate::scene::named;
+
+named! {
+    /// A decision that the plan makes for every object.
+    pub enum Effect, "effect" {
+        /// The object's vertices are transformed and projected; else last frame's are kept.
+        Transform = "transform",
+        /// Every vertex is tested against the near plane; else none is.
+        NearClipping = "near-clipping",
+        /// The raster clips rows at the frame's edges; else it takes them as they are.
+        ScreenClipping = "screen-clipping",
+        /// Faces turned away are left out; else both sides are drawn.
+        BackFaceCulling = "back-face-culling",
+        /// How hidden surfaces are left out, beyond back faces.
+        HiddenSurfaces = "hidden-surfaces",
+        /// Vertices are lit; else the shade is constant, and no normal is looked at.
+        Lighting = "lighting",
+        /// Lamps in range: a distance, a direction and a fall-off for every vertex; else suns alone.
+        PositionalLights = "positional-lights",
+        /// Highlights: a power for every vertex and light.
+        Specular = "specular",
+        /// Shades run over the faces; else each is one plain fill.
+        Gouraud = "gouraud",
+        /// What is far away fades, by a table.
+        Fog = "fog",
+        /// Light at every pixel.
+        Phong = "phong",
+        /// Faces are split along their edges.
+        Tessellation = "tessellation",
+        /// Texture coordinates follow the perspective; else they are linear on the screen.
+        Perspective = "perspective",
+        /// Red, green and blue are lit each for itself.
+        RgbChannels = "rgb-channels",
+        /// An image on the surface.
+        Texture = "texture",
+        /// An image of what the surface mirrors.
+        EnvironmentMap = "environment-map",
+        /// What is behind shines through, by a table.
+        Transparency = "transparency",
+        /// Shades between two entries become a pattern of both.
+        Dither = "dither",
+        /// The DAC is loaded anew as time passes, and nothing is drawn.
+        PaletteAnimation = "palette-animation",
+    }
+    /// There is no effect of that name. Its text lists those there are.
+    pub struct UnknownEffect;
+}
+
+/// What leaving an effect out may change.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Class {
+    /// Nothing: always doing the full work gives the same bytes.
+    SavesWork,
+    /// The picture, where the scene calls for it.
+    ChangesPicture,
+}
+
+impl Effect {
+    /// How many there are.
+    pub const COUNT: usize = Self::ALL.len();
+
+    /// What leaving it out may change.
+    #[must_use]
+    pub const fn class(self) -> Class {
+        match self {
+            Self::Transform
+            | Self::NearClipping
+            | Self::ScreenClipping
+            | Self::BackFaceCulling
+            | Self::HiddenSurfaces
+            | Self::Lighting
+            | Self::PositionalLights
+            | Self::Specular
+            | Self::Gouraud
+            | Self::Fog => Class::SavesWork,
+            Self::Phong
+            | Self::Tessellation
+            | Self::Perspective
+            | Self::RgbChannels
+            | Self::Texture
+            | Self::EnvironmentMap
+            | Self::Transparency
+            | Self::Dither
+            | Self::PaletteAnimation => Class::ChangesPicture,
+        }
+    }
+
+    /// Whether this build leaves it out: then it is off, whatever a scene calls for, and the compiler drops its stages.
+    /// For the proof that what is off costs nothing (`.ci/off_is_free`); no feature of this crate does that.
+    #[inline]
+    pub(crate) const fn is_left_out(self) -> bool {
+        match self {
+            Self::Transform => cfg!(mode13h_leave_out = "transform"),
+            Self::NearClipping => cfg!(mode13h_leave_out = "near-clipping"),
+            Self::ScreenClipping => cfg!(mode13h_leave_out = "screen-clipping"),
+            Self::BackFaceCulling => cfg!(mode13h_leave_out = "back-face-culling"),
+            Self::HiddenSurfaces => cfg!(mode13h_leave_out = "hidden-surfaces"),
+            Self::Lighting => cfg!(mode13h_leave_out = "lighting"),
+            Self::PositionalLights => cfg!(mode13h_leave_out = "positional-lights"),
+            Self::Specular => cfg!(mode13h_leave_out = "specular"),
+            Self::Gouraud => cfg!(mode13h_leave_out = "gouraud"),
+            Self::Fog => cfg!(mode13h_leave_out = "fog"),
+            Self::Phong => cfg!(mode13h_leave_out = "phong"),
+            Self::Tessellation => cfg!(mode13h_leave_out = "tessellation"),
+            Self::Perspective => cfg!(mode13h_leave_out = "perspective"),
+            Self::RgbChannels => cfg!(mode13h_leave_out = "rgb-channels"),
+            Self::Texture => cfg!(mode13h_leave_out = "texture"),
+            Self::EnvironmentMap => cfg!(mode13h_leave_out = "environment-map"),
+            Self::Transparency => cfg!(mode13h_leave_out = "transparency"),
+            Self::Dither => cfg!(mode13h_leave_out = "dither"),
+            Self::PaletteAnimation => cfg!(mode13h_leave_out = "palette-animation"),
+        }
+    }
+
+    /// Its place among all.
+    #[must_use]
+    pub(crate) const fn index(self) -> usize {
+        self as usize
+    }
+}

@@ -1,0 +1,73 @@
+//! Which way to leave out hidden surfaces a scene calls for: the cheapest that is right.
+//!
+//! One convex object hides nothing but its own back faces. Of several that are convex and whose depths
+//! are apart, the nearer hides the farther, whole. All else needs a depth for every pixel. Bodies that
+//! shine through are drawn last, far to near, over the others, where these do not hide them.
+
+use alloc::vec::Vec;
+
+use super::why::Why;
+use crate::light::{Blend, Material};
+use crate::scene::{HiddenSurfaces, Object, Scene};
+use crate::view::ObjectView;
+
+/// Whether any of an object's materials shines through.
+pub(super) fn is_transparent(object: &Object) -> bool {
+    object.materials.iter().any(|Material { blend, .. }| *blend != Blend::Opaque)
+}
+
+/// The way for `scene`, and why. The objects' places are put in `order` as they are to be drawn.
+pub(super) fn choose(
+    scene: &Scene,
+    views: &[ObjectView],
+    asked: Option<HiddenSurfaces>,
+    order: &mut Vec<usize>,
+) -> (HiddenSurfaces, Why) {
+    let objects = scene.objects();
+    order.clear();
+    order.extend(0..objects.len());
+    let transparent = objects.iter().filter(|object| is_transparent(object)).count();
+    match asked {
+        Some(HiddenSurfaces::ScanLine) if transparent > 0 => {
+            return (HiddenSurfaces::DepthBuffer, Why::ScanLineShowsOneFace);
+        }
+        Some(asked) => return (asked, Why::Asked),
+        None => {}
+    }
+    if transparent > 0 {
+        return if transparent == objects.len() {
+            (HiddenSurfaces::BackFaces, Why::AllTransparent)
+        } else {
+            (HiddenSurfaces::DepthBuffer, Why::TransparentLast)
+        };
+    }
+    let dented = objects.iter().position(|object| !object.mesh().is_convex());
+    match (objects, dented) {
+        ([], _) => (HiddenSurfaces::BackFaces, Why::Empty),
+        (_, Some(object)) => (HiddenSurfaces::DepthBuffer, Why::NotConvex { object }),
+        ([_], None) => (HiddenSurfaces::BackFaces, Why::OneConvex),
+        _ if far_to_near(objects, views, order) => (HiddenSurfaces::PainterOrder, Why::ConvexApart),
+        _ => (HiddenSurfaces::DepthBuffer, Why::Overlap),
+    }
+}
+
+/// Puts the objects far to near if their depths are apart: if every vertex of one is nearer than all
+/// of the next, in the whole units by which the depth buffer decides. Otherwise leaves `order` as it
+/// was and returns `false`.
+///
+/// The depths are those of the objects' boxes: a few sums an object, whatever its number of vertices.
+fn far_to_near(objects: &[Object], views: &[ObjectView], order: &mut [usize]) -> bool {
+    let depths = |i: usize| views[i].depths(objects[i].mesh().bounds());
+    order.sort_unstable_by_key(|&i| (depths(i), i));
+    let apart = order.windows(2).all(|pair| depths(pair[0]).1 < depths(pair[1]).0);
+    if !apart {
+        order.sort_unstable();
+    }
+    apart
+}
+
+/// Puts faces far to near by the sum of the depths of their three vertices, which orders as the mean
+/// does; of equal ones the first submitted is painted first.
+pub(crate) fn sort_by_depth<T>(faces: &mut [T], depth: impl FnMut(&T) -> u64) {
+    faces.sort_by_key(depth);
+}

@@ -1,0 +1,200 @@
+//! From a scene to the effects that it calls for, for each object, each with its reason.
+//!
+//! | file | what |
+//! |---|---|
+//! | `effect` | [`Effect`]: the list, and what each may change |
+//! | `why` | [`Why`]: the reasons |
+//! | `decide` | the rules, a function an effect |
+//! | `hidden` | which way to leave out hidden surfaces |
+//!
+//! A plan is made once a frame: some comparisons and a few products an object, nothing for a vertex.
+//! [`Plan::is_on`] is what the renderer goes by; [`Plan::rows`] is the same for people. An effect that
+//! is off costs nothing per vertex, triangle, span or pixel, and no memory.
+
+mod decide;
+mod effect;
+mod hidden;
+mod why;
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+pub use effect::{Class, Effect, UnknownEffect};
+pub use why::Why;
+
+pub(crate) use decide::{Inputs, LEAST_TESSELLATION, Since, decide};
+pub(crate) use hidden::sort_by_depth;
+
+use crate::scene::{HiddenSurfaces, Rung, Scene};
+
+/// One decision.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Decision {
+    /// Whether the effect is on.
+    pub on: bool,
+    /// Of several ways to do it, which; empty where there is but one.
+    pub choice: &'static str,
+    /// Why.
+    pub why: Why,
+}
+
+impl Decision {
+    pub(crate) const fn on(why: Why) -> Self {
+        Self { on: true, choice: "", why }
+    }
+
+    pub(crate) const fn off(why: Why) -> Self {
+        Self { on: false, choice: "", why }
+    }
+
+    pub(crate) const fn choosing(self, choice: &'static str) -> Self {
+        Self { choice, ..self }
+    }
+}
+
+/// What is decided for one object.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct ObjectPlan {
+    decisions: [Decision; Effect::COUNT],
+    rung: Rung,
+}
+
+impl ObjectPlan {
+    /// The decision on an effect.
+    #[must_use]
+    pub fn decision(&self, effect: Effect) -> &Decision {
+        // One for each.
+        &self.decisions[effect.index()]
+    }
+
+    /// Whether an effect is on.
+    #[inline]
+    #[must_use]
+    pub fn is_on(&self, effect: Effect) -> bool {
+        !effect.is_left_out() && self.decision(effect).on
+    }
+
+    /// How it is shaded.
+    #[must_use]
+    pub fn rung(&self) -> Rung {
+        self.rung
+    }
+
+    pub(crate) fn set(&mut self, effect: Effect, decision: Decision) {
+        self.decisions[effect.index()] = decision;
+    }
+}
+
+/// What is switched by hand: `None` leaves it to the plan.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Forced {
+    everywhere: [Option<bool>; Effect::COUNT],
+    /// Objects that differ from that, by their places.
+    single: Vec<(usize, Effect, bool)>,
+}
+
+impl Forced {
+    /// Switches an effect on or off for every object, or leaves it to the plan.
+    pub fn set(&mut self, effect: Effect, on: Option<bool>) {
+        self.everywhere[effect.index()] = on;
+    }
+
+    /// How an effect is switched for every object.
+    #[must_use]
+    pub fn get(&self, effect: Effect) -> Option<bool> {
+        self.everywhere[effect.index()]
+    }
+
+    /// Switches an effect on or off for one object, by its place in the scene, whatever holds for every object;
+    /// `None` takes that back.
+    pub fn set_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
+        self.single.retain(|(place, of, _)| (*place, *of) != (object, effect));
+        self.single.extend(on.map(|on| (object, effect, on)));
+    }
+
+    /// How an effect is switched for an object.
+    #[must_use]
+    pub fn get_for(&self, object: usize, effect: Effect) -> Option<bool> {
+        let single = self.single.iter().find(|(place, of, _)| (*place, *of) == (object, effect));
+        single.map(|(_, _, on)| *on).or(self.get(effect))
+    }
+}
+
+/// The decisions for a frame of a scene.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Plan {
+    /// How hidden surfaces are left out.
+    pub(crate) hidden_surfaces: HiddenSurfaces,
+    /// Whether that was chosen, not asked for.
+    pub(crate) chosen: bool,
+    pub(crate) objects: Vec<ObjectPlan>,
+    /// The objects as they are drawn.
+    pub(crate) order: Vec<usize>,
+}
+
+impl Plan {
+    pub(crate) const fn new() -> Self {
+        Self { hidden_surfaces: HiddenSurfaces::BackFaces, chosen: true, objects: Vec::new(), order: Vec::new() }
+    }
+
+    /// How hidden surfaces are left out.
+    #[must_use]
+    pub fn hidden_surfaces(&self) -> HiddenSurfaces {
+        if Effect::HiddenSurfaces.is_left_out() { HiddenSurfaces::BackFaces } else { self.hidden_surfaces }
+    }
+
+    /// Whether the plan chose how hidden surfaces are left out, and nobody asked for it.
+    pub(crate) fn is_chosen(&self) -> bool {
+        self.chosen
+    }
+
+    /// What is decided for each object of the scene, in its order.
+    #[must_use]
+    pub fn objects(&self) -> &[ObjectPlan] {
+        &self.objects
+    }
+
+    /// Whether an effect is on for an object, by its place; off for one that is not there.
+    #[must_use]
+    pub fn is_on(&self, object: usize, effect: Effect) -> bool {
+        self.objects.get(object).is_some_and(|plan| plan.is_on(effect))
+    }
+
+    /// Whether an effect is on for any object.
+    #[must_use]
+    pub fn is_on_anywhere(&self, effect: Effect) -> bool {
+        self.objects.iter().any(|plan| plan.is_on(effect))
+    }
+
+    /// Every decision in words: object by object, in the order of [`Effect::ALL`].
+    #[must_use]
+    pub fn rows(&self, scene: &Scene) -> Vec<Row> {
+        let mut rows = Vec::with_capacity(self.objects.len() * Effect::COUNT);
+        for (place, plan) in self.objects.iter().enumerate() {
+            for effect in Effect::ALL {
+                let Decision { on, choice, why } = *plan.decision(effect);
+                let (object, why) = (why::name_of(scene, place), why.words(scene, place));
+                rows.push(Row { place, object, effect, on, choice, why });
+            }
+        }
+        rows
+    }
+}
+
+/// One decision in words.
+#[derive(Clone, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub struct Row {
+    /// The object's place in the scene.
+    pub place: usize,
+    /// Its name.
+    pub object: String,
+    /// The effect.
+    pub effect: Effect,
+    /// Whether it is on.
+    pub on: bool,
+    /// Of several ways to do it, which; empty where there is but one.
+    pub choice: &'static str,
+    /// Why.
+    pub why: String,
+}

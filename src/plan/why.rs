@@ -1,0 +1,217 @@
+//! The reasons for decisions: kept as small values, put into words when somebody reads them.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+
+use crate::scene::{Object, Scene};
+
+/// Why an effect is on or off for an object.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Why {
+    /// It was switched by hand.
+    Forced,
+    /// The first frame.
+    FirstFrame,
+    /// The object, the camera or what lights it changed since the last frame.
+    Changed,
+    /// Nothing that it depends on changed since the last frame.
+    Unchanged,
+    /// Vertices are not kept from frame to frame.
+    NotKept,
+    /// This build has no such effect.
+    LeftOut,
+    /// How near the object comes, and where the near plane is.
+    Nearest {
+        /// The least distance of its bounds along the view.
+        nearest: f64,
+        /// The near plane's.
+        near: f64,
+    },
+    /// Its bounds reach the near plane, so they may lie anywhere on the screen.
+    CrossesNear,
+    /// Its bounds reach a screen's edge.
+    LeavesScreen,
+    /// Its bounds lie on the screen.
+    OnScreen,
+    /// A part of the screen is drawn.
+    Band,
+    /// The mesh is closed: no back face of it can be seen from outside.
+    Closed,
+    /// The mesh is not closed: both sides of its faces may be seen.
+    Open,
+    /// What shines through shows its own far side too.
+    SeenThrough,
+    /// The scene's only object is convex.
+    OneConvex,
+    /// There is nothing to draw.
+    Empty,
+    /// All objects are convex, and one lies behind the other.
+    ConvexApart,
+    /// An object of the scene is not convex.
+    NotConvex {
+        /// Its place in the scene.
+        object: usize,
+    },
+    /// Two or more objects are convex, but their depths overlap.
+    Overlap,
+    /// Bodies that shine through are drawn last, far to near.
+    TransparentLast,
+    /// Every body shines through, so all are drawn far to near.
+    AllTransparent,
+    /// Asked for, by the scene or by hand.
+    Asked,
+    /// Nobody asked for it.
+    NotAsked,
+    /// Asked for was the scan-line method, which knows one face a pixel; something shines through.
+    ScanLineShowsOneFace,
+    /// Lights of an intensity that is not 0.
+    Lights {
+        /// How many.
+        count: usize,
+    },
+    /// There is no light, or none that is not dark.
+    NoLight,
+    /// No material gives back light but ambient light.
+    NoResponse,
+    /// Lamps in range.
+    LampsInRange {
+        /// How many.
+        count: usize,
+    },
+    /// No lamp.
+    NoLamp,
+    /// Lamps, none of which reaches the object.
+    LampsOutOfRange {
+        /// How many.
+        count: usize,
+    },
+    /// A material has it.
+    MaterialHas {
+        /// Its place among the object's materials.
+        material: usize,
+    },
+    /// No material of the object has it.
+    NoMaterialHas,
+    /// The shades of the vertices differ.
+    ShadesDiffer,
+    /// One shade for a face was asked for.
+    FlatAsked,
+    /// Every vertex has the same shade.
+    OneShade,
+    /// The scene has none.
+    SceneHasNone,
+    /// It reaches into it.
+    ReachesInto {
+        /// How far the object reaches along the view.
+        farthest: f64,
+        /// Where it begins.
+        start: f64,
+    },
+    /// It lies nearer.
+    NearerThan {
+        /// How far the object reaches along the view.
+        farthest: f64,
+        /// Where it begins.
+        start: f64,
+    },
+    /// The affine mapping's error, in texels, over any triangle is at most this.
+    AffineError {
+        /// In texels.
+        texels: f64,
+    },
+    /// There is nothing that follows the perspective.
+    NoTexture,
+    /// A light is coloured.
+    ColoredLight {
+        /// Its place in the scene.
+        light: usize,
+    },
+    /// A material is coloured, or drawn in the nearest entries.
+    ColoredMaterial {
+        /// Its place among the object's materials.
+        material: usize,
+    },
+    /// Neither light nor material is coloured.
+    NoColor,
+    /// Shades come from a table of whole ones: nothing lies between two of them.
+    WholeShades,
+    /// The vertex path in 16.16 does not know it.
+    NotInIntegers,
+}
+
+impl Why {
+    /// In words, for `object` of `scene`.
+    #[must_use]
+    pub fn words(&self, scene: &Scene, object: usize) -> String {
+        let material = |i: usize| {
+            let name = scene.objects().get(object).and_then(|o| o.materials.get(i)).map_or("", |m| m.name.as_str());
+            if name.is_empty() { format!("material {i}") } else { format!("material `{name}`") }
+        };
+        let none = || match scene.objects().get(object).map(|object| object.materials.as_slice()) {
+            Some([only]) if !only.name.is_empty() => format!("material `{}` has none", only.name),
+            _ => "no material has it".to_string(),
+        };
+        match *self {
+            Self::Forced => "switched by hand".to_string(),
+            Self::FirstFrame => "the first frame".to_string(),
+            Self::Changed => "it, the camera or its light changed since the last frame".to_string(),
+            Self::Unchanged => "nothing it depends on changed since the last frame".to_string(),
+            Self::NotKept => "vertices are not kept".to_string(),
+            Self::LeftOut => "this build leaves it out".to_string(),
+            Self::Nearest { nearest, near } if nearest > near => {
+                format!("its bounds come no nearer than {nearest:.3}; the near plane is at {near:.3}")
+            }
+            Self::Nearest { nearest, near } => format!("its bounds come as near as {nearest:.3}; the near plane is at {near:.3}"),
+            Self::CrossesNear => "its bounds reach the near plane".to_string(),
+            Self::LeavesScreen => "its bounds reach the screen's edge".to_string(),
+            Self::OnScreen => "its bounds lie on the screen".to_string(),
+            Self::Band => "only a part of the screen is drawn".to_string(),
+            Self::Closed => "its mesh is closed".to_string(),
+            Self::Open => "its mesh is open, so both sides may be seen".to_string(),
+            Self::SeenThrough => "its far side shines through".to_string(),
+            Self::OneConvex => "the only object is convex".to_string(),
+            Self::Empty => "nothing is to be drawn".to_string(),
+            Self::ConvexApart => "all objects are convex and lie one behind the other".to_string(),
+            Self::NotConvex { object } => format!("{} is not convex", name_of(scene, object)),
+            Self::Overlap => "the depths of the objects overlap".to_string(),
+            Self::TransparentLast => "bodies that shine through are drawn last, far to near".to_string(),
+            Self::AllTransparent => "every body shines through, all are drawn far to near".to_string(),
+            Self::Asked => "asked for".to_string(),
+            Self::NotAsked => "not asked for".to_string(),
+            Self::ScanLineShowsOneFace => "asked for was scan-line, but something shines through".to_string(),
+            Self::Lights { count: 1 } => "one light".to_string(),
+            Self::Lights { count } => format!("{count} lights"),
+            Self::NoLight => "the scene has no light".to_string(),
+            Self::NoResponse => "no material answers light".to_string(),
+            Self::LampsInRange { count: 1 } => "one lamp reaches it".to_string(),
+            Self::LampsInRange { count } => format!("{count} lamps reach it"),
+            Self::NoLamp => "the scene has no lamp".to_string(),
+            Self::LampsOutOfRange { count: 1 } => "the lamp does not reach it".to_string(),
+            Self::LampsOutOfRange { count } => format!("none of {count} lamps reaches it"),
+            Self::MaterialHas { material: i } => format!("{} has it", material(i)),
+            Self::NoMaterialHas => none(),
+            Self::ShadesDiffer => "shades differ from vertex to vertex".to_string(),
+            Self::FlatAsked => "one shade a face was asked for".to_string(),
+            Self::OneShade => "every vertex has the same shade".to_string(),
+            Self::SceneHasNone => "the scene has none".to_string(),
+            Self::ReachesInto { farthest, start } => format!("it begins at {start:.3}, the object reaches {farthest:.3}"),
+            Self::NearerThan { farthest, start } => format!("it begins at {start:.3}, the object ends at {farthest:.3}"),
+            Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
+            Self::NoTexture => "nothing follows the perspective".to_string(),
+            Self::ColoredLight { light } => format!("light {light} is coloured"),
+            Self::ColoredMaterial { material: i } => format!("{} is drawn in its own colours", material(i)),
+            Self::WholeShades => "the table of normals holds whole shades".to_string(),
+            Self::NotInIntegers => "the 16.16 vertex path has none".to_string(),
+            Self::NoColor => "neither light nor material is coloured".to_string(),
+        }
+    }
+}
+
+/// The object's name, or its place.
+pub(crate) fn name_of(scene: &Scene, object: usize) -> String {
+    match scene.objects().get(object).map(|Object { name, .. }| name) {
+        Some(name) if !name.is_empty() => name.clone(),
+        _ => format!("object {object}"),
+    }
+}

@@ -1,0 +1,611 @@
+//! Triangles with effects: a row is made in pieces of up to 64 bytes, which pass through stages.
+//!
+//! ```text
+//! shades     linear, perspective-correct, from a table of normals, or lit at every pixel
+//! texture    shade and texel looked up in a table; or red, green and blue mixed to an index
+//! fog        level and index looked up
+//! blend      index and what the frame holds looked up
+//! write      all of it, or where nearer
+//! ```
+//!
+//! A stage that a [`Look`] does not have is not entered. Pieces begin at the row's first covered pixel
+//! inside the frame and every 64 pixels from there, where every value is exact; so a pixel's byte
+//! depends on no clip rectangle. Without any effect [`Raster::triangle`] gives the same bytes sooner.
+//!
+//! Linear values (shades, fog, channels, the table's normals) keep the guarantees of
+//! [`shade`](super::shade): no sum leaves the range of the three corners. With dither, whose threshold
+//! of 0 to 255 takes the place of the half, a byte lies in [min >> 8, ⌈max⌉].
+
+use core::ops::Range;
+
+use super::cover::{Ordered, Row};
+use super::depth::{Cell, DepthPlane};
+use super::hyperbolic::{HyperbolicPlane, Linear};
+use super::shade::{RESEED, ShadePlane};
+use super::triangle::{Drawn, Raster};
+use super::vertex::Vertex;
+use crate::fixed::U8F8;
+use crate::span::channels::{mix_cube, mix_nearest};
+use crate::span::depth::{copy_before, copy_nearer};
+use crate::span::dither::fill_dithered;
+use crate::span::hyperbolic::floor_quotient;
+use crate::span::lit::interpolate;
+use crate::span::texture::{Texels, fill_affine, fill_perspective};
+use crate::span::{Kernel, lookup};
+
+/// Pixels in a piece.
+const PIECE: usize = RESEED as usize;
+
+/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`].
+const EVERY: usize = 16;
+
+/// The values of a corner beyond its position, shade and depth. What a look does not use may be
+/// anything.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Attributes {
+    /// Texture coordinates, across and down, in texels with 16 fraction bits.
+    pub texture: [i32; 2],
+    /// How thick the fog is, 0 to 0xFF00.
+    pub fog: U8F8,
+    /// Red, green and blue, each 0 to 0xFF00.
+    pub channels: [U8F8; 3],
+    /// The column and the row in the table of [`Source::NormalTable`], each 0 to 0xFF00.
+    pub slope: [U8F8; 2],
+    /// What [`Lighting`] is handed: a normal and a position.
+    pub lit: [f32; 6],
+}
+
+/// Light at every pixel.
+pub trait Lighting: core::fmt::Debug {
+    /// The shade at each point (normal and position, perspective-correct, the normal of any length), in
+    /// 8.8, 0 to 0xFF00. Both slices are of one length.
+    fn shades(&self, points: &[[f32; 6]], shades: &mut [u16]);
+
+    /// The same for red, green and blue.
+    fn channels(&self, points: &[[f32; 6]], channels: [&mut [u16]; 3]);
+}
+
+/// Where a pixel's shade comes from.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum Source<'a> {
+    /// The corners' shades, or their channels, linear on the screen; exact starts every 64 pixels, or,
+    /// for shades, one for each row.
+    Linear {
+        /// Whether there are exact starts every 64 pixels.
+        reseeded: bool,
+    },
+    /// The corners' shades, linear on the face.
+    Hyperbolic,
+    /// [`Attributes::slope`], linear on the screen, looked up: row and column give the shade.
+    NormalTable(&'a [u8; 65_536]),
+    /// [`Attributes::lit`], linear on the face, lit.
+    Lit(&'a dyn Lighting),
+}
+
+/// How texture coordinates run along a row.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum TextureMapping {
+    /// Linear on the screen.
+    Affine,
+    /// Exact at every sixteenth pixel, linear between.
+    Every16,
+    /// Exact at every pixel.
+    Perspective,
+}
+
+/// What three channels are mixed to.
+#[derive(Clone, Copy, Debug)]
+pub enum Mix<'a> {
+    /// The 6 × 6 × 6 colours of [`palette::cube`](crate::palette::cube).
+    Cube,
+    /// The entry that a table of 32 × 32 × 32 names.
+    Nearest {
+        /// Indices by red, green and blue, five bits each.
+        map: &'a [u8; 32_768],
+        /// How far dither moves a channel, from end to end.
+        spread: u8,
+    },
+}
+
+/// An image on a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct TextureLook<'a> {
+    /// The image.
+    pub texels: Texels<'a>,
+    /// How its coordinates run.
+    pub mapping: TextureMapping,
+    /// The byte for a shade (row) and a texel (column); of channels, one table each.
+    pub tables: [&'a [u8; 65_536]; 3],
+}
+
+/// What is done to the pixels of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Look<'a> {
+    /// Where shades come from.
+    pub source: Source<'a>,
+    /// Red, green and blue instead of one shade, and what they are mixed to.
+    pub channels: Option<Mix<'a>>,
+    /// Thresholds of 8 × 8 pixels instead of the half that is else added to a shade.
+    pub dither: Option<&'a [[u8; 8]; 8]>,
+    /// An image.
+    pub texture: Option<TextureLook<'a>>,
+    /// The index for a level (row) and an index (column).
+    pub fog: Option<&'a [u8; 65_536]>,
+    /// The index for the triangle's own (row) and the frame's (column).
+    pub blend: Option<&'a [u8; 65_536]>,
+    /// Whether it hides what is drawn later behind it: whether the depth buffer keeps its depth.
+    pub keeps_depth: bool,
+}
+
+/// The stages. One that a build leaves out (`plan::Effect::is_left_out`) is not there, and the compiler knows.
+impl<'a> Look<'a> {
+    #[inline]
+    fn channels(&self) -> Option<Mix<'a>> {
+        self.channels.filter(|_| !cfg!(mode13h_leave_out = "rgb-channels"))
+    }
+
+    #[inline]
+    fn dither(&self) -> Option<&'a [[u8; 8]; 8]> {
+        self.dither.filter(|_| !cfg!(mode13h_leave_out = "dither"))
+    }
+
+    #[inline]
+    fn texture(&self) -> Option<&TextureLook<'a>> {
+        self.texture.as_ref().filter(|_| !cfg!(all(mode13h_leave_out = "texture", mode13h_leave_out = "environment-map")))
+    }
+
+    #[inline]
+    fn fog(&self) -> Option<&'a [u8; 65_536]> {
+        self.fog.filter(|_| !cfg!(mode13h_leave_out = "fog"))
+    }
+
+    #[inline]
+    fn blend(&self) -> Option<&'a [u8; 65_536]> {
+        self.blend.filter(|_| !cfg!(mode13h_leave_out = "transparency"))
+    }
+}
+
+impl Look<'_> {
+    /// Linear shades and nothing else.
+    pub const PLAIN: Self = Self {
+        source: Source::Linear { reseeded: true },
+        channels: None,
+        dither: None,
+        texture: None,
+        fog: None,
+        blend: None,
+        keeps_depth: true,
+    };
+}
+
+/// A half for every pixel: no dither.
+const HALVES: [[u8; 8]; 8] = [[128; 8]; 8];
+
+/// Texture coordinates over a triangle.
+#[derive(Clone, Copy, Debug)]
+struct TexturePlane {
+    numerators: [Linear; 2],
+    /// Of affine mapping the area: the same everywhere.
+    denominator: Linear,
+    /// Of affine mapping, from one pixel to the next, rounded toward zero.
+    steps: [u32; 2],
+}
+
+impl TexturePlane {
+    fn new(triangle: &Ordered, corners: [&Attributes; 3], mapping: TextureMapping) -> Self {
+        let depths = match mapping {
+            TextureMapping::Affine => [1; 3],
+            _ => triangle.vertices.each_ref().map(|v| i128::from(v.depth().max(1))),
+        };
+        let numerators =
+            [0, 1].map(|i| Linear::new(triangle, [0, 1, 2].map(|k| i128::from(corners[k].texture[i]) * depths[k])));
+        let area = i128::from(triangle.area());
+        // The wrap is meant: of two pixels or more in a row the step is that of two coordinates; of one it
+        // is never used.
+        let steps = numerators.map(|n| (n.per_column() / area) as u32);
+        Self { numerators, denominator: Linear::new(triangle, depths), steps }
+    }
+
+    /// The coordinates at a pixel, rounded down; 16.16, modulo 2³².
+    fn at(&self, x: i32, y: i32) -> [u32; 2] {
+        let d = self.denominator.at(x, y);
+        // A mean of the corners' coordinates, so it fits in 32 bits. The wrap is meant: texels repeat.
+        self.numerators.each_ref().map(|n| floor_quotient(n.at(x, y), d) as u32)
+    }
+
+    /// The same, rounded back toward where the coordinates come from, as shades are: so no sum leaves
+    /// the range of the corners.
+    fn start(&self, x: i32, y: i32) -> [u32; 2] {
+        let d = self.denominator.at(x, y);
+        self.numerators.each_ref().map(|n| {
+            let bias = if n.per_column() < 0 { d - 1 } else { 0 };
+            floor_quotient(n.at(x, y) + bias, d) as u32
+        })
+    }
+}
+
+/// Normals and positions over a triangle.
+#[derive(Clone, Copy, Debug)]
+struct LitPlane {
+    /// The weights of the corners: twice the areas of the parts of the triangle opposite to them.
+    weights: [Linear; 3],
+    /// Of each corner, its values times its depth, then its depth.
+    values: [[f64; 7]; 3],
+}
+
+impl LitPlane {
+    fn new(triangle: &Ordered, corners: [&Attributes; 3]) -> Self {
+        let weights = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|one| Linear::new(triangle, one));
+        let values = [0, 1, 2].map(|k| {
+            let depth = f64::from(triangle.vertices[k].depth().max(1));
+            let [a, b, c, d, e, f] = corners[k].lit.map(|value| f64::from(value) * depth);
+            [a, b, c, d, e, f, depth]
+        });
+        Self { weights, values }
+    }
+
+    /// The sum over the corners, in their order from top to bottom, of the values with these weights.
+    fn sum(&self, weights: [i128; 3]) -> ([f64; 6], f64) {
+        // Areas are at most 2⁴²: exact.
+        let [wa, wb, wc] = weights.map(|weight| weight as f64);
+        let [va, vb, vc] = &self.values;
+        let value = |i: usize| wa * va[i] + wb * vb[i] + wc * vc[i];
+        (core::array::from_fn(value), value(6))
+    }
+
+    /// Points from pixel (`x`, `y`) on.
+    fn points(&self, x: i32, y: i32, points: &mut [[f32; 6]]) {
+        let (a, d) = self.sum(self.weights.each_ref().map(|weight| weight.at(x, y)));
+        let (da, dd) = self.sum(self.weights.each_ref().map(Linear::per_column));
+        interpolate(points, a, da, d, dd);
+    }
+}
+
+/// The values of one triangle that its look uses.
+#[derive(Clone, Copy, Debug)]
+enum Planes {
+    Shade(ShadePlane),
+    Channels([ShadePlane; 3]),
+    Hyperbolic(HyperbolicPlane),
+    Slope([ShadePlane; 2]),
+    Lit(LitPlane),
+}
+
+/// A triangle and its look, ready to be painted row by row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EffectPaint<'a> {
+    look: &'a Look<'a>,
+    planes: Planes,
+    texture: Option<TexturePlane>,
+    fog: Option<ShadePlane>,
+}
+
+/// Rows of 64 bytes.
+type Piece = [u8; PIECE];
+
+impl<'a> EffectPaint<'a> {
+    /// Of a triangle that is not degenerate. `attributes` are in the order of `vertices`, from which
+    /// `triangle` was made.
+    pub(super) fn new(
+        triangle: &Ordered,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        look: &'a Look<'a>,
+    ) -> Self {
+        // No two corners of a triangle that has area are in one place.
+        let corners = triangle.vertices.each_ref().map(|corner| {
+            let same = |v: &Vertex| v.x() == corner.x() && v.y() == corner.y();
+            &attributes[vertices.iter().position(same).unwrap_or(0)]
+        });
+        let plane = |value: fn(&Attributes) -> U8F8| {
+            ShadePlane::of_values(triangle, corners.map(|corner| i64::from(value(corner).to_bits())))
+        };
+        let planes = match (look.source, look.channels()) {
+            (Source::Lit(_), _) => Planes::Lit(LitPlane::new(triangle, corners)),
+            (_, Some(_)) => Planes::Channels([plane(|c| c.channels[0]), plane(|c| c.channels[1]), plane(|c| c.channels[2])]),
+            (Source::Linear { .. }, None) => Planes::Shade(ShadePlane::new(triangle)),
+            (Source::Hyperbolic, None) => Planes::Hyperbolic(HyperbolicPlane::new(triangle)),
+            (Source::NormalTable(_), None) => Planes::Slope([plane(|c| c.slope[0]), plane(|c| c.slope[1])]),
+        };
+        let texture = look.texture().map(|texture| TexturePlane::new(triangle, corners, texture.mapping));
+        Self { look, planes, texture, fog: look.fog().map(|_| plane(|c| c.fog)) }
+    }
+
+    /// Paints `row` into `pixels`, the frame's whole row; if there are `depths`, the buffer's whole row,
+    /// where it is nearer.
+    pub(super) fn row<D: Cell>(
+        &self,
+        row: &Row,
+        pixels: &mut [u8],
+        mut depths: Option<(&mut [D], &DepthPlane)>,
+        kernel: Kernel,
+        drawn: &mut Drawn,
+    ) {
+        let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
+        let mut x = row.x0;
+        while x < row.x1 {
+            let end = row.x1.min(seed + RESEED);
+            // From the seed on, of which the first may be outside of the clip rectangle.
+            let mut bytes: Piece = [0; PIECE];
+            let length = (end - seed) as usize;
+            let skipped = (x - seed) as usize;
+            let piece = &mut bytes[..length];
+            self.shades(row, seed, piece, kernel);
+            if let (Some(fog), Some(table)) = (&self.fog, self.look.fog()) {
+                let mut levels: Piece = [0; PIECE];
+                kernel.fill(&mut levels[..length], fog.start(seed, row.y), fog.step());
+                lookup(piece, &levels[..length], table);
+            }
+            // Columns of a frame.
+            let range = x as usize..end as usize;
+            let Some(pixels) = pixels.get_mut(range.clone()) else { return };
+            let piece = &mut piece[skipped..];
+            if let Some(table) = self.look.blend() {
+                // The table's row is the triangle's own index.
+                let mut behind: Piece = [0; PIECE];
+                let behind = &mut behind[..pixels.len()];
+                behind.copy_from_slice(pixels);
+                lookup(behind, piece, table);
+                piece.copy_from_slice(behind);
+            }
+            self.count(range.len(), drawn);
+            write(range, pixels, piece, row.y, &mut depths, self.look.keeps_depth, drawn);
+            seed += RESEED;
+            x = end;
+        }
+    }
+
+    /// Counts what is done to a piece, whatever the depth test says of it.
+    fn count(&self, pixels: usize, drawn: &mut Drawn) {
+        // At most 64.
+        let pixels = pixels as u32;
+        drawn.spans += 1;
+        let add = |on: bool, count: &mut u32| *count += if on { pixels } else { 0 };
+        add(self.look.texture().is_some(), &mut drawn.textured);
+        add(self.look.dither().is_some(), &mut drawn.dithered);
+        add(self.look.fog().is_some(), &mut drawn.fogged);
+        add(self.look.blend().is_some(), &mut drawn.blended);
+        add(self.look.channels().is_some(), &mut drawn.mixed);
+        add(matches!(self.planes, Planes::Lit(_) | Planes::Slope(_)), &mut drawn.lit);
+    }
+
+    /// The bytes from pixel `seed` on: shades, with their texture, or mixed.
+    fn shades(&self, row: &Row, seed: i32, piece: &mut [u8], kernel: Kernel) {
+        let thresholds = &self.look.dither().unwrap_or(&HALVES)[(row.y & 7) as usize];
+        let dithered = self.look.dither().is_some();
+        // A column.
+        let column = seed as usize;
+        let linear = |plane: &ShadePlane, start: u16, piece: &mut [u8]| {
+            if dithered {
+                // The half that the start holds is the threshold's now.
+                fill_dithered(piece, start.wrapping_sub(128), plane.step(), thresholds, column);
+            } else {
+                kernel.fill(piece, start, plane.step());
+            }
+        };
+        let length = piece.len();
+        match &self.planes {
+            Planes::Shade(plane) => {
+                let reseeded = matches!(self.look.source, Source::Linear { reseeded: true });
+                let start = if reseeded {
+                    plane.start(seed, row.y)
+                } else {
+                    // Columns are below 4,096; the sum is meant modulo 2¹⁶.
+                    let steps = (seed - row.origin) as u16;
+                    plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
+                };
+                linear(plane, start, piece);
+            }
+            Planes::Hyperbolic(plane) => {
+                let mut shades = [0_u16; PIECE];
+                for (shade, x) in shades[..length].iter_mut().zip(seed..) {
+                    let (n, d) = plane.shade(x, row.y);
+                    // 0 to 0xFF00.
+                    *shade = floor_quotient(n, d) as u16;
+                }
+                to_bytes(&shades[..length], thresholds, column, piece);
+            }
+            Planes::Slope([across, down]) => {
+                let mut rows: Piece = [0; PIECE];
+                kernel.fill(piece, across.start(seed, row.y), across.step());
+                kernel.fill(&mut rows[..length], down.start(seed, row.y), down.step());
+                if let Source::NormalTable(table) = self.look.source {
+                    lookup(piece, &rows[..length], table);
+                }
+            }
+            Planes::Channels(planes) => {
+                let mut channels = [[0; PIECE]; 3];
+                for (plane, channel) in planes.iter().zip(&mut channels) {
+                    kernel.fill(&mut channel[..length], plane.start(seed, row.y), plane.step());
+                }
+                return self.mix(row, seed, channels, thresholds, piece);
+            }
+            Planes::Lit(plane) => {
+                let mut points = [[0.0; 6]; PIECE];
+                plane.points(seed, row.y, &mut points[..length]);
+                let Source::Lit(lighting) = self.look.source else { return };
+                let mut shades = [[0_u16; PIECE]; 3];
+                if self.look.channels().is_some() {
+                    let [red, green, blue] = &mut shades;
+                    let rows = [&mut red[..length], &mut green[..length], &mut blue[..length]];
+                    lighting.channels(&points[..length], rows);
+                    let mut channels = [[0; PIECE]; 3];
+                    for (shades, channel) in shades.iter().zip(&mut channels) {
+                        to_bytes(&shades[..length], &HALVES[0], column, &mut channel[..length]);
+                    }
+                    return self.mix(row, seed, channels, thresholds, piece);
+                }
+                lighting.shades(&points[..length], &mut shades[0][..length]);
+                to_bytes(&shades[0][..length], thresholds, column, piece);
+            }
+        }
+        if let Some(texture) = self.look.texture() {
+            let mut texels: Piece = [0; PIECE];
+            let texels = &mut texels[..length];
+            self.texels(row, seed, texels);
+            lookup(texels, piece, texture.tables[0]);
+            piece.copy_from_slice(texels);
+        }
+    }
+
+    /// Channels to indices, through the texture if there is one.
+    fn mix(&self, row: &Row, seed: i32, mut channels: [Piece; 3], thresholds: &[u8; 8], piece: &mut [u8]) {
+        let length = piece.len();
+        if let Some(texture) = self.look.texture() {
+            let mut texels: Piece = [0; PIECE];
+            self.texels(row, seed, &mut texels[..length]);
+            for (channel, table) in channels.iter_mut().zip(texture.tables) {
+                let mut shown = texels;
+                lookup(&mut shown[..length], &channel[..length], table);
+                *channel = shown;
+            }
+        }
+        let [red, green, blue] = channels.each_ref().map(|channel| &channel[..length]);
+        // A column.
+        let column = seed as usize;
+        match self.look.channels() {
+            Some(Mix::Nearest { map, spread }) => {
+                mix_nearest(piece, red, green, blue, thresholds, column, spread, map);
+            }
+            _ => mix_cube(piece, red, green, blue, thresholds, column),
+        }
+    }
+
+    /// The texels from pixel `seed` on.
+    fn texels(&self, row: &Row, seed: i32, texels: &mut [u8]) {
+        let (Some(look), Some(plane)) = (self.look.texture(), &self.texture) else { return };
+        let y = row.y;
+        match look.mapping {
+            TextureMapping::Affine => {
+                let ([u, v], [du, dv]) = (plane.start(seed, y), plane.steps);
+                fill_affine(texels, look.texels, u, v, du, dv);
+            }
+            TextureMapping::Perspective => {
+                let numerators = plane.numerators.each_ref().map(|n| n.at(seed, y));
+                let steps = plane.numerators.each_ref().map(Linear::per_column);
+                let (d, dd) = (plane.denominator.at(seed, y), plane.denominator.per_column());
+                fill_perspective(texels, look.texels, numerators, steps, d, dd);
+            }
+            TextureMapping::Every16 => {
+                let mut x = seed;
+                let mut from = plane.at(x, y);
+                for texels in texels.chunks_mut(EVERY) {
+                    // The row's last pixel inside the frame, whatever the clip rectangle: beyond the
+                    // triangle there may be no coordinates at all.
+                    let next = (x + EVERY as i32).min(row.last).max(x);
+                    let to = plane.at(next, y);
+                    let step = |i: usize| match next - x {
+                        0 => 0,
+                        // Both lie between the corners' coordinates. The wrap is meant: texels repeat.
+                        pixels => (i64::from(to[i].wrapping_sub(from[i]) as i32) / i64::from(pixels)) as u32,
+                    };
+                    fill_affine(texels, look.texels, from[0], from[1], step(0), step(1));
+                    (x, from) = (next, to);
+                }
+            }
+        }
+    }
+}
+
+/// Shades of 8.8 to bytes: the threshold added, the fraction dropped.
+fn to_bytes(shades: &[u16], thresholds: &[u8; 8], column: usize, bytes: &mut [u8]) {
+    for (k, (byte, shade)) in bytes.iter_mut().zip(shades).enumerate() {
+        // A shade is at most 0xFF00.
+        *byte = (shade.wrapping_add(u16::from(thresholds[(column + k) & 7])) >> 8) as u8;
+    }
+}
+
+/// Writes a piece, all of it or where it is nearer.
+fn write<D: Cell>(
+    range: Range<usize>,
+    pixels: &mut [u8],
+    piece: &[u8],
+    y: i32,
+    depths: &mut Option<(&mut [D], &DepthPlane)>,
+    keeps_depth: bool,
+    drawn: &mut Drawn,
+) {
+    let Some((depths, plane)) = depths else {
+        pixels.copy_from_slice(piece);
+        // At most 64.
+        drawn.pixels += pixels.len() as u32;
+        return;
+    };
+    // A column.
+    let z = plane.fixed_at(range.start as i32, y);
+    let Some(depths) = depths.get_mut(range) else { return };
+    drawn.tested += pixels.len() as u32;
+    drawn.pixels += if keeps_depth {
+        copy_nearer(pixels, depths, piece, z, plane.step())
+    } else {
+        copy_before(pixels, depths, piece, z, plane.step())
+    };
+}
+
+/// Paints one row of a triangle that another method found. Exact, as every row is.
+#[inline(never)]
+pub(crate) fn paint_row(
+    vertices: &[Vertex; 3],
+    attributes: &[Attributes; 3],
+    look: &Look<'_>,
+    row: &Row,
+    pixels: &mut [u8],
+    kernel: Kernel,
+    drawn: &mut Drawn,
+) {
+    let triangle = Ordered::new(vertices);
+    EffectPaint::new(&triangle, vertices, attributes, look).row::<u32>(row, pixels, None, kernel, drawn);
+}
+
+impl<D: Cell> Raster<'_, D> {
+    /// Draws a triangle with effects. The order of the corners and their winding make no difference; a
+    /// triangle without area draws nothing.
+    pub fn triangle_with_effects(
+        &mut self,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        look: &Look<'_>,
+    ) -> Drawn {
+        self.draw_effects::<true>(vertices, attributes, look)
+    }
+
+    /// The same for a triangle that lies wholly inside the frame, as
+    /// [`triangle_inside`](Self::triangle_inside).
+    pub fn triangle_with_effects_inside(
+        &mut self,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        look: &Look<'_>,
+    ) -> Drawn {
+        self.draw_effects::<false>(vertices, attributes, look)
+    }
+
+    #[inline(never)]
+    fn draw_effects<const CLIPS: bool>(
+        &mut self,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        look: &Look<'_>,
+    ) -> Drawn {
+        let triangle = Ordered::new(vertices);
+        let mut drawn = Drawn::default();
+        let (mut paint, mut plane) = (None, None);
+        let (width, clip) = (self.frame.width(), self.clip);
+        let draw = |row: Row| {
+            drawn.covered += (row.x1 - row.x0) as u32;
+            let y = row.y as u32;
+            let Some(pixels) = self.frame.row_mut(y) else { return };
+            let paint = paint.get_or_insert_with(|| EffectPaint::new(&triangle, vertices, attributes, look));
+            let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+            let Some(depth) = depth else {
+                return paint.row::<D>(&row, pixels, None, self.kernel, &mut drawn);
+            };
+            let Some(depths) = depth.row_mut(y) else { return };
+            let plane = &*plane.get_or_insert_with(|| DepthPlane::new(&triangle));
+            paint.row(&row, pixels, Some((depths, plane)), self.kernel, &mut drawn);
+        };
+        if CLIPS { triangle.rows(width, clip, draw) } else { triangle.rows_inside(draw) }
+        drawn
+    }
+}

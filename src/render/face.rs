@@ -1,0 +1,232 @@
+//! The stage of an object's faces: each picks its vertices, is clipped where it must be and left out
+//! where it is turned away.
+//!
+//! What the plan decides for the object is a constant of the loop: a loop that needs no clipping has no
+//! test for it.
+
+use super::Stats;
+use super::clip::{Carried, Corner, WithEffects, clip};
+use super::paint::Paint;
+use super::vertex::{Extra, Geometry, LitVertex};
+use crate::fixed::U8F8;
+use crate::light::{Lights, both_sides};
+use crate::mesh::normals::face_normal;
+use crate::raster::clip::doubled_area;
+use crate::raster::effects::Attributes;
+use crate::raster::{Shading, Vertex};
+use crate::scene::Rung;
+use crate::view::{Homogeneous, ObjectView};
+
+/// Takes faces as they are to be drawn.
+pub(super) trait Sink {
+    /// A face without effects.
+    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading);
+    /// A face whose pixels pass through stages, and the number of its surface.
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16);
+}
+
+/// One object in one frame.
+pub(super) struct Faces<'a> {
+    pub(super) rung: Rung,
+    pub(super) geometry: Geometry<'a>,
+    pub(super) view: &'a ObjectView,
+    pub(super) lights: Lights<'a>,
+    /// One for each surface of the mesh.
+    pub(super) paints: &'a [Paint],
+    pub(super) lit: &'a [LitVertex],
+    /// As many, if there are effects.
+    pub(super) extras: &'a [Extra],
+    /// Whether vertices may need clipping.
+    pub(super) clips: bool,
+    /// Whether faces that are turned away are left out.
+    pub(super) culls: bool,
+    /// Whether any light falls on it.
+    pub(super) is_lit: bool,
+    /// Whether its shades run: else each surface has one.
+    pub(super) runs: bool,
+    /// Whether there are lamps or highlights.
+    pub(super) full: bool,
+    /// Whether faces are lit, each on one channel or on three, and not vertices.
+    pub(super) flat: bool,
+    pub(super) channels: bool,
+    /// Whether texture coordinates are linear on the screen.
+    pub(super) affine: bool,
+}
+
+impl Faces<'_> {
+    /// Hands the faces that are to be drawn to `sink`.
+    pub(super) fn draw(&self, stats: &mut Stats, sink: &mut impl Sink) {
+        stats.faces += self.geometry.triangles.len() as u64;
+        let effects = !self.extras.is_empty();
+        match (self.clips, self.culls, effects) {
+            (false, false, false) => self.each::<false, false, false>(stats, sink),
+            (false, true, false) => self.each::<false, true, false>(stats, sink),
+            (true, false, false) => self.each::<true, false, false>(stats, sink),
+            (true, true, false) => self.each::<true, true, false>(stats, sink),
+            (false, false, true) => self.each::<false, false, true>(stats, sink),
+            (false, true, true) => self.each::<false, true, true>(stats, sink),
+            (true, false, true) => self.each::<true, false, true>(stats, sink),
+            (true, true, true) => self.each::<true, true, true>(stats, sink),
+        }
+    }
+
+    #[inline(never)]
+    fn each<const CLIPS: bool, const CULLS: bool, const EFFECTS: bool>(&self, stats: &mut Stats, sink: &mut impl Sink) {
+        let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
+        for (&indices, &surface) in triangles.iter().zip(triangle_surfaces) {
+            // In range: the mesh saw to it, and every vertex is lit.
+            let corners = indices.map(|i| self.lit[i as usize]);
+            if CLIPS && corners.iter().any(|corner| corner.needs_clipping) {
+                stats.clipped += 1;
+                self.clipped::<CULLS, EFFECTS>(indices, surface, &corners, stats, sink);
+                continue;
+            }
+            let vertices = corners.map(|corner| corner.vertex);
+            let area = doubled_area(&vertices);
+            if area == 0 || (CULLS && area > 0) {
+                stats.culled += 1;
+                continue;
+            }
+            stats.drawn += 1;
+            let turned = !CULLS && area > 0;
+            let vertices = if turned { corners.map(|corner| corner.vertex.with_shade(corner.back)) } else { vertices };
+            if EFFECTS && self.paints[usize::from(surface)].has_effects {
+                let attributes = indices.map(|i| self.extras[i as usize].side(turned));
+                self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
+            } else {
+                let shading = self.shading(indices, surface, turned, stats);
+                sink.plain(&vertices, shading);
+            }
+        }
+    }
+
+    /// A face that reaches beyond the near plane or the guard band. Kept apart: it is rare.
+    #[cold]
+    #[inline(never)]
+    fn clipped<const CULLS: bool, const EFFECTS: bool>(
+        &self,
+        indices: [u32; 3],
+        surface: u16,
+        corners: &[LitVertex; 3],
+        stats: &mut Stats,
+        sink: &mut impl Sink,
+    ) {
+        let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
+        let turned = !CULLS && is_turned_away(&at);
+        if EFFECTS && self.paints[usize::from(surface)].has_effects {
+            let carried = indices.map(|i| WithEffects {
+                attributes: self.extras[i as usize].side(turned),
+                affine: self.affine,
+            });
+            self.parts::<CULLS, _>(at, corners, carried, turned, stats, |vertices, carried, stats| {
+                let attributes = carried.map(|carried| carried.attributes);
+                self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
+            });
+        } else {
+            let shading = self.shading(indices, surface, turned, stats);
+            self.parts::<CULLS, _>(at, corners, [(); 3], turned, stats, |vertices, _, _| sink.plain(&vertices, shading));
+        }
+    }
+
+    /// The triangles that clipping leaves.
+    fn parts<const CULLS: bool, C: Carried>(
+        &self,
+        at: [Homogeneous; 3],
+        corners: &[LitVertex; 3],
+        carried: [C; 3],
+        turned: bool,
+        stats: &mut Stats,
+        mut part: impl FnMut([Vertex; 3], [C; 3], &mut Stats),
+    ) {
+        let corner = |i: usize| {
+            let LitVertex { vertex, back, needs_clipping } = corners[i];
+            let shade = if turned { back } else { vertex.shade() };
+            let projected = (!needs_clipping).then(|| vertex.with_shade(shade));
+            Corner { at: at[i], shade: f64::from(shade.to_bits()), vertex: projected, carried: carried[i] }
+        };
+        let Some((polygon, carried)) = clip(self.view, [corner(0), corner(1), corner(2)]) else { return };
+        let area = polygon.doubled_area();
+        if area == 0 || (CULLS && area > 0) {
+            stats.culled += 1;
+            return;
+        }
+        for places in polygon.part_corners() {
+            stats.drawn += 1;
+            part(polygon.triangle(places), places.map(&carried), stats);
+        }
+    }
+
+    /// Hands on a face with effects; its one shade, where it has but one, is put into its corners here.
+    fn hand_on(
+        &self,
+        indices: [u32; 3],
+        surface: u16,
+        turned: bool,
+        (mut vertices, mut attributes): ([Vertex; 3], [Attributes; 3]),
+        stats: &mut Stats,
+        sink: &mut impl Sink,
+    ) {
+        if self.flat && self.is_lit {
+            stats.lit += 1;
+            let (centre, normal) = self.face(indices);
+            let paint = &self.paints[usize::from(surface)];
+            if self.channels {
+                let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
+                let channels = Paint::channels(if turned { back } else { front });
+                attributes.iter_mut().for_each(|corner| corner.channels = channels);
+            } else {
+                let shade = self.face_shade(indices, surface, turned);
+                vertices = vertices.map(|vertex| vertex.with_shade(shade));
+            }
+        }
+        sink.with_effects(&vertices, &attributes, surface);
+    }
+
+    /// How a face is shaded; its one shade, where it has but one, is worked out here.
+    #[inline]
+    fn shading(&self, indices: [u32; 3], surface: u16, turned: bool, stats: &mut Stats) -> Shading {
+        if self.flat && self.is_lit {
+            stats.lit += 1;
+            return Shading::Flat(self.face_shade(indices, surface, turned).nearest());
+        }
+        if !self.runs {
+            // All corners have the same, wherever the plan says so.
+            let LitVertex { vertex, back, .. } = self.lit[indices[0] as usize];
+            return Shading::Flat(if turned { back } else { vertex.shade() }.nearest());
+        }
+        match self.rung {
+            Rung::Gouraud88 => Shading::Gouraud,
+            Rung::GouraudHyperbolic => Shading::GouraudHyperbolic,
+            _ => Shading::GouraudReseeded,
+        }
+    }
+
+    /// The one shade of a face: at its middle, by its own normal.
+    fn face_shade(&self, indices: [u32; 3], surface: u16, turned: bool) -> U8F8 {
+        let (centre, normal) = self.face(indices);
+        let paint = &self.paints[usize::from(surface)];
+        let (front, back) = if self.full {
+            self.lights.one_channel(&paint.answer, centre, normal)
+        } else {
+            both_sides(paint.answer.ambient, paint.answer.diffuse, self.lights.suns, normal)
+        };
+        paint.shade(if turned { back } else { front })
+    }
+
+    /// The middle of a face, and its normal.
+    fn face(&self, indices: [u32; 3]) -> (glam::Vec3, glam::Vec3) {
+        let [a, b, c] = indices.map(|i| self.geometry.positions[i as usize]);
+        // A face without area has no normal; rounded, it may still cover a pixel.
+        let normal = face_normal(a, b, c).unwrap_or(self.geometry.normals[indices[0] as usize]);
+        // Each third by itself: the sum of three might overflow.
+        (a / 3.0 + b / 3.0 + c / 3.0, normal)
+    }
+}
+
+/// Whether the eye is behind the face, wherever its corners are: the sign of the volume between
+/// the eye and the three corners.
+fn is_turned_away(at: &[Homogeneous; 3]) -> bool {
+    let [a, b, c] = at;
+    let volume = a.w * (b.x * c.y - c.x * b.y) + b.w * (c.x * a.y - a.x * c.y) + c.w * (a.x * b.y - b.x * a.y);
+    volume > 0.0
+}

@@ -1,0 +1,174 @@
+//! What is done to the pixels of a surface: the plan, the material and the tables, put together.
+
+use super::object::ObjectState;
+use super::paint::Paint;
+use super::pixel_light::PixelLight;
+use super::tables::Tables;
+use crate::light::{Blend, Material};
+use crate::palette::Palette;
+use crate::plan::{Effect, ObjectPlan, Plan, Why};
+use crate::raster::Drawn;
+use crate::raster::effects::{Look, Source, TextureLook, TextureMapping};
+use crate::scene::{Mapping, Rung, Scene, Shared};
+use crate::span::dither::BAYER;
+use crate::span::texture::Texels;
+use crate::texture::Texture;
+
+/// One texel, for an image that changes nothing.
+const ONE_TEXEL: [u8; 1] = [0];
+
+/// Thresholds that are all a half: dither without amplitude.
+const NO_AMPLITUDE: [[u8; 8]; 8] = [[128; 8]; 8];
+
+fn is_forced(plan: &ObjectPlan, effect: Effect) -> bool {
+    plan.is_on(effect) && plan.decision(effect).why == Why::Forced
+}
+
+/// The image of a surface, if one is on: its own, or what it mirrors.
+fn image<'a>(material: &'a Material, paint: &Paint) -> Option<&'a Shared<Texture>> {
+    if paint.texture_size.is_some() {
+        material.texture.as_ref()
+    } else if paint.environment_size.is_some() {
+        material.environment.as_ref()
+    } else {
+        None
+    }
+}
+
+/// Whether an image runs on a surface that has none.
+fn neutral_image(plan: &ObjectPlan) -> bool {
+    is_forced(plan, Effect::Texture) || is_forced(plan, Effect::EnvironmentMap)
+}
+
+/// Sees to it that the tables that a frame needs are there.
+#[inline(never)]
+pub(super) fn need(tables: &mut Tables, scene: &Scene, palette: &Palette, plan: &Plan, states: &[ObjectState]) {
+    let effects = [Effect::Fog, Effect::RgbChannels, Effect::Texture, Effect::EnvironmentMap, Effect::Transparency];
+    if !effects.iter().any(|effect| plan.is_on_anywhere(*effect)) {
+        return;
+    }
+    tables.use_palette(palette);
+    for ((object, plan), state) in scene.objects().iter().zip(plan.objects()).zip(states) {
+        if plan.is_on(Effect::Fog) {
+            tables.need_fog(scene.fog.map(|fog| fog.color));
+        }
+        let channels = plan.is_on(Effect::RgbChannels);
+        if channels {
+            tables.need_mix();
+        }
+        for (material, paint) in object.materials.iter().zip(state.paints()) {
+            match image(material, paint) {
+                Some(texture) if channels => tables.need_channels(texture),
+                Some(texture) => tables.need_shades(Some(texture)),
+                None if neutral_image(plan) => tables.need_shades(None),
+                None => {}
+            }
+            if paint.blend != Blend::Opaque || is_forced(plan, Effect::Transparency) {
+                tables.need_blend(paint.blend);
+            }
+        }
+    }
+}
+
+/// The looks of a frame's surfaces.
+#[derive(Clone, Copy)]
+pub(super) struct Looks<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) plan: &'a Plan,
+    pub(super) states: &'a [ObjectState],
+    pub(super) tables: &'a Tables,
+}
+
+impl Looks<'_> {
+    fn paint(&self, object: usize, surface: u16) -> Option<&Paint> {
+        self.states.get(object)?.paints().get(usize::from(surface))
+    }
+
+    /// Whether a surface shines through.
+    pub(super) fn is_transparent(&self, object: usize, surface: u16) -> bool {
+        self.plan.is_on(object, Effect::Transparency)
+            && self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
+    }
+
+    /// Hands the look of a surface to `draw`. Of one that is not there, nothing is drawn.
+    pub(super) fn with(&self, object: usize, surface: u16, draw: impl FnOnce(&Look<'_>) -> Drawn) -> Drawn {
+        let (Some(plan), Some(state), Some(paint)) =
+            (self.plan.objects().get(object), self.states.get(object), self.paint(object, surface))
+        else {
+            return Drawn::default();
+        };
+        let Some(material) = self.scene.objects().get(object).and_then(|o| o.materials.get(usize::from(surface)))
+        else {
+            return Drawn::default();
+        };
+        let light = PixelLight { lights: state.lights(plan), paint };
+        let dither = plan.is_on(Effect::Dither);
+        let channels = plan.is_on(Effect::RgbChannels).then(|| self.tables.mix(dither));
+        let texture = image(material, paint);
+        let texture_look = match texture {
+            Some(texture) => {
+                let texels = Texels::new(texture.texels(), texture.width_bits(), texture.height_bits()).ok();
+                let tables =
+                    if channels.is_some() { self.tables.channels(texture) } else { self.tables.shades(Some(texture)) };
+                texels.zip(tables).map(|(texels, tables)| {
+                    let mapping = if paint.texture_size.is_some() { mapping(plan) } else { TextureMapping::Affine };
+                    TextureLook { texels, mapping, tables }
+                })
+            }
+            None if neutral_image(plan) && channels.is_none() => {
+                let texels = Texels::new(&ONE_TEXEL, 0, 0).ok();
+                texels.zip(self.tables.shades(None)).map(|(texels, tables)| {
+                    TextureLook { texels, mapping: TextureMapping::Affine, tables }
+                })
+            }
+            None => None,
+        };
+        let blends = paint.blend != Blend::Opaque || is_forced(plan, Effect::Transparency);
+        let rung = plan.rung();
+        let look = Look {
+            source: source(plan, rung, channels.is_some(), state.normal_table(surface), &light),
+            channels,
+            dither: match dither {
+                true if is_forced(plan, Effect::Dither) && !self.scene.wishes.dither => Some(&NO_AMPLITUDE),
+                true => Some(&BAYER),
+                false => None,
+            },
+            texture: texture_look,
+            fog: if plan.is_on(Effect::Fog) { self.tables.fog(self.scene.fog.map(|fog| fog.color)) } else { None },
+            blend: if blends { self.tables.blend(paint.blend) } else { None },
+            keeps_depth: paint.blend == Blend::Opaque,
+        };
+        draw(&look)
+    }
+}
+
+fn source<'a>(
+    plan: &ObjectPlan,
+    rung: Rung,
+    channels: bool,
+    table: Option<&'a [u8; 65_536]>,
+    light: &'a PixelLight<'a>,
+) -> Source<'a> {
+    if plan.is_on(Effect::Phong) {
+        return match table {
+            Some(table) if rung == Rung::PhongTable && !channels => Source::NormalTable(table),
+            _ => Source::Lit(light),
+        };
+    }
+    match rung {
+        Rung::GouraudHyperbolic => Source::Hyperbolic,
+        Rung::Gouraud88 => Source::Linear { reseeded: false },
+        _ => Source::Linear { reseeded: true },
+    }
+}
+
+fn mapping(plan: &ObjectPlan) -> TextureMapping {
+    if !plan.is_on(Effect::Perspective) {
+        return TextureMapping::Affine;
+    }
+    if plan.decision(Effect::Perspective).choice == Mapping::Every16.name() {
+        TextureMapping::Every16
+    } else {
+        TextureMapping::Perspective
+    }
+}

@@ -1,0 +1,353 @@
+//! What a renderer keeps of an object from frame to frame: its vertices, lit and projected, and what
+//! they were made from. As long as that stays, so do they.
+
+use alloc::vec::Vec;
+
+use super::Stats;
+use super::face::Faces;
+use super::paint::Paint;
+use super::pixel_light::normal_table;
+use super::tessellate::Tessellated;
+use super::vertex::{self, Extra, Geometry, LitVertex};
+use crate::light::{Beam, LampBeam, Light, Lights, Material};
+use crate::mesh::Mesh;
+use crate::palette::{Palette, Table};
+use crate::plan::{Effect, LEAST_TESSELLATION, ObjectPlan, Since};
+use crate::scene::{Fog, Mapping, Object, Rung, Scene, Shared};
+use crate::view::{ObjectView, View};
+
+/// What an object's vertices depend on, beside the plan.
+#[derive(Clone, PartialEq, Debug)]
+struct Source {
+    mesh: Shared<Mesh>,
+    view: ObjectView,
+    suns: Vec<Beam>,
+    lamps: Vec<LampBeam>,
+    materials: Vec<Material>,
+    ambient: f32,
+    /// As the materials' ramps depend on it.
+    ramps: usize,
+    fog: Option<Fog>,
+    rung: Rung,
+    tessellation: Option<f32>,
+}
+
+impl Source {
+    /// Takes on what the object is now. Says whether that is another thing than before. Nothing is
+    /// allocated as long as there are no more lights or materials than before.
+    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, rung: Rung) -> bool {
+        let mut changed = false;
+        if !Shared::ptr_eq(&self.mesh, object.shared_mesh()) {
+            self.mesh = Shared::clone(object.shared_mesh());
+            changed = true;
+        }
+        changed |= replace(&mut self.view, *view);
+        changed |= replace_all(&mut self.suns, scene.lights().iter().filter_map(|light| sun(light, view)));
+        changed |= replace_all(&mut self.lamps, scene.lights().iter().filter_map(|light| lamp(light, view)));
+        if self.materials != object.materials {
+            self.materials.clone_from(&object.materials);
+            changed = true;
+        }
+        changed |= replace(&mut self.ambient, scene.ambient);
+        changed |= replace(&mut self.ramps, scene.palette.as_ref().map_or(0, Palette::ramps));
+        changed |= replace(&mut self.fog, scene.fog);
+        changed |= replace(&mut self.rung, rung);
+        changed | replace(&mut self.tessellation, scene.wishes.tessellation)
+    }
+}
+
+fn replace<T: PartialEq>(place: &mut T, new: T) -> bool {
+    let changed = *place != new;
+    *place = new;
+    changed
+}
+
+fn replace_all<T: PartialEq>(list: &mut Vec<T>, new: impl Iterator<Item = T>) -> bool {
+    let mut changed = false;
+    let mut count = 0;
+    for item in new {
+        match list.get_mut(count) {
+            Some(place) => changed |= replace(place, item),
+            None => {
+                list.push(item);
+                changed = true;
+            }
+        }
+        count += 1;
+    }
+    changed |= list.len() != count;
+    list.truncate(count);
+    changed
+}
+
+/// A sun as the object of `view` sees it.
+fn sun(light: &Light, view: &ObjectView) -> Option<Beam> {
+    let Light::Sun { direction, intensity, color } = *light else { return None };
+    let towards = view.direction_in_object(direction)?;
+    Some(Beam { towards, intensity: light.brightness(), channels: color.map(|c| c * intensity) })
+}
+
+/// A lamp as the object of `view` sees it.
+pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
+    let Light::Lamp { position, intensity, range, color } = *light else { return None };
+    // In the object's units.
+    let part = view.scale() / f64::from(range);
+    Some(LampBeam {
+        position: view.point_in_object(position.to_array().map(f64::from)),
+        intensity: light.brightness(),
+        channels: color.map(|c| c * intensity),
+        inverse_square: part * part,
+    })
+}
+
+/// One object of a renderer's scene.
+#[derive(Debug, Default)]
+pub(super) struct ObjectState {
+    source: Option<Source>,
+    /// Whether the source has changed since the vertices were made.
+    stale: bool,
+    /// The plan that the vertices were made by, its reasons aside.
+    made_by: Option<[bool; Effect::COUNT]>,
+    paints: Vec<Paint>,
+    /// Of the source's lamps, those in range.
+    lamps: Vec<LampBeam>,
+    lit: Vec<LitVertex>,
+    extras: Vec<Extra>,
+    tessellated: Option<Tessellated>,
+    /// Of the mesh, for tessellation.
+    points: Option<(Shared<Mesh>, Vec<u32>)>,
+    /// One for each surface, and what they were made from.
+    normal_tables: Vec<(Vec<Beam>, Paint, Table)>,
+}
+
+impl ObjectState {
+    /// Takes on what the object is now. Says what became of it since its vertices were made.
+    pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, rung: Rung) -> Since {
+        match &mut self.source {
+            Some(source) => self.stale |= source.renew(scene, object, view, rung),
+            None => {
+                let mut source = Source {
+                    mesh: Shared::clone(object.shared_mesh()),
+                    view: *view,
+                    suns: Vec::new(),
+                    lamps: Vec::new(),
+                    materials: Vec::new(),
+                    ambient: scene.ambient,
+                    ramps: 0,
+                    fog: None,
+                    rung,
+                    tessellation: None,
+                };
+                source.renew(scene, object, view, rung);
+                self.source = Some(source);
+            }
+        }
+        match self.made_by {
+            None => Since::New,
+            Some(_) if self.stale => Since::Changed,
+            Some(_) => Since::Unchanged,
+        }
+    }
+
+    /// Its lamps, in range or not.
+    pub(super) fn all_lamps(&self) -> &[LampBeam] {
+        self.source.as_ref().map_or(&[], |source| &source.lamps)
+    }
+
+    /// What is kept is of no use any more.
+    pub(super) fn forget(&mut self) {
+        self.source = None;
+        self.made_by = None;
+    }
+
+    /// What a rung makes of the vertices.
+    fn is_flat(rung: Rung) -> bool {
+        rung == Rung::Flat
+    }
+
+    /// Makes the vertices, if they are not those of last frame. Returns whether it did.
+    pub(super) fn vertices(&mut self, scene: &Scene, object: &Object, view: &View, plan: &ObjectPlan, stats: &mut Stats) -> bool {
+        let on = Effect::ALL.map(|effect| effect != Effect::Transform && plan.is_on(effect));
+        if !plan.is_on(Effect::Transform) && self.made_by == Some(on) {
+            return false;
+        }
+        (self.made_by, self.stale) = (Some(on), false);
+        let Some(source) = &self.source else { return false };
+        self.paints.clear();
+        let palette = scene.palette.as_ref();
+        self.paints.extend(object.materials.iter().map(|m| Paint::new(m, scene.ambient, palette, plan)));
+        self.lamps.clear();
+        if plan.is_on(Effect::PositionalLights) {
+            let forced = plan.decision(Effect::PositionalLights).why == crate::plan::Why::Forced;
+            let bounds = object.mesh().bounds();
+            let in_range = |lamp: &&LampBeam| forced || crate::light::lamp_reaches(lamp, bounds);
+            self.lamps.extend(source.lamps.iter().filter(in_range).copied());
+        }
+        let suns = if plan.is_on(Effect::Lighting) { source.suns.as_slice() } else { &[] };
+        let lights = Lights { suns, lamps: &self.lamps, eye: source.view.eye() };
+
+        let geometry = mesh_geometry(object);
+        let geometry = if plan.is_on(Effect::Tessellation) {
+            let points = match &mut self.points {
+                Some((mesh, points)) if Shared::ptr_eq(mesh, object.shared_mesh()) => &*points,
+                other => &other.insert((Shared::clone(object.shared_mesh()), object.mesh().points())).1,
+            };
+            let tolerance = scene.wishes.tessellation.unwrap_or(LEAST_TESSELLATION);
+            let tessellated = self.tessellated.get_or_insert_default();
+            tessellated.split(&geometry, points, &lights, &self.paints, tolerance);
+            tessellated.geometry()
+        } else {
+            self.tessellated = None;
+            geometry
+        };
+
+        let count = geometry.positions.len();
+        stats.vertices += count as u64;
+        if plan.is_on(Effect::NearClipping) || plan.is_on(Effect::ScreenClipping) {
+            vertex::project_tested(&source.view, &geometry, &mut self.lit);
+        } else {
+            vertex::project_inside(&source.view, &geometry, &mut self.lit);
+        }
+        if self.paints.iter().any(|paint| paint.has_effects) {
+            self.extras.clear();
+            self.extras.resize(count, Extra::default());
+        } else {
+            self.extras = Vec::new();
+        }
+        let channels = plan.is_on(Effect::RgbChannels);
+        let full = plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular);
+        let by_face = Self::is_flat(source.rung) && plan.is_on(Effect::Lighting);
+        let by_vertex = !by_face && !plan.is_on(Effect::Phong);
+        if !plan.is_on(Effect::Lighting) && !channels {
+            vertex::light_none(&geometry, &self.paints, &mut self.lit);
+        } else if by_vertex {
+            stats.lit += count as u64;
+            if channels {
+                vertex::light_channels(&geometry, &self.paints, &lights, &mut self.extras);
+            } else if full {
+                vertex::light_all(&geometry, &self.paints, &lights, &mut self.lit);
+            } else {
+                vertex::light_suns(&geometry, &self.paints, &lights, &mut self.lit);
+            }
+        }
+        if plan.is_on(Effect::Texture) {
+            vertex::texture_coordinates(&geometry, &self.paints, &mut self.extras);
+        }
+        if plan.is_on(Effect::EnvironmentMap) {
+            vertex::environment_coordinates(&geometry, &source.view, &self.paints, &mut self.extras);
+        }
+        if plan.is_on(Effect::Fog)
+            && let Some(fog) = &scene.fog
+        {
+            vertex::fog_levels(&geometry, &source.view, fog, &mut self.extras);
+        }
+        if plan.is_on(Effect::Phong) {
+            if source.rung == Rung::PhongTable && !channels {
+                vertex::slopes(&geometry, &source.view, &mut self.extras);
+                self.tables_of_normals(scene, object, view);
+            } else {
+                vertex::lit_points(&geometry, &mut self.extras);
+            }
+        } else {
+            self.normal_tables = Vec::new();
+        }
+        true
+    }
+
+    /// The tables of shades by normal, as the eye sees them: they stay while the object turns.
+    fn tables_of_normals(&mut self, scene: &Scene, object: &Object, view: &View) {
+        let beams: Vec<Beam> = scene
+            .lights()
+            .iter()
+            .filter_map(|light| {
+                // A lamp counts as a sun where the object is: a table knows no places.
+                let (towards, share) = match *light {
+                    Light::Sun { direction, .. } => (direction, 1.0),
+                    Light::Lamp { position, range, .. } => {
+                        let away = position - object.position;
+                        let part = away.length_squared() / (range * range);
+                        if !(part < 1.0) {
+                            return None;
+                        }
+                        (away, (1.0 - part) * (1.0 - part))
+                    }
+                };
+                let towards = view.direction_to_eye(towards)?;
+                Some(Beam { towards, intensity: light.brightness() * share, channels: [0.0; 3] })
+            })
+            .collect();
+        self.normal_tables.truncate(self.paints.len());
+        for (i, paint) in self.paints.iter().enumerate() {
+            if self.normal_tables.get(i).is_some_and(|(of, by, _)| *of == beams && by == paint) {
+                continue;
+            }
+            let lights = Lights { suns: &beams, lamps: &[], eye: [0.0, 0.0, 1.0] };
+            let made = (beams.clone(), *paint, normal_table(&lights, paint));
+            match self.normal_tables.get_mut(i) {
+                Some(place) => *place = made,
+                None => self.normal_tables.push(made),
+            }
+        }
+    }
+
+    /// The table of a surface's shades by normal.
+    pub(super) fn normal_table(&self, surface: u16) -> Option<&[u8; 65_536]> {
+        self.normal_tables.get(usize::from(surface)).map(|(_, _, table)| table.as_array())
+    }
+
+    pub(super) fn paints(&self) -> &[Paint] {
+        &self.paints
+    }
+
+    /// The light that falls on it, as its plan has it.
+    pub(super) fn lights(&self, plan: &ObjectPlan) -> Lights<'_> {
+        let (suns, eye) = self.source.as_ref().map_or((&[][..], [0.0; 3]), |s| (s.suns.as_slice(), s.view.eye()));
+        Lights { suns: if plan.is_on(Effect::Lighting) { suns } else { &[] }, lamps: &self.lamps, eye }
+    }
+
+    /// Its faces, ready to be drawn.
+    pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &ObjectPlan) -> Option<Faces<'a>> {
+        let source = self.source.as_ref()?;
+        Some(Faces {
+            rung: source.rung,
+            geometry: self.tessellated.as_ref().map_or_else(|| mesh_geometry(object), Tessellated::geometry),
+            view: &source.view,
+            lights: self.lights(plan),
+            paints: &self.paints,
+            lit: &self.lit,
+            extras: &self.extras,
+            clips: plan.is_on(Effect::NearClipping) || plan.is_on(Effect::ScreenClipping),
+            culls: plan.is_on(Effect::BackFaceCulling),
+            is_lit: plan.is_on(Effect::Lighting),
+            runs: plan.is_on(Effect::Gouraud),
+            full: plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular),
+            flat: Self::is_flat(source.rung),
+            channels: plan.is_on(Effect::RgbChannels),
+            affine: !plan.is_on(Effect::Perspective)
+                || plan.decision(Effect::Perspective).choice == Mapping::Affine.name(),
+        })
+    }
+
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        self.lit.capacity() * size_of::<LitVertex>()
+            + self.extras.capacity() * size_of::<Extra>()
+            + self.paints.capacity() * size_of::<Paint>()
+            + self.lamps.capacity() * size_of::<LampBeam>()
+            + self.tessellated.as_ref().map_or(0, Tessellated::bytes)
+            + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)
+            + self.normal_tables.len() * Table::BYTES
+    }
+}
+
+fn mesh_geometry(object: &Object) -> Geometry<'_> {
+    let mesh = object.mesh();
+    Geometry {
+        positions: mesh.positions(),
+        normals: mesh.normals(),
+        texcoords: mesh.texcoords(),
+        vertex_surfaces: object.vertex_surfaces(),
+        triangles: mesh.triangles(),
+        triangle_surfaces: mesh.triangle_surfaces(),
+    }
+}

@@ -1,0 +1,74 @@
+//! A material in its scene: what its shades are made with.
+
+use crate::fixed::U8F8;
+use crate::light::{Answer, Blend, Material};
+use crate::palette::{Palette, Ramp};
+use crate::plan::{Effect, ObjectPlan};
+use crate::texture::Texture;
+
+/// A material in its scene.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Paint {
+    pub(super) answer: Answer,
+    /// Where one channel's shades lie: the material's entries, or, of an image or of channels, all 256.
+    pub(super) ramp: Ramp,
+    /// The image's width and height, if it is on.
+    pub(super) texture_size: Option<[u32; 2]>,
+    pub(super) environment_size: Option<[u32; 2]>,
+    pub(super) blend: Blend,
+    /// Whether its pixels pass through stages.
+    pub(super) has_effects: bool,
+}
+
+impl Paint {
+    pub(super) fn new(material: &Material, ambient: f32, palette: Option<&Palette>, plan: &ObjectPlan) -> Self {
+        let size = |texture: &Texture| [1_u32 << texture.width_bits(), 1 << texture.height_bits()];
+        let texture_size = material.texture.as_deref().filter(|_| plan.is_on(Effect::Texture)).map(size);
+        let environment_size = material
+            .environment
+            .as_deref()
+            .filter(|_| plan.is_on(Effect::EnvironmentMap) && texture_size.is_none())
+            .map(size);
+        let blend = if plan.is_on(Effect::Transparency) { material.blend } else { Blend::Opaque };
+        let channels = plan.is_on(Effect::RgbChannels);
+        let image = texture_size.is_some() || environment_size.is_some();
+        let everywhere =
+            [Effect::Fog, Effect::Phong, Effect::RgbChannels, Effect::Dither].iter().any(|effect| plan.is_on(*effect));
+        // Switched on by hand, an effect runs on every surface, with neutral input where it has none.
+        let forced = [Effect::Texture, Effect::EnvironmentMap, Effect::Transparency]
+            .iter()
+            .any(|effect| plan.is_on(*effect) && plan.decision(*effect).why == crate::plan::Why::Forced);
+        Self {
+            answer: Answer {
+                ambient: f64::from(material.ambient) * f64::from(ambient),
+                diffuse: f64::from(material.diffuse),
+                specular: if plan.is_on(Effect::Specular) { f64::from(material.specular) } else { 0.0 },
+                shininess: f64::from(material.shininess).max(0.0),
+                color: material.color.map(f64::from),
+                highlight: material.highlight.map(f64::from),
+            },
+            ramp: if image || channels { Ramp::WHOLE } else { material.ramp.in_palette(palette) },
+            texture_size,
+            environment_size,
+            blend,
+            has_effects: everywhere || image || forced || blend != Blend::Opaque,
+        }
+    }
+
+    /// The shade of an intensity. The one clamp is here; beyond f32 an intensity becomes infinite, which
+    /// is more than 1 too.
+    #[inline]
+    pub(super) fn shade(&self, intensity: f64) -> U8F8 {
+        U8F8::from_intensity(intensity as f32, self.ramp.first(), self.ramp.entries())
+    }
+
+    /// The shade without any light but the ambient.
+    pub(super) fn constant(&self) -> U8F8 {
+        self.shade(self.answer.ambient)
+    }
+
+    /// The channels of an intensity on each; 0 to 255.
+    pub(super) fn channels(intensities: [f64; 3]) -> [U8F8; 3] {
+        intensities.map(|intensity| U8F8::from_intensity(intensity as f32, 0, Ramp::WHOLE.entries()))
+    }
+}

@@ -1,0 +1,296 @@
+//! Faces split along their edges until shades that are linear between the vertices fit the light.
+//!
+//! S0: Gouraud shading cannot show a highlight inside a face, nor a lamp near the middle of a large one;
+//! many small faces can. A split is decided for each **edge**, from its two ends alone, and wherever the
+//! edge is part of a face, that face is split there: no corner of one face lies on an edge of another,
+//! so there is no crack. The new vertex lies half-way, is made once, and is projected and rounded once.
+//!
+//! Over an edge of length L a function whose second derivative is at most c is off by at most L²·c/8 if
+//! it is taken to be linear. Three things bend light along an edge:
+//!
+//! - a lamp at the distance h from it: n·l is h/√(h² + x²), which bends by at most 1/h², and the fall-off
+//!   within a range R by at most 4/R² more;
+//! - a highlight at the distance h from what it mirrors: cos^s, which bends by at most s/h²;
+//! - normals that turn along the edge, as on a round body: found by lighting the middle.
+
+use alloc::collections::BTreeMap;
+use alloc::vec::Vec;
+
+use glam::{Vec2, Vec3};
+
+use super::paint::Paint;
+use super::vertex::Geometry;
+use crate::light::Lights;
+use crate::mesh::normals::unit;
+
+/// How often an edge is halved at most: 64 pieces.
+const DEPTH: usize = 6;
+
+/// Splitting ends where there are so many triangles.
+const MOST: usize = 1 << 18;
+
+/// A mesh that was split.
+#[derive(Debug, Default)]
+pub(super) struct Tessellated {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    texcoords: Vec<Vec2>,
+    vertex_surfaces: Vec<u16>,
+    triangles: Vec<[u32; 3]>,
+    triangle_surfaces: Vec<u16>,
+    /// Of each vertex, the number of its point: vertices in one place have the same.
+    points: Vec<u32>,
+}
+
+impl Tessellated {
+    /// Splits `geometry`, whose vertices lie at the points of these numbers, until linear shades are off
+    /// by no more than `tolerance` shades, of which 255 are full intensity.
+    #[inline(never)]
+    pub(super) fn split(
+        &mut self,
+        geometry: &Geometry<'_>,
+        points: &[u32],
+        lights: &Lights<'_>,
+        paints: &[Paint],
+        tolerance: f32,
+    ) {
+        self.positions.clear();
+        self.positions.extend_from_slice(geometry.positions);
+        self.normals.clear();
+        self.normals.extend_from_slice(geometry.normals);
+        self.texcoords.clear();
+        self.texcoords.extend_from_slice(geometry.texcoords.unwrap_or(&[]));
+        self.vertex_surfaces.clear();
+        self.vertex_surfaces.extend_from_slice(geometry.vertex_surfaces);
+        self.triangles.clear();
+        self.triangles.extend_from_slice(geometry.triangles);
+        self.triangle_surfaces.clear();
+        self.triangle_surfaces.extend_from_slice(geometry.triangle_surfaces);
+        self.points.clear();
+        self.points.extend_from_slice(points);
+        let bend = Bend { lights, paints, tolerance: f64::from(tolerance) / 255.0 };
+        for _ in 0..DEPTH {
+            if self.triangles.len() >= MOST || !self.halve(&bend) {
+                return;
+            }
+        }
+    }
+
+    /// The mesh as it has become.
+    pub(super) fn geometry(&self) -> Geometry<'_> {
+        Geometry {
+            positions: &self.positions,
+            normals: &self.normals,
+            texcoords: (!self.texcoords.is_empty()).then_some(self.texcoords.as_slice()),
+            vertex_surfaces: &self.vertex_surfaces,
+            triangles: &self.triangles,
+            triangle_surfaces: &self.triangle_surfaces,
+        }
+    }
+
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        self.positions.capacity() * size_of::<Vec3>()
+            + self.normals.capacity() * size_of::<Vec3>()
+            + self.texcoords.capacity() * size_of::<Vec2>()
+            + (self.vertex_surfaces.capacity() + self.triangle_surfaces.capacity()) * 2
+            + self.triangles.capacity() * size_of::<[u32; 3]>()
+            + self.points.capacity() * 4
+    }
+
+    /// The edge between two vertices, whichever way it is run through, and whichever vertices at its two
+    /// points are meant.
+    fn edge(&self, a: u32, b: u32) -> (u32, u32) {
+        let (a, b) = (self.points[a as usize], self.points[b as usize]);
+        if a < b { (a, b) } else { (b, a) }
+    }
+
+    /// Halves every edge that bends, once. Returns whether there was one.
+    fn halve(&mut self, bend: &Bend<'_>) -> bool {
+        // The edges that are split, by their points, and the number of the new point.
+        let mut halved: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        // Below 2³¹, as a mesh's vertices are, and splitting ends before there are twice as many.
+        let mut points = self.points.iter().max().map_or(0, |last| last + 1);
+        for &[a, b, c] in &self.triangles {
+            for (a, b) in [(a, b), (b, c), (c, a)] {
+                let edge = self.edge(a, b);
+                // Two faces that meet at a crease have normals of their own there: it is enough that one
+                // of them needs the split.
+                if edge.0 != edge.1 && !halved.contains_key(&edge) && bend.is_too_great(self, a, b) {
+                    halved.insert(edge, points);
+                    points += 1;
+                }
+            }
+        }
+        if halved.is_empty() {
+            return false;
+        }
+        // Vertices half-way between two vertices: of a crease each side has its own.
+        let mut middles: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        for i in 0..self.triangles.len() {
+            let [a, b, c] = self.triangles[i];
+            let surface = self.triangle_surfaces[i];
+            let mut middle = |a: u32, b: u32| {
+                let point = *halved.get(&self.edge(a, b))?;
+                let (low, high) = if a < b { (a, b) } else { (b, a) };
+                Some(*middles.entry((low, high)).or_insert_with(|| self.add_middle(low, high, point)))
+            };
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            let mut parts: [Option<[u32; 3]>; 4] = [None; 4];
+            match (ab, bc, ca) {
+                (None, None, None) => continue,
+                (Some(ab), Some(bc), Some(ca)) => {
+                    parts = [Some([a, ab, ca]), Some([ab, b, bc]), Some([ca, bc, c]), Some([ab, bc, ca])];
+                }
+                (Some(m), None, None) => parts[..2].copy_from_slice(&one(a, b, c, m)),
+                (None, Some(m), None) => parts[..2].copy_from_slice(&one(b, c, a, m)),
+                (None, None, Some(m)) => parts[..2].copy_from_slice(&one(c, a, b, m)),
+                (Some(ab), Some(bc), None) => parts[..3].copy_from_slice(&two(a, b, c, ab, bc)),
+                (None, Some(bc), Some(ca)) => parts[..3].copy_from_slice(&two(b, c, a, bc, ca)),
+                (Some(ab), None, Some(ca)) => parts[..3].copy_from_slice(&two(c, a, b, ca, ab)),
+            }
+            for (k, part) in parts.into_iter().flatten().enumerate() {
+                if k == 0 {
+                    self.triangles[i] = part;
+                } else {
+                    self.triangles.push(part);
+                    self.triangle_surfaces.push(surface);
+                }
+            }
+        }
+        true
+    }
+
+    fn add_middle(&mut self, a: u32, b: u32, point: u32) -> u32 {
+        let (a, b) = (a as usize, b as usize);
+        // Half of each, as their sum might overflow. The same from both ends.
+        self.positions.push(self.positions[a] * 0.5 + self.positions[b] * 0.5);
+        let sum = self.normals[a] + self.normals[b];
+        self.normals.push(unit(sum).unwrap_or(self.normals[a]));
+        if !self.texcoords.is_empty() {
+            self.texcoords.push(self.texcoords[a] * 0.5 + self.texcoords[b] * 0.5);
+        }
+        self.vertex_surfaces.push(self.vertex_surfaces[a]);
+        self.points.push(point);
+        // Fewer than 2³², see `MOST`.
+        (self.positions.len() - 1) as u32
+    }
+}
+
+/// The triangle a, b, c with a vertex m on the edge a–b.
+fn one(a: u32, b: u32, c: u32, m: u32) -> [Option<[u32; 3]>; 2] {
+    [Some([a, m, c]), Some([m, b, c])]
+}
+
+/// The triangle a, b, c with vertices on the edges a–b and b–c.
+fn two(a: u32, b: u32, c: u32, ab: u32, bc: u32) -> [Option<[u32; 3]>; 3] {
+    [Some([a, ab, c]), Some([ab, b, bc]), Some([ab, bc, c])]
+}
+
+/// How much light bends along an edge.
+struct Bend<'a> {
+    lights: &'a Lights<'a>,
+    paints: &'a [Paint],
+    /// Of full intensity.
+    tolerance: f64,
+}
+
+impl Bend<'_> {
+    /// Whether linear shades between the vertices `a` and `b` are off by more than the tolerance.
+    fn is_too_great(&self, mesh: &Tessellated, a: u32, b: u32) -> bool {
+        let (a, b) = (a as usize, b as usize);
+        let (pa, pb) = (mesh.positions[a], mesh.positions[b]);
+        let (na, nb) = (mesh.normals[a], mesh.normals[b]);
+        let paint = &self.paints[usize::from(mesh.vertex_surfaces[a])];
+        let ends = [widen(pa), widen(pb)];
+        let square = distance_squared(ends[0], ends[1]);
+        if square <= 0.0 {
+            return false;
+        }
+        let eight = 8.0 * self.tolerance;
+        // A lamp.
+        for lamp in self.lights.lamps {
+            let h = to_segment(lamp.position, ends);
+            if h * lamp.inverse_square < 1.0 {
+                let strength = f64::from(lamp.intensity.abs()) * paint.answer.diffuse.abs();
+                if square * strength > eight * h || square * strength * 4.0 * lamp.inverse_square > eight {
+                    return true;
+                }
+            }
+        }
+        // A highlight, of which the eye sees something here.
+        if paint.answer.specular != 0.0 && self.mirrors(paint, ends, [na, nb], square, eight) {
+            return true;
+        }
+        // Normals that turn.
+        let middle = unit(na + nb).unwrap_or(na);
+        let light = |position: Vec3, normal: Vec3| self.lights.one_channel(&paint.answer, position, normal);
+        let (fa, ba) = light(pa, na);
+        let (fb, bb) = light(pb, nb);
+        let (fm, bm) = light(pa * 0.5 + pb * 0.5, middle);
+        let off = |a: f64, b: f64, m: f64| {
+            let shown = |i: f64| i.clamp(0.0, 1.0);
+            ((shown(a) + shown(b)) / 2.0 - shown(m)).abs()
+        };
+        off(fa, fb, fm) > self.tolerance || off(ba, bb, bm) > self.tolerance
+    }
+
+    /// Whether a highlight near the edge bends too much along it.
+    fn mirrors(&self, paint: &Paint, ends: [[f64; 3]; 2], normals: [Vec3; 2], square: f64, eight: f64) -> bool {
+        let eye = to_segment(self.lights.eye, ends);
+        let shininess = paint.answer.shininess.max(1.0);
+        let towards = |i: usize, light: [f64; 3]| {
+            let n = widen(normals[i]);
+            let (l, v) = (unit3(light), unit3(sub(self.lights.eye, ends[i])));
+            let along = 2.0 * dot(n, l) * dot(n, v) - dot(l, v);
+            libm::acos(along.clamp(-1.0, 1.0))
+        };
+        let strong = |nearest: f64, angles: [f64; 2], intensity: f64| {
+            // Along the edge the mirrored direction turns by no more than the edge is seen under, from
+            // the eye and from the lamp, and twice what its normals turn by.
+            let turn = libm::sqrt(square / nearest.max(f64::MIN_POSITIVE))
+                + 2.0 * libm::acos(f64::from(normals[0].dot(normals[1])).clamp(-1.0, 1.0));
+            let angle = (angles[0].min(angles[1]) - turn).max(0.0);
+            let most = if angle < core::f64::consts::FRAC_PI_2 { libm::pow(libm::cos(angle), shininess) } else { 0.0 };
+            let strength = paint.answer.specular.abs() * intensity;
+            most * strength > self.tolerance && square * shininess * strength > eight * nearest
+        };
+        let suns = self.lights.suns.iter().any(|sun| {
+            let angles = [0, 1].map(|i| towards(i, widen(sun.towards)));
+            strong(eye, angles, f64::from(sun.intensity.abs()))
+        });
+        suns || self.lights.lamps.iter().any(|lamp| {
+            let angles = [0, 1].map(|i| towards(i, sub(lamp.position, ends[i])));
+            strong(eye.min(to_segment(lamp.position, ends)), angles, f64::from(lamp.intensity.abs()))
+        })
+    }
+}
+
+fn widen(v: Vec3) -> [f64; 3] {
+    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
+}
+
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn unit3(v: [f64; 3]) -> [f64; 3] {
+    let length = libm::sqrt(dot(v, v));
+    if length > 0.0 { v.map(|c| c / length) } else { v }
+}
+
+fn distance_squared(a: [f64; 3], b: [f64; 3]) -> f64 {
+    dot(sub(a, b), sub(a, b))
+}
+
+/// The square of the distance from a point to the nearest point between two ends.
+fn to_segment(point: [f64; 3], [a, b]: [[f64; 3]; 2]) -> f64 {
+    let (along, from) = (sub(b, a), sub(point, a));
+    let part = (dot(from, along) / dot(along, along)).clamp(0.0, 1.0);
+    let nearest = [0, 1, 2].map(|i| a[i] + along[i] * part);
+    distance_squared(point, nearest)
+}

@@ -1,0 +1,198 @@
+//! The stages of an object's vertices. Each is a loop of its own over all of them, entered only where
+//! the plan calls for it: what is off costs nothing.
+
+use alloc::vec::Vec;
+
+use glam::{Vec2, Vec3};
+
+use super::paint::Paint;
+use crate::fixed::U8F8;
+use crate::light::{Lights, both_sides};
+use crate::palette::Ramp;
+use crate::raster::Vertex;
+use crate::raster::effects::Attributes;
+use crate::scene::Fog;
+use crate::view::ObjectView;
+
+/// What is drawn of an object: its mesh, or what tessellation made of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Geometry<'a> {
+    pub(super) positions: &'a [Vec3],
+    pub(super) normals: &'a [Vec3],
+    pub(super) texcoords: Option<&'a [Vec2]>,
+    pub(super) vertex_surfaces: &'a [u16],
+    pub(super) triangles: &'a [[u32; 3]],
+    pub(super) triangle_surfaces: &'a [u16],
+}
+
+/// A vertex of the object at hand, lit and projected.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LitVertex {
+    /// Its shade is that of the front: the side that the normal points away from. Of a vertex that
+    /// needs clipping only the shade counts.
+    pub(super) vertex: Vertex,
+    pub(super) back: U8F8,
+    pub(super) needs_clipping: bool,
+}
+
+/// What effects need of a vertex, for its front; and the channels of its back.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Extra {
+    pub(super) front: Attributes,
+    pub(super) back_channels: [U8F8; 3],
+}
+
+impl Extra {
+    /// The attributes of one side: the back sees the normal from behind.
+    pub(super) fn side(&self, turned: bool) -> Attributes {
+        if !turned {
+            return self.front;
+        }
+        let [x, y, z, px, py, pz] = self.front.lit;
+        let mirrored = |slope: U8F8| U8F8::from_bits(U8F8::MAX_VERTEX.to_bits() - slope.to_bits());
+        Attributes {
+            channels: self.back_channels,
+            slope: self.front.slope.map(mirrored),
+            lit: [-x, -y, -z, px, py, pz],
+            ..self.front
+        }
+    }
+}
+
+/// Every vertex on the screen, none of which can need clipping.
+#[inline(never)]
+pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, lit: &mut Vec<LitVertex>) {
+    lit.clear();
+    lit.extend(geometry.positions.iter().map(|&position| LitVertex {
+        vertex: view.project_inside(position),
+        ..LitVertex::default()
+    }));
+}
+
+/// Every vertex on the screen, with a mark on those that need clipping.
+#[inline(never)]
+pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, lit: &mut Vec<LitVertex>) {
+    lit.clear();
+    lit.extend(geometry.positions.iter().map(|&position| {
+        let vertex = view.project(position);
+        LitVertex { needs_clipping: vertex.is_none(), vertex: vertex.unwrap_or_default(), back: U8F8::default() }
+    }));
+}
+
+/// No light: each surface has one shade.
+#[inline(never)]
+pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[Paint], lit: &mut [LitVertex]) {
+    for (lit, &surface) in lit.iter_mut().zip(geometry.vertex_surfaces) {
+        let shade = paints[usize::from(surface)].constant();
+        lit.vertex = lit.vertex.with_shade(shade);
+        lit.back = shade;
+    }
+}
+
+/// Suns on matt surfaces.
+#[inline(never)]
+pub(super) fn light_suns(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, lit: &mut [LitVertex]) {
+    for ((lit, normal), &surface) in lit.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
+        let paint = &paints[usize::from(surface)];
+        let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, *normal);
+        lit.vertex = lit.vertex.with_shade(paint.shade(front));
+        lit.back = paint.shade(back);
+    }
+}
+
+/// Suns, lamps and highlights.
+#[inline(never)]
+pub(super) fn light_all(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, lit: &mut [LitVertex]) {
+    let vertices = geometry.positions.iter().zip(geometry.normals).zip(geometry.vertex_surfaces);
+    for (lit, ((position, normal), &surface)) in lit.iter_mut().zip(vertices) {
+        let paint = &paints[usize::from(surface)];
+        let (front, back) = lights.one_channel(&paint.answer, *position, *normal);
+        lit.vertex = lit.vertex.with_shade(paint.shade(front));
+        lit.back = paint.shade(back);
+    }
+}
+
+/// The same on three channels.
+#[inline(never)]
+pub(super) fn light_channels(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, extras: &mut [Extra]) {
+    let vertices = geometry.positions.iter().zip(geometry.normals).zip(geometry.vertex_surfaces);
+    for (extra, ((position, normal), &surface)) in extras.iter_mut().zip(vertices) {
+        let paint = &paints[usize::from(surface)];
+        let (front, back) = lights.three_channels(&paint.answer, *position, *normal);
+        extra.front.channels = Paint::channels(front);
+        extra.back_channels = Paint::channels(back);
+    }
+}
+
+/// Texture coordinates in texels, for surfaces that have an image.
+#[inline(never)]
+pub(super) fn texture_coordinates(geometry: &Geometry<'_>, paints: &[Paint], extras: &mut [Extra]) {
+    let Some(texcoords) = geometry.texcoords else { return };
+    for ((extra, uv), &surface) in extras.iter_mut().zip(texcoords).zip(geometry.vertex_surfaces) {
+        if let Some([width, height]) = paints[usize::from(surface)].texture_size {
+            extra.front.texture = [texels(uv.x, width), texels(uv.y, height)];
+        }
+    }
+}
+
+/// `part` of a texture's `size`, in 16.16. Images repeat; what is more than 16,384 texels away from
+/// their corner is brought back by whole images.
+fn texels(part: f32, size: u32) -> i32 {
+    const FARTHEST: f64 = 16_384.0;
+    let size = f64::from(size);
+    let at = f64::from(part) * size;
+    let near = if at.abs() <= FARTHEST { at } else { at - libm::floor(at / size) * size };
+    // Within ±2³⁰, or, of what is too great to have a fraction, a number all the same.
+    libm::floor(near * 65_536.0 + 0.5) as i32
+}
+
+/// Where an image of the surroundings is mirrored: by the normal as the eye sees it.
+#[inline(never)]
+pub(super) fn environment_coordinates(
+    geometry: &Geometry<'_>,
+    view: &ObjectView,
+    paints: &[Paint],
+    extras: &mut [Extra],
+) {
+    let to_eye = view.directions_to_eye();
+    for ((extra, &normal), &surface) in extras.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
+        if let Some([width, height]) = paints[usize::from(surface)].environment_size {
+            let seen = to_eye * normal;
+            // To the centres of the outermost texels, so that no coordinate is another image's.
+            let within = |c: f32, size: u32| texels(0.5 + 0.5 * c * (1.0 - 1.0 / size as f32), size);
+            extra.front.texture = [within(seen.x, width), within(seen.y, height)];
+        }
+    }
+}
+
+/// How thick the fog is before every vertex.
+#[inline(never)]
+pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, extras: &mut [Extra]) {
+    for (extra, &position) in extras.iter_mut().zip(geometry.positions) {
+        extra.front.fog = fog_level(fog, view.homogeneous(position).w);
+    }
+}
+
+/// How thick the fog is at a distance along the view, 0 to 0xFF00.
+pub(super) fn fog_level(fog: &Fog, distance: f64) -> U8F8 {
+    U8F8::from_intensity(fog.level(distance) as f32, 0, Ramp::WHOLE.entries())
+}
+
+/// The normals' x and y as the eye sees them, for a table.
+#[inline(never)]
+pub(super) fn slopes(geometry: &Geometry<'_>, view: &ObjectView, extras: &mut [Extra]) {
+    let to_eye = view.directions_to_eye();
+    for (extra, &normal) in extras.iter_mut().zip(geometry.normals) {
+        let seen = to_eye * normal;
+        let slope = |c: f32| U8F8::from_intensity(0.5 + 0.5 * c, 0, Ramp::WHOLE.entries());
+        extra.front.slope = [slope(seen.x), slope(seen.y)];
+    }
+}
+
+/// Normals and positions, for light at every pixel.
+#[inline(never)]
+pub(super) fn lit_points(geometry: &Geometry<'_>, extras: &mut [Extra]) {
+    for ((extra, n), p) in extras.iter_mut().zip(geometry.normals).zip(geometry.positions) {
+        extra.front.lit = [n.x, n.y, n.z, p.x, p.y, p.z];
+    }
+}

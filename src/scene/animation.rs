@@ -1,0 +1,58 @@
+//! Colours that move while the picture stays: the DAC is loaded anew, and nothing is drawn.
+
+use core::ops::RangeInclusive;
+
+use super::motion::part;
+use crate::palette::Palette;
+use crate::vga::Vga;
+
+/// What happens to the palette as time passes.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum PaletteAnimation {
+    /// To another palette and back.
+    Fade {
+        /// The other one.
+        to: Palette,
+        /// How long both ways take together, in seconds; above 0.
+        period: f64,
+    },
+    /// Entries move up, round and round.
+    Cycle {
+        /// Which.
+        range: RangeInclusive<u8>,
+        /// How long one round takes, in seconds; above 0.
+        period: f64,
+    },
+}
+
+impl PaletteAnimation {
+    /// Loads the DAC with what `palette` has become.
+    pub(crate) fn load(&self, palette: &Palette, seconds: f64, vga: &mut Vga) {
+        match self {
+            Self::Fade { to, period } => {
+                let part = part(seconds, *period);
+                let there = if part > 0.5 { 2.0 - 2.0 * part } else { 2.0 * part };
+                // 0 to 256; the cast truncates after the half.
+                vga.fade(palette, to, (there * 256.0 + 0.5) as u16);
+            }
+            Self::Cycle { range, period } => {
+                vga.set_palette(palette);
+                let entries = i32::from(*range.end()) - i32::from(*range.start()) + 1;
+                // Below the number of entries.
+                vga.cycle(range.clone(), (part(seconds, *period) * f64::from(entries.max(0))) as i32);
+            }
+        }
+    }
+
+    /// What is wrong with it, if anything.
+    pub(crate) fn check(&self) -> Result<(), &'static str> {
+        match self {
+            Self::Fade { period, .. } | Self::Cycle { period, .. } if !(*period > 0.0 && period.is_finite()) => {
+                Err("its period must be above 0 and finite")
+            }
+            Self::Cycle { range, .. } if range.is_empty() => Err("its range of entries is empty"),
+            _ => Ok(()),
+        }
+    }
+}

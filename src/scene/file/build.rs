@@ -1,0 +1,202 @@
+//! From the layout of a file to a scene.
+
+use std::path::Path as FilePath;
+
+use glam::Vec3;
+use toml::Spanned;
+
+use super::camera::{Extent, camera};
+use super::error::Fault;
+use super::layout::{AnimationLayout, FogLayout, LightLayout, SceneLayout, WishesLayout};
+use super::named::{Named, Open};
+use super::object::Objects;
+use super::value::{Background, FileName, List, OneOrThree};
+use super::{Loaded, SceneErrorKind, motion};
+use crate::light::Light;
+use crate::palette::Palette;
+use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Wishes};
+
+/// Makes one scene.
+pub(super) struct Builder<'a> {
+    named: Named<'a>,
+    scene: Scene,
+    extent: Extent,
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(path: &'a FilePath, open: &'a mut Open<'a>) -> Self {
+        Self { named: Named::new(path, open), scene: Scene::new(), extent: Extent::default() }
+    }
+
+    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<Loaded, Fault> {
+        if layout.objects.is_empty() {
+            return Err(Fault { span: None, kind: SceneErrorKind::NoObject });
+        }
+        self.scene.name = layout.name.clone().unwrap_or_default();
+        if let Some(duration) = layout.duration {
+            self.scene.duration = duration.0;
+        }
+        if let Some(ambient) = layout.ambient {
+            self.scene.ambient = ambient.0;
+        }
+        if let Some(wishes) = &layout.wishes {
+            self.scene.wishes = self::wishes(wishes);
+        }
+        if let Some(name) = &layout.palette {
+            self.palette(name)?;
+        }
+        if let Some(animation) = &layout.animation {
+            self.scene.palette_animation = Some(self.animation(animation)?);
+        }
+        self.background_and_fog(layout.background, layout.fog.as_ref())?;
+        self.objects(layout)?;
+        for light in &layout.lights {
+            self.light(light)?;
+        }
+        self.camera(layout)?;
+        self.scene.set_time(0.0);
+        Ok(Loaded { scene: self.scene, warnings: self.named.warnings })
+    }
+
+    fn palette(&mut self, name: &Spanned<FileName>) -> Result<(), Fault> {
+        if name.get_ref().0 == "auto" {
+            self.scene.wishes.auto_palette = true;
+        } else {
+            self.scene.palette = Some(self.named.palette(name)?);
+        }
+        Ok(())
+    }
+
+    fn animation(&mut self, layout: &Spanned<AnimationLayout>) -> Result<PaletteAnimation, Fault> {
+        let AnimationLayout { fade, cycle, rounds } = layout.get_ref();
+        let period = self.scene.duration / rounds.map_or(1.0, |rounds| rounds.0);
+        match (fade, cycle) {
+            (Some(name), None) => Ok(PaletteAnimation::Fade { to: self.named.palette(name)?, period }),
+            (None, Some(cycle)) => {
+                let List([first, last]) = cycle.get_ref();
+                let (first, last) = (first.index(), last.index());
+                if first > last {
+                    return Err(Fault::value(cycle.span(), "the first entry lies behind the last"));
+                }
+                Ok(PaletteAnimation::Cycle { range: first..=last, period })
+            }
+            _ => Err(Fault::value(layout.span(), "an animation is either a `fade` or a `cycle`")),
+        }
+    }
+
+    /// Fog hides what is far away only where it ends in the background's colour: so either is the other's, unless
+    /// both are given.
+    fn background_and_fog(
+        &mut self,
+        background: Option<Background>,
+        fog: Option<&Spanned<FogLayout>>,
+    ) -> Result<(), Fault> {
+        let palette = self.scene.palette.clone().unwrap_or_default();
+        let fog_color = fog.and_then(|fog| fog.get_ref().color);
+        match (background, fog_color) {
+            (Some(Background::Entry(entry)), _) => self.scene.background = entry,
+            (Some(Background::Color(color)), _) | (None, Some(color)) => {
+                self.scene.background = palette.nearest(color.rgb());
+                self.scene.background_color = Some(color.rgb());
+            }
+            (None, None) => {}
+        }
+        let Some(fog) = fog else { return Ok(()) };
+        let FogLayout { start, end, .. } = fog.get_ref();
+        let color = match (fog_color, self.scene.background_color) {
+            (Some(color), _) => color.rgb(),
+            (None, Some(color)) => color,
+            (None, None) => Palette::color(&palette, self.scene.background),
+        };
+        let fog = Fog { color, start: start.map_or(0.0, |start| start.0), end: end.get_ref().0 };
+        if fog.end <= fog.start {
+            return Err(Fault::value(end.span(), "the fog ends no farther than it starts"));
+        }
+        self.scene.fog = Some(fog);
+        Ok(())
+    }
+
+    fn objects(&mut self, layout: &SceneLayout) -> Result<(), Fault> {
+        let mut objects = Objects::default();
+        for layout in &layout.objects {
+            let own = layout.get_ref();
+            let path = own.path.as_ref().map(|path| motion::path(path, self.scene.duration)).transpose()?;
+            let turns = match own.spin {
+                Some(OneOrThree::One(about_y)) => [0.0, about_y.0, 0.0],
+                Some(OneOrThree::Three(turns)) => turns.map(|turns| turns.0),
+                None => [0.0; 3],
+            };
+            for object in objects.object(layout, &mut self.named)? {
+                self.extent.add(&object, path.as_ref());
+                let start = object.angles();
+                let id = self.scene.add(object);
+                if turns != [0.0; 3] {
+                    // A round takes the duration.
+                    let turns = turns.map(|turns| turns / self.scene.duration);
+                    self.scene.motions.push(Motion::Spin { object: id, start, turns });
+                }
+                if let Some(path) = path {
+                    self.scene.motions.push(Motion::Path { what: Moving::Object(id), path });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn light(&mut self, layout: &Spanned<LightLayout>) -> Result<(), Fault> {
+        let LightLayout { sun, lamp, range, intensity, color, path } = layout.get_ref();
+        let path = path.as_ref().map(|path| motion::path(path, self.scene.duration)).transpose()?;
+        let light = match (sun, lamp, range) {
+            (Some(direction), None, None) => {
+                let towards = direction.get_ref().vec3();
+                if towards == Vec3::ZERO {
+                    return Err(Fault::value(direction.span(), "a direction must not be zero"));
+                }
+                Light::sun(towards.to_array())
+            }
+            (Some(_), None, Some(range)) => {
+                return Err(Fault::value(range.span(), "only a lamp has a range"));
+            }
+            (None, Some(position), Some(range)) => Light::lamp(position.get_ref().vec3().to_array(), range.get_ref().0),
+            (None, Some(_), None) => {
+                return Err(Fault::value(layout.span(), "a lamp needs a `range`: how far it reaches"));
+            }
+            _ => return Err(Fault::value(layout.span(), "a light is either a `sun` or a `lamp`")),
+        };
+        let light = light.with_intensity(intensity.map_or(1.0, |intensity| intensity.0));
+        self.scene.add_light(light.with_color(color.map_or([1.0; 3], |color| color.0)));
+        if let Some(path) = path {
+            let what = Moving::Light(self.scene.lights().len() - 1);
+            self.scene.motions.push(Motion::Path { what, path });
+        }
+        Ok(())
+    }
+
+    fn camera(&mut self, layout: &SceneLayout) -> Result<(), Fault> {
+        self.scene.camera = camera(layout.camera.as_ref(), &self.extent)?;
+        let Some(own) = &layout.camera else { return Ok(()) };
+        for (path, what) in [(&own.get_ref().eye_path, Moving::Eye), (&own.get_ref().target_path, Moving::Target)] {
+            if let Some(path) = path {
+                let path = motion::path(path, self.scene.duration)?;
+                self.scene.motions.push(Motion::Path { what, path });
+            }
+        }
+        self.scene.set_time(0.0);
+        if self.scene.camera.eye == self.scene.camera.target {
+            return Err(Fault::value(own.span(), "the camera looks at the point where it is"));
+        }
+        Ok(())
+    }
+}
+
+fn wishes(layout: &WishesLayout) -> Wishes {
+    Wishes {
+        rung: layout.rung.as_ref().map(|name| name.0),
+        hidden_surfaces: layout.hidden_surfaces.as_ref().map(|name| name.0),
+        mapping: layout.mapping.as_ref().map(|name| name.0),
+        tessellation: layout.tessellation.map(|shades| shades.0),
+        dither: layout.dither.unwrap_or_default(),
+        max_error: layout.max_error.map(|shades| shades.0),
+        auto_palette: false,
+    }
+}

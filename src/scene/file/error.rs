@@ -1,0 +1,235 @@
+//! Why a scene file is refused, and where in it.
+
+use core::ops::Range;
+use std::fmt::Write as _;
+use std::format;
+use std::path::{Path, PathBuf};
+use std::string::{String, ToString};
+use std::vec::Vec;
+use std::{error, fmt, io};
+
+use super::place::{Place, key_at};
+use crate::mesh::obj::ObjError;
+use crate::palette::file::PaletteError;
+use crate::texture::LoadError;
+
+/// Why a scene file is refused. Nothing of it is used.
+///
+/// Displayed on one line, as ``scene.toml:9:1: key `objects[0].shap`: unknown key; known are name, shape, …``.
+#[derive(Debug)]
+pub struct SceneError {
+    /// The file, as the caller named it.
+    pub path: PathBuf,
+    /// Where in it. `None` where no one place is at fault.
+    pub place: Option<Place>,
+    /// The key at fault with those it lies in, as `objects[0].material.ramp`: lists count from 0. `None` where
+    /// none is.
+    pub key: Option<String>,
+    /// What is wrong.
+    pub kind: SceneErrorKind,
+}
+
+/// What is wrong with a scene file.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum SceneErrorKind {
+    /// The file is not there or cannot be read.
+    Read(io::Error),
+    /// The path is that of a directory.
+    Directory,
+    /// More than [`LONGEST`](super::LONGEST) bytes.
+    TooLong,
+    /// Not text in UTF-8.
+    NotText,
+    /// Text, but not TOML: what the reader stumbled on.
+    NotToml(String),
+    /// There is no such key here.
+    UnknownKey {
+        /// Those there are.
+        known: String,
+    },
+    /// A key is needed that is not there.
+    MissingKey,
+    /// The value is of another type than it must be, out of range, the name of nothing, or does not go with another
+    /// key: what it is, and what it must be.
+    Value(String),
+    /// A file that the scene names cannot be read.
+    File {
+        /// Its path, from where the scene's lies.
+        path: PathBuf,
+        /// Why not.
+        error: io::Error,
+    },
+    /// A model that the scene names is broken.
+    Model(ObjError),
+    /// A palette file that the scene names is broken.
+    Palette {
+        /// Its path.
+        path: PathBuf,
+        /// What is wrong with it.
+        error: PaletteError,
+    },
+    /// A texture that the scene names is broken.
+    Texture(LoadError),
+    /// The scene has no object.
+    NoObject,
+}
+
+/// What is wrong, and the bytes of the text that are, as long as nobody has asked for more.
+pub(super) struct Fault {
+    pub(super) span: Option<Range<usize>>,
+    pub(super) kind: SceneErrorKind,
+}
+
+impl Fault {
+    /// A value that cannot stand where it does.
+    pub(super) fn value(span: Range<usize>, what: impl fmt::Display) -> Self {
+        Self { span: Some(span), kind: SceneErrorKind::Value(what.to_string()) }
+    }
+
+    pub(super) fn of(span: Range<usize>, kind: SceneErrorKind) -> Self {
+        Self { span: Some(span), kind }
+    }
+
+    /// With the place and the key that its span means in `text`.
+    pub(super) fn locate(self, path: &Path, text: &str) -> SceneError {
+        let Self { span, mut kind } = self;
+        let place = span.as_ref().map(|span| Place::of(text, span.start));
+        let mut key = span.as_ref().and_then(|span| key_at(text, span));
+        match &mut kind {
+            SceneErrorKind::Value(message) => {
+                if let Some(field) = between(message, "missing field `", "`") {
+                    key = Some(key.map_or(String::new(), |table| table + ".") + field);
+                    kind = SceneErrorKind::MissingKey;
+                } else if message.starts_with("unknown field `") {
+                    kind = SceneErrorKind::UnknownKey { known: known_keys(message) };
+                } else if let Some(turned) = expected_first(message) {
+                    *message = turned;
+                }
+            }
+            // Of two keys that are alike the second is the fault, which no table holds.
+            SceneErrorKind::NotToml(message) if message == "duplicate key" => {
+                key = span.and_then(|span| text.get(span)).map(String::from);
+            }
+            _ => {}
+        }
+        SceneError { path: path.to_owned(), place, key, kind }
+    }
+}
+
+/// Syntax comes first, and has no key.
+pub(super) fn not_toml(error: &toml::de::Error) -> Fault {
+    Fault { span: error.span(), kind: SceneErrorKind::NotToml(error.message().to_string()) }
+}
+
+/// What serde has to say: the words of its own messages are those that [`Fault::locate`] looks for.
+pub(super) fn not_a_scene(error: &toml::de::Error) -> Fault {
+    Fault { span: error.span(), kind: SceneErrorKind::Value(shortened(error.message())) }
+}
+
+/// Without the middle, if it is long: a message begins with a value out of the file, which may be of any length, and
+/// ends with what it should be.
+fn shortened(message: &str) -> String {
+    const HEAD: usize = 100;
+    const TAIL: usize = 400;
+    let length = message.chars().count();
+    if length <= HEAD + TAIL {
+        return message.to_string();
+    }
+    let head = message.chars().take(HEAD);
+    let tail = message.chars().skip(length - TAIL);
+    head.chain(['…']).chain(tail).collect()
+}
+
+/// What stands between `before`, with which `text` begins, and `behind`, with which it ends.
+fn between<'t>(text: &'t str, before: &str, behind: &str) -> Option<&'t str> {
+    text.strip_prefix(before)?.strip_suffix(behind)
+}
+
+/// Out of serde's "invalid type: integer `7`, expected a name" makes "expected a name, found integer `7`". What was
+/// found may hold any words, so "expected" is looked for from the end.
+fn expected_first(message: &str) -> Option<String> {
+    let kinds = ["invalid type: ", "invalid value: ", "invalid length "];
+    let rest = kinds.iter().find_map(|kind| message.strip_prefix(kind))?;
+    let at = rest.rfind(", expected ")?;
+    Some(format!("{}, found {}", &rest[at + 2..], &rest[..at]))
+}
+
+/// The keys out of serde's "unknown field `x`, expected one of `a`, `b`", or "expected `a` or `b`". The unknown key
+/// may hold any of these words itself, so they are looked for from the end.
+fn known_keys(message: &str) -> String {
+    let Some(at) = message.rfind("`, expected ") else { return String::from("none") };
+    let list = &message[at + "`, expected ".len()..];
+    let names: Vec<&str> = list.split('`').skip(1).step_by(2).collect();
+    names.join(", ")
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if let Some(Place { line, column }) = self.place {
+            write!(f, ":{line}:{column}")?;
+        }
+        f.write_str(": ")?;
+        let mut line = Line { f, left: LONGEST_MESSAGE };
+        if let Some(key) = &self.key {
+            write!(line, "key `{key}`: ")?;
+        }
+        write!(line, "{}", self.kind)
+    }
+}
+
+impl fmt::Display for SceneErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read(error) => write!(f, "{error}"),
+            Self::Directory => write!(f, "is a directory"),
+            Self::TooLong => write!(f, "longer than a scene may be, 1 MiB"),
+            Self::NotText => write!(f, "not text in UTF-8"),
+            Self::NotToml(what) => write!(f, "not TOML: {what}"),
+            Self::UnknownKey { known } => write!(f, "unknown key; known are {known}"),
+            Self::MissingKey => write!(f, "missing"),
+            Self::Value(what) => f.write_str(what),
+            Self::File { path, error } => write!(f, "{}: {error}", path.display()),
+            Self::Model(error) => write!(f, "{error}"),
+            Self::Palette { path, error } => write!(f, "{}: {error}", path.display()),
+            Self::Texture(error) => write!(f, "{error}"),
+            Self::NoObject => write!(f, "no object: a scene needs at least one [[objects]]"),
+        }
+    }
+}
+
+impl error::Error for SceneError {
+    fn source(&self) -> Option<&(dyn error::Error + 'static)> {
+        match &self.kind {
+            SceneErrorKind::Read(error) | SceneErrorKind::File { error, .. } => Some(error),
+            SceneErrorKind::Model(error) => Some(error),
+            SceneErrorKind::Palette { error, .. } => Some(error),
+            SceneErrorKind::Texture(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+/// Of a message, which may quote what stands in a file, this many characters are shown.
+const LONGEST_MESSAGE: usize = 2500;
+
+/// Keeps what is written through it on one line, printable, and not too long to be read.
+struct Line<'a, 'f> {
+    f: &'a mut fmt::Formatter<'f>,
+    left: usize,
+}
+
+impl fmt::Write for Line<'_, '_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for c in text.chars() {
+            match self.left {
+                0 => return Ok(()),
+                1 => self.f.write_char('…')?,
+                _ => self.f.write_char(if c.is_control() { ' ' } else { c })?,
+            }
+            self.left -= 1;
+        }
+        Ok(())
+    }
+}

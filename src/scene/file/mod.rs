@@ -1,0 +1,148 @@
+//! Scenes as TOML files. `scenes/README.md` lists their tables and keys.
+//!
+//! ```
+//! use mode13h::scene::Scene;
+//!
+//! let text = "
+//!     palette = 'copper'
+//!     objects = [{ shape = 'torus', spin = 1 }]
+//!     lights = [{ sun = [0.4, 0.6, 1] }]
+//! ";
+//! let no_files = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
+//! let mut scene = Scene::from_toml(text, "torus.toml", no_files)?.scene;
+//! scene.set_time(scene.duration / 4.0);
+//! assert_eq!(scene.objects()[0].angles()[1], std::f64::consts::FRAC_PI_2);
+//!
+//! let error = Scene::from_toml("objects = [{ shap = 'torus' }]", "torus.toml", no_files).unwrap_err();
+//! assert!(error.to_string().starts_with("torus.toml:1:14: key `objects[0].shap`: unknown key; known are name, shape"));
+//! # Ok::<(), mode13h::scene::file::SceneError>(())
+//! ```
+//!
+//! Reading is bounded: a file of at most [`LONGEST`] bytes, shapes of at most [`MOST_TRIANGLES`] together. A scene
+//! names models, textures and palettes; never another scene.
+//!
+//! | file | what |
+//! |---|---|
+//! | `layout` | the tables and keys that there are |
+//! | `value` | numbers, vectors, colours and names with their ranges |
+//! | `shape` | the shapes with their subdivisions |
+//! | `build` | from the layout to a [`Scene`] |
+//! | `object`, `material`, `motion`, `camera` | the parts of it |
+//! | `named` | the files that a scene names |
+//! | `error`, `place` | what is wrong, in which line and column, of which key |
+
+mod build;
+mod camera;
+mod error;
+mod layout;
+mod material;
+mod motion;
+mod named;
+mod object;
+mod place;
+mod shape;
+mod value;
+
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+use std::string::String;
+use std::vec::Vec;
+
+use serde::Deserialize;
+use toml::de::Deserializer;
+
+use super::Scene;
+use build::Builder;
+use error::{Fault, not_a_scene, not_toml};
+pub use error::{SceneError, SceneErrorKind};
+use layout::SceneLayout;
+pub use place::Place;
+
+/// The most bytes of a scene file: 1 MiB.
+pub const LONGEST: usize = 1 << 20;
+
+/// The most triangles that the shapes of a scene have together: four for every pixel of mode 13h. Models may have more.
+pub const MOST_TRIANGLES: u64 = 1 << 18;
+
+/// A scene and what was found wanting while it was read.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene, at time 0.
+    pub scene: Scene,
+    /// One line each, with a file and the place in it.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a scene file. The files that it names are looked for from the folder it lies in.
+///
+/// # Errors
+/// A file that cannot be read, or that is broken: see [`SceneErrorKind`].
+pub fn load(path: impl AsRef<Path>) -> Result<Loaded, SceneError> {
+    let path = path.as_ref();
+    let failed = |kind| SceneError { path: path.to_owned(), place: None, key: None, kind };
+    let mut file = File::open(path).map_err(|error| failed(SceneErrorKind::Read(error)))?;
+    let mut bytes = Vec::new();
+    // One byte more than may be, to see that there are more.
+    file.by_ref().take(LONGEST as u64 + 1).read_to_end(&mut bytes).map_err(|error| {
+        failed(if error.kind() == io::ErrorKind::IsADirectory {
+            SceneErrorKind::Directory
+        } else {
+            SceneErrorKind::Read(error)
+        })
+    })?;
+    Scene::from_toml_bytes(&bytes, path, open)
+}
+
+/// A file that a scene names. What is no ordinary file is refused: a scene may name a device that never ends.
+fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
+    match fs::metadata(path)?.is_file() {
+        true => Ok(Box::new(BufReader::with_capacity(1 << 16, File::open(path)?))),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file")),
+    }
+}
+
+impl Scene {
+    /// Makes a scene of the text of a file. `path` is what errors call it; `open` is given the path of each file that
+    /// the scene names, joined to the folder of `path`.
+    ///
+    /// # Errors
+    /// What is wrong, with line, column and key: see [`SceneErrorKind`].
+    pub fn from_toml(
+        text: &str,
+        path: impl AsRef<Path>,
+        open: impl FnMut(&Path) -> io::Result<Box<dyn BufRead>>,
+    ) -> Result<Loaded, SceneError> {
+        let path = path.as_ref();
+        read(text, path, open).map_err(|fault| fault.locate(path, text))
+    }
+
+    /// The same of the bytes of a file.
+    ///
+    /// # Errors
+    /// The same, and bytes that are no text.
+    pub fn from_toml_bytes(
+        bytes: &[u8],
+        path: impl AsRef<Path>,
+        open: impl FnMut(&Path) -> io::Result<Box<dyn BufRead>>,
+    ) -> Result<Loaded, SceneError> {
+        match str::from_utf8(bytes) {
+            Ok(text) => Self::from_toml(text, path, open),
+            Err(error) => {
+                // Whole characters up to there.
+                let text = str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default();
+                let place = Some(Place::of(text, text.len()));
+                Err(SceneError { path: path.as_ref().to_owned(), place, key: None, kind: SceneErrorKind::NotText })
+            }
+        }
+    }
+}
+
+fn read(text: &str, path: &Path, mut open: impl FnMut(&Path) -> io::Result<Box<dyn BufRead>>) -> Result<Loaded, Fault> {
+    if text.len() > LONGEST {
+        return Err(Fault { span: None, kind: SceneErrorKind::TooLong });
+    }
+    let document = Deserializer::parse(text).map_err(|error| not_toml(&error))?;
+    let layout = SceneLayout::deserialize(document).map_err(|error| not_a_scene(&error))?;
+    Builder::new(path, &mut open).scene(&layout)
+}

@@ -1,0 +1,62 @@
+//! From bytes of a text to the line, the column and the key that a person knows them by.
+
+use core::ops::Range;
+use std::format;
+use std::string::{String, ToString};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A place in a text.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Place {
+    /// Counted from 1.
+    pub line: usize,
+    /// In characters, counted from 1.
+    pub column: usize,
+}
+
+impl Place {
+    /// Of a byte; of one that is not there, the end of the text.
+    pub(super) fn of(text: &str, byte: usize) -> Self {
+        let mut byte = byte.min(text.len());
+        while !text.is_char_boundary(byte) {
+            byte -= 1;
+        }
+        let before = &text[..byte];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Self { line: before.matches('\n').count() + 1, column: before[line_start..].chars().count() + 1 }
+    }
+}
+
+/// The key that stands at these bytes or whose value does, with those it lies in: `objects[0].material.ramp`.
+/// `None` in what is not TOML, and where there is none.
+pub(super) fn key_at(text: &str, span: &Range<usize>) -> Option<String> {
+    in_table(DeTable::parse(text).ok()?.get_ref(), span, "")
+}
+
+/// Of a longer key only the beginning is shown: none that is known is as long.
+const LONGEST_KEY: usize = 60;
+
+// A table and a list have the bytes of the header that opened them, and so may several, one in the other: the
+// innermost is meant. The parser limits how deep they lie.
+
+fn in_table(table: &DeTable<'_>, span: &Range<usize>, path: &str) -> Option<String> {
+    table.iter().find_map(|(key, value)| {
+        let dot = if path.is_empty() { "" } else { "." };
+        let key_name: String = key.get_ref().chars().take(LONGEST_KEY).collect();
+        let path = format!("{path}{dot}{key_name}");
+        in_value(value, span, &path).or_else(|| (key.span() == *span).then_some(path))
+    })
+}
+
+fn in_value(value: &Spanned<DeValue<'_>>, span: &Range<usize>, path: &str) -> Option<String> {
+    let inside = match value.get_ref() {
+        DeValue::Table(table) => in_table(table, span, path),
+        DeValue::Array(list) => {
+            list.iter().enumerate().find_map(|(i, value)| in_value(value, span, &format!("{path}[{i}]")))
+        }
+        _ => None,
+    };
+    inside.or_else(|| (value.span() == *span).then(|| path.to_string()))
+}

@@ -1,0 +1,240 @@
+//! What is to be drawn: objects, a camera, lights, fog, a palette; how they move; what is asked for.
+//!
+//! A scene is plain data. Nothing in it is borrowed between frames: change it, draw it, change it
+//! again. What is wrong in it (a position that is not finite, a camera that looks nowhere) is
+//! refused when it is drawn.
+//!
+//! | file | what |
+//! |---|---|
+//! | `object` | [`Object`]: a mesh, where it is, what it is made of |
+//! | `camera` | [`Camera`] |
+//! | `fog` | [`Fog`] |
+//! | `motion` | [`Motion`]: everything from absolute time |
+//! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
+//! | `wishes` | [`Wishes`]: rung, hidden surfaces, mapping, tessellation, dither |
+//! | `names` | choices that are typed by name |
+//! | `file` | scenes as TOML files (feature `scene-files`) |
+//! | `shipped` | those that are compiled in (feature `scene-files`) |
+
+mod animation;
+mod camera;
+#[cfg(feature = "scene-files")]
+pub mod file;
+mod fog;
+mod motion;
+mod names;
+mod object;
+#[cfg(feature = "scene-files")]
+pub mod shipped;
+mod wishes;
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::ops::{Index, IndexMut};
+
+use glam::Vec3;
+
+use crate::light::Light;
+use crate::mesh::Mesh;
+use crate::palette::{Palette, Rgb, builtin};
+use crate::vga::Vga;
+pub use animation::PaletteAnimation;
+pub use camera::Camera;
+pub use fog::Fog;
+pub use motion::{Motion, Moving, Path};
+pub(crate) use names::named;
+pub(crate) use object::{matrix_product, turn};
+pub use object::{Object, UpAxis};
+pub use wishes::{
+    HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung, Wishes,
+};
+
+/// A mesh or a texture that several objects, scenes and threads may share. Where the processor has no
+/// atomic counter (Cortex-M0) it stays within one thread.
+#[cfg(target_has_atomic = "ptr")]
+pub type Shared<T> = alloc::sync::Arc<T>;
+/// A mesh or a texture that several objects and scenes may share, within one thread.
+#[cfg(not(target_has_atomic = "ptr"))]
+pub type Shared<T> = alloc::rc::Rc<T>;
+
+/// Which object of a scene; what [`Scene::add`] gave for it.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct ObjectId(usize);
+
+impl ObjectId {
+    /// Its place among the scene's objects.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// Everything that is drawn.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// A name for people.
+    pub name: String,
+    /// The eye.
+    pub camera: Camera,
+    /// Ia: how much ambient light there is.
+    pub ambient: f32,
+    /// The index that the frame is cleared to.
+    pub background: u8,
+    /// The colour that [`background`](Self::background) was chosen for, if it was: with another palette another entry
+    /// is nearest to it.
+    pub background_color: Option<Rgb>,
+    /// What the DAC is set to when the scene is drawn; with `None` it is left alone.
+    pub palette: Option<Palette>,
+    /// What happens to the palette as time passes.
+    pub palette_animation: Option<PaletteAnimation>,
+    /// What lies between the eye and what is far away.
+    pub fog: Option<Fog>,
+    /// What is asked for.
+    pub wishes: Wishes,
+    /// How things move; [`set_time`](Self::set_time) puts them where they are.
+    pub motions: Vec<Motion>,
+    /// How long one round of it takes, in seconds; above 0. A film of that length that is played again and again has
+    /// no seam, if its motions take whole parts of it.
+    pub duration: f64,
+    time: f64,
+    objects: Vec<Object>,
+    lights: Vec<Light>,
+}
+
+impl Scene {
+    /// An empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four seconds.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            name: String::new(),
+            camera: Camera::default(),
+            ambient: 1.0,
+            background: 0,
+            background_color: None,
+            palette: Some(builtin::GREY.clone()),
+            palette_animation: None,
+            fog: None,
+            wishes: Wishes::default(),
+            motions: Vec::new(),
+            duration: 4.0,
+            time: 0.0,
+            objects: Vec::new(),
+            lights: Vec::new(),
+        }
+    }
+
+    /// A mesh to look at: in the middle, filling the picture, turning about its middle, one sun
+    /// from the upper right behind the eye.
+    #[must_use]
+    pub fn showing(mesh: impl Into<Shared<Mesh>>) -> Self {
+        let mut scene = Self::new();
+        let object = Object::new(mesh).centred();
+        scene.camera = Camera::framing(Vec3::ZERO, object.mesh().bounds().radius);
+        scene.add(object);
+        scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+        scene
+    }
+
+    /// Puts an object into the scene.
+    pub fn add(&mut self, object: Object) -> ObjectId {
+        self.objects.push(object);
+        ObjectId(self.objects.len() - 1)
+    }
+
+    /// Puts a light into the scene.
+    pub fn add_light(&mut self, light: Light) {
+        self.lights.push(light);
+    }
+
+    /// The objects, in the order in which they were put in.
+    #[must_use]
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// The objects, to change them.
+    pub fn objects_mut(&mut self) -> &mut [Object] {
+        &mut self.objects
+    }
+
+    /// The lights, in the order in which they were put in: that of their sum.
+    #[must_use]
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// The lights, to change them or take them away.
+    pub fn lights_mut(&mut self) -> &mut Vec<Light> {
+        &mut self.lights
+    }
+
+    /// Puts everything that moves where it is at a time, in seconds. Motions that name what is not
+    /// there move nothing.
+    pub fn set_time(&mut self, seconds: f64) {
+        self.time = seconds;
+        for motion in &self.motions {
+            match *motion {
+                Motion::Spin { object, start, turns } => {
+                    if let Some(object) = self.objects.get_mut(object.0) {
+                        object.set_angles(motion::spun(start, turns, seconds));
+                    }
+                }
+                Motion::Path { what, path } => {
+                    let at = path.at(seconds);
+                    match what {
+                        Moving::Object(object) => {
+                            if let Some(object) = self.objects.get_mut(object.0) {
+                                object.position = at;
+                            }
+                        }
+                        Moving::Light(index) => match self.lights.get_mut(index) {
+                            Some(Light::Sun { direction: place, .. } | Light::Lamp { position: place, .. }) => *place = at,
+                            None => {}
+                        },
+                        Moving::Eye => self.camera.eye = at,
+                        Moving::Target => self.camera.target = at,
+                    }
+                }
+            }
+        }
+    }
+
+    /// The time that it was last [set](Self::set_time) to, in seconds; 0 at first.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Loads the DAC with the scene's palette, if it has one, as it is at the scene's time.
+    pub fn load_palette(&self, vga: &mut Vga) {
+        match (&self.palette, &self.palette_animation) {
+            (Some(palette), Some(animation)) => animation.load(palette, self.time, vga),
+            (Some(palette), None) => vga.set_palette(palette),
+            (None, _) => {}
+        }
+    }
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Index<ObjectId> for Scene {
+    type Output = Object;
+
+    /// # Panics
+    /// If `id` was given by another scene that holds more objects.
+    fn index(&self, id: ObjectId) -> &Object {
+        &self.objects[id.0]
+    }
+}
+
+impl IndexMut<ObjectId> for Scene {
+    /// # Panics
+    /// If `id` was given by another scene that holds more objects.
+    fn index_mut(&mut self, id: ObjectId) -> &mut Object {
+        &mut self.objects[id.0]
+    }
+}

@@ -1,0 +1,117 @@
+//! How a scene moves: from absolute time, never by adding up small steps.
+//!
+//! Frame n is the same whether or not the frames before it were drawn; a step of an hour, or back,
+//! is a step like any other.
+
+use core::f64::consts::TAU;
+
+use glam::Vec3;
+
+use super::ObjectId;
+
+/// Something in a scene that moves.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Motion {
+    /// An object turns about its pivot.
+    Spin {
+        /// The object.
+        object: ObjectId,
+        /// Its angles about x, y and z at time 0, in radians.
+        start: [f64; 3],
+        /// Turns a second about x, y and z. Whole turns over a film's length make it seamless.
+        turns: [f64; 3],
+    },
+    /// Something goes along a path.
+    Path {
+        /// What goes.
+        what: Moving,
+        /// Where it goes.
+        path: Path,
+    },
+}
+
+/// What can go along a path.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Moving {
+    /// An object's position.
+    Object(ObjectId),
+    /// A lamp's position, or the direction of a sun, by its place among the lights.
+    Light(usize),
+    /// The camera's eye.
+    Eye,
+    /// What the camera looks at.
+    Target,
+}
+
+/// A path, and how long it takes.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Path {
+    /// Straight from one point to another, then again from the first.
+    Line {
+        /// Where it begins.
+        from: Vec3,
+        /// Where it ends.
+        to: Vec3,
+        /// How long it takes, in seconds; above 0.
+        period: f64,
+        /// Whether it comes back the same way; both ways together then take the period.
+        back: bool,
+    },
+    /// Round an axis through a point.
+    Circle {
+        /// The middle.
+        centre: Vec3,
+        /// From the middle to where it begins; it turns from there towards `towards`.
+        from: Vec3,
+        /// From the middle to where it is a quarter of the way on.
+        towards: Vec3,
+        /// How long a round takes, in seconds; above 0.
+        period: f64,
+    },
+}
+
+impl Path {
+    /// Where it is at a time in seconds. Of a period that is not above 0, or of a time that is not
+    /// finite, where it begins.
+    #[must_use]
+    pub fn at(&self, seconds: f64) -> Vec3 {
+        match *self {
+            Self::Line { from, to, period, back } => {
+                let part = part(seconds, period);
+                let part = match back {
+                    true if part > 0.5 => 2.0 - 2.0 * part,
+                    true => 2.0 * part,
+                    false => part,
+                };
+                let between = |a: f32, b: f32| (f64::from(a) * (1.0 - part) + f64::from(b) * part) as f32;
+                Vec3::new(between(from.x, to.x), between(from.y, to.y), between(from.z, to.z))
+            }
+            Self::Circle { centre, from, towards, period } => {
+                let (sine, cosine) = libm::sincos(part(seconds, period) * TAU);
+                let along = |c: f32, a: f32, b: f32| (f64::from(c) + f64::from(a) * cosine + f64::from(b) * sine) as f32;
+                Vec3::new(
+                    along(centre.x, from.x, towards.x),
+                    along(centre.y, from.y, towards.y),
+                    along(centre.z, from.z, towards.z),
+                )
+            }
+        }
+    }
+}
+
+/// How much of a period has passed since it last began: 0 to 1, below 1.
+pub(super) fn part(seconds: f64, period: f64) -> f64 {
+    let periods = seconds / period;
+    let part = periods - libm::floor(periods);
+    // Of what is not finite, and where rounding makes it 1, the beginning.
+    if part < 1.0 { part } else { 0.0 }
+}
+
+/// Angles at a time: `start` in radians, `turns` a second. Whole turns are left out first, so that
+/// nothing is lost however late it is.
+pub(super) fn spun(start: [f64; 3], turns: [f64; 3], seconds: f64) -> [f64; 3] {
+    core::array::from_fn(|i| if turns[i] == 0.0 { start[i] } else { start[i] + part(seconds, 1.0 / turns[i]) * TAU })
+}

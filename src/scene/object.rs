@@ -1,0 +1,203 @@
+//! A mesh in a scene: where it is, how it is turned, what it is made of.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use glam::{Mat3, Vec3};
+
+use super::Shared;
+use crate::light::Material;
+use crate::mesh::Mesh;
+
+/// Which axis of a mesh points up.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[non_exhaustive]
+pub enum UpAxis {
+    /// y, as in the scene.
+    #[default]
+    Y,
+    /// z: the mesh is laid back a quarter turn about x, exactly.
+    Z,
+}
+
+/// A mesh in the scene: where it is, how it is turned, what it is made of.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// A name for people.
+    pub name: String,
+    mesh: Shared<Mesh>,
+    /// Of each vertex, its surface.
+    vertex_surfaces: Vec<u16>,
+    longest_edges: (f32, f32),
+    /// One for each surface of the mesh.
+    pub materials: Vec<Material>,
+    /// The point of the mesh, in its own coordinates, that it turns about.
+    pub pivot: Vec3,
+    /// Where the pivot is in the scene.
+    pub position: Vec3,
+    /// How many times as large as the mesh it is; not negative.
+    pub scale: f32,
+    /// Which axis of the mesh points up.
+    pub up_axis: UpAxis,
+    angles: [f64; 3],
+}
+
+impl Object {
+    /// The mesh at the origin, not turned, in materials made from its surfaces: the first in the
+    /// palette's first ramp, the second in its second, and so on round.
+    #[must_use]
+    pub fn new(mesh: impl Into<Shared<Mesh>>) -> Self {
+        let mesh = mesh.into();
+        let mesh = if mesh.has_one_surface_a_vertex() { mesh } else { Shared::new(mesh.with_one_surface_a_vertex()) };
+        // A palette has at most 256 ramps, a power of two, and they are counted round.
+        let numbers = (0..=u16::MAX).cycle();
+        let materials = numbers.zip(mesh.surfaces()).map(|(i, s)| Material::from_surface(s, i)).collect();
+        Self {
+            name: String::new(),
+            vertex_surfaces: mesh.vertex_surfaces(),
+            longest_edges: longest_edges(&mesh),
+            mesh,
+            materials,
+            pivot: Vec3::ZERO,
+            position: Vec3::ZERO,
+            scale: 1.0,
+            up_axis: UpAxis::Y,
+            angles: [0.0; 3],
+        }
+    }
+
+    /// The same object under a name for people.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// The same object turning about the middle of its mesh, which lies at `position`.
+    #[must_use]
+    pub fn centred(mut self) -> Self {
+        self.pivot = self.mesh.bounds().centre;
+        self
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The mesh, to be kept.
+    pub(crate) fn shared_mesh(&self) -> &Shared<Mesh> {
+        &self.mesh
+    }
+
+    /// Of each vertex of the mesh, the number of its surface.
+    #[must_use]
+    pub fn vertex_surfaces(&self) -> &[u16] {
+        &self.vertex_surfaces
+    }
+
+    /// The longest edge of the mesh, in its own units, and the longest in its texture coordinates.
+    pub(crate) fn longest_edges(&self) -> (f32, f32) {
+        self.longest_edges
+    }
+
+    /// What is wrong with it, if anything.
+    pub(crate) fn check(&self) -> Result<(), &'static str> {
+        if !(self.position.is_finite() && self.pivot.is_finite() && self.scale.is_finite()) {
+            return Err("its position, pivot and scale must be finite");
+        }
+        if self.scale < 0.0 {
+            return Err("its scale must not be negative");
+        }
+        if !self.angles.iter().all(|angle| angle.is_finite()) {
+            return Err("its angles must be finite");
+        }
+        if self.materials.len() < self.mesh.surfaces().len() {
+            return Err("it must have a material for every surface of its mesh");
+        }
+        if !self.materials.iter().all(Material::is_finite) {
+            return Err("the numbers of its materials must be finite");
+        }
+        Ok(())
+    }
+
+    /// Turns it further about the x axis, by radians.
+    pub fn rotate_x(&mut self, angle: f64) {
+        self.angles[0] += angle;
+    }
+
+    /// Turns it further about the y axis, by radians.
+    pub fn rotate_y(&mut self, angle: f64) {
+        self.angles[1] += angle;
+    }
+
+    /// Turns it further about the z axis, by radians.
+    pub fn rotate_z(&mut self, angle: f64) {
+        self.angles[2] += angle;
+    }
+
+    /// Its angles about x, y and z in radians. The turn about z comes first, then y, then x: y
+    /// spins it like a turntable, x tilts the table.
+    #[must_use]
+    pub fn angles(&self) -> [f64; 3] {
+        self.angles
+    }
+
+    /// Sets its angles about x, y and z, in radians. Set from the time, frame n is the same
+    /// whether or not the frames before it were drawn.
+    ///
+    /// The matrix is made anew from the angles for every frame, never from a product of small
+    /// steps, so it stays a rotation for ever.
+    pub fn set_angles(&mut self, angles: [f64; 3]) {
+        self.angles = angles;
+    }
+
+    /// The matrix that turns the mesh's directions into the scene's: its up axis, then its angles.
+    /// Orthonormal within 10⁻⁶.
+    #[must_use]
+    pub fn rotation(&self) -> Mat3 {
+        // Rows, each rounded to the nearest f32.
+        Mat3::from_cols_array_2d(&self.turn().map(|row| row.map(|c| c as f32))).transpose()
+    }
+
+    /// The same in f64, by rows.
+    pub(crate) fn turn(&self) -> [[f64; 3]; 3] {
+        match self.up_axis {
+            UpAxis::Y => turn(self.angles),
+            // (x, y, z) stands up as (x, z, −y).
+            UpAxis::Z => turn(self.angles).map(|[x, y, z]| [x, -z, y]),
+        }
+    }
+}
+
+/// The longest edge in space and in texture coordinates. Rounded; infinite beyond f32.
+fn longest_edges(mesh: &Mesh) -> (f32, f32) {
+    let (mut edge, mut texture_edge) = (0.0_f32, 0.0_f32);
+    for &[a, b, c] in mesh.triangles() {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            // In range, as every mesh is.
+            let (from, to) = (from as usize, to as usize);
+            edge = edge.max(mesh.positions()[from].distance(mesh.positions()[to]));
+            if let Some(texcoords) = mesh.texcoords() {
+                texture_edge = texture_edge.max(texcoords[from].distance(texcoords[to]));
+            }
+        }
+    }
+    (edge, texture_edge)
+}
+
+/// The turn of angles about x, y and z, by rows: z first, then y, then x.
+pub(crate) fn turn(angles: [f64; 3]) -> [[f64; 3]; 3] {
+    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
+    let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
+    let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
+    let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];
+    matrix_product(&about_x, &matrix_product(&about_y, &about_z))
+}
+
+/// The product of two matrices by rows, each sum in the order of its terms.
+pub(crate) fn matrix_product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    a.map(|[x, y, z]| [0, 1, 2].map(|j| x * b[0][j] + y * b[1][j] + z * b[2][j]))
+}
+

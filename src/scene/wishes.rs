@@ -1,0 +1,103 @@
+//! What a scene asks for beyond what it holds. What is not asked for the plan chooses.
+
+use super::names::named;
+
+named! {
+    /// A technique of shading: a rung of the ladder from cheap to exact.
+    #[derive(Default)]
+    pub enum Rung, "rung" {
+        /// One shade for each face.
+        Flat = "flat",
+        /// Linear between the vertices in 8.8, each row of a triangle one span.
+        Gouraud88 = "gouraud-8.8",
+        /// The same, started anew every 64 pixels: the default.
+        #[default]
+        Gouraud88Reseeded = "gouraud-8.8-reseeded",
+        /// Linear on the face in space, so perspective-correct: a quotient for every pixel.
+        GouraudHyperbolic = "gouraud-hyperbolic",
+        /// Faces split along their edges until linear shading fits.
+        GouraudTessellated = "gouraud-tessellated",
+        /// The Phong of 1994: the normal's x and y linear, light from a table of 256 × 256 shades.
+        PhongTable = "phong-table",
+        /// The normal at every pixel, perspective-correct and made unit again, and the whole model.
+        Phong = "phong",
+    }
+    /// There is no rung of that name. Its text lists those there are.
+    pub struct UnknownRung;
+}
+
+named! {
+    /// How hidden surfaces are left out.
+    pub enum HiddenSurfaces, "way to hidden surfaces" {
+        /// Faces turned away are not drawn; that is enough for one convex object.
+        BackFaces = "back-faces",
+        /// Far to near, each over what is there. Right for convex objects that lie one behind the other,
+        /// drawn object by object. Asked for, it is the painter's algorithm face by face, by the mean
+        /// depth of a face's vertices: wrong where faces overlap in a circle or pass through each other.
+        PainterOrder = "painter",
+        /// A depth for every pixel.
+        DepthBuffer = "depth-buffer",
+        /// All faces of the frame at once, row by row, each pixel written once
+        /// ([`raster::scan_line`](crate::raster::scan_line)). The same bytes as with the depth buffer.
+        ScanLine = "scan-line",
+    }
+    /// There is no way to leave out hidden surfaces of that name. Its text lists those there are.
+    pub struct UnknownHiddenSurfaces;
+}
+
+named! {
+    /// How a texture's coordinates run over a face.
+    #[derive(Default)]
+    pub enum Mapping, "mapping" {
+        /// Linear on the screen, as for a face that is seen straight on.
+        #[default]
+        Affine = "affine",
+        /// Right at every sixteenth pixel, linear between.
+        Every16 = "every-16",
+        /// Right at every pixel: two quotients each.
+        Perspective = "perspective",
+    }
+    /// There is no mapping of that name. Its text lists those there are.
+    pub struct UnknownMapping;
+}
+
+impl Rung {
+    /// Whether light is worked out at every pixel, and not at the vertices or for a face.
+    #[must_use]
+    pub const fn lights_pixels(self) -> bool {
+        matches!(self, Self::PhongTable | Self::Phong)
+    }
+}
+
+/// What a scene asks for. The default asks for nothing: the plan then chooses the cheapest that is
+/// right.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Wishes {
+    /// The technique of shading.
+    pub rung: Option<Rung>,
+    /// How hidden surfaces are left out, right or wrong.
+    pub hidden_surfaces: Option<HiddenSurfaces>,
+    /// How textures are mapped.
+    pub mapping: Option<Mapping>,
+    /// Faces are split until the shades on their edges are linear to so many shades of 1/255 of
+    /// full intensity; above 0. [`Rung::GouraudTessellated`] asks for one shade.
+    pub tessellation: Option<f32>,
+    /// Shades between two entries of a ramp are shown as a pattern of both.
+    pub dither: bool,
+    /// How many shades of error are accepted. Kept for the budget; nothing looks at it yet.
+    pub max_error: Option<f32>,
+    /// The palette is to be made from the scene's materials.
+    pub auto_palette: bool,
+}
+
+impl Wishes {
+    /// What is wrong with them, if anything.
+    pub(crate) fn check(&self) -> Result<(), &'static str> {
+        let legal = |number: Option<f32>| number.is_none_or(|n| n > 0.0 && n.is_finite());
+        if legal(self.tessellation) && legal(self.max_error) {
+            Ok(())
+        } else {
+            Err("a number of shades must be above 0 and finite")
+        }
+    }
+}

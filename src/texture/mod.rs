@@ -1,0 +1,260 @@
+//! Textures: 8-bit texels with their own colours, as they were drawn from in 1994.
+//!
+//! | item | what |
+//! |---|---|
+//! | [`Texture`] | texels of powers of two, and up to 256 colours of their own |
+//! | [`Texture::from_rgb`] | from a picture of any size: resampled, its colours reduced |
+//! | [`Texture::by_name`] | those that are compiled in: crate, checker, bricks, sky |
+//! | `load`, `decode` | from a PNG file (feature `image`) |
+//!
+//! A texel is shaded by a table that [`Table::shades`](crate::palette::Table::shades) makes from a
+//! palette and the texture's colours, so a texture knows nothing of any palette.
+
+mod builtin;
+#[cfg(feature = "image")]
+mod load;
+mod resample;
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt;
+
+use crate::palette::median_cut::MedianCut;
+use crate::palette::{Rgb, Search};
+#[cfg(feature = "image")]
+pub use load::{LoadError, LoadErrorKind, decode, load};
+
+/// Why texels, or pixels, are no texture.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum TextureError {
+    /// A side of an indexed texture that is no power of two up to 256.
+    Side {
+        /// Texels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// A side of a picture that is 0 or above 4,096.
+    Size {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// There are not as many texels or pixels as width and height say.
+    Count {
+        /// How many there are.
+        given: usize,
+        /// How many there must be.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for TextureError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Side { width, height } => {
+                let most = Texture::MAX_SIDE;
+                write!(f, "a texture of {width} × {height} texels: each side must be a power of two up to {most}")
+            }
+            Self::Size { width, height } => {
+                let most = Texture::MAX_PICTURE_SIDE;
+                write!(f, "a picture of {width} × {height} pixels: each side must be 1 to {most}")
+            }
+            Self::Count { given, needed } => write!(f, "{given} texels given, {needed} needed"),
+        }
+    }
+}
+
+impl core::error::Error for TextureError {}
+
+/// A rectangle of texels, each an index into the texture's own colours.
+///
+/// Width and height are powers of two from 1 to 256, so that a texture repeats by leaving out bits:
+/// texel (x, y) stands at `(y mod height) << width_bits | (x mod width)`. Row 0 is at v = 0 and v
+/// runs up, as in OBJ files: row 0 is a picture's *bottom* row. Texel (x, y) covers u from x/width up
+/// to (x + 1)/width, v from y/height up to (y + 1)/height.
+///
+/// ```
+/// use mode13h::palette::Rgb;
+/// use mode13h::texture::Texture;
+/// let (sky, grass) = (Rgb::new(90, 150, 255), Rgb::new(40, 160, 30));
+/// let texture = Texture::from_rgb(2, 2, &[sky, sky, grass, grass])?;
+/// assert_eq!((texture.width(), texture.height()), (2, 2));
+/// assert_eq!((texture.color(0, 0), texture.color(0, 1)), (grass, sky));
+/// # Ok::<(), mode13h::texture::TextureError>(())
+/// ```
+#[derive(Clone, PartialEq, Eq)]
+pub struct Texture {
+    texels: Vec<u8>,
+    colors: [Rgb; 256],
+    width_bits: u32,
+    height_bits: u32,
+}
+
+impl Texture {
+    /// The most texels in a row, and the most rows.
+    pub const MAX_SIDE: u32 = 256;
+
+    /// The most pixels in a row, and the most rows, of a picture that becomes a texture.
+    pub const MAX_PICTURE_SIDE: u32 = 4096;
+
+    /// From texels, row after row from v = 0 up, and their colours.
+    ///
+    /// # Errors
+    /// A side that is no power of two from 1 to 256; texels that are not `width·height`.
+    pub fn new(width: u32, height: u32, texels: Vec<u8>, colors: [Rgb; 256]) -> Result<Self, TextureError> {
+        let is_side = |side: u32| side.is_power_of_two() && side <= Self::MAX_SIDE;
+        if !is_side(width) || !is_side(height) {
+            return Err(TextureError::Side { width, height });
+        }
+        // At most 65,536.
+        let (given, needed) = (texels.len(), (width * height) as usize);
+        if given != needed {
+            return Err(TextureError::Count { given, needed });
+        }
+        Ok(Self { texels, colors, width_bits: width.ilog2(), height_bits: height.ilog2() })
+    }
+
+    /// One texel of one colour: what leaves a surface as plain as it was without.
+    #[must_use]
+    pub fn plain(color: Rgb) -> Self {
+        Self { texels: vec![0], colors: [color; 256], width_bits: 0, height_bits: 0 }
+    }
+
+    /// From a picture's pixels, row after row from its top row down.
+    ///
+    /// Each side becomes the power of two up to 256 whose ratio to it is nearest to 1, by averaging
+    /// over the area that a texel covers, in exact fractions rounded once. (Values of the DAC are
+    /// averaged, with no gamma, as then.) More than 256 colours are reduced by median cut, and each
+    /// pixel gets the nearest that is left; up to 256 stay what they are.
+    ///
+    /// # Errors
+    /// A side of 0 or above 4,096; pixels that are not `width·height`.
+    pub fn from_rgb(width: u32, height: u32, pixels: &[Rgb]) -> Result<Self, TextureError> {
+        let is_side = |side: u32| (1..=Self::MAX_PICTURE_SIDE).contains(&side);
+        if !is_side(width) || !is_side(height) {
+            return Err(TextureError::Size { width, height });
+        }
+        // At most 2²⁴.
+        let (given, needed) = (pixels.len(), (width * height) as usize);
+        if given != needed {
+            return Err(TextureError::Count { given, needed });
+        }
+        let (width_bits, height_bits) = (resample::nearest_power_of_two(width), resample::nearest_power_of_two(height));
+        // Sides are at most 4,096.
+        let mut pixels = resample::by_area(pixels, width as usize, 1 << width_bits, 1 << height_bits);
+        // Bottom row first.
+        let half = pixels.len() >> (width_bits + 1) << width_bits;
+        let (top, bottom) = pixels.split_at_mut(half);
+        let rows = top.chunks_exact_mut(1 << width_bits).zip(bottom.rchunks_exact_mut(1 << width_bits));
+        rows.for_each(|(row, other)| row.swap_with_slice(other));
+        let (texels, colors) = reduced(&pixels, 256);
+        Ok(Self { texels, colors, width_bits, height_bits })
+    }
+
+    /// The same texture in at most `most` colours, 1 to 256, by median cut.
+    #[must_use]
+    pub fn with_colors(&self, most: u16) -> Self {
+        let pixels: Vec<Rgb> = self.texels.iter().map(|&texel| self.colors[usize::from(texel)]).collect();
+        let (texels, colors) = reduced(&pixels, most.clamp(1, 256));
+        Self { texels, colors, ..*self }
+    }
+
+    /// The texels, row after row from v = 0 up.
+    #[must_use]
+    #[inline]
+    pub fn texels(&self) -> &[u8] {
+        &self.texels
+    }
+
+    /// The colours of the texels. Those that no texel has may be anything.
+    #[must_use]
+    #[inline]
+    pub fn colors(&self) -> &[Rgb; 256] {
+        &self.colors
+    }
+
+    /// Its colours on a surface of another: [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White
+    /// leaves them as they are.
+    #[must_use]
+    pub fn tinted(&self, tint: Rgb) -> [Rgb; 256] {
+        self.colors.map(|color| color.modulate(tint))
+    }
+
+    /// The same texture in its [tinted](Self::tinted) colours.
+    #[must_use]
+    pub fn modulated(&self, tint: Rgb) -> Self {
+        Self { colors: self.tinted(tint), ..self.clone() }
+    }
+
+    /// The logarithm of the width: 0 to 8.
+    #[must_use]
+    #[inline]
+    pub fn width_bits(&self) -> u32 {
+        self.width_bits
+    }
+
+    /// The logarithm of the height: 0 to 8.
+    #[must_use]
+    #[inline]
+    pub fn height_bits(&self) -> u32 {
+        self.height_bits
+    }
+
+    /// Texels in a row: a power of two up to 256.
+    #[must_use]
+    #[inline]
+    pub fn width(&self) -> u32 {
+        1 << self.width_bits
+    }
+
+    /// Rows: a power of two up to 256.
+    #[must_use]
+    #[inline]
+    pub fn height(&self) -> u32 {
+        1 << self.height_bits
+    }
+
+    /// The colour of a texel; beyond the sides the texture repeats.
+    #[must_use]
+    pub fn color(&self, x: u32, y: u32) -> Rgb {
+        let (x, y) = (x & (self.width() - 1), y & (self.height() - 1));
+        self.colors[usize::from(self.texels[(y << self.width_bits | x) as usize])]
+    }
+
+    /// How many texels have each of the colours.
+    #[must_use]
+    pub fn histogram(&self) -> [u32; 256] {
+        let mut histogram = [0; 256];
+        for &texel in &self.texels {
+            histogram[usize::from(texel)] += 1;
+        }
+        histogram
+    }
+}
+
+impl fmt::Debug for Texture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (width, height) = (self.width(), self.height());
+        f.debug_struct("Texture").field("width", &width).field("height", &height).finish_non_exhaustive()
+    }
+}
+
+/// At most `most` colours for the pixels, darkest first, and for each pixel the index of the nearest.
+fn reduced(pixels: &[Rgb], most: u16) -> (Vec<u8>, [Rgb; 256]) {
+    let mut sorted = pixels.to_vec();
+    sorted.sort_unstable();
+    // At most 65,536 pixels.
+    let counted = sorted.chunk_by(|a, b| a == b).map(|same| (same[0], same.len() as u32)).collect();
+    let mut cut = MedianCut::new(counted);
+    cut.cut_to(usize::from(most));
+    let mut means: Vec<Rgb> = cut.means().collect();
+    means.sort_unstable_by_key(|color| (color.brightness(), *color));
+    let search = Search::new(&means);
+    let texels = pixels.iter().map(|&pixel| search.nearest(pixel)).collect();
+    let mut colors = [Rgb::BLACK; 256];
+    colors.iter_mut().zip(means).for_each(|(color, mean)| *color = mean);
+    (texels, colors)
+}

@@ -1,0 +1,401 @@
+//! From a mesh's own coordinates to the screen: one matrix an object, then one division a vertex.
+//!
+//! The camera's space is chosen so that projecting is two products and two sums:
+//!
+//! ```text
+//! X = fx·(right · d)    Y = −fy·(up · d)    W = forward · d        d from the eye to the point
+//! x = cx + X / W        y = cy + Y / W                             in pixels
+//! ```
+//!
+//! fy is half the picture's height over the tangent of half the field of view, and fx is fy times
+//! the height of a pixel over its width: 6/5 in mode 13h, whose 320 × 200 fill a 4:3 screen.
+
+use glam::{Mat3, Vec3};
+
+use crate::fixed::{I24F8, U8F8};
+use crate::mesh::Bounds;
+use crate::raster::Vertex;
+use crate::scene::{Camera, Object, matrix_product};
+
+/// What is drawn on: size in pixels, and the shape of a pixel.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct Screen {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// A pixel's width to its height.
+    pub pixel_aspect: (u32, u32),
+}
+
+impl Screen {
+    /// 320 × 200, pixels 5:6.
+    pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
+
+    /// fx and fy, in pixels; the field of view in radians.
+    pub(crate) fn focal_lengths(self, field_of_view: f32) -> [f64; 2] {
+        let (pixel_width, pixel_height) = self.pixel_aspect;
+        let fy = f64::from(self.height) / 2.0 / libm::tan(f64::from(field_of_view) / 2.0);
+        [fy * f64::from(pixel_height) / f64::from(pixel_width), fy]
+    }
+}
+
+type Row = [f64; 3];
+type Matrix = [Row; 3];
+
+fn dot(a: Row, b: Row) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Row, b: Row) -> Row {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn widen(v: Vec3) -> Row {
+    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
+}
+
+/// `None` for the zero vector. Finite f32 components can neither overflow nor vanish in f64.
+fn unit(v: Row) -> Option<Row> {
+    let length = libm::sqrt(dot(v, v));
+    (length > 0.0).then(|| v.map(|c| c / length))
+}
+
+/// The camera's part of the way: from the world to the screen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    eye: Row,
+    /// The rows that give X, Y and W.
+    rows: Matrix,
+    /// Right, up and towards the eye, unit.
+    axes: Matrix,
+    /// The screen, in pixels.
+    size: (f64, f64),
+    /// The middle of the screen, in pixels.
+    centre: (f32, f32),
+    near: f32,
+}
+
+impl View {
+    pub(crate) fn new(camera: &Camera, screen: Screen) -> Result<Self, &'static str> {
+        let Camera { eye, target, up, field_of_view, near } = *camera;
+        if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+            return Err("its positions must be finite");
+        }
+        // Written so that NaN fails it.
+        if !(near > 0.0 && near <= f32::MAX) {
+            return Err("its near distance must be above 0 and finite");
+        }
+        if !(field_of_view > 0.0 && field_of_view < core::f32::consts::PI) {
+            return Err("its field of view must lie between 0 and π");
+        }
+        let (eye, up) = (widen(eye), widen(up));
+        let to_target = widen(target);
+        let Some(forward) = unit([to_target[0] - eye[0], to_target[1] - eye[1], to_target[2] - eye[2]]) else {
+            return Err("it looks at the point where it is");
+        };
+        // The axis that is farthest from the view serves where `up` lies along it. Within 10⁻⁶ of
+        // it the direction of the product is mostly rounding of the f32 that made it.
+        let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
+        let mut axis = [0.0; 3];
+        axis[least] = 1.0;
+        let right = unit(up)
+            .map(|up| cross(forward, up))
+            .filter(|right| dot(*right, *right) > 1e-12)
+            .and_then(unit)
+            .or_else(|| unit(cross(forward, axis)))
+            .ok_or("it has no right-hand side")?;
+        let up = cross(right, forward);
+
+        let (width, height) = (f64::from(screen.width), f64::from(screen.height));
+        let [fx, fy] = screen.focal_lengths(field_of_view);
+        Ok(Self {
+            eye,
+            rows: [right.map(|c| fx * c), up.map(|c| -fy * c), forward],
+            axes: [right, up, forward.map(|c| -c)],
+            size: (width, height),
+            // Halves of whole numbers up to 4,096: exact.
+            centre: ((width / 2.0) as f32, (height / 2.0) as f32),
+            near,
+        })
+    }
+}
+
+impl View {
+    /// A direction of the world as the eye sees it (right, up, towards the eye), unit; `None` for the
+    /// zero vector.
+    pub(crate) fn direction_to_eye(&self, world: Vec3) -> Option<Vec3> {
+        let world = unit(widen(world))?;
+        let [x, y, z] = self.axes.map(|axis| dot(axis, world) as f32);
+        Some(Vec3::new(x, y, z))
+    }
+}
+
+/// An object's whole way: from its mesh to the screen.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct ObjectView {
+    exact: (Matrix, Row),
+    /// The same in f32, unless the object reaches so far that f32 could overflow.
+    fast: Option<(Mat3, Vec3)>,
+    centre: (f32, f32),
+    near: f32,
+    /// The turn alone: from the object's directions to the world's.
+    turn: Matrix,
+    /// From the object's directions to the eye's: right, up, towards the eye.
+    to_eye: Matrix,
+    /// The eye, in the object's own space.
+    eye: Row,
+    position: Row,
+    pivot: Row,
+    scale: f64,
+    size: (f64, f64),
+}
+
+/// Where an object may be seen, once what is nearer than the near plane is cut off: somewhat more than
+/// where it is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Reach {
+    /// The least distance along the view; may be negative.
+    pub(crate) nearest: f64,
+    /// The greatest.
+    pub(crate) farthest: f64,
+    /// Whether some of it may be nearer than the near plane.
+    pub(crate) crosses_near: bool,
+    /// Whether some of it may be projected beyond the screen's edges.
+    pub(crate) leaves_screen: bool,
+}
+
+/// A vertex before its division: X, Y in pixels times W, W along the view.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Homogeneous {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) w: f64,
+}
+
+impl ObjectView {
+    /// What is projected beyond this, in pixels either way, is clipped: inside the raster's guard
+    /// band by a whole pixel, more than all rounding of a clipped point comes to.
+    pub(crate) const LIMIT: f64 = 4095.0;
+
+    /// Beyond this a sum of products might overflow f32, or, below its inverse, vanish in it.
+    const FAST_REACH: f64 = 1e30;
+
+    pub(crate) fn new(view: &View, object: &Object) -> Self {
+        let turn = object.turn();
+        let scale = f64::from(object.scale);
+        let matrix = matrix_product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
+        let (position, pivot) = (widen(object.position), widen(object.pivot));
+        let to_position = [position[0] - view.eye[0], position[1] - view.eye[1], position[2] - view.eye[2]];
+        let mut offset = [0.0; 3];
+        for (i, c) in offset.iter_mut().enumerate() {
+            *c = dot(view.rows[i], to_position) - dot(matrix[i], pivot);
+        }
+        let bounds = object.mesh().bounds();
+        let far = widen(bounds.min.abs().max(bounds.max.abs()));
+        let reach = |i: usize| dot(matrix[i].map(f64::abs), far) + offset[i].abs();
+        let farthest = reach(0).max(reach(1)).max(reach(2));
+        let fits = farthest < Self::FAST_REACH && farthest > 1.0 / Self::FAST_REACH;
+        let fast = fits.then(|| {
+            let narrow = |[x, y, z]: Row| Vec3::new(x as f32, y as f32, z as f32);
+            (Mat3::from_cols(narrow(matrix[0]), narrow(matrix[1]), narrow(matrix[2])).transpose(), narrow(offset))
+        });
+        let mut this = Self {
+            exact: (matrix, offset),
+            fast,
+            centre: view.centre,
+            near: view.near,
+            turn,
+            to_eye: matrix_product(&view.axes, &turn),
+            eye: [0.0; 3],
+            position,
+            pivot,
+            scale,
+            size: view.size,
+        };
+        this.eye = this.point_in_object(view.eye);
+        this
+    }
+
+    /// A point of the world in the object's own space. Of an object without size, the pivot.
+    pub(crate) fn point_in_object(&self, world: [f64; 3]) -> [f64; 3] {
+        if self.scale <= 0.0 {
+            return self.pivot;
+        }
+        let from = [world[0] - self.position[0], world[1] - self.position[1], world[2] - self.position[2]];
+        core::array::from_fn(|j| {
+            self.pivot[j] + dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], from) / self.scale
+        })
+    }
+
+    /// The eye in the object's own space.
+    pub(crate) fn eye(&self) -> [f64; 3] {
+        self.eye
+    }
+
+    /// How many times as large as its mesh the object is.
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The matrix from the object's directions to the eye's: right, up, towards the eye.
+    pub(crate) fn directions_to_eye(&self) -> Mat3 {
+        Mat3::from_cols_array_2d(&self.to_eye.map(|row| row.map(|c| c as f32))).transpose()
+    }
+
+    /// Where the box `bounds` of the object's mesh may be seen.
+    pub(crate) fn reach(&self, bounds: Bounds) -> Reach {
+        let (matrix, offset) = &self.exact;
+        let (min, max) = (widen(bounds.min), widen(bounds.max));
+        let far: Row = core::array::from_fn(|i| min[i].abs().max(max[i].abs()));
+        let reach = |i: usize| dot(matrix[i].map(f64::abs), far) + offset[i].abs();
+        // As in `depths`: more than either vertex path is off by.
+        let slack: Row = core::array::from_fn(|i| reach(i) / 4096.0);
+        let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for corner in 0..8 {
+            let p: Row = core::array::from_fn(|i| if corner >> i & 1 == 0 { min[i] } else { max[i] });
+            let at = |i: usize| dot(matrix[i], p) + offset[i];
+            let w = at(2);
+            nearest = nearest.min(w);
+            farthest = farthest.max(w);
+            // Of a corner that is in front. Where one is not, the object crosses the near plane, and
+            // these are not looked at.
+            for i in 0..2 {
+                low[i] = low[i].min(at(i) / w);
+                high[i] = high[i].max(at(i) / w);
+            }
+        }
+        let (nearest, farthest) = (nearest - slack[2], farthest + slack[2]);
+        let crosses_near = !(nearest > f64::from(self.near));
+        // A box in front of the eye is projected into the convex hull of its corners. What x = X/W is
+        // off by is what X is, and |x| times what W is, over W; a pixel for rounding.
+        let (centre, size) = ([f64::from(self.centre.0), f64::from(self.centre.1)], [self.size.0, self.size.1]);
+        let inside = |i: usize| {
+            let off = (slack[i] + low[i].abs().max(high[i].abs()) * slack[2]) / nearest + 1.0;
+            centre[i] + low[i] - off >= 0.0 && centre[i] + high[i] + off <= size[i]
+        };
+        Reach { nearest, farthest, crosses_near, leaves_screen: crosses_near || !(inside(0) && inside(1)) }
+    }
+
+    /// The vertex on the screen, of an object that neither crosses the near plane nor leaves the
+    /// screen. The same numbers as [`project`](Self::project) gives.
+    #[inline]
+    pub(crate) fn project_inside(&self, p: Vec3) -> Vertex {
+        match self.fast {
+            Some((matrix, offset)) => {
+                let v = matrix * p + offset;
+                let inverse = 1.0 / v.z;
+                let (x, y) = (self.centre.0 + v.x * inverse, self.centre.1 + v.y * inverse);
+                self.vertex_inside(f64::from(x), f64::from(y), f64::from(v.z))
+            }
+            None => {
+                let h = self.homogeneous(p);
+                self.vertex_inside(f64::from(self.centre.0) + h.x / h.w, f64::from(self.centre.1) + h.y / h.w, h.w)
+            }
+        }
+    }
+
+    #[inline]
+    fn vertex_inside(&self, x: f64, y: f64, w: f64) -> Vertex {
+        let at = |c: f64| I24F8::round_from_f64(c).unwrap_or_default();
+        Vertex::new(at(x), at(y), U8F8::default(), self.depth(w)).unwrap_or_default()
+    }
+
+    /// A direction of the world in the object's own space, unit; `None` for the zero vector.
+    pub(crate) fn direction_in_object(&self, world: Vec3) -> Option<Vec3> {
+        let world = unit(widen(world))?;
+        let column = |j: usize| dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], world) as f32;
+        Some(Vec3::new(column(0), column(1), column(2)))
+    }
+
+    /// The near plane's distance.
+    pub(crate) fn near(&self) -> f32 {
+        self.near
+    }
+
+    /// A vertex before its division. The same numbers whoever asks, so that triangles that share
+    /// the vertex agree on where it is.
+    #[inline]
+    pub(crate) fn homogeneous(&self, p: Vec3) -> Homogeneous {
+        match self.fast {
+            Some((matrix, offset)) => {
+                let v = matrix * p + offset;
+                Homogeneous { x: f64::from(v.x), y: f64::from(v.y), w: f64::from(v.z) }
+            }
+            None => {
+                let ([mx, my, mw], [ox, oy, ow]) = self.exact;
+                let p = widen(p);
+                Homogeneous { x: dot(mx, p) + ox, y: dot(my, p) + oy, w: dot(mw, p) + ow }
+            }
+        }
+    }
+
+    /// The vertex on the screen, without its shade; `None` if it must be clipped.
+    #[inline]
+    pub(crate) fn project(&self, p: Vec3) -> Option<Vertex> {
+        match self.fast {
+            Some((matrix, offset)) => {
+                let v = matrix * p + offset;
+                if v.z < self.near {
+                    return None;
+                }
+                let inverse = 1.0 / v.z;
+                let (x, y) = (self.centre.0 + v.x * inverse, self.centre.1 + v.y * inverse);
+                self.vertex(f64::from(x), f64::from(y), f64::from(v.z), U8F8::default())
+            }
+            None => {
+                let h = self.homogeneous(p);
+                if h.w < f64::from(self.near) { None } else { self.divide(h, U8F8::default()) }
+            }
+        }
+    }
+
+    /// The vertex on the screen of a point that is not nearer than the near plane; `None` if it
+    /// lies beyond the limit.
+    #[inline]
+    pub(crate) fn divide(&self, h: Homogeneous, shade: U8F8) -> Option<Vertex> {
+        let (cx, cy) = (f64::from(self.centre.0), f64::from(self.centre.1));
+        self.vertex(cx + h.x / h.w, cy + h.y / h.w, h.w, shade)
+    }
+
+    /// The middle of the screen, in pixels.
+    pub(crate) fn centre(&self) -> (f64, f64) {
+        (f64::from(self.centre.0), f64::from(self.centre.1))
+    }
+
+    #[inline]
+    fn vertex(&self, x: f64, y: f64, w: f64, shade: U8F8) -> Option<Vertex> {
+        // Half a pixel of room for what a clipped point is off the limit by rounding. NaN fails.
+        if !(x.abs() <= Self::LIMIT + 0.5 && y.abs() <= Self::LIMIT + 0.5) {
+            return None;
+        }
+        Vertex::new(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, shade, self.depth(w)).ok()
+    }
+
+    /// round(2³⁰ · near / w).
+    #[inline]
+    fn depth(&self, w: f64) -> u32 {
+        // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates. There is no
+        // far plane: beyond 2³¹ times the near distance, where the formula gives the background's 0,
+        // a face is still in front of it.
+        ((f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32).max(1)
+    }
+
+    /// The least and the greatest depth that a vertex within `bounds` may have, once what is nearer
+    /// than the near plane is cut off; somewhat wider than they are.
+    pub(crate) fn depths(&self, bounds: Bounds) -> (u32, u32) {
+        let (row, offset) = (self.exact.0[2], self.exact.1[2]);
+        let (min, max) = (widen(bounds.min), widen(bounds.max));
+        let middle = dot(row, [0, 1, 2].map(|i| (min[i] + max[i]) / 2.0)) + offset;
+        let size = dot(row.map(f64::abs), [0, 1, 2].map(|i| (max[i] - min[i]) / 2.0));
+        let reach = dot(row.map(f64::abs), [0, 1, 2].map(|i| min[i].abs().max(max[i].abs()))) + offset.abs();
+        // In f32, w is made with four roundings of the matrix, three of products and three of sums, each
+        // of at most 2⁻²⁴ of what they reach. In 16.16, each of three angles is off by at most π · 2⁻¹⁶,
+        // and each entry of the matrix by 2⁻¹⁷: in all less than 2⁻¹².
+        let slack = reach / 4096.0;
+        let near = f64::from(self.near);
+        let at = |w: f64| self.depth(w.max(near));
+        (at(middle + size + slack), at(middle - size - slack))
+    }
+}

@@ -1,0 +1,351 @@
+//! Triangles with effects against a naive oracle, which takes every pixel for itself and every stage by
+//! the letter of its definition; and what must change nothing: order, winding, clip rectangle, bands,
+//! kernel.
+
+mod support;
+
+use mode13h::fixed::U8F8;
+use mode13h::raster::effects::{Attributes, Lighting, Look, Mix, Source, TextureLook, TextureMapping};
+use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Vertex};
+use mode13h::span::Kernel;
+use mode13h::span::channels::{mix_cube_portable, mix_nearest};
+use mode13h::span::dither::BAYER;
+use mode13h::span::texture::Texels;
+use support::oracle::{self, Point, Ratio};
+use support::random::Random;
+use support::tried::Tried;
+use support::triangles;
+
+const WIDTH: i32 = 150;
+const HEIGHT: i32 = 60;
+/// What the frame holds before.
+const BEFORE: u8 = 77;
+
+/// Tables and an image, all random.
+struct Stock {
+    tables: Vec<Box<[u8; 65_536]>>,
+    map: Box<[u8; 32_768]>,
+    texels: Vec<u8>,
+}
+
+impl Stock {
+    fn new(random: &mut Random) -> Self {
+        let mut bytes = |length: usize| (0..length).map(|_| random.within(0, 255) as u8).collect::<Vec<u8>>();
+        let table = |bytes: Vec<u8>| bytes.into_boxed_slice().try_into().expect("64 KiB");
+        Self {
+            tables: (0..6).map(|_| table(bytes(65_536))).collect(),
+            map: bytes(32_768).into_boxed_slice().try_into().expect("32 KiB"),
+            texels: bytes(65_536),
+        }
+    }
+}
+
+/// Light that is exact in f64: the sum of the first three values, held in range.
+#[derive(Debug)]
+struct Sum;
+
+impl Sum {
+    fn of(point: &[f32; 6]) -> u16 {
+        (point[0] + point[1] + point[2]).clamp(0.0, 65_280.0) as u16
+    }
+}
+
+impl Lighting for Sum {
+    fn shades(&self, points: &[[f32; 6]], shades: &mut [u16]) {
+        points.iter().zip(shades).for_each(|(point, shade)| *shade = Self::of(point));
+    }
+
+    fn channels(&self, points: &[[f32; 6]], channels: [&mut [u16]; 3]) {
+        for (i, channel) in channels.into_iter().enumerate() {
+            points.iter().zip(channel).for_each(|(point, shade)| *shade = Self::of(point) >> i);
+        }
+    }
+}
+
+fn attributes(random: &mut Random) -> [Attributes; 3] {
+    core::array::from_fn(|_| {
+        let mut shade = || U8F8::from_bits(random.within(0, 0xFF00) as u16);
+        let (fog, channels, slope) = (shade(), [shade(), shade(), shade()], [shade(), shade()]);
+        let reach = random.log_uniform(30) as i64;
+        let texture = core::array::from_fn(|_| random.within(-reach, reach) as i32);
+        let lit = core::array::from_fn(|_| random.within(0, 20_000) as f32);
+        Attributes { texture, fog, channels, slope, lit }
+    })
+}
+
+fn look<'a>(random: &mut Random, stock: &'a Stock) -> Look<'a> {
+    let mut maybe = |n: i64| random.within(0, n) == 0;
+    let (channels, dither, texture, fog, blend) = (maybe(3), maybe(2), maybe(1), maybe(2), maybe(3));
+    let (ubits, vbits) = (random.within(0, 8) as u32, random.within(0, 8) as u32);
+    Look {
+        source: match random.within(0, 5) {
+            0 => Source::Linear { reseeded: false },
+            1 => Source::Hyperbolic,
+            2 => Source::NormalTable(&stock.tables[0]),
+            3 => Source::Lit(&Sum),
+            _ => Source::Linear { reseeded: true },
+        },
+        channels: channels.then(|| match random.within(0, 1) {
+            0 => Mix::Cube,
+            _ => Mix::Nearest { map: &stock.map, spread: random.within(0, 255) as u8 },
+        }),
+        dither: dither.then_some(&BAYER),
+        texture: texture.then(|| TextureLook {
+            texels: Texels::new(&stock.texels[..1 << (ubits + vbits)], ubits, vbits).expect("as many texels"),
+            mapping: random.one_of(&[TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective]),
+            tables: [&stock.tables[1], &stock.tables[2], &stock.tables[3]],
+        }),
+        fog: fog.then_some(&stock.tables[4]),
+        blend: blend.then_some(&stock.tables[5]),
+        keeps_depth: random.within(0, 1) == 0,
+    }
+}
+
+/// One triangle, by definition.
+struct Naive<'a> {
+    corners: [Point; 3],
+    vertices: &'a [Vertex; 3],
+    attributes: &'a [Attributes; 3],
+    look: &'a Look<'a>,
+}
+
+impl Naive<'_> {
+    /// A value that is linear on the screen, in 8.8, without the half: exact at `seed`, then in steps.
+    fn linear(&self, values: [u16; 3], seed: i32, x: i32, y: i32) -> i128 {
+        let values = values.map(i128::from);
+        let exact = oracle::interpolate(self.corners, values, oracle::centre(seed, y));
+        let step = oracle::per_pixel(self.corners, values);
+        let start = if step.n < 0 { exact.ceil() } else { exact.floor() };
+        start + step.truncate() * i128::from(x - seed)
+    }
+
+    fn depths(&self) -> [i128; 3] {
+        self.vertices.each_ref().map(|v| i128::from(v.depth().max(1)))
+    }
+
+    /// A value that is linear on the face.
+    fn on_face(&self, values: [i128; 3], x: i32, y: i32) -> Ratio {
+        let depths = self.depths();
+        let products = [0, 1, 2].map(|i| depths[i] * values[i]);
+        let at = oracle::centre(x, y);
+        Ratio {
+            n: oracle::interpolate(self.corners, products, at).n,
+            d: oracle::interpolate(self.corners, depths, at).n,
+        }
+    }
+
+    fn texel(&self, texture: &TextureLook<'_>, seed: i32, last: i32, x: i32, y: i32) -> u8 {
+        let [u, v] = [0, 1].map(|i| {
+            let values = self.attributes.each_ref().map(|a| i128::from(a.texture[i]));
+            match texture.mapping {
+                TextureMapping::Affine => {
+                    let exact = oracle::interpolate(self.corners, values, oracle::centre(seed, y));
+                    let step = oracle::per_pixel(self.corners, values);
+                    let start = if step.n < 0 { exact.ceil() } else { exact.floor() };
+                    start + step.truncate() * i128::from(x - seed)
+                }
+                TextureMapping::Perspective => self.on_face(values, x, y).floor(),
+                TextureMapping::Every16 => {
+                    let from = seed + (x - seed) / 16 * 16;
+                    let to = (from + 16).min(last).max(from);
+                    let (a, b) = (self.on_face(values, from, y).floor(), self.on_face(values, to, y).floor());
+                    let step = if to == from { 0 } else { (b - a) / i128::from(to - from) };
+                    a + step * i128::from(x - from)
+                }
+            }
+        });
+        let whole = |c: i128, size: usize| c.div_euclid(65_536).rem_euclid(size as i128) as u32 * 65_536;
+        texture.texels.at(whole(u, texture.texels.width()), whole(v, texture.texels.height()))
+    }
+
+    /// The byte of a pixel in a row whose first and last covered pixels inside the frame are `first` and
+    /// `last`.
+    fn byte(&self, first: i32, last: i32, x: i32, y: i32, before: u8) -> u8 {
+        let seed = first + (x - first) / 64 * 64;
+        let threshold = self.look.dither.map_or(128, |matrix| matrix[(y & 7) as usize][(x & 7) as usize]);
+        let lookup = |table: &[u8; 65_536], high: u8, low: u8| table[usize::from(high) << 8 | usize::from(low)];
+        let byte_of = |sum: i128, threshold: u8| ((sum + i128::from(threshold)) >> 8) as u8;
+        let linear = |value: fn(&Attributes) -> U8F8, threshold: u8| {
+            let values = self.attributes.each_ref().map(|a| value(a).to_bits());
+            byte_of(self.linear(values, seed, x, y), threshold)
+        };
+        let lit = || {
+            // Whole numbers below 2¹⁵ times depths below 2³⁰ times areas: the sum's nearest f64 is off by
+            // some parts in 2⁵¹, the f32 by one in 2²⁴.
+            let point = [0, 1, 2, 3, 4, 5].map(|i| {
+                let exact = self.on_face(self.attributes.each_ref().map(|a| a.lit[i] as i128), x, y);
+                (exact.n as f64 / exact.d as f64) as f32
+            });
+            Sum::of(&point)
+        };
+        let textured = self.look.texture.as_ref().map(|texture| (texture, self.texel(texture, seed, last, x, y)));
+        let mut byte = if let Some(mix) = &self.look.channels {
+            let mut channels = match self.look.source {
+                Source::Lit(_) => [0, 1, 2].map(|i| byte_of(i128::from(lit() >> i), 128)),
+                _ => [linear(|a| a.channels[0], 128), linear(|a| a.channels[1], 128), linear(|a| a.channels[2], 128)],
+            };
+            if let Some((texture, texel)) = textured {
+                channels = [0, 1, 2].map(|i| lookup(texture.tables[i], channels[i], texel));
+            }
+            let ([r, g, b], mut byte) = (channels, [0]);
+            match mix {
+                Mix::Nearest { map, spread } => {
+                    mix_nearest(&mut byte, &[r], &[g], &[b], &[threshold; 8], 0, *spread, map);
+                }
+                _ => mix_cube_portable(&mut byte, &[r], &[g], &[b], &[threshold; 8], 0),
+            }
+            byte[0]
+        } else {
+            let shade = match self.look.source {
+                Source::Hyperbolic => {
+                    let shades = self.vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
+                    byte_of(self.on_face(shades, x, y).floor(), threshold)
+                }
+                Source::NormalTable(table) => lookup(table, linear(|a| a.slope[1], 128), linear(|a| a.slope[0], 128)),
+                Source::Lit(_) => byte_of(i128::from(lit()), threshold),
+                Source::Linear { reseeded } => {
+                    let shades = self.vertices.each_ref().map(|v| v.shade().to_bits());
+                    byte_of(self.linear(shades, if reseeded { seed } else { first }, x, y), threshold)
+                }
+                _ => unreachable!("all sources are tried"),
+            };
+            match textured {
+                Some((texture, texel)) => lookup(texture.tables[0], shade, texel),
+                None => shade,
+            }
+        };
+        if let Some(table) = self.look.fog {
+            byte = lookup(table, linear(|a| a.fog, 128), byte);
+        }
+        if let Some(table) = self.look.blend {
+            byte = lookup(table, byte, before);
+        }
+        byte
+    }
+
+    /// The frame: bytes, and which pixels are covered.
+    fn frame(&self) -> (Vec<u8>, Vec<bool>) {
+        let mut bytes = vec![BEFORE; (WIDTH * HEIGHT) as usize];
+        let mut covered = vec![false; bytes.len()];
+        for y in 0..HEIGHT {
+            let row: Vec<i32> =
+                (0..WIDTH).filter(|&x| oracle::covers(self.corners, oracle::centre(x, y))).collect();
+            let (Some(&first), Some(&last)) = (row.first(), row.last()) else { continue };
+            for x in row {
+                let place = (y * WIDTH + x) as usize;
+                covered[place] = true;
+                bytes[place] = self.byte(first, last, x, y, BEFORE);
+            }
+        }
+        (bytes, covered)
+    }
+}
+
+/// What the raster draws.
+fn draw(
+    vertices: &[Vertex; 3],
+    attributes: &[Attributes; 3],
+    look: &Look<'_>,
+    clip: Option<Rect>,
+    kernel: Kernel,
+) -> Vec<u8> {
+    let mut bytes = vec![BEFORE; (WIDTH * HEIGHT) as usize];
+    let frame = Frame::new(&mut bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+    let mut raster = Raster::new(frame).with_kernel(kernel);
+    if let Some(clip) = clip {
+        raster = raster.with_clip(clip);
+    }
+    raster.triangle_with_effects(vertices, attributes, look);
+    bytes
+}
+
+fn sum_is_exact(look: &Look<'_>) -> bool {
+    !matches!(look.source, Source::Lit(_))
+}
+
+#[test]
+fn triangles_with_effects_are_the_oracles() {
+    let mut tried = Tried::new("triangles_with_effects_are_the_oracles", 1500);
+    let mut random = Random::named("effects");
+    let stock = Stock::new(&mut random);
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let mut pixels = 0_u64;
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let attributes = attributes(&mut random);
+        let look = look(&mut random, &stock);
+        let naive =
+            Naive { corners: vertices.each_ref().map(oracle::point), vertices: &vertices, attributes: &attributes, look: &look };
+        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+            assert!(draw(&vertices, &attributes, &look, None, kernels[0]).iter().all(|byte| *byte == BEFORE));
+            continue;
+        }
+        let (expected, covered) = naive.frame();
+        let bytes = draw(&vertices, &attributes, &look, None, random.one_of(&kernels));
+        let count = covered.iter().filter(|covered| **covered).count() as u64;
+        pixels += count;
+        for (place, (is, should)) in bytes.iter().zip(&expected).enumerate() {
+            // Light in floats may fall to either side of a step; elsewhere every byte is exact.
+            let off_screen = !covered[place];
+            assert!(
+                is == should || (!sum_is_exact(&look) && !off_screen),
+                "pixel {place}: {is}, not {should}: {vertices:?}, {attributes:?}, {look:?}"
+            );
+        }
+        if !sum_is_exact(&look) {
+            let differ = bytes.iter().zip(&expected).filter(|(a, b)| a != b).count() as u64;
+            assert!(differ * 50 <= count.max(50), "{differ} of {count}: {vertices:?}, {attributes:?}, {look:?}");
+        }
+        // R6: whatever the order of the corners.
+        let [a, b, c] = vertices;
+        let [p, q, r] = attributes;
+        for (vertices, attributes) in [([b, c, a], [q, r, p]), ([b, a, c], [q, p, r]), ([c, b, a], [r, q, p])] {
+            assert_eq!(draw(&vertices, &attributes, &look, None, kernels[0]), bytes, "{vertices:?}");
+        }
+        // R8: a clip rectangle changes no byte inside it.
+        let (x, y) = (random.within(0, WIDTH.into()) as u32, random.within(0, HEIGHT.into()) as u32);
+        let clip = Rect { x0: x / 2, y0: y / 2, x1: x, y1: y };
+        let clipped = draw(&vertices, &attributes, &look, Some(clip), kernels[0]);
+        for place in 0..bytes.len() {
+            let (x, y) = ((place as i32 % WIDTH) as u32, (place as i32 / WIDTH) as u32);
+            let inside = (clip.x0..clip.x1).contains(&x) && (clip.y0..clip.y1).contains(&y);
+            assert_eq!(clipped[place], if inside { bytes[place] } else { BEFORE }, "({x}, {y}) in {clip:?}");
+        }
+    }
+    assert!(pixels > 300_000, "{pixels} pixels were compared");
+}
+
+/// With a depth buffer a pixel is drawn where it is nearer, and the depth is kept if the look says so.
+#[test]
+fn effects_keep_to_the_depth_buffer() {
+    let mut tried = Tried::new("effects_keep_to_the_depth_buffer", 400);
+    let mut random = Random::named("effects, depth");
+    let stock = Stock::new(&mut random);
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let attributes = attributes(&mut random);
+        let look = look(&mut random, &stock);
+        let whole = draw(&vertices, &attributes, &look, None, Kernel::PORTABLE);
+        let corners = vertices.each_ref().map(oracle::point);
+        let has_area = oracle::edge(corners[0], corners[1], corners[2]) != 0;
+        let before: Vec<u32> = (0..WIDTH * HEIGHT).map(|_| random.log_uniform(30) as u32).collect();
+        let (mut depths, mut bytes) = (before.clone(), vec![BEFORE; (WIDTH * HEIGHT) as usize]);
+        let frame = Frame::new(&mut bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+        let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+        let drawn = Raster::new(frame).with_depth(buffer).triangle_with_effects(&vertices, &attributes, &look);
+        let mut written = 0;
+        for y in 0..HEIGHT {
+            for x in 0..WIDTH {
+                let place = (y * WIDTH + x) as usize;
+                let covered = has_area && oracle::covers(corners, oracle::centre(x, y));
+                let depth = if covered { oracle::depth_at(&vertices, x, y) } else { 0 };
+                let nearer = covered && depth > before[place];
+                written += u32::from(nearer);
+                assert_eq!(bytes[place], if nearer { whole[place] } else { BEFORE }, "({x}, {y}) of {vertices:?}");
+                let kept = if nearer && look.keeps_depth { depth } else { before[place] };
+                assert_eq!(depths[place], kept, "({x}, {y}) of {vertices:?}");
+            }
+        }
+        assert_eq!((drawn.pixels, drawn.tested), (written, drawn.covered));
+    }
+}

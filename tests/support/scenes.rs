@@ -1,0 +1,139 @@
+//! Small scenes, each of which calls for something.
+
+use mode13h::glam::Vec3;
+use mode13h::light::{Blend, Light, Material};
+use mode13h::mesh::shapes;
+use mode13h::palette::{Rgb, builtin};
+use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Rung, Scene, Shared, Wishes};
+use mode13h::texture::Texture;
+
+/// A scene with one shape, turned a little.
+pub fn showing(shape: &str) -> Scene {
+    let mut scene = Scene::showing(shapes::by_name(shape).expect("listed"));
+    scene.name = shape.to_string();
+    scene.objects_mut()[0].name = shape.to_string();
+    scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1]);
+    scene
+}
+
+fn texture(name: &str) -> Option<Shared<Texture>> {
+    Some(Shared::new(Texture::by_name(name).expect("compiled in")))
+}
+
+fn material(scene: &mut Scene, object: usize) -> &mut Material {
+    &mut scene.objects_mut()[object].materials[0]
+}
+
+/// A wall close to the eye with a lamp before it.
+fn lamp_on_wall(slices: u32) -> Scene {
+    let mut scene = Scene::new();
+    scene.add(Object::new(shapes::wall(slices, slices)).named("wall"));
+    scene.add_light(Light::lamp([0.1, 0.2, 0.25], 2.0));
+    scene.camera.near = 0.1;
+    scene
+}
+
+/// Every scene under its name, those that are shipped too; together they call for every effect.
+pub fn all() -> Vec<(String, Scene)> {
+    let mut all: Vec<(String, Scene)> = small().into_iter().map(|(name, scene)| (name.to_string(), scene)).collect();
+    #[cfg(feature = "scene-files")]
+    for shipped in &mode13h::scene::shipped::ALL {
+        let mut scene = shipped.load().expect("a scene that loads").scene;
+        scene.set_time(0.4 * scene.duration);
+        all.push((format!("scene {}", shipped.name), scene));
+    }
+    all
+}
+
+fn small() -> Vec<(&'static str, Scene)> {
+    let mut scenes: Vec<(&'static str, Scene)> =
+        ["cube", "torus", "cone", "teapot", "wall"].map(|name| (name, showing(name))).into();
+
+    let mut dark = showing("torus");
+    dark.lights_mut().clear();
+    scenes.push(("dark", dark));
+
+    let mut shiny = showing("sphere");
+    let white = material(&mut shiny, 0);
+    (white.specular, white.shininess, white.diffuse) = (0.6, 20.0, 0.5);
+    scenes.push(("shiny", shiny));
+
+    scenes.push(("lamp", lamp_on_wall(6)));
+    let mut far_lamp = showing("torus");
+    far_lamp.add_light(Light::lamp([50.0, 0.0, 0.0], 3.0));
+    scenes.push(("far lamp", far_lamp));
+
+    let mut split = lamp_on_wall(2);
+    split.wishes.tessellation = Some(1.0);
+    scenes.push(("tessellated", split));
+
+    let mut columns = Scene::new();
+    for i in 0..5_u8 {
+        let mut column = Object::new(shapes::cylinder(12, 2)).named(format!("column {i}"));
+        column.position = Vec3::new(f32::from(i % 2) * 2.0 - 1.0, 0.0, -2.0 * f32::from(i));
+        columns.add(column);
+    }
+    columns.add_light(Light::sun([0.4, 0.6, 1.0]));
+    columns.fog = Some(Fog { color: Rgb::new(128, 128, 128), start: 3.0, end: 10.0 });
+    scenes.push(("fog", columns));
+
+    let mut near = showing("torus");
+    near.camera.eye *= 0.6;
+    scenes.push(("beyond the edges", near));
+
+    let mut crates = Scene::showing(shapes::wall(1, 1));
+    material(&mut crates, 0).texture = texture("crate");
+    crates.objects_mut()[0].set_angles([0.0, 1.1, 0.0]);
+    scenes.push(("texture", crates.clone()));
+    crates.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
+    crates.add_light(Light::sun([-1.0, 0.0, 0.5]).with_color([1.0, 0.3, 0.1]));
+    scenes.push(("texture and colour", crates));
+
+    let mut mirror = showing("torus");
+    material(&mut mirror, 0).environment = texture("sky");
+    scenes.push(("mirror", mirror));
+
+    let mut colors = showing("sphere");
+    colors.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
+    colors.wishes.dither = true;
+    *colors.lights_mut() = vec![
+        Light::sun([1.0, 0.0, 0.5]).with_color([1.0, 0.0, 0.0]),
+        Light::sun([-1.0, 0.5, 0.5]).with_color([0.0, 1.0, 0.2]),
+    ];
+    scenes.push(("rgb", colors));
+
+    let mut glass = showing("torus");
+    let mut cube = Object::new(shapes::cube()).named("glass");
+    cube.materials[0].blend = Blend::Mix(120);
+    cube.set_angles([0.3, 0.4, 0.0]);
+    glass.add(cube);
+    scenes.push(("glass", glass));
+    let mut glenz = showing("cube");
+    material(&mut glenz, 0).blend = Blend::Add;
+    material(&mut glenz, 0).diffuse = 0.4;
+    scenes.push(("glenz", glenz));
+
+    let mut dithered = showing("sphere");
+    dithered.palette = Some(builtin::by_name("materials-16x16").expect("built in").palette.clone());
+    dithered.wishes.dither = true;
+    scenes.push(("dither", dithered));
+
+    for rung in [Rung::PhongTable, Rung::Phong, Rung::Flat, Rung::GouraudHyperbolic] {
+        let mut phong = showing("cone");
+        phong.wishes = Wishes { rung: Some(rung), ..Wishes::default() };
+        let white = material(&mut phong, 0);
+        (white.specular, white.shininess, white.diffuse) = (0.5, 10.0, 0.5);
+        scenes.push((rung.name(), phong));
+    }
+
+    let mut cycle = showing("torus");
+    cycle.palette_animation = Some(PaletteAnimation::Cycle { range: 1..=255, period: 2.0 });
+    scenes.push(("cycle", cycle));
+
+    let mut close = showing("torus");
+    close.camera = Camera { eye: Vec3::new(0.0, 0.7, 1.0), near: 0.3, ..close.camera };
+    close.fog = Some(Fog { color: Rgb::new(200, 200, 200), start: 0.2, end: 2.0 });
+    material(&mut close, 0).texture = texture("bricks");
+    scenes.push(("close", close));
+    scenes
+}
