@@ -165,6 +165,8 @@ pub fn fill_perspective(
 }
 
 /// The specification of [`fill_perspective`].
+// Not inlined: it would be in its twin twice, for rows and pieces that are rare.
+#[inline(never)]
 pub fn fill_perspective_portable(
     row: &mut [u8],
     texels: Texels<'_>,
