@@ -228,7 +228,8 @@ fn p2_dither_keeps_to_its_ramp() {
             (material.specular, material.shininess) = (1.0, 5.0);
             let mut vga = Vga::new();
             let stats = Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
-            assert!(stats.raster.dithered > 1000, "{rung}");
+            // A table of normals holds whole shades: there is nothing between two entries.
+            assert_eq!(stats.raster.dithered > 1000, rung != Rung::PhongTable, "{rung}");
             assert!(vga.pixels().iter().all(|byte| *byte == 0 || ramp.contains(*byte)), "{rung}, {ramp:?}");
             tried.add(1);
         }
