@@ -101,9 +101,10 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
         (model("index.obj"), "index.obj:5: there is no vertex 4"),
         (model("zero.obj"), "zero.obj:4: index 0"),
         (model("binary.obj"), "binary.obj"),
-        (model("model.stl"), "model.stl: no model that can be read"),
-        (model("toroid"), "toroid: neither a file nor a shape; shapes are cube, sphere, torus"),
-        (model(""), ": neither a file nor a shape"),
+        (model("model.stl"), "model.stl: nothing that can be read: models are .obj files, scenes .toml"),
+        (model("toroid"), "toroid: neither a file nor a scene nor a shape; scenes are torus, cube, "),
+        (model("toroid"), "; shapes are cube, sphere, torus"),
+        (model(""), ": neither a file nor a scene nor a shape"),
         (palette("broken.pal"), "broken.pal: line 5"),
         (palette("short.vga"), "short.vga: "),
         (palette("empty.gpl"), "empty.gpl: "),
@@ -151,6 +152,11 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.gif", "--frames", "0"], "--frames"),
         (vec!["render", "torus", "-o", "x.gif", "--record", "r.txt"], "r.txt: a row of records needs"),
         (vec!["palette", "grey", "-o", "x.txt"], "x.txt: "),
+        (vec!["render", "torus", "-o", "x.png", "--up", "z"], "--up is for models"),
+        (vec!["render", "torus", "-o", "x.png", "--mapping", "best"], "there are affine, every-16, perspective"),
+        (vec!["render", "torus", "-o", "x.png", "--vertex-path", "best"], "there are float, integer"),
+        (vec!["demo", "torus", "--hidden", "best"], "there are back-faces, painter"),
+        (vec!["scenes", "-o", "x.toml"], "--copy"),
         (vec!["verify", "--xml"], "--xml"),
         (vec!["torus", "cube"], "unexpected argument 'cube' found"),
         (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
@@ -385,7 +391,7 @@ fn a_film_is_as_long_fast_large_and_colorful_as_asked_for() {
         (vec!["--frames", "1", "--scale", "5x6"], (1600, 1200), 1, 3),
         (vec!["--frames", "5", "--scale", "33x44", "--palette", "copper"], (33, 44), 5, 15),
     ] {
-        let (line, film) = film(&directory, &[&["teapot", "-o", "x.gif"], &words[..]].concat());
+        let (line, film) = film(&directory, &[&["sphere", "-o", "x.gif"], &words[..]].concat());
         assert_eq!((film.width, film.height, film.images.len()), (size.0, size.1, frames), "{words:?}");
         assert_eq!(film.images.iter().map(|image| image.delay).sum::<u64>(), hundredths, "{words:?}");
         let palette = if words.contains(&"copper") { "copper" } else { "grey" };
@@ -740,4 +746,127 @@ fn names_need_not_be_text() {
     let missing = OsStr::from_bytes(b"line\nend\x1B[2J\xFF.obj");
     let output = run(&directory, &[OsStr::new("render"), missing, OsStr::new("-o"), OsStr::new("x.png")]);
     assert_fails(&output, 1, "line end [2J");
+}
+
+#[test]
+fn f3_broken_scenes_are_one_line_and_status_1() {
+    let mut tried = Tried::new("f3_broken_scenes_are_one_line_and_status_1", 12);
+    let directory = directory();
+    let put = |name: &str, text: &[u8]| fs::write(directory.path().join(name), text).expect("written");
+    put("key.toml", b"[[objects]]\nshape = 'cube'\nmaterial = { shyness = 3 }\n");
+    put("type.toml", b"objects = [{ shape = 'cube', scale = 'large' }]\n");
+    put("missing.toml", b"[[objects]]\nshape = 'wall'\nmaterial.texture = 'none.png'\n");
+    put("model.toml", b"[[objects]]\nmodel = 'nan.obj'\n");
+    put("nan.obj", b"v 0 0 0\nv 1 NaN 0\nv 0 1 0\nf 1 2 3\n");
+    put("no.toml", b"name = 'nothing'\n");
+    put("syntax.toml", b"name = \n");
+    put("binary.toml", b"\x89PNG\r\n\x1a\n\0");
+    put("control.toml", b"objects = [{ shape = \"\x5cu001b[2J\" }]\n");
+    fs::create_dir(directory.path().join("directory.toml")).expect("made");
+    let before = names_in(directory.path());
+    for (input, says) in [
+        ("key.toml", "key.toml:3:14: key `objects[0].material.shyness`: unknown key; known are ambient, "),
+        (
+            "type.toml",
+            "type.toml:1:38: key `objects[0].scale`: expected a number above 0, or three in a list, found string",
+        ),
+        ("missing.toml", "missing.toml:3:20: key `objects[0].material.texture`: none.png: No such file"),
+        ("model.toml", "model.toml:2:9: key `objects[0].model`: nan.obj:2: `NaN`"),
+        ("no.toml", "no.toml: no object: a scene needs at least one"),
+        ("syntax.toml", "syntax.toml:1:8: not TOML: "),
+        ("binary.toml", "binary.toml:1:1: not text in UTF-8"),
+        ("control.toml", "control.toml:1:22: key `objects[0].shape`: "),
+        ("directory.toml", "directory.toml: is a directory"),
+        ("none.toml", "none.toml: No such file"),
+    ] {
+        assert_fails(&run(&directory, &["render", input, "-o", "x.png"]), 1, says);
+        tried.add(1);
+    }
+    assert_fails(&run(&directory, &["key.toml"]), 1, "key.toml:3:14: ");
+    tried.add(1);
+    assert_eq!(names_in(directory.path()), before);
+    tried.add(1);
+}
+
+#[test]
+fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
+    let directory = directory();
+    let output = run(&directory, &["scenes"]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    let list = String::from_utf8(output.stdout).expect("text");
+    assert_eq!(list.lines().count(), shipped::ALL.len());
+    for (line, scene) in list.lines().zip(&shipped::ALL) {
+        let (name, shows) = line.split_once(' ').expect("two columns");
+        assert_eq!((name, shows.trim_start()), (scene.name, scene.shows()));
+    }
+    succeed(&directory, &["scenes", "--copy", "fog"]);
+    succeed(&directory, &["scenes", "--copy", "fog", "-o", "other.toml"]);
+    assert_eq!(names_in(directory.path()), ["fog.toml", "other.toml"]);
+    let text = shipped::by_name("fog").expect("a scene").text;
+    assert!(read(&directory, "fog.toml") == text.as_bytes() && read(&directory, "other.toml") == text.as_bytes());
+    fs::write(directory.path().join("fog.toml"), "what stood there").expect("written");
+    assert_fails(&run(&directory, &["scenes", "--copy", "fog"]), 1, "fog.toml: is there already");
+    assert_eq!(read(&directory, "fog.toml"), b"what stood there");
+    assert_fails(&run(&directory, &["scenes", "--copy", "frog"]), 1, "frog: no such scene; there are torus, cube, ");
+    assert_fails(&run(&directory, &["scenes", "--copy", "fog", "-o", "none/x.toml"]), 1, "none does not exist");
+    // A copy is the scene.
+    succeed(&directory, &["render", "other.toml", "-o", "copy.png", "--at", "1"]);
+    succeed(&directory, &["render", "fog", "-o", "fog.png", "--at", "1"]);
+    assert!(read(&directory, "copy.png") == read(&directory, "fog.png"));
+}
+
+#[test]
+fn every_shipped_scene_is_drawn_and_a_scene_comes_before_a_shape() {
+    let directory = directory();
+    for scene in &shipped::ALL {
+        succeed(&directory, &["render", scene.name, "-o", "x.png", "--at", "1.5"]);
+        assert_eq!(png_header(&read(&directory, "x.png")).0, (320, 200), "{}", scene.name);
+    }
+    // The teapot of the scene has its palette, not that of a shape.
+    succeed(&directory, &["render", "teapot", "-o", "x.png"]);
+    let png = read(&directory, "x.png");
+    let reader = png::Decoder::new(Cursor::new(&png)).read_info().expect("a PNG");
+    let Rgb { r, g, b } = builtin::COPPER.on_dac().color(200);
+    assert_eq!(reader.info().palette.as_deref().map(|palette| palette[3 * 200..3 * 201].to_vec()), Some(vec![r, g, b]));
+}
+
+/// What is asked for on the command line has the last word over what the scene asks for.
+#[test]
+fn words_have_the_last_word_over_a_scene() {
+    let directory = directory();
+    let stats = |words: &[&str]| {
+        let output = run(&directory, &[&["render"], words, &["-o", "x.png", "--stats"]].concat());
+        assert!(output.status.success(), "{words:?}: {output:?}");
+        (String::from_utf8(output.stderr).expect("text"), read(&directory, "x.png"))
+    };
+    let (said, own) = stats(&["phong"]);
+    assert!(said.contains(": phong, float vertices,"), "{said}");
+    let (said, _) = stats(&["phong", "--rung", "flat", "--hidden", "scan-line", "--vertex-path", "integer"]);
+    assert!(said.contains(": flat, integer vertices,") && said.contains(" scan-line: "), "{said}");
+    let (_, grey) = stats(&["phong", "--palette", "grey"]);
+    assert!(grey != own);
+    let (_, perspective) = stats(&["crate", "--at", "0.3"]);
+    for mapping in ["affine", "every-16"] {
+        assert!(stats(&["crate", "--at", "0.3", "--mapping", mapping]).1 != perspective, "{mapping}");
+    }
+    assert!(stats(&["crate", "--at", "0.3", "--mapping", "perspective"]).1 == perspective);
+}
+
+/// A scene has a time; `--turn` takes one that moves further in its round, and leads the camera round another.
+#[test]
+fn scenes_are_drawn_at_their_time() {
+    let directory = directory();
+    let picture = |words: &[&str]| {
+        succeed(&directory, &[&["render"], words, &["-o", "x.png"]].concat());
+        read(&directory, "x.png")
+    };
+    assert!(picture(&["rgb", "--at", "1"]) == picture(&["rgb", "--turn", "90"]));
+    assert!(picture(&["rgb", "--at", "1"]) == picture(&["rgb", "--at", "5"]));
+    assert!(picture(&["rgb", "--at", "1"]) != picture(&["rgb"]));
+    assert!(picture(&["still", "--at", "1"]) == picture(&["still"]));
+    assert!(picture(&["still", "--turn", "90"]) != picture(&["still"]));
+    // The scene lasts three seconds, not four.
+    assert!(picture(&["flash", "--turn", "120"]) == picture(&["flash", "--at", "1"]));
+    let (line, _) = film(&directory, &["flash", "-o", "x.gif", "--fps", "10", "--scale", "1"]);
+    assert!(line.contains(" 30 frames ") && line.contains(", 3.00 s, "), "{line}");
 }

@@ -3,7 +3,7 @@
 mod support;
 
 use mode13h::plan::{Class, Effect};
-use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats};
+use mode13h::render::{HiddenSurfaces, Renderer, Rung, Screen, Stats};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use support::scenes;
@@ -297,6 +297,92 @@ fn every_decision_has_a_reason() {
         for row in rows {
             assert!(!row.why.is_empty() && !row.why.contains('\n') && !row.object.is_empty(), "{name}: {row:?}");
             tried.add(1);
+        }
+    }
+}
+
+/// Proof (a) for light at every pixel and for splitting: switched on, they change no pixel by more than the
+/// error that the plan printed.
+#[test]
+fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
+    let mut tried = Tried::new("light_at_every_pixel_changes_no_more_than_the_plan_says", 40);
+    let mut bounds = Vec::new();
+    for (name, scene) in scenes::all() {
+        let (expected, _, chosen) = draw(&scene, |_| ());
+        // Bytes are shades only where nothing is made of them afterwards.
+        let more = [
+            Effect::Texture,
+            Effect::EnvironmentMap,
+            Effect::Fog,
+            Effect::RgbChannels,
+            Effect::Transparency,
+            Effect::Dither,
+            Effect::Phong,
+            Effect::Tessellation,
+        ];
+        if more.iter().any(|effect| called_for(&chosen, *effect)) {
+            continue;
+        }
+        let Some(bound) = (0..scene.objects().len())
+            .map(|object| chosen.linear_error(&scene, object))
+            .try_fold(0.0_f64, |most, error| Some(most.max(error?)))
+        else {
+            continue;
+        };
+        let printed = chosen.rows(&scene);
+        assert!(printed.iter().any(|row| row.why.contains("linear shades are off by at most")), "{name}");
+        // A linear shade is off by three quarters, or over a row by 1.75, light at a pixel by a half, in
+        // entries of the ramp; of which there are no more than 256.
+        let allowed = bound + 1.75 + 0.5;
+        for (effect, rung) in [(Effect::Phong, Some(Rung::Phong)), (Effect::Tessellation, None)] {
+            let (bytes, stats, _) = draw(&scene, |renderer| match rung {
+                Some(rung) => renderer.set_rung(rung),
+                None => renderer.force(effect, Some(true)),
+            });
+            assert!(rung.is_none() || stats.raster.lit > 0 || stats.lit == 0, "{name}: {stats}");
+            let off = expected.iter().zip(&bytes).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+            assert!(f64::from(off) <= allowed, "{name}, {effect}: off by {off}, {bound:.2} printed");
+            bounds.push((bound, off));
+            tried.add(1);
+        }
+    }
+    let useful = bounds.iter().filter(|(bound, _)| *bound < 64.0).count();
+    assert!(useful * 2 > bounds.len(), "most bounds say something: {bounds:?}");
+}
+
+/// Proof (a) for the perspective of textures: switched on, it moves no texel farther than the plan printed.
+#[test]
+fn perspective_moves_no_texel_farther_than_the_plan_says() {
+    let mut tried = Tried::new("perspective_moves_no_texel_farther_than_the_plan_says", 30);
+    // Column u of the image is grey 4·u, which the card shows as its level u.
+    let colors = core::array::from_fn(|i| mode13h::palette::Rgb::from_dac([(i % 64) as u8; 3]));
+    let texture = mode13h::texture::Texture::new(64, 1, (0..64).collect(), colors).expect("sound");
+    let texture = mode13h::scene::Shared::new(texture);
+    let mut random = support::random::Random::named("perspective");
+    while tried.more() {
+        let pieces = random.within(1, 24) as u32;
+        let mut scene = Scene::showing(mode13h::mesh::shapes::wall(pieces, pieces));
+        let object = &mut scene.objects_mut()[0];
+        object.set_angles([random.unit() - 0.5, 2.4 * random.unit() - 1.2, random.unit()]);
+        let material = &mut object.materials[0];
+        (material.ambient, material.diffuse) = (1.0, 0.0);
+        material.texture = Some(mode13h::scene::Shared::clone(&texture));
+        let frame = |on| draw(&scene, |renderer| renderer.force(Effect::Perspective, Some(on)));
+        let (affine, _, renderer) = frame(false);
+        let (perspective, _, _) = frame(true);
+        let free = draw(&scene, |_| ()).2;
+        let mode13h::plan::Why::AffineError { texels } = free.plan().objects()[0].decision(Effect::Perspective).why
+        else {
+            panic!("the plan prints the error");
+        };
+        assert!(!called_for(&renderer, Effect::Perspective));
+        assert_eq!(called_for(&free, Effect::Perspective), texels > 0.5);
+        for (a, b) in affine.iter().zip(&perspective).filter(|(a, b)| (**a, **b) != (0, 0)) {
+            // Four entries of the palette are shown as one level. The image's far end repeats at its near one.
+            let apart = (a >> 2).abs_diff(b >> 2);
+            let apart = f64::from(apart.min(64 - apart));
+            // The coordinates are apart by so much; the texels that they lie in by less than one more.
+            assert!(apart < texels + 1.0, "{apart} texels apart, {texels:.3} printed");
         }
     }
 }

@@ -270,7 +270,7 @@ mod program {
         assert!(run(directory.path(), &format!("{row} x%04d.rec")).status.success());
         for number in 0..3 {
             let record = Record::load(directory.path().join(format!("x{number:04}.rec"))).expect("a record");
-            assert!(record.triangles.len() >= 4);
+            assert!(record.triangles.len() >= 2, "a front face at least");
         }
         assert!(run(directory.path(), "render cube -o x.png --turn 30 --record alone.rec").status.success());
         let read = |name: &str| std::fs::read(directory.path().join(name)).expect(name);

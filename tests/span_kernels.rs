@@ -331,6 +331,19 @@ fn every_kernel_is_tested() {
     if cfg!(all(feature = "simd", target_arch = "x86_64")) {
         certain.push("simd-sse2");
     }
+    #[cfg(all(feature = "simd", feature = "std", target_arch = "x86_64"))]
+    {
+        if is_x86_feature_detected!("avx2") {
+            certain.push("simd-avx2");
+        }
+        // Masked bytes, and the instruction that makes the mask.
+        if is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("bmi2")
+        {
+            certain.push("simd-avx512");
+        }
+    }
     for name in certain {
         assert!(names.contains(&name), "{name} is missing");
     }

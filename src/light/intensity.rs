@@ -52,6 +52,10 @@ pub(crate) struct Answer {
     pub(crate) diffuse: f64,
     pub(crate) specular: f64,
     pub(crate) shininess: f64,
+    /// On three channels, what the body gives back is multiplied with this,
+    pub(crate) color: Wide,
+    /// and its highlight with this.
+    pub(crate) highlight: Wide,
 }
 
 /// ka·Ia + kd·Σ Id·max(0, n·l), not yet clamped, for the side of the surface that `normal` (unit)
@@ -91,8 +95,10 @@ impl<const N: usize> Side<N> {
         }
     }
 
-    fn answer(&self, answer: &Answer) -> [f64; N] {
-        core::array::from_fn(|i| answer.ambient + answer.diffuse * self.diffuse[i] + answer.specular * self.specular[i])
+    /// What the body gives back, and its highlight.
+    fn answer(&self, answer: &Answer) -> ([f64; N], [f64; N]) {
+        let body = self.diffuse.map(|light| answer.ambient + answer.diffuse * light);
+        (body, self.specular.map(|light| answer.specular * light))
     }
 }
 
@@ -102,16 +108,30 @@ impl Lights<'_> {
     /// lamps and no highlight these are the numbers of [`both_sides`].
     #[inline(never)]
     pub(crate) fn one_channel(&self, answer: &Answer, position: Vec3, normal: Vec3) -> (f64, f64) {
-        let ([front], [back]) =
-            self.sum(answer, position, normal, |sun| [f64::from(sun.intensity)], |lamp| [f64::from(lamp.intensity)]);
+        let of_sun = |sun: &Beam| [f64::from(sun.intensity)];
+        let of_lamp = |lamp: &LampBeam| [f64::from(lamp.intensity)];
+        let sides = self.sum(answer, position, normal, of_sun, of_lamp);
+        let [front, back] = sides.map(|side| {
+            let ([body], [highlight]) = side.answer(answer);
+            body + highlight
+        });
         (front, back)
     }
 
-    /// The same on three channels: red, green, blue, without the material's own colour.
+    /// The same on three channels: red, green, blue.
     #[inline(never)]
-    pub(crate) fn three_channels(&self, answer: &Answer, position: Vec3, normal: Vec3) -> ([f64; 3], [f64; 3]) {
-        self.sum(answer, position, normal, |sun| sun.channels.map(f64::from), |lamp| lamp.channels.map(f64::from))
+    pub(crate) fn three_channels(&self, answer: &Answer, position: Vec3, normal: Vec3) -> (Wide, Wide) {
+        let of_sun = |sun: &Beam| sun.channels.map(f64::from);
+        let of_lamp = |lamp: &LampBeam| lamp.channels.map(f64::from);
+        let sides = self.sum(answer, position, normal, of_sun, of_lamp);
+        let [front, back] = sides.map(|side| {
+            let (body, highlight) = side.answer(answer);
+            core::array::from_fn(|i| body[i] * answer.color[i] + highlight[i] * answer.highlight[i])
+        });
+        (front, back)
     }
+
+    /// What falls on the front and on the back.
 
     #[inline]
     fn sum<const N: usize>(
@@ -121,7 +141,7 @@ impl Lights<'_> {
         normal: Vec3,
         of_sun: impl Fn(&Beam) -> [f64; N],
         of_lamp: impl Fn(&LampBeam) -> [f64; N],
-    ) -> ([f64; N], [f64; N]) {
+    ) -> [Side<N>; 2] {
         let (mut front, mut back) = (Side::DARK, Side::DARK);
         let at = widen(position);
         let wide_normal = widen(normal);
@@ -157,7 +177,7 @@ impl Lights<'_> {
                 back.add(light, -cosine, highlight);
             }
         }
-        (front.answer(answer), back.answer(answer))
+        [front, back]
     }
 }
 

@@ -2,9 +2,9 @@
 
 use alloc::string::String;
 
-use super::source::is_colored;
+use super::source::{is_colored, luminance};
 use crate::mesh::Surface;
-use crate::palette::{Palette, Ramp};
+use crate::palette::{Palette, Ramp, Rgb};
 use crate::scene::Shared;
 use crate::texture::Texture;
 
@@ -16,10 +16,14 @@ pub enum RampChoice {
     Number(u16),
     /// These entries, whatever the palette.
     Entries(Ramp),
+    /// None: whatever the palette, it is lit on three channels in its own colour, grey or not, and drawn in the
+    /// nearest entries.
+    Nearest,
 }
 
 impl RampChoice {
-    /// The entries in `palette`. A palette without ramps, or none at all, counts as one ramp of 256.
+    /// The entries in `palette`. A palette without ramps, or none at all, counts as one ramp of 256, and so does what
+    /// needs no ramp.
     #[must_use]
     pub fn in_palette(self, palette: Option<&Palette>) -> Ramp {
         match (self, palette) {
@@ -47,9 +51,11 @@ pub struct Material {
     pub shininess: f32,
     /// Its entries of the palette, of a material that is lit on one channel and has no texture.
     pub ramp: RampChoice,
-    /// Its own red, green and blue. Where the three differ it is lit on three channels, each of them
-    /// multiplied with its own, and drawn in the palette's nearest colours.
+    /// Its own red, green and blue. Where the three differ it is lit on three channels, its ambient and diffuse light
+    /// multiplied with its own on each, and drawn in the palette's nearest colours.
     pub color: [f32; 3],
+    /// Red, green and blue of its highlight, on three channels: white, as a rule, and so of the light's colour.
+    pub highlight: [f32; 3],
     /// An image on it, by the mesh's texture coordinates; its shades are those of the image.
     pub texture: Option<Shared<Texture>>,
     /// An image of what is around it: where its normal points, as the eye sees it, that is mirrored.
@@ -82,12 +88,11 @@ impl Material {
         Self::from_surface(&Surface::default(), 0)
     }
 
-    /// What an MTL file says, on one channel: Kd's and Ks's luminance after ITU-R BT.601, the weights
-    /// of a television of the time; a seventh of Kd's ambient. `number` chooses the ramp. The texture
-    /// is left to the caller, who can read files.
+    /// What an MTL file says, on one channel: Kd's and Ks's luminance; a seventh of Kd's ambient.
+    /// `number` chooses the ramp. The texture is left to the caller, who can read files:
+    /// [`with_map`](Self::with_map).
     #[must_use]
     pub fn from_surface(surface: &Surface, number: u16) -> Self {
-        let luminance = |[red, green, blue]: [f32; 3]| 0.299 * red + 0.587 * green + 0.114 * blue;
         let diffuse = luminance(surface.diffuse);
         Self {
             name: surface.name.clone(),
@@ -97,16 +102,63 @@ impl Material {
             shininess: surface.shininess,
             ramp: RampChoice::Number(number),
             color: [1.0; 3],
+            highlight: [1.0; 3],
             texture: None,
             environment: None,
             blend: Blend::Opaque,
         }
     }
 
+    /// The same with the picture that an MTL file's `map_Kd` names. As Kd tints it, a coloured Kd goes into a copy of
+    /// the picture; a grey one leaves it as it is, to be shared.
+    #[must_use]
+    pub fn with_map(self, surface: &Surface, map: &Shared<Texture>) -> Self {
+        let most = surface.diffuse.iter().copied().fold(0.0, f32::max);
+        if !is_colored(surface.diffuse) || most == 0.0 {
+            return Self { texture: Some(Shared::clone(map)), ..self };
+        }
+        let tinted = map.modulated(Rgb::from_intensities(surface.diffuse.map(|channel| channel / most)));
+        Self {
+            ambient: Self::AMBIENT_SHARE * most,
+            diffuse: (1.0 - Self::AMBIENT_SHARE) * most,
+            texture: Some(Shared::new(tinted)),
+            ..self
+        }
+    }
+
+    /// Its own colour and its highlight's, on three channels. Where the material says none, they are those of the
+    /// surface that it was made from: Kd and Ks without their luminance, which the material's shares of light have. A
+    /// texture has its colours itself.
+    #[must_use]
+    pub fn own_colors(&self, surface: &Surface) -> ([f32; 3], [f32; 3]) {
+        let or_else = |own: [f32; 3], of: [f32; 3]| if own == [1.0; 3] { hue(of) } else { own };
+        let color = if self.texture.is_some() { self.color } else { or_else(self.color, surface.diffuse) };
+        (color, or_else(self.highlight, surface.specular))
+    }
+
+    /// The same in its [own colours](Self::own_colors) where it has a ramp by number only: for a palette that has no
+    /// ramps.
+    #[must_use]
+    pub fn in_own_colors(&self, surface: &Surface) -> Self {
+        if !matches!(self.ramp, RampChoice::Number(_)) {
+            return self.clone();
+        }
+        let (color, highlight) = self.own_colors(surface);
+        Self { ramp: RampChoice::Nearest, color, highlight, ..self.clone() }
+    }
+
     /// Whether its three channels differ.
     #[must_use]
     pub fn is_colored(&self) -> bool {
-        is_colored(self.color)
+        is_colored(self.color) || (self.is_specular() && is_colored(self.highlight))
+    }
+
+    /// Whether it takes three channels to light it: whether it is coloured, or drawn in the nearest entries. An image
+    /// alone takes but one.
+    #[must_use]
+    pub fn takes_channels(&self) -> bool {
+        let has_image = self.texture.is_some() || self.environment.is_some();
+        self.is_colored() || (self.ramp == RampChoice::Nearest && !has_image)
     }
 
     /// Whether it has a highlight.
@@ -116,8 +168,19 @@ impl Material {
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        let Self { ambient, diffuse, specular, shininess, color: [red, green, blue], .. } = *self;
-        [ambient, diffuse, specular, shininess, red, green, blue].iter().all(|number| number.is_finite())
+        let Self { ambient, diffuse, specular, shininess, color, highlight, .. } = self;
+        let numbers = [ambient, diffuse, specular, shininess].into_iter().chain(color).chain(highlight);
+        numbers.into_iter().all(|number| number.is_finite())
+    }
+}
+
+/// A colour without its luminance; of a grey, of what has none, and of what is beyond f32, white.
+fn hue(color: [f32; 3]) -> [f32; 3] {
+    let hue = color.map(|channel| channel / luminance(color));
+    if is_colored(color) && luminance(color) > 0.0 && hue.iter().all(|channel| channel.is_finite()) {
+        hue
+    } else {
+        [1.0; 3]
     }
 }
 

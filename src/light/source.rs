@@ -83,8 +83,8 @@ impl Light {
 
     /// Its intensity on one channel: of a coloured light the luminance after ITU-R BT.601.
     pub(crate) fn brightness(&self) -> f32 {
-        let [red, green, blue] = self.color();
-        let share = if self.is_colored() { 0.299 * red + 0.587 * green + 0.114 * blue } else { red };
+        let color = self.color();
+        let share = if self.is_colored() { luminance(color) } else { color[0] };
         share * self.intensity()
     }
 
@@ -115,6 +115,11 @@ impl Light {
             _ => Ok(()),
         }
     }
+}
+
+/// After ITU-R BT.601, the weights of a television of the time.
+pub(super) fn luminance([red, green, blue]: [f32; 3]) -> f32 {
+    0.299 * red + 0.587 * green + 0.114 * blue
 }
 
 /// Whether the three channels differ.

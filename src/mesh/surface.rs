@@ -30,7 +30,7 @@ impl Surface {
     /// counts as 0, what is above 1 as 1.
     #[must_use]
     pub fn color(&self) -> Rgb {
-        rgb(self.diffuse)
+        Rgb::from_intensities(self.diffuse)
     }
 
     /// The colour in the middle of a highlight: `Kd` and `Ks` together, each channel at most 255. `None`
@@ -47,14 +47,8 @@ impl Surface {
     /// ```
     #[must_use]
     pub fn highlight(&self) -> Option<Rgb> {
-        let specular = rgb(self.specular);
+        let specular = Rgb::from_intensities(self.specular);
         let is_shiny = specular != Rgb::BLACK && self.shininess > 0.0;
         is_shiny.then(|| self.color().saturating_add(specular))
     }
-}
-
-fn rgb(intensities: [f32; 3]) -> Rgb {
-    // `as` keeps the whole part, stays within 0 to 255, and gives 0 for NaN.
-    let [r, g, b] = intensities.map(|v| (v * 255.0 + 0.5) as u8);
-    Rgb::new(r, g, b)
 }

@@ -52,6 +52,15 @@ impl Rgb {
         Self { r, g, b }
     }
 
+    /// From intensities, as a rule 0 to 1: each channel to the nearest of 0 to 255. What is below 0 or NaN counts as
+    /// 0, what is above 1 as 1.
+    #[must_use]
+    pub const fn from_intensities(intensities: [f32; 3]) -> Self {
+        let [r, g, b] = intensities;
+        // `as` keeps the whole part, stays within 0 to 255, and gives 0 for NaN.
+        Self::new((r * 255.0 + 0.5) as u8, (g * 255.0 + 0.5) as u8, (b * 255.0 + 0.5) as u8)
+    }
+
     /// From the DAC's red, green and blue, 0 to 63 each; higher bits are dropped.
     #[must_use]
     #[inline]

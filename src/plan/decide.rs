@@ -295,7 +295,7 @@ impl Rules<'_> {
         if let Some(light) = self.scene.lights().iter().position(|light| light.is_colored() && light.intensity() != 0.0) {
             return Decision::on(Why::ColoredLight { light });
         }
-        match self.object.materials.iter().position(Material::is_colored) {
+        match self.object.materials.iter().position(Material::takes_channels) {
             Some(material) => Decision::on(Why::ColoredMaterial { material }),
             None => Decision::off(Why::NoColor),
         }

@@ -127,7 +127,7 @@ pub enum Why {
         /// Its place in the scene.
         light: usize,
     },
-    /// A material is coloured.
+    /// A material is coloured, or drawn in the nearest entries.
     ColoredMaterial {
         /// Its place among the object's materials.
         material: usize,
@@ -200,7 +200,7 @@ impl Why {
             Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
             Self::NoTexture => "nothing follows the perspective".to_string(),
             Self::ColoredLight { light } => format!("light {light} is coloured"),
-            Self::ColoredMaterial { material: i } => format!("{} is coloured", material(i)),
+            Self::ColoredMaterial { material: i } => format!("{} is drawn in its own colours", material(i)),
             Self::WholeShades => "the table of normals holds whole shades".to_string(),
             Self::NotInIntegers => "the 16.16 vertex path has none".to_string(),
             Self::NoColor => "neither light nor material is coloured".to_string(),

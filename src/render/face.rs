@@ -172,7 +172,7 @@ impl Faces<'_> {
             let paint = &self.paints[usize::from(surface)];
             if self.channels {
                 let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
-                let channels = paint.channels(if turned { back } else { front });
+                let channels = Paint::channels(if turned { back } else { front });
                 attributes.iter_mut().for_each(|corner| corner.channels = channels);
             } else {
                 let shade = self.face_shade(indices, surface, turned);

@@ -154,7 +154,9 @@ impl IntegerPath {
     /// Converts a scene whose numbers are finite. What passes here can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();
-        for (index, light) in scene.lights().iter().enumerate() {
+        // Lamps are left out: the plan says so.
+        let suns = scene.lights().iter().enumerate().filter(|(_, light)| matches!(light, Light::Sun { .. }));
+        for (index, light) in suns {
             let what = "its intensity is beyond ±32,767, or it is one of more than 4,096: too much for 16.16";
             let sun = sun(light).filter(|_| index < Sun::MOST).ok_or(RenderError::Light { index, what })?;
             self.suns.push(sun);

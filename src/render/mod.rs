@@ -6,6 +6,7 @@
 //! | `vertex` | the stages of vertices: projected, lit, given what effects need |
 //! | `tessellate` | faces split along their edges |
 //! | `face` | the stage of faces, with `clip`: near plane and guard band |
+//! | `bound` | how far linear shades may be from light at every pixel |
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `stats` | what a frame came to |
@@ -16,6 +17,7 @@
 //! be and left out where they are turned away; the [`raster`](crate::raster) draws what is left.
 
 mod automatic;
+mod bound;
 mod clip;
 mod face;
 mod integer;
@@ -29,6 +31,7 @@ mod tessellate;
 mod vertex;
 mod vertex_path;
 
+use alloc::format;
 use alloc::vec::Vec;
 use core::fmt;
 use core::mem;
@@ -39,7 +42,7 @@ use self::look::Looks;
 use self::object::ObjectState;
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
-use crate::plan::{Effect, Forced, Inputs, Plan, Since, decide, sort_by_depth};
+use crate::plan::{self, Effect, Forced, Inputs, Plan, Since, decide, sort_by_depth};
 use crate::raster::effects::Attributes;
 use crate::raster::scan_line::Lists;
 use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
@@ -260,6 +263,37 @@ impl Renderer {
     #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// The plan of the frame that was drawn last, in words: [`Plan::rows`] of `scene`, which it must have
+    /// been drawn from, and how far the picture may be off where light at every pixel or splitting is not
+    /// on. That is worked out here, face by face, and only here.
+    #[must_use]
+    pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
+        let mut rows = self.plan.rows(scene);
+        for row in &mut rows {
+            if !row.on
+                && matches!(row.effect, Effect::Phong | Effect::Tessellation)
+                && let Some(shades) = self.linear_error(scene, row.place)
+            {
+                row.why = format!("{}; linear shades are off by at most {shades:.2}", row.why);
+            }
+        }
+        rows
+    }
+
+    /// How far the shades of an object, by its place, may be from light at every pixel, in shades of 1/255
+    /// of full intensity and rounding aside: a bound, from normals, lights and vertices, for the frame
+    /// that was drawn last. `None` of an object that has one shade a face, that is not there, or on the
+    /// 16.16 path.
+    #[must_use]
+    pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
+        let plan = self.plan.objects().get(object)?;
+        if plan.is_on(Effect::Phong) || (plan.is_on(Effect::Lighting) && !plan.is_on(Effect::Gouraud)) {
+            return None;
+        }
+        let faces = self.states.get(object)?.faces(scene.objects().get(object)?, plan)?;
+        Some(bound::linear_error(&faces.geometry, &faces.lights, faces.paints, !faces.culls))
     }
 
     /// Makes the plan of the frame that [`draw`](Self::draw) would draw next, and draws nothing. The frames that are

@@ -12,7 +12,6 @@ pub(super) struct Paint {
     pub(super) answer: Answer,
     /// Where one channel's shades lie: the material's entries, or, of an image or of channels, all 256.
     pub(super) ramp: Ramp,
-    color: [f64; 3],
     /// The image's width and height, if it is on.
     pub(super) texture_size: Option<[u32; 2]>,
     pub(super) environment_size: Option<[u32; 2]>,
@@ -45,9 +44,10 @@ impl Paint {
                 diffuse: f64::from(material.diffuse),
                 specular: if plan.is_on(Effect::Specular) { f64::from(material.specular) } else { 0.0 },
                 shininess: f64::from(material.shininess).max(0.0),
+                color: material.color.map(f64::from),
+                highlight: material.highlight.map(f64::from),
             },
             ramp: if image || channels { Ramp::WHOLE } else { material.ramp.in_palette(palette) },
-            color: material.color.map(f64::from),
             texture_size,
             environment_size,
             blend,
@@ -67,10 +67,8 @@ impl Paint {
         self.shade(self.answer.ambient)
     }
 
-    /// The channels of an intensity on each, in the material's own colour; 0 to 255.
-    pub(super) fn channels(&self, intensities: [f64; 3]) -> [U8F8; 3] {
-        core::array::from_fn(|i| {
-            U8F8::from_intensity((intensities[i] * self.color[i]) as f32, 0, Ramp::WHOLE.entries())
-        })
+    /// The channels of an intensity on each; 0 to 255.
+    pub(super) fn channels(intensities: [f64; 3]) -> [U8F8; 3] {
+        intensities.map(|intensity| U8F8::from_intensity(intensity as f32, 0, Ramp::WHOLE.entries()))
     }
 }

@@ -39,7 +39,7 @@ impl Lighting for PixelLight<'_> {
         for (((point, red), green), blue) in points.iter().zip(red).zip(green).zip(blue) {
             let (position, normal) = Self::point(point);
             let (front, _) = self.lights.three_channels(&self.paint.answer, position, normal);
-            let channels = self.paint.channels(front);
+            let channels = Paint::channels(front);
             [*red, *green, *blue] = channels.map(|channel| channel.to_bits());
         }
     }

@@ -119,8 +119,8 @@ pub(super) fn light_channels(geometry: &Geometry<'_>, paints: &[Paint], lights: 
     for (extra, ((position, normal), &surface)) in extras.iter_mut().zip(vertices) {
         let paint = &paints[usize::from(surface)];
         let (front, back) = lights.three_channels(&paint.answer, *position, *normal);
-        extra.front.channels = paint.channels(front);
-        extra.back_channels = paint.channels(back);
+        extra.front.channels = Paint::channels(front);
+        extra.back_channels = Paint::channels(back);
     }
 }
 

@@ -122,13 +122,13 @@ impl core::error::Error for TexelsError {}
 /// `u` and `v` are those of the first pixel, `du` and `dv` what each pixel adds; the sums wrap, so a
 /// negative number is given in two's complement (`as u32`).
 ///
-/// Tried and given up, at 64 pixels, where this takes 46 ns: all places of 64 pixels first, in vectors, and
-/// then the look-ups, 40, but 8 instead of 4 at one pixel; `pext` (BMI2), 37, and slow on some processors;
-/// eight gathered loads a turn (AVX2), 26, and many times slower on processors that were patched against
-/// gather data sampling.
+/// Tried and given up, at 64 pixels, where this takes 45 ns: all places of 64 pixels first, in vectors, and
+/// then the look-ups, 40, but 8 instead of 4 at one pixel; `pext` (BMI2), 37, and said to be slow on the first
+/// two generations of Zen; eight gathered loads a turn (AVX2), 26, and processors patched against gather data
+/// sampling are said to be much slower at it.
 #[inline(never)]
 pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, u: u32, v: u32, du: u32, dv: u32) {
-    // They never are, but now the compiler knows.
+    // Never so: it tells the compiler that there is a last texel, and `at` needs no check.
     if texels.bytes.is_empty() {
         return;
     }

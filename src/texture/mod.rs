@@ -183,6 +183,12 @@ impl Texture {
         self.colors.map(|color| color.modulate(tint))
     }
 
+    /// The same texture in its [tinted](Self::tinted) colours.
+    #[must_use]
+    pub fn modulated(&self, tint: Rgb) -> Self {
+        Self { colors: self.tinted(tint), ..self.clone() }
+    }
+
     /// The logarithm of the width: 0 to 8.
     #[must_use]
     #[inline]

@@ -9,8 +9,9 @@ use crate::palette::{Palette, Rgb, builtin};
 use crate::record::Record;
 use crate::render::HiddenSurfaces;
 
-/// What is written is read again: palettes in every format, records, and with the feature `obj` models.
-/// What is broken off or changed is refused or read, and never more than that (P5, F1, F5).
+/// What is written is read again: palettes in every format, records, and with the features `obj` and
+/// `scene-files` models and scenes. What is broken off or changed is refused or read, and never more
+/// than that (P5, F1, F3, F5).
 ///
 /// ```
 /// let group = mode13h::verify::files(13);
@@ -31,6 +32,8 @@ fn check(seed: u64, write: Write<'_>) -> Group {
     records(&mut group, &mut random);
     #[cfg(feature = "obj")]
     models(&mut group, &mut random);
+    #[cfg(feature = "scene-files")]
+    scenes(&mut group, &mut random);
     group
 }
 
@@ -137,6 +140,36 @@ fn models(group: &mut Group, random: &mut Random) {
             let refused = obj::parse(spoilt.join("\n").as_bytes(), "memory", none).err().map(|error| error.to_string());
             let right = refused.as_ref().is_some_and(|said| said.starts_with(&format!("memory:{}:", line + 1)));
             group.check(right, || format!("f1 {name} with {broken:?} in line {}: {refused:?}", line + 1));
+        }
+    }
+}
+
+/// Every shipped scene loads; one with a key or a value that it may not have is refused by its line (F3).
+#[cfg(feature = "scene-files")]
+fn scenes(group: &mut Group, random: &mut Random) {
+    use crate::scene::{Scene, shipped};
+
+    let load = |text: &str| {
+        let none = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
+        Scene::from_toml(text, "memory", none).err().map(|error| error.to_string())
+    };
+    for shipped in &shipped::ALL {
+        let refused = load(shipped.text);
+        group.check(refused.is_none(), || format!("f3 {}: {refused:?}", shipped.name));
+        let lines: Vec<&str> = shipped.text.lines().collect();
+        // Before the first table a line may stand anywhere.
+        let tables = lines.iter().position(|line| line.starts_with('[')).unwrap_or_default();
+        for (broken, key) in [("shap = 1", "shap"), ("ambient = 'much'", "ambient"), ("duration = 0", "duration")] {
+            let line = random.below(tables as u32 + 1) as usize;
+            let mut spoilt = lines.clone();
+            spoilt.insert(line, broken);
+            // A key that the scene has already is there twice.
+            spoilt.retain(|line| !line.starts_with(&format!("{key} =")) || *line == broken);
+            let refused = load(&spoilt.join("\n"));
+            let at = spoilt.iter().position(|line| *line == broken).unwrap_or_default() + 1;
+            let right =
+                refused.as_ref().is_some_and(|said| said.starts_with(&format!("memory:{at}:")) && said.contains(key));
+            group.check(right, || format!("f3 {} with {broken:?} in line {at}: {refused:?}", shipped.name));
         }
     }
 }
