@@ -10,8 +10,12 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use mode13h::palette::{Rgb, builtin, file};
+use mode13h::plan::Effect;
+use mode13h::render::Renderer;
 use mode13h::scene::shipped;
 use mode13h::span::Kernel;
+use mode13h::vga::Vga;
+use serde_json::Value;
 use support::film::{Decoded, decode};
 use support::tried::Tried;
 use tempfile::TempDir;
@@ -111,6 +115,7 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
         (vec!["demo", "nan.obj"], "nan.obj:2: "),
         (vec!["nan.obj"], "nan.obj:2: "),
         (vec!["none.obj"], "none.obj: No such file"),
+        (vec!["plan", "nan.obj"], "nan.obj:2: "),
     ] {
         assert_fails(&run(&directory, &words), 1, says);
         tried.add(1);
@@ -155,6 +160,9 @@ fn wrong_words_end_with_2() {
         (vec!["verify", "--xml"], "--xml"),
         (vec!["torus", "cube"], "unexpected argument 'cube' found"),
         (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
+        (vec!["plan"], "<INPUT>"),
+        (vec!["plan", "torus", "--at", "inf"], "--at"),
+        (vec!["plan", "torus", "--rung", "mirror"], "there are flat, gouraud-8.8"),
     ] {
         assert_fails(&run(&directory, &words), 2, says);
     }
@@ -509,6 +517,109 @@ fn f4_a_film_that_no_longer_fits_leaves_the_old_one_whole() {
     tried.add(1);
     assert_eq!(names_in(directory.path()), ["x.gif"]);
     tried.add(1);
+}
+
+/// What the program prints, in success and without a word on standard error.
+#[track_caller]
+fn printed<Word: AsRef<OsStr> + std::fmt::Debug>(directory: &TempDir, words: &[Word]) -> String {
+    let output = run(directory, words);
+    assert!(output.status.success() && output.stderr.is_empty(), "{words:?}: {output:?}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+#[test]
+fn a_plan_is_a_table_of_a_hundred_columns() {
+    let directory = directory();
+    for scene in shipped::ALL.iter().map(|shipped| shipped.name).chain(["sphere"]) {
+        let text = printed(&directory, &["plan", scene]);
+        assert!(text.starts_with(&format!("{scene} at 0 s, 1/35 s after the frame before it: ")), "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= 100 && line.trim_end() == line), "{text}");
+        assert!(text.contains("making the plan takes "), "{text}");
+        for effect in Effect::ALL {
+            assert!(text.lines().any(|line| line.starts_with(&format!("  {effect} "))), "{scene}, {effect}: {text}");
+        }
+    }
+    let text = printed(&directory, &["plan", "torus"]);
+    let row = |effect: &str| -> Vec<&str> {
+        let line = text.lines().find(|line| line.split_whitespace().next() == Some(effect)).expect(effect);
+        line.split_whitespace().collect()
+    };
+    assert_eq!(row("hidden-surfaces")[1..], ["on", "depth-buffer", "torus", "is", "not", "convex"]);
+    assert_eq!(row("fog")[1..], ["off", "the", "scene", "has", "none"]);
+    // Everything but where the columns stand is the same for all, and is said once.
+    let text = printed(&directory, &["plan", "fog"]);
+    assert_eq!(text.matches("\n  lighting ").count(), 1, "{text}");
+    assert_eq!(text.matches("\n  near-clipping ").count(), 13, "{text}");
+}
+
+#[test]
+fn a_plan_for_programs_is_that_of_the_second_of_two_frames_and_the_same_on_every_run() {
+    let directory = directory();
+    for shipped in &shipped::ALL {
+        for at in [0.0, 1.25] {
+            let text = printed(&directory, &["plan", shipped.name, "--json", "--at", &at.to_string()]);
+            let other = printed(
+                &directory,
+                &["plan", shipped.name, "--json", "--at", &at.to_string(), "--kernel", "portable"],
+            );
+            assert!(text == other, "{}: another plan with another kernel", shipped.name);
+
+            let mut scene = shipped.load().expect("it is shipped").scene;
+            let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+            for seconds in [at - 1.0 / 35.0, at] {
+                scene.set_time(seconds);
+                renderer.draw(&scene, &mut vga).expect("a legal scene");
+            }
+            let mut rows = renderer.plan().rows(&scene).into_iter();
+            let json: Value = serde_json::from_str(&text).expect("JSON");
+            assert_eq!((&json["schema"], &json["scene"]), (&Value::from(1), &Value::from(shipped.name)));
+            let objects = json["objects"].as_array().expect("a list");
+            assert_eq!(objects.len(), scene.objects().len());
+            for object in objects {
+                let effects = object["effects"].as_array().expect("a list");
+                assert_eq!(effects.len(), Effect::COUNT);
+                for effect in effects {
+                    let row = rows.next().expect("a row");
+                    assert_eq!(object["object"], row.object.as_str());
+                    let keys: Vec<&String> = effect.as_object().expect("an object").keys().collect();
+                    assert_eq!(keys, ["choice", "effect", "on", "why"]);
+                    assert_eq!(effect["effect"], row.effect.name());
+                    assert_eq!(effect["on"], row.on);
+                    assert_eq!(effect["choice"], row.choice);
+                    assert_eq!(effect["why"], row.why.as_str());
+                }
+            }
+        }
+    }
+    let still = printed(&directory, &["plan", "still", "--json"]);
+    assert!(still.contains("nothing it depends on changed since the last frame"), "{still}");
+}
+
+#[test]
+fn a_plan_with_times_has_a_price_for_each_effect() {
+    let directory = directory();
+    let json: Value = serde_json::from_str(&printed(&directory, &["plan", "torus", "--json", "--time"])).expect("JSON");
+    let effects = json["objects"][0]["effects"].as_array().expect("a list");
+    let price = |name: &str| {
+        let effect = effects.iter().find(|effect| effect["effect"] == name).expect(name);
+        effect["ns_per_frame"].as_u64().expect("a price")
+    };
+    assert!(effects.iter().all(|effect| effect["ns_per_frame"].is_u64()), "{effects:#?}");
+    // Light at every pixel is dearer than anything that the frame holds; two look-ups in a table for each are dear.
+    assert!(price("phong") > price("fog") && price("fog") > 0, "{effects:#?}");
+    // There is no image that could follow the perspective.
+    assert_eq!(price("perspective"), 0);
+
+    // The integer path has no fog: it has no price.
+    let words = ["plan", "torus", "--json", "--time", "--vertex-path", "integer"];
+    let json: Value = serde_json::from_str(&printed(&directory, &words)).expect("JSON");
+    let effects = json["objects"][0]["effects"].as_array().expect("a list");
+    let fog = effects.iter().find(|effect| effect["effect"] == "fog").expect("listed");
+    assert!(fog["ns_per_frame"].is_null() && fog["on"] == false, "{fog}");
+
+    let text = printed(&directory, &["plan", "cube", "--time"]);
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    assert!(text.contains("drawing the frame takes "), "{text}");
 }
 
 #[test]

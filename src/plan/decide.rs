@@ -128,7 +128,7 @@ impl Rules<'_> {
             Effect::Gouraud => self.gouraud(before),
             Effect::Fog => self.fog(),
             Effect::Phong => self.phong(),
-            Effect::Tessellation => self.tessellation(),
+            Effect::Tessellation => self.tessellation(before),
             Effect::RgbChannels => self.rgb_channels(),
             Effect::Texture => self.material_has(|material| material.texture.is_some()),
             Effect::EnvironmentMap => {
@@ -246,8 +246,11 @@ impl Rules<'_> {
         }
     }
 
-    fn tessellation(&self) -> Decision {
-        if self.inputs.rung == Rung::GouraudTessellated || self.scene.wishes.tessellation.is_some() {
+    fn tessellation(&self, before: &ObjectPlan) -> Decision {
+        // Faces are split for their shades alone.
+        if !before.is_on(Effect::Lighting) {
+            Decision::off(before.decision(Effect::Lighting).why)
+        } else if self.inputs.rung == Rung::GouraudTessellated || self.scene.wishes.tessellation.is_some() {
             Decision::on(Why::Asked)
         } else {
             Decision::off(Why::NotAsked)

@@ -531,7 +531,9 @@ impl Renderer {
         }
         self.integer = integer;
         self.transparent = transparent;
-        self.draw_transparent(scene, stats, &mut raster);
+        if self.plan.is_on_anywhere(Effect::Transparency) {
+            self.draw_transparent(scene, stats, &mut raster);
+        }
     }
 
     /// Faces that shine through, far to near, over all others.

@@ -204,7 +204,9 @@ impl ObjectState {
             tessellated.split(&geometry, points, &lights, &self.paints, tolerance);
             tessellated.geometry()
         } else {
-            self.tessellated = None;
+            if self.tessellated.is_some() {
+                self.tessellated = None;
+            }
             geometry
         };
 

@@ -59,6 +59,7 @@ static BETWEEN: [Between; 256] = {
 /// value goes to the nearest level, of two equally near to the lower, which is
 /// [`nearest_mixture`](crate::palette::cube::nearest_mixture); at 127 it is the same, but of two equally
 /// near (26 and 229 are the only such values) the higher.
+#[inline(never)]
 pub fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
     #[cfg(feature = "simd")]
     blocks::mix_cube(row, red, green, blue, thresholds, x);
@@ -147,6 +148,7 @@ mod blocks {
 /// Blocks of plain arrays, places first and then the look-ups, take 44 ns at 64 pixels where this takes
 /// 104. A palette that is not the cube is for few programs, and the list of loops is short.
 #[expect(clippy::too_many_arguments, reason = "three rows in, one out, and what the pixels share")]
+#[inline(never)]
 pub fn mix_nearest(
     row: &mut [u8],
     red: &[u8],

@@ -52,6 +52,7 @@ const fn bayer() -> [[u8; 8]; 8] {
 /// fill_dithered(&mut row, 0x1080, 0, &BAYER[0], 0); // 16.5: half of them 16, half 17
 /// assert_eq!(row, [16, 17, 16, 17, 16, 17, 16, 17]);
 /// ```
+#[inline(never)]
 pub fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize) {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     super::simd::sse2::fill_dithered(row, shade, step, thresholds, x);

@@ -126,6 +126,7 @@ impl core::error::Error for TexelsError {}
 /// then the look-ups, 40, but 8 instead of 4 at one pixel; `pext` (BMI2), 37, and said to be slow on the first
 /// two generations of Zen; eight gathered loads a turn (AVX2), 26, and processors patched against gather data
 /// sampling are said to be much slower at it.
+#[inline(never)]
 pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, u: u32, v: u32, du: u32, dv: u32) {
     // Never so: it tells the compiler that there is a last texel, and `at` needs no check.
     if texels.bytes.is_empty() {
@@ -148,6 +149,7 @@ pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, u: u32, v: u32, du: u32, 
 /// in exact arithmetic, modulo 2³²; negative coordinates wrap as others do. Along the row every divisor is
 /// positive (what is less counts as 1), every quotient within ±2³² and every value within ±2¹²⁶: the raster
 /// sees to it.
+#[inline(never)]
 pub fn fill_perspective(
     row: &mut [u8],
     texels: Texels<'_>,

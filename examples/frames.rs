@@ -1,0 +1,52 @@
+//! Draws frames of a shipped scene, 35 a second, and prints what they come to: a hash of all of them, and the effects
+//! that were on for any object in any of them.
+//!
+//!     cargo run --release --example frames -- fog 35 portable
+//!
+//! `.ci/off_is_free` counts the instructions of [`next_frame`] in builds with and without the effects that are off.
+
+use std::collections::BTreeSet;
+use std::error::Error;
+
+use mode13h::plan::Effect;
+use mode13h::render::{RenderError, Renderer};
+use mode13h::scene::{Scene, shipped};
+use mode13h::span::Kernel;
+use mode13h::vga::Vga;
+
+/// Kept apart, so that a profiler can tell it from the rest: what is made once is made here.
+#[inline(never)]
+fn first_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<(), RenderError> {
+    renderer.draw(scene, vga).map(|_| ())
+}
+
+/// Each of the others.
+#[inline(never)]
+fn next_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<(), RenderError> {
+    renderer.draw(scene, vga).map(|_| ())
+}
+
+/// FNV-1a, 64 bits.
+fn hash(hash: u64, bytes: impl IntoIterator<Item = u8>) -> u64 {
+    bytes.into_iter().fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [name, frames, kernel] = words.as_slice() else { return Err("usage: frames SCENE FRAMES KERNEL".into()) };
+    let mut scene = shipped::by_name(name).ok_or("no such scene")?.load()?.scene;
+    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+    renderer.set_kernel(Kernel::by_name(kernel)?);
+    let (mut all, mut on) = (0xcbf2_9ce4_8422_2325, BTreeSet::new());
+    for frame in 0..frames.parse::<u32>()? {
+        scene.set_time(f64::from(frame) / 35.0);
+        let draw = if frame == 0 { first_frame } else { next_frame };
+        draw(&mut renderer, &scene, &mut vga)?;
+        all = hash(all, vga.pixels().iter().copied());
+        all = hash(all, vga.palette().colors().iter().flat_map(|color| [color.r, color.g, color.b]));
+        on.extend(Effect::ALL.into_iter().filter(|effect| renderer.plan().is_on_anywhere(*effect)));
+    }
+    println!("hash {all:016x}");
+    on.iter().for_each(|effect| println!("on {effect}"));
+    Ok(())
+}
