@@ -611,7 +611,8 @@ fn indexed(bytes: &[u8]) -> (Vec<Rgb>, Vec<u8>) {
 fn green(bytes: &[u8]) -> f64 {
     let (palette, pixels) = indexed(bytes);
     let covered: Vec<Rgb> = pixels.iter().filter(|&&i| i != 0).map(|&i| palette[usize::from(i)]).collect();
-    let is_green = |color: &&Rgb| u16::from(color.g) > u16::from(color.r) + 20 && u16::from(color.g) > u16::from(color.b) + 20;
+    let is_green =
+        |color: &&Rgb| u16::from(color.g) > u16::from(color.r) + 20 && u16::from(color.g) > u16::from(color.b) + 20;
     covered.iter().filter(is_green).count() as f64 / covered.len() as f64
 }
 

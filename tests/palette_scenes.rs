@@ -328,7 +328,7 @@ fn highlights_are_shown_in_their_colours() {
             f64::from((body + material.highlight[i] * material.specular).min(1.0)) * 255.0
         });
         scene.wishes.rung = Some(mode13h::render::Rung::Phong);
-        let middle = 100 * Vga::WIDTH as usize + 160;
+        let middle = 100 * Vga::WIDTH + 160;
         let mut own = scene.clone();
         let made = made(&mut scene);
         let (colors, objects) = shown(&scene);
@@ -351,12 +351,7 @@ fn a_round_is_seen_and_not_its_beginning() {
     scene[id].position = Vec3::new(0.0, 100.0, 0.0);
     let unseen = mode13h::render::seen(&scene).expect("a scene");
     assert_eq!(unseen[12][0].area, 0.0);
-    let path = mode13h::scene::Path::Line {
-        from: Vec3::Y * 100.0,
-        to: Vec3::ZERO,
-        period: 4.0,
-        back: true,
-    };
+    let path = mode13h::scene::Path::Line { from: Vec3::Y * 100.0, to: Vec3::ZERO, period: 4.0, back: true };
     scene.motions.push(mode13h::scene::Motion::Path { what: mode13h::scene::Moving::Object(id), path });
     let seen = mode13h::render::seen(&scene).expect("a scene");
     assert!(seen[12][0].area > 0.01 && seen[12][0].brightest > 0.9, "{:?}", seen[12]);

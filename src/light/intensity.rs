@@ -132,7 +132,6 @@ impl Lights<'_> {
     }
 
     /// What falls on the front and on the back.
-
     #[inline]
     fn sum<const N: usize>(
         &self,

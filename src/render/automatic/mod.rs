@@ -139,7 +139,12 @@ struct Body {
 fn bodies(object: &Object, ambient: f32, tints: &mut Tints) -> Vec<Body> {
     let plain = Surface::default();
     let surfaces = object.mesh().surfaces().iter().chain(core::iter::repeat(&plain));
-    object.materials.iter().zip(surfaces).map(|(material, surface)| Body::new(material, surface, ambient, tints)).collect()
+    object
+        .materials
+        .iter()
+        .zip(surfaces)
+        .map(|(material, surface)| Body::new(material, surface, ambient, tints))
+        .collect()
 }
 
 impl Body {

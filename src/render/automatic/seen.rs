@@ -118,12 +118,7 @@ impl Layer {
     }
 
     /// Counts the pixels of the materials that `counts`.
-    fn add(
-        &mut self,
-        seconds: f64,
-        tallies: &mut [Tally],
-        counts: impl Fn(usize) -> bool,
-    ) -> Result<(), RenderError> {
+    fn add(&mut self, seconds: f64, tallies: &mut [Tally], counts: impl Fn(usize) -> bool) -> Result<(), RenderError> {
         let intensities = self.intensities.at(seconds)?;
         for (number, &intensity) in self.numbers.at(seconds)?.iter().zip(intensities) {
             if let Some(number) = number.filter(|number| counts(*number)) {
