@@ -125,10 +125,10 @@ impl Demo {
         // that was asked for.
         let has_colors = stage.has_colors();
         let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
-        let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::Palette(builtin.palette.clone())));
+        let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::from(builtin.palette.clone())));
         let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
         // A scene that has none leaves the DAC alone.
-        let colors = stage.colors.clone().unwrap_or(Colors::Palette(Palette::default()));
+        let colors = stage.colors.clone().unwrap_or(Palette::default().into());
         let usual = match colors {
             Colors::Auto => input::AUTO,
             _ if of_model => "grey",

@@ -176,9 +176,15 @@ pub(crate) fn palette_extensions() -> String {
 #[expect(clippy::large_enum_variant, reason = "there are a dozen at most")]
 pub(crate) enum Colors {
     /// Those of a palette.
-    Palette(Palette),
+    Palette(Box<Palette>),
     /// Those that are made for what is seen.
     Auto,
+}
+
+impl From<Palette> for Colors {
+    fn from(palette: Palette) -> Colors {
+        Colors::Palette(Box::new(palette))
+    }
 }
 
 /// The name of the palette that is made for what is seen.
@@ -189,7 +195,7 @@ pub(crate) fn colors(words: &OsStr) -> Result<(String, Colors), Failure> {
     if words == AUTO {
         return Ok((AUTO.to_string(), Colors::Auto));
     }
-    palette(words).map(|(name, palette)| (name, Colors::Palette(palette)))
+    palette(words).map(|(name, palette)| (name, palette.into()))
 }
 
 /// The palette of a name or a file, and what to call it.

@@ -74,7 +74,7 @@ impl Drawing {
             Input::Model(Model { mesh, .. }) => {
                 let textures = input::textures(&mesh);
                 let stage = Stage::of_model(mesh, self.up.unwrap_or(Up::Y).into(), &textures);
-                let colors = if stage.has_colors() { Colors::Auto } else { Colors::Palette(builtin::GREY.clone()) };
+                let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };
                 (stage, Some(colors))
             }
             Input::Scene { .. } if self.up.is_some() => {
@@ -84,7 +84,7 @@ impl Drawing {
             }
             Input::Scene { scene, .. } => {
                 let auto = scene.wishes.auto_palette.then_some(Colors::Auto);
-                let colors = auto.or(scene.palette.clone().map(Colors::Palette));
+                let colors = auto.or(scene.palette.clone().map(Colors::from));
                 (Stage::of_scene(*scene), colors)
             }
         };
@@ -158,9 +158,8 @@ fn help_on_vertex_paths() -> String {
 
 fn help_on_palettes() -> String {
     let (names, extensions) = (input::palette_names(), input::palette_extensions());
-    format!(
-        "The palette: auto, made for what is seen; {names}; or a file ({extensions}) [default: the scene's; of a model, auto if it has colours of its own, else grey]"
-    )
+    let usual = "the scene's; of a model, auto if it has colours of its own, else grey";
+    format!("The palette: auto, made for what is seen; {names}; or a file ({extensions}) [default: {usual}]")
 }
 
 fn help_on_kernels() -> String {

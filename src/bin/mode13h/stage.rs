@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
 use mode13h::mesh::Mesh;
+use mode13h::palette::Palette;
 use mode13h::render::{AutomaticPalette, RenderError, automatic};
 use mode13h::scene::{Camera, Motion, Object, ObjectId, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
@@ -145,7 +146,7 @@ impl Stage {
                 if let Some(color) = self.scene.background_color {
                     self.scene.background = palette.nearest(color);
                 }
-                self.scene.palette = Some(palette.clone());
+                self.scene.palette = Some(Palette::clone(palette));
             }
             Colors::Auto => self.automatic()?.clone().apply(&mut self.scene),
         }

@@ -13,38 +13,44 @@ use crate::palette::{Palette, Rgb};
 use crate::render::RenderError;
 use crate::scene::{Fog, Scene, Shared};
 use crate::texture::Texture;
+use crate::vga::Vga;
 
 /// The colour of a material, and that of its highlight, on three channels.
 pub(super) type OwnColors = ([f32; 3], [f32; 3]);
 
-/// The colours of the pixels that are mixed, as the card shows them, each with its part of all covered pixels. `own`
+/// The colours of the pixels that are mixed, as the card shows them, and that of the background, if one was chosen; each
+/// with its area in parts of all covered pixels. `own`
 /// are those of the scene's materials, of all objects one after the other.
 pub(super) fn colors(scene: &Scene, own: &[OwnColors]) -> Result<Vec<(Rgb, f32)>, RenderError> {
     let everywhere = has_colored_light(scene) || scene.fog.is_some();
     let materials = scene.objects().iter().flat_map(|object| &object.materials);
     let shines: Vec<bool> = materials.map(|material| material.blend != Blend::Opaque).collect();
-    if !everywhere && !shines.contains(&true) {
+    let mixes = everywhere || shines.contains(&true);
+    if !mixes && scene.background_color.is_none() {
         return Ok(Vec::new());
     }
     let mut numbers = Numbers::new(scene, false);
-    let mut channels = [0, 1, 2].map(|channel| picture(scene, own, channel));
+    let mut channels = mixes.then(|| [0, 1, 2].map(|channel| picture(scene, own, channel)));
     let grey = grey();
     let mut counts: BTreeMap<Rgb, u32> = BTreeMap::new();
     let mut covered = 0_u32;
     for seconds in moments(scene) {
-        let [red, green, blue] = &mut channels;
+        let numbers = numbers.at(seconds)?;
+        let background = numbers.iter().filter(|number| number.is_none()).count() as u32;
+        covered += Vga::SHOWN as u32 - background;
+        if let Some(color) = scene.background_color {
+            *counts.entry(color.nearest_on_dac()).or_default() += background;
+        }
+        let Some([red, green, blue]) = &mut channels else { continue };
         let (red, green, blue) = (red.at(seconds)?, green.at(seconds)?, blue.at(seconds)?);
-        for (i, number) in numbers.at(seconds)?.iter().enumerate() {
-            covered += u32::from(number.is_some());
-            let is_mixed = number.is_some_and(|number| everywhere || shines[number]);
-            // The background's colour must be there too, if it was chosen.
-            if is_mixed || (number.is_none() && scene.background_color.is_some()) {
+        for (i, number) in numbers.iter().enumerate() {
+            if number.is_some_and(|number| everywhere || shines[number]) {
                 let [r, g, b] = [red[i], green[i], blue[i]].map(|index| grey.color(index).r);
                 *counts.entry(Rgb::new(r, g, b)).or_default() += 1;
             }
         }
     }
-    // At most 1,024,000 pixels.
+    // Of 16 pictures at most: 1,024,000 pixels.
     Ok(counts.into_iter().map(|(color, count)| (color, count as f32 / covered.max(1) as f32)).collect())
 }
 
