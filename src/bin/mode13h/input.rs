@@ -173,7 +173,6 @@ pub(crate) fn palette_extensions() -> String {
 
 /// What the entries of the frame's bytes are.
 #[derive(Clone, PartialEq, Debug)]
-#[expect(clippy::large_enum_variant, reason = "there are a dozen at most")]
 pub(crate) enum Colors {
     /// Those of a palette.
     Palette(Box<Palette>),
