@@ -389,13 +389,13 @@ fn a_film_is_as_long_fast_large_and_colorful_as_asked_for() {
         (vec!["--fps", "50", "--frames", "4"], (640, 480), 4, 8),
         (vec!["--frames", "3", "--scale", "1"], (320, 200), 3, 9),
         (vec!["--frames", "1", "--scale", "5x6"], (1600, 1200), 1, 3),
-        (vec!["--frames", "5", "--scale", "33x44", "--palette", "grey"], (33, 44), 5, 15),
+        (vec!["--frames", "5", "--scale", "33x44", "--palette", "copper"], (33, 44), 5, 15),
     ] {
         let (line, film) = film(&directory, &[&["sphere", "-o", "x.gif"], &words[..]].concat());
         assert_eq!((film.width, film.height, film.images.len()), (size.0, size.1, frames), "{words:?}");
         assert_eq!(film.images.iter().map(|image| image.delay).sum::<u64>(), hundredths, "{words:?}");
-        // Of the scene of the teapot, copper is the usual one.
-        let palette = if words.contains(&"grey") { "grey" } else { "copper" };
+        // A shape without colours of its own is grey.
+        let palette = if words.contains(&"copper") { "copper" } else { "grey" };
         let palette = builtin::by_name(palette).expect("a built-in").palette.on_dac();
         assert_eq!(film.palette, palette.colors());
         let said = format!(": {} x {} pixels, {frames} frame", size.0, size.1);

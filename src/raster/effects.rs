@@ -317,8 +317,25 @@ impl<'a> EffectPaint<'a> {
     }
 
     /// Paints `row` into `pixels`, the frame's whole row; if there are `depths`, the buffer's whole row,
-    /// where it is nearer.
+    /// where it is nearer. Which stages there are is chosen once for the row, and not again for its pieces.
+    #[inline]
     pub(super) fn row<D: Cell>(
+        &self,
+        row: &Row,
+        pixels: &mut [u8],
+        depths: Option<(&mut [D], &DepthPlane)>,
+        kernel: Kernel,
+        drawn: &mut Drawn,
+    ) {
+        match (self.look.fog().is_some(), self.look.blend().is_some()) {
+            (false, false) => self.pieces::<D, false, false>(row, pixels, depths, kernel, drawn),
+            (true, false) => self.pieces::<D, true, false>(row, pixels, depths, kernel, drawn),
+            (false, true) => self.pieces::<D, false, true>(row, pixels, depths, kernel, drawn),
+            (true, true) => self.pieces::<D, true, true>(row, pixels, depths, kernel, drawn),
+        }
+    }
+
+    fn pieces<D: Cell, const FOG: bool, const BLENDS: bool>(
         &self,
         row: &Row,
         pixels: &mut [u8],
@@ -336,7 +353,7 @@ impl<'a> EffectPaint<'a> {
             let skipped = (x - seed) as usize;
             let piece = &mut bytes[..length];
             self.shades(row, seed, piece, kernel);
-            if let (Some(fog), Some(table)) = (&self.fog, self.look.fog()) {
+            if FOG && let (Some(fog), Some(table)) = (&self.fog, self.look.fog()) {
                 let mut levels: Piece = [0; PIECE];
                 kernel.fill(&mut levels[..length], fog.start(seed, row.y), fog.step());
                 lookup(piece, &levels[..length], table);
@@ -345,7 +362,7 @@ impl<'a> EffectPaint<'a> {
             let range = x as usize..end as usize;
             let Some(pixels) = pixels.get_mut(range.clone()) else { return };
             let piece = &mut piece[skipped..];
-            if let Some(table) = self.look.blend() {
+            if BLENDS && let Some(table) = self.look.blend() {
                 // The table's row is the triangle's own index.
                 let mut behind: Piece = [0; PIECE];
                 let behind = &mut behind[..pixels.len()];
@@ -353,18 +370,15 @@ impl<'a> EffectPaint<'a> {
                 lookup(behind, piece, table);
                 piece.copy_from_slice(behind);
             }
-            self.count(range.len(), drawn);
+            drawn.spans += 1;
             write(range, pixels, piece, row.y, &mut depths, self.look.keeps_depth, drawn);
             seed += RESEED;
             x = end;
         }
     }
 
-    /// Counts what is done to a piece, whatever the depth test says of it.
-    fn count(&self, pixels: usize, drawn: &mut Drawn) {
-        // At most 64.
-        let pixels = pixels as u32;
-        drawn.spans += 1;
+    /// Counts what was done to so many pixels, whatever the depth test said of them.
+    fn count(&self, pixels: u32, drawn: &mut Drawn) {
         let add = |on: bool, count: &mut u32| *count += if on { pixels } else { 0 };
         add(self.look.texture().is_some(), &mut drawn.textured);
         add(self.look.dither().is_some(), &mut drawn.dithered);
@@ -559,7 +573,9 @@ pub(crate) fn paint_row(
     drawn: &mut Drawn,
 ) {
     let triangle = Ordered::new(vertices);
-    EffectPaint::new(&triangle, vertices, attributes, look).row::<u32>(row, pixels, None, kernel, drawn);
+    let paint = EffectPaint::new(&triangle, vertices, attributes, look);
+    paint.row::<u32>(row, pixels, None, kernel, drawn);
+    paint.count((row.x1 - row.x0) as u32, drawn);
 }
 
 impl<D: Cell> Raster<'_, D> {
@@ -613,6 +629,9 @@ impl<D: Cell> Raster<'_, D> {
             triangle.rows(width, clip, draw)
         } else {
             triangle.rows_inside(draw)
+        }
+        if let Some(paint) = &paint {
+            paint.count(drawn.covered, &mut drawn);
         }
         drawn
     }
