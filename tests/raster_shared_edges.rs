@@ -25,6 +25,7 @@ fn check(parted: &Parted, tried: &mut Tried) {
     for corners in &parted.triangles {
         let vertices: [Vertex; 3] = corners.map(|(x, y)| vertex(x, y, 0, 0));
         Ordered::new(&vertices).rows(WIDTH as u32, clip, |row| {
+            assert!(row.x0 < row.x1, "a row without a pixel: {row:?} of {corners:?}");
             for x in row.x0..row.x1 {
                 counts[(row.y * WIDTH + x) as usize] += 1;
             }

@@ -3,6 +3,8 @@
 mod support;
 
 use mode13h::fixed::{I24F8, U8F8};
+use mode13h::raster::cover::Ordered;
+use mode13h::raster::depth::DepthPlane;
 use mode13h::raster::{DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex, VertexError};
 use support::oracle;
 use support::random::Random;
@@ -307,6 +309,7 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
         for vertices in &all {
             for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, shading, WIDTH as i32, HEIGHT as i32) {
                 let depth = oracle::depth_at(vertices, x, y);
+                assert_eq!(DepthPlane::new(&Ordered::new(vertices)).at(x, y), depth, "({x}, {y}) of {vertices:?}");
                 let (low, high) =
                     vertices.iter().fold((u32::MAX, 0), |(low, high), v| (low.min(v.depth()), high.max(v.depth())));
                 assert!((low..=high).contains(&depth), "depth within the vertices' at ({x}, {y}) of {vertices:?}");
@@ -332,6 +335,24 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
         assert_eq!(depths, nearest, "{all:?}");
     }
     assert!(replaced > 1000, "triangles hid each other: {replaced}");
+}
+
+#[test]
+fn depth_buffers_hold_what_their_frame_holds() {
+    let mut bytes = [0; 8 * 6];
+    let mut frame = Frame::new(&mut bytes, 8, 6, 8).expect("legal");
+    let band = frame.bands(2).nth(1).expect("three bands");
+    let error = DepthBuffer::new(&mut [0_u32; 15], &band).map(|_| ()).expect_err("two rows of eight");
+    assert_eq!(error.to_string(), "15 depths given for a frame that needs 16");
+    let mut depths = [7_u32; 17];
+    let mut depth = DepthBuffer::new(&mut depths, &band).expect("enough");
+    for (y, there) in [(0, false), (1, false), (2, true), (3, true), (4, false), (u32::MAX, false)] {
+        assert_eq!(depth.row_mut(y).map(|row| row.to_vec()), there.then(|| vec![7; 8]), "row {y}");
+    }
+    depth.row_mut(3).expect("its last row").fill(9);
+    assert_eq!(depths[8..], [9, 9, 9, 9, 9, 9, 9, 9, 7]);
+    DepthBuffer::new(&mut depths, &band).expect("enough").clear();
+    assert_eq!(depths, [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
 }
 
 /// C5: w from 1 to 10⁴ within one triangle. Truth is the shade that is linear on the face, at the
