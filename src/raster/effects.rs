@@ -327,15 +327,22 @@ impl<'a> EffectPaint<'a> {
         kernel: Kernel,
         drawn: &mut Drawn,
     ) {
-        match (self.look.fog().is_some(), self.look.blend().is_some()) {
-            (false, false) => self.pieces::<D, false, false>(row, pixels, depths, kernel, drawn),
-            (true, false) => self.pieces::<D, true, false>(row, pixels, depths, kernel, drawn),
-            (false, true) => self.pieces::<D, false, true>(row, pixels, depths, kernel, drawn),
-            (true, true) => self.pieces::<D, true, true>(row, pixels, depths, kernel, drawn),
+        let plain =
+            matches!(self.planes, Planes::Shade(_)) && self.look.dither().is_none() && self.look.texture().is_none();
+        match (plain, self.look.fog().is_some(), self.look.blend().is_some()) {
+            (false, false, false) => self.pieces::<D, false, false, false>(row, pixels, depths, kernel, drawn),
+            (false, true, false) => self.pieces::<D, false, true, false>(row, pixels, depths, kernel, drawn),
+            (false, false, true) => self.pieces::<D, false, false, true>(row, pixels, depths, kernel, drawn),
+            (false, true, true) => self.pieces::<D, false, true, true>(row, pixels, depths, kernel, drawn),
+            (true, false, false) => self.pieces::<D, true, false, false>(row, pixels, depths, kernel, drawn),
+            (true, true, false) => self.pieces::<D, true, true, false>(row, pixels, depths, kernel, drawn),
+            (true, false, true) => self.pieces::<D, true, false, true>(row, pixels, depths, kernel, drawn),
+            (true, true, true) => self.pieces::<D, true, true, true>(row, pixels, depths, kernel, drawn),
         }
     }
 
-    fn pieces<D: Cell, const FOG: bool, const BLENDS: bool>(
+    /// The pieces of a row. `PLAIN`: shades are linear and nothing else.
+    fn pieces<D: Cell, const PLAIN: bool, const FOG: bool, const BLENDS: bool>(
         &self,
         row: &Row,
         pixels: &mut [u8],
@@ -352,7 +359,10 @@ impl<'a> EffectPaint<'a> {
             let length = (end - seed) as usize;
             let skipped = (x - seed) as usize;
             let piece = &mut bytes[..length];
-            self.shades(row, seed, piece, kernel);
+            match &self.planes {
+                Planes::Shade(plane) if PLAIN => kernel.fill(piece, self.start(plane, row, seed), plane.step()),
+                _ => self.shades(row, seed, piece, kernel),
+            }
             if FOG && let (Some(fog), Some(table)) = (&self.fog, self.look.fog()) {
                 let mut levels: Piece = [0; PIECE];
                 kernel.fill(&mut levels[..length], fog.start(seed, row.y), fog.step());
@@ -388,6 +398,18 @@ impl<'a> EffectPaint<'a> {
         add(matches!(self.planes, Planes::Lit(_) | Planes::Slope(_)), &mut drawn.lit);
     }
 
+    /// The linear shade at pixel `seed`: exact, or, of one exact start a row, continued from that.
+    #[inline]
+    fn start(&self, plane: &ShadePlane, row: &Row, seed: i32) -> u16 {
+        if matches!(self.look.source, Source::Linear { reseeded: true }) {
+            plane.start(seed, row.y)
+        } else {
+            // Columns are below 4,096; the sum is meant modulo 2¹⁶.
+            let steps = (seed - row.origin) as u16;
+            plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
+        }
+    }
+
     /// The bytes from pixel `seed` on: shades, with their texture, or mixed.
     fn shades(&self, row: &Row, seed: i32, piece: &mut [u8], kernel: Kernel) {
         let thresholds = &self.look.dither().unwrap_or(&HALVES)[(row.y & 7) as usize];
@@ -405,15 +427,7 @@ impl<'a> EffectPaint<'a> {
         let length = piece.len();
         match &self.planes {
             Planes::Shade(plane) => {
-                let reseeded = matches!(self.look.source, Source::Linear { reseeded: true });
-                let start = if reseeded {
-                    plane.start(seed, row.y)
-                } else {
-                    // Columns are below 4,096; the sum is meant modulo 2¹⁶.
-                    let steps = (seed - row.origin) as u16;
-                    plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
-                };
-                linear(plane, start, piece);
+                linear(plane, self.start(plane, row, seed), piece);
             }
             Planes::Hyperbolic(plane) => {
                 let mut shades = [0_u16; PIECE];
