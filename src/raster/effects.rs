@@ -140,6 +140,15 @@ pub struct Look<'a> {
 
 /// The stages. One that a build leaves out (`plan::Effect::is_left_out`) is not there, and the compiler knows.
 impl<'a> Look<'a> {
+    /// Whether its shades are linear and nothing is made of them but what fog and blending do.
+    #[inline]
+    fn is_plain(&self) -> bool {
+        matches!(self.source, Source::Linear { .. })
+            && self.channels().is_none()
+            && self.dither().is_none()
+            && self.texture().is_none()
+    }
+
     #[inline]
     fn channels(&self) -> Option<Mix<'a>> {
         self.channels.filter(|_| !cfg!(mode13h_leave_out = "rgb-channels"))
@@ -283,6 +292,29 @@ pub(super) struct EffectPaint<'a> {
     fog: Option<ShadePlane>,
 }
 
+/// Calls `body` with constants that say which stages a look has: chosen once, not for every piece of a row.
+/// The first: shades are linear and nothing else.
+macro_rules! by_stages {
+    ($look:expr, |$plain:ident, $fog:ident, $blends:ident| $body:expr) => {
+        match ($look.is_plain(), $look.fog().is_some(), $look.blend().is_some()) {
+            (false, false, false) => by_stages!(@ $plain $fog $blends, false, false, false, $body),
+            (false, false, true) => by_stages!(@ $plain $fog $blends, false, false, true, $body),
+            (false, true, false) => by_stages!(@ $plain $fog $blends, false, true, false, $body),
+            (false, true, true) => by_stages!(@ $plain $fog $blends, false, true, true, $body),
+            (true, false, false) => by_stages!(@ $plain $fog $blends, true, false, false, $body),
+            (true, false, true) => by_stages!(@ $plain $fog $blends, true, false, true, $body),
+            (true, true, false) => by_stages!(@ $plain $fog $blends, true, true, false, $body),
+            (true, true, true) => by_stages!(@ $plain $fog $blends, true, true, true, $body),
+        }
+    };
+    (@ $plain:ident $fog:ident $blends:ident, $a:literal, $b:literal, $c:literal, $body:expr) => {{
+        const $plain: bool = $a;
+        const $fog: bool = $b;
+        const $blends: bool = $c;
+        $body
+    }};
+}
+
 /// Rows of 64 bytes.
 type Piece = [u8; PIECE];
 
@@ -317,8 +349,7 @@ impl<'a> EffectPaint<'a> {
     }
 
     /// Paints `row` into `pixels`, the frame's whole row; if there are `depths`, the buffer's whole row,
-    /// where it is nearer. Which stages there are is chosen once for the row, and not again for its pieces.
-    #[inline]
+    /// where it is nearer.
     pub(super) fn row<D: Cell>(
         &self,
         row: &Row,
@@ -327,21 +358,13 @@ impl<'a> EffectPaint<'a> {
         kernel: Kernel,
         drawn: &mut Drawn,
     ) {
-        let plain =
-            matches!(self.planes, Planes::Shade(_)) && self.look.dither().is_none() && self.look.texture().is_none();
-        match (plain, self.look.fog().is_some(), self.look.blend().is_some()) {
-            (false, false, false) => self.pieces::<D, false, false, false>(row, pixels, depths, kernel, drawn),
-            (false, true, false) => self.pieces::<D, false, true, false>(row, pixels, depths, kernel, drawn),
-            (false, false, true) => self.pieces::<D, false, false, true>(row, pixels, depths, kernel, drawn),
-            (false, true, true) => self.pieces::<D, false, true, true>(row, pixels, depths, kernel, drawn),
-            (true, false, false) => self.pieces::<D, true, false, false>(row, pixels, depths, kernel, drawn),
-            (true, true, false) => self.pieces::<D, true, true, false>(row, pixels, depths, kernel, drawn),
-            (true, false, true) => self.pieces::<D, true, false, true>(row, pixels, depths, kernel, drawn),
-            (true, true, true) => self.pieces::<D, true, true, true>(row, pixels, depths, kernel, drawn),
-        }
+        by_stages!(self.look, |PLAIN, FOG, BLENDS| {
+            self.pieces::<D, PLAIN, FOG, BLENDS>(row, pixels, depths, kernel, drawn)
+        })
     }
 
     /// The pieces of a row. `PLAIN`: shades are linear and nothing else.
+    #[inline]
     fn pieces<D: Cell, const PLAIN: bool, const FOG: bool, const BLENDS: bool>(
         &self,
         row: &Row,
@@ -615,8 +638,19 @@ impl<D: Cell> Raster<'_, D> {
         self.draw_effects::<false>(vertices, attributes, look)
     }
 
-    #[inline(never)]
     fn draw_effects<const CLIPS: bool>(
+        &mut self,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        look: &Look<'_>,
+    ) -> Drawn {
+        by_stages!(look, |PLAIN, FOG, BLENDS| {
+            self.draw_stages::<CLIPS, PLAIN, FOG, BLENDS>(vertices, attributes, look)
+        })
+    }
+
+    #[inline(never)]
+    fn draw_stages<const CLIPS: bool, const PLAIN: bool, const FOG: bool, const BLENDS: bool>(
         &mut self,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
@@ -633,11 +667,11 @@ impl<D: Cell> Raster<'_, D> {
             let paint = paint.get_or_insert_with(|| EffectPaint::new(&triangle, vertices, attributes, look));
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             let Some(depth) = depth else {
-                return paint.row::<D>(&row, pixels, None, self.kernel, &mut drawn);
+                return paint.pieces::<D, PLAIN, FOG, BLENDS>(&row, pixels, None, self.kernel, &mut drawn);
             };
             let Some(depths) = depth.row_mut(y) else { return };
             let plane = &*plane.get_or_insert_with(|| DepthPlane::new(&triangle));
-            paint.row(&row, pixels, Some((depths, plane)), self.kernel, &mut drawn);
+            paint.pieces::<D, PLAIN, FOG, BLENDS>(&row, pixels, Some((depths, plane)), self.kernel, &mut drawn);
         };
         if CLIPS {
             triangle.rows(width, clip, draw)
