@@ -188,11 +188,11 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         ),
         (
             list("objects = [{ shape = 'torus', subdivisions = [4096, 4096] }]"),
-            "1:46: key `objects[0].subdivisions`: more than 262144 triangles in the shapes of a scene",
+            "1:46: key `objects[0].subdivisions`: more than 65536 triangles in the shapes of a scene",
         ),
         (
-            format!("objects = [{{ shape = 'teapot', positions = [{}] }}]", "[0, 0, 0],".repeat(65)),
-            "1:12: key `objects[0]`: more than 262144 triangles in the shapes of a scene",
+            format!("objects = [{{ shape = 'teapot', positions = [{}] }}]", "[0, 0, 0],".repeat(17)),
+            "1:12: key `objects[0]`: more than 65536 triangles in the shapes of a scene",
         ),
         (
             cube("camera.field-of-view = 180"),

@@ -63,8 +63,9 @@ pub use place::Place;
 /// The most bytes of a scene file: 1 MiB.
 pub const LONGEST: usize = 1 << 20;
 
-/// The most triangles that the shapes of a scene have together: four for every pixel of mode 13h. Models may have more.
-pub const MOST_TRIANGLES: u64 = 1 << 18;
+/// The most triangles that the shapes of a scene have together: one for every pixel of mode 13h, and some. Models may have
+/// more.
+pub const MOST_TRIANGLES: u64 = 1 << 16;
 
 /// A scene and what was found wanting while it was read.
 #[derive(Clone, Debug)]
