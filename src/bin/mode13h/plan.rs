@@ -56,7 +56,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut draw = |scene: &Scene| renderer.draw(scene, &mut vga).map_err(Failure::work);
     draw(&frames[0])?;
     let stats = draw(&frames[1])?;
-    let rows = renderer.plan().rows(&frames[1]);
+    let rows = renderer.rows(&frames[1]);
 
     let effects = rows.len().max(1);
     let of_one = (TIME / u32::try_from(effects).unwrap_or(u32::MAX)).clamp(TIME_OF_ONE.0, TIME_OF_ONE.1);

@@ -72,9 +72,9 @@ impl<Make: Fn() -> Renderer> Meter<'_, Make> {
     /// objects. `None` where it cannot be switched.
     ///
     /// The frame as it is and the frame with the effect switched are drawn in turn; the price is the median of the
-    /// differences. The median of n differences scatters by about 1.2533·σ/√n, and σ is 1.4826 times the median of
-    /// their distances from the median (both for a normal distribution). A price below three times that, or below 0,
-    /// is noise, and counts as 0.
+    /// differences. If there were none, each difference would be above 0 or below by chance, n of them above 0 half
+    /// of the times with a standard deviation of √n/2. Where no more are above 0 than half of them and three times that,
+    /// the price is noise, and counts as 0; so does one below 0.
     pub(crate) fn price(&self, object: usize, effect: Effect, on: bool) -> Result<Option<u64>, Failure> {
         let mut usual = Artist::new((self.renderer)());
         let mut switched = Artist::new((self.renderer)());
@@ -101,11 +101,10 @@ impl<Make: Fn() -> Renderer> Meter<'_, Make> {
             return Ok(None);
         }
         let count = differences.len() as f64;
-        let price = median(differences.clone());
-        let scatter = median(differences.iter().map(|difference| (difference - price).abs()).collect());
-        let noise = 3.0 * 1.2533 * 1.4826 * scatter / count.sqrt();
-        // Far below 2⁵³.
-        Ok(Some(if price > noise { price.round() as u64 } else { 0 }))
+        let longer = differences.iter().filter(|difference| **difference > 0.0).count() as f64;
+        let is_noise = longer <= count / 2.0 + 3.0 * count.sqrt() / 2.0;
+        // More than half of them are above 0, so the median is; it is far below 2⁵³.
+        Ok(Some(if is_noise { 0 } else { median(differences).round() as u64 }))
     }
 
     /// What `measure` gives for the two frames in turn, over and over, as long as there is time. The first four
