@@ -16,8 +16,10 @@
 //! | [`mesh`] | vertices, faces, normals; shapes; OBJ models | `alloc` |
 //! | [`light`] | suns and lamps, materials, the intensity at a point | `alloc` |
 //! | [`scene`] | objects, camera, lights, fog, motion, what is asked for | `alloc` |
+//! | [`truth`] | what a picture should be: the same scene in f64, slow and plain | `alloc` |
 //! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
+//! | [`cost`] | what a renderer shows, face and shade of every pixel, to be measured against the truth | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
 //! | `show` | hard cases as pictures: the right way beside the fault | `png`, `embedded-graphics` |
 //! | [`record`] | a frame's triangles in a file, to be replayed | `std` |
@@ -73,6 +75,8 @@ pub mod span;
 pub mod vga;
 
 #[cfg(feature = "alloc")]
+pub mod cost;
+#[cfg(feature = "alloc")]
 pub mod light;
 #[cfg(feature = "alloc")]
 pub mod mesh;
@@ -84,6 +88,8 @@ pub mod render;
 pub mod scene;
 #[cfg(feature = "alloc")]
 pub mod texture;
+#[cfg(feature = "alloc")]
+pub mod truth;
 #[cfg(feature = "alloc")]
 mod view;
 

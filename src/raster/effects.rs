@@ -106,6 +106,8 @@ pub enum Mix<'a> {
         /// How far dither moves a channel, from end to end.
         spread: u8,
     },
+    /// Nothing: one channel's shades as they are, 0 red, 1 green, 2 blue, for those who measure them.
+    Only(usize),
 }
 
 /// An image on a triangle.
@@ -523,6 +525,7 @@ impl<'a> EffectPaint<'a> {
             Some(Mix::Nearest { map, spread }) => {
                 mix_nearest(piece, red, green, blue, thresholds, column, spread, map);
             }
+            Some(Mix::Only(channel)) => piece.copy_from_slice([red, green, blue][channel.min(2)]),
             _ => mix_cube(piece, red, green, blue, thresholds, column),
         }
     }

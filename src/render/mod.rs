@@ -259,6 +259,24 @@ impl Renderer {
         self.forced.set_for(object, effect, on);
     }
 
+    /// The technique of shading that a scene is drawn by.
+    pub(crate) fn rung_for(&self, scene: &Scene) -> Rung {
+        self.rung.or(scene.wishes.rung).unwrap_or_default()
+    }
+
+    /// Chooses the technique of shading, or leaves it to the scene. Returns what was chosen before.
+    pub(crate) fn replace_rung(&mut self, rung: Option<Rung>) -> Option<Rung> {
+        mem::replace(&mut self.rung, rung)
+    }
+
+    /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to an entry of the
+    /// palette; with `None`, as a new renderer has it, they are mixed. For those who measure shades.
+    pub(crate) fn show_channel(&mut self, channel: Option<usize>) {
+        self.tables.only_channel = channel;
+        // What the machine holds is another picture.
+        self.last = None;
+    }
+
     /// The plan that was made last: of the frame that was drawn last, or by [`make_plan`](Self::make_plan).
     #[must_use]
     pub fn plan(&self) -> &Plan {

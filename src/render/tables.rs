@@ -23,6 +23,8 @@ pub(super) struct Tables {
     neutral_shades: Option<Table>,
     /// The column itself: fog that hides nothing.
     neutral_fog: Option<Table>,
+    /// The channel that is shown instead of what the three are mixed to.
+    pub(super) only_channel: Option<usize>,
 }
 
 impl Tables {
@@ -31,7 +33,7 @@ impl Tables {
         if self.palette.as_ref() == Some(palette) {
             return false;
         }
-        *self = Self { palette: Some(palette.clone()), ..Self::default() };
+        *self = Self { palette: Some(palette.clone()), only_channel: self.only_channel, ..Self::default() };
         true
     }
 
@@ -65,11 +67,12 @@ impl Tables {
 
     /// The cube needs no table.
     pub(super) fn mix(&self, dither: bool) -> Mix<'_> {
-        match &self.nearest {
-            Some(nearest) => {
+        match (self.only_channel, &self.nearest) {
+            (Some(channel), _) => Mix::Only(channel),
+            (None, Some(nearest)) => {
                 Mix::Nearest { map: nearest.as_array(), spread: if dither { nearest.spread() } else { 0 } }
             }
-            None => Mix::Cube,
+            (None, None) => Mix::Cube,
         }
     }
 

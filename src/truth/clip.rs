@@ -1,0 +1,88 @@
+//! What is left of a face that reaches beyond the near plane or the guard band.
+//!
+//! The planes come in one order: near, then 4,095 pixels from the frame's upper left corner to the left, to
+//! the right, up and down. What is left is a polygon, drawn as the fan of triangles from its first corner;
+//! if rounding has dented it, from the first from which no triangle of the fan turns the other way.
+
+use alloc::vec::Vec;
+
+use super::body::Corner;
+use super::eye::Eye;
+use super::vector::{Vector, between};
+
+/// How far from the frame's upper left corner faces are drawn, in pixels, along x and along y.
+const LIMIT: f64 = 4095.0;
+
+/// A corner of what is left of a face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kept {
+    /// Before the division: [`Eye::see`].
+    pub(super) seen: Vector,
+    /// How much each of the face's three vertices counts here for what is linear on the face in space.
+    pub(super) on_face: [f64; 3],
+    /// The same for what is linear on the screen. At the near plane, where the other end of the edge has no
+    /// place on the screen, it is linear along the edge in space.
+    pub(super) on_screen: [f64; 3],
+}
+
+/// The corners that are left, in order round the face; none if nothing is.
+pub(super) fn clip(eye: &Eye, triangle: &[Corner; 3]) -> Vec<Kept> {
+    let one = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut polygon: Vec<Kept> = triangle
+        .iter()
+        .zip(one)
+        .map(|(corner, one)| Kept { seen: corner.seen, on_face: one, on_screen: one })
+        .collect();
+    for plane in 0..5 {
+        let mut left = Vec::new();
+        for i in 0..polygon.len() {
+            let (from, to) = (polygon[(i + polygon.len() - 1) % polygon.len()], polygon[i]);
+            match (inside(eye, plane, from.seen), inside(eye, plane, to.seen)) {
+                (a, b) if a >= 0.0 && b < 0.0 => left.push(cut(plane, &from, &to, a / (a - b))),
+                (a, b) if a < 0.0 && b >= 0.0 => left.push(cut(plane, &to, &from, b / (b - a))),
+                _ => {}
+            }
+            if inside(eye, plane, to.seen) >= 0.0 {
+                left.push(to);
+            }
+        }
+        polygon = left;
+    }
+    polygon
+}
+
+/// How far inside a plane a point lies, in whatever unit; below 0 it is outside.
+fn inside(eye: &Eye, plane: usize, [x, y, w]: Vector) -> f64 {
+    let [cx, cy] = eye.centre;
+    match plane {
+        0 => w - eye.near,
+        1 => x + (LIMIT + cx) * w,
+        2 => (LIMIT - cx) * w - x,
+        3 => y + (LIMIT + cy) * w,
+        _ => (LIMIT - cy) * w - y,
+    }
+}
+
+/// The point `part` of the way from a corner inside to one outside.
+fn cut(plane: usize, inside: &Kept, outside: &Kept, part: f64) -> Kept {
+    let seen = between(inside.seen, outside.seen, part);
+    let on_screen = if plane == 0 { part } else { part * outside.seen[2] / seen[2] };
+    Kept {
+        seen,
+        on_face: between(inside.on_face, outside.on_face, part),
+        on_screen: between(inside.on_screen, outside.on_screen, on_screen),
+    }
+}
+
+/// A polygon of so many corners in triangles that turn the way it turns, by the places of their corners, and
+/// twice its area. `area` is twice that of the triangle of three corners, its sign the way it turns.
+pub(super) fn fan(corners: usize, area: impl Fn([usize; 3]) -> f64) -> (Vec<[usize; 3]>, f64) {
+    let from = |apex: usize| {
+        let place = move |i: usize| (apex + i) % corners;
+        (2..corners).map(move |i| [place(0), place(i - 1), place(i)])
+    };
+    let whole: f64 = from(0).map(&area).sum();
+    let turns_back = |part| area(part) * whole < 0.0;
+    let apex = (0..corners).find(|&apex| !from(apex).any(turns_back)).unwrap_or(0);
+    (from(apex).filter(|&part| area(part) * whole > 0.0).collect(), whole)
+}

@@ -1,0 +1,69 @@
+//! Where a ray from the eye through a point of the picture meets a face: cover without any rounding to
+//! pixels or parts of them.
+//!
+//! With a, b, c the corners before their division and p = (x, y, 1) on the screen, the corners' weights on the
+//! face are the volumes of the three tetrahedra that p makes with two of them each. It takes no clipping: a
+//! corner behind the eye has a w below 0, and that is all.
+
+use alloc::vec::Vec;
+
+use super::body::Corner;
+use super::clip::{clip, fan};
+use super::eye::Eye;
+use super::vector::{Vector, cross, dot, weighted};
+
+/// Where a ray meets a face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    /// How much each of the three corners counts there, on the face in space; together 1.
+    pub(super) on_face: [f64; 3],
+    pub(super) w: f64,
+    /// Whether the eye sees the face's back.
+    pub(super) turned: bool,
+}
+
+/// Where the ray through (`x`, `y`), in pixels from the frame's upper left corner, meets a triangle; `None`
+/// if it does not, or nearer than the near plane.
+///
+/// Two faces that share an edge work out the same number for it, but for its sign. Where it is 0 the ray goes
+/// to the face whose left or top edge it is: so never to both, nor to neither.
+pub(super) fn meet(eye: &Eye, triangle: &[Corner; 3], [x, y]: [f64; 2]) -> Option<Met> {
+    let [a, b, c] = triangle.each_ref().map(|corner| corner.seen);
+    let p = [x - eye.centre[0], y - eye.centre[1], 1.0];
+    let whole = dot(a, cross(b, c));
+    let opposite = |from: Vector, to: Vector| {
+        let edge = cross(from, to).map(|c| if whole < 0.0 { -c } else { c });
+        let side = dot(edge, p);
+        // The side grows to the right of a left edge, and downward from a top edge.
+        let owns = edge[0] > 0.0 || (edge[0] == 0.0 && edge[1] > 0.0);
+        (side > 0.0 || (side == 0.0 && owns)).then_some(side)
+    };
+    let sides = [opposite(b, c)?, opposite(c, a)?, opposite(a, b)?];
+    let sum = sides[0] + sides[1] + sides[2];
+    let w = whole.abs() / sum;
+    // Without area, or with nothing but NaN, it is met nowhere.
+    if !(w >= eye.near && w.is_finite()) {
+        return None;
+    }
+    Some(Met { on_face: sides.map(|side| side / sum), w, turned: whole > 0.0 })
+}
+
+/// How much each of the three corners counts at a point of the picture for what is linear on the screen; of a
+/// face that is clipped, over the triangles of what is left. Unrounded.
+pub(super) fn on_screen(eye: &Eye, triangle: &[Corner; 3], at: [f64; 2]) -> [f64; 3] {
+    let polygon = clip(eye, triangle);
+    let points: Vec<[f64; 2]> = polygon.iter().map(|corner| eye.project(corner.seen)).collect();
+    let area = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let (parts, _) = fan(points.len(), |[a, b, c]| area(points[a], points[b], points[c]));
+    // The part that the point lies in, or, by the last digits beside all of them, that it is nearest to being in.
+    let (mut found, mut inmost) = ([1.0 / 3.0; 3], f64::NEG_INFINITY);
+    for places in parts {
+        let [a, b, c] = places.map(|i| points[i]);
+        let weights = [area(b, c, at), area(c, a, at), area(a, b, at)].map(|part| part / area(a, b, c));
+        let least = weights.iter().copied().fold(f64::INFINITY, f64::min);
+        if least > inmost {
+            (found, inmost) = (weighted(places.map(|i| polygon[i].on_screen), weights), least);
+        }
+    }
+    found
+}

@@ -1,0 +1,427 @@
+//! The engine against the truth: every rung that claims something, on every scene.
+#![cfg(feature = "alloc")]
+
+mod support;
+
+use mode13h::cost::{Probe, ProbeError};
+use mode13h::glam::Vec3;
+use mode13h::light::{Light, Material};
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::palette::builtin;
+use mode13h::plan::Effect;
+use mode13h::raster::FrameError;
+use mode13h::render::{RenderError, Renderer, Rung, VertexPath};
+use mode13h::scene::{Camera, Object, Scene};
+use mode13h::span::channels::mix_cube;
+use mode13h::truth::{ErrorMap, Face, Screen, Shown, Standard, Truth, TruthFrame};
+use mode13h::vga::Vga;
+use support::random::Random;
+use support::scenes;
+use support::tried::Tried;
+
+const SCREEN: Screen = Screen::MODE_13H;
+
+fn truth(scene: &Scene) -> Truth<'_> {
+    Truth::new(scene, SCREEN).expect("a legal scene")
+}
+
+fn probe(rung: Rung) -> Probe {
+    let mut renderer = Renderer::new();
+    renderer.set_rung(rung);
+    Probe::new(renderer)
+}
+
+fn look(scene: &Scene, rung: Rung) -> Shown {
+    probe(rung).look(scene, SCREEN).expect("a legal scene")
+}
+
+fn compare(frame: &TruthFrame, shown: &Shown) -> ErrorMap {
+    ErrorMap::new(frame, shown).expect("of one size")
+}
+
+/// Every scene, those that are shipped at two more moments of their round.
+fn all() -> Vec<(String, Scene)> {
+    let mut all = scenes::all();
+    #[cfg(feature = "scene-files")]
+    for shipped in &mode13h::scene::shipped::ALL {
+        for part in [0.05, 0.73] {
+            let mut scene = shipped.load().expect("a scene that loads").scene;
+            scene.set_time(part * scene.duration);
+            all.push((format!("scene {} at {part}", shipped.name), scene));
+        }
+    }
+    // What is split is another mesh, of which this one's vertices say little.
+    all.iter_mut().for_each(|(_, scene)| scene.wishes.tessellation = None);
+    all
+}
+
+/// A scene of a few bodies, some of which may reach behind the eye, under lights of both kinds.
+fn random_scene(random: &mut Random) -> Scene {
+    let mut scene = Scene::new();
+    let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
+    scene.camera.near = between(0.05, 0.3) as f32;
+    scene.camera.field_of_view = between(0.4, 1.8) as f32;
+    for _ in 0..between(1.0, 4.0) as u32 {
+        let mesh = shapes::by_name(shapes::NAMES[between(0.0, 6.999) as usize]).expect("listed");
+        let mut object = Object::new(mesh);
+        object.position = [0.0; 3].map(|_| between(-1.5, 1.5) as f32).into();
+        object.scale = between(0.3, 2.5) as f32;
+        object.set_angles([0.0; 3].map(|_| between(0.0, 7.0)));
+        let material = &mut object.materials[0];
+        material.diffuse = between(0.3, 1.0) as f32;
+        if between(0.0, 1.0) < 0.5 {
+            material.specular = between(0.1, 0.6) as f32;
+            material.shininess = between(1.0, 40.0) as f32;
+        }
+        scene.add(object);
+    }
+    for _ in 0..between(1.0, 4.0) as u32 {
+        let place = [0.0; 3].map(|_| between(-2.0, 2.0) as f32);
+        scene.add_light(match between(0.0, 1.0) < 0.5 {
+            true => Light::sun(place).with_intensity(0.7),
+            false => Light::lamp(place, between(1.0, 5.0) as f32),
+        });
+    }
+    scene
+}
+
+/// How far a vertex on the screen may be from where it should be, in pixels: half of 1/256 for rounding, and what
+/// f32 makes: 2⁻²⁴ of what a coordinate's terms reach, some 2¹¹ pixels, a few times over.
+const VERTEX: f64 = 0.5 / 256.0 + 0.001;
+
+/// Places about a pixel's centre, as far as a vertex may be off, and between.
+fn about(x: usize, y: usize) -> impl Iterator<Item = (f64, f64)> {
+    let at = |i: i32| VERTEX * f64::from(i) / 4.0;
+    (-4..=4).flat_map(move |i| (-4..=4).map(move |j| (x as f64 + 0.5 + at(i), y as f64 + 0.5 + at(j))))
+}
+
+/// Whether it takes no more than vertices moved by so little, or depths rounded to 30 bits, that `shown` is seen at a
+/// pixel in place of `right`.
+fn may_be_taken_for(
+    truth: &Truth,
+    near: f32,
+    right: Option<Face>,
+    shown: Option<Face>,
+    (x, y): (usize, usize),
+) -> bool {
+    about(x, y).any(|(x, y)| {
+        let met = |face: Option<Face>| face.and_then(|face| truth.lit_at(face, x, y)).map(|pixel| 1.0 / pixel.w);
+        match (met(right), met(shown)) {
+            // An edge of the right face lies here.
+            (None, None) => shown.is_none() && right.is_some(),
+            (None, Some(_)) => true,
+            // At the same depth: both rounded, and interpolated to within a unit.
+            (Some(right), Some(shown)) => (right - shown) * f64::from(near) <= 4.0 / 1_073_741_824.0,
+            (Some(_), None) => false,
+        }
+    })
+}
+
+/// Fails at pixels that show another face than they should without reason. Returns how many show another.
+fn check_cover(name: &str, scene: &Scene, truth: &Truth, frame: &TruthFrame, shown: &Shown) -> usize {
+    let mut others = 0;
+    for (place, (right, &shown)) in frame.pixels.iter().zip(&shown.faces).enumerate() {
+        let right = right.map(|pixel| pixel.face);
+        if right != shown {
+            let (x, y) = (place % 320, place / 320);
+            assert!(
+                may_be_taken_for(truth, scene.camera.near, right, shown, (x, y)),
+                "{name}: ({x}, {y}) shows {shown:?} in place of {right:?}"
+            );
+            others += 1;
+        }
+    }
+    others
+}
+
+/// The rungs that are linear between vertices, what is right for each, and how far a byte may be from it, in shades:
+/// what the raster adds, and 1/512 for the rounding of a vertex's shade. What is left to a whole shade, or to two, is
+/// for f32 before the vertices: one of a hundred coordinates is rounded to the unit beside the right one.
+const LINEAR: [(Rung, Standard, f64); 3] = [
+    (Rung::Gouraud88, Standard::Gouraud, 2.0),
+    (Rung::Gouraud88Reseeded, Standard::Gouraud, 1.0),
+    (Rung::GouraudHyperbolic, Standard::GouraudPerspective, 1.0),
+];
+
+/// Checks all of `LINEAR` on a scene.
+fn check_linear(tried: &mut Tried, name: &str, scene: &Scene) {
+    let truth = truth(scene);
+    let channels = [Standard::Gouraud, Standard::GouraudPerspective].map(|standard| truth.draw(standard));
+    for (rung, standard, bound) in LINEAR {
+        let shown = look(scene, rung);
+        // Channels run linearly on the screen on every rung.
+        let in_color = channels[0].pixels.iter().flatten().any(|p| p.intensity.iter().any(|&i| i != p.intensity[0]));
+        let frame = &channels[usize::from(standard == Standard::GouraudPerspective && !in_color)];
+        let errors = compare(frame, &shown);
+        let figures = errors.figures();
+        assert!(figures.max <= bound, "{name}, {rung}: {:.3} shades from {standard}", figures.max);
+        tried.add(figures.count);
+        tried.worst("shades", figures.max);
+        let others = check_cover(name, scene, &truth, frame, &shown);
+        tried.worst("pixels of another face", others as f64);
+        assert_eq!(others, errors.cover_errors());
+        // Rounded alike, they differ in one pixel of thousands.
+        assert!(others <= 5, "{name}, {rung}: {others} pixels show another face");
+    }
+}
+
+#[test]
+fn linear_rungs_keep_their_bounds_on_every_scene() {
+    let mut tried = Tried::new("linear_rungs_keep_their_bounds_on_every_scene", 1_000_000);
+    for (name, scene) in all() {
+        check_linear(&mut tried, &name, &scene);
+    }
+}
+
+#[test]
+fn linear_rungs_keep_their_bounds_on_random_scenes() {
+    let mut tried = Tried::new("linear_rungs_keep_their_bounds_on_random_scenes", 200_000);
+    let mut random = Random::named("truth linear");
+    for i in 0..12 {
+        check_linear(&mut tried, &format!("random scene {i}"), &random_scene(&mut random));
+    }
+}
+
+/// Light at every pixel is right but for the rounding of a shade to 1/256 and to a byte, and for vertices that are
+/// rounded. Those move the point of a face that is seen at a pixel: with the weights λ of its corners there, which are
+/// moved by δ each, what is seen is what should be at p − Σ λδ, no farther from p than a vertex is moved.
+fn check_lit(tried: &mut Tried, name: &str, scene: &Scene) {
+    let (truth, shown) = (truth(scene), look(scene, Rung::Phong));
+    let frame = truth.draw(Standard::Lit);
+    let errors = compare(&frame, &shown);
+    for (place, (error, right)) in errors.errors().zip(&frame.pixels).enumerate() {
+        let (Some(error), Some(right)) = (error, right) else { continue };
+        // 1/512, and f32.
+        let rounding = 0.5 + 1.0 / 512.0 + 0.01;
+        tried.add(1);
+        if error <= rounding {
+            continue;
+        }
+        let near = about(place % 320, place / 320).filter_map(|(x, y)| truth.lit_at(right.face, x, y));
+        let moved =
+            near.map(|near| (0..3).fold(0.0, |most, i| f64::max(most, (near.intensity[i] - right.intensity[i]).abs())));
+        // Between the places that are tried, light changes a little more.
+        let allowed = rounding + 1.2 * 255.0 * moved.fold(0.0, f64::max);
+        assert!(
+            error <= allowed,
+            "{name}: ({}, {}) is {error:.3} off, {allowed:.3} are explained",
+            place % 320,
+            place / 320
+        );
+        tried.worst("shades off that vertices explain", error);
+    }
+    let others = check_cover(name, scene, &truth, &frame, &shown);
+    assert_eq!(others, errors.cover_errors());
+    tried.worst("pixels of another face", others as f64);
+    assert!(errors.share_within(1.0) > 0.999, "{name}: {}", errors.share_within(1.0));
+}
+
+#[test]
+fn phong_is_lit_at_every_pixel_on_every_scene() {
+    let mut tried = Tried::new("phong_is_lit_at_every_pixel_on_every_scene", 1_000_000);
+    for (name, scene) in all() {
+        check_lit(&mut tried, &name, &scene);
+    }
+}
+
+#[test]
+fn phong_is_lit_at_every_pixel_on_random_scenes() {
+    let mut tried = Tried::new("phong_is_lit_at_every_pixel_on_random_scenes", 100_000);
+    let mut random = Random::named("truth lit");
+    for i in 0..12 {
+        check_lit(&mut tried, &format!("random scene {i}"), &random_scene(&mut random));
+    }
+}
+
+// The probe
+
+/// What it says is shown is what is drawn.
+#[test]
+fn the_probe_shows_what_is_drawn() {
+    for (name, scene) in scenes::all() {
+        let (drawn, in_color) = {
+            let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+            let mut scene = scene.clone();
+            // As the probe sees it: grey, 256 shades, nothing over them.
+            scene.palette = Some(builtin::GREY.clone());
+            scene.fog = None;
+            scene.wishes.dither = false;
+            for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
+                *material = Material { texture: None, environment: None, ..material.clone() };
+                material.ramp = Material::white().ramp;
+                material.blend = Material::white().blend;
+            }
+            renderer.draw(&scene, &mut vga).expect("a legal scene");
+            (vga.pixels().to_vec(), renderer.plan().is_on_anywhere(Effect::RgbChannels))
+        };
+        let shown = Probe::new(Renderer::new()).look(&scene, SCREEN).expect("a legal scene");
+        for ((face, shades), &drawn) in shown.faces.iter().zip(&shown.shades).zip(&drawn) {
+            if face.is_some() && !in_color {
+                assert_eq!(*shades, [f64::from(drawn); 3], "{name}");
+            }
+        }
+    }
+}
+
+/// Channels are mixed to the colour that is drawn.
+#[test]
+fn the_probe_shows_the_channels_that_are_mixed() {
+    let mut scene = Scene::showing(shapes::sphere(24, 12));
+    scene.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
+    scene.add_light(Light::sun([-1.0, 0.5, 0.5]).with_color([1.0, 0.4, 0.2]));
+    // A body without colour beside one that has one: both are on channels, as the light is coloured.
+    scene.add(Object::new(shapes::cube()));
+    for rung in Rung::ALL {
+        let (shown, mut vga) = (look(&scene, rung), Vga::new());
+        let mut renderer = Renderer::new();
+        renderer.set_rung(rung);
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        let mut seen = 0;
+        for ((face, shades), &drawn) in shown.faces.iter().zip(&shown.shades).zip(vga.pixels()) {
+            if face.is_some() {
+                // Shades of 0 to 255.
+                let [r, g, b] = shades.map(|shade| shade as u8);
+                let mut mixed = [0];
+                mix_cube(&mut mixed, &[r], &[g], &[b], &[128; 8], 0);
+                assert_eq!(mixed[0], drawn, "{rung}");
+                seen += 1;
+            }
+        }
+        assert!(seen > 10_000);
+    }
+    // What the renderer drew through the probe is no longer there.
+    let mut probe = probe(Rung::Phong);
+    probe.look(&scene, SCREEN).expect("a legal scene");
+    let (mut by_probe, mut fresh) = (Vga::new(), Vga::new());
+    probe.renderer().draw(&scene, &mut by_probe).expect("a legal scene");
+    let mut renderer = Renderer::new();
+    renderer.set_rung(Rung::Phong);
+    renderer.draw(&scene, &mut fresh).expect("a legal scene");
+    assert!(by_probe.pixels() == fresh.pixels());
+}
+
+/// Numbers of three digits, and the 16.16 path.
+#[test]
+fn the_probe_numbers_any_triangle() {
+    let mut scene = Scene::new();
+    for (n, x) in [(300_u32, -0.8), (20, 0.8)] {
+        let wall = scene.add(Object::new(shapes::wall(n, n / 2)));
+        scene[wall].position = Vec3::new(x, 0.0, 0.0);
+        scene[wall].set_angles([0.3, 0.2, 0.0]);
+    }
+    scene.add_light(Light::lamp([0.3, 0.4, 1.0], 3.0));
+    let (truth, shown) = (truth(&scene), look(&scene, Rung::GouraudHyperbolic));
+    let frame = truth.draw(Standard::GouraudPerspective);
+    let errors = compare(&frame, &shown);
+    let numbers: Vec<usize> = shown.faces.iter().flatten().map(|face| face.triangle).collect();
+    assert!(numbers.iter().max() > Some(&65_536) && numbers.iter().min() < Some(&256));
+    // Triangles of a pixel's size: one in four of them has no pixel, and half of all pixels lie near an edge.
+    assert_eq!(check_cover("many", &scene, &truth, &frame, &shown), errors.cover_errors());
+    assert!(errors.cover_errors() * 100 < errors.figures().count as usize, "{}", errors.cover_errors());
+    assert!(errors.figures().max <= 1.0, "{:?}", errors.figures());
+
+    let mut torus = Scene::showing(shapes::torus(48, 24));
+    torus.objects_mut()[0].set_angles([0.3, 0.2, 0.0]);
+    let mut probe = probe(Rung::Gouraud88Reseeded);
+    probe.renderer().set_vertex_path(VertexPath::Integer);
+    let shown = probe.look(&torus, SCREEN).expect("a legal scene");
+    let errors = compare(&self::truth(&torus).draw(Standard::Gouraud), &shown);
+    // Angles of 16 bits, a table sine and normals of 16 bits are off by less than 1/1,000 of what a shade takes.
+    assert!(errors.figures().mean() < 0.5 && errors.cover_errors() < 300, "{errors:?}");
+}
+
+#[test]
+fn the_probe_refuses_what_cannot_be_drawn() {
+    let scene = Scene::showing(shapes::cube());
+    let mut probe = Probe::new(Renderer::new());
+    let too_wide = Screen { width: 5_000, ..SCREEN };
+    assert!(matches!(probe.look(&scene, too_wide), Err(ProbeError::Screen(FrameError::Size { width: 5_000, .. }))));
+    let none = Screen { width: 0, ..SCREEN };
+    assert!(matches!(probe.look(&scene, none), Err(ProbeError::Screen(_))));
+    let mut broken = scene.clone();
+    broken.ambient = f32::NAN;
+    assert_eq!(probe.look(&broken, SCREEN), Err(ProbeError::Scene(RenderError::Ambient)));
+    assert!(probe.look(&scene, SCREEN).is_ok(), "it can be used on");
+}
+
+// Hard cases
+
+/// The eye at the origin looks along −z. What a unit at w = 1 is in pixels, across and down.
+fn eye(scene: &mut Scene, near: f32) -> [f64; 2] {
+    scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, near, ..Camera::default() };
+    let down = 100.0 / f64::tan(f64::from(Camera::FIELD_OF_VIEW) / 2.0);
+    [1.2 * down, down]
+}
+
+/// A triangle whose corners are at these places on the screen and distances, lit at these intensities.
+fn triangle(corners: [([f64; 2], f64, f64); 3], near: f32) -> Scene {
+    let mut scene = Scene::new();
+    let [fx, fy] = eye(&mut scene, near);
+    let position = |([x, y], w, _): ([f64; 2], f64, f64)| {
+        Vec3::new(((x - 160.0) * w / fx) as f32, (-(y - 100.0) * w / fy) as f32, -w as f32)
+    };
+    let normal = |(_, _, i): ([f64; 2], f64, f64)| Vec3::new(f64::sqrt(1.0 - i * i) as f32, 0.0, i as f32);
+    let mesh = Mesh::with_normals(corners.map(position).to_vec(), corners.map(normal).to_vec(), vec![[0, 1, 2]]);
+    let object = scene.add(Object::new(mesh.expect("a mesh")));
+    scene[object].materials[0] = Material { ambient: 0.0, diffuse: 1.0, ..Material::white() };
+    scene.add_light(Light::sun([0.0, 0.0, 1.0]));
+    scene
+}
+
+/// How far a rung is from a standard on a scene; no pixel is without a reason another face's.
+fn figures(name: &str, scene: &Scene, rung: Rung, standard: Standard) -> mode13h::truth::Figures {
+    let (truth, shown) = (truth(scene), look(scene, rung));
+    let frame = truth.draw(standard);
+    check_cover(name, scene, &truth, &frame, &shown);
+    compare(&frame, &shown).figures()
+}
+
+#[test]
+fn c5_a_face_from_1_to_10_000_against_the_truth() {
+    let mut tried = Tried::new("c5_a_face_from_1_to_10_000_against_the_truth", 300_000);
+    let mut random = Random::named("c5 truth");
+    let mut linear = 0.0_f64;
+    for i in 0..60 {
+        let mut corner = || {
+            let place = [random.unit() * 420.0 - 50.0, random.unit() * 300.0 - 50.0];
+            (place, f64::powf(10_000.0, random.unit()).max(1.001), 0.05 + 0.9 * random.unit())
+        };
+        let scene = triangle([corner(), corner(), corner()], 1.0);
+        let name = format!("triangle {i}");
+        let hyperbolic = figures(&name, &scene, Rung::GouraudHyperbolic, Standard::GouraudPerspective);
+        assert!(hyperbolic.max <= 1.0, "{name}: {hyperbolic:?}");
+        tried.worst("shades", hyperbolic.max);
+        tried.add(hyperbolic.count);
+        linear = linear.max(figures(&name, &scene, Rung::Gouraud88Reseeded, Standard::GouraudPerspective).max);
+    }
+    assert!(linear > 100.0, "linear shades show what is tried: {linear}");
+}
+
+#[test]
+fn n7_a_highlight_inside_a_face_against_the_truth() {
+    let mut tried = Tried::new("n7_a_highlight_inside_a_face_against_the_truth", 100_000);
+    let mut scene = Scene::new();
+    let wall = scene.add(Object::new(shapes::wall(1, 1)));
+    scene[wall].materials[0] =
+        Material { ambient: 0.1, diffuse: 0.2, specular: 0.6, shininess: 60.0, ..Material::white() };
+    scene.add_light(Light::sun([0.2, 0.1, 1.0]));
+    for angle in [0.0, 0.05, 0.1, 0.15] {
+        scene[wall].set_angles([0.5 * angle, angle, 2.0 * angle]);
+        for (rung, most) in [
+            // The loop at every pixel: a half, and vertices.
+            (Rung::Phong, 1.0),
+            // Split until an edge is within a shade; a face inside of three edges by as much again.
+            (Rung::GouraudTessellated, 2.5),
+        ] {
+            let figures = figures("wall", &scene, rung, Standard::Lit);
+            assert!(figures.max <= most, "{rung} at {angle}: {figures:?}");
+            tried.worst(rung.name(), figures.max);
+            tried.add(figures.count);
+        }
+        for rung in [Rung::Gouraud88, Rung::Gouraud88Reseeded, Rung::GouraudHyperbolic] {
+            let figures = figures("wall", &scene, rung, Standard::Lit);
+            assert!(figures.max > 50.0, "{rung} at {angle}: {figures:?}");
+            tried.add(figures.count);
+        }
+    }
+}
