@@ -1,4 +1,5 @@
 //! The plan: only what a scene calls for is computed, and that changes no picture.
+#![cfg(feature = "alloc")]
 
 mod support;
 

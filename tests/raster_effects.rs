@@ -1,6 +1,7 @@
 //! Triangles with effects against a naive oracle, which takes every pixel for itself and every stage by
 //! the letter of its definition; and what must change nothing: order, winding, clip rectangle, bands,
 //! kernel.
+#![cfg(feature = "alloc")]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! R12 and N7: faces that are split where light bends.
+#![cfg(feature = "alloc")]
 
 mod support;
 

@@ -10,6 +10,7 @@ pub mod naive_span;
 pub mod oracle;
 pub mod property;
 pub mod random;
+#[cfg(feature = "alloc")]
 pub mod scenes;
 pub mod triangles;
 pub mod tried;
