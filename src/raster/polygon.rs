@@ -32,7 +32,8 @@ use super::depth::Cell;
 use super::frame::Rect;
 use super::quotient::Divisor;
 use super::shade::RESEED;
-use super::triangle::{Drawn, Raster, Shading};
+use super::shading::Shading;
+use super::triangle::{Drawn, Raster};
 use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 

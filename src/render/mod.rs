@@ -384,6 +384,7 @@ impl Renderer {
             self.integer.prepare(scene, screen)?;
         }
         let rung = self.rung.or(scene.wishes.rung).unwrap_or_default();
+        let rung = if self.vertex_path == VertexPath::Integer { rung.in_integers() } else { rung };
         self.states.resize_with(scene.objects().len(), ObjectState::default);
         self.since.clear();
         for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {
