@@ -125,7 +125,7 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus"], "--out <OUT>"),
         (vec!["render", "torus", "-o", "x.png", "--kernel", "mmx"], "no such kernel; this machine has portable"),
         (vec!["--kernel", "mmx"], "no such kernel; this machine has portable"),
-        (vec!["render", "torus", "-o", "x.png", "--rung", "mirror"], "there are flat, gouraud-8.8"),
+        (vec!["render", "torus", "-o", "x.png", "--rung", "mirror"], "there are flat, gouraud-period, gouraud-8.8, "),
         (vec!["render", "torus", "-o", "x.tif"], "x.tif: no kind of picture"),
         (vec!["render", "torus", "-o", "x"], "x: "),
         (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a row of pictures needs"),
