@@ -13,8 +13,8 @@ use mode13h::span::dither::BAYER;
 use mode13h::span::texture::Texels;
 use support::oracle::{self, Point, Ratio};
 use support::random::Random;
-use support::tried::Tried;
 use support::triangles;
+use support::tried::Tried;
 
 const WIDTH: i32 = 150;
 const HEIGHT: i32 = 60;
@@ -209,9 +209,7 @@ impl<'a> Naive<'a> {
             byte[0]
         } else {
             let shade = match self.look.source {
-                Source::Shaded(_) => {
-                    self.shades[0].byte((first, last), x, y, self.look.dither.map(|_| threshold))
-                }
+                Source::Shaded(_) => self.shades[0].byte((first, last), x, y, self.look.dither.map(|_| threshold)),
                 Source::NormalTable(table) => lookup(table, linear(|a| a.slope[1], 128), linear(|a| a.slope[0], 128)),
                 Source::Lit(_) => byte_of(i128::from(lit()), threshold),
                 _ => unreachable!("all sources are tried"),
@@ -235,8 +233,7 @@ impl<'a> Naive<'a> {
         let mut bytes = vec![BEFORE; (WIDTH * HEIGHT) as usize];
         let mut covered = vec![false; bytes.len()];
         for y in 0..HEIGHT {
-            let row: Vec<i32> =
-                (0..WIDTH).filter(|&x| oracle::covers(self.corners, oracle::centre(x, y))).collect();
+            let row: Vec<i32> = (0..WIDTH).filter(|&x| oracle::covers(self.corners, oracle::centre(x, y))).collect();
             let (Some(&first), Some(&last)) = (row.first(), row.last()) else { continue };
             for x in row {
                 let place = (y * WIDTH + x) as usize;

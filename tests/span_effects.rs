@@ -291,7 +291,8 @@ mod float {
         let step = |from: f32, to: f32| (to - from) / gaps;
         let (dn, dd) = (step(s0 * d0, s1 * d1), step(d0, d1));
         let at_zero = |value: f32, step: f32| value - first as f32 * step;
-        let range = if random.within(0, 1) == 0 { [0.0, 255.0] } else { [a.min(b).floor(), a.max(b).min(255.0).ceil()] };
+        let range =
+            if random.within(0, 1) == 0 { [0.0, 255.0] } else { [a.min(b).floor(), a.max(b).min(255.0).ceil()] };
         match random.within(0, 30) {
             0 => (first, [f32::NAN, 1.0], [1.0, 0.0], range),
             1 => (first, [f32::INFINITY, dn], [1.0, f32::INFINITY], range),

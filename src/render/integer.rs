@@ -252,11 +252,9 @@ impl IntegerPath {
             Rung::Gouraud1616 => Technique::Gouraud1616,
             Rung::GouraudHyperbolic => Technique::GouraudHyperbolic,
             // The default; of the others it is what `Rung::in_integers` says.
-            Rung::Gouraud88Reseeded
-            | Rung::GouraudTessellated
-            | Rung::PhongTable
-            | Rung::Phong
-            | Rung::Float => Technique::GouraudReseeded,
+            Rung::Gouraud88Reseeded | Rung::GouraudTessellated | Rung::PhongTable | Rung::Phong | Rung::Float => {
+                Technique::GouraudReseeded
+            }
         };
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
