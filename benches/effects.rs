@@ -10,9 +10,11 @@
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::depth::{copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
+use mode13h::span::float::fill_float;
 use mode13h::span::hyperbolic::fill_quotients;
 use mode13h::span::lit::interpolate;
 use mode13h::span::texture::{Texels, fill_affine, fill_perspective, fill_perspective_portable};
+use mode13h::span::wide::fill_16_16;
 use mode13h::span::{Kernel, lookup};
 use std::hint::black_box;
 use std::time::Instant;
@@ -46,11 +48,14 @@ type Nearer = fn(&mut [u8], &mut [u32], &[u8], i64, i64) -> u32;
 type Before = fn(&mut [u8], &[u32], &[u8], i64, i64) -> u32;
 type Quotients = fn(&mut [u8], i128, i128, i128, i128);
 type Interpolate = fn(&mut [[f32; 6]], [f64; 6], [f64; 6], f64, f64);
+type Wide = fn(&mut [u8], u32, u32);
+type Float = fn(&mut [u8], i32, [f32; 2], [f32; 2], [f32; 2]);
 
 /// A loop under its name; a portable one comes before its twin. Each is called by its address, which the
 /// compiler is not told: so that none is inlined and made for these numbers alone, and `nm -S` shows its size.
-const LOOPS: [(&str, Draw); 14] = [
+const LOOPS: [(&str, Draw); 16] = [
     ("span", |m, start, n| Kernel::fastest().fill(&mut m.row[start..start + n], 0x1234, 0x56)),
+    ("16.16", |m, start, n| black_box(fill_16_16 as Wide)(&mut m.row[start..start + n], 0x12_3456, 0x5678)),
     ("dither portable", |m, start, n| dither(fill_dithered_portable, m, start, n)),
     ("dither", |m, start, n| dither(fill_dithered, m, start, n)),
     ("affine", |m, start, n| {
@@ -78,6 +83,10 @@ const LOOPS: [(&str, Draw); 14] = [
     }),
     ("quotients", |m, start, n| {
         black_box(fill_quotients as Quotients)(&mut m.row[start..start + n], 13 << 70, 1 << 69, 1 << 70, 1 << 62);
+    }),
+    ("float", |m, start, n| {
+        let (n_dn, d_dd) = ([1e20, 1e17], [1e18, 1e15]);
+        black_box(fill_float as Float)(&mut m.row[start..start + n], -3, n_dn, d_dd, [0.0, 255.0]);
     }),
     ("lit", |m, start, n| {
         let (a, da) = ([0.3, -0.5, 0.8, 4.0, -3.0, 9.0], [0.01, 0.02, -0.01, 0.1, 0.05, -0.02]);

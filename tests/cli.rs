@@ -132,7 +132,7 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus"], "--out <OUT>"),
         (vec!["render", "torus", "-o", "x.png", "--kernel", "mmx"], "no such kernel; this machine has portable"),
         (vec!["--kernel", "mmx"], "no such kernel; this machine has portable"),
-        (vec!["render", "torus", "-o", "x.png", "--rung", "mirror"], "there are flat, gouraud-8.8"),
+        (vec!["render", "torus", "-o", "x.png", "--rung", "mirror"], "there are flat, gouraud-period, gouraud-8.8, "),
         (vec!["render", "torus", "-o", "x.tif"], "x.tif: no kind of picture"),
         (vec!["render", "torus", "-o", "x"], "x: "),
         (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a row of pictures needs"),
@@ -162,7 +162,7 @@ fn wrong_words_end_with_2() {
         (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
         (vec!["plan"], "<INPUT>"),
         (vec!["plan", "torus", "--at", "inf"], "--at"),
-        (vec!["plan", "torus", "--rung", "mirror"], "there are flat, gouraud-8.8"),
+        (vec!["plan", "torus", "--rung", "mirror"], "there are flat, gouraud-period, gouraud-8.8, "),
     ] {
         assert_fails(&run(&directory, &words), 2, says);
     }

@@ -140,13 +140,10 @@ fn soups(mut tried: Tried) {
                 3 => vertices = with_depths(vertices, || 1000 + random.log_uniform(5) as i64),
                 _ => vertices = with_depths(vertices, || 7),
             }
-            let shading = random.one_of(&[
-                Shading::GouraudReseeded,
-                Shading::Gouraud,
-                Shading::GouraudHyperbolic,
-                Shading::Flat(0),
-                Shading::Flat(200),
-            ]);
+            let flat = random.one_of(&[Shading::Flat(0), Shading::Flat(200)]);
+            // The scan-line method gives exact cover to all.
+            let shading = Some(random.one_of(Shading::INTERPOLATED)).filter(|shading| shading.has_exact_cover());
+            let shading = if random.within(0, 2) == 0 { flat } else { shading.unwrap_or_default() };
             faces.push((vertices, shading));
             if random.within(0, 5) == 0 {
                 // Again, and turned round, in other shades.

@@ -7,7 +7,7 @@ mod support;
 
 use mode13h::fixed::U8F8;
 use mode13h::raster::effects::{Attributes, Lighting, Look, Mix, Source, TextureLook, TextureMapping};
-use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Vertex};
+use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
 use mode13h::span::dither::BAYER;
@@ -79,12 +79,11 @@ fn look<'a>(random: &mut Random, stock: &'a Stock) -> Look<'a> {
     let (channels, dither, texture, fog, blend) = (maybe(3), maybe(2), maybe(1), maybe(2), maybe(3));
     let (ubits, vbits) = (random.within(0, 8) as u32, random.within(0, 8) as u32);
     Look {
-        source: match random.within(0, 5) {
-            0 => Source::Linear { reseeded: false },
-            1 => Source::Hyperbolic,
-            2 => Source::NormalTable(&stock.tables[0]),
-            3 => Source::Lit(&Sum),
-            _ => Source::Linear { reseeded: true },
+        source: match random.within(0, 9) {
+            0 => Source::NormalTable(&stock.tables[0]),
+            1 => Source::Lit(&Sum),
+            2 => Source::Shaded(Shading::Flat(random.within(0, 255) as u8)),
+            _ => Source::Shaded(random.one_of(Shading::INTERPOLATED)),
         },
         channels: channels.then(|| match random.within(0, 1) {
             0 => Mix::Cube,
@@ -108,9 +107,22 @@ struct Naive<'a> {
     vertices: &'a [Vertex; 3],
     attributes: &'a [Attributes; 3],
     look: &'a Look<'a>,
+    /// The shades of the corners, or each of their channels.
+    shades: Vec<oracle::Shades>,
 }
 
-impl Naive<'_> {
+impl<'a> Naive<'a> {
+    fn new(vertices: &'a [Vertex; 3], attributes: &'a [Attributes; 3], look: &'a Look<'a>) -> Self {
+        // Of what is not shaded the channels are linear.
+        let shading = if let Source::Shaded(shading) = look.source { shading } else { Shading::default() };
+        let channels = [0, 1, 2].map(|i| attributes.each_ref().map(|a| a.channels[i].to_bits()));
+        let shades = match look.channels {
+            Some(_) => channels.map(|values| oracle::Shades::new(vertices, values, shading)).into(),
+            None => vec![oracle::Shades::of_vertices(vertices, shading)],
+        };
+        Self { corners: vertices.each_ref().map(oracle::point), vertices, attributes, look, shades }
+    }
+
     /// A value that is linear on the screen, in 8.8, without the half: exact at `seed`, then in steps.
     fn linear(&self, values: [u16; 3], seed: i32, x: i32, y: i32) -> i128 {
         let values = values.map(i128::from);
@@ -183,7 +195,7 @@ impl Naive<'_> {
         let mut byte = if let Some(mix) = &self.look.channels {
             let mut channels = match self.look.source {
                 Source::Lit(_) => [0, 1, 2].map(|i| byte_of(i128::from(lit() >> i), 128)),
-                _ => [linear(|a| a.channels[0], 128), linear(|a| a.channels[1], 128), linear(|a| a.channels[2], 128)],
+                _ => [0, 1, 2].map(|i| self.shades[i].byte((first, last), x, y, None)),
             };
             if let Some((texture, texel)) = textured {
                 channels = [0, 1, 2].map(|i| lookup(texture.tables[i], channels[i], texel));
@@ -198,16 +210,9 @@ impl Naive<'_> {
             byte[0]
         } else {
             let shade = match self.look.source {
-                Source::Hyperbolic => {
-                    let shades = self.vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
-                    byte_of(self.on_face(shades, x, y).floor(), threshold)
-                }
+                Source::Shaded(_) => self.shades[0].byte((first, last), x, y, self.look.dither.map(|_| threshold)),
                 Source::NormalTable(table) => lookup(table, linear(|a| a.slope[1], 128), linear(|a| a.slope[0], 128)),
                 Source::Lit(_) => byte_of(i128::from(lit()), threshold),
-                Source::Linear { reseeded } => {
-                    let shades = self.vertices.each_ref().map(|v| v.shade().to_bits());
-                    byte_of(self.linear(shades, if reseeded { seed } else { first }, x, y), threshold)
-                }
                 _ => unreachable!("all sources are tried"),
             };
             match textured {
@@ -274,12 +279,7 @@ fn triangles_with_effects_are_the_oracles() {
         let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
         let attributes = attributes(&mut random);
         let look = look(&mut random, &stock);
-        let naive = Naive {
-            corners: vertices.each_ref().map(oracle::point),
-            vertices: &vertices,
-            attributes: &attributes,
-            look: &look,
-        };
+        let naive = Naive::new(&vertices, &attributes, &look);
         if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
             assert!(draw(&vertices, &attributes, &look, None, kernels[0]).iter().all(|byte| *byte == BEFORE));
             continue;

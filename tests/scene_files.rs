@@ -221,7 +221,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         ),
         (
             cube("wishes.rung = 'best'"),
-            "2:15: key `wishes.rung`: \"best\": unknown rung; there are flat, gouraud-8.8, ",
+            "2:15: key `wishes.rung`: \"best\": unknown rung; there are flat, gouraud-period, gouraud-8.8, ",
         ),
         (cube("wishes.mapping = 'best'"), "2:18: key `wishes.mapping`: \"best\": unknown mapping; there are affine, "),
         (

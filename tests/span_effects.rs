@@ -9,9 +9,11 @@ use mode13h::palette::cube;
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::depth::{Cell, copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
+use mode13h::span::float::fill_float;
 use mode13h::span::lit::interpolate;
 use mode13h::span::lookup;
 use mode13h::span::texture::{Texels, TexelsError, fill_affine, fill_perspective, fill_perspective_portable};
+use mode13h::span::wide::fill_16_16;
 use std::fmt::Debug;
 use support::random::Random;
 use support::tried::Tried;
@@ -230,6 +232,116 @@ mod dithered {
             }
             assert!((4 * upper).abs_diff(usize::from(fraction)) <= 2, "{fraction} / 256: {upper} of 64");
         }
+    }
+}
+
+mod wide {
+    use super::*;
+
+    type Fill = fn(&mut [u8], u32, u32);
+
+    fn any_u32(random: &mut Random) -> u32 {
+        u32::from(any_u16(random)) << 16 | u32::from(any_u16(random))
+    }
+
+    fn check(fill: Fill) -> Result<u64, String> {
+        on_every_shape("wide", |random, canvas, shape| {
+            let (shade, step) = (any_u32(random), any_u32(random));
+            let pixel = |k: usize| ((i128::from(shade) + k as i128 * i128::from(step)) / 65_536 % 256) as u8;
+            let after: Vec<u8> = (0..shape.length).map(pixel).collect();
+            canvas
+                .check(shape.alignment, &vec![0x77; shape.length], &after, |row| fill(row, shade, step))
+                .map_err(|wrong| format!("shade {shade:#010x} step {step:#010x}: {wrong}"))
+        })
+    }
+
+    #[test]
+    fn spans_in_16_16_are_the_definition() {
+        assert_right("spans in 16.16", SHAPES, check(fill_16_16));
+    }
+
+    #[test]
+    fn wrong_spans_in_16_16_are_caught() {
+        assert_caught("a step's last bit is lost", check(|row, shade, step| fill_16_16(row, shade, step & !1)));
+        assert_caught("a half is added", check(|row, shade, step| fill_16_16(row, shade.wrapping_add(0x8000), step)));
+        let last: Fill = |row, shade, step| {
+            fill_16_16(row, shade, step);
+            if let Some(last) = row.last_mut().filter(|last| **last == 255) {
+                *last = 0;
+            }
+        };
+        assert_caught("the last byte of 255", check(last));
+    }
+}
+
+mod float {
+    use super::*;
+
+    type Fill = fn(&mut [u8], i32, [f32; 2], [f32; 2], [f32; 2]);
+
+    /// Numbers as triangles have them: from any pixel on, quotients of 0 to 255 at both ends or near to that; and
+    /// what no triangle has.
+    fn any_row(random: &mut Random, length: usize) -> (i32, [f32; 2], [f32; 2], [f32; 2]) {
+        let first = random.within(-4_096, 4_096) as i32;
+        let gaps = (length.max(2) - 1) as f32;
+        let mut divisor = || (2.0_f64.powf(random.unit() * 60.0)) as f32;
+        let (d0, d1) = (divisor(), divisor());
+        let mut shade = || (random.within(-20, 65_300) as f32 / 256.0).max(0.0);
+        let (s0, s1, a, b) = (shade(), shade(), shade(), shade());
+        let step = |from: f32, to: f32| (to - from) / gaps;
+        let (dn, dd) = (step(s0 * d0, s1 * d1), step(d0, d1));
+        let at_zero = |value: f32, step: f32| value - first as f32 * step;
+        let range =
+            if random.within(0, 1) == 0 { [0.0, 255.0] } else { [a.min(b).floor(), a.max(b).min(255.0).ceil()] };
+        match random.within(0, 30) {
+            0 => (first, [f32::NAN, 1.0], [1.0, 0.0], range),
+            1 => (first, [f32::INFINITY, dn], [1.0, f32::INFINITY], range),
+            2 => (first, [0.0, 0.0], [0.0, 0.0], range),
+            _ => (first, [at_zero(s0 * d0, dn), dn], [at_zero(d0, dd), dd], range),
+        }
+    }
+
+    fn naive(length: usize, first: i32, n: [f32; 2], d: [f32; 2], [low, high]: [f32; 2]) -> Vec<u8> {
+        let pixel = |i: usize| {
+            let k = (i64::from(first) + i as i64) as f32;
+            let (above, below) = (n[0] + k * n[1], d[0] + k * d[1]);
+            let shade = above / below;
+            let shade = if shade.is_nan() { low } else { shade.clamp(low, high) };
+            // To 15 bits behind the point, halves to even, then cut.
+            (f64::from(shade + 256.5).floor() - 256.0) as u8
+        };
+        (0..length).map(pixel).collect()
+    }
+
+    fn check(fill: Fill) -> Result<u64, String> {
+        on_every_shape("float", |random, canvas, shape| {
+            let (first, n, d, range) = any_row(random, shape.length);
+            let after = naive(shape.length, first, n, d, range);
+            canvas
+                .check(shape.alignment, &vec![0x77; shape.length], &after, |row| fill(row, first, n, d, range))
+                .map_err(|wrong| format!("from {first}: {n:?} / {d:?} in {range:?}: {wrong}"))
+        })
+    }
+
+    #[test]
+    fn spans_in_f32_are_the_definition() {
+        assert_right("spans in f32", SHAPES, check(fill_float));
+    }
+
+    #[test]
+    fn wrong_spans_in_f32_are_caught() {
+        assert_caught("the first pixel is always 0", check(|row, _, n, d, range| fill_float(row, 0, n, d, range)));
+        assert_caught("no clamp", check(|row, first, n, d, _| fill_float(row, first, n, d, [0.0, 255.0])));
+        let added: Fill = |row, first, n, d, [low, high]| {
+            let (mut n0, mut d0) = (n[0] + first as f32 * n[1], d[0] + first as f32 * d[1]);
+            for pixel in row {
+                let shade = n0 / d0;
+                let shade = if shade.is_nan() { low } else { shade.clamp(low, high) };
+                *pixel = (shade + 0.5) as u8;
+                (n0, d0) = (n0 + n[1], d0 + d[1]);
+            }
+        };
+        assert_caught("sums that drift", check(added));
     }
 }
 

@@ -16,11 +16,15 @@ use crate::raster::{Shading, Vertex};
 pub enum Technique {
     /// One shade for each face.
     Flat,
+    /// As the sources print it, vertices on whole pixels.
+    GouraudPeriod,
     /// Linear between the vertices, each row of a triangle one span.
     Gouraud,
     /// The same, started anew every 64 pixels.
     #[default]
     GouraudReseeded,
+    /// Linear between the vertices, shades in 16.16.
+    Gouraud1616,
     /// Linear on the face in space: an exact quotient for every pixel.
     GouraudHyperbolic,
 }
@@ -179,7 +183,9 @@ impl<'a, I: Index> Stage<'a, I> {
     fn shading(&self, face: usize, indices: [usize; 3], turned: bool, counts: &mut Faces) -> Shading {
         match self.technique {
             Technique::GouraudReseeded => Shading::GouraudReseeded,
+            Technique::GouraudPeriod => Shading::GouraudPeriod,
             Technique::Gouraud => Shading::Gouraud,
+            Technique::Gouraud1616 => Shading::Gouraud1616,
             Technique::GouraudHyperbolic => Shading::GouraudHyperbolic,
             Technique::Flat => {
                 counts.lit += 1;

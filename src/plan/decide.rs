@@ -21,6 +21,7 @@ pub(crate) struct Inputs<'a> {
     /// One for each object: whether it was drawn before, and is as it was.
     pub(crate) since: &'a [Since],
     pub(crate) forced: &'a Forced,
+    /// On the 16.16 path one that it has.
     pub(crate) rung: Rung,
     pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
     pub(crate) mapping: Option<Mapping>,
@@ -224,7 +225,7 @@ impl Rules<'_> {
         }
         match self.inputs.rung {
             Rung::Flat => Decision::off(Why::FlatAsked),
-            rung if rung.lights_pixels() && !self.inputs.integer => Decision::off(Why::Asked).choosing(rung.name()),
+            rung if rung.lights_pixels() => Decision::off(Why::Asked).choosing(rung.name()),
             rung => Decision::on(Why::ShadesDiffer).choosing(rung.name()),
         }
     }

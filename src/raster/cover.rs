@@ -37,6 +37,13 @@ impl Ordered {
         Self { vertices, doubled_area }
     }
 
+    /// The shades of the vertices, in 1/256.
+    #[must_use]
+    #[inline]
+    pub fn shades(&self) -> [i64; 3] {
+        self.vertices.each_ref().map(|v| i64::from(v.shade().to_bits()))
+    }
+
     /// The area doubled, positive.
     #[must_use]
     #[inline]

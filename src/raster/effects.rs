@@ -1,7 +1,7 @@
 //! Triangles with effects: a row is made in pieces of up to 64 bytes, which pass through stages.
 //!
 //! ```text
-//! shades     linear, perspective-correct, from a table of normals, or lit at every pixel
+//! shades     as a shading has them, from a table of normals, or lit at every pixel
 //! texture    shade and texel looked up in a table; or red, green and blue mixed to an index
 //! fog        level and index looked up
 //! blend      index and what the frame holds looked up
@@ -12,22 +12,25 @@
 //! inside the frame and every 64 pixels from there, where every value is exact; so a pixel's byte
 //! depends on no clip rectangle. Without any effect [`Raster::triangle`] gives the same bytes sooner.
 //!
-//! Linear values (shades, fog, channels, the table's normals) keep the guarantees of
-//! [`shade`](super::shade): no sum leaves the range of the three corners. With dither, whose threshold
-//! of 0 to 255 takes the place of the half, a byte lies in [min >> 8, ⌈max⌉].
+//! Shades and channels are what the [`Shading`] makes of them; fog and the table's normals are linear, started anew
+//! with every piece, whatever the shading, and keep the guarantees of [`shade`](super::shade): no sum leaves the
+//! range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a byte
+//! lies in [min >> 8, ⌈max⌉].
 
 use core::ops::Range;
 
 use super::cover::{Ordered, Row};
 use super::depth::{Cell, DepthPlane};
-use super::hyperbolic::{HyperbolicPlane, Linear};
+use super::hyperbolic::Linear;
+use super::paint::{Paint, to_bytes};
 use super::shade::{RESEED, ShadePlane};
+use super::shading::Shading;
 use super::triangle::{Drawn, Raster};
 use super::vertex::Vertex;
+use super::weights::Weights;
 use crate::fixed::U8F8;
 use crate::span::channels::{mix_cube, mix_nearest};
 use crate::span::depth::{copy_before, copy_nearer};
-use crate::span::dither::fill_dithered;
 use crate::span::hyperbolic::floor_quotient;
 use crate::span::lit::interpolate;
 use crate::span::texture::{Texels, fill_affine, fill_perspective};
@@ -69,14 +72,10 @@ pub trait Lighting: core::fmt::Debug {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum Source<'a> {
-    /// The corners' shades, or their channels, linear on the screen; exact starts every 64 pixels, or,
-    /// for shades, one for each row.
-    Linear {
-        /// Whether there are exact starts every 64 pixels.
-        reseeded: bool,
-    },
-    /// The corners' shades, linear on the face.
-    Hyperbolic,
+    /// The corners' shades, or their channels, each for itself, as this shading has them. Of
+    /// [`GouraudPeriod`](Shading::GouraudPeriod) the shades alone: which pixels is decided by exact cover,
+    /// where the values of all stages are in range.
+    Shaded(Shading),
     /// [`Attributes::slope`], linear on the screen, looked up: row and column give the shade.
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`], linear on the face, lit.
@@ -145,7 +144,7 @@ impl<'a> Look<'a> {
     /// Whether its shades are linear and nothing is made of them but what fog and blending do.
     #[inline]
     fn is_plain(&self) -> bool {
-        matches!(self.source, Source::Linear { .. })
+        matches!(self.source, Source::Shaded(_))
             && self.channels().is_none()
             && self.dither().is_none()
             && self.texture().is_none()
@@ -182,7 +181,7 @@ impl<'a> Look<'a> {
 impl Look<'_> {
     /// Linear shades and nothing else.
     pub const PLAIN: Self = Self {
-        source: Source::Linear { reseeded: true },
+        source: Source::Shaded(Shading::GouraudReseeded),
         channels: None,
         dither: None,
         texture: None,
@@ -241,27 +240,23 @@ impl TexturePlane {
 /// Normals and positions over a triangle.
 #[derive(Clone, Copy, Debug)]
 struct LitPlane {
-    /// The weights of the corners: twice the areas of the parts of the triangle opposite to them.
-    weights: [Linear; 3],
+    weights: Weights,
     /// Of each corner, its values times its depth, then its depth.
     values: [[f64; 7]; 3],
 }
 
 impl LitPlane {
     fn new(triangle: &Ordered, corners: [&Attributes; 3]) -> Self {
-        let weights = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|one| Linear::new(triangle, one));
         let values = [0, 1, 2].map(|k| {
             let depth = f64::from(triangle.vertices[k].depth().max(1));
             let [a, b, c, d, e, f] = corners[k].lit.map(|value| f64::from(value) * depth);
             [a, b, c, d, e, f, depth]
         });
-        Self { weights, values }
+        Self { weights: Weights::new(triangle), values }
     }
 
     /// The sum over the corners, in their order from top to bottom, of the values with these weights.
-    fn sum(&self, weights: [i128; 3]) -> ([f64; 6], f64) {
-        // Areas are at most 2⁴²: exact.
-        let [wa, wb, wc] = weights.map(|weight| weight as f64);
+    fn sum(&self, [wa, wb, wc]: [f64; 3]) -> ([f64; 6], f64) {
         let [va, vb, vc] = &self.values;
         let value = |i: usize| wa * va[i] + wb * vb[i] + wc * vc[i];
         (core::array::from_fn(value), value(6))
@@ -269,8 +264,8 @@ impl LitPlane {
 
     /// Points from pixel (`x`, `y`) on.
     fn points(&self, x: i32, y: i32, points: &mut [[f32; 6]]) {
-        let (a, d) = self.sum(self.weights.each_ref().map(|weight| weight.at(x, y)));
-        let (da, dd) = self.sum(self.weights.each_ref().map(Linear::per_column));
+        let (a, d) = self.sum(self.weights.at(x, y));
+        let (da, dd) = self.sum(self.weights.per_column());
         interpolate(points, a, da, d, dd);
     }
 }
@@ -278,9 +273,8 @@ impl LitPlane {
 /// The values of one triangle that its look uses.
 #[derive(Clone, Copy, Debug)]
 enum Planes {
-    Shade(ShadePlane),
-    Channels([ShadePlane; 3]),
-    Hyperbolic(HyperbolicPlane),
+    Shade(Paint),
+    Channels([Paint; 3]),
     Slope([ShadePlane; 2]),
     Lit(LitPlane),
 }
@@ -334,16 +328,16 @@ impl<'a> EffectPaint<'a> {
             let same = |v: &Vertex| v.x() == corner.x() && v.y() == corner.y();
             &attributes[vertices.iter().position(same).unwrap_or(0)]
         });
-        let plane = |value: fn(&Attributes) -> U8F8| {
-            ShadePlane::of_values(triangle, corners.map(|corner| i64::from(value(corner).to_bits())))
+        let values = |value: &dyn Fn(&Attributes) -> U8F8| corners.map(|corner| i64::from(value(corner).to_bits()));
+        let plane = |value: fn(&Attributes) -> U8F8| ShadePlane::of_values(triangle, values(&value));
+        let channels = |shading| {
+            Planes::Channels([0, 1, 2].map(|i| Paint::of_values(triangle, values(&|c| c.channels[i]), shading)))
         };
         let planes = match (look.source, look.channels()) {
             (Source::Lit(_), _) => Planes::Lit(LitPlane::new(triangle, corners)),
-            (_, Some(_)) => {
-                Planes::Channels([plane(|c| c.channels[0]), plane(|c| c.channels[1]), plane(|c| c.channels[2])])
-            }
-            (Source::Linear { .. }, None) => Planes::Shade(ShadePlane::new(triangle)),
-            (Source::Hyperbolic, None) => Planes::Hyperbolic(HyperbolicPlane::new(triangle)),
+            (Source::Shaded(shading), None) => Planes::Shade(Paint::new(triangle, shading)),
+            (Source::Shaded(shading), Some(_)) => channels(shading),
+            (Source::NormalTable(_), Some(_)) => channels(Shading::default()),
             (Source::NormalTable(_), None) => Planes::Slope([plane(|c| c.slope[0]), plane(|c| c.slope[1])]),
         };
         let texture = look.texture().map(|texture| TexturePlane::new(triangle, corners, texture.mapping));
@@ -385,7 +379,7 @@ impl<'a> EffectPaint<'a> {
             let skipped = (x - seed) as usize;
             let piece = &mut bytes[..length];
             match &self.planes {
-                Planes::Shade(plane) if PLAIN => kernel.fill(piece, self.start(plane, row, seed), plane.step()),
+                Planes::Shade(paint) if PLAIN => paint.piece(row, seed, piece, None, kernel),
                 _ => self.shades(row, seed, piece, kernel),
             }
             if FOG && let (Some(fog), Some(table)) = (&self.fog, self.look.fog()) {
@@ -423,45 +417,15 @@ impl<'a> EffectPaint<'a> {
         add(matches!(self.planes, Planes::Lit(_) | Planes::Slope(_)), &mut drawn.lit);
     }
 
-    /// The linear shade at pixel `seed`: exact, or, of one exact start a row, continued from that.
-    #[inline]
-    fn start(&self, plane: &ShadePlane, row: &Row, seed: i32) -> u16 {
-        if matches!(self.look.source, Source::Linear { reseeded: true }) {
-            plane.start(seed, row.y)
-        } else {
-            // Columns are below 4,096; the sum is meant modulo 2¹⁶.
-            let steps = (seed - row.origin) as u16;
-            plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
-        }
-    }
-
     /// The bytes from pixel `seed` on: shades, with their texture, or mixed.
     fn shades(&self, row: &Row, seed: i32, piece: &mut [u8], kernel: Kernel) {
         let thresholds = &self.look.dither().unwrap_or(&HALVES)[(row.y & 7) as usize];
-        let dithered = self.look.dither().is_some();
         // A column.
         let column = seed as usize;
-        let linear = |plane: &ShadePlane, start: u16, piece: &mut [u8]| {
-            if dithered {
-                // The half that the start holds is the threshold's now.
-                fill_dithered(piece, start.wrapping_sub(128), plane.step(), thresholds, column);
-            } else {
-                kernel.fill(piece, start, plane.step());
-            }
-        };
         let length = piece.len();
         match &self.planes {
-            Planes::Shade(plane) => {
-                linear(plane, self.start(plane, row, seed), piece);
-            }
-            Planes::Hyperbolic(plane) => {
-                let mut shades = [0_u16; PIECE];
-                for (shade, x) in shades[..length].iter_mut().zip(seed..) {
-                    let (n, d) = plane.shade(x, row.y);
-                    // 0 to 0xFF00.
-                    *shade = floor_quotient(n, d) as u16;
-                }
-                to_bytes(&shades[..length], thresholds, column, piece);
+            Planes::Shade(paint) => {
+                paint.piece(row, seed, piece, self.look.dither().is_some().then_some(thresholds), kernel);
             }
             Planes::Slope([across, down]) => {
                 let mut rows: Piece = [0; PIECE];
@@ -471,10 +435,10 @@ impl<'a> EffectPaint<'a> {
                     lookup(piece, &rows[..length], table);
                 }
             }
-            Planes::Channels(planes) => {
+            Planes::Channels(paints) => {
                 let mut channels = [[0; PIECE]; 3];
-                for (plane, channel) in planes.iter().zip(&mut channels) {
-                    kernel.fill(&mut channel[..length], plane.start(seed, row.y), plane.step());
+                for (paint, channel) in paints.iter().zip(&mut channels) {
+                    paint.piece(row, seed, &mut channel[..length], None, kernel);
                 }
                 return self.mix(row, seed, channels, thresholds, piece);
             }
@@ -563,14 +527,6 @@ impl<'a> EffectPaint<'a> {
                 }
             }
         }
-    }
-}
-
-/// Shades of 8.8 to bytes: the threshold added, the fraction dropped.
-fn to_bytes(shades: &[u16], thresholds: &[u8; 8], column: usize, bytes: &mut [u8]) {
-    for (k, (byte, shade)) in bytes.iter_mut().zip(shades).enumerate() {
-        // A shade is at most 0xFF00.
-        *byte = (shade.wrapping_add(u16::from(thresholds[(column + k) & 7])) >> 8) as u8;
     }
 }
 

@@ -43,10 +43,7 @@ impl Linear {
     pub(super) fn at(&self, x: i32, y: i32) -> i128 {
         self.origin + self.per_column * i128::from(x) + self.per_row * i128::from(y)
     }
-}
 
-#[cfg(feature = "alloc")]
-impl Linear {
     /// What it changes by from one pixel to the next.
     pub(super) fn per_column(&self) -> i128 {
         self.per_column
@@ -61,12 +58,12 @@ pub struct HyperbolicPlane {
 }
 
 impl HyperbolicPlane {
-    /// The shades of a triangle that is not degenerate. A depth of 0 counts as 1.
+    /// Of any three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order of
+    /// its vertices. A depth of 0 counts as 1.
     #[must_use]
-    pub fn new(triangle: &Ordered) -> Self {
+    pub fn of_values(triangle: &Ordered, shades: [i64; 3]) -> Self {
         let depths = triangle.vertices.each_ref().map(|v| i128::from(v.depth().max(1)));
-        let shades = triangle.vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
-        let weighted = [0, 1, 2].map(|i| depths[i] * shades[i]);
+        let weighted = [0, 1, 2].map(|i| depths[i] * i128::from(shades[i]));
         Self { numerator: Linear::new(triangle, weighted), denominator: Linear::new(triangle, depths) }
     }
 
@@ -79,14 +76,14 @@ impl HyperbolicPlane {
     /// Numerator and denominator of the byte at pixel (`x`, `y`), whose centre lies in the triangle.
     #[must_use]
     pub fn quotient(&self, x: i32, y: i32) -> (i128, i128) {
-        let (n, d) = (self.numerator.at(x, y), self.denominator.at(x, y));
+        let (n, d) = self.shade(x, y);
         (n + 128 * d, 256 * d)
     }
 
     /// What both change by from one pixel to the next.
     #[must_use]
     pub fn step(&self) -> (i128, i128) {
-        let (n, d) = (self.numerator.per_column, self.denominator.per_column);
+        let (n, d) = (self.numerator.per_column(), self.denominator.per_column());
         (n + 128 * d, 256 * d)
     }
 }

@@ -6,7 +6,7 @@
 //! edge leave no hole and draw no pixel twice. Shades stay **in range**: a byte lies within
 //! `[(min + 128) >> 8, (max + 128) >> 8]` of its own triangle's vertices. Neither is reached by
 //! clamping pixels: [`edge`] walks the edges with quotient and remainder, [`shade`] says why no
-//! sum can leave the range.
+//! sum can leave the range. One [`Shading`] has neither: that of the sources, [`period`].
 //!
 //! The stages, in the order in which a triangle passes them:
 //!
@@ -17,7 +17,9 @@
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
 //! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
 //! | [`edge`], [`cover`] | which pixels |
-//! | [`shade`], [`hyperbolic`], [`depth`] | which byte, and whether it is in front |
+//! | [`shading`], [`shade`], [`wide`], [`hyperbolic`], `float` | which byte |
+//! | [`period`] | both as the sources print them |
+//! | [`depth`] | whether it is in front |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
 //! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
@@ -44,19 +46,27 @@ mod draw_target;
 pub mod edge;
 #[cfg(feature = "alloc")]
 pub mod effects;
+#[cfg(feature = "alloc")]
+pub mod float;
 pub mod frame;
 pub mod hyperbolic;
 mod paint;
+pub mod period;
 pub mod polygon;
 pub mod quotient;
 pub mod scan_line;
 pub mod shade;
+pub mod shading;
 pub mod triangle;
 pub mod vertex;
+#[cfg(feature = "alloc")]
+mod weights;
+pub mod wide;
 
 pub use depth::DepthBuffer;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;
 pub use frame::{Frame, FrameError, Rect};
-pub use triangle::{Drawn, Raster, Shading};
+pub use shading::Shading;
+pub use triangle::{Drawn, Raster};
 pub use vertex::{Vertex, VertexError};

@@ -6,28 +6,72 @@ use core::ops::Range;
 
 use super::cover::{Ordered, Row};
 use super::depth::{Cell, DepthPlane};
+#[cfg(feature = "alloc")]
+use super::float::FloatPlane;
 use super::hyperbolic::HyperbolicPlane;
+use super::period::{PeriodTriangle, Ramp};
 use super::shade::{RESEED, ShadePlane};
-use super::triangle::{Drawn, Shading};
+use super::shading::Shading;
+use super::triangle::Drawn;
+use super::wide::WideShadePlane;
+#[cfg(feature = "alloc")]
+use crate::span::dither::fill_dithered;
+#[cfg(feature = "alloc")]
+use crate::span::float;
+use crate::span::wide::fill_16_16;
 use crate::span::{Kernel, depth, hyperbolic};
 
-/// The shades of one triangle, ready to be painted row by row.
+/// The shades of one triangle, or another value of its corners, ready to be painted row by row.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Paint {
     Flat(u8),
-    Linear { plane: ShadePlane, reseeded: bool },
+    Linear {
+        plane: ShadePlane,
+        reseeded: bool,
+    },
+    Period(PeriodTriangle),
+    /// Of one row.
+    Ramp(Ramp),
+    Wide(WideShadePlane),
     Hyperbolic(HyperbolicPlane),
+    #[cfg(feature = "alloc")]
+    Float(FloatPlane),
 }
 
 impl Paint {
     /// Of a triangle that is not degenerate.
     #[inline]
     pub(super) fn new(triangle: &Ordered, shading: Shading) -> Self {
+        Self::of_values(triangle, triangle.shades(), shading)
+    }
+
+    /// Of three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order of its
+    /// vertices.
+    #[inline]
+    pub(super) fn of_values(triangle: &Ordered, values: [i64; 3], shading: Shading) -> Self {
         match shading {
             Shading::Flat(index) => Self::Flat(index),
-            Shading::Gouraud => Self::Linear { plane: ShadePlane::new(triangle), reseeded: false },
-            Shading::GouraudReseeded => Self::Linear { plane: ShadePlane::new(triangle), reseeded: true },
-            Shading::GouraudHyperbolic => Self::Hyperbolic(HyperbolicPlane::new(triangle)),
+            Shading::Gouraud | Shading::GouraudReseeded => Self::Linear {
+                plane: ShadePlane::of_values(triangle, values),
+                reseeded: matches!(shading, Shading::GouraudReseeded),
+            },
+            _ => Self::of_another_kind(triangle, values, shading),
+        }
+    }
+
+    /// Apart, so that the loops that draw linear shades hold no more than these.
+    #[inline(never)]
+    fn of_another_kind(triangle: &Ordered, values: [i64; 3], shading: Shading) -> Self {
+        match shading {
+            Shading::GouraudPeriod => Self::Period(PeriodTriangle::new(triangle, values)),
+            Shading::Gouraud1616 => Self::Wide(WideShadePlane::of_values(triangle, values)),
+            Shading::GouraudHyperbolic => Self::Hyperbolic(HyperbolicPlane::of_values(triangle, values)),
+            #[cfg(feature = "alloc")]
+            Shading::Float => Self::Float(FloatPlane::of_values(triangle, values)),
+            // These are made above.
+            Shading::Flat(_) | Shading::Gouraud | Shading::GouraudReseeded => {
+                Self::of_values(triangle, values, shading)
+            }
         }
     }
 
@@ -39,10 +83,18 @@ impl Paint {
             Self::Linear { plane, reseeded } => starts(row, plane, *reseeded, |range, start| {
                 span(pixels, range, drawn, |pixels| kernel.fill(pixels, start, plane.step()));
             }),
-            Self::Hyperbolic(plane) => span(pixels, row.range(), drawn, |pixels| {
-                let ((n, d), (dn, dd)) = (plane.quotient(row.x0, row.y), plane.step());
-                hyperbolic::fill_quotients(pixels, n, dn, d, dd);
+            _ => self.row_of_another_kind(row, pixels, kernel, drawn),
+        }
+    }
+
+    #[inline(never)]
+    fn row_of_another_kind(&self, row: &Row, pixels: &mut [u8], kernel: Kernel, drawn: &mut Drawn) {
+        match self {
+            Self::Period(triangle) => Self::Ramp(triangle.ramp(row.y)).row_of_another_kind(row, pixels, kernel, drawn),
+            Self::Ramp(ramp) => ramp.spans(row.x0..row.x1, |range, shade, step| {
+                span(pixels, range, drawn, |pixels| kernel.fill(pixels, shade, step));
             }),
+            _ => span(pixels, row.range(), drawn, |pixels| self.fill(row, row.x0, pixels)),
         }
     }
 
@@ -62,24 +114,136 @@ impl Paint {
                 depth::fill_nearer(pixels, depths, u16::from(*index) << 8, 0, z, dz)
             }),
             Self::Linear { plane: shade, reseeded } => starts(row, shade, *reseeded, |range, start| {
-                tested.span(range, |pixels, depths, z, dz| {
-                    depth::fill_nearer(pixels, depths, start, shade.step(), z, dz)
-                });
+                tested.linear_span(range, start, shade.step());
             }),
-            Self::Hyperbolic(shade) => {
-                let (dn, dd) = shade.step();
+            _ => self.row_of_another_kind_where_nearer(row, &mut tested),
+        }
+    }
+
+    #[inline(never)]
+    fn row_of_another_kind_where_nearer<D: Cell>(&self, row: &Row, tested: &mut Tested<'_, D>) {
+        match self {
+            Self::Period(triangle) => {
+                Self::Ramp(triangle.ramp(row.y)).row_of_another_kind_where_nearer(row, tested);
+            }
+            Self::Ramp(ramp) => {
+                ramp.spans(row.x0..row.x1, |range, shade, step| tested.linear_span(range, shade, step));
+            }
+            _ => {
                 let mut bytes = [0; 64];
                 for x in row.range().step_by(bytes.len()) {
                     let end = row.range().end.min(x + bytes.len());
                     let bytes = &mut bytes[..end - x];
                     // A column is below 4,096.
-                    let (n, d) = shade.quotient(x as i32, row.y);
-                    hyperbolic::fill_quotients(bytes, n, dn, d, dd);
+                    self.fill(row, x as i32, bytes);
                     tested.span(x..end, |pixels, depths, z, dz| depth::copy_nearer(pixels, depths, bytes, z, dz));
                 }
             }
         }
     }
+
+    /// The bytes from column `x` of `row` on, of those that have one loop for as many pixels as there are.
+    #[inline]
+    fn fill(&self, row: &Row, x: i32, pixels: &mut [u8]) {
+        match self {
+            Self::Wide(plane) => fill_16_16(pixels, wide_start(plane, row, x), plane.step()),
+            Self::Hyperbolic(plane) => {
+                let ((n, d), (dn, dd)) = (plane.quotient(x, row.y), plane.step());
+                hyperbolic::fill_quotients(pixels, n, dn, d, dd);
+            }
+            #[cfg(feature = "alloc")]
+            Self::Float(plane) => {
+                let at = plane.row(row);
+                float::fill_float(pixels, x - at.start, at.n, at.d, at.range);
+            }
+            Self::Flat(index) => pixels.fill(*index),
+            // Their rows are cut where they start anew.
+            Self::Linear { .. } | Self::Period(_) | Self::Ramp(_) => {}
+        }
+    }
+}
+
+/// For the stages of `effects`.
+#[cfg(feature = "alloc")]
+impl Paint {
+    /// The bytes of `piece`, which begins at column `x` of `row` and has no start but there. With dither, the
+    /// thresholds of the row take the place of the half.
+    pub(super) fn piece(&self, row: &Row, x: i32, piece: &mut [u8], dither: Option<&[u8; 8]>, kernel: Kernel) {
+        // A column.
+        let column = x as usize;
+        let linear = |piece: &mut [u8], column: usize, shade: u16, step: u16, half: u16| match dither {
+            Some(thresholds) => fill_dithered(piece, shade.wrapping_sub(half), step, thresholds, column),
+            None => kernel.fill(piece, shade, step),
+        };
+        match (self, dither) {
+            (Self::Linear { plane, reseeded }, _) => {
+                let start = if *reseeded {
+                    plane.start(x, row.y)
+                } else {
+                    // Columns are below 4,096; the sum is meant modulo 2¹⁶.
+                    let steps = (x - row.origin) as u16;
+                    plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
+                };
+                linear(piece, column, start, plane.step(), 128);
+            }
+            (Self::Period(triangle), _) => Self::Ramp(triangle.ramp(row.y)).piece(row, x, piece, dither, kernel),
+            // At most 64 pixels.
+            (Self::Ramp(ramp), _) => ramp.spans(x..x + piece.len() as i32, |range, shade, step| {
+                linear(&mut piece[range.start - column..range.end - column], range.start, shade, step, 0);
+            }),
+            (_, None) | (Self::Flat(_), _) => self.fill(row, x, piece),
+            (_, Some(thresholds)) => {
+                let mut shades = [0; RESEED as usize];
+                let shades = &mut shades[..piece.len()];
+                self.shades(row, x, shades);
+                to_bytes(shades, thresholds, column, piece);
+            }
+        }
+    }
+
+    /// The shades from column `x` of `row` on in 8.8, cut off, of those that dither has no loop for.
+    fn shades(&self, row: &Row, x: i32, shades: &mut [u16]) {
+        // Each is 0 to 0xFF00, by cover.
+        match self {
+            Self::Wide(plane) => {
+                // Less the half.
+                let mut sum = wide_start(plane, row, x).wrapping_sub(0x8000);
+                for shade in shades {
+                    *shade = (sum >> 8) as u16;
+                    sum = sum.wrapping_add(plane.step());
+                }
+            }
+            Self::Hyperbolic(plane) => {
+                for (shade, x) in shades.iter_mut().zip(x..) {
+                    let (n, d) = plane.shade(x, row.y);
+                    *shade = hyperbolic::floor_quotient(n, d) as u16;
+                }
+            }
+            Self::Float(plane) => {
+                let at = plane.row(row);
+                for (shade, k) in shades.iter_mut().zip(x - at.start..) {
+                    *shade = (float::quotient(k, at.n, at.d, at.range) * 256.0) as u16;
+                }
+            }
+            Self::Flat(_) | Self::Linear { .. } | Self::Period(_) | Self::Ramp(_) => {}
+        }
+    }
+}
+
+/// Shades of 8.8 to bytes: the threshold added, the fraction dropped.
+#[cfg(feature = "alloc")]
+pub(super) fn to_bytes(shades: &[u16], thresholds: &[u8; 8], column: usize, bytes: &mut [u8]) {
+    for (k, (byte, shade)) in bytes.iter_mut().zip(shades).enumerate() {
+        // A shade is at most 0xFF00.
+        *byte = (shade.wrapping_add(u16::from(thresholds[(column + k) & 7])) >> 8) as u8;
+    }
+}
+
+/// The sum at column `x`: it starts at the row's origin.
+#[inline]
+fn wide_start(plane: &WideShadePlane, row: &Row, x: i32) -> u32 {
+    // Columns are below 4,096; the sum is meant modulo 2³².
+    plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul((x - row.origin) as u32))
 }
 
 /// Hands the pixels of a span to its loop, and counts them.
@@ -115,6 +279,12 @@ impl<D: Cell> Tested<'_, D> {
             self.drawn.tested += pixels.len() as u32;
             self.drawn.pixels += fill(pixels, depths, z, self.plane.step());
         }
+    }
+
+    /// A span of shades in 8.8.
+    #[inline]
+    fn linear_span(&mut self, range: Range<usize>, shade: u16, step: u16) {
+        self.span(range, |pixels, depths, z, dz| depth::fill_nearer(pixels, depths, shade, step, z, dz));
     }
 }
 

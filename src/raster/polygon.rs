@@ -32,7 +32,8 @@ use super::depth::Cell;
 use super::frame::Rect;
 use super::quotient::Divisor;
 use super::shade::RESEED;
-use super::triangle::{Drawn, Raster, Shading};
+use super::shading::Shading;
+use super::triangle::{Drawn, Raster};
 use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 
@@ -62,8 +63,8 @@ pub enum PolygonError {
         /// Rows needed: those that the frame holds.
         needed: usize,
     },
-    /// The table interpolates shades linearly along edges and rows; it has no other shading than
-    /// flat and the two linear ones.
+    /// The table interpolates shades in 8.8, linearly along edges and rows; it has no other shading than
+    /// flat, [`Gouraud`](Shading::Gouraud) and [`GouraudReseeded`](Shading::GouraudReseeded).
     Shading(Shading),
 }
 
@@ -224,7 +225,7 @@ impl<D: Cell> Raster<'_, D> {
     /// ```
     ///
     /// # Errors
-    /// A shading that is neither flat nor linear, a polygon that is not convex (after rounding to 1/256 pixel one may no longer be), or a table
+    /// A shading that is neither flat nor linear in 8.8, a polygon that is not convex (after rounding to 1/256 pixel one may no longer be), or a table
     /// with too few rows. Nothing is drawn then.
     pub fn polygon(
         &mut self,

@@ -61,7 +61,7 @@ impl ShadePlane {
     #[must_use]
     #[inline]
     pub fn new(triangle: &Ordered) -> Self {
-        Self::of_values(triangle, triangle.vertices.each_ref().map(|v| i64::from(v.shade().to_bits())))
+        Self::of_values(triangle, triangle.shades())
     }
 
     /// The plane of any three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate,
@@ -99,11 +99,27 @@ impl ShadePlane {
     #[must_use]
     #[inline]
     pub fn start(&self, x: i32, y: i32) -> u16 {
-        // Inside the triangle N is at most 2⁵⁸. The terms on the way stay below 2⁶¹.
-        let numerator = self.origin + self.per_column * i64::from(x) + self.per_row * i64::from(y);
         // Falling shades: the ceiling is the floor of N + A − 1.
         let bias = if self.per_column < 0 { self.area.get() - 1 } else { 0 };
         // 0 to 0xFF00, by cover.
-        (self.area.floor(numerator + bias) + 128) as u16
+        (self.area.floor(self.numerator(x, y) + bias) + 128) as u16
+    }
+
+    /// N at the pixel (`x`, `y`). Inside the triangle it is 0 to 2⁵⁸; the terms on the way stay below 2⁶¹.
+    #[inline]
+    pub(super) fn numerator(&self, x: i32, y: i32) -> i64 {
+        self.origin + self.per_column * i64::from(x) + self.per_row * i64::from(y)
+    }
+
+    /// What N changes by from one pixel to the next: within 2⁴⁶.
+    #[inline]
+    pub(super) fn per_column(&self) -> i64 {
+        self.per_column
+    }
+
+    /// A.
+    #[inline]
+    pub(super) fn area(&self) -> &Divisor {
+        &self.area
     }
 }

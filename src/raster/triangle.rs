@@ -4,25 +4,10 @@ use super::cover::{Ordered, Row};
 use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::frame::{Frame, Rect};
 use super::paint::Paint;
+use super::period::PeriodTriangle;
+use super::shading::Shading;
 use super::vertex::Vertex;
 use crate::span::Kernel;
-
-/// How a triangle's pixels get their shade.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-#[non_exhaustive]
-pub enum Shading {
-    /// One byte for the whole triangle; the shades of the vertices are not looked at.
-    Flat(u8),
-    /// Linear between the vertices, each row of the triangle one span: the start exact, one
-    /// addition a pixel from there on. Within 1.75 shades of exact over a row of 320 pixels.
-    Gouraud,
-    /// The same, started anew every 64 pixels: within three quarters of a shade of exact.
-    #[default]
-    GouraudReseeded,
-    /// Linear on the face in space, so perspective-correct: a quotient for every pixel, the nearest
-    /// shade to exact. It takes the depths of the vertices for 1/w.
-    GouraudHyperbolic,
-}
 
 /// What drawing a triangle came to.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -143,6 +128,9 @@ impl<'a, D: Cell> Raster<'a, D> {
     #[inline]
     fn draw<const CLIPS: bool>(&mut self, vertices: &[Vertex; 3], shading: Shading) -> Drawn {
         let triangle = Ordered::new(vertices);
+        if !shading.has_exact_cover() {
+            return self.draw_period(&triangle);
+        }
         let mut drawn = Drawn::default();
         // Made when the first row is there: half of the triangles of a fine model cover no pixel.
         let (mut paint, mut plane) = (None, None);
@@ -166,6 +154,31 @@ impl<'a, D: Cell> Raster<'a, D> {
         } else {
             triangle.rows_inside(draw)
         }
+        drawn
+    }
+
+    /// The same with rows, and shades in each, as the sources have them. Depths are those of the triangle's
+    /// plane, beyond its edges too, where they may wrap.
+    #[inline(never)]
+    fn draw_period(&mut self, triangle: &Ordered) -> Drawn {
+        let mut drawn = Drawn::default();
+        if triangle.doubled_area == 0 {
+            return drawn;
+        }
+        let mut plane = None;
+        let (width, clip) = (self.frame.width(), self.clip);
+        PeriodTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, ramp| {
+            drawn.covered += (row.x1 - row.x0) as u32;
+            let y = row.y as u32;
+            let Some(pixels) = self.frame.row_mut(y) else { return };
+            let paint = Paint::Ramp(ramp);
+            let Some(depth) = &mut self.depth else {
+                return paint.row(&row, pixels, self.kernel, &mut drawn);
+            };
+            let Some(depths) = depth.row_mut(y) else { return };
+            let plane = plane.get_or_insert_with(|| DepthPlane::new(triangle));
+            paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
+        });
         drawn
     }
 }

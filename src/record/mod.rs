@@ -18,11 +18,12 @@
 //! 000000 040404 080808 0c0c0c …             32 lines of 8 colours, rrggbb
 //! triangles                                 in the order in which they are handed to the raster
 //! flat 12  1024 512 0 900  …                shading and its byte, then three times: x, y, shade, depth
-//! gouraud  1024 512 65280 900  …
-//! gouraud-reseeded  1024 512 65280 900  …
-//! gouraud-hyperbolic  1024 512 65280 900  …
+//! gouraud  1024 512 65280 900  …            the others have no byte
 //! end
 //! ```
+//!
+//! The shadings are those of [`Shading`], by [`name`](Shading::name): `flat`, `gouraud-period`, `gouraud`,
+//! `gouraud-reseeded`, `gouraud-16.16`, `gouraud-hyperbolic`, `float`.
 //!
 //! x and y are in 1/256 pixel, to the right and down; a shade is 8.8; a depth is a u32, greater is
 //! nearer: what [`Vertex::new`] takes, with its limits. A file without `end` is broken off, and

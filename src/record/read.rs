@@ -104,13 +104,12 @@ fn palette(lines: &mut Lines<impl BufRead>) -> Result<Palette, RecordErrorKind> 
 }
 
 fn triangle(fields: &mut Fields<'_>) -> Result<([Vertex; 3], Shading), RecordErrorKind> {
-    const SHADINGS: &str = "\"flat\", \"gouraud\", \"gouraud-reseeded\", \"gouraud-hyperbolic\" or \"end\"";
+    const SHADINGS: &str = "a shading (\"flat\", \"gouraud-reseeded\" …) or \"end\"";
     let shading = match fields.next(SHADINGS)? {
         "flat" => Shading::Flat(fields.number("a palette index")?),
-        "gouraud" => Shading::Gouraud,
-        "gouraud-reseeded" => Shading::GouraudReseeded,
-        "gouraud-hyperbolic" => Shading::GouraudHyperbolic,
-        _ => return Err(fields.not(SHADINGS)),
+        name => {
+            *Shading::INTERPOLATED.iter().find(|shading| shading.name() == name).ok_or_else(|| fields.not(SHADINGS))?
+        }
     };
     let mut vertices = [Vertex::default(); 3];
     for vertex in &mut vertices {

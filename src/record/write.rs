@@ -24,10 +24,8 @@ pub(super) fn write(record: &Record, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "# x y in 1/256 pixel, shade in 1/256, depth (greater is nearer), of each vertex")?;
     for (vertices, shading) in &record.triangles {
         match shading {
-            Shading::Flat(index) => write!(out, "flat {index}")?,
-            Shading::Gouraud => write!(out, "gouraud")?,
-            Shading::GouraudReseeded => write!(out, "gouraud-reseeded")?,
-            Shading::GouraudHyperbolic => write!(out, "gouraud-hyperbolic")?,
+            Shading::Flat(index) => write!(out, "{} {index}", shading.name())?,
+            _ => write!(out, "{}", shading.name())?,
         }
         for v in vertices {
             write!(out, "  {} {} {} {}", v.x().to_bits(), v.y().to_bits(), v.shade().to_bits(), v.depth())?;

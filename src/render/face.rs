@@ -194,11 +194,7 @@ impl Faces<'_> {
             let LitVertex { vertex, back, .. } = self.lit[indices[0] as usize];
             return Shading::Flat(if turned { back } else { vertex.shade() }.nearest());
         }
-        match self.rung {
-            Rung::Gouraud88 => Shading::Gouraud,
-            Rung::GouraudHyperbolic => Shading::GouraudHyperbolic,
-            _ => Shading::GouraudReseeded,
-        }
+        self.rung.shading()
     }
 
     /// The one shade of a face: at its middle, by its own normal.

@@ -249,10 +249,14 @@ impl IntegerPath {
         self.beams.resize(self.suns.len(), Beam::default());
         let technique = match rung {
             Rung::Flat => Technique::Flat,
+            Rung::GouraudPeriod => Technique::GouraudPeriod,
             Rung::Gouraud88 => Technique::Gouraud,
-            Rung::Gouraud88Reseeded => Technique::GouraudReseeded,
+            Rung::Gouraud1616 => Technique::Gouraud1616,
             Rung::GouraudHyperbolic => Technique::GouraudHyperbolic,
-            _ => Technique::GouraudReseeded,
+            // The default; of the others it is what `Rung::in_integers` says.
+            Rung::Gouraud88Reseeded | Rung::GouraudTessellated | Rung::PhongTable | Rung::Phong | Rung::Float => {
+                Technique::GouraudReseeded
+            }
         };
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };

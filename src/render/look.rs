@@ -20,6 +20,9 @@ const ONE_TEXEL: [u8; 1] = [0];
 /// Thresholds that are all a half: dither without amplitude.
 const NO_AMPLITUDE: [[u8; 8]; 8] = [[128; 8]; 8];
 
+/// The same for shades that have no half added to them.
+const NO_THRESHOLD: [[u8; 8]; 8] = [[0; 8]; 8];
+
 fn is_forced(plan: &ObjectPlan, effect: Effect) -> bool {
     plan.is_on(effect) && plan.decision(effect).why == Why::Forced
 }
@@ -131,7 +134,10 @@ impl Looks<'_> {
             source: source(plan, rung, channels.is_some(), state.normal_table(surface), &light),
             channels,
             dither: match dither {
-                true if is_forced(plan, Effect::Dither) && !self.scene.wishes.dither => Some(&NO_AMPLITUDE),
+                true if is_forced(plan, Effect::Dither) && !self.scene.wishes.dither => {
+                    let cut = rung.shading().rounding() == 0 && channels.is_none();
+                    Some(if cut { &NO_THRESHOLD } else { &NO_AMPLITUDE })
+                }
                 true => Some(&BAYER),
                 false => None,
             },
@@ -157,11 +163,7 @@ fn source<'a>(
             _ => Source::Lit(light),
         };
     }
-    match rung {
-        Rung::GouraudHyperbolic => Source::Hyperbolic,
-        Rung::Gouraud88 => Source::Linear { reseeded: false },
-        _ => Source::Linear { reseeded: true },
-    }
+    Source::Shaded(rung.shading())
 }
 
 fn mapping(plan: &ObjectPlan) -> TextureMapping {

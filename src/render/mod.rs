@@ -466,7 +466,10 @@ impl Renderer {
     fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Rung {
         self.views.clear();
         self.views.extend(scene.objects().iter().map(|object| ObjectView::new(view, object)));
-        let rung = self.rung.or(scene.wishes.rung).unwrap_or_default();
+        let rung = match self.vertex_path {
+            VertexPath::Integer => self.rung_for(scene).in_integers(),
+            VertexPath::Float => self.rung_for(scene),
+        };
         self.states.resize_with(scene.objects().len(), ObjectState::default);
         self.since.clear();
         for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {

@@ -1,6 +1,7 @@
 //! What a scene asks for beyond what it holds. What is not asked for the plan chooses.
 
 use super::names::named;
+use crate::raster::Shading;
 
 named! {
     /// A technique of shading: a rung of the ladder from cheap to exact.
@@ -8,11 +9,16 @@ named! {
     pub enum Rung, "rung" {
         /// One shade for each face.
         Flat = "flat",
+        /// What the sources print: vertices on whole pixels, a step for every span by a division that cuts.
+        /// Without exact cover ([`raster::period`](crate::raster::period)).
+        GouraudPeriod = "gouraud-period",
         /// Linear between the vertices in 8.8, each row of a triangle one span.
         Gouraud88 = "gouraud-8.8",
         /// The same, started anew every 64 pixels: the default.
         #[default]
         Gouraud88Reseeded = "gouraud-8.8-reseeded",
+        /// Linear between the vertices in 16.16, each row of a triangle one span.
+        Gouraud1616 = "gouraud-16.16",
         /// Linear on the face in space, so perspective-correct: a quotient for every pixel.
         GouraudHyperbolic = "gouraud-hyperbolic",
         /// Faces split along their edges until linear shading fits.
@@ -21,6 +27,9 @@ named! {
         PhongTable = "phong-table",
         /// The normal at every pixel, perspective-correct and made unit again, and the whole model.
         Phong = "phong",
+        /// Shades in f32, divided by w at the vertices and multiplied by it again at every pixel: what a program
+        /// of today does.
+        Float = "float",
     }
     /// There is no rung of that name. Its text lists those there are.
     pub struct UnknownRung;
@@ -66,6 +75,36 @@ impl Rung {
     #[must_use]
     pub const fn lights_pixels(self) -> bool {
         matches!(self, Self::PhongTable | Self::Phong)
+    }
+
+    /// How the raster shades faces whose vertices are lit, where their shades differ.
+    #[must_use]
+    pub const fn shading(self) -> Shading {
+        match self {
+            Self::GouraudPeriod => Shading::GouraudPeriod,
+            Self::Gouraud88 => Shading::Gouraud,
+            Self::Gouraud1616 => Shading::Gouraud1616,
+            Self::GouraudHyperbolic => Shading::GouraudHyperbolic,
+            Self::Float => Shading::Float,
+            Self::Flat | Self::Gouraud88Reseeded | Self::GouraudTessellated | Self::PhongTable | Self::Phong => {
+                Shading::GouraudReseeded
+            }
+        }
+    }
+
+    /// Whether its faces cover the pixels whose centres are in them, and no others.
+    #[must_use]
+    pub const fn has_exact_cover(self) -> bool {
+        self.shading().has_exact_cover()
+    }
+
+    /// What the 16.16 vertex path draws for it: the same, or of what it lacks the default.
+    #[must_use]
+    pub const fn in_integers(self) -> Self {
+        match self {
+            Self::GouraudTessellated | Self::PhongTable | Self::Phong | Self::Float => Self::Gouraud88Reseeded,
+            rung => rung,
+        }
     }
 }
 

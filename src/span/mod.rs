@@ -30,7 +30,9 @@
 //!
 //! | loop | what |
 //! |---|---|
+//! | [`wide::fill_16_16`] | the span in 16.16 |
 //! | [`hyperbolic::fill_quotients`] | perspective-correct shades |
+//! | [`float::fill_float`] | the same in f32 |
 //! | [`dither::fill_dithered`] | the span with ordered dither |
 //! | [`texture::fill_affine`], [`texture::fill_perspective`] | rows of texels |
 //! | [`lookup()`] | shades of texels, fog, transparency, Phong's table: one byte of two |
@@ -43,6 +45,7 @@ use core::fmt;
 pub mod channels;
 pub mod depth;
 pub mod dither;
+pub mod float;
 pub mod hyperbolic;
 pub mod lit;
 mod lookup;
@@ -54,6 +57,7 @@ mod portable;
 )]
 mod simd;
 pub mod texture;
+pub mod wide;
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
 mod x86;

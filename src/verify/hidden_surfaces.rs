@@ -67,7 +67,9 @@ fn face(random: &mut Random, record: &Record) -> ([Vertex; 3], Shading) {
         (4, _) => vertices.map(|v| deep(v, random.one_of(&[0, 1, 1 << 30, u32::MAX.into()]))),
         _ => vertices,
     };
-    (vertices, any_shading(random))
+    let shading = any_shading(random);
+    // The scan-line method gives exact cover to all.
+    (vertices, if shading.has_exact_cover() { shading } else { Shading::default() })
 }
 
 /// D4: convex shapes from all sides.

@@ -62,8 +62,17 @@ pub(super) fn draw(
     (width, height): (u32, u32),
     mut pixel: impl FnMut(Pixel),
 ) {
+    let mut pixel = |x: i32, y: i32, byte: u8| {
+        pixel(Pixel { x: x as u32, y: y as u32, byte, depth: depth_at(vertices, x, y) });
+    };
+    if shading == Shading::GouraudPeriod {
+        return period(vertices, (width as i32, height as i32), pixel);
+    }
     let triangle = points(vertices);
     let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
+    // Weighted by the depths, which stand for 1/w.
+    let depths = vertices.each_ref().map(|v| i128::from(v.depth().max(1)));
+    let products = [0, 1, 2].map(|i| depths[i] * shades[i]);
     // No pixel further out than the vertices' own, and none outside the frame: in range of an i32.
     let range = |of: fn(&Point) -> i128, size: u32| {
         let pixels = triangle.each_ref().map(|p| of(p).div_euclid(256));
@@ -71,41 +80,107 @@ pub(super) fn draw(
         low.max(0) as i32..(high + 1).min(i128::from(size)).max(0) as i32
     };
     for y in range(|p| p.1, height) {
-        let (mut first, mut sum) = (None, 0);
-        for x in range(|p| p.0, width) {
-            if !covers(triangle, centre(x, y)) {
-                continue;
-            }
+        let covered: Vec<i32> = range(|p| p.0, width).filter(|&x| covers(triangle, centre(x, y))).collect();
+        let (Some(&first), Some(&last)) = (covered.first(), covered.last()) else { continue };
+        let mut sum = 0;
+        for x in covered {
+            // A sum out of range shows as a byte that no drawing has.
             let byte = match shading {
                 Shading::Flat(index) => index,
-                Shading::Gouraud | Shading::GouraudReseeded => {
-                    let f = *first.get_or_insert(x);
+                Shading::GouraudHyperbolic => {
+                    let ((n, _), (d, _)) =
+                        (interpolate(triangle, products, centre(x, y)), interpolate(triangle, depths, centre(x, y)));
+                    (n + 128 * d).div_euclid(256 * d) as u8
+                }
+                Shading::Float => float(vertices, first, last, x, y),
+                _ => {
+                    // In units of 1/256 shade, or of 1/65,536.
+                    let bits = if shading == Shading::Gouraud1616 { 16 } else { 8 };
+                    let values = shades.map(|shade| shade << (bits - 8));
                     let ((here, area), (there, _)) =
-                        (interpolate(triangle, shades, centre(x, y)), interpolate(triangle, shades, centre(x + 1, y)));
-                    let starts = x == f || (shading == Shading::GouraudReseeded && (x - f) % 64 == 0);
+                        (interpolate(triangle, values, centre(x, y)), interpolate(triangle, values, centre(x + 1, y)));
+                    let starts = x == first || (shading == Shading::GouraudReseeded && (x - first) % 64 == 0);
                     sum = match starts {
                         // Back toward where the shades come from.
                         true if there < here => -(-here).div_euclid(area),
                         true => here.div_euclid(area),
                         false => sum + (there - here) / area,
                     };
-                    // A sum out of range shows as a byte that no drawing has.
-                    ((sum + 128) >> 8) as u8
-                }
-                Shading::GouraudHyperbolic => {
-                    let depths = vertices.each_ref().map(|v| i128::from(v.depth().max(1)));
-                    let products = [0, 1, 2].map(|i| depths[i] * shades[i]);
-                    let ((n, _), (d, _)) =
-                        (interpolate(triangle, products, centre(x, y)), interpolate(triangle, depths, centre(x, y)));
-                    (n + 128 * d).div_euclid(256 * d) as u8
+                    ((sum + (1 << (bits - 1))) >> bits) as u8
                 }
             };
-            pixel(Pixel { x: x as u32, y: y as u32, byte, depth: depth_at(vertices, x, y) });
+            pixel(x, y, byte);
         }
     }
 }
 
-/// The depth at a covered pixel: the definition in [`raster::depth`](crate::raster::depth).
+/// The byte of [`raster::float`](crate::raster::float), of a row that covers the columns `first` to `last`.
+fn float(vertices: &[Vertex; 3], first: i32, last: i32, x: i32, y: i32) -> u8 {
+    let mut order = *vertices;
+    order.sort_by_key(|v| (v.y(), v.x()));
+    let triangle = points(&order);
+    let depths = order.each_ref().map(|v| i128::from(v.depth().max(1)));
+    let shades = order.each_ref().map(|v| i128::from(v.shade().to_bits()));
+    let products = [0, 1, 2].map(|i| depths[i] * shades[i]);
+    // A sum over the corners, each weighted by the part of the triangle that lies opposite.
+    let one = |i: usize| [0, 1, 2].map(|k| i128::from(i == k));
+    let at = |values: [i128; 3], x: i32| interpolate(triangle, values, centre(x, y)).0;
+    let step = |values: [i128; 3]| (at(values, x + 1) - at(values, x)) as f32;
+    let start = if step(depths) < 0.0 { last } else { first };
+    let sum = |values: [i128; 3]| {
+        let [a, b, c] = [0, 1, 2].map(|i| at(one(i), start) as f64 * values[i] as f64);
+        (a + b + c) as f32
+    };
+    let k = (x - start) as f32;
+    // n in 1/256 shade: a power of two changes no rounding.
+    let quotient = (sum(products) + k * step(products)) / (sum(depths) + k * step(depths)) / 256.0;
+    let range = shades.map(|shade| shade as f32 / 256.0);
+    let shade = quotient.max(range[0].min(range[1]).min(range[2])).min(range[0].max(range[1]).max(range[2]));
+    // Rounded to 15 bits behind the point, and cut.
+    (shade + 256.5) as u16 as u8
+}
+
+/// The pixels of [`raster::period`](crate::raster::period), row by row with one addition for each edge.
+fn period(vertices: &[Vertex; 3], (width, height): (i32, i32), mut pixel: impl FnMut(i32, i32, u8)) {
+    let triangle = points(vertices);
+    let mut order = *vertices;
+    order.sort_by_key(|v| (v.y(), v.x()));
+    let corners = order.each_ref().map(|v| {
+        let whole = |units: i32| (units + 128).div_euclid(256);
+        (whole(v.x().to_bits()), whole(v.y().to_bits()), i32::from(v.shade().to_bits()))
+    });
+    let [a, b, c] = corners.map(|(x, y, _)| (i128::from(x), i128::from(y)));
+    let turn = edge(a, c, b);
+    if edge(triangle[0], triangle[1], triangle[2]) == 0 || turn == 0 {
+        return;
+    }
+    let rows = |from: (i32, i32, i32), to: (i32, i32, i32)| {
+        let count = to.1 - from.1;
+        let (mut x, mut shade) = (from.0 * 65_536, from.2);
+        let mut rows = Vec::new();
+        for _ in 0..count {
+            rows.push((x.div_euclid(65_536), shade));
+            x += (to.0 - from.0) * 65_536 / count;
+            shade += (to.2 - from.2) / count;
+        }
+        rows
+    };
+    let [top, middle, bottom] = corners;
+    let long = rows(top, bottom);
+    let mut short = rows(top, middle);
+    short.extend(rows(middle, bottom));
+    for (y, (long, short)) in (top.1..).zip(long.into_iter().zip(short)) {
+        // The middle corner lies to the left of a way down on the screen, or to the right.
+        let ((ax, a_shade), (bx, b_shade)) = if turn > 0 { (short, long) } else { (long, short) };
+        for x in ax..bx {
+            if (0..width).contains(&x) && (0..height).contains(&y) {
+                pixel(x, y, ((a_shade + (x - ax) * ((b_shade - a_shade) / (bx - ax))) / 256) as u8);
+            }
+        }
+    }
+}
+
+/// The depth at a pixel: the definition in [`raster::depth`](crate::raster::depth).
 fn depth_at(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
     let mut order = *vertices;
     order.sort_by_key(|v| (v.y(), v.x()));
@@ -117,7 +192,7 @@ fn depth_at(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
     let gy = nearest((d2 - d0) * (p1.0 - p0.0) - (d1 - d0) * (p2.0 - p0.0));
     let c = centre(x, y);
     let sum = (d0 << 24) + gx * (c.0 - p0.0) + gy * (c.1 - p0.1) + (1 << 23);
-    // Within the vertices' own depths.
+    // Within the vertices' own depths at a centre that is covered; elsewhere it wraps.
     (sum >> 24) as u32
 }
 

@@ -99,24 +99,187 @@ pub struct Pixel {
     pub byte: u8,
 }
 
+/// How far a byte of a shading may be from its exact shade in a frame of so many columns, in 1/256 shade, as n / d; `None` where
+/// nothing is promised.
+pub fn bound(shading: Shading, width: i128) -> Option<(i128, i128)> {
+    match shading {
+        // A half for the byte, and less than 1/256 for the start and for each step.
+        Shading::Gouraud => Some((128 + width, 1)),
+        Shading::GouraudReseeded => Some((128 + 64, 1)),
+        // The same with 1/65,536.
+        Shading::Gouraud1616 => Some((128 * 256 + width, 256)),
+        Shading::GouraudHyperbolic => Some((128, 1)),
+        // Less than 1/8,192 beside the half.
+        #[cfg(feature = "alloc")]
+        Shading::Float => Some((128 * 32 + 1, 32)),
+        _ => None,
+    }
+}
+
 /// The exact shade of a covered pixel in 1/256: what `shading` interpolates, without its rounding.
 pub fn exact_shade(vertices: &[Vertex; 3], shading: Shading, p: Point) -> Ratio {
-    let triangle = vertices.each_ref().map(point);
-    let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
-    if shading != Shading::GouraudHyperbolic {
-        return interpolate(triangle, shades, p);
+    Shades::of_vertices(vertices, shading).exact(p)
+}
+
+/// A row of a triangle on whole pixels: Ax, Bx, As and Bs.
+type PeriodRow = [i64; 4];
+
+/// A value over a triangle, by the letter of each shading's definition.
+pub struct Shades {
+    shading: Shading,
+    /// The vertices from top to bottom, of one height from left to right, and their values.
+    triangle: [Point; 3],
+    values: [i128; 3],
+    /// Of `GouraudPeriod` the first row, and the rows.
+    top: i64,
+    rows: Vec<PeriodRow>,
+    depths: [i128; 3],
+}
+
+impl Shades {
+    pub fn of_vertices(vertices: &[Vertex; 3], shading: Shading) -> Self {
+        Self::new(vertices, vertices.each_ref().map(|v| v.shade().to_bits()), shading)
     }
-    // Weighted by the depths, which are 1/w.
-    let depths = vertices.each_ref().map(|v| i128::from(v.depth().max(1)));
-    let products = [0, 1, 2].map(|i| depths[i] * shades[i]);
-    Ratio { n: interpolate(triangle, products, p).n, d: interpolate(triangle, depths, p).n }
+
+    /// Of these values at the vertices.
+    pub fn new(vertices: &[Vertex; 3], values: [u16; 3], shading: Shading) -> Self {
+        let mut order = [0, 1, 2];
+        order.sort_by_key(|&i| (vertices[i].y(), vertices[i].x()));
+        let triangle = order.map(|i| point(&vertices[i]));
+        let values = order.map(|i| i128::from(values[i]));
+        let (top, rows) =
+            if shading == Shading::GouraudPeriod { period_rows(triangle, values) } else { (0, Vec::new()) };
+        Self { shading, triangle, values, top, rows, depths: order.map(|i| i128::from(vertices[i].depth().max(1))) }
+    }
+
+    /// The exact value.
+    pub fn exact(&self, p: Point) -> Ratio {
+        match self.shading {
+            // Weighted by the depths, which are 1/w.
+            Shading::GouraudHyperbolic => self.on_face(p),
+            #[cfg(feature = "alloc")]
+            Shading::Float => self.on_face(p),
+            _ => interpolate(self.triangle, self.values, p),
+        }
+    }
+
+    fn on_face(&self, p: Point) -> Ratio {
+        let products = [0, 1, 2].map(|i| self.depths[i] * self.values[i]);
+        Ratio { n: interpolate(self.triangle, products, p).n, d: interpolate(self.triangle, self.depths, p).n }
+    }
+
+    /// The byte of a covered pixel of a row whose first and last covered pixels in the frame are `first` and
+    /// `last`; with dither, of this threshold.
+    pub fn byte(&self, (first, last): (i32, i32), x: i32, y: i32, threshold: Option<u8>) -> u8 {
+        let half = i128::from(threshold.unwrap_or(128));
+        let exact = self.exact(centre(x, y));
+        let byte = match self.shading {
+            Shading::Flat(byte) => byte.into(),
+            Shading::GouraudPeriod => (self.period(x, y) + i128::from(threshold.unwrap_or(0))) >> 8,
+            Shading::GouraudHyperbolic => Ratio { n: exact.n + half * exact.d, d: 256 * exact.d }.floor(),
+            #[cfg(feature = "alloc")]
+            Shading::Float => {
+                let shade = self.float(first, last, x, y);
+                match threshold {
+                    // In f32, and then cut.
+                    None => i128::from((shade + 256.5) as u16) - 256,
+                    Some(threshold) => ((shade * 256.0) as i128 + i128::from(threshold)) >> 8,
+                }
+            }
+            _ => {
+                // In 1/256 shade, or in 1/65,536.
+                let finer = if self.shading == Shading::Gouraud1616 { 256 } else { 1 };
+                let values = self.values.map(|value| value * finer);
+                let seed = match self.shading {
+                    Shading::GouraudReseeded => first + (x - first) / 64 * 64,
+                    _ => first,
+                };
+                let (start, slope) =
+                    (interpolate(self.triangle, values, centre(seed, y)), per_pixel(self.triangle, values));
+                let start = if slope.n < 0 { start.ceil() } else { start.floor() };
+                (start + slope.truncate() * i128::from(x - seed) + half * finer).div_euclid(256 * finer)
+            }
+        };
+        u8::try_from(byte).expect("a shade in range is a byte")
+    }
+
+    /// shade/w and 1/w in f32, from the far end of the row.
+    #[cfg(feature = "alloc")]
+    fn float(&self, first: i32, last: i32, x: i32, y: i32) -> f32 {
+        let one = |i: usize| [0, 1, 2].map(|k| i128::from(k == i));
+        let at = |values: [i128; 3], x: i32| interpolate(self.triangle, values, centre(x, y)).n;
+        let step = |values: [i128; 3]| at(values, x + 1) - at(values, x);
+        let start = if step(self.depths) < 0 { last } else { first };
+        // The sum in f64 over the vertices from top to bottom; areas and products are exact in it.
+        let sum = |values: [i128; 3]| {
+            let [a, b, c] = [0, 1, 2].map(|i| at(one(i), start) as f64 * values[i] as f64);
+            (a + b + c) as f32
+        };
+        let products = [0, 1, 2].map(|i| self.depths[i] * self.values[i]);
+        let k = (x - start) as f32;
+        let n = sum(products) + k * (step(products) as f32);
+        let d = sum(self.depths) + k * (step(self.depths) as f32);
+        let shades = self.values.map(|value| value as f32 / 256.0);
+        let (low, high) = shades.iter().fold((f32::MAX, 0.0_f32), |(low, high), s| (low.min(*s), high.max(*s)));
+        // A power of two changes no rounding.
+        (n / d / 256.0).clamp(low, high)
+    }
+
+    /// The shade in 1/256 at the nearest pixel of the nearest row.
+    fn period(&self, x: i32, y: i32) -> i128 {
+        let Some(last) = self.rows.len().checked_sub(1) else { return self.values[0] };
+        let [ax, bx, a_shade, b_shade] = self.rows[(i64::from(y) - self.top).clamp(0, last as i64) as usize];
+        if bx <= ax {
+            return a_shade.into();
+        }
+        let k = i64::from(x).clamp(ax, bx - 1) - ax;
+        (a_shade + k * ((b_shade - a_shade) / (bx - ax))).into()
+    }
+}
+
+/// The rows of a triangle as the sources have them, with the first one's number: edge by edge, a value added to
+/// at every row.
+fn period_rows(triangle: [Point; 3], values: [i128; 3]) -> (i64, Vec<PeriodRow>) {
+    let whole = |c: i128| (c + 128).div_euclid(256) as i64;
+    let corners = [0, 1, 2].map(|i| (whole(triangle[i].0), whole(triangle[i].1), values[i] as i64));
+    let [a, b, c] = corners.map(|(x, y, _)| (i128::from(x), i128::from(y)));
+    let side = edge(a, c, b);
+    if side == 0 || edge(triangle[0], triangle[1], triangle[2]) == 0 {
+        return (0, Vec::new());
+    }
+    let walk = |(x0, y0, s0): (i64, i64, i64), (x1, y1, s1): (i64, i64, i64)| {
+        let (mut x, mut shade, mut rows) = (x0 * 65_536, s0, Vec::new());
+        for _ in y0..y1 {
+            rows.push((x.div_euclid(65_536), shade));
+            // Toward zero.
+            x += (x1 - x0) * 65_536 / (y1 - y0);
+            shade += (s1 - s0) / (y1 - y0);
+        }
+        rows
+    };
+    let [top, middle, bottom] = corners;
+    let long = walk(top, bottom);
+    let short: Vec<_> = walk(top, middle).into_iter().chain(walk(middle, bottom)).collect();
+    // To the right of the way down is the left of the screen.
+    let (left, right) = if side > 0 { (short, long) } else { (long, short) };
+    (top.1, left.into_iter().zip(right).map(|((ax, a), (bx, b))| [ax, bx, a, b]).collect())
 }
 
 /// The pixels of a triangle in a frame of `width × height`, by the letter of each shading's definition,
 /// row by row.
 pub fn pixels(vertices: &[Vertex; 3], shading: Shading, width: i32, height: i32) -> Vec<Pixel> {
     let triangle = vertices.each_ref().map(point);
-    let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
+    let shades = Shades::of_vertices(vertices, shading);
+    let mut drawn = Vec::new();
+    if shading == Shading::GouraudPeriod {
+        for (y, [ax, bx, ..]) in (shades.top..).zip(&shades.rows).filter(|(y, _)| (0..height.into()).contains(y)) {
+            for x in (*ax).max(0) as i32..(*bx).min(width.into()) as i32 {
+                let y = y as i32;
+                drawn.push(Pixel { x, y, byte: u8::try_from(shades.period(x, y) >> 8).expect("a byte") });
+            }
+        }
+        return drawn;
+    }
     // No pixel further out than the vertices' own.
     let between = |coordinate: fn(&Point) -> i128, size: i32| {
         let (mut low, mut high) = (i128::from(size), -1);
@@ -126,38 +289,25 @@ pub fn pixels(vertices: &[Vertex; 3], shading: Shading, width: i32, height: i32)
         }
         low.max(0) as i32..(high + 1).min(i128::from(size)) as i32
     };
-    let mut drawn = Vec::new();
     for y in between(|p| p.1, height) {
-        let mut first = None;
-        let mut sum = 0;
-        for x in between(|p| p.0, width) {
-            if !covers(triangle, centre(x, y)) {
-                continue;
-            }
-            let f = *first.get_or_insert(x);
-            let exact = exact_shade(vertices, shading, centre(x, y));
-            let byte = match shading {
-                Shading::Flat(byte) => byte.into(),
-                Shading::GouraudHyperbolic => Ratio { n: exact.n + 128 * exact.d, d: 256 * exact.d }.floor(),
-                _ => {
-                    let slope = per_pixel(triangle, shades);
-                    if x == f || (shading == Shading::GouraudReseeded && (x - f) % 64 == 0) {
-                        sum = if slope.n < 0 { exact.ceil() } else { exact.floor() };
-                    } else {
-                        sum += slope.truncate();
-                    }
-                    (sum + 128) >> 8
-                }
-            };
-            let byte = u8::try_from(byte).expect("a shade in range is a byte");
-            drawn.push(Pixel { x, y, byte });
-        }
+        let row: Vec<i32> = between(|p| p.0, width).filter(|&x| covers(triangle, centre(x, y))).collect();
+        let (Some(&first), Some(&last)) = (row.first(), row.last()) else { continue };
+        drawn.extend(row.into_iter().map(|x| Pixel { x, y, byte: shades.byte((first, last), x, y, None) }));
     }
     drawn
 }
 
 /// The depth at a covered pixel, by the letter of the definition in `raster::depth`.
 pub fn depth_at(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
+    u32::try_from(depth_sum(vertices, x, y)).expect("a depth within its vertices'")
+}
+
+/// The depth of the triangle's plane at any pixel, modulo 2³².
+pub fn depth_beyond(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
+    depth_sum(vertices, x, y) as u32
+}
+
+fn depth_sum(vertices: &[Vertex; 3], x: i32, y: i32) -> i128 {
     let mut order = *vertices;
     order.sort_by_key(|v| (v.y(), v.x()));
     let [p0, p1, p2] = order.each_ref().map(point);
@@ -171,5 +321,5 @@ pub fn depth_at(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
     let gy = nearest((d2 - d0) * (p1.0 - p0.0) - (d1 - d0) * (p2.0 - p0.0));
     let c = centre(x, y);
     let sum = (d0 << 24) + gx * (c.0 - p0.0) + gy * (c.1 - p0.1) + (1 << 23);
-    u32::try_from(sum >> 24).expect("a depth within its vertices'")
+    sum >> 24
 }

@@ -6,7 +6,7 @@ use crate::raster::depth::DepthPlane;
 use crate::raster::edge::Edge;
 use crate::raster::frame::Rect;
 use crate::raster::paint::Paint;
-use crate::raster::triangle::Shading;
+use crate::raster::shading::Shading;
 use crate::raster::vertex::Vertex;
 
 /// A face on its way down the rows: the two edges that the row at hand crosses. Opaque; the caller

@@ -15,6 +15,9 @@
 //! the start that the triangle alone would have. It needs no depth for every pixel and paints no
 //! pixel that another face hides; a face that no other overlaps needs no depth at all.
 //!
+//! [`GouraudPeriod`](Shading::GouraudPeriod), whose triangles have edges of their own, gets exact cover here like all
+//! others, and its own [shades](super::period) on it; so it alone gives other frames than the depth buffer.
+//!
 //! | file | what |
 //! |---|---|
 //! | `active` | a face on its way down the rows: its two edges |
@@ -35,7 +38,8 @@ use core::fmt;
 pub use self::active::EdgePair;
 use super::cover::{Ordered, Row};
 use super::depth::Cell;
-use super::triangle::{Drawn, Raster, Shading};
+use super::shading::Shading;
+use super::triangle::{Drawn, Raster};
 use super::vertex::Vertex;
 use crate::span::Kernel;
 

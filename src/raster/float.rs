@@ -1,0 +1,93 @@
+//! Shades in f32, as a program of today has them: every attribute divided by w, linear on the screen, and
+//! multiplied by w again at every pixel.
+//!
+//! ```text
+//! shade(k) = (n + k·dn) / (d + k·dd)        n: shade/w, d: 1/w, at the row's start; k pixels from there
+//! ```
+//!
+//! A vertex's depth is `2³⁰·near / w`, so it stands for 1/w. With λ the weights of the corners and s their shades
+//! n = Σ λᵢ·dᵢ·sᵢ and d = Σ λᵢ·dᵢ, summed in f64 over the vertices in their order from top to bottom, then
+//! rounded to f32; dn and dd are exact before they are rounded. The factor by which n and d are larger than
+//! shade/w and 1/w is the same, and drops out.
+//!
+//! # Where a row starts
+//!
+//! At its far end: its first covered pixel inside the frame if 1/w grows to the right or stays, else its last, and
+//! k then counts down from 0. From the near end on the divisor would shrink, while the rounding error of its start
+//! stays: for w from 1 to 10⁴ in a row that is up to 0.9 of a shade. Both ends are the frame's, whatever the
+//! clip rectangle, and every pixel is made from its own k, so a part of a row has the bytes of the whole.
+//!
+//! # How far a byte is from exact
+//!
+//! With u = 2⁻²⁴, N and D the exact values and S the greatest shade of a vertex: N ≤ S·D everywhere, and D at
+//! the row's start b is no more than at any pixel k. The start is rounded once, the step and its product with k
+//! once each, and the sum; so
+//!
+//! ```text
+//! |n(k) − N(k)| ≤ u·(N(b) + 2·|N(k) − N(b)| + N(k)) ≤ 3u·max(N(b), N(k)) ≤ 3u·S·D(k)
+//! |d(k) − D(k)| ≤ 3u·D(k)                                        in the same way
+//! ```
+//!
+//! to the first order in u, and the quotient is off by no more than 6u·S, 7u·S once it is rounded. S is at most
+//! 255: less than 7/65,536 of a shade. Clamping to the range of the vertices brings no value farther from
+//! one in it. Rounding to a byte has another 1/65,536: all in all a byte is within ½ + 1/8,192 of a shade of
+//! exact, for any triangle, however thin and however deep.
+//!
+//! The clamp keeps bytes in range, and nothing else: here, not by rounding one way, as in
+//! [`shade`](super::shade).
+
+use super::cover::{Ordered, Row};
+use super::weights::Weights;
+
+/// The shades of a triangle in f32.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FloatPlane {
+    weights: Weights,
+    /// Of each vertex its depth times its shade, and its depth.
+    values: [[f64; 2]; 3],
+    /// What both sums change by from one pixel to the next.
+    steps: [f32; 2],
+    /// The least and the greatest shade of a vertex.
+    range: [f32; 2],
+}
+
+/// A row's n and d at its start, each with its step: what [`fill_float`](crate::span::float::fill_float) takes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FloatRow {
+    /// The column at which k is 0.
+    pub(super) start: i32,
+    pub(super) n: [f32; 2],
+    pub(super) d: [f32; 2],
+    pub(super) range: [f32; 2],
+}
+
+impl FloatPlane {
+    /// Of any three shades of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order
+    /// of its vertices. A depth of 0 counts as 1.
+    pub(super) fn of_values(triangle: &Ordered, shades: [i64; 3]) -> Self {
+        let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1)));
+        let weights = Weights::new(triangle);
+        let step = |products: [i128; 3]| {
+            // Differences of areas: whole numbers within 2³⁰.
+            let [a, b, c] = weights.per_column().map(|change| i128::from(change as i64));
+            a * products[0] + b * products[1] + c * products[2]
+        };
+        // In 1/256 shade; at most 2⁸⁰, which f32 has.
+        let dn = step([0, 1, 2].map(|i| i128::from(depths[i]) * i128::from(shades[i]))) as f32 / 256.0;
+        let dd = step(depths.map(i128::from)) as f32;
+        // 48 bits and 32.
+        let values = [0, 1, 2].map(|i| [(depths[i] * shades[i]) as f64 / 256.0, depths[i] as f64]);
+        let [a, b, c] = shades.map(|shade| shade as f32 / 256.0);
+        Self { weights, values, steps: [dn, dd], range: [a.min(b).min(c), a.max(b).max(c)] }
+    }
+
+    /// A row of the triangle.
+    pub(super) fn row(&self, row: &Row) -> FloatRow {
+        let start = if self.steps[1] < 0.0 { row.last } else { row.origin };
+        let [wa, wb, wc] = self.weights.at(start, row.y);
+        let [a, b, c] = &self.values;
+        let at_start = |i: usize| (wa * a[i] + wb * b[i] + wc * c[i]) as f32;
+        let [dn, dd] = self.steps;
+        FloatRow { start, n: [at_start(0), dn], d: [at_start(1), dd], range: self.range }
+    }
+}

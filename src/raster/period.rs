@@ -1,0 +1,208 @@
+//! Triangles as the sources print them (S0, S1, S3, S4): what all else is measured against.
+//!
+//! ```text
+//! vertices:   X = floor(x + ½), Y = floor(y + ½)          on whole pixels
+//! edges:      StepY = (a1 − a0) / (Y1 − Y0)               of x in 16.16, of the shade in 8.8
+//! rows:       StepX = (Bs − As) / (Bx − Ax)               of the shade in 8.8; each row its own
+//! pixels:     from Ax to the last before Bx: the whole part of As + k·StepX
+//! ```
+//!
+//! Every quotient is cut toward zero; there is one addition a scan line and edge, one a pixel, and no half is
+//! added anywhere. A row is taken at its upper edge and a pixel at its left one. So vertices are off by up
+//! to half a pixel both ways, edges by as much again, neighbours overlap or part, shades lag behind from
+//! row to row and from pixel to pixel, and each byte is half a shade too dark in the mean.
+//!
+//! Where the sources slip it is done right, or it would not run:
+//!
+//! - S0's count, Dx − Cx + 1, is zero or less where a row has no pixel, and its loop then writes all of the
+//!   video memory. Here the count is Bx − Ax, and no row is drawn that has none.
+//! - S0 divides by Bx − Ax, which may be 0 or next to it. Here both are whole pixels, and the quotient is
+//!   taken where there is a pixel: it is no more than 255 shades.
+//! - S4 asks for `sar`, not `shr`: a shift of a negative number rounds toward minus infinity, as the
+//!   cut of x to its pixel does here, left of the frame too; a division (`idiv`) rounds toward zero. So x
+//!   and the shade on an edge stay between its ends.
+//!
+//! No cover and no range is promised. That bytes do stay in [min >> 8, max >> 8] of the vertices is
+//! because all quotients are cut toward zero; S0's own fractions of Ax and Bx would lose it. The order of
+//! the vertices, clip rectangles and bands make no difference: a byte depends on its place and
+//! the three vertices alone, and so does the pixel's being drawn.
+//!
+//! # Where others say which pixels
+//!
+//! The scan-line method and the stages of `effects` work by exact cover. There a pixel gets the shade that
+//! this triangle's nearest row has at its nearest pixel; of a triangle without area on whole pixels, that of its
+//! top vertex.
+
+use core::ops::Range;
+
+use super::cover::{Ordered, Row};
+use super::frame::Rect;
+
+/// A corner on a whole pixel; its shade in 8.8.
+#[derive(Clone, Copy)]
+struct Corner {
+    x: i32,
+    y: i32,
+    shade: i32,
+}
+
+/// An edge at one row.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    y: i32,
+    /// 16.16, at most 2²⁸.
+    x: i32,
+    step_x: i32,
+    /// 8.8, 0 to 0xFF00.
+    shade: i32,
+    step_shade: i32,
+}
+
+impl Edge {
+    /// The edge from `a` down to `b`, at the row of `a`. Of one without rows the steps are not used.
+    #[inline]
+    fn new(a: Corner, b: Corner) -> Self {
+        let rows = (b.y - a.y).max(1);
+        // 4,096 · 2¹⁶ and twice that fit.
+        let (x, dx) = (a.x << 16, (b.x - a.x) << 16);
+        Self { y: a.y, x, step_x: dx / rows, shade: a.shade, step_shade: (b.shade - a.shade) / rows }
+    }
+
+    /// The same at row `y` of its rows: what as many additions come to.
+    #[inline]
+    fn at(&self, y: i32) -> Self {
+        // A cut quotient times no more than its divisor is no more than the dividend.
+        let rows = y - self.y;
+        Self { y, x: self.x + self.step_x * rows, shade: self.shade + self.step_shade * rows, ..*self }
+    }
+
+    /// On to the next row.
+    #[inline]
+    fn down(&mut self) {
+        self.y += 1;
+        // One step beyond the end at most: below 2³⁰.
+        self.x += self.step_x;
+        self.shade += self.step_shade;
+    }
+}
+
+/// A triangle with its vertices on whole pixels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PeriodTriangle {
+    /// From the top to the bottom.
+    long: Edge,
+    /// From the top to the middle, and from there to the bottom.
+    short: [Edge; 2],
+    /// The row of the middle, and the one after the last.
+    split: i32,
+    end: i32,
+    /// Twice the area in pixels; positive if the middle vertex lies right of the long edge.
+    doubled_area: i32,
+}
+
+impl PeriodTriangle {
+    /// With these shades, 0 to 0xFF00, at its vertices. The order of the vertices stays: what is above in
+    /// 1/256 pixel is not below in pixels.
+    #[inline]
+    pub(super) fn new(triangle: &Ordered, shades: [i64; 3]) -> Self {
+        let corner = |i: usize| {
+            // floor(x + ½) of at most 2²⁰ units of 1/256.
+            let whole = |units: i32| (units + 128) >> 8;
+            let v = &triangle.vertices[i];
+            // At most 0xFF00.
+            Corner { x: whole(v.x().to_bits()), y: whole(v.y().to_bits()), shade: shades[i] as i32 }
+        };
+        let (top, middle, bottom) = (corner(0), corner(1), corner(2));
+        Self {
+            long: Edge::new(top, bottom),
+            short: [Edge::new(top, middle), Edge::new(middle, bottom)],
+            split: middle.y,
+            end: bottom.y,
+            // Below 2²⁸.
+            doubled_area: (middle.x - top.x) * (bottom.y - top.y) - (bottom.x - top.x) * (middle.y - top.y),
+        }
+    }
+
+    /// Calls `row` for every row that has a pixel inside `clip`, from the top down, with its shades.
+    /// `frame_width` is that of the whole frame; `clip` lies inside the frame.
+    #[inline]
+    pub(super) fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row, Ramp)) {
+        // A clip rectangle lies inside a frame of at most 4,096 pixels a side.
+        let (clip_x0, clip_x1, width) = (clip.x0 as i32, clip.x1 as i32, frame_width as i32);
+        let (first, end) = (self.long.y.max(clip.y0 as i32), self.end.min(clip.y1 as i32));
+        if self.doubled_area == 0 || first >= end {
+            return;
+        }
+        let mut long = self.long.at(first);
+        for (short, until) in [(&self.short[0], self.split.min(end)), (&self.short[1], end)] {
+            if long.y >= until {
+                continue;
+            }
+            let mut short = short.at(long.y);
+            while long.y < until {
+                let ramp = self.between(&long, &short);
+                let (origin, x_end) = (ramp.x0.max(0), ramp.x1.min(width));
+                let (x0, x1) = (origin.max(clip_x0), x_end.min(clip_x1));
+                if x0 < x1 {
+                    row(Row { y: long.y, origin, x0, x1, last: x_end - 1 }, ramp);
+                }
+                long.down();
+                short.down();
+            }
+        }
+    }
+
+    /// The shades of row `y`, or of the nearest row that there is.
+    #[inline]
+    pub(super) fn ramp(&self, y: i32) -> Ramp {
+        if self.doubled_area == 0 {
+            return Ramp { x0: 0, x1: 0, shade: self.long.shade as u16, step: 0 };
+        }
+        let y = y.clamp(self.long.y, self.end - 1);
+        self.between(&self.long.at(y), &self.short[usize::from(y >= self.split)].at(y))
+    }
+
+    #[inline]
+    fn between(&self, long: &Edge, short: &Edge) -> Ramp {
+        let (left, right) = if self.doubled_area > 0 { (long, short) } else { (short, long) };
+        // `sar`: toward minus infinity.
+        let (x0, x1) = (left.x >> 16, right.x >> 16);
+        let step = if x0 < x1 { (right.shade - left.shade) / (x1 - x0) } else { 0 };
+        // A shade is 0 to 0xFF00; a step is kept modulo 2¹⁶, as BX has it.
+        Ramp { x0, x1, shade: left.shade as u16, step: step as u16 }
+    }
+}
+
+/// The shades of a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ramp {
+    /// Ax: the first pixel.
+    x0: i32,
+    /// Bx: the one after the last; there is none if it is not after `x0`, and the step is then 0.
+    x1: i32,
+    /// AX at the first pixel.
+    shade: u16,
+    /// BX.
+    step: u16,
+}
+
+impl Ramp {
+    /// Calls `span` with the columns, the first shade and the step of each span that `columns` falls into:
+    /// those of the row's pixels, and those before and behind, which have the shade of the nearest.
+    #[inline]
+    pub(super) fn spans(&self, columns: Range<i32>, mut span: impl FnMut(Range<usize>, u16, u16)) {
+        // Few columns: the product is meant modulo 2¹⁶.
+        let at = |x: i32| self.shade.wrapping_add(self.step.wrapping_mul((x - self.x0) as u16));
+        let from = self.x0.clamp(columns.start, columns.end);
+        let to = self.x1.clamp(from, columns.end);
+        // Columns of a frame.
+        let mut piece = |x0: i32, x1: i32, shade: u16, step: u16| {
+            if x0 < x1 {
+                span(x0 as usize..x1 as usize, shade, step);
+            }
+        };
+        piece(columns.start, from, self.shade, 0);
+        piece(from, to, at(from), self.step);
+        piece(to, columns.end, at(self.x1 - 1), 0);
+    }
+}

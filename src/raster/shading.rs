@@ -1,0 +1,82 @@
+//! How the pixels of a triangle get their shade: a list to which one can add a row.
+
+/// How a triangle's pixels get their shade.
+///
+/// | shading | off from exact by less than | in |
+/// |---|---|---|
+/// | `GouraudPeriod` | – (from other vertices) | [`period`](super::period) |
+/// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | [`shade`](super::shade) |
+/// | `GouraudReseeded` | ½ + ¼ | [`shade`](super::shade) |
+/// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | [`wide`](super::wide) |
+/// | `GouraudHyperbolic` | ½, or just that | [`hyperbolic`](super::hyperbolic) |
+/// | `Float` | ½ + 1/8,192 | `float` |
+///
+/// Exact is linear on the screen, and for the last two linear on the face.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[non_exhaustive]
+pub enum Shading {
+    /// One byte for the whole triangle; the shades of the vertices are not looked at.
+    Flat(u8),
+    /// As the sources print it: vertices on whole pixels, slopes and steps cut, no half added.
+    /// Without exact cover; where another method says which pixels, the shades alone.
+    GouraudPeriod,
+    /// Linear between the vertices, each row of the triangle one span: the start exact, one
+    /// addition a pixel from there on.
+    Gouraud,
+    /// The same, started anew every 64 pixels.
+    #[default]
+    GouraudReseeded,
+    /// Linear between the vertices in 16.16, each row of the triangle one span.
+    Gouraud1616,
+    /// Linear on the face in space, so perspective-correct: a quotient for every pixel, the nearest
+    /// shade to exact. It takes the depths of the vertices for 1/w.
+    GouraudHyperbolic,
+    /// The same in f32: shade/w and 1/w linear, a division a pixel. Only where there is an
+    /// allocator, so that the raster of a chip without floating point holds no routine for it.
+    #[cfg(feature = "alloc")]
+    Float,
+}
+
+impl Shading {
+    /// All that interpolate between the vertices.
+    pub const INTERPOLATED: &[Self] = &[
+        Self::GouraudPeriod,
+        Self::Gouraud,
+        Self::GouraudReseeded,
+        Self::Gouraud1616,
+        Self::GouraudHyperbolic,
+        #[cfg(feature = "alloc")]
+        Self::Float,
+    ];
+
+    /// Its name in a [record](crate::record).
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Flat(_) => "flat",
+            Self::GouraudPeriod => "gouraud-period",
+            Self::Gouraud => "gouraud",
+            Self::GouraudReseeded => "gouraud-reseeded",
+            Self::Gouraud1616 => "gouraud-16.16",
+            Self::GouraudHyperbolic => "gouraud-hyperbolic",
+            #[cfg(feature = "alloc")]
+            Self::Float => "float",
+        }
+    }
+
+    /// Whether a pixel is drawn if and only if its centre is in the triangle, and its byte lies within
+    /// `[(min + 128) >> 8, (max + 128) >> 8]` of the vertices' shades.
+    #[must_use]
+    pub const fn has_exact_cover(self) -> bool {
+        !matches!(self, Self::GouraudPeriod)
+    }
+
+    /// What is added to a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
+    #[must_use]
+    pub const fn rounding(self) -> u8 {
+        match self {
+            Self::GouraudPeriod => 0,
+            _ => 128,
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Shades in 16.16: one exact start a row, and steps so fine that a row needs no other.
+//!
+//! [`shade`](super::shade) has them in 8.8; this is the same with 16 bits behind the point.
+//!
+//! # Why no byte leaves the range of the vertices
+//!
+//! As there: the step is dI/dx rounded toward zero to 1/65,536 shade, the start the exact value at its
+//! pixel's centre, rounded back toward where shades come from. So every sum lies between the start and
+//! the exact value, and both lie between min and max, which are whole multiples of the unit. Half a shade is added to
+//! the start; with max at most 255.0 the sum is below 256 and fits in 24 bits.
+//!
+//! A span of two pixels or more has |dI/dx| ≤ 255 shades, so its step fits in 32 bits modulo 2³² with room
+//! to spare; a span of one pixel never uses the step, which wraps unused.
+//!
+//! # How far a byte is from exact
+//!
+//! After k steps the sum is off by less than (k + 1)/65,536 of a shade: 320/65,536 over a row of 320, one
+//! sixteenth over the widest frame. The byte is the nearest to that: within ½ + 320/65,536.
+
+use super::cover::Ordered;
+use super::shade::ShadePlane;
+
+/// The shade plane of a triangle, for sums in 16.16.
+#[derive(Clone, Copy, Debug)]
+pub struct WideShadePlane {
+    plane: ShadePlane,
+    step: u32,
+}
+
+impl WideShadePlane {
+    /// The plane of any three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate,
+    /// in the order of its vertices.
+    #[must_use]
+    pub fn of_values(triangle: &Ordered, shades: [i64; 3]) -> Self {
+        let plane = ShadePlane::of_values(triangle, shades);
+        // 2⁸ · |per_column| / A, by its quotient and its rest: at most 2⁴⁶, and less than A.
+        let area = plane.area();
+        let (whole, rest) = area.floor_and_rest(plane.per_column().abs());
+        let magnitude = (whole << 8) + area.floor(rest << 8);
+        // The wrap is meant: see the module's head.
+        let step = if plane.per_column() < 0 { -magnitude } else { magnitude } as u32;
+        Self { plane, step }
+    }
+
+    /// What is added from pixel to pixel, in 1/65,536 shade modulo 2³².
+    #[must_use]
+    #[inline]
+    pub fn step(&self) -> u32 {
+        self.step
+    }
+
+    /// The sum at the pixel (`x`, `y`), whose centre lies in the triangle: the exact shade there in
+    /// 1/65,536, rounded back toward where shades come from, plus half a shade.
+    #[must_use]
+    #[inline]
+    pub fn start(&self, x: i32, y: i32) -> u32 {
+        let area = self.plane.area();
+        // N·2⁸ / A, N at most 2⁵⁸, by its quotient and its rest, which is less than A.
+        let (whole, rest) = area.floor_and_rest(self.plane.numerator(x, y));
+        let bias = if self.plane.per_column() < 0 { area.get() - 1 } else { 0 };
+        let exact = (whole << 8) + area.floor((rest << 8) + bias);
+        // 0 to 0xFF_0000, by cover.
+        (exact + 0x8000) as u32
+    }
+}
