@@ -53,7 +53,7 @@ use crate::vga::Vga;
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use automatic::{AutomaticPalette, Seen, automatic, seen};
-pub use stats::Stats;
+pub use stats::{Shares, Stats};
 pub use vertex_path::{UnknownVertexPath, VertexPath};
 
 /// Why a scene could not be drawn.
@@ -140,6 +140,7 @@ struct Drawing {
 #[derive(Debug)]
 pub struct Renderer {
     rung: Option<Rung>,
+    max_error: Option<f32>,
     mapping: Option<Mapping>,
     vertex_path: VertexPath,
     kernel: Kernel,
@@ -171,6 +172,7 @@ impl Renderer {
     pub fn new() -> Self {
         Self {
             rung: None,
+            max_error: None,
             mapping: None,
             vertex_path: VertexPath::default(),
             kernel: Kernel::fastest(),
@@ -193,9 +195,28 @@ impl Renderer {
         }
     }
 
-    /// Chooses the technique of shading, whatever the scene asks for.
+    /// Chooses the technique of shading, whatever the scene asks for, and drops a budget that was set.
     pub fn set_rung(&mut self, rung: Rung) {
         self.rung = Some(rung);
+        self.max_error = None;
+    }
+
+    /// Sets a budget: how many shades of error are accepted, 1/255 of full intensity each, whatever the scene asks
+    /// for. Each triangle then gets the cheapest rung that is known to keep within, and a rung that was set is dropped.
+    /// `None` leaves it to the scene.
+    ///
+    /// A number that is not above 0 and finite is an error when a scene is drawn.
+    pub fn set_max_error(&mut self, shades: Option<f32>) {
+        self.max_error = shades;
+        if shades.is_some() {
+            self.rung = None;
+        }
+    }
+
+    /// The budget that a scene is drawn by: this renderer's, or else, where no rung was set, the scene's.
+    #[must_use]
+    pub fn max_error(&self, scene: &Scene) -> Option<f32> {
+        self.max_error.or(if self.rung.is_none() { scene.wishes.max_error } else { None })
     }
 
     /// The technique of shading, where it is not the scene's choice; the default's name where it is.
@@ -513,6 +534,7 @@ impl Renderer {
             }
         }
         self.depths = depths;
+        stats.shares.add(stats.rung, stats.drawn);
     }
 
     /// Draws each face as it comes, then those that shine through.

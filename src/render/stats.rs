@@ -36,8 +36,32 @@ pub struct Stats {
     pub culled: u64,
     /// Triangles handed to the raster: faces, and the parts of those that were clipped.
     pub drawn: u64,
+    /// The rungs that shaded them.
+    pub shares: Shares,
     /// What the raster did with them.
     pub raster: Drawn,
+}
+
+/// How many triangles each rung shaded.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Shares([u64; Rung::ALL.len()]);
+
+impl Shares {
+    /// Counts more triangles.
+    pub(super) fn add(&mut self, rung: Rung, triangles: u64) {
+        self.0[rung as usize] += triangles;
+    }
+
+    /// The triangles of one rung.
+    #[must_use]
+    pub fn of(&self, rung: Rung) -> u64 {
+        self.0[rung as usize]
+    }
+
+    /// Each rung that shaded any, from cheap to exact, and how many.
+    pub fn iter(&self) -> impl Iterator<Item = (Rung, u64)> {
+        Rung::ALL.into_iter().zip(self.0).filter(|(_, triangles)| *triangles > 0)
+    }
 }
 
 impl Stats {
@@ -56,6 +80,7 @@ impl Stats {
             clipped: 0,
             culled: 0,
             drawn: 0,
+            shares: Shares::default(),
             raster: Drawn::default(),
         }
     }

@@ -21,6 +21,9 @@ const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 pub(crate) struct Drawing {
     #[arg(long, value_name = "RUNG", help = help_on_rungs())]
     rung: Option<Rung>,
+    /// Spend the least time that keeps every face within so many shades of error, of 1/255 of full intensity
+    #[arg(long, value_name = "SHADES", value_parser = shades, conflicts_with = "rung")]
+    max_error: Option<f32>,
     #[arg(long, value_name = "FILE|NAME|auto", help = help_on_palettes())]
     palette: Option<OsString>,
     #[arg(long, value_name = "NAME", value_parser = Kernel::by_name, help = help_on_kernels())]
@@ -124,6 +127,7 @@ impl Drawing {
         if let Some(rung) = self.rung {
             renderer.set_rung(rung);
         }
+        renderer.set_max_error(self.max_error);
         renderer
     }
 }
@@ -133,6 +137,14 @@ pub(crate) fn finite(words: &str) -> Result<f64, String> {
     match words.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err("not a number".to_string()),
+    }
+}
+
+/// A number of shades on the command line.
+pub(crate) fn shades(words: &str) -> Result<f32, String> {
+    match words.parse::<f32>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err("not a number of shades above 0".to_string()),
     }
 }
 
