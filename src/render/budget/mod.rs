@@ -20,14 +20,17 @@
 //!
 //! The bounds of the parts are added. Decisions are kept as long as the vertices are.
 
+mod light;
+
 use alloc::vec::Vec;
 
 use glam::Vec3;
 
+use self::light::{OneLight, Towards, narrow};
 use super::face::Faces;
 use super::paint::Paint;
 use super::vertex::Geometry;
-use crate::light::{Beam, LampBeam, Lights};
+use crate::light::Lights;
 use crate::mesh::Mesh;
 use crate::raster::Vertex;
 use crate::scene::{Rung, Shared};
@@ -126,6 +129,10 @@ pub(super) struct Budget {
     simple: bool,
     /// What an edge of 1 turns the direction to the eye by, at most.
     eye_turn: f32,
+    /// For each vertex the eye, if there are highlights.
+    to_eye: Vec<Towards>,
+    /// For each lamp and each vertex the lamp.
+    to_lamps: Vec<Towards>,
 }
 
 impl Budget {
@@ -159,7 +166,7 @@ impl Budget {
         self.strengths.clear();
         self.strengths.extend(paints.iter().map(|paint| {
             // A ramp has at most 256 entries.
-            let entries = paint.ramp.entries() as u16;
+            let entries = paint.ramp.entries();
             let first = u16::from(paint.ramp.first()) << 8;
             let scale = if entries > 1 { 255.0 / (256.0 * f32::from(entries - 1)) } else { 0.0 };
             let suns = lights.suns.iter().map(|sun| brightest(sun.intensity, sun.channels, channels));
@@ -169,21 +176,31 @@ impl Budget {
             let curvature = if ks == 0.0 { 0.0 } else { CURVATURE * curve(s) * ks * all };
             Strength { first, scale, last: first + ((entries - 1) << 8), curvature }
         }));
+        self.to_eye.clear();
+        self.to_lamps.clear();
         self.simple = lights.lamps.is_empty() && !channels && self.strengths.iter().all(|of| of.curvature == 0.0);
         self.eye_turn = 0.0;
         if self.simple {
             return;
         }
-        // The eye is at least this far away.
-        let eye = Vec3::new(lights.eye[0] as f32, lights.eye[1] as f32, lights.eye[2] as f32);
-        let nearest = geometry.positions.iter().map(|p| (*p - eye).length_squared()).fold(f32::INFINITY, f32::min);
-        self.eye_turn = 1.0 / libm::sqrtf(nearest);
+        let positions = geometry.positions.iter();
+        self.to_lamps.extend(lights.lamps.iter().flat_map(|lamp| {
+            let at = narrow(lamp.position);
+            positions.clone().map(move |position| Towards::new(at - *position))
+        }));
+        if self.strengths.iter().any(|of| of.curvature != 0.0) {
+            let eye = narrow(lights.eye);
+            self.to_eye.extend(positions.map(|position| Towards::new(eye - *position)));
+            // The eye is at least this far away.
+            self.eye_turn = 1.0 / self.to_eye.iter().map(|eye| eye.distance).fold(f32::INFINITY, f32::min);
+        }
     }
 
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
         self.facets.capacity() * size_of::<Facet>()
             + self.suns_seen.capacity() * 4
+            + (self.to_eye.capacity() + self.to_lamps.capacity()) * size_of::<Towards>()
             + self.strengths.capacity() * size_of::<Strength>()
     }
 }
@@ -278,7 +295,7 @@ impl Faces<'_> {
         let near = model + EXACT <= budget.allowed;
         let hopeless = top * facet.shortening > 2.0 * budget.allowed;
         if lamps || ((some || clamped) && near) || (strength.curvature > 0.0 && !near && !hopeless) {
-            model = self.model_error(budget, question);
+            model = self.model_error(budget, question, budget.allowed);
             if clamped {
                 // What lies above the clamp is lost at some corners, by which the others are too dark at most.
                 model += range;
@@ -304,140 +321,38 @@ impl Faces<'_> {
         }
     }
 
-    /// How far linear shades are from the model, in shades.
+    /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it.
     #[inline(never)]
-    fn model_error(&self, budget: &Budget, question: &Question) -> f32 {
-        let facet = &budget.facets[question.triangle];
+    fn model_error(&self, budget: &Budget, question: &Question, limit: f32) -> f32 {
         let paint = &self.paints[usize::from(question.surface)];
         let side = if question.turned { -1.0 } else { 1.0 };
-        let corners = question.indices.map(|i| {
-            let position = self.geometry.positions[i as usize];
-            let [x, y, z] = self.lights.eye;
-            let to_eye = Vec3::new(x as f32, y as f32, z as f32) - position;
-            let distance = to_eye.length();
-            PointOfView {
-                position,
-                normal: self.geometry.normals[i as usize] * side,
-                to_eye: to_eye / distance,
-                distance,
-            }
-        });
         let color = if self.channels { paint.answer.color.into_iter().fold(0.0, f64::max) } else { 1.0 };
-        let kd = (paint.answer.diffuse * color).abs() as f32 * 255.0;
         let (ks, shininess) = highlight(paint, self.channels);
-        let light = OneLight { facet, corners: &corners, kd, ks, shininess };
-        let suns =
-            self.lights.suns.iter().map(|sun| light.sun(sun, brightest(sun.intensity, sun.channels, self.channels)));
-        let lamps = self
-            .lights
-            .lamps
-            .iter()
-            .map(|lamp| light.lamp(lamp, brightest(lamp.intensity, lamp.channels, self.channels)));
-        suns.chain(lamps).sum()
-    }
-}
-
-/// A corner, and the direction to the eye.
-struct PointOfView {
-    position: Vec3,
-    normal: Vec3,
-    to_eye: Vec3,
-    distance: f32,
-}
-
-/// A triangle in the light of one source.
-struct OneLight<'a> {
-    facet: &'a Facet,
-    corners: &'a [PointOfView; 3],
-    kd: f32,
-    ks: f32,
-    shininess: f32,
-}
-
-impl OneLight<'_> {
-    fn sun(&self, sun: &Beam, intensity: f32) -> f32 {
-        let cosines = [0, 1, 2].map(|i| self.corners[i].normal.dot(sun.towards));
-        let (most, least) = ends(cosines);
-        if most <= 0.0 {
-            // N·l is linear: nothing of the face sees it.
-            return 0.0;
-        }
-        let body = most * self.facet.shortening + clamp_error(most, least);
-        intensity * (self.kd * body + self.highlight([sun.towards; 3], cosines, 0.0))
-    }
-
-    fn lamp(&self, lamp: &LampBeam, intensity: f32) -> f32 {
-        let edge = self.facet.edge;
-        let at = Vec3::new(lamp.position[0] as f32, lamp.position[1] as f32, lamp.position[2] as f32);
-        let to_lamp = [0, 1, 2].map(|i| at - self.corners[i].position);
-        let distances = to_lamp.map(Vec3::length);
-        let (farthest, nearest) = ends(distances);
-        // No point is farther from its nearest corner.
-        let nearest = nearest - 0.58 * edge;
-        let inverse_square = lamp.inverse_square as f32;
-        let part = nearest.max(0.0) * nearest.max(0.0) * inverse_square;
-        if part >= 1.0 {
-            return 0.0;
-        }
-        let turn = if edge < nearest { edge / nearest } else { 4.0 };
-        let towards = [0, 1, 2].map(|i| to_lamp[i] / distances[i]);
-        let cosines = [0, 1, 2].map(|i| self.corners[i].normal.dot(towards[i]));
-        // The fall-off (1 − u)², u = d² / R², and its derivatives along an edge: |u'| ≤ 2√u·e, u'' = 2e², e being the
-        // edge in units of the range.
-        let e = edge * libm::sqrtf(inverse_square);
-        let u = (farthest * farthest * inverse_square).min(1.0);
-        let left = 1.0 - part;
-        let (fall_off, first, second) = (left * left, 4.0 * libm::sqrtf(u) * left * e, (8.0 * u + 4.0 * left) * e * e);
-        let angle = self.facet.spread + turn;
-        let curvature = fall_off * angle * angle + 2.0 * first * angle + second;
-        let (most, least) = ends(cosines);
-        let body = CURVATURE * curvature + fall_off * clamp_error(most, least);
-        // The highlight's own curvature, and the fall-off's on it.
-        let highlight = fall_off * self.highlight(towards, cosines, turn);
-        let fading = if self.ks > 0.0 {
-            let slope = libm::sqrtf(self.shininess) * (2.0 * self.facet.spread + turn);
-            self.ks * CURVATURE * (2.0 * first * slope + second)
-        } else {
-            0.0
+        let corners = question.indices.map(|i| i as usize);
+        let light = OneLight {
+            facet: &budget.facets[question.triangle],
+            normals: corners.map(|i| self.geometry.normals[i] * side),
+            to_eye: if ks == 0.0 { [Towards::default(); 3] } else { corners.map(|i| budget.to_eye[i]) },
+            kd: (paint.answer.diffuse * color).abs() as f32 * 255.0,
+            ks,
+            shininess,
         };
-        intensity * (self.kd * body + highlight + fading)
-    }
-
-    /// How far linear highlights are off: by their curvature, or by no more than the brightest.
-    fn highlight(&self, towards: [Vec3; 3], cosines: [f32; 3], light_turn: f32) -> f32 {
-        if self.ks == 0.0 {
-            return 0.0;
+        let mut sum = 0.0;
+        for sun in self.lights.suns {
+            let intensity = brightest(sun.intensity, sun.channels, self.channels);
+            sum += light.sun(sun.towards, intensity, limit - sum);
+            if sum > limit {
+                return f32::INFINITY;
+            }
         }
-        let (most, least) = ends(cosines);
-        let nearest = self.corners.iter().map(|corner| corner.distance).fold(f32::INFINITY, f32::min);
-        let turn = 2.0 * self.facet.spread + light_turn + self.facet.edge / (nearest - 0.58 * self.facet.edge).max(0.0);
-        // Where the light comes over the horizon the highlight begins at once.
-        let curved =
-            if most > 0.0 && least <= 0.0 { f32::INFINITY } else { CURVATURE * curve(self.shininess) * turn * turn };
-        let along = [0, 1, 2].map(|i| {
-            let PointOfView { normal, to_eye, .. } = self.corners[i];
-            2.0 * cosines[i] * normal.dot(to_eye) - towards[i].dot(to_eye)
-        });
-        let (along, _) = ends(along);
-        // No point's direction is farther from that of its nearest corner than this.
-        let apart = 0.58 * turn;
-        let brightest = if apart < 1.5 && along < libm::cosf(apart) {
-            let along = along.max(-1.0);
-            along * libm::cosf(apart) + libm::sqrtf(1.0 - along * along) * libm::sinf(apart)
-        } else {
-            1.0
-        };
-        let peak = if brightest > 0.0 { libm::powf(brightest, self.shininess) } else { 0.0 };
-        self.ks * curved.min(peak)
+        let vertices = self.geometry.positions.len();
+        for (lamp, to_lamp) in self.lights.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
+            let intensity = brightest(lamp.intensity, lamp.channels, self.channels);
+            sum += light.lamp(corners.map(|i| to_lamp[i]), lamp.inverse_square as f32, intensity, limit - sum);
+            if sum > limit {
+                return f32::INFINITY;
+            }
+        }
+        sum
     }
-}
-
-/// The greatest and the least.
-fn ends([a, b, c]: [f32; 3]) -> (f32, f32) {
-    (a.max(b).max(c), a.min(b).min(c))
-}
-
-/// How far Σ λᵢ max(0, cᵢ) and max(0, Σ λᵢ cᵢ) are apart at most.
-fn clamp_error(most: f32, least: f32) -> f32 {
-    if most > 0.0 && least < 0.0 { most * least / (least - most) } else { 0.0 }
 }
