@@ -65,10 +65,11 @@ impl fmt::Display for Pixel {
         let mut text = Text(String::new());
         let Self { x, y, byte, color, .. } = self;
         let in_hex = color.to_u32();
-        text.line(&format!("pixel ({x}, {y}): byte {byte} ({byte:#04x}), an entry of the palette: #{in_hex:06x}"));
+        text.line(&format!("pixel ({x}, {y}): byte {byte} ({byte:#04x}), which the palette shows as #{in_hex:06x}"));
         if self.seen.is_empty() {
-            let words = format!("no triangle covers its centre; the frame was cleared to {}", self.background);
-            text.say("background", &words);
+            let words =
+                format!("the background: no triangle covers its centre; the frame was cleared to {}", self.background);
+            text.say("seen", &words);
         }
         let front = self.seen.len().saturating_sub(1);
         for (i, seen) in self.seen.iter().enumerate() {
@@ -193,7 +194,15 @@ impl Pixel {
             })
             .collect();
         if !errors.is_empty() {
-            text.say("truth", &format!("{}, of 255 shades", errors.join(", ")));
+            let shown = match (seen.stages.first(), seen.ramp.entries()) {
+                (Some(Stage::Shade(shade)), entries @ 2..256) => {
+                    // A shade lies in its ramp.
+                    let (step, steps) = (f64::from(*shade) - f64::from(seen.ramp.first()), f64::from(entries - 1));
+                    format!("; the byte is step {step} of the ramp's {steps}: {:.3}", 255.0 * step / steps)
+                }
+                _ => String::new(),
+            };
+            text.say("truth", &format!("{}, of 255 shades{shown}", errors.join(", ")));
         }
         text.say("stages", &stages(seen, true));
         let effects: Vec<String> = seen
@@ -379,6 +388,16 @@ fn say_sums(text: &mut Text, sums: &Sums, x: u32) {
     text.say("span", &format!("begins at column f = {first}{anew}; this is column {x}"));
     let in_shades = in_units(sums, f64::from(start));
     text.say("start", &format!("0x{} = {in_shades:.3}: {back}{half_words}", hex(sums, start)));
+    let sum = sums.sum();
+    let byte = sum >> sums.fraction_bits;
+    let whole = format!(
+        "0x{} = {:.3}, whose whole part is the byte {byte} ({byte:#04x})",
+        hex(sums, sum),
+        in_units(sums, f64::from(sum))
+    );
+    if sums.step == 0 {
+        return text.say("step", &format!("0: the shade is the same all along the row, {whole}"));
+    }
     let step = in_units(sums, sums.step as f64);
     text.say("step", &format!("{} = {step:+.4} a pixel: the slope, cut toward zero", step_in_hex(sums)));
     // Of many the first and the last few.
@@ -388,41 +407,26 @@ fn say_sums(text: &mut Text, sums: &Sums, x: u32) {
         // A small number.
         shown.insert(ENDS as usize, "...".into());
     }
-    let sum = sums.sum();
-    let byte = sum >> sums.fraction_bits;
-    text.say(
-        "sums",
-        &format!(
-            "{}; after {steps} steps 0x{} = {:.3}, whose whole part is the byte {byte} ({byte:#04x})",
-            shown.join(" "),
-            hex(sums, sum),
-            in_units(sums, f64::from(sum))
-        ),
-    );
+    let after = if steps == 1 { "1 step".into() } else { format!("{steps} steps") };
+    text.say("sums", &format!("{}; after {after} {whole}", shown.join(" ")));
 }
 
 /// The way of the byte through the stages.
 fn stages(seen: &Seen, whole: bool) -> String {
-    let mut words = Vec::new();
-    for stage in &seen.stages {
-        words.push(match *stage {
-            Stage::Shade(shade) => format!("shade {shade}"),
-            Stage::Channels([r, g, b]) => format!("rgb {r} {g} {b}"),
-            Stage::Dither { threshold, byte } => format!("dither (threshold {threshold}) {byte}"),
-            Stage::Texture { texel, byte } => format!("texel {texel} {byte}"),
-            Stage::TextureChannels { texel, channels: [r, g, b] } => format!("texel {texel} rgb {r} {g} {b}"),
-            Stage::Mix { threshold: Some(threshold), byte } => format!("mix (threshold {threshold}) {byte}"),
-            Stage::Mix { threshold: None, byte } => format!("mix {byte}"),
-            Stage::Fog { level, byte } => format!("fog (level {level}) {byte}"),
-            Stage::Blend { behind, byte } => format!("blend (over {behind}) {byte}"),
-        });
-    }
     if whole && let [Stage::Shade(byte)] = seen.stages.as_slice() {
-        return format!(
-            "the shade is the byte: entry {byte} of the palette, in the ramp of entries {} to {}",
-            seen.ramp.first(),
-            seen.ramp.last()
-        );
+        let (first, last) = (seen.ramp.first(), seen.ramp.last());
+        return format!("the shade is the byte: entry {byte} of the palette, in the ramp of entries {first} to {last}");
     }
-    words.join(" > ")
+    let words = seen.stages.iter().map(|stage| match *stage {
+        Stage::Shade(shade) => format!("shade {shade}"),
+        Stage::Channels([r, g, b]) => format!("rgb {r} {g} {b}"),
+        Stage::Dither { threshold, byte } => format!("dither by {threshold}: {byte}"),
+        Stage::Texture { texel, byte } => format!("texel {texel}: {byte}"),
+        Stage::TextureChannels { texel, channels: [r, g, b] } => format!("texel {texel}: {r} {g} {b}"),
+        Stage::Mix { threshold: Some(threshold), byte } => format!("mix, dither by {threshold}: {byte}"),
+        Stage::Mix { threshold: None, byte } => format!("mix: {byte}"),
+        Stage::Fog { level, byte } => format!("fog of {level}: {byte}"),
+        Stage::Blend { behind, byte } => format!("over {behind}: {byte}"),
+    });
+    words.collect::<Vec<_>>().join(" > ")
 }

@@ -15,7 +15,7 @@ type Curve = (&'static str, RGBColor, fn(&Column) -> Option<f64>);
 const CURVES: [Curve; 3] = [
     ("lit (the model at every pixel)", RGBColor(217, 95, 2), |column| column.lit),
     ("gouraud (linear, exact)", RGBColor(27, 120, 180), |column| column.gouraud),
-    ("drawn", RGBColor(20, 20, 20), |column| column.drawn),
+    ("drawn (dots)", RGBColor(20, 20, 20), |column| column.drawn),
 ];
 
 /// Writes the chart: above the intensity, below the slope.
@@ -40,7 +40,8 @@ fn draw(title: &str, row: &Row, area: DrawingArea<SVGBackend<'_>, Shift>) -> Res
         CURVES.iter().map(|(_, _, of)| row.columns.iter().map(of).collect()).collect();
     let slopes: Vec<Vec<Option<f64>>> = CURVES.iter().map(|(_, _, of)| row.slope(of)).collect();
     panel(&above, "intensity, shades of 255", &columns, &intensity, false).map_err(|error| failed(&error))?;
-    panel(&below, "slope, shades a pixel", &columns, &slopes, true).map_err(|error| failed(&error))?;
+    panel(&below, "slope, shades a pixel (cut off at steps)", &columns, &slopes, true)
+        .map_err(|error| failed(&error))?;
     area.present().map_err(|error| failed(&error))
 }
 
@@ -51,7 +52,7 @@ fn panel<'a>(
     curves: &[Vec<Option<f64>>],
     is_lower: bool,
 ) -> Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>> {
-    let (low, high) = span(curves, columns);
+    let (low, high) = span(curves, columns, is_lower);
     let (left, right) = (columns.start as f64 - 0.5, columns.end as f64 - 0.5);
     let mut chart = ChartBuilder::on(area)
         .margin(12)
@@ -69,16 +70,26 @@ fn panel<'a>(
     mesh.draw()?;
     for ((name, color, _), values) in CURVES.iter().zip(curves) {
         // Drawn slopes of whole bytes jump by halves: they stand back behind the true ones.
-        let is_drawn = *name == "drawn";
+        let is_drawn = name.starts_with("drawn");
         let style = if is_drawn && is_lower {
             color.mix(0.25).stroke_width(1)
         } else {
             color.stroke_width(if is_drawn { 1 } else { 2 })
         };
+        // What is beyond the panel is drawn along its edge.
+        let runs = runs(values, columns).into_iter().map(|run| run.into_iter().map(|(x, y)| (x, y.clamp(low, high))));
         let mut is_named = false;
-        for run in runs(values, columns) {
-            let line = LineSeries::new(run, style);
-            let series = chart.draw_series(line)?;
+        for run in runs {
+            if is_drawn && !is_lower {
+                // Bytes: a dot each.
+                let dots = chart.draw_series(run.map(|at| Circle::new(at, 2, color.filled())))?;
+                if !is_named {
+                    is_named = true;
+                    dots.label(*name).legend(|(x, y)| Circle::new((x + 10, y), 2, color.filled()));
+                }
+                continue;
+            }
+            let series = chart.draw_series(LineSeries::new(run, style))?;
             if !is_named {
                 is_named = true;
                 series.label(*name).legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
@@ -107,15 +118,20 @@ fn shown(row: &Row) -> Range<usize> {
     }
 }
 
-/// From the least to the greatest value, with some room; 0 to 1 of none.
-fn span(curves: &[Vec<Option<f64>>], columns: &Range<usize>) -> (f64, f64) {
-    let values = || curves.iter().flat_map(|curve| &curve[columns.clone()]).copied().flatten();
-    let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-    if low > high {
-        return (0.0, 1.0);
+/// From the least to the greatest value, with some room; 0 to 1 of none. Of slopes, which are great where the intensity
+/// itself has a step, the eight tenths in the middle and as much again on both sides.
+fn span(curves: &[Vec<Option<f64>>], columns: &Range<usize>, are_slopes: bool) -> (f64, f64) {
+    let mut values: Vec<f64> = curves.iter().flat_map(|curve| &curve[columns.clone()]).copied().flatten().collect();
+    values.sort_by(f64::total_cmp);
+    let (Some(&low), Some(&high)) = (values.first(), values.last()) else { return (0.0, 1.0) };
+    if !are_slopes {
+        let room = ((high - low) * 0.06).max(0.5);
+        return (low - room, high + room);
     }
-    let room = ((high - low) * 0.06).max(0.5);
-    (low - room, high + room)
+    let tenth = values.len() / 10;
+    let (inner_low, inner_high) = (values[tenth], values[values.len() - 1 - tenth]);
+    let room = (inner_high - inner_low).max(0.5);
+    (low.max(inner_low - room) - 0.1 * room, high.min(inner_high + room) + 0.1 * room)
 }
 
 /// The stretches without a gap.
@@ -140,20 +156,20 @@ pub(crate) fn text(title: &str, row: &Row) -> String {
     }
     let of = |of: fn(&Column) -> Option<f64>| -> Vec<Option<f64>> { row.columns.iter().map(of).collect() };
     text += "\nintensity in shades of 255: # drawn, o lit at every pixel\n";
-    text += &plot(&columns, [('o', of(|c| c.lit)), ('#', of(|c| c.drawn))], LINES[0]);
-    text += "\nslope in shades a pixel: = linear between the corners, o lit at every pixel\n";
-    text += &plot(&columns, [('o', row.slope(|c| c.lit)), ('=', row.slope(|c| c.gouraud))], LINES[1]);
+    text += &plot(&columns, [('o', of(|c| c.lit)), ('#', of(|c| c.drawn))], LINES[0], false);
+    text += "\nslope in shades a pixel, cut off at steps: = linear between the corners, o lit at every pixel\n";
+    text += &plot(&columns, [('o', row.slope(|c| c.lit)), ('=', row.slope(|c| c.gouraud))], LINES[1], true);
     text + &bands(row)
 }
 
-fn plot(columns: &Range<usize>, curves: [(char, Vec<Option<f64>>); 2], lines: usize) -> String {
+fn plot(columns: &Range<usize>, curves: [(char, Vec<Option<f64>>); 2], lines: usize, are_slopes: bool) -> String {
     let values = curves.each_ref().map(|(_, values)| values.clone());
-    let (low, high) = span(&values, columns);
+    let (low, high) = span(&values, columns, are_slopes);
     let across = columns.len().min(ACROSS);
     let mut grid = vec![vec![' '; across]; lines];
     for (mark, values) in &curves {
         for (i, x) in columns.clone().enumerate() {
-            if let Some(value) = values[x] {
+            if let Some(value) = values[x].map(|value| value.clamp(low, high)) {
                 // Within the grid: from 0 to lines − 1.
                 let line = ((high - value) / (high - low) * (lines as f64 - 1.0)).round() as usize;
                 grid[line.min(lines - 1)][i * across / columns.len()] = *mark;

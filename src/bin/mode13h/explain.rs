@@ -28,7 +28,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "Y")]
     row: Option<u32>,
     /// Of a row: a chart, in a file whose name ends in .svg, in place of one in characters
-    #[arg(short, long, value_name = "FILE", requires = "row", conflicts_with = "json")]
+    #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
     out: Option<PathBuf>,
     /// As JSON, for programs
     #[arg(long)]
@@ -49,6 +49,9 @@ fn place(words: &str) -> Result<(u32, u32), String> {
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { input, pixel, row, out, json, at, drawing } = options;
+    if out.is_some() && row.is_none() {
+        return Err(Failure::words("--out is for the chart of a --row"));
+    }
     if let Some(out) = out
         && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
     {
