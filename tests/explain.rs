@@ -49,8 +49,7 @@ fn check_front(pixel: &Pixel, what: &str) -> bool {
         assert_eq!(pixel.byte, pixel.background, "{what}");
         return false;
     };
-    let bytes = seen.stages.iter().filter_map(|stage| stage.byte());
-    assert_eq!(bytes.last(), Some(pixel.byte), "{what}");
+    assert_eq!(seen.stages.last().and_then(|stage| stage.byte()), Some(pixel.byte), "{what}");
     let (x, y) = (pixel.x as i32, pixel.y as i32);
     let triangle = face.corners.each_ref().map(oracle::point);
     if seen.exact_cover {
