@@ -303,6 +303,22 @@ fn a_row_is_its_pixels() {
     assert_eq!(row.slope(|column| column.drawn), [None, Some(15.0), None, None]);
 }
 
+/// The short form, word for word: a byte, its face, its sums, its errors, its stages.
+#[test]
+fn the_short_form_fits_beside_a_picture() {
+    let scene = square([100.0, 132.0], [60.0, 92.0]);
+    let pixel = explain(&mut Renderer::new(), &scene, 110, 65);
+    let lines = ["(110, 65) byte 255 #ffffff", "square, triangle 1", "gouraud-8.8-reseeded"];
+    // The sun is straight on, so that all shades are 255.0, with the half 0xff80. The row begins on the diagonal.
+    let sums = ["ff80 at 105 + 5 x +0.000 = ff80", "off gouraud +0.00, lit +0.00"];
+    assert_eq!(pixel.lines(40), [lines.as_slice(), sums.as_slice()].concat());
+    assert_eq!(pixel.lines(6)[1], "square");
+    let tie = explain(&mut Renderer::new(), &scene, 110, 70);
+    assert_eq!(tie.lines(40)[2], "gouraud-8.8-reseeded, on a left edge");
+    let none = explain(&mut Renderer::new(), &scene, 10, 70);
+    assert_eq!(none.lines(40), ["(10, 70) byte 0 #000000", "background: no face is here"]);
+}
+
 #[test]
 fn what_is_not_in_the_frame_is_refused() {
     let scene = scenes::showing("cube");

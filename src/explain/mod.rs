@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `face` | a triangle at the pixel: its corners, its edges, who owns a tie, what became of it |
 //! | `pixel` | [`pixel()`]: everything about one |
-//! | `text` | the same in words |
+//! | `text`, `span_text` | the same in words |
 //! | `row` | [`row()`]: a row's intensity and its slope, drawn and true |
 //!
 //! The bytes are the raster's own: every face is drawn again, clipped to the one pixel, and every stage's byte is what
@@ -29,6 +29,7 @@
 mod face;
 mod pixel;
 mod row;
+mod span_text;
 mod text;
 
 use core::fmt;

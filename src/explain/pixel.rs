@@ -12,7 +12,8 @@ use crate::raster::account::{Account, row_of};
 use crate::raster::cover::Ordered;
 use crate::raster::effects::Attributes;
 use crate::raster::{Shading, Vertex};
-use crate::render::trace::{Bytes, Met};
+use crate::render::one_pixel::Bytes;
+use crate::render::trace::Met;
 use crate::render::{Fate, HiddenSurfaces, Renderer, Rung, Screen, ShadedBy, VertexPath};
 use crate::scene::Scene;
 use crate::truth::{Face, Standard, Truth};
@@ -40,6 +41,8 @@ pub struct Pixel {
     pub rung: Rung,
     /// Why so, in words.
     pub rung_why: String,
+    /// The budget that chooses a technique for each face in place of `rung`, in shades, if there is one.
+    pub max_error: Option<f32>,
     /// The numbers that the vertices were made in.
     pub vertex_path: VertexPath,
     /// The names of the scene's objects.
@@ -186,6 +189,7 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
         hidden_surfaces_why: hidden.map(|row| row.why.clone()).unwrap_or_default(),
         rung: trace.stats.rung,
         rung_why: rung_why(renderer, scene, trace.stats.rung),
+        max_error: renderer.max_error(scene),
         vertex_path: trace.stats.vertex_path,
         objects: (0..scene.objects().len()).map(|object| plan::name_of(scene, object)).collect(),
         faces,
@@ -209,11 +213,12 @@ fn rung_why(renderer: &Renderer, scene: &Scene, drawn: Rung) -> String {
     if wanted != drawn {
         return format!("16.16 vertices have no {wanted}");
     }
-    match renderer.max_error(scene) {
-        Some(shades) => format!("for a budget of {shades} shades"),
-        None if renderer.has_own_rung() => "asked for".into(),
-        None if scene.wishes.rung.is_some() => "the scene asks for it".into(),
-        None => "the default".into(),
+    if renderer.has_own_rung() {
+        "asked for".into()
+    } else if scene.wishes.rung.is_some() {
+        "the scene asks for it".into()
+    } else {
+        "the default".into()
     }
 }
 

@@ -7,9 +7,9 @@ use core::fmt;
 
 use super::face::{EdgeKind, FaceHere};
 use super::pixel::{Pixel, Seen, Stage};
+use super::span_text::{say_account, short_account};
 use crate::plan::Effect;
 use crate::raster::Shading;
-use crate::raster::account::{Account, Ratio, Sums, Way};
 use crate::render::{Fate, Rung, ShadedBy};
 
 /// Columns of text.
@@ -21,15 +21,12 @@ const LABEL: usize = 10;
 /// Triangles that are listed, at most.
 const LISTED: usize = 6;
 
-/// Sums that are shown of either end of a span.
-const ENDS: i32 = 5;
-
 /// Lines that begin with a label and go on below it.
-struct Text(String);
+pub(super) struct Text(String);
 
 impl Text {
     /// A paragraph, wrapped.
-    fn say(&mut self, label: &str, words: &str) {
+    pub(super) fn say(&mut self, label: &str, words: &str) {
         let mut line = format!("  {label:LABEL$}");
         let mut empty = true;
         for word in words.split_whitespace() {
@@ -97,7 +94,8 @@ impl Pixel {
                 let losers = self.losers().count();
                 let others = if losers > 0 { format!(", {losers} behind") } else { String::new() };
                 lines.push(format!("{}{others}", self.name(face)));
-                lines.push(format!("{} {}", self.shading_of(face, seen), short_edges(face, *x, *y)));
+                let edge = if seen.exact_cover { short_edges(face, *x, *y) } else { String::new() };
+                lines.push(format!("{}{edge}", self.shading_of(face, seen)));
                 lines.extend(seen.accounts.first().and_then(short_account));
                 if let ShadedBy::Light { shades: [shade, ..], .. } = seen.shaded_by {
                     lines.push(format!("light here {:.2}", f64::from(shade) / 256.0));
@@ -105,7 +103,7 @@ impl Pixel {
                 let errors = seen.against.iter().map(|a| format!("{} {:+.2}", a.standard, a.error));
                 let errors = errors.collect::<Vec<_>>().join(", ");
                 lines.extend((!errors.is_empty()).then(|| format!("off {errors}")));
-                lines.push(stages(seen, false));
+                lines.extend((seen.stages.len() > 1).then(|| stages(seen, false)));
             }
         }
         lines.truncate(6);
@@ -245,7 +243,9 @@ impl Pixel {
     fn say_rung(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
         let drawn = self.shading_of(face, seen);
         let runs = seen.effects.iter().any(|row| row.effect == Effect::Gouraud);
-        let words = if drawn == self.rung {
+        let words = if let Some(shades) = self.max_error {
+            format!("{drawn}: chosen for this face by the budget of {shades} shades")
+        } else if drawn == self.rung {
             format!("{drawn}: {}", self.rung_why)
         } else if drawn == Rung::Flat && !runs {
             format!("{drawn}: its corners have one shade (else {}: {})", self.rung, self.rung_why)
@@ -295,7 +295,7 @@ fn owner(kind: EdgeKind) -> &'static str {
 
 fn short_edges(face: &FaceHere, x: u32, y: u32) -> String {
     match face.edges(x, y).iter().find(|edge| edge.value == 0) {
-        Some(edge) => format!("on a {} edge", edge.kind),
+        Some(edge) => format!(", on a {} edge", edge.kind),
         None => String::new(),
     }
 }
@@ -308,107 +308,6 @@ fn in_shades(seen: &Seen, shades: &[u16; 3]) -> String {
     } else {
         format!("shade {r:.3} ({:#06x})", shades[0])
     }
-}
-
-/// A sum as its register shows it, in hexadecimal.
-fn hex(sums: &Sums, sum: u32) -> String {
-    if sums.fraction_bits == 16 { format!("{sum:06x}") } else { format!("{sum:04x}") }
-}
-
-fn in_units(sums: &Sums, value: f64) -> f64 {
-    value / f64::from(1_u32 << sums.fraction_bits)
-}
-
-/// A step as the loop adds it: modulo the size of its register.
-fn step_in_hex(sums: &Sums) -> String {
-    // Of the register's bits.
-    if sums.fraction_bits == 16 { format!("{:#010x}", sums.step as u32) } else { format!("{:#06x}", sums.step as u16) }
-}
-
-fn short_account(account: &Account) -> Option<String> {
-    Some(match account.way {
-        Way::Flat(byte) => format!("one shade for the face: {byte}"),
-        Way::Sums(sums) => {
-            let Sums { start_at, start, steps, .. } = sums;
-            let step = in_units(&sums, sums.step as f64);
-            let start = hex(&sums, start);
-            format!("{start} at {start_at} + {steps} x {step:+.3} = {}", hex(&sums, sums.sum()))
-        }
-        Way::Quotient => format!("exact quotient {:.4}", account.exact?.to_f64() / 256.0),
-        Way::Float { shade, .. } => format!("quotient in f32: {shade:.4}"),
-    })
-}
-
-fn say_account(text: &mut Text, account: &Account, x: u32) {
-    match account.way {
-        Way::Flat(byte) => text.say("span", &format!("one byte for the whole face, {byte}: a plain fill")),
-        Way::Sums(sums) => say_sums(text, &sums, x),
-        Way::Quotient => text.say(
-            "quotient",
-            "at every pixel exactly: the corners' shades weighted by their areas and depths (which stand for 1/w); the \
-             byte is the nearest shade",
-        ),
-        Way::Float { start, n: [n, dn], d: [d, dd], shade } => {
-            let k = i64::from(x) - i64::from(start);
-            let words = format!(
-                "k = {k} pixels from column {start}, the row's far end: ({n:e} + k x {dn:e}) / ({d:e} + k x {dd:e}) = \
-                 {shade:.6}, nearest byte {}",
-                account.byte
-            );
-            text.say("f32", &words);
-        }
-    }
-    if let Some(exact @ Ratio { numerator, denominator }) = account.exact {
-        let shade = exact.to_f64() / 256.0;
-        let off = f64::from(account.byte) - shade;
-        let cut = match account.way {
-            Way::Sums(sums) => {
-                let held = in_units(&sums, f64::from(sums.sum()) - f64::from(sums.half));
-                format!(": {:+.4} by start and steps, {:+.4} by rounding", held - shade, f64::from(account.byte) - held)
-            }
-            _ => String::new(),
-        };
-        text.say(
-            "exact",
-            &format!("{numerator} / {denominator} / 256 = {shade:.4}; the byte is off by {off:+.4}{cut}"),
-        );
-    }
-}
-
-fn say_sums(text: &mut Text, sums: &Sums, x: u32) {
-    let Sums { first, start_at, start, steps, half, .. } = *sums;
-    let anew = if start_at == first { String::new() } else { format!(", and anew every 64 pixels: at {start_at}") };
-    let half_words = if half > 0 { ", half a shade added to make the byte the nearest" } else { ", no half added" };
-    let back = match sums.step {
-        0 => "cut",
-        step if step < 0 => "rounded up, back to where it falls from",
-        _ => "rounded down, back to where it rises from",
-    };
-    let back = if half > 0 { format!("the exact shade there {back}") } else { "its left edge's shade".into() };
-    text.say("span", &format!("begins at column f = {first}{anew}; this is column {x}"));
-    let in_shades = in_units(sums, f64::from(start));
-    text.say("start", &format!("0x{} = {in_shades:.3}: {back}{half_words}", hex(sums, start)));
-    let sum = sums.sum();
-    let byte = sum >> sums.fraction_bits;
-    let whole = format!(
-        "0x{} = {:.3}, whose whole part is the byte {byte} ({byte:#04x})",
-        hex(sums, sum),
-        in_units(sums, f64::from(sum))
-    );
-    if sums.step == 0 {
-        return text.say("step", &format!("0: the shade is the same all along the row, {whole}"));
-    }
-    let step = in_units(sums, sums.step as f64);
-    text.say("step", &format!("{} = {step:+.4} a pixel: the slope, cut toward zero", step_in_hex(sums)));
-    // Of many the first and the last few.
-    let ends = |k: &i32| steps < 2 * ENDS || *k < ENDS || *k > steps - ENDS;
-    let mut shown: Vec<String> = (0..=steps).filter(ends).map(|k| hex(sums, sums.after(k))).collect();
-    if steps >= 2 * ENDS {
-        // A small number.
-        shown.insert(ENDS as usize, "...".into());
-    }
-    let after = if steps == 1 { "1 step".into() } else { format!("{steps} steps") };
-    text.say("sums", &format!("{}; after {after} {whole}", shown.join(" ")));
 }
 
 /// The way of the byte through the stages.

@@ -10,7 +10,7 @@
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `stats` | what a frame came to |
-//! | `trace` | one pixel of a frame, stage by stage |
+//! | `trace`, `one_pixel` | one pixel of a frame: its faces; its byte, stage by stage |
 //! | `automatic` | a palette for a scene, from what is seen of it over a round |
 //!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed,
@@ -24,6 +24,7 @@ mod face;
 mod integer;
 mod look;
 mod object;
+pub(crate) mod one_pixel;
 mod paint;
 mod pixel_light;
 mod stats;
@@ -55,8 +56,9 @@ use crate::vga::Vga;
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use automatic::{AutomaticPalette, Seen, automatic, seen};
+pub use one_pixel::ShadedBy;
 pub use stats::{Shares, Stats};
-pub use trace::{Fate, ShadedBy};
+pub use trace::Fate;
 pub use vertex_path::{UnknownVertexPath, VertexPath};
 
 /// Why a scene could not be drawn.

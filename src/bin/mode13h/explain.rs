@@ -108,6 +108,7 @@ fn pixel_json(name: &str, at: f64, pixel: &Pixel) -> Value {
         "background": pixel.background,
         "rung": pixel.rung.name(),
         "rung_why": pixel.rung_why,
+        "max_error": pixel.max_error,
         "vertex_path": pixel.vertex_path.name(),
         "hidden_surfaces": pixel.hidden_surfaces.name(),
         "hidden_surfaces_why": pixel.hidden_surfaces_why,
