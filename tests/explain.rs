@@ -244,6 +244,46 @@ fn a_tie_on_a_shared_edge_is_the_left_edges() {
     }
 }
 
+/// Every pixel of a long row, in which spans start anew, by every rung; and of two bodies in one place, whose depths are
+/// equal everywhere, by every way to hidden surfaces.
+#[test]
+fn every_pixel_of_a_long_row_and_of_equal_depths() {
+    let mut scene = square([8.0, 312.0], [40.0, 160.0]);
+    scene.add_light(Light::lamp([-60.0, 30.0, 40.0], 200.0));
+    *scene.lights_mut() = scene.lights()[1..].to_vec();
+    let mut twins = scene.clone();
+    let mut twin = twins.objects()[0].clone().named("twin");
+    twin.materials[0].diffuse *= 0.5;
+    twins.add(twin);
+    for rung in Rung::ALL {
+        for way in HiddenSurfaces::ALL {
+            let mut renderer = Renderer::new();
+            renderer.set_rung(rung);
+            renderer.set_hidden_surfaces(Some(way));
+            let bytes = frame(&mut renderer, &twins);
+            for x in (0..320).step_by(5) {
+                let pixel = explain(&mut renderer, &twins, x, 90);
+                assert_eq!(pixel.byte, bytes[90 * 320 + x as usize], "{rung}, {way}:\n{pixel}");
+            }
+        }
+        let mut renderer = Renderer::new();
+        renderer.set_rung(rung);
+        let bytes = frame(&mut renderer, &scene);
+        let mut anew = 0;
+        for x in 0..320 {
+            let pixel = explain(&mut renderer, &scene, x, 90);
+            assert_eq!(pixel.byte, bytes[90 * 320 + x as usize], "{pixel}");
+            check_front(&pixel, &format!("{rung} at {x}"));
+            let account = pixel.front().and_then(|(_, seen)| seen.accounts.first().copied());
+            if let Some(Account { way: Way::Sums(sums), .. }) = account {
+                anew += usize::from(sums.start_at != sums.first);
+                assert!(rung != Rung::Gouraud88Reseeded || sums.steps < 64, "{pixel}");
+            }
+        }
+        assert!(rung != Rung::Gouraud88Reseeded || anew > 100, "{anew}");
+    }
+}
+
 /// The triangle that is named is the one that truth finds, and the shade as far from it as the rung may be.
 #[test]
 fn the_face_and_the_errors_are_those_against_the_truth() {
