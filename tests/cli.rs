@@ -969,3 +969,84 @@ fn scenes_are_drawn_at_their_time() {
     let (line, _) = film(&directory, &["flash", "-o", "x.gif", "--fps", "10", "--scale", "1"]);
     assert!(line.contains(" 30 frames ") && line.contains(", 3.00 s, "), "{line}");
 }
+
+/// One pixel in words and as JSON, which say the same as the picture.
+#[test]
+fn explain_says_why_a_pixel_has_its_byte() {
+    let directory = directory();
+    let mut scene = shipped::by_name("cone").expect("a scene").load().expect("a scene that loads").scene;
+    scene.set_time(0.0);
+    let mut vga = Vga::new();
+    Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
+    for (x, y) in [(150, 100), (0, 0), (167, 120)] {
+        let place = format!("{x},{y}");
+        let output = run(&directory, &["explain", "cone", "--pixel", &place]);
+        assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+        let text = String::from_utf8(output.stdout).expect("text");
+        let byte = vga.pixels()[y * 320 + x];
+        assert!(text.starts_with(&format!("cone at 0 s, pixel ({x}, {y}): byte {byte} (")), "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+        let output = run(&directory, &["explain", "cone", "--pixel", &place, "--json"]);
+        let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!((&json["schema"], &json["byte"]), (&Value::from(1), &Value::from(byte)));
+        let Some(seen) = json["seen"].get(0) else {
+            assert_eq!((json["byte"].clone(), text.contains("the background")), (Value::from(0), true));
+            continue;
+        };
+        let account = &seen["accounts"][0];
+        let sums = account["sums"].as_array().expect("sums");
+        let last = sums.last().and_then(Value::as_u64).expect("a sum");
+        assert_eq!((last >> 8, sums.len() as u64 - 1), (byte.into(), account["steps"].as_u64().expect("steps")));
+        assert!(text.contains(&format!("{last:04x}")), "{text}");
+        let face = &json["faces"][seen["face"].as_u64().expect("a place") as usize];
+        assert!(text.contains(&format!("cone, triangle {}", face["triangle"])), "{text}");
+        assert!(face["edges"].as_array().expect("edges").iter().all(|edge| edge["value"].as_i64() >= Some(0)));
+    }
+}
+
+/// A row in characters, as JSON and as a chart.
+#[test]
+fn explain_draws_a_row() {
+    let directory = directory();
+    let output = run(&directory, &["explain", "cone", "--row", "120"]);
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.starts_with("cone at 0 s, row 120, gouraud-8.8-reseeded\n"), "{text}");
+    assert!(text.contains("Mach bands") && text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    let output = run(&directory, &["explain", "cone", "--row", "0"]);
+    assert!(String::from_utf8(output.stdout).expect("text").contains("nothing but background"));
+
+    let output = run(&directory, &["explain", "cone", "--row", "120", "--json"]);
+    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!((&json["schema"], &json["row"]), (&Value::from(1), &Value::from(120)));
+    let columns = json["columns"].as_array().expect("columns");
+    assert_eq!((columns.len(), json["slope"]["lit"].as_array().map(Vec::len)), (320, Some(320)));
+    let faces = columns.iter().filter(|column| !column["face"].is_null()).count();
+
+    succeed(&directory, &["explain", "cone", "--row", "120", "-o", "row.svg"]);
+    let svg = String::from_utf8(read(&directory, "row.svg")).expect("text");
+    assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
+    // A dot for each pixel with a face, and one in the legend.
+    assert_eq!(svg.matches("<circle").count(), faces + 1);
+    assert_eq!(names_in(directory.path()), ["row.svg"]);
+}
+
+#[test]
+fn explain_refuses_what_is_not_there() {
+    let directory = directory();
+    for (words, status, says) in [
+        (vec!["explain", "cone"], 2, "--pixel <X,Y>|--row <Y>"),
+        (vec!["explain", "cone", "--pixel", "320,0"], 2, "no pixel (320, 0) in a frame of 320 x 200"),
+        (vec!["explain", "cone", "--pixel", "0,200"], 2, "no pixel (0, 200)"),
+        (vec!["explain", "cone", "--pixel", "160"], 2, "such as 160,100"),
+        (vec!["explain", "cone", "--pixel", "1.5,2"], 2, "such as 160,100"),
+        (vec!["explain", "cone", "--pixel", "1,2", "--row", "3"], 2, "cannot be used with"),
+        (vec!["explain", "cone", "--pixel", "1,2", "-o", "x.svg"], 2, "--out is for the chart of a --row"),
+        (vec!["explain", "cone", "--row", "200"], 2, "no row 200 in a frame of 200 rows"),
+        (vec!["explain", "cone", "--row", "2", "-o", "x.png"], 2, "x.png: a chart's name must end in .svg"),
+        (vec!["explain", "none.obj", "--pixel", "1,2"], 1, "none.obj: No such file"),
+        (vec!["explain", "cone", "--row", "2", "-o", "none/x.svg"], 1, "none"),
+    ] {
+        assert_fails(&run(&directory, &words), status, says);
+    }
+    assert!(names_in(directory.path()).is_empty());
+}

@@ -11,6 +11,7 @@
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `stats` | what a frame came to |
+//! | `trace`, `one_pixel` | one pixel of a frame: its faces; its byte, stage by stage |
 //! | `automatic` | a palette for a scene, from what is seen of it over a round |
 //!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed,
@@ -25,11 +26,13 @@ mod face;
 mod integer;
 mod look;
 mod object;
+pub(crate) mod one_pixel;
 mod paint;
 mod pixel_light;
 mod stats;
 mod tables;
 mod tessellate;
+pub(crate) mod trace;
 mod vertex;
 mod vertex_path;
 
@@ -55,7 +58,9 @@ use crate::vga::Vga;
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use automatic::{AutomaticPalette, Seen, automatic, seen};
+pub use one_pixel::ShadedBy;
 pub use stats::{Shares, Stats};
+pub use trace::Fate;
 pub use vertex_path::{UnknownVertexPath, VertexPath};
 
 /// Why a scene could not be drawn.

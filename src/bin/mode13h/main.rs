@@ -1,6 +1,8 @@
 //! `mode13h`: a scene or a model in a window, or a picture of it.
 
+mod chart;
 mod demo;
+mod explain;
 mod failure;
 mod film;
 mod input;
@@ -45,6 +47,8 @@ enum Command {
     Scenes(scenes::Options),
     /// Say what a scene calls for, object by object, and why
     Plan(plan::Options),
+    /// Let one pixel account for its byte, or show a row's intensity and its slope
+    Explain(explain::Options),
     /// Look at a palette, convert it, or make one for a model
     Palette(palette::Options),
     /// Draw a hard case 16 times enlarged: the right way beside the fault it guards against
@@ -71,6 +75,7 @@ fn run(words: Words) -> Result<(), Failure> {
         Some(Command::Render(options)) => render::run(&options),
         Some(Command::Scenes(options)) => scenes::run(&options),
         Some(Command::Plan(options)) => plan::run(&options),
+        Some(Command::Explain(options)) => explain::run(&options),
         Some(Command::Palette(options)) => palette::run(&options),
         Some(Command::Show(options)) => show::run(&options),
         Some(Command::Verify(options)) => verify::run(&options),

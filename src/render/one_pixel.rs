@@ -1,0 +1,211 @@
+//! One pixel drawn by itself, stage by stage.
+//!
+//! Nothing is worked out here that drawing works out: a face is drawn by the raster, clipped to the pixel, and a stage's
+//! byte is what is drawn with the stages after it taken away.
+
+use alloc::vec::Vec;
+use core::cell::Cell;
+
+use super::Screen;
+use super::look::Looks;
+use super::trace::Met;
+use crate::palette::Table;
+use crate::raster::effects::{Attributes, Lighting, Look, Mix, Source, TextureLook};
+use crate::raster::{Drawn, Frame, Raster, Rect, Vertex};
+use crate::span::Kernel;
+
+/// Where the shades of a face come from.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum ShadedBy {
+    /// From its corners.
+    Corners,
+    /// From a table of 256 × 256 normals.
+    NormalTable,
+    /// From the light at the pixel.
+    Light {
+        /// The normal there, not made unit yet, in the object's own space.
+        normal: [f32; 3],
+        /// The point there.
+        position: [f32; 3],
+        /// The shades in 8.8, of three channels or three times the same.
+        shades: [u16; 3],
+    },
+}
+
+/// What the stages of a face make of a pixel.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Bytes {
+    pub(crate) shaded_by: ShadedBy,
+    pub(crate) exact_cover: bool,
+    /// One shade three times, or three channels.
+    pub(crate) shades: [u8; 3],
+    pub(crate) channels: bool,
+    pub(crate) texel: Option<u8>,
+    /// The threshold, and the byte.
+    pub(crate) dithered: Option<(u8, u8)>,
+    /// Of channels, each with the texel's.
+    pub(crate) textured: Option<[u8; 3]>,
+    pub(crate) mixed: Option<u8>,
+    /// The level, and the byte.
+    pub(crate) fogged: Option<(u8, u8)>,
+    /// What is behind, and the byte.
+    pub(crate) blended: Option<(u8, u8)>,
+    pub(crate) byte: u8,
+}
+
+/// A frame of which one pixel is drawn.
+pub(super) struct OnePixel {
+    pub(super) screen: Screen,
+    pub(super) x: u32,
+    pub(super) y: u32,
+    pub(super) kernel: Kernel,
+    /// The frame's row that it is in.
+    pub(super) row: Vec<u8>,
+}
+
+impl OnePixel {
+    /// The byte that `draw` leaves where `behind` was before; `None` if it does not draw the pixel.
+    pub(super) fn draw(&mut self, behind: u8, draw: impl FnOnce(&mut Raster<'_>) -> Drawn) -> Option<u8> {
+        let Screen { width, height, .. } = self.screen;
+        let (x, y) = (self.x, self.y);
+        *self.row.get_mut(x as usize)? = behind;
+        let frame = Frame::band(&mut self.row, width, height, width as usize, y..y + 1).ok()?;
+        let clip = Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+        let mut raster = Raster::new(frame).with_clip(clip).with_kernel(self.kernel);
+        let drawn = draw(&mut raster);
+        if drawn.pixels == 0 { None } else { self.row.get(x as usize).copied() }
+    }
+
+    /// The byte of a face by a look with some stages taken away.
+    fn look(&mut self, met: (&[Vertex; 3], &[Attributes; 3]), behind: u8, look: &Look<'_>) -> u8 {
+        self.draw(behind, |raster| raster.triangle_with_effects(met.0, met.1, look)).unwrap_or(behind)
+    }
+
+    /// Whether an edge of a triangle that does not cover the pixel runs through its centre.
+    pub(super) fn is_on_edge(&self, vertices: &[Vertex; 3]) -> bool {
+        // Within a frame of at most 4,096 pixels a side.
+        let centre = [self.x, self.y].map(|c| i64::from(c) * 256 + 128);
+        let area = crate::raster::clip::doubled_area(vertices).signum();
+        let at = |i: usize| [i64::from(vertices[i].x().to_bits()), i64::from(vertices[i].y().to_bits())];
+        let sides = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
+            let (a, b) = (at(from), at(to));
+            area * ((b[0] - a[0]) * (centre[1] - a[1]) - (b[1] - a[1]) * (centre[0] - a[0]))
+        });
+        area != 0 && sides.iter().all(|side| *side >= 0) && sides.contains(&0)
+    }
+}
+
+/// Notes what is asked of a light.
+#[derive(Debug)]
+struct Noted<'a> {
+    light: &'a dyn Lighting,
+    last: Cell<Option<([f32; 6], [u16; 3])>>,
+}
+
+impl Lighting for Noted<'_> {
+    fn shades(&self, points: &[[f32; 6]], shades: &mut [u16]) {
+        self.light.shades(points, shades);
+        self.last.set(points.last().copied().zip(shades.last().map(|shade| [*shade; 3])));
+    }
+
+    fn channels(&self, points: &[[f32; 6]], [red, green, blue]: [&mut [u16]; 3]) {
+        self.light.channels(points, [&mut *red, &mut *green, &mut *blue]);
+        let [red, green, blue] = [red, green, blue].map(|channel| channel.last().copied().unwrap_or_default());
+        self.last.set(points.last().map(|point| (*point, [red, green, blue])));
+    }
+}
+
+/// What a face makes of the pixel, where `behind` is.
+pub(super) fn bytes(looks: &Looks<'_>, met: &Met, pixel: &mut OnePixel, behind: u8, scan_line: bool) -> Bytes {
+    let plain = |shade: u8, exact_cover: bool| Bytes {
+        shaded_by: ShadedBy::Corners,
+        exact_cover,
+        shades: [shade; 3],
+        channels: false,
+        texel: None,
+        dithered: None,
+        textured: None,
+        mixed: None,
+        fogged: None,
+        blended: None,
+        byte: shade,
+    };
+    let (Some(attributes), Some(surface)) = (met.attributes, met.surface) else {
+        // The scan-line method finds the pixels itself, and takes a shading's shades alone.
+        let look = Look { source: Source::Shaded(met.shading), ..Look::PLAIN };
+        let byte = if scan_line {
+            pixel.look((&met.vertices, &Default::default()), behind, &look)
+        } else {
+            pixel.draw(behind, |raster| raster.triangle(&met.vertices, met.shading)).unwrap_or(behind)
+        };
+        return plain(byte, scan_line || met.shading.has_exact_cover());
+    };
+    let mut made = plain(behind, true);
+    looks.with(met.object, surface, |look| {
+        made = stages(look, (&met.vertices, &attributes), pixel, behind, made);
+        Drawn::default()
+    });
+    made
+}
+
+/// What each stage of a look makes of the pixel.
+fn stages(
+    look: &Look<'_>,
+    met: (&[Vertex; 3], &[Attributes; 3]),
+    pixel: &mut OnePixel,
+    behind: u8,
+    mut made: Bytes,
+) -> Bytes {
+    let bare = Look { dither: None, texture: None, fog: None, blend: None, ..*look };
+    let single = Look { channels: None, ..bare };
+    made.channels = look.channels.is_some();
+    let mut channels =
+        |look: Look<'_>| [0, 1, 2].map(|i| pixel.look(met, behind, &Look { channels: Some(Mix::Only(i)), ..look }));
+    made.shades = if made.channels { channels(bare) } else { [0; 3] };
+    made.textured = look.texture.filter(|_| made.channels).map(|_| channels(Look { texture: look.texture, ..bare }));
+    if !made.channels {
+        made.shades = [pixel.look(met, behind, &bare); 3];
+    }
+    match look.source {
+        Source::Shaded(_) => {}
+        Source::NormalTable(_) => made.shaded_by = ShadedBy::NormalTable,
+        Source::Lit(light) => {
+            let noted = Noted { light, last: Cell::new(None) };
+            pixel.look(met, behind, &Look { source: Source::Lit(&noted), ..bare });
+            if let Some(([nx, ny, nz, x, y, z], shades)) = noted.last.get() {
+                made.shaded_by = ShadedBy::Light { normal: [nx, ny, nz], position: [x, y, z], shades };
+            }
+        }
+    }
+    // A row of a table is a shade, a level or the new byte; a column a texel or the byte that was there.
+    let columns = Table::from_fn(|_, column| column);
+    let rows = Table::from_fn(|row, _| row);
+    made.texel = look.texture.map(|texture| {
+        let texture = TextureLook { tables: [columns.as_array(); 3], ..texture };
+        pixel.look(met, behind, &Look { texture: Some(texture), ..single })
+    });
+    let mut so_far = bare;
+    if let Some(thresholds) = look.dither {
+        so_far.dither = look.dither;
+        let threshold = thresholds[(pixel.y & 7) as usize][(pixel.x & 7) as usize];
+        let byte = if made.channels { 0 } else { pixel.look(met, behind, &so_far) };
+        made.dithered = Some((threshold, byte));
+    }
+    so_far.texture = look.texture;
+    if look.texture.is_some() && !made.channels {
+        made.textured = Some([pixel.look(met, behind, &so_far); 3]);
+    }
+    if made.channels {
+        made.mixed = Some(pixel.look(met, behind, &so_far));
+    }
+    if look.fog.is_some() {
+        let level = pixel.look(met, behind, &Look { fog: Some(rows.as_array()), ..single });
+        so_far.fog = look.fog;
+        made.fogged = Some((level, pixel.look(met, behind, &so_far)));
+    }
+    made.byte = pixel.look(met, behind, look);
+    if look.blend.is_some() {
+        made.blended = Some((behind, made.byte));
+    }
+    made
+}
