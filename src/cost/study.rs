@@ -31,6 +31,7 @@ pub struct Study {
 
 /// Where and how a study was made.
 #[derive(Clone, PartialEq, Debug, Default)]
+#[non_exhaustive]
 pub struct Host {
     /// The processor's name, as it says itself.
     pub processor: String,
@@ -159,6 +160,26 @@ pub enum Aspect {
     Dither,
     /// The way to visible surfaces.
     HiddenSurfaces,
+}
+
+impl Aspect {
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::VertexPath => "vertex path",
+            Self::VertexRounding => "vertex rounding",
+            Self::Kernel => "kernel",
+            Self::Dither => "dither",
+            Self::HiddenSurfaces => "hidden surfaces",
+        }
+    }
+}
+
+impl core::fmt::Display for Aspect {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 /// One choice of an aspect, all else as by default.

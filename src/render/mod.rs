@@ -431,6 +431,14 @@ impl Renderer {
         Ok(stats)
     }
 
+    /// Makes the plan and the vertices of a frame, and draws nothing. For those who measure what that takes.
+    #[cfg(feature = "std")]
+    pub(crate) fn make_vertices(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
+        self.prepare(scene, screen, None, true)?;
+        self.last = None;
+        Ok(())
+    }
+
     /// Whether vertices are kept from frame to frame.
     fn may_keep(&self) -> bool {
         self.forced.get(Effect::Transform) != Some(true)

@@ -1,5 +1,6 @@
 //! `mode13h`: a scene or a model in a window, or a picture of it.
 
+mod cost;
 mod demo;
 mod failure;
 mod film;
@@ -45,6 +46,8 @@ enum Command {
     Scenes(scenes::Options),
     /// Say what a scene calls for, object by object, and why
     Plan(plan::Options),
+    /// Measure what accuracy costs in time: every rung's error beside its time
+    Cost(cost::Options),
     /// Look at a palette, convert it, or make one for a model
     Palette(palette::Options),
     /// Draw a hard case 16 times enlarged: the right way beside the fault it guards against
@@ -71,6 +74,7 @@ fn run(words: Words) -> Result<(), Failure> {
         Some(Command::Render(options)) => render::run(&options),
         Some(Command::Scenes(options)) => scenes::run(&options),
         Some(Command::Plan(options)) => plan::run(&options),
+        Some(Command::Cost(options)) => cost::run(&options),
         Some(Command::Palette(options)) => palette::run(&options),
         Some(Command::Show(options)) => show::run(&options),
         Some(Command::Verify(options)) => verify::run(&options),

@@ -1,0 +1,243 @@
+//! Times: all ways to draw side by side, round after round.
+//!
+//! A round draws all frames by every way, in an order that is shuffled anew for each round, so that no way always
+//! runs while the processor is warm, or after the same other one. Nothing is subtracted. Every frame is drawn:
+//! that nothing has changed since the last, which would leave it as it is, is looked for by no renderer here
+//! ([`Effect::Transform`] is forced on).
+
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt::Write as _;
+use core::hint::black_box;
+use core::mem::size_of;
+use std::time::Instant;
+
+use super::statistics::{Chance, Ratio, median};
+use super::way::{Kind, Way};
+use crate::plan::Effect;
+use crate::render::{RenderError, Renderer, Rung, Shares};
+use crate::scene::Scene;
+use crate::vga::Vga;
+
+/// The fewest rounds, where time allows that at all, the fewest of all, and the most.
+const ROUNDS: (usize, usize, usize) = (25, 7, 2001);
+
+/// Ratios whose intervals are wider than this share of them get twice the time.
+const NARROW: f64 = 0.02;
+
+/// One time.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Sample {
+    round: usize,
+    /// Its place in the round, from 0.
+    order: usize,
+    way: usize,
+    /// For all frames of the round.
+    nanoseconds: f64,
+}
+
+/// All times of a study, in the order in which they were taken.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Samples {
+    /// Kind and name of each way.
+    ways: Vec<(&'static str, String)>,
+    frames: usize,
+    list: Vec<Sample>,
+}
+
+const _: () = assert!(size_of::<Sample>() <= 32, "a long study keeps some 100,000");
+
+impl Samples {
+    /// As comma-separated values with a line of headings: the number of the round, the place in the round, what was
+    /// drawn by, the number of frames, and the time for all of them in nanoseconds.
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        let mut text = String::from("round,order,kind,name,frames,ns\n");
+        for Sample { round, order, way, nanoseconds } in &self.list {
+            let (kind, name) = &self.ways[*way];
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{round},{order},{kind},{name},{},{nanoseconds:.0}", self.frames);
+        }
+        text
+    }
+
+    /// The times of one way for a frame, round by round.
+    pub(super) fn of(&self, way: usize) -> Vec<f64> {
+        let mut times = vec![0.0; self.list.len() / self.ways.len().max(1)];
+        for sample in self.list.iter().filter(|sample| sample.way == way) {
+            times[sample.round] = sample.nanoseconds / self.frames.max(1) as f64;
+        }
+        times
+    }
+
+    /// How many rounds there are.
+    pub(super) fn rounds(&self) -> usize {
+        self.list.len() / self.ways.len().max(1)
+    }
+}
+
+/// What drawing all frames comes to, whatever the time.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(super) struct Work {
+    pub(super) triangles: u64,
+    pub(super) pixels: u64,
+    pub(super) shares: [u64; Rung::ALL.len()],
+}
+
+impl Work {
+    fn add_shares(&mut self, shares: &Shares) {
+        for (count, rung) in self.shares.iter_mut().zip(Rung::ALL) {
+            *count += shares.of(rung);
+        }
+    }
+}
+
+/// One way, ready to draw.
+struct Contender<'a> {
+    renderer: Renderer,
+    scenes: &'a [Scene],
+    work: Work,
+}
+
+impl Contender<'_> {
+    /// Draws all frames; the time in nanoseconds.
+    fn draw(&mut self, vga: &mut Vga) -> Result<f64, RenderError> {
+        let start = Instant::now();
+        for scene in self.scenes {
+            black_box(self.renderer.draw(scene, vga)?);
+        }
+        Ok(start.elapsed().as_nanos() as f64)
+    }
+
+    /// The same, counting the work.
+    fn count(&mut self, vga: &mut Vga) -> Result<(), RenderError> {
+        self.work = Work::default();
+        for scene in self.scenes {
+            let stats = self.renderer.draw(scene, vga)?;
+            debug_assert!(stats.redrawn, "every frame is drawn");
+            self.work.triangles += stats.drawn;
+            self.work.pixels += u64::from(stats.raster.pixels);
+            self.work.add_shares(&stats.shares);
+        }
+        Ok(())
+    }
+}
+
+/// A renderer that draws every frame, changed or not.
+pub(super) fn always_drawing(mut renderer: Renderer) -> Renderer {
+    renderer.force(Effect::Transform, Some(true));
+    renderer
+}
+
+/// What a contest found out.
+pub(super) struct Outcome {
+    pub(super) samples: Samples,
+    /// One for each way.
+    pub(super) work: Vec<Work>,
+}
+
+/// Times all ways on their frames (all of one number), about `seconds` long: longer where fewer than 25 rounds would
+/// fit in, up to four times as long, and twice as long as long as a rung's or a budget's ratio to the first way is not
+/// known to 2 %. `progress` is told the share of the time that is over.
+pub(super) fn contest(
+    ways: &[(&Way<'_>, &[Scene])],
+    base: &dyn Fn() -> Renderer,
+    seconds: f64,
+    seed: u64,
+    progress: &dyn Fn(f64),
+) -> Result<Outcome, RenderError> {
+    let mut chance = Chance::new(seed);
+    // One machine for all, so that none has its memory in a better place.
+    let mut vga = Vga::new();
+    let mut contenders: Vec<Contender<'_>> = ways
+        .iter()
+        .map(|(way, scenes)| Contender { renderer: always_drawing(way.apply(base())), scenes, work: Work::default() })
+        .collect();
+    // Warm: tables are made, memory is there, and the caches have been filled.
+    for contender in &mut contenders {
+        contender.count(&mut vga)?;
+        contender.draw(&mut vga)?;
+    }
+    let mut samples = Samples {
+        ways: ways.iter().map(|(way, _)| (way.kind.name(), way.name.clone())).collect(),
+        frames: ways.first().map_or(0, |(_, scenes)| scenes.len()),
+        list: Vec::new(),
+    };
+    let mut order: Vec<usize> = (0..contenders.len()).collect();
+    let start = Instant::now();
+    for round in 0..ROUNDS.2 {
+        let elapsed = start.elapsed().as_secs_f64();
+        progress((elapsed / seconds).min(1.0));
+        let enough = match round {
+            round if round < ROUNDS.1 => false,
+            round if round < ROUNDS.0 => elapsed >= 4.0 * seconds,
+            _ => elapsed >= 2.0 * seconds || (elapsed >= seconds && round % 8 == 0 && is_narrow(ways, &samples, seed)),
+        };
+        if enough {
+            break;
+        }
+        chance.shuffle(&mut order);
+        for (place, &way) in order.iter().enumerate() {
+            let nanoseconds = contenders[way].draw(&mut vga)?;
+            samples.list.push(Sample { round, order: place, way, nanoseconds });
+        }
+    }
+    Ok(Outcome { samples, work: contenders.iter().map(|contender| contender.work).collect() })
+}
+
+/// Whether all ratios that are asked for are known well enough.
+fn is_narrow(ways: &[(&Way<'_>, &[Scene])], samples: &Samples, seed: u64) -> bool {
+    let mut chance = Chance::new(seed);
+    let first = samples.of(0);
+    ways.iter().enumerate().all(|(i, (way, _))| {
+        matches!(way.kind, Kind::Choice(_)) || Ratio::new(&samples.of(i), &first, &mut chance).spread() <= NARROW
+    })
+}
+
+/// How long a step of the clock is seen to be, in nanoseconds: the median of a hundred.
+pub(super) fn clock_step() -> f64 {
+    let mut steps = Vec::new();
+    for _ in 0..100 {
+        let start = Instant::now();
+        let step = loop {
+            let passed = start.elapsed();
+            if !passed.is_zero() {
+                break passed;
+            }
+        };
+        steps.push(step.as_nanos() as f64);
+    }
+    median(&steps)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes;
+
+    #[test]
+    fn every_way_draws_every_frame_in_every_round() {
+        let frames = [Scene::showing(shapes::torus(12, 6)), Scene::showing(shapes::torus(12, 6))];
+        let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong), Way::budget(4.0)];
+        let ways: Vec<(&Way<'_>, &[Scene])> = ways.iter().map(|way| (way, &frames[..])).collect();
+        let Ok(Outcome { samples, work }) = contest(&ways, &Renderer::new, 0.001, 1, &|_| {}) else {
+            unreachable!("a scene that can be drawn")
+        };
+        let rounds = samples.rounds();
+        assert!(rounds >= 7 && samples.list.len() == 3 * rounds);
+        for round in 0..rounds {
+            let mut drawn: Vec<usize> = samples.list[3 * round..][..3].iter().map(|sample| sample.way).collect();
+            drawn.sort_unstable();
+            assert_eq!(drawn, [0, 1, 2]);
+        }
+        assert!((0..3).all(|way| samples.of(way).iter().all(|time| *time > 0.0)));
+        let orders: alloc::collections::BTreeSet<Vec<usize>> =
+            samples.list.chunks(3).map(|round| round.iter().map(|sample| sample.way).collect()).collect();
+        assert!(orders.len() > 1, "shuffled");
+        assert!(work.iter().all(|work| work.triangles > 0 && work.shares.iter().sum::<u64>() == work.triangles));
+        let csv = samples.to_csv();
+        assert_eq!(csv.lines().count(), 1 + samples.list.len());
+        assert!(csv.lines().any(|line| line.contains(",rung,gouraud-8.8,2,")), "{csv}");
+    }
+}
