@@ -1,7 +1,8 @@
 //! Times: all ways to draw side by side, round after round.
 //!
 //! A round draws all frames by every way, in an order that is shuffled anew for each round, so that no way always
-//! runs while the processor is warm, or after the same other one. Nothing is subtracted. Every frame is drawn:
+//! runs while the processor is warm, or after the same other one. A way that takes more than ten times as long as one
+//! before it sits out rounds, up to three of four: what waits for it would have few rounds. Nothing is subtracted. Every frame is drawn:
 //! that nothing has changed since the last, which would leave it as it is, is looked for by no renderer here
 //! ([`Effect::Transform`] is forced on).
 
@@ -62,9 +63,9 @@ impl Samples {
         text
     }
 
-    /// The times of one way for a frame, round by round.
+    /// The times of one way for a frame, round by round; NaN where it sat out.
     pub(super) fn of(&self, way: usize) -> Vec<f64> {
-        let mut times = vec![0.0; self.list.len() / self.ways.len().max(1)];
+        let mut times = vec![f64::NAN; self.rounds()];
         for sample in self.list.iter().filter(|sample| sample.way == way) {
             times[sample.round] = sample.nanoseconds / self.frames.max(1) as f64;
         }
@@ -73,7 +74,7 @@ impl Samples {
 
     /// How many rounds there are.
     pub(super) fn rounds(&self) -> usize {
-        self.list.len() / self.ways.len().max(1)
+        self.list.last().map_or(0, |sample| sample.round + 1)
     }
 }
 
@@ -98,6 +99,8 @@ struct Contender<'a> {
     renderer: Renderer,
     scenes: &'a [Scene],
     work: Work,
+    /// It draws in every round whose number this divides.
+    every: usize,
 }
 
 impl Contender<'_> {
@@ -152,12 +155,16 @@ pub(super) fn contest(
     let mut vga = Vga::new();
     let mut contenders: Vec<Contender<'_>> = ways
         .iter()
-        .map(|(way, scenes)| Contender { renderer: always_drawing(way.apply(base())), scenes, work: Work::default() })
+        .map(|(way, scenes)| Contender { renderer: always_drawing(way.apply(base())), scenes, work: Work::default(), every: 1 })
         .collect();
     // Warm: tables are made, memory is there, and the caches have been filled.
+    let mut least = f64::INFINITY;
     for contender in &mut contenders {
         contender.count(&mut vga)?;
-        contender.draw(&mut vga)?;
+        let time = contender.draw(&mut vga)?;
+        least = least.min(time);
+        // At most 4.
+        contender.every = (time / least / 10.0).clamp(1.0, 4.0) as usize;
     }
     let mut samples = Samples {
         ways: ways.iter().map(|(way, _)| (way.kind.name(), way.name.clone())).collect(),
@@ -178,7 +185,8 @@ pub(super) fn contest(
             break;
         }
         chance.shuffle(&mut order);
-        for (place, &way) in order.iter().enumerate() {
+        let draws = order.iter().filter(|way| round % contenders[**way].every == 0);
+        for (place, way) in draws.copied().collect::<Vec<usize>>().into_iter().enumerate() {
             let nanoseconds = contenders[way].draw(&mut vga)?;
             samples.list.push(Sample { round, order: place, way, nanoseconds });
         }

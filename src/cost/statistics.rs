@@ -52,12 +52,12 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
 }
 
 fn sorted(numbers: &[f64]) -> Vec<f64> {
-    let mut numbers = numbers.to_vec();
+    let mut numbers: Vec<f64> = numbers.iter().copied().filter(|number| !number.is_nan()).collect();
     numbers.sort_by(f64::total_cmp);
     numbers
 }
 
-/// The median; 0 of none.
+/// The median; 0 of none. What is not a number was not measured, and does not count.
 pub(super) fn median(numbers: &[f64]) -> f64 {
     quantile(&sorted(numbers), 0.5)
 }
@@ -83,7 +83,7 @@ pub(super) struct Ratio {
 
 impl Ratio {
     /// The ratio of `times` to `others`, sample i of both being of one round: what slows a whole round down slows
-    /// both.
+    /// both. Rounds in which one of them is NaN do not count.
     ///
     /// The interval is the percentile bootstrap's (Efron 1979): as many rounds as there are, drawn from them with
     /// replacement, a thousand times.
@@ -170,6 +170,9 @@ mod tests {
         let ratio = Ratio::new(&times, &halves, &mut Chance::new(3));
         assert_eq!(ratio, Ratio { median: 2.0, interval: (2.0, 2.0) });
         assert!(!ratio.cannot_be_told() && close(ratio.spread(), 0.0));
+        let sat_out = [20.0, f64::NAN, 36.0, f64::NAN, f64::NAN];
+        assert!(close(Ratio::new(&sat_out, &times, &mut Chance::new(3)).median, 2.5), "2 and 3");
+        assert!(close(quartiles(&sat_out).median, 28.0));
     }
 
     #[test]

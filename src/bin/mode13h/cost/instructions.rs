@@ -2,7 +2,7 @@
 //!
 //! The program runs itself under callgrind, with the same words and one more. There it draws each rung's frames in a
 //! call of [`draw_counted`], after it has drawn them once. Callgrind collects inside of that function only, and
-//! writes what it has collected after each call.
+//! writes what it has collected before each call of [`rung_is_done`].
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -22,6 +22,9 @@ use crate::output;
 
 /// The function that counts, as callgrind looks for it.
 const COUNTED: &str = "*draw_counted*";
+
+/// The function before which it writes what it has collected.
+const DONE: &str = "*rung_is_done*";
 
 /// Instructions of a frame, by rung.
 pub(super) struct Counts {
@@ -50,6 +53,7 @@ pub(super) fn draw(frames: &[Scene], rungs: &[Rung], renderer: &dyn Fn() -> Rend
             renderer.draw(scene, &mut vga).map_err(Failure::work)?;
         }
         draw_counted(frames, &mut renderer, &mut vga)?;
+        rung_is_done(rung);
         kernel = renderer.kernel();
     }
     let level = if kernel.name() == "simd" { format!("simd-{}", kernel.level()) } else { kernel.name().to_string() };
@@ -64,13 +68,18 @@ fn draw_counted(frames: &[Scene], renderer: &mut Renderer, vga: &mut Vga) -> Res
     Ok(())
 }
 
+#[inline(never)]
+fn rung_is_done(rung: &Rung) {
+    black_box(rung);
+}
+
 /// Counts the instructions of every rung, this program being run again with the words that it was run with.
 pub(super) fn count(rungs: &[Rung], frames: usize) -> Result<Counts, Failure> {
     let directory = Temporary::new()?;
     let program = env::current_exe().map_err(Failure::work)?;
     let out = Command::new("valgrind")
         .args(["--tool=callgrind", "--quiet", "--collect-atstart=no"])
-        .args([format!("--toggle-collect={COUNTED}"), format!("--dump-after={COUNTED}")])
+        .args([format!("--toggle-collect={COUNTED}"), format!("--dump-before={DONE}")])
         .arg(format!("--callgrind-out-file={}", directory.0.join("counts").display()))
         .arg(program)
         .args(env::args_os().skip(1))
