@@ -4,6 +4,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
+use super::claims::claims;
 use super::contest::{Outcome, Samples, clock_step, contest};
 use super::judge::{Court, Findings};
 use super::split::split;
@@ -37,6 +38,8 @@ pub struct Settings {
     pub rungs: Vec<Rung>,
     /// Whether vertex path, vertex rounding, kernels, dither and the ways to visible surfaces are compared, too.
     pub choices: bool,
+    /// Whether the sources' claims are measured, on scenes of their own.
+    pub claims: bool,
     /// About how long times are taken.
     pub seconds: f64,
     /// What the order of drawing, and resampling, are made from.
@@ -47,7 +50,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { rungs: Rung::ALL.to_vec(), choices: true, seconds: 10.0, seed: 13, host: Host::default() }
+        Self { rungs: Rung::ALL.to_vec(), choices: true, claims: true, seconds: 10.0, seed: 13, host: Host::default() }
     }
 }
 
@@ -61,6 +64,8 @@ pub enum Step {
     Times,
     /// Finding out where the time goes.
     Split,
+    /// Measuring what the sources claim.
+    Claims,
 }
 
 /// Why nothing could be found out.
@@ -136,7 +141,7 @@ pub fn measure(
     progress: &(dyn Fn(Step, f64) + Sync),
 ) -> Result<(Study, Samples), CostError> {
     let Subject { name, frames, steps, renderer } = *subject;
-    let Settings { rungs, choices: with_choices, seconds, seed, host } = settings;
+    let Settings { rungs, choices: with_choices, claims: with_claims, seconds, seed, host } = settings;
     if frames.is_empty() {
         return Err(CostError::NoFrames);
     }
@@ -150,10 +155,16 @@ pub fn measure(
     let dithered = [false, true].map(|dither| with_dither(frames, dither));
     let entrants: Vec<(&Way<'_>, &[Scene])> =
         ways.iter().map(|way| (way, way.dither.map_or(frames, |dither| &dithered[usize::from(dither)]))).collect();
-    let outcome = contest(&entrants, renderer, 0.75 * seconds, *seed, &|share| progress(Step::Times, share))?;
+    let outcome = contest(&entrants, renderer, 0.5 * seconds, *seed, &|share| progress(Step::Times, share))?;
     let of_rungs: Vec<&Way<'_>> = ways.iter().filter(|way| matches!(way.kind, Kind::Rung(_))).collect();
     let spent = (0.25 * seconds, *seed);
     let splits = split(&of_rungs, frames, renderer, spent, &|share| progress(Step::Split, share))?;
+
+    let claims = if *with_claims {
+        claims(renderer, 0.25 * seconds, *seed, &|share| progress(Step::Claims, share))?
+    } else {
+        Vec::new()
+    };
 
     let rows = Rows { ways: &ways, times: times(&ways, &outcome.samples), findings, outcome: &outcome, seed: *seed };
     let mut of_rungs = rows.rungs(&splits, frames.len());
@@ -168,7 +179,7 @@ pub fn measure(
         rungs: of_rungs,
         budget,
         options: rows.choices(),
-        claims: Vec::new(),
+        claims,
     };
     Ok((study, outcome.samples))
 }

@@ -71,6 +71,16 @@ impl<'a> Way<'a> {
         rungs.chain(BUDGETS.into_iter().map(Self::budget)).collect()
     }
 
+    /// The same with vertices rounded to so many bits after the point.
+    pub(super) fn with_vertex_bits(self, bits: u32) -> Self {
+        let set = self.set;
+        let set = Box::new(move |renderer: &mut Renderer| {
+            set(renderer);
+            renderer.set_vertex_bits(bits);
+        });
+        Self { set, ..self }
+    }
+
     /// The same with or without dither.
     pub(super) fn dithered(mut self, dither: bool) -> Self {
         self.dither = Some(dither);
