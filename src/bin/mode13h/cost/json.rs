@@ -27,6 +27,7 @@ struct Host<'a> {
     processor: &'a str,
     compiler: &'a str,
     flags: &'a str,
+    clock: &'a str,
     clock_step_ns: f64,
 }
 
@@ -203,6 +204,7 @@ pub(super) fn json(study: &Study, warnings: &[String]) -> Result<String, Failure
             processor: &host.processor,
             compiler: &host.compiler,
             flags: &host.flags,
+            clock: &host.clock,
             clock_step_ns: host.clock_step,
         },
         kernel: &study.kernel,

@@ -90,7 +90,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let renderer = || drawing.renderer(kernel);
     let subject = Subject { name: &name, frames: &frames, steps: &steps, renderer: &renderer };
     let mut settings = Settings::default();
-    (settings.rungs, settings.seconds, settings.host) = (rungs, *seconds, host::host());
+    (settings.rungs, settings.seconds) = (rungs, *seconds);
+    (settings.host, settings.clock) = (host::host(), host::clock());
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
     progress.bar.finish_and_clear();
