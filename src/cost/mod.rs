@@ -9,6 +9,7 @@
 //! | `judge`, `entries` | errors against each standard of truth; what ramp or palette adds |
 //! | `contest`, `split` | times, all ways side by side; where the time goes |
 //! | `statistics` | quartiles, ratios, and what chance makes of them |
+//! | `report` | a study as an HTML file and charts |
 
 #[cfg(feature = "std")]
 mod contest;
@@ -19,6 +20,8 @@ mod judge;
 #[cfg(feature = "std")]
 mod measure;
 mod probe;
+#[cfg(feature = "report")]
+pub mod report;
 #[cfg(feature = "std")]
 mod split;
 #[cfg(feature = "std")]
