@@ -155,7 +155,12 @@ pub(super) fn contest(
     let mut vga = Vga::new();
     let mut contenders: Vec<Contender<'_>> = ways
         .iter()
-        .map(|(way, scenes)| Contender { renderer: always_drawing(way.apply(base())), scenes, work: Work::default(), every: 1 })
+        .map(|(way, scenes)| Contender {
+            renderer: always_drawing(way.apply(base())),
+            scenes,
+            work: Work::default(),
+            every: 1,
+        })
         .collect();
     // Warm: tables are made, memory is there, and the caches have been filled.
     let mut least = f64::INFINITY;

@@ -17,10 +17,10 @@ use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth};
 
 /// Errors over many frames, pixel by pixel and over blocks.
 #[derive(Clone, Copy, Debug, Default)]
-struct Against {
+pub(super) struct Against {
     pixels: Figures,
     blocks: Figures,
-    cover_errors: u64,
+    pub(super) cover_errors: u64,
 }
 
 impl Against {
@@ -36,7 +36,12 @@ impl Against {
         self.cover_errors += other.cover_errors;
     }
 
-    fn errors(&self) -> Errors {
+    /// Pixels that were compared.
+    pub(super) fn pixels(&self) -> u64 {
+        self.pixels.count
+    }
+
+    pub(super) fn errors(&self) -> Errors {
         Errors {
             max: self.pixels.max,
             mean: self.pixels.mean(),
@@ -244,6 +249,44 @@ impl Court<'_> {
         }
         Ok(all)
     }
+}
+
+/// How far frames drawn by some ways are from a standard, way by way.
+pub(super) fn against(
+    standard: Standard,
+    frames: &[Scene],
+    ways: &[&Way<'_>],
+    base: &dyn Fn() -> Renderer,
+) -> Result<Vec<Against>, CostError> {
+    let mut all = alloc::vec![Against::default(); ways.len()];
+    let mut probe = Probe::new(base());
+    for scene in frames {
+        let truth = Truth::new(scene, Screen::MODE_13H)?.draw(standard);
+        for (against, way) in all.iter_mut().zip(ways) {
+            *probe.renderer() = way.apply(base());
+            let shown = probe.look(scene, Screen::MODE_13H)?;
+            if let Some(map) = ErrorMap::new(&truth, &shown) {
+                against.count(&map);
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// How far two standards are from each other, over all frames.
+pub(super) fn between(standards: [Standard; 2], frames: &[Scene]) -> Result<Errors, CostError> {
+    let mut all = Against::default();
+    for scene in frames {
+        let truth = Truth::new(scene, Screen::MODE_13H)?;
+        let [one, other] = standards.map(|standard| truth.draw(standard));
+        let faces = other.pixels.iter().map(|pixel| pixel.map(|pixel| pixel.face)).collect();
+        let shades = other.pixels.iter().map(|p| p.map_or([0.0; 3], |p| p.intensity.map(|i| i * 255.0))).collect();
+        let shown = Shown { width: other.width, height: other.height, faces, shades };
+        if let Some(map) = ErrorMap::new(&one, &shown) {
+            all.count(&map);
+        }
+    }
+    Ok(all.errors())
 }
 
 /// Shades as entries of a ramp of 256; of three channels the brightest; black where there is no face.

@@ -4,13 +4,15 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
+use super::claims::claims;
 use super::contest::{Outcome, Samples, clock_step, contest};
 use super::judge::{Court, Findings};
 use super::split::split;
 use super::statistics::{Chance, Ratio, quartiles};
 use super::way::{BUDGETS, Kind, REFERENCE, Way};
-use super::{BudgetRow, Host, ProbeError, RungRow, Split, Study};
-use crate::render::{RenderError, Renderer, Rung};
+use super::{Aspect, BudgetRow, Host, OptionRow, ProbeError, RungRow, Split, Study};
+use crate::plan::Effect;
+use crate::render::{RenderError, Renderer, Rung, Screen};
 use crate::scene::Scene;
 use crate::truth::TruthError;
 
@@ -34,6 +36,10 @@ pub struct Subject<'a> {
 pub struct Settings {
     /// The rungs that are studied. `gouraud-8.8` is drawn in any case, as ratios are to it.
     pub rungs: Vec<Rung>,
+    /// Whether vertex path, vertex rounding, kernels, dither and the ways to visible surfaces are compared, too.
+    pub choices: bool,
+    /// Whether the sources' claims are measured, on scenes of their own.
+    pub claims: bool,
     /// About how long times are taken.
     pub seconds: f64,
     /// What the order of drawing, and resampling, are made from.
@@ -44,7 +50,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { rungs: Rung::ALL.to_vec(), seconds: 10.0, seed: 13, host: Host::default() }
+        Self { rungs: Rung::ALL.to_vec(), choices: true, claims: true, seconds: 10.0, seed: 13, host: Host::default() }
     }
 }
 
@@ -58,6 +64,8 @@ pub enum Step {
     Times,
     /// Finding out where the time goes.
     Split,
+    /// Measuring what the sources claim.
+    Claims,
 }
 
 /// Why nothing could be found out.
@@ -133,19 +141,30 @@ pub fn measure(
     progress: &(dyn Fn(Step, f64) + Sync),
 ) -> Result<(Study, Samples), CostError> {
     let Subject { name, frames, steps, renderer } = *subject;
-    let Settings { rungs, seconds, seed, host } = settings;
+    let Settings { rungs, choices: with_choices, claims: with_claims, seconds, seed, host } = settings;
     if frames.is_empty() {
         return Err(CostError::NoFrames);
     }
-    let ways = Way::rungs_and_budgets(rungs);
+    let mut ways = Way::rungs_and_budgets(rungs);
+    if *with_choices {
+        ways.extend(choices(frames, renderer)?);
+    }
     let court = Court { ways: &ways, base: renderer, frames, steps };
     let findings = court.judge(&|share| progress(Step::Errors, share))?;
 
-    let entrants: Vec<(&Way<'_>, &[Scene])> = ways.iter().map(|way| (way, frames)).collect();
-    let outcome = contest(&entrants, renderer, 0.75 * seconds, *seed, &|share| progress(Step::Times, share))?;
+    let dithered = [false, true].map(|dither| with_dither(frames, dither));
+    let entrants: Vec<(&Way<'_>, &[Scene])> =
+        ways.iter().map(|way| (way, way.dither.map_or(frames, |dither| &dithered[usize::from(dither)]))).collect();
+    let outcome = contest(&entrants, renderer, 0.5 * seconds, *seed, &|share| progress(Step::Times, share))?;
     let of_rungs: Vec<&Way<'_>> = ways.iter().filter(|way| matches!(way.kind, Kind::Rung(_))).collect();
     let spent = (0.25 * seconds, *seed);
     let splits = split(&of_rungs, frames, renderer, spent, &|share| progress(Step::Split, share))?;
+
+    let claims = if *with_claims {
+        claims(renderer, 0.25 * seconds, *seed, &|share| progress(Step::Claims, share))?
+    } else {
+        Vec::new()
+    };
 
     let rows = Rows { ways: &ways, times: times(&ways, &outcome.samples), findings, outcome: &outcome, seed: *seed };
     let mut of_rungs = rows.rungs(&splits, frames.len());
@@ -159,10 +178,40 @@ pub fn measure(
         rounds: outcome.samples.rounds(),
         rungs: of_rungs,
         budget,
-        options: Vec::new(),
-        claims: Vec::new(),
+        options: rows.choices(),
+        claims,
     };
     Ok((study, outcome.samples))
+}
+
+/// The choices that this scene can be drawn by.
+fn choices(frames: &[Scene], base: &dyn Fn() -> Renderer) -> Result<Vec<Way<'static>>, CostError> {
+    let mut ways = Vec::new();
+    for way in Way::choices() {
+        let mut renderer = way.apply(base());
+        let mut drawable = true;
+        for scene in frames {
+            match renderer.for_each_triangle(scene, Screen::MODE_13H, |_, _| {}) {
+                Ok(_) => {}
+                // What 16.16 cannot hold, f32 can.
+                Err(_) if way.kind == Kind::Choice(Aspect::VertexPath) => drawable = false,
+                Err(error) => return Err(error.into()),
+            }
+            // On three channels dither is not that of a ramp.
+            drawable &= way.dither.is_none() || !renderer.plan().is_on_anywhere(Effect::RgbChannels);
+        }
+        if drawable {
+            ways.push(way);
+        }
+    }
+    Ok(ways)
+}
+
+/// The frames with dither, or without.
+fn with_dither(frames: &[Scene], dither: bool) -> Vec<Scene> {
+    let mut frames = frames.to_vec();
+    frames.iter_mut().for_each(|scene| scene.wishes.dither = dither);
+    frames
 }
 
 fn times(ways: &[Way<'_>], samples: &Samples) -> Vec<Vec<f64>> {
@@ -260,7 +309,32 @@ impl Rows<'_> {
                 triangles: shares.filter(|(_, triangles)| *triangles > 0).collect(),
             }
         };
-        BUDGETS.iter().enumerate().map(|(bound, _)| bound).zip(budgets).map(row).collect()
+        (0..BUDGETS.len()).zip(budgets).map(row).collect()
+    }
+
+    fn choices(&self) -> Vec<OptionRow> {
+        let chosen: Vec<(usize, Aspect)> = self
+            .ways
+            .iter()
+            .enumerate()
+            .filter_map(|(i, way)| match way.kind {
+                Kind::Choice(aspect) => Some((i, aspect)),
+                _ => None,
+            })
+            .collect();
+        let row = |&(place, aspect): &(usize, Aspect)| {
+            let first = chosen.iter().find(|(_, of)| *of == aspect).map_or(place, |(first, _)| *first);
+            let ratio = self.ratio(place, first);
+            OptionRow {
+                aspect,
+                name: self.ways[place].name.clone(),
+                per_frame: quartiles(&self.times[place]),
+                ratio: (ratio.median, ratio.interval),
+                error: self.findings[place].unrounded(),
+                cover_errors: self.findings[place].cover_errors_unrounded(),
+            }
+        };
+        chosen.iter().map(row).collect()
     }
 }
 

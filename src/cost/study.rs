@@ -158,7 +158,8 @@ pub enum Aspect {
     VertexRounding,
     /// The span kernel.
     Kernel,
-    /// Dither or none.
+    /// Dither or none. Errors are those on a ramp of 32 entries, which stand for shades 8.2 apart; times those in the
+    /// scene's own palette.
     Dither,
     /// The way to visible surfaces.
     HiddenSurfaces,

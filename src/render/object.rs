@@ -299,6 +299,11 @@ impl ObjectState {
         }
     }
 
+    /// Rounds its vertices once more.
+    pub(super) fn round_vertices(&mut self, bits: u32) {
+        vertex::round_further(bits, &mut self.lit);
+    }
+
     /// The table of a surface's shades by normal.
     pub(super) fn normal_table(&self, surface: u16) -> Option<&[u8; 65_536]> {
         self.normal_tables.get(usize::from(surface)).map(|(_, _, table)| table.as_array())

@@ -151,6 +151,7 @@ impl Progress {
                 Step::Errors => "frames compared with the truth",
                 Step::Times => "of the time, frames being timed side by side",
                 Step::Split => "of the time, frames being timed part by part",
+                Step::Claims => "of what the sources claim",
                 _ => "",
             });
         }

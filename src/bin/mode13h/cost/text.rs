@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mode13h::cost::{BudgetRow, RungRow, Study};
+use mode13h::cost::{BudgetRow, OptionRow, RungRow, Study, Verdict};
 
 /// The tables of rungs and budgets, and where the rest is.
 pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
@@ -17,6 +17,21 @@ pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
              mean square against lit\n\n";
     text += "  budget  within E  largest   µs/frame  best single rung           µs/frame  ratio\n";
     text.extend(study.budget.iter().map(budget));
+    if !study.options.is_empty() {
+        text += &format!(
+            "\n  {:50}{:>10}  {:>21}  {:>8}{:>8}{:>8}\n",
+            "choice", "µs/frame", "ratio", "largest", "rms", "cover"
+        );
+        text.extend(study.options.iter().map(option));
+    }
+    for claim in &study.claims {
+        let verdict = match claim.verdict {
+            Verdict::Holds => "holds",
+            Verdict::HoldsInPart => "holds in part",
+            Verdict::DoesNotHold => "does not hold",
+        };
+        text += &format!("\n\"{}\" {verdict}: {}\n", claim.claim, claim.measured);
+    }
     if let Some(directory) = directory {
         text += &format!("\nwritten to {}\n", directory.display());
     }
@@ -56,5 +71,17 @@ fn budget(row: &BudgetRow) -> String {
         row.within * 100.0,
         row.largest,
         row.per_frame.median / 1000.0
+    )
+}
+
+fn option(row: &OptionRow) -> String {
+    let (ratio, (low, high)) = row.ratio;
+    format!(
+        "  {:50}{:>10.1}  {ratio:>6.3} ({low:.3} to {high:.3})  {:>8.2}{:>8.2}{:>8}\n",
+        format!("{}: {}", row.aspect, row.name),
+        row.per_frame.median / 1000.0,
+        row.error.max,
+        row.error.rms,
+        row.cover_errors
     )
 }
