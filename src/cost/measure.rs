@@ -305,6 +305,7 @@ impl Rows<'_> {
                 max_error,
                 within: findings.within(bound),
                 largest: findings.lit().max,
+                rms: findings.lit().rms,
                 patch: findings.kept[bound].patch,
                 per_frame: quartiles(&self.times[place]),
                 best_single_rung: best.map(|(_, rung)| rung),

@@ -10,6 +10,7 @@
 //! | `clock`, `contest`, `split` | times, all ways side by side; where the time goes |
 //! | `claims` | what the sources claim, measured |
 //! | `statistics` | quartiles, ratios, and what chance makes of them |
+//! | `report` | a study as an HTML file and charts |
 
 #[cfg(feature = "std")]
 mod claims;
@@ -24,6 +25,8 @@ mod judge;
 #[cfg(feature = "std")]
 mod measure;
 mod probe;
+#[cfg(feature = "report")]
+pub mod report;
 #[cfg(feature = "std")]
 mod split;
 #[cfg(feature = "std")]

@@ -134,6 +134,8 @@ pub struct BudgetRow {
     pub within: f64,
     /// The largest error.
     pub largest: f64,
+    /// The root mean square of the errors.
+    pub rms: f64,
     /// The pixels of the largest connected patch beyond it.
     pub patch: usize,
     /// For a frame.

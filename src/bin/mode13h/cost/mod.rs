@@ -12,7 +12,7 @@ use std::sync::Mutex;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::cost::{self, Settings, Step, Subject};
+use mode13h::cost::{self, Settings, Step, Subject, report};
 use mode13h::export;
 use mode13h::render::Rung;
 use mode13h::scene::Scene;
@@ -73,14 +73,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if *counted {
         return instructions::draw(&frames, &rungs, &|| drawing.renderer(kernel));
     }
-    // Before much time is spent.
     let directory = match (out, json) {
         (Some(directory), _) => Some(directory.clone()),
         (None, true) => None,
         (None, false) => Some(PathBuf::from(format!("cost-{name}"))),
     };
-    if let Some(directory) = &directory {
-        fs::create_dir_all(directory).map_err(|error| Failure::work(format!("{}: {error}", directory.display())))?;
+    // Before much time is spent.
+    if let Some(directory) = directory.as_ref().filter(|directory| directory.exists() && !directory.is_dir()) {
+        return Err(Failure::work(format!("{}: is no directory", directory.display())));
     }
     let counts = if *instructions { Some(instructions::count(&rungs, frames.len())?) } else { None };
     if let Some(counts) = &counts {
@@ -105,8 +105,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let as_json = json::json(&study, &warnings)?;
     if let Some(directory) = &directory {
+        fs::create_dir_all(directory).map_err(|error| Failure::work(format!("{}: {error}", directory.display())))?;
         write(directory, "samples.csv", &samples.to_csv())?;
         write(directory, "cost.json", &as_json)?;
+        write(directory, "chart.svg", &report::chart_svg(&study))?;
+        write(directory, "report.html", &report::html(&study))?;
     }
     output::print(&if *json { as_json } else { text::text(&study, directory.as_deref()) })
 }
