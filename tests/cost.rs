@@ -64,11 +64,11 @@ fn assert_time(row: &Value) {
 #[test]
 fn everything_is_measured_and_written() {
     let directory = directory();
-    let words = ["torus", "--frames", "2", "--seconds", "0", "--json", "-o", "out"];
+    let words = ["torus", "--frames", "3", "--seconds", "0", "--json", "-o", "out"];
     let output = run(&directory, &words);
     assert!(output.status.success(), "{output:?}");
     let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!((&json["schema"], &json["input"], &json["frames"]), (&1.into(), &"torus".into(), &2.into()));
+    assert_eq!((&json["schema"], &json["input"], &json["frames"]), (&1.into(), &"torus".into(), &3.into()));
     for named in [&json["kernel"], &json["host"]["processor"], &json["host"]["flags"], &json["host"]["clock"]] {
         assert!(named.as_str().is_some_and(|name| !name.is_empty()), "{json}");
     }
@@ -141,7 +141,7 @@ fn everything_is_measured_and_written() {
     assert_eq!(lines.next(), Some("round,order,kind,name,frames,ns"));
     let rounds = json["rounds"].as_u64().expect("a number");
     let times = |kind: &str, name: &str| {
-        samples.lines().filter(|line| line.contains(&format!(",{kind},{name},2,"))).count() as u64
+        samples.lines().filter(|line| line.contains(&format!(",{kind},{name},3,"))).count() as u64
     };
     assert!(rounds >= 7 && times("rung", "gouraud-8.8") == rounds && times("budget", "4") == rounds, "{rounds}");
     // What is slow sits out rounds, not all of them.
@@ -190,14 +190,15 @@ fn where_the_picture_is_the_truth_nothing_is_off() {
         assert!(row.within == 1.0 && row.patch == 0 && row.largest < 1e-6, "{row:?}");
         assert_eq!(row.best_single_rung, Some(cheapest.rung), "all keep it");
     }
-    assert_eq!(samples.to_csv().lines().count(), 1 + study.rounds * (Rung::ALL.len() + BUDGETS.len()), "none sat out");
+    let (samples, all) = (samples.to_csv().lines().count() - 1, study.rounds * (Rung::ALL.len() + BUDGETS.len()));
+    assert!((all / 4..=all).contains(&samples), "{samples} of {all}");
 }
 
 #[test]
 fn what_is_wrong_is_said_in_one_line() {
     let directory = directory();
     for (words, status, says) in [
-        (&["torus", "--rungs", "flat,best"][..], 2, "no rung of that name"),
+        (&["torus", "--rungs", "flat,best"][..], 2, "unknown rung"),
         (&["torus", "--rung", "flat"], 2, "--rungs says which"),
         (&["torus", "--max-error", "2"], 2, "--rungs says which"),
         (&["torus", "--frames", "0"], 2, "--frames"),

@@ -179,7 +179,11 @@ pub(super) fn contest(
     let mut least = f64::INFINITY;
     for contender in &mut contenders {
         contender.count(&mut vga)?;
-        let time = contender.draw(&mut vga, spent.clock)?;
+        // What comes between once does not come three times.
+        let mut time = f64::INFINITY;
+        for _ in 0..3 {
+            time = time.min(contender.draw(&mut vga, spent.clock)?);
+        }
         least = least.min(time);
         // At most 4.
         contender.every = (time / least / 10.0).clamp(1.0, 4.0) as usize;
@@ -199,14 +203,14 @@ pub(super) fn contest(
             round if round < ROUNDS.0 => elapsed >= 4.0 * seconds,
             _ => {
                 elapsed >= 2.0 * seconds
-                    || (elapsed >= seconds && round % 8 == 0 && is_narrow(ways, &samples, spent.seed))
+                    || (elapsed >= seconds && round.is_multiple_of(8) && is_narrow(ways, &samples, spent.seed))
             }
         };
         if enough {
             break;
         }
         chance.shuffle(&mut order);
-        let draws = order.iter().filter(|way| round % contenders[**way].every == 0);
+        let draws = order.iter().filter(|way| round.is_multiple_of(contenders[**way].every));
         for (place, way) in draws.copied().collect::<Vec<usize>>().into_iter().enumerate() {
             let nanoseconds = contenders[way].draw(&mut vga, spent.clock)?;
             samples.list.push(Sample { round, order: place, way, nanoseconds });
@@ -226,6 +230,8 @@ fn is_narrow(ways: &[(&Way<'_>, &[Scene])], samples: &Samples, seed: u64) -> boo
 
 #[cfg(test)]
 mod tests {
+    use alloc::collections::BTreeSet;
+
     use super::*;
     use crate::mesh::shapes;
 
@@ -240,15 +246,17 @@ mod tests {
             unreachable!("a scene that can be drawn")
         };
         let rounds = samples.rounds();
-        assert!(rounds >= 7 && samples.list.len() == 3 * rounds);
-        for round in 0..rounds {
-            let mut drawn: Vec<usize> = samples.list[3 * round..][..3].iter().map(|sample| sample.way).collect();
-            drawn.sort_unstable();
-            assert_eq!(drawn, [0, 1, 2]);
+        assert!(rounds >= 7, "{rounds}");
+        for round in samples.list.chunk_by(|a, b| a.round == b.round) {
+            let drawn: BTreeSet<usize> = round.iter().map(|sample| sample.way).collect();
+            // A slow one may sit out.
+            assert!(drawn.len() == round.len() && drawn.contains(&0), "{round:?}");
+            assert!(round.iter().map(|sample| sample.order).eq(0..round.len()));
         }
-        assert!((0..3).all(|way| samples.of(way).iter().all(|time| *time > 0.0)));
-        let orders: alloc::collections::BTreeSet<Vec<usize>> =
-            samples.list.chunks(3).map(|round| round.iter().map(|sample| sample.way).collect()).collect();
+        assert!((0..3).all(|way| samples.of(way).iter().all(|time| *time > 0.0 || time.is_nan())));
+        let rounds = samples.list.chunk_by(|a, b| a.round == b.round);
+        let orders: BTreeSet<Vec<usize>> =
+            rounds.map(|round| round.iter().map(|sample| sample.way).collect()).collect();
         assert!(orders.len() > 1, "shuffled");
         assert!(work.iter().all(|work| work.triangles > 0 && work.shares.iter().sum::<u64>() == work.triangles));
         let csv = samples.to_csv();

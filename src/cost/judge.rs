@@ -130,6 +130,9 @@ impl Findings {
     }
 }
 
+/// What is found of all ways on one frame.
+type Judged = Result<Vec<Findings>, CostError>;
+
 /// What is judged.
 pub(super) struct Court<'a> {
     pub(super) ways: &'a [Way<'a>],
@@ -146,7 +149,7 @@ impl Court<'_> {
         // A frame each, and each pair of steps.
         let items = self.frames.len() + self.steps.len().saturating_sub(1);
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let found: Mutex<Vec<(usize, Result<Vec<Findings>, CostError>)>> = Mutex::new(Vec::new());
+        let found: Mutex<Vec<(usize, Judged)>> = Mutex::new(Vec::new());
         let work = || {
             let mut probe = Probe::new((self.base)());
             loop {

@@ -145,7 +145,7 @@ mod tests {
         let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong)];
         let ways: Vec<&Way<'_>> = ways.iter().collect();
         let Ok(split) =
-            split(&ways, &frames, &Renderer::new, &Spent { clock: Clock::WALL, seconds: 0.01, seed: 1 }, &|_| {})
+            split(&ways, &frames, &Renderer::new, &Spent { clock: Clock::WALL, seconds: 0.3, seed: 1 }, &|_| {})
         else {
             unreachable!("a scene that can be drawn")
         };

@@ -30,7 +30,7 @@ impl Chance {
     /// A whole number below `limit`, which is above 0; each as likely as any to one part in 2⁶⁴ / `limit`.
     pub(super) fn below(&mut self, limit: usize) -> usize {
         // The product's upper half is below `limit`.
-        (u128::from(self.next()) * limit as u128 >> 64) as usize
+        ((u128::from(self.next()) * limit as u128) >> 64) as usize
     }
 
     /// Puts a list in an order by chance (Fisher and Yates).
@@ -100,7 +100,7 @@ impl Ratio {
         for _ in 0..RESAMPLES {
             places.iter_mut().for_each(|place| *place = chance.below(count));
             let (low, &mut middle, _) = places.select_nth_unstable(count / 2);
-            let below = if count % 2 == 0 { low.iter().copied().max().unwrap_or(middle) } else { middle };
+            let below = if count.is_multiple_of(2) { low.iter().copied().max().unwrap_or(middle) } else { middle };
             medians.push((ratios[below] + ratios[middle]) / 2.0);
         }
         medians.sort_by(f64::total_cmp);
