@@ -4,9 +4,44 @@
 //! |---|---|
 //! | `probe` | what a renderer shows, pixel by pixel |
 //! | `study` | what a study found out, in numbers |
+//! | `measure` | a study from beginning to end |
+//! | `way` | what is measured against each other: rungs, budgets, and what else may be chosen |
+//! | `judge`, `entries` | errors against each standard of truth; what ramp or palette adds |
+//! | `clock`, `contest`, `split` | times, all ways side by side; where the time goes |
+//! | `claims` | what the sources claim, measured |
+//! | `statistics` | quartiles, ratios, and what chance makes of them |
+//! | `report` | a study as an HTML file and charts |
 
+#[cfg(feature = "std")]
+mod claims;
+#[cfg(feature = "std")]
+mod clock;
+#[cfg(feature = "std")]
+mod contest;
+#[cfg(feature = "std")]
+mod entries;
+#[cfg(feature = "std")]
+mod judge;
+#[cfg(feature = "std")]
+mod measure;
 mod probe;
+#[cfg(feature = "report")]
+pub mod report;
+#[cfg(feature = "std")]
+mod split;
+#[cfg(feature = "std")]
+mod statistics;
 mod study;
+#[cfg(feature = "std")]
+mod way;
 
+#[cfg(feature = "std")]
+pub use clock::Clock;
+#[cfg(feature = "std")]
+pub use contest::Samples;
+#[cfg(feature = "std")]
+pub use measure::{CostError, Settings, Step, Subject, measure, warnings};
 pub use probe::{Probe, ProbeError};
 pub use study::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, RungRow, Split, Study, Verdict};
+#[cfg(feature = "std")]
+pub use way::BUDGETS;

@@ -41,18 +41,30 @@ use crate::truth::{Face, Shown};
 pub struct Probe {
     renderer: Renderer,
     numbered: Numbered,
+    /// Whether shades are dithered, on a ramp of few entries then in any case.
+    dither: Option<bool>,
 }
+
+/// The ramp that dither is judged on.
+const COARSE: u16 = 32;
 
 impl Probe {
     /// Watches this renderer, as it is set: rung, kernel, vertex path and all.
     #[must_use]
     pub fn new(renderer: Renderer) -> Self {
-        Self { renderer, numbered: Numbered::default() }
+        Self { renderer, numbered: Numbered::default(), dither: None }
     }
 
     /// The renderer, to be set otherwise.
     pub fn renderer(&mut self) -> &mut Renderer {
         &mut self.renderer
+    }
+
+    /// Whether shades are dithered, and on a ramp of 32 entries either way, which stand for shades 8.2 apart; with `None`
+    /// they are not, on one of 256.
+    #[cfg(feature = "std")]
+    pub(super) fn dither(&mut self, dither: Option<bool>) {
+        self.dither = dither;
     }
 
     /// What the renderer shows of a scene.
@@ -63,13 +75,18 @@ impl Probe {
     pub fn look(&mut self, scene: &Scene, screen: Screen) -> Result<Shown, ProbeError> {
         let mut scene = scene.clone();
         scene.fog = None;
-        scene.wishes.dither = false;
+        scene.wishes.dither = self.dither == Some(true);
+        let ramp = if self.dither.is_some() { Ramp::new(0, COARSE).unwrap_or(Ramp::WHOLE) } else { Ramp::WHOLE };
         for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
-            let whole = RampChoice::Entries(Ramp::WHOLE);
-            *material =
-                Material { ramp: whole, texture: None, environment: None, blend: Blend::Opaque, ..material.clone() };
+            let ramp = RampChoice::Entries(ramp);
+            *material = Material { ramp, texture: None, environment: None, blend: Blend::Opaque, ..material.clone() };
         }
-        let shades = self.shades(&scene, screen)?;
+        let mut shades = self.shades(&scene, screen)?;
+        if self.dither.is_some() && !self.renderer.plan().is_on_anywhere(Effect::RgbChannels) {
+            let step = 255.0 / f64::from(ramp.entries() - 1);
+            shades.iter_mut().for_each(|shades| *shades = shades.map(|entry| entry * step));
+        }
+        scene.wishes.dither = false;
         let faces = self.faces(scene, screen)?;
         Ok(Shown { width: screen.width, height: screen.height, faces, shades })
     }

@@ -31,6 +31,7 @@ pub struct Study {
 
 /// Where and how a study was made.
 #[derive(Clone, PartialEq, Debug, Default)]
+#[non_exhaustive]
 pub struct Host {
     /// The processor's name, as it says itself.
     pub processor: String,
@@ -38,7 +39,9 @@ pub struct Host {
     pub compiler: String,
     /// Profile, target and features that the program was built with.
     pub flags: String,
-    /// How long a step of the clock that times were read from is seen to be.
+    /// The clock that times were read from.
+    pub clock: String,
+    /// How long a step of it is seen to be.
     pub clock_step: f64,
 }
 
@@ -131,6 +134,8 @@ pub struct BudgetRow {
     pub within: f64,
     /// The largest error.
     pub largest: f64,
+    /// The root mean square of the errors.
+    pub rms: f64,
     /// The pixels of the largest connected patch beyond it.
     pub patch: usize,
     /// For a frame.
@@ -155,10 +160,31 @@ pub enum Aspect {
     VertexRounding,
     /// The span kernel.
     Kernel,
-    /// Dither or none.
+    /// Dither or none. Errors are those on a ramp of 32 entries, which stand for shades 8.2 apart; times those in the
+    /// scene's own palette.
     Dither,
     /// The way to visible surfaces.
     HiddenSurfaces,
+}
+
+impl Aspect {
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::VertexPath => "vertex path",
+            Self::VertexRounding => "vertex rounding",
+            Self::Kernel => "kernel",
+            Self::Dither => "dither",
+            Self::HiddenSurfaces => "hidden surfaces",
+        }
+    }
+}
+
+impl core::fmt::Display for Aspect {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 /// One choice of an aspect, all else as by default.

@@ -143,6 +143,9 @@ struct Drawing {
     palette: Option<Palette>,
 }
 
+/// Bits after the point of what the raster takes.
+const VERTEX_BITS: u32 = 8;
+
 /// Draws scenes. It keeps the memory that the next frame will need too, and the vertices of objects that
 /// do not change; the bytes are those of a new renderer.
 #[derive(Debug)]
@@ -151,6 +154,8 @@ pub struct Renderer {
     max_error: Option<f32>,
     mapping: Option<Mapping>,
     vertex_path: VertexPath,
+    /// Bits after the point of projected vertices; 8 as the raster has them.
+    vertex_bits: u32,
     kernel: Kernel,
     hidden_surfaces: Option<HiddenSurfaces>,
     forced: Forced,
@@ -183,6 +188,7 @@ impl Renderer {
             max_error: None,
             mapping: None,
             vertex_path: VertexPath::default(),
+            vertex_bits: VERTEX_BITS,
             kernel: Kernel::fastest(),
             hidden_surfaces: None,
             forced: Forced::default(),
@@ -241,6 +247,15 @@ impl Renderer {
     /// Chooses the way from mesh to vertices.
     pub fn set_vertex_path(&mut self, vertex_path: VertexPath) {
         self.vertex_path = vertex_path;
+    }
+
+    /// Rounds projected vertices once more, to so many bits after the point: 8, as they are, or fewer, so to whole pixels
+    /// with 0. Points that clipping makes stay as they are. For those who measure what rounding costs.
+    #[cfg(feature = "std")]
+    pub(crate) fn set_vertex_bits(&mut self, bits: u32) {
+        self.vertex_bits = bits.min(VERTEX_BITS);
+        // Vertices that are kept are rounded otherwise.
+        self.states.clear();
     }
 
     /// The way from mesh to vertices.
@@ -440,6 +455,14 @@ impl Renderer {
         Ok(stats)
     }
 
+    /// Makes the plan and the vertices of a frame, and draws nothing. For those who measure what that takes.
+    #[cfg(feature = "std")]
+    pub(crate) fn make_vertices(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
+        self.prepare(scene, screen, None, true)?;
+        self.last = None;
+        Ok(())
+    }
+
     /// Whether vertices are kept from frame to frame.
     fn may_keep(&self) -> bool {
         self.forced.get(Effect::Transform) != Some(true)
@@ -487,6 +510,9 @@ impl Renderer {
             }
             if state.vertices(scene, object, &view, plan, &mut stats) {
                 changed = true;
+                if self.vertex_bits < VERTEX_BITS {
+                    state.round_vertices(self.vertex_bits);
+                }
             } else {
                 stats.kept += 1;
             }

@@ -319,6 +319,11 @@ impl ObjectState {
         }
     }
 
+    /// Rounds its vertices once more.
+    pub(super) fn round_vertices(&mut self, bits: u32) {
+        vertex::round_further(bits, &mut self.lit);
+    }
+
     /// The table of a surface's shades by normal.
     pub(super) fn normal_table(&self, surface: u16) -> Option<&[u8; 65_536]> {
         self.normal_tables.get(usize::from(surface)).map(|(_, _, table)| table.as_array())
@@ -362,6 +367,11 @@ impl ObjectState {
     /// The budget's choices, to be completed while faces are drawn, and then put back.
     pub(super) fn take_choices(&mut self) -> Vec<Choice> {
         core::mem::take(&mut self.choices)
+    }
+
+    /// The same, as they are.
+    pub(super) fn choices(&self) -> &[Choice] {
+        &self.choices
     }
 
     pub(super) fn put_choices(&mut self, choices: Vec<Choice>) {

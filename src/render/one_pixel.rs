@@ -141,7 +141,7 @@ pub(super) fn bytes(looks: &Looks<'_>, met: &Met, pixel: &mut OnePixel, behind: 
         return plain(byte, scan_line || met.shading.has_exact_cover());
     };
     let mut made = plain(behind, true);
-    looks.with(met.object, surface, |look| {
+    looks.with((met.object, surface, met.rung), |look| {
         made = stages(look, (&met.vertices, &attributes), pixel, behind, made);
         Drawn::default()
     });

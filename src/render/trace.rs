@@ -4,6 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::mem;
 
+use super::budget::Choice;
 use super::face::Sink;
 use super::look::Looks;
 use super::one_pixel::{Bytes, OnePixel, bytes};
@@ -14,7 +15,7 @@ use crate::raster::cover::Ordered;
 use crate::raster::depth::DepthPlane;
 use crate::raster::effects::Attributes;
 use crate::raster::{Shading, Vertex};
-use crate::scene::Scene;
+use crate::scene::{Rung, Scene};
 
 /// A triangle that covers the pixel, or whose edge runs through its centre.
 #[derive(Clone, Copy, Debug)]
@@ -23,8 +24,9 @@ pub(crate) struct Met {
     /// Its place in the mesh, or in what splitting made of it; `None` where that is not known.
     pub(crate) place: Option<usize>,
     pub(crate) vertices: [Vertex; 3],
-    /// Of a face with effects that of its object.
     pub(crate) shading: Shading,
+    /// Of a face with effects.
+    pub(super) rung: Rung,
     /// Of a face with effects.
     pub(crate) attributes: Option<[Attributes; 3]>,
     pub(super) surface: Option<u16>,
@@ -71,7 +73,7 @@ struct Meeting<'a> {
 }
 
 impl Meeting<'_> {
-    fn keep(&mut self, vertices: &[Vertex; 3], shading: Shading, of_effects: Option<([Attributes; 3], u16)>) {
+    fn keep(&mut self, vertices: &[Vertex; 3], shading: Shading, of_effects: Option<([Attributes; 3], u16, Rung)>) {
         let by = if self.exact || of_effects.is_some() { Shading::Flat(0) } else { shading };
         let covers = self.pixel.draw(0, |raster| raster.triangle(vertices, by)).is_some();
         if !covers && (!by.has_exact_cover() || !self.pixel.is_on_edge(vertices)) {
@@ -82,7 +84,7 @@ impl Meeting<'_> {
         let depth = DepthPlane::new(&triangle).at(self.pixel.x as i32, self.pixel.y as i32);
         let fate = match of_effects {
             _ if !covers => Fate::NotItsEdge,
-            Some((_, surface)) if self.looks.is_transparent(self.object, surface) => Fate::SeenThrough,
+            Some((_, surface, _)) if self.looks.is_transparent(self.object, surface) => Fate::SeenThrough,
             _ => Fate::Seen,
         };
         self.met.push(Met {
@@ -90,8 +92,9 @@ impl Meeting<'_> {
             place: None,
             vertices: *vertices,
             shading,
-            attributes: of_effects.map(|(attributes, _)| attributes),
-            surface: of_effects.map(|(_, surface)| surface),
+            rung: of_effects.map_or(Rung::default(), |(_, _, rung)| rung),
+            attributes: of_effects.map(|(attributes, ..)| attributes),
+            surface: of_effects.map(|(_, surface, _)| surface),
             depth,
             fate,
             bytes: None,
@@ -104,9 +107,8 @@ impl Sink for Meeting<'_> {
         self.keep(vertices, shading, None);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16) {
-        let rung = self.looks.plan.objects().get(self.object).map(|plan| plan.rung()).unwrap_or_default();
-        self.keep(vertices, rung.shading(), Some((*attributes, surface)));
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung) {
+        self.keep(vertices, rung.shading(), Some((*attributes, surface, rung)));
     }
 }
 
@@ -128,7 +130,7 @@ impl Sink for Same<'_> {
         self.look(vertices);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16) {
+    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: Rung) {
         self.look(vertices);
     }
 }
@@ -178,7 +180,8 @@ impl Renderer {
                 integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                faces.draw(stats, &mut sink);
+                let mut choices = self.states[object].choices().to_vec();
+                faces.draw(&mut choices, stats, &mut sink);
             }
         }
         self.integer = integer;
@@ -198,7 +201,8 @@ impl Renderer {
             faces.geometry.triangles = &triangles[i..=i];
             faces.geometry.triangle_surfaces = &triangle_surfaces[i..=i];
             let mut same = Same { wanted: &met.vertices, found: false };
-            faces.draw(&mut ignored, &mut same);
+            // Which rung draws it changes no vertex's place.
+            faces.draw(&mut [Choice::default()], &mut ignored, &mut same);
             same.found
         })
     }

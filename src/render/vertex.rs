@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use glam::{Vec2, Vec3};
 
 use super::paint::Paint;
-use crate::fixed::U8F8;
+use crate::fixed::{I24F8, U8F8};
 use crate::light::{Lights, both_sides};
 use crate::palette::Ramp;
 use crate::raster::Vertex;
@@ -79,6 +79,18 @@ pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, lit: &m
         let vertex = view.project(position);
         LitVertex { needs_clipping: vertex.is_none(), vertex: vertex.unwrap_or_default(), back: U8F8::default() }
     }));
+}
+
+/// Vertices that are rounded already rounded again, to fewer bits after the point, half up.
+#[cold]
+pub(super) fn round_further(bits: u32, lit: &mut [LitVertex]) {
+    let unit = 1 << (8 - bits.min(8));
+    // Within the guard band, which is a multiple of the unit, so no sum is near the ends of i32.
+    let round = |c: I24F8| I24F8::from_bits((c.to_bits() + unit / 2).div_euclid(unit) * unit);
+    for LitVertex { vertex, .. } in lit {
+        let rounded = Vertex::new(round(vertex.x()), round(vertex.y()), vertex.shade(), vertex.depth());
+        *vertex = rounded.unwrap_or(*vertex);
+    }
 }
 
 /// No light: each surface has one shade.

@@ -222,6 +222,12 @@ impl Swim {
         }
     }
 
+    /// Takes those of other frames in as well.
+    pub fn join(&mut self, other: &Self) {
+        self.changes += other.changes;
+        self.squares += other.squares;
+    }
+
     /// The root mean square of the changes, in shades; 0 if there is none.
     #[must_use]
     pub fn rms(&self) -> f64 {

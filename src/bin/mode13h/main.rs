@@ -1,6 +1,7 @@
 //! `mode13h`: a scene or a model in a window, or a picture of it.
 
 mod chart;
+mod cost;
 mod demo;
 mod explain;
 mod failure;
@@ -49,6 +50,8 @@ enum Command {
     Plan(plan::Options),
     /// Let one pixel account for its byte, or show a row's intensity and its slope
     Explain(explain::Options),
+    /// Measure what accuracy costs in time: every rung's error beside its time
+    Cost(cost::Options),
     /// Look at a palette, convert it, or make one for a model
     Palette(palette::Options),
     /// Draw a hard case 16 times enlarged: the right way beside the fault it guards against
@@ -76,6 +79,7 @@ fn run(words: Words) -> Result<(), Failure> {
         Some(Command::Scenes(options)) => scenes::run(&options),
         Some(Command::Plan(options)) => plan::run(&options),
         Some(Command::Explain(options)) => explain::run(&options),
+        Some(Command::Cost(options)) => cost::run(&options),
         Some(Command::Palette(options)) => palette::run(&options),
         Some(Command::Show(options)) => show::run(&options),
         Some(Command::Verify(options)) => verify::run(&options),

@@ -112,6 +112,11 @@ impl Drawing {
         self.rung.or(wish).unwrap_or_default()
     }
 
+    /// Whether a rung or a budget was asked for.
+    pub(crate) fn chooses_rung(&self) -> bool {
+        self.rung.is_some() || self.max_error.is_some()
+    }
+
     /// The mapping that was asked for.
     pub(crate) fn mapping(&self) -> Option<Mapping> {
         self.mapping

@@ -1,0 +1,216 @@
+//! Error against time.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::figures::{asked, three_digits, time};
+use super::labels::{Rectangle, places};
+use crate::cost::{RungRow, Study};
+
+/// Errors below are drawn here: a logarithmic axis has no 0.
+const FLOOR: f64 = 0.01;
+
+pub(super) const INK: RGBColor = RGBColor(0x22, 0x26, 0x2b);
+pub(super) const FAINT: RGBColor = RGBColor(0xdd, 0xe0, 0xe4);
+pub(super) const RUNGS: RGBColor = RGBColor(0x1f, 0x5f, 0xa8);
+pub(super) const BUDGETS: RGBColor = RGBColor(0xc4, 0x4e, 0x12);
+const BEATEN: RGBColor = RGBColor(0x8a, 0x90, 0x99);
+
+/// The letters' height, in pixels.
+pub(super) const LETTERS: i32 = 13;
+
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+/// Error against time, both logarithmic, as an SVG file of 860 × 520 pixels on white: for each rung the root mean square
+/// error against `lit` and the time for a frame, the efficient ones filled and joined; for each budget the same.
+#[must_use]
+pub fn chart_svg(study: &Study) -> String {
+    svg((860, 520), |root| draw(study, root))
+}
+
+/// An SVG file, as far as it can be drawn.
+pub(super) fn svg(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> Outcome) -> String {
+    let mut text = String::new();
+    let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
+    // Writing to a string cannot fail.
+    if draw(&root).and_then(|()| Ok(root.present()?)).is_err() {
+        drop(root);
+        return String::from("<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>");
+    }
+    drop(root);
+    text
+}
+
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// A point: where, its name, and how it is marked.
+struct Point {
+    at: (f64, f64),
+    name: String,
+    budget: bool,
+    efficient: bool,
+}
+
+fn draw(study: &Study, root: &Area<'_>) -> Outcome {
+    root.fill(&WHITE)?;
+    let points = points(study);
+    let (across, down) = (range(points.iter().map(|p| p.at.0)), range(points.iter().map(|p| p.at.1)));
+    let x = (across.0..across.1).log_scale().with_key_points(ticks(across));
+    let y = (down.0..down.1).log_scale().with_key_points(ticks(down));
+    let mut chart = ChartBuilder::on(root)
+        .margin(14)
+        .margin_top(34)
+        .x_label_area_size(48)
+        .y_label_area_size(64)
+        .build_cartesian_2d(x, y)?;
+    let floored = points.iter().any(|point| point.at.1 <= FLOOR);
+    let floor = if floored { format!("; below {FLOOR} drawn at {FLOOR}") } else { String::new() };
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(FAINT)
+        .axis_style(INK)
+        .label_style(("sans-serif", LETTERS).into_font().color(&INK))
+        .x_label_formatter(&|ns| time(*ns))
+        .y_label_formatter(&|error| three_digits_of_tick(*error))
+        .x_desc("time for a frame (logarithmic)")
+        .y_desc(format!("error against lit, root mean square, in shades of 1/255 (logarithmic{floor})"))
+        .draw()?;
+
+    let mut efficient: Vec<(f64, f64)> = points.iter().filter(|p| p.efficient).map(|p| p.at).collect();
+    efficient.sort_by(|a, b| a.0.total_cmp(&b.0));
+    chart.draw_series(LineSeries::new(efficient.iter().copied(), RUNGS.stroke_width(2)))?;
+    for point in &points {
+        let (at, size) = (point.at, 5);
+        let shape = if point.budget {
+            TriangleMarker::new(at, size + 1, BUDGETS.filled()).into_dyn()
+        } else if point.efficient {
+            Circle::new(at, size, RUNGS.filled()).into_dyn()
+        } else {
+            Circle::new(at, size - 1, BEATEN.stroke_width(2)).into_dyn()
+        };
+        chart.draw_series(std::iter::once(shape))?;
+    }
+
+    let area = chart.plotting_area();
+    let pixel = |at: &(f64, f64)| area.map_coordinate(at);
+    let (left, right) = area.get_x_axis_pixel_range().into_pair();
+    let (top, bottom) = area.get_y_axis_pixel_range().into_pair();
+    let inner = Rectangle { left: left + 4, top: top + 2, right: right - 2, bottom: bottom - 4 };
+    let named: Vec<((i32, i32), usize)> = points.iter().map(|p| (pixel(&p.at), p.name.chars().count())).collect();
+    let joined: Vec<(i32, i32)> = efficient.iter().map(pixel).collect();
+    for ((point, &(at, _)), place) in points.iter().zip(&named).zip(places(&named, &along(&joined), LETTERS, inner)) {
+        let color = if point.budget {
+            BUDGETS
+        } else if point.efficient {
+            RUNGS
+        } else {
+            INK
+        };
+        name(root, &point.name, at, place, color)?;
+    }
+    key(root, study.budget.is_empty())
+}
+
+fn three_digits_of_tick(tick: f64) -> String {
+    if tick < 1.0 {
+        format!("{tick}")
+    } else {
+        three_digits(tick).trim_end_matches('0').trim_end_matches('.').to_string()
+    }
+}
+
+fn points(study: &Study) -> Vec<Point> {
+    let rung = |row: &RungRow| Point {
+        at: (row.per_frame.median, row.error_lit.rms.max(FLOOR)),
+        name: row.rung.to_string(),
+        budget: false,
+        efficient: row.efficient,
+    };
+    let budgets = study.budget.iter().map(|row| Point {
+        at: (row.per_frame.median, row.rms.max(FLOOR)),
+        name: format!("≤ {}", asked(row.max_error)),
+        budget: true,
+        efficient: false,
+    });
+    // Efficient ones first: their names get the best places.
+    let mut points: Vec<Point> = study.rungs.iter().map(rung).chain(budgets).collect();
+    points.retain(|p| p.at.0.is_finite() && p.at.1.is_finite() && p.at.0 > 0.0);
+    points.sort_by_key(|p| (!p.efficient, p.budget));
+    points
+}
+
+/// All points, with room, from tick to tick.
+pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
+    for value in values {
+        (low, high) = (low.min(value), high.max(value));
+    }
+    if low > high { (0.1, 10.0) } else { (low / 1.4, high * 1.4) }
+}
+
+/// 1, 2 and 5 of each power of ten; of many powers the powers alone.
+pub(super) fn ticks((low, high): (f64, f64)) -> Vec<f64> {
+    let steps: &[f64] = if high / low > 1e3 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    // Powers of ten that f64 can show.
+    let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
+    let all = (first..=last).flat_map(|power| steps.iter().map(move |step| step * 10_f64.powi(power)));
+    all.filter(|tick| (low..=high).contains(tick)).collect()
+}
+
+/// Points every few pixels along a line, that names may keep off.
+fn along(corners: &[(i32, i32)]) -> Vec<(i32, i32)> {
+    let between = |ends: &[(i32, i32)]| {
+        let (from, to) = (ends[0], ends[1]);
+        let steps = ((to.0 - from.0).abs().max((to.1 - from.1).abs()) / 4).max(1);
+        (0..=steps).map(move |i| (from.0 + (to.0 - from.0) * i / steps, from.1 + (to.1 - from.1) * i / steps))
+    };
+    corners.windows(2).flat_map(between).collect()
+}
+
+/// A name at its place, with a line to its point if it stands far off.
+pub(super) fn name(root: &Area<'_>, text: &str, at: (i32, i32), place: Rectangle, color: RGBColor) -> Outcome {
+    let middle = (place.top + place.bottom) / 2;
+    let near = (at.0.clamp(place.left, place.right), at.1.clamp(place.top + 2, place.bottom - 2));
+    let (dx, dy) = (near.0 - at.0, near.1 - at.1);
+    if dx * dx + dy * dy > 15 * 15 {
+        root.draw(&PathElement::new([at, near], color.mix(0.45).stroke_width(1)))?;
+    }
+    let (x, side) = if place.left >= at.0 {
+        (place.left, HPos::Left)
+    } else if place.right <= at.0 {
+        (place.right, HPos::Right)
+    } else {
+        ((place.left + place.right) / 2, HPos::Center)
+    };
+    let style = ("sans-serif", LETTERS).into_font().color(&color).pos(Pos::new(side, VPos::Center));
+    Ok(root.draw(&Text::new(text.to_string(), (x, middle), style))?)
+}
+
+/// What the marks mean, above the chart.
+fn key(root: &Area<'_>, no_budget: bool) -> Outcome {
+    let style = ("sans-serif", LETTERS).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+    let y = 18;
+    root.draw(&PathElement::new([(80, y), (104, y)], RUNGS.stroke_width(2)))?;
+    root.draw(&Circle::new((92, y), 5, RUNGS.filled()))?;
+    root.draw(&Text::new("efficient rungs: none is both faster and nearer", (112, y), style.clone()))?;
+    root.draw(&Circle::new((440, y), 4, BEATEN.stroke_width(2)))?;
+    root.draw(&Text::new("other rungs", (452, y), style.clone()))?;
+    if !no_budget {
+        root.draw(&TriangleMarker::new((560, y), 6, BUDGETS.filled()))?;
+        root.draw(&Text::new("budgets: errors up to so many shades accepted", (572, y), style))?;
+    }
+    Ok(())
+}
+
+/// The ends of a range of pixels, the lower first.
+pub(super) trait IntoPair {
+    fn into_pair(self) -> (i32, i32);
+}
+
+impl IntoPair for std::ops::Range<i32> {
+    fn into_pair(self) -> (i32, i32) {
+        (self.start.min(self.end), self.start.max(self.end))
+    }
+}

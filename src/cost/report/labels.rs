@@ -1,0 +1,94 @@
+//! Where names stand beside the points of a chart.
+
+/// A rectangle in pixels: left, top, right, bottom.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Rectangle {
+    pub(super) left: i32,
+    pub(super) top: i32,
+    pub(super) right: i32,
+    pub(super) bottom: i32,
+}
+
+impl Rectangle {
+    const fn around((x, y): (i32, i32), half: i32) -> Self {
+        Self { left: x - half, top: y - half, right: x + half, bottom: y + half }
+    }
+
+    /// The pixels of both.
+    fn overlap(self, other: Self) -> i32 {
+        let across = self.right.min(other.right) - self.left.max(other.left);
+        let down = self.bottom.min(other.bottom) - self.top.max(other.top);
+        across.max(0) * down.max(0)
+    }
+
+    const fn is_within(self, other: Self) -> bool {
+        self.left >= other.left && self.right <= other.right && self.top >= other.top && self.bottom <= other.bottom
+    }
+}
+
+/// A letter of a sans-serif face is 0.55 of its height wide in the mean, 0.6 to be safe.
+pub(super) const fn width(text_length: usize, height: i32) -> i32 {
+    // Names of some dozen letters.
+    text_length as i32 * height * 6 / 10
+}
+
+/// A place for each point's name, of the given length, within `area`: close to the point, over no other name, no point
+/// and none of the pixels of `busy` (a line), as far as there is room. Points are in pixels.
+pub(super) fn places(
+    points: &[((i32, i32), usize)],
+    busy: &[(i32, i32)],
+    height: i32,
+    area: Rectangle,
+) -> Vec<Rectangle> {
+    let mut placed: Vec<Rectangle> = Vec::new();
+    for &((x, y), length) in points {
+        let wide = width(length, height);
+        let mut best = None;
+        for distance in 0..8 {
+            let gap = 8 + distance * 8;
+            let aside = [y, y - gap, y + gap];
+            let right = aside.map(|y| (x + gap.min(16), y));
+            let left = aside.map(|y| (x - gap.min(16) - wide, y));
+            let above = [(x - wide / 2, y - gap - height / 2), (x - wide / 2, y + gap + height / 2)];
+            for (left, middle) in right.into_iter().chain(left).chain(above) {
+                let place = Rectangle {
+                    left,
+                    top: middle - height / 2,
+                    right: left + wide,
+                    bottom: middle + height - height / 2,
+                };
+                if !place.is_within(area) {
+                    continue;
+                }
+                let names: i32 = placed.iter().map(|&other| place.overlap(other)).sum();
+                let marks: i32 = points.iter().map(|&(at, _)| place.overlap(Rectangle::around(at, 6))).sum();
+                let lines: i32 = busy.iter().map(|&at| place.overlap(Rectangle::around(at, 2))).sum();
+                let cost = 4 * names + 4 * marks + lines + 6 * distance;
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, place));
+                }
+            }
+        }
+        // A name wider than the area stands where it begins at its point.
+        let beside = Rectangle { left: x + 8, top: y - height / 2, right: x + 8 + wide, bottom: y + height / 2 };
+        placed.push(best.map_or(beside, |(_, place)| place));
+    }
+    placed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_close_points_do_not_meet() {
+        let area = Rectangle { left: 0, top: 0, right: 600, bottom: 400 };
+        let points: Vec<((i32, i32), usize)> = (0..7).map(|i| ((100 + 3 * i, 200 - 2 * i), 18)).collect();
+        let names = places(&points, &[], 12, area);
+        for (i, name) in names.iter().enumerate() {
+            assert!(name.is_within(area), "{name:?}");
+            assert!(names[..i].iter().all(|other| other.overlap(*name) == 0), "{name:?}");
+            assert!(points.iter().all(|&(at, _)| name.overlap(Rectangle::around(at, 3)) == 0), "{name:?}");
+        }
+    }
+}

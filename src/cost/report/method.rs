@@ -1,0 +1,36 @@
+//! How it was measured.
+
+use maud::{Markup, html};
+
+use super::figures::{count, time};
+use crate::cost::Study;
+
+/// The machine, the program and the method.
+pub(super) fn section(study: &Study) -> Markup {
+    let host = &study.host;
+    html! {
+        section {
+            h2 { "How it was measured" }
+            dl {
+                dt { "input" } dd { (study.input) }
+                dt { "processor" } dd { (host.processor) }
+                dt { "span kernel" } dd { (study.kernel) }
+                dt { "compiler" } dd { (host.compiler) }
+                dt { "flags" } dd { (host.flags) }
+                dt { "clock step" } dd { (time(host.clock_step)) }
+                dt { "frames" } dd { (count(study.frames)) " in a round, all over one turn or the scene’s time" }
+                dt { "rounds" } dd { (count(study.rounds)) ", after a warm-up" }
+            }
+            p {
+                "In every round each rung and each budget draws the same frames, in an order shuffled anew for each round, so that none is always first or always after the "
+                "same other; much slower ones sit out some rounds. One thread draws, and nothing is kept from one frame to the next. A time is the median over the rounds; "
+                "a quarter of the rounds are below the lower quartile, a quarter above the upper. A ratio is the median of the ratios within rounds, and its interval holds "
+                "95 % of what resampling the rounds gives (bootstrap). Where it contains 1 the two cannot be told apart."
+            }
+            p {
+                "Truth is reckoned in 64-bit floating point by code that shares nothing with the engine but scene and mesh. Errors are taken where frame and truth show the same triangle; "
+                "all other pixels are counted as cover errors. Every time that was taken is in samples.csv."
+            }
+        }
+    }
+}

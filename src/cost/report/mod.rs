@@ -1,0 +1,29 @@
+//! A study as one HTML file that opens without a network, its charts as SVG.
+//!
+//! | file | what |
+//! |---|---|
+//! | `summary` | two sentences |
+//! | `figures` | numbers and ratios as text |
+//! | `chart`, `budget_chart`, `labels` | error against time, time against budget |
+//! | `pictures` | frames and error maps as PNG inside the file |
+//! | `page` | the file, section by section |
+//! | `rungs`, `budgets`, `choices`, `method` | the sections |
+
+mod budget_chart;
+mod budgets;
+mod chart;
+mod choices;
+mod figures;
+mod labels;
+mod method;
+mod page;
+mod pictures;
+mod rungs;
+mod summary;
+#[cfg(test)]
+mod tests;
+
+pub use budget_chart::budget_svg;
+pub use chart::chart_svg;
+pub use page::html;
+pub use summary::summary;

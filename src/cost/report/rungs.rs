@@ -1,0 +1,174 @@
+//! The rungs: times, errors, pictures.
+
+use maud::{Markup, html};
+
+use super::figures::{at_most, count, interval, list, percent, ratio, shades, three_digits, time};
+use super::pictures::{self, COLORS, NONE};
+use crate::cost::{Errors, RungRow, Split, Study};
+
+/// What a frame's time is split into, and each part's class.
+const PARTS: [(&str, &str, fn(&Split) -> f64); 5] = [
+    ("plan", "s0", |split| split.plan),
+    ("vertices", "s1", |split| split.vertices),
+    ("set-up", "s2", |split| split.setup),
+    ("spans", "s3", |split| split.spans),
+    ("scan-out", "s4", |split| split.scan_out),
+];
+
+/// Times and errors of every rung.
+pub(super) fn tables(study: &Study) -> Markup {
+    html! {
+        section {
+            h2 { "The rungs" }
+            @if study.rungs.is_empty() { p { "No rung was measured." } } @else {
+                (times(study))
+                (ties(study))
+                (errors(study))
+            }
+        }
+    }
+}
+
+fn times(study: &Study) -> Markup {
+    let counted = study.rungs.iter().any(|row| row.instructions.is_some());
+    html! {
+        h3 { "Time" }
+        div.wide { table {
+            thead { tr {
+                th { "rung" } th { "a frame" } th { "quartiles" } th { "a pixel" } th { "a triangle" }
+                th { "ratio to gouraud-8.8" } th { "95 % interval" }
+                @if counted { th { "instructions a frame" } }
+                th { "where it goes" }
+            } }
+            tbody { @for row in &study.rungs { tr {
+                th scope="row" { (row.rung) @if row.efficient { " " span.mark title="no rung is both faster and nearer to lit" { "★" } } }
+                td { (time(row.per_frame.median)) }
+                td.soft { (time(row.per_frame.lower_quartile)) " – " (time(row.per_frame.upper_quartile)) }
+                td { (three_digits(row.per_pixel)) " ns" }
+                td { (time(row.per_triangle)) }
+                td { (ratio(row.ratio)) }
+                td.soft { (interval(row.ratio_interval)) }
+                @if counted { td { (row.instructions.map_or("–".to_string(), count)) } }
+                td.bars { (bar(&row.split)) }
+            } } }
+        } }
+        p.key {
+            span { span.mark { "★" } " efficient: no rung is both faster and nearer to lit (root mean square)" }
+            @for (name, class, _) in PARTS { span { i.swatch.(class) {} " " (name) } }
+            span { "A frame’s time leaves scan-out to the screen’s colours out; the bars show it." }
+        }
+    }
+}
+
+/// The parts of the time as a stacked bar.
+fn bar(split: &Split) -> Markup {
+    let parts = PARTS.map(|(name, class, of)| (name, class, of(split)));
+    let sum: f64 = parts.iter().map(|(.., ns)| ns).filter(|ns| ns.is_finite() && **ns > 0.0).sum();
+    let told = parts.map(|(name, _, ns)| format!("{name} {}", time(ns))).join(", ");
+    html! {
+        @if sum > 0.0 {
+            span.bar role="img" title=(told) aria-label=(told) {
+                @for (_, class, ns) in parts { @if ns.is_finite() && ns > 0.0 {
+                    i.(class) style=(format!("width:{:.2}%", ns / sum * 100.0)) {}
+                } }
+            }
+            span.told { (told) }
+        } @else { "–" }
+    }
+}
+
+/// Rungs that cannot be told apart.
+fn ties(study: &Study) -> Markup {
+    let tied = || study.rungs.iter().filter(|row| !row.as_fast_as.is_empty());
+    html! {
+        @if tied().next().is_some() {
+            div.warning {
+                p { strong { "Cannot be told apart by their times" } ", as the intervals of their ratios contain 1; their order means nothing:" }
+                ul { @for row in tied() { li { (row.rung) " and " (list(&row.as_fast_as)) } } }
+            }
+        } @else if study.rungs.len() > 1 {
+            p { "The times of all rungs can be told apart." }
+        }
+    }
+}
+
+fn errors(study: &Study) -> Markup {
+    html! {
+        h3 { "Error, in shades" }
+        div.wide { table {
+            thead {
+                tr {
+                    th rowspan="2" { "rung" }
+                    th.group colspan="5" { "against gouraud: the arithmetic" }
+                    th.group colspan="5" { "against lit: the technique" }
+                    th rowspan="2" { "palette adds" } th rowspan="2" { "swim" } th rowspan="2" { "cover errors, pixels" }
+                }
+                tr { @for _ in 0..2 { th.group { "largest" } th { "mean" } th { "r.m.s." } th { "r.m.s. of 4 × 4" } th { "off by ≥ 1" } } }
+            }
+            tbody { @for row in &study.rungs { tr {
+                th scope="row" { (row.rung) }
+                (figures(&row.error_gouraud))
+                (figures(&row.error_lit))
+                td { (shades(row.error_palette)) } td { (shades(row.swim)) } td { (count(row.cover_errors)) }
+            } } }
+        } }
+        p.key {
+            span { "½ is the best that rounding to 256 steps can do." }
+            span { "r.m.s. of 4 × 4: of the means over blocks, where dither earns its keep." }
+            span { "Palette adds: what the nearest entry of the scene’s ramp or palette is off by, at most." }
+            span { "Swim: how much errors change from a frame to the next over a turn of 0.25°, r.m.s.; the eye sees it as crawling." }
+            span { "Cover errors: pixels that show another face than they should, over all frames; in these no error of shade is taken." }
+        }
+    }
+}
+
+fn figures(errors: &Errors) -> Markup {
+    html! {
+        td.group { (shades(errors.max)) } td { (shades(errors.mean)) } td { (shades(errors.rms)) }
+        td { (shades(errors.rms_of_blocks)) } td { (percent(errors.off_by_one)) }
+    }
+}
+
+/// Every rung's frame, and its error map under it.
+pub(super) fn pictures(study: &Study) -> Markup {
+    html! {
+        @if !study.rungs.is_empty() { section {
+            h2 { "Frames and their errors" }
+            p { "The first frame, in 256 greys, left of the slider; its error against lit, right of it." }
+            p.key {
+                @for (_, name, color) in COLORS { span { (swatch(color)) " " (name) } }
+                span { "shades" }
+                span { (swatch(NONE)) " none taken: background, or another face than there should be" }
+            }
+            div.gallery { @for row in &study.rungs { (pair(row)) } }
+        } }
+    }
+}
+
+fn swatch(color: u32) -> Markup {
+    html! { i.swatch style=(format!("background:#{color:06x}")) {} }
+}
+
+fn pair(row: &RungRow) -> Markup {
+    let (frame, map) = (pictures::frame(&row.picture), pictures::error_map(&row.error_map));
+    html! {
+        figure {
+            @match (frame, map) {
+                (Some(frame), Some(map)) => {
+                    div.pair {
+                        img src=(map) width="320" height="240" alt=(format!("error map of {}", row.rung));
+                        img.over src=(frame) width="320" height="240" alt=(format!("frame of {}", row.rung));
+                    }
+                    input.slide type="range" min="0" max="100" value="50" aria-label=(format!("{}: how much of the frame, how much of its error map", row.rung))
+                        oninput="this.previousElementSibling.style.setProperty('--at',this.value+'%')";
+                },
+                _ => p.none { "no picture" },
+            }
+            figcaption {
+                strong { (row.rung) }
+                " off by " (at_most(row.error_lit.max)) " at most over all frames, " (shades(row.error_lit.rms)) " r.m.s.; "
+                (time(row.per_frame.median))
+            }
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! What many samples of a time come to: quartiles, and ratios with what chance alone would make of them.
+
+use alloc::vec::Vec;
+
+use super::Nanoseconds;
+
+/// Resamples that an interval is made from.
+const RESAMPLES: usize = 1000;
+
+/// The share of resamples beyond each end of an interval: it holds 95 %.
+const TAIL: f64 = 0.025;
+
+/// Numbers by chance: splitmix64 (Steele, Lea and Flood 2014), the same from the same seed.
+#[derive(Clone, Debug)]
+pub(super) struct Chance(u64);
+
+impl Chance {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// A whole number below `limit`, which is above 0; each as likely as any to one part in 2⁶⁴ / `limit`.
+    pub(super) fn below(&mut self, limit: usize) -> usize {
+        // The product's upper half is below `limit`.
+        ((u128::from(self.next()) * limit as u128) >> 64) as usize
+    }
+
+    /// Puts a list in an order by chance (Fisher and Yates).
+    pub(super) fn shuffle<T>(&mut self, list: &mut [T]) {
+        for last in (1..list.len()).rev() {
+            list.swap(last, self.below(last + 1));
+        }
+    }
+}
+
+/// The value that a share of sorted numbers lies below, linear between two of them; 0 of none.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return 0.0 };
+    let place = share * last as f64;
+    // At most `last`.
+    let below = libm::floor(place) as usize;
+    let above = (below + 1).min(last);
+    sorted[below] + (sorted[above] - sorted[below]) * (place - below as f64)
+}
+
+fn sorted(numbers: &[f64]) -> Vec<f64> {
+    let mut numbers: Vec<f64> = numbers.iter().copied().filter(|number| !number.is_nan()).collect();
+    numbers.sort_by(f64::total_cmp);
+    numbers
+}
+
+/// The median; 0 of none. What is not a number was not measured, and does not count.
+pub(super) fn median(numbers: &[f64]) -> f64 {
+    quantile(&sorted(numbers), 0.5)
+}
+
+/// Median and quartiles.
+pub(super) fn quartiles(samples: &[f64]) -> Nanoseconds {
+    let sorted = sorted(samples);
+    Nanoseconds {
+        median: quantile(&sorted, 0.5),
+        lower_quartile: quantile(&sorted, 0.25),
+        upper_quartile: quantile(&sorted, 0.75),
+    }
+}
+
+/// A ratio of two times.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Ratio {
+    /// The median of the ratios of all rounds.
+    pub(super) median: f64,
+    /// Where the median lies in 95 of 100 resamples of the rounds.
+    pub(super) interval: (f64, f64),
+}
+
+impl Ratio {
+    /// The ratio of `times` to `others`, sample i of both being of one round: what slows a whole round down slows
+    /// both. Rounds in which one of them is NaN do not count.
+    ///
+    /// The interval is the percentile bootstrap's (Efron 1979): as many rounds as there are, drawn from them with
+    /// replacement, a thousand times.
+    pub(super) fn new(times: &[f64], others: &[f64], chance: &mut Chance) -> Self {
+        let ratios: Vec<f64> = times.iter().zip(others).map(|(time, other)| time / other).collect();
+        let ratios = sorted(&ratios);
+        let count = ratios.len();
+        if count == 0 {
+            return Self { median: 1.0, interval: (1.0, 1.0) };
+        }
+        // Of a sorted list the places alone are drawn, and their order statistics looked up.
+        let mut medians = Vec::with_capacity(RESAMPLES);
+        let mut places = alloc::vec![0; count];
+        for _ in 0..RESAMPLES {
+            places.iter_mut().for_each(|place| *place = chance.below(count));
+            let (low, &mut middle, _) = places.select_nth_unstable(count / 2);
+            let below = if count.is_multiple_of(2) { low.iter().copied().max().unwrap_or(middle) } else { middle };
+            medians.push((ratios[below] + ratios[middle]) / 2.0);
+        }
+        medians.sort_by(f64::total_cmp);
+        Self { median: quantile(&ratios, 0.5), interval: (quantile(&medians, TAIL), quantile(&medians, 1.0 - TAIL)) }
+    }
+
+    /// Whether the interval holds 1, so that neither can be said to be faster.
+    pub(super) fn cannot_be_told(&self) -> bool {
+        self.interval.0 <= 1.0 && 1.0 <= self.interval.1
+    }
+
+    /// How wide the interval is, as a share of the ratio.
+    pub(super) fn spread(&self) -> f64 {
+        (self.interval.1 - self.interval.0) / self.median
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use super::*;
+
+    fn close(a: f64, b: f64) -> bool {
+        (a - b).abs() < 1e-12
+    }
+
+    #[test]
+    fn quartiles_by_hand() {
+        let five = quartiles(&[5.0, 1.0, 4.0, 2.0, 3.0]);
+        assert_eq!((five.lower_quartile, five.median, five.upper_quartile), (2.0, 3.0, 4.0));
+        let four = quartiles(&[40.0, 10.0, 30.0, 20.0]);
+        assert_eq!((four.lower_quartile, four.median, four.upper_quartile), (17.5, 25.0, 32.5));
+        assert_eq!(quartiles(&[7.0]), Nanoseconds { median: 7.0, lower_quartile: 7.0, upper_quartile: 7.0 });
+        assert_eq!(quartiles(&[]), Nanoseconds::default());
+    }
+
+    #[test]
+    fn a_shuffle_loses_nothing_and_leaves_no_order_out() {
+        let mut chance = Chance::new(1);
+        let mut seen = alloc::collections::BTreeMap::<[u8; 3], u32>::new();
+        for _ in 0..6000 {
+            let mut list = [1, 2, 3];
+            chance.shuffle(&mut list);
+            *seen.entry(list).or_default() += 1;
+        }
+        // Six orders, 1000 times each by chance, with a standard deviation of √(6000 · 1/6 · 5/6) = 29.
+        assert!(seen.len() == 6 && seen.values().all(|&times| (855..1145).contains(&times)), "{seen:?}");
+    }
+
+    /// Of 25 rounds the median is that of the 13th; the resampled median's rank follows from the binomial law: place
+    /// k or less where 13 or more of 25 draws are among the first k + 1. For 2.5 % that is place 7 or 8 of 0 to 24.
+    #[test]
+    fn the_interval_is_that_of_the_binomial_law() {
+        let times: Vec<f64> = (0..25).map(|i| 100.0 + f64::from(i)).collect();
+        let ratio = Ratio::new(&times, &[100.0; 25], &mut Chance::new(2));
+        assert!(close(ratio.median, 1.12));
+        let (low, high) = ratio.interval;
+        assert!((1.06..=1.08).contains(&low) && (1.16..=1.18).contains(&high), "{ratio:?}");
+    }
+
+    #[test]
+    fn a_ratio_is_taken_round_by_round() {
+        // Rounds that are ten times as slow as others, the second always half of the first.
+        let times = [10.0, 100.0, 12.0, 90.0, 11.0];
+        let halves = times.map(|time| time / 2.0);
+        let ratio = Ratio::new(&times, &halves, &mut Chance::new(3));
+        assert_eq!(ratio, Ratio { median: 2.0, interval: (2.0, 2.0) });
+        assert!(!ratio.cannot_be_told() && close(ratio.spread(), 0.0));
+        let sat_out = [20.0, f64::NAN, 36.0, f64::NAN, f64::NAN];
+        assert!(close(Ratio::new(&sat_out, &times, &mut Chance::new(3)).median, 2.5), "2 and 3");
+        assert!(close(quartiles(&sat_out).median, 28.0));
+    }
+
+    #[test]
+    fn what_differs_by_chance_cannot_be_told_apart() {
+        let mut chance = Chance::new(4);
+        let mut noise =
+            |mean: f64| -> Vec<f64> { (0..101).map(|_| mean + chance.below(1000) as f64 / 100.0).collect() };
+        let (a, b, slower) = (noise(100.0), noise(100.0), noise(110.0));
+        assert!(Ratio::new(&a, &b, &mut Chance::new(5)).cannot_be_told());
+        assert!(!Ratio::new(&slower, &a, &mut Chance::new(5)).cannot_be_told());
+        assert!(Ratio::new(&vec![], &[], &mut Chance::new(5)).cannot_be_told());
+    }
+
+    /// Of a hundred pairs that are alike the interval holds 1 in about 95: at least 88, three standard deviations below.
+    #[test]
+    fn the_interval_holds_the_truth_as_often_as_it_says() {
+        let mut chance = Chance::new(6);
+        let mut held = 0;
+        for _ in 0..100 {
+            let mut times = || -> Vec<f64> { (0..41).map(|_| 1000.0 + chance.below(1000) as f64).collect() };
+            let (a, b) = (times(), times());
+            held += u32::from(Ratio::new(&a, &b, &mut chance).cannot_be_told());
+        }
+        assert!((88..=100).contains(&held), "{held}");
+    }
+}
