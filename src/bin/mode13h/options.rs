@@ -112,6 +112,11 @@ impl Drawing {
         self.rung.or(wish).unwrap_or_default()
     }
 
+    /// The budget of a scene that wishes for this one, if any is asked for.
+    pub(crate) fn max_error(&self, wish: Option<f32>) -> Option<f32> {
+        self.max_error.or(wish.filter(|_| self.rung.is_none()))
+    }
+
     /// The mapping that was asked for.
     pub(crate) fn mapping(&self) -> Option<Mapping> {
         self.mapping
