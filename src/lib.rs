@@ -20,6 +20,7 @@
 //! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`cost`] | what a renderer shows, face and shade of every pixel, to be measured against the truth | `alloc` |
+//! | [`explain`] | why a pixel has its byte; a row's intensity and slope | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
 //! | `show` | hard cases as pictures: the right way beside the fault | `png`, `embedded-graphics` |
 //! | [`record`] | a frame's triangles in a file, to be replayed | `std` |
@@ -76,6 +77,8 @@ pub mod vga;
 
 #[cfg(feature = "alloc")]
 pub mod cost;
+#[cfg(feature = "alloc")]
+pub mod explain;
 #[cfg(feature = "alloc")]
 pub mod light;
 #[cfg(feature = "alloc")]

@@ -24,6 +24,7 @@ pub use why::Why;
 
 pub(crate) use decide::{Inputs, LEAST_TESSELLATION, Since, decide};
 pub(crate) use hidden::sort_by_depth;
+pub(crate) use why::name_of;
 
 use crate::scene::{HiddenSurfaces, Rung, Scene};
 

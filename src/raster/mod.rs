@@ -20,6 +20,7 @@
 //! | [`shading`], [`shade`], [`wide`], [`hyperbolic`], `float` | which byte |
 //! | [`period`] | both as the sources print them |
 //! | [`depth`] | whether it is in front |
+//! | `account` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
 //! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
@@ -38,6 +39,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "alloc")]
+pub mod account;
 pub mod clip;
 pub mod cover;
 pub mod depth;

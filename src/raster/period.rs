@@ -177,13 +177,13 @@ impl PeriodTriangle {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ramp {
     /// Ax: the first pixel.
-    x0: i32,
+    pub(super) x0: i32,
     /// Bx: the one after the last; there is none if it is not after `x0`, and the step is then 0.
-    x1: i32,
+    pub(super) x1: i32,
     /// AX at the first pixel.
-    shade: u16,
+    pub(super) shade: u16,
     /// BX.
-    step: u16,
+    pub(super) step: u16,
 }
 
 impl Ramp {

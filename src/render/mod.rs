@@ -10,6 +10,7 @@
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `stats` | what a frame came to |
+//! | `trace` | one pixel of a frame, stage by stage |
 //! | `automatic` | a palette for a scene, from what is seen of it over a round |
 //!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed,
@@ -28,6 +29,7 @@ mod pixel_light;
 mod stats;
 mod tables;
 mod tessellate;
+pub(crate) mod trace;
 mod vertex;
 mod vertex_path;
 
@@ -54,6 +56,7 @@ pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use automatic::{AutomaticPalette, Seen, automatic, seen};
 pub use stats::{Shares, Stats};
+pub use trace::{Fate, ShadedBy};
 pub use vertex_path::{UnknownVertexPath, VertexPath};
 
 /// Why a scene could not be drawn.

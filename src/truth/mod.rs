@@ -260,6 +260,21 @@ impl<'a> Truth<'a> {
         self.pixel(Standard::Lit, self.met(face, [x, y])?)
     }
 
+    /// What is right at the centre of a pixel if `face` is what is seen there, by any standard. `None` if the face does
+    /// not cover the pixel, whatever may hide it.
+    #[must_use]
+    pub fn of_face_at(&self, standard: Standard, face: Face, x: u32, y: u32) -> Option<TruePixel> {
+        let (x, y) = (i64::from(x), i64::from(y));
+        let hit = if standard.rounds_vertices() {
+            let Rounded { parts, turned } = self.drawn(face)?;
+            parts.iter().find_map(|part| part_hit(standard, (face, turned), part, x, y))
+        } else {
+            let (_, corners) = self.triangle(face)?;
+            self.unrounded_hit(standard, face, &corners, x, y)
+        };
+        self.pixel(standard, hit?)
+    }
+
     /// The triangles that the face is drawn in, each three corners (x and y) in 1/256 pixel from the frame's
     /// upper left corner: one, or if it is clipped none to six. None, too, if it is turned away or has no area.
     #[must_use]
@@ -268,6 +283,16 @@ impl<'a> Truth<'a> {
             Some(rounded) => rounded.parts.iter().map(cover::Part::points).collect(),
             None => Vec::new(),
         }
+    }
+
+    /// How many triangles an object has; none if there is no such object.
+    pub(crate) fn triangles(&self, object: usize) -> usize {
+        self.bodies.get(object).map_or(0, |body| body.object.mesh().triangles().len())
+    }
+
+    /// The near plane's distance along the view.
+    pub(crate) fn near(&self) -> f64 {
+        self.eye.near
     }
 
     fn triangle(&self, face: Face) -> Option<(&Body<'a>, [Corner; 3])> {
@@ -288,17 +313,9 @@ impl<'a> Truth<'a> {
         for part in parts {
             let in_pixels = part.points().map(|point| point.map(|c| c as f64 / 256.0));
             self.pixels_about(&in_pixels, |x, y| {
-                let Some(on_part) = part.weights(x, y) else { return };
-                // What is linear on the face is linear on the screen once divided by w.
-                let over_w = [0, 1, 2].map(|i| on_part[i] / part.corners[i].seen[2]);
-                let inverse_w = over_w[0] + over_w[1] + over_w[2];
-                let weights = match standard {
-                    Standard::GouraudPerspective => {
-                        weighted(part.corners.map(|corner| corner.on_face), over_w.map(|weight| weight / inverse_w))
-                    }
-                    _ => weighted(part.corners.map(|corner| corner.on_screen), on_part),
-                };
-                seen(Hit { face, turned, weights, inverse_w }, x, y);
+                if let Some(hit) = part_hit(standard, (face, turned), &part, x, y) {
+                    seen(hit, x, y);
+                }
             });
         }
     }
@@ -309,13 +326,20 @@ impl<'a> Truth<'a> {
         let polygon: Vec<[f64; 2]> =
             clip::clip(&self.eye, &corners).iter().map(|corner| self.eye.project(corner.seen)).collect();
         self.pixels_about(&polygon, |x, y| {
-            let centre = [x as f64 + 0.5, y as f64 + 0.5];
-            let Some(mut hit) = self.met(face, centre) else { return };
-            if standard == Standard::GouraudUnrounded {
-                hit.weights = ray::on_screen(&self.eye, &corners, centre);
+            if let Some(hit) = self.unrounded_hit(standard, face, &corners, x, y) {
+                seen(hit, x, y);
             }
-            seen(hit, x, y);
         });
+    }
+
+    /// A face with vertices as they are at the centre of a pixel, if it covers it.
+    fn unrounded_hit(&self, standard: Standard, face: Face, corners: &[Corner; 3], x: i64, y: i64) -> Option<Hit> {
+        let centre = [x as f64 + 0.5, y as f64 + 0.5];
+        let mut hit = self.met(face, centre)?;
+        if standard == Standard::GouraudUnrounded {
+            hit.weights = ray::on_screen(&self.eye, corners, centre);
+        }
+        Some(hit)
     }
 
     /// Where the ray through a point of the picture meets a face, if that does not turn its back on the eye.
@@ -359,4 +383,19 @@ impl<'a> Truth<'a> {
         };
         Some(TruePixel { face: hit.face, intensity, w: 1.0 / hit.inverse_w })
     }
+}
+
+/// A triangle of a face with rounded vertices at the centre of a pixel, if it covers it.
+fn part_hit(standard: Standard, (face, turned): (Face, bool), part: &cover::Part, x: i64, y: i64) -> Option<Hit> {
+    let on_part = part.weights(x, y)?;
+    // What is linear on the face is linear on the screen once divided by w.
+    let over_w = [0, 1, 2].map(|i| on_part[i] / part.corners[i].seen[2]);
+    let inverse_w = over_w[0] + over_w[1] + over_w[2];
+    let weights = match standard {
+        Standard::GouraudPerspective => {
+            weighted(part.corners.map(|corner| corner.on_face), over_w.map(|weight| weight / inverse_w))
+        }
+        _ => weighted(part.corners.map(|corner| corner.on_screen), on_part),
+    };
+    Some(Hit { face, turned, weights, inverse_w })
 }
