@@ -163,7 +163,7 @@ fn legend(vga: &mut Vga, age: &str) {
     overlay::write_at(vga, (Vga::WIDTH as i32 - 4, top), Anchor::Right, age);
     for (i, level) in (0..).zip(&LEVELS) {
         top += 10;
-        let full = i * STEPS + STEPS - 1;
+        let full = i * STEPS + (STEPS - 1);
         overlay::block(vga, (left - 10, top), (10, 10), full);
         overlay::write_at(vga, (left, top), Anchor::Left, &format!("{:5}", level.label));
     }
