@@ -28,7 +28,7 @@ const fn level(below: f64, label: &'static str, color: u32) -> Level {
 /// From right to wrong. The last is for pixels that show another face than they should.
 const LEVELS: [Level; 8] = [
     level(0.5, "0", 0xFFFFFF),
-    level(1.0, "\u{bd}", 0x4C7DFF),
+    level(1.0, "0.5", 0x4C7DFF),
     level(2.0, "1", 0x20D8F0),
     level(4.0, "2", 0x30E040),
     level(8.0, "4", 0xF0F020),
@@ -165,7 +165,7 @@ fn legend(vga: &mut Vga, age: &str) {
         top += 10;
         let full = i * STEPS + (STEPS - 1);
         overlay::block(vga, (left - 10, top), (10, 10), full);
-        overlay::write_at(vga, (left, top), Anchor::Left, &format!("{:5}", level.label));
+        overlay::write_at(vga, (left, top), Anchor::Left, &format!(" {:4}", level.label));
     }
 }
 
@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn the_legend_says_from_which_error_on_a_colour_stands() {
         for (i, level) in LEVELS[..7].iter().enumerate() {
-            let from: f64 = if level.label == "\u{bd}" { 0.5 } else { level.label.parse().expect("a number") };
+            let from: f64 = level.label.parse().expect("a number");
             assert_eq!(usize::from(level_of(from)), i);
             assert_eq!(level_of(from.next_down().max(0.0)), (i as u8).saturating_sub(1));
         }

@@ -46,8 +46,9 @@ impl Demo {
             let on: Vec<_> = objects.iter().map(|plan| plan.decision(effect)).filter(|decision| decision.on).collect();
             let mut entry = effect.name().to_string();
             let is_said = matches!(effect, Effect::HiddenSurfaces | Effect::Gouraud | Effect::Phong);
-            if !is_said && !on.first()?.choice.is_empty() {
-                entry += &format!(" {}", on[0].choice);
+            let first = on.first()?;
+            if !is_said && !first.choice.is_empty() {
+                entry += &format!(" {}", first.choice);
             }
             if on.len() < objects.len() {
                 entry += &format!(" {}/{}", on.len(), objects.len());

@@ -222,7 +222,7 @@ impl Magnifier {
         let byte = vga_byte(&cells);
         let waiting = [format!("({}, {}) byte {byte}", pixel.x, pixel.y), "computing".to_string()];
         let lines = same.map_or(&waiting[..], |answer| &answer.account);
-        overlay::write_small(vga, (account.0 + 2, account.1 + 1), lines);
+        overlay::write_small(vga, (account.0 + 2, account.1), lines);
     }
 }
 

@@ -143,7 +143,6 @@ impl Demo {
         let kernel = drawing.kernel()?;
         let shown = input::input(input)?;
         let name = shown.name().to_string();
-        let of_model = matches!(shown, input::Input::Model(_));
         let stage = drawing.stage(shown)?;
         let rung = drawing.rung(stage.scene.wishes.rung);
         let budget = drawing.max_error(stage.scene.wishes.max_error);
@@ -155,10 +154,13 @@ impl Demo {
         let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
         // A scene that has none leaves the DAC alone.
         let colors = stage.colors.clone().unwrap_or(Palette::default().into());
-        let usual = match colors {
+        // Under its own name, if it has one, it does not stand twice in the list.
+        let usual = match &colors {
             Colors::Auto => input::AUTO,
-            _ if of_model => "grey",
-            _ => "the scene's",
+            Colors::Palette(palette) => {
+                let same = builtin::ALL.iter().find(|builtin| builtin.palette.colors() == palette.colors());
+                same.map_or("the scene's", |builtin| builtin.name)
+            }
         };
         let palette = (drawing.palette_name().unwrap_or(usual.to_string()), colors);
         Ok(Demo {
