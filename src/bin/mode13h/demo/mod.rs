@@ -242,10 +242,13 @@ impl Demo {
             self.map.follow(self.number, frame)?;
         }
         if self.maps {
-            self.map.lay_over(&mut self.shown, self.number, self.seconds);
+            self.map.lay_over(&mut self.shown);
         }
         if self.magnifies {
+            // The account needs the room that the legend would take.
             self.magnify()?;
+        } else if self.maps {
+            self.map.legend(&mut self.shown, self.number, self.seconds);
         }
         if self.help {
             let figures = self.figures();
