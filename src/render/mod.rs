@@ -209,6 +209,21 @@ impl Renderer {
         }
     }
 
+    /// A new renderer that is set as this one and draws the same bytes, for another thread.
+    #[must_use]
+    pub fn set_alike(&self) -> Self {
+        Self {
+            rung: self.rung,
+            max_error: self.max_error,
+            mapping: self.mapping,
+            vertex_path: self.vertex_path,
+            kernel: self.kernel,
+            hidden_surfaces: self.hidden_surfaces,
+            forced: self.forced.clone(),
+            ..Self::new()
+        }
+    }
+
     /// Chooses the technique of shading, whatever the scene asks for, and drops a budget that was set.
     pub fn set_rung(&mut self, rung: Rung) {
         self.rung = Some(rung);

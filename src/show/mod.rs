@@ -7,6 +7,7 @@
 //! | `engine` | the right side: the engine's own calls |
 //! | `fault/` | the wrong side: small implementations of the faults, used here alone |
 //! | `face`, [`Panel`] | what both get, and what comes out: bytes, counts of writes, marks |
+//! | [`Enlarged`] | pixels enlarged, with centres and edges |
 //! | `sheet` | the two side by side as a picture, with words |
 //!
 //! ```
@@ -21,6 +22,7 @@
 
 mod cases;
 mod engine;
+mod enlarged;
 mod face;
 mod fault;
 mod panel;
@@ -28,6 +30,7 @@ mod sheet;
 
 pub use cases::CASES;
 pub use engine::Triangle;
+pub use enlarged::Enlarged;
 pub use face::Segment;
 pub use panel::{Mark, Panel};
 

@@ -1,14 +1,14 @@
 //! Two panels side by side as a picture: pixels enlarged, their centres, the true edges, marks, words.
 
 use embedded_graphics::Drawable;
-use embedded_graphics::draw_target::DrawTargetExt;
 use embedded_graphics::geometry::{Point, Size};
 use embedded_graphics::mono_font::iso_8859_1::{FONT_9X15, FONT_9X15_BOLD};
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle};
 use embedded_graphics::prelude::Primitive;
-use embedded_graphics::primitives::{Line, PrimitiveStyle, Rectangle};
+use embedded_graphics::primitives::{PrimitiveStyle, Rectangle};
 use embedded_graphics::text::{Baseline, Text};
 
+use super::enlarged::Enlarged;
 use super::face::Segment;
 use super::panel::{Mark, Panel};
 use super::{Case, Comparison};
@@ -17,7 +17,7 @@ use crate::palette::Rgb;
 use crate::raster::{Frame, Index};
 
 /// Times that a pixel is enlarged.
-const ZOOM: i32 = 16;
+const ZOOM: i32 = Enlarged::ZOOM;
 const MARGIN: i32 = 16;
 /// Between the panels.
 const GAP: i32 = 24;
@@ -207,33 +207,27 @@ fn fill(frame: &mut Frame<'_>, at: Point, side: i32, index: Index) {
 }
 
 fn enlarge(frame: &mut Frame<'_>, at: Point, panel: &Panel, outline: &[Segment], inks: &Inks) {
-    let (columns, rows) = (panel.width(), panel.height());
-    let cell = |x: usize, y: usize| at + Point::new(x as i32 * ZOOM, y as i32 * ZOOM);
-    for y in 0..rows {
-        for x in 0..columns {
-            match panel.get(x, y) {
-                Some(byte) => fill(frame, cell(x, y), ZOOM, Index(inks.of_byte[usize::from(byte)])),
-                None => {
-                    fill(frame, cell(x, y), ZOOM, Ink::Grid.index());
-                    fill(frame, cell(x, y) + Point::new(1, 1), ZOOM - 1, Ink::Empty.index());
-                }
+    // A few dozen pixels a side.
+    let enlarged = Enlarged { at: (at.x, at.y), columns: panel.width() as u16, rows: panel.height() as u16 };
+    let pixels = || (0..enlarged.rows).flat_map(|y| (0..enlarged.columns).map(move |x| (x, y)));
+    let byte = |x: u16, y: u16| panel.get(usize::from(x), usize::from(y));
+    for (x, y) in pixels() {
+        match byte(x, y) {
+            Some(byte) => enlarged.cell(frame, x, y, Index(inks.of_byte[usize::from(byte)])),
+            None => enlarged.empty_cell(frame, x, y, Ink::Empty.index(), Ink::Grid.index()),
+        }
+    }
+    for y in 0..panel.height() {
+        for x in 0..panel.width() {
+            if let Some(mark) = panel.marks()[y * panel.width() + x] {
+                draw_mark(frame, at + Point::new(x as i32 * ZOOM, y as i32 * ZOOM), mark, Sides::of(panel, x, y));
             }
         }
     }
-    for y in 0..rows {
-        for x in 0..columns {
-            if let Some(mark) = panel.marks()[y * columns + x] {
-                draw_mark(frame, cell(x, y), mark, Sides::of(panel, x, y));
-            }
-        }
-    }
-    lines(frame, at, (columns as f64, rows as f64), outline);
-    for y in 0..rows {
-        for x in 0..columns {
-            let light = panel.get(x, y).is_some_and(|byte| inks.light[usize::from(byte)]);
-            let ink = if light { Ink::CentreOnLight } else { Ink::CentreOnDark };
-            fill(frame, cell(x, y) + Point::new(ZOOM / 2 - 1, ZOOM / 2 - 1), 2, ink.index());
-        }
+    enlarged.edges(frame, outline, Ink::Edge.index());
+    for (x, y) in pixels() {
+        let light = byte(x, y).is_some_and(|byte| inks.light[usize::from(byte)]);
+        enlarged.centre(frame, x, y, if light { Ink::CentreOnLight.index() } else { Ink::CentreOnDark.index() });
     }
 }
 
@@ -302,37 +296,4 @@ fn rim(frame: &mut Frame<'_>, at: Point, thick: i32, sides: Sides, index: Index)
             rectangle(frame, at + corner, size, index);
         }
     }
-}
-
-/// The true edges, cut to the panel.
-fn lines(frame: &mut Frame<'_>, at: Point, size: (f64, f64), outline: &[Segment]) {
-    let area = Rectangle::new(at, Size::new((size.0 as i32 * ZOOM) as u32, (size.1 as i32 * ZOOM) as u32));
-    let style = PrimitiveStyle::with_stroke(Ink::Edge.index(), 1);
-    for segment in outline {
-        if let Some(ends) = cut(*segment, size) {
-            let [a, b] = ends.map(|(x, y)| {
-                // Within the panel, by the cut.
-                at + Point::new((x * f64::from(ZOOM)) as i32, (y * f64::from(ZOOM)) as i32)
-            });
-            let Ok(()) = Line::new(a, b).into_styled(style).draw(&mut frame.clipped(&area));
-        }
-    }
-}
-
-/// The part of a segment inside the panel (Liang and Barsky 1984).
-fn cut([(x0, y0), (x1, y1)]: Segment, (width, height): (f64, f64)) -> Option<Segment> {
-    let (dx, dy) = (x1 - x0, y1 - y0);
-    let (mut from, mut to) = (0.0_f64, 1.0_f64);
-    for (step, room) in [(-dx, x0), (dx, width - x0), (-dy, y0), (dy, height - y0)] {
-        if step == 0.0 {
-            if room < 0.0 {
-                return None;
-            }
-        } else if step < 0.0 {
-            from = from.max(room / step);
-        } else {
-            to = to.min(room / step);
-        }
-    }
-    (from <= to).then(|| [from, to].map(|t| (x0 + dx * t, y0 + dy * t)))
 }

@@ -26,6 +26,8 @@ pub struct Buttons {
 #[derive(Clone, Debug, Default)]
 pub struct Input {
     pressed: Vec<Key>,
+    /// Of these the ones that went down while Shift was.
+    shifted: Vec<Key>,
     held: Vec<Key>,
     typed: String,
     mouse: Option<(f32, f32)>,
@@ -38,6 +40,11 @@ impl Input {
     /// Whether the key went down since the last frame, however short it was.
     pub fn pressed(&self, key: Key) -> bool {
         self.pressed.contains(&key)
+    }
+
+    /// Whether the key went down since the last frame while Shift was down, however short both were.
+    pub fn pressed_with_shift(&self, key: Key) -> bool {
+        self.shifted.contains(&key)
     }
 
     /// The keys that went down since the last frame, in order.
@@ -87,6 +94,13 @@ struct Queue {
     typed: String,
 }
 
+/// Keys that went down, in order, and those of them that did while Shift was down.
+#[derive(Default)]
+struct Pressed {
+    pressed: Vec<Key>,
+    shifted: Vec<Key>,
+}
+
 /// Collects what happens in a window.
 #[derive(Clone, Default)]
 pub(super) struct Events {
@@ -111,7 +125,7 @@ impl Events {
     /// What happened since the last call.
     pub(super) fn collect(&mut self, window: &Window, place: Place) -> Input {
         let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
-        let pressed = self.follow(&keys);
+        let Pressed { pressed, shifted } = self.follow(&keys);
         // A window that is left hears nothing of keys that are let go meanwhile.
         let was_active = mem::replace(&mut self.active, window.is_active());
         if was_active && !self.active {
@@ -129,23 +143,26 @@ impl Events {
         let anywhere = window.get_unscaled_mouse_pos(MouseMode::Pass).map(to_frame);
         let drag = self.draw(anywhere.filter(|_| buttons.left));
         let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);
-        Input { pressed, held: self.held.clone(), typed, mouse, buttons, drag, wheel }
+        Input { pressed, shifted, held: self.held.clone(), typed, mouse, buttons, drag, wheel }
     }
 
     /// Applies key events in their order and gives the keys that went down. A key that repeats while it is held does
     /// not go down again.
-    fn follow(&mut self, events: &[(Key, bool)]) -> Vec<Key> {
-        let mut pressed = Vec::new();
+    fn follow(&mut self, events: &[(Key, bool)]) -> Pressed {
+        let mut keys = Pressed::default();
         for &(key, down) in events {
             let held = self.held.contains(&key);
             if down && !held {
+                if [Key::LeftShift, Key::RightShift].iter().any(|shift| self.held.contains(shift)) {
+                    keys.shifted.push(key);
+                }
                 self.held.push(key);
-                pressed.push(key);
+                keys.pressed.push(key);
             } else if !down {
                 self.held.retain(|&other| other != key);
             }
         }
-        pressed
+        keys
     }
 
     /// How far the mouse came since the last call, if its button is and was down.
@@ -165,17 +182,30 @@ mod tests {
     #[test]
     fn a_key_that_is_down_and_up_between_two_frames_was_pressed() {
         let mut events = Events::default();
-        assert_eq!(events.follow(&[(Key::S, true), (Key::S, false)]), [Key::S]);
+        assert_eq!(events.follow(&[(Key::S, true), (Key::S, false)]).pressed, [Key::S]);
         assert!(events.held.is_empty());
     }
 
     #[test]
     fn a_key_that_repeats_is_pressed_once() {
         let mut events = Events::default();
-        assert_eq!(events.follow(&[(Key::K, true), (Key::K, true)]), [Key::K]);
-        assert_eq!(events.follow(&[(Key::K, true)]), []);
+        assert_eq!(events.follow(&[(Key::K, true), (Key::K, true)]).pressed, [Key::K]);
+        assert_eq!(events.follow(&[(Key::K, true)]).pressed, []);
         assert_eq!(events.held, [Key::K]);
-        assert_eq!(events.follow(&[(Key::K, false), (Key::K, true)]), [Key::K]);
+        assert_eq!(events.follow(&[(Key::K, false), (Key::K, true)]).pressed, [Key::K]);
+    }
+
+    #[test]
+    fn shift_counts_if_it_is_down_when_the_key_goes_down() {
+        let (down, up) = (true, false);
+        let mut events = Events::default();
+        // Shift and the key both between two frames.
+        let keys = [(Key::LeftShift, down), (Key::B, down), (Key::B, up), (Key::LeftShift, up)];
+        assert_eq!(events.follow(&keys).shifted, [Key::B]);
+        assert_eq!(events.follow(&[(Key::B, down), (Key::B, up), (Key::RightShift, down)]).shifted, []);
+        // Shift since the frame before.
+        assert_eq!(events.follow(&[(Key::B, down), (Key::RightShift, up)]).shifted, [Key::B]);
+        assert_eq!(events.follow(&[(Key::B, up), (Key::B, down)]).shifted, []);
     }
 
     #[test]

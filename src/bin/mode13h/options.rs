@@ -117,6 +117,11 @@ impl Drawing {
         self.rung.is_some() || self.max_error.is_some()
     }
 
+    /// The budget of a scene that wishes for this one, if any is asked for.
+    pub(crate) fn max_error(&self, wish: Option<f32>) -> Option<f32> {
+        self.max_error.or(wish.filter(|_| self.rung.is_none()))
+    }
+
     /// The mapping that was asked for.
     pub(crate) fn mapping(&self) -> Option<Mapping> {
         self.mapping

@@ -1,16 +1,20 @@
 //! Text on the frame.
 
 use embedded_graphics::Drawable;
-use embedded_graphics::geometry::Point;
-use embedded_graphics::mono_font::MonoTextStyleBuilder;
-use embedded_graphics::mono_font::ascii::FONT_6X10;
-use embedded_graphics::text::{Baseline, Text};
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{Point, Size};
+use embedded_graphics::mono_font::ascii::{FONT_5X8, FONT_6X10};
+use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, MonoTextStyleBuilder};
+use embedded_graphics::primitives::Rectangle;
+use embedded_graphics::text::{Alignment, Baseline, Text, TextStyleBuilder};
 use mode13h::palette::Rgb;
 use mode13h::raster::{Frame, Index};
 use mode13h::vga::Vga;
 
 /// Rows from one line of text to the next.
 const LINE: i32 = 10;
+/// The same in the small letters, 5 × 8.
+pub(crate) const SMALL_LINE: i32 = 8;
 /// Pixels between the text and the frame's edge.
 const MARGIN: i32 = 4;
 
@@ -23,16 +27,28 @@ pub(crate) enum Place {
     Bottom,
 }
 
+/// Which end of a line stands where it is put.
+#[derive(Clone, Copy)]
+pub(crate) enum Anchor {
+    /// Its first letter.
+    Left,
+    /// Its last letter.
+    Right,
+}
+
+/// The palette's lightest on its darkest colour.
+fn style<'font>(vga: &Vga, font: &'font MonoFont<'font>) -> MonoTextStyle<'font, Index> {
+    let palette = vga.palette();
+    MonoTextStyleBuilder::new()
+        .font(font)
+        .text_color(Index(palette.nearest(Rgb::WHITE)))
+        .background_color(Index(palette.nearest(Rgb::BLACK)))
+        .build()
+}
+
 /// Writes `lines` in the palette's lightest on its darkest colour, over whatever is there. What does not fit is left
 /// out.
 pub(crate) fn write<Line: AsRef<str>>(vga: &mut Vga, place: Place, lines: &[Line]) {
-    let palette = vga.palette();
-    let style = MonoTextStyleBuilder::new()
-        .font(&FONT_6X10)
-        .text_color(Index(palette.nearest(Rgb::WHITE)))
-        .background_color(Index(palette.nearest(Rgb::BLACK)))
-        .build();
-    let mut frame = Frame::from(vga);
     // A dozen lines.
     let height = LINE * lines.len() as i32;
     let mut top = match place {
@@ -40,8 +56,34 @@ pub(crate) fn write<Line: AsRef<str>>(vga: &mut Vga, place: Place, lines: &[Line
         Place::Bottom => Vga::HEIGHT as i32 - MARGIN - height,
     };
     for line in lines {
-        // A frame takes every pixel: the error is one that cannot be made.
-        let Ok(_) = Text::with_baseline(line.as_ref(), Point::new(MARGIN, top), style, Baseline::Top).draw(&mut frame);
+        write_at(vga, (MARGIN, top), Anchor::Left, line.as_ref());
         top += LINE;
     }
+}
+
+/// Writes a line whose upper left or right corner is given.
+pub(crate) fn write_at(vga: &mut Vga, (x, y): (i32, i32), anchor: Anchor, line: &str) {
+    let style = style(vga, &FONT_6X10);
+    let alignment = match anchor {
+        Anchor::Left => Alignment::Left,
+        Anchor::Right => Alignment::Right,
+    };
+    let place = TextStyleBuilder::new().alignment(alignment).baseline(Baseline::Top).build();
+    // A frame takes every pixel: the error is one that cannot be made.
+    let Ok(_) = Text::with_text_style(line, Point::new(x, y), style, place).draw(&mut Frame::from(vga));
+}
+
+/// Writes lines in small letters, the first from an upper left corner.
+pub(crate) fn write_small(vga: &mut Vga, (x, y): (i32, i32), lines: &[String]) {
+    let style = style(vga, &FONT_5X8);
+    let mut frame = Frame::from(vga);
+    for (top, line) in (y..).step_by(SMALL_LINE.unsigned_abs() as usize).zip(lines) {
+        let Ok(_) = Text::with_baseline(line, Point::new(x, top), style, Baseline::Top).draw(&mut frame);
+    }
+}
+
+/// Fills a rectangle with an entry of the palette.
+pub(crate) fn block(vga: &mut Vga, (x, y): (i32, i32), (width, height): (u32, u32), entry: u8) {
+    let area = Rectangle::new(Point::new(x, y), Size::new(width, height));
+    let Ok(()) = Frame::from(vga).fill_solid(&area, Index(entry));
 }

@@ -1,0 +1,91 @@
+//! What the pixel under the mouse says of itself.
+
+use mode13h::explain::{self, Edge, FaceHere, Seen};
+use mode13h::render::{Renderer, Screen};
+use mode13h::scene::Scene;
+
+use super::magnifier::{LETTERS, LINES, Pixel};
+
+/// The account of a pixel of the frame that `renderer`, as it is set, draws of `scene`: what became of its byte, then its
+/// edges, why it is shaded as it is, and the effects; as much as there is room for.
+pub(super) fn lines(renderer: &mut Renderer, scene: &Scene, pixel: Pixel) -> Vec<String> {
+    let (x, y) = (u32::from(pixel.x), u32::from(pixel.y));
+    let account = match explain::pixel(renderer, scene, Screen::MODE_13H, x, y) {
+        Ok(account) => account,
+        Err(error) => return wrapped(&error.to_string()),
+    };
+    let mut lines = account.lines(LETTERS);
+    if let Some((face, seen)) = account.front() {
+        if seen.exact_cover {
+            lines.push(edges(face, x, y));
+        }
+        lines.extend(exact(seen));
+        lines.extend(wrapped(&format!("rung: {}", account.rung_why)));
+        lines.extend(wrapped(&format!("on: {}", effects(seen))));
+    }
+    lines.truncate(LINES);
+    lines
+}
+
+/// The three edges: what kind each is, and how far inside of it the centre lies.
+fn edges(face: &FaceHere, x: u32, y: u32) -> String {
+    let edge = |Edge { kind, value }: &Edge| match value {
+        0 => format!("{kind} 0 ({})", if kind.owns_ties() { "its own" } else { "not its own" }),
+        _ => format!("{kind} {value}"),
+    };
+    let edges = face.edges(x, y);
+    format!("edges: {}", edges.each_ref().map(edge).join(", "))
+}
+
+/// What linear shades, or exact quotients, would be without any rounding.
+fn exact(seen: &Seen) -> Option<String> {
+    let account = seen.accounts.first()?;
+    let shade = account.exact?.to_f64() / 256.0;
+    Some(format!("exact {shade:.4}: the byte is off by {:+.4}", f64::from(account.byte) - shade))
+}
+
+fn effects(seen: &Seen) -> String {
+    let names: Vec<String> = seen.effects.iter().map(|row| row.effect.to_string()).collect();
+    names.join(", ")
+}
+
+/// A text in lines that fit.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= LETTERS => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_string()),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mode13h::mesh::shapes;
+    use mode13h::render::Rung;
+
+    #[test]
+    fn an_account_begins_with_the_pixel_and_fits() {
+        let scene = Scene::showing(shapes::torus(24, 12));
+        for rung in Rung::ALL {
+            let mut renderer = Renderer::new();
+            renderer.set_rung(rung);
+            let mut vga = mode13h::vga::Vga::new();
+            renderer.draw(&scene, &mut vga).expect("a legal scene");
+            for (x, y) in [(0, 0), (160, 60), (100, 100), (319, 199)] {
+                let lines = lines(&mut renderer, &scene, Pixel { x, y });
+                let byte = vga.pixels()[usize::from(y) * 320 + usize::from(x)];
+                assert!(lines[0].starts_with(&format!("({x}, {y}) byte {byte} ")), "{lines:#?}");
+                assert!(lines.len() <= LINES && lines.iter().all(|line| line.chars().count() <= LETTERS), "{lines:#?}");
+                // Where there is a face it says more than its place.
+                assert_eq!(lines.len() > 4, byte != scene.background, "{lines:#?}");
+            }
+        }
+    }
+}

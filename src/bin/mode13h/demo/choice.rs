@@ -1,0 +1,42 @@
+//! One of a list.
+
+/// A list, one of which is chosen.
+pub(super) struct Choice<T> {
+    list: Vec<T>,
+    at: usize,
+}
+
+impl<T> Choice<T> {
+    /// `first` is chosen. It is put in front if the list does not hold it.
+    pub(super) fn new(list: impl IntoIterator<Item = T>, first: T, same: fn(&T, &T) -> bool) -> Choice<T> {
+        let mut list: Vec<T> = list.into_iter().collect();
+        let at = list.iter().position(|entry| same(entry, &first)).unwrap_or_else(|| {
+            list.insert(0, first);
+            0
+        });
+        Choice { list, at }
+    }
+
+    pub(super) fn chosen(&self) -> &T {
+        &self.list[self.at]
+    }
+
+    pub(super) fn go_round(&mut self) {
+        self.at = (self.at + 1) % self.list.len();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_choice_goes_round() {
+        let mut choice = Choice::new([1, 2, 3], 2, |a, b| a == b);
+        choice.go_round();
+        assert_eq!(*choice.chosen(), 3);
+        choice.go_round();
+        assert_eq!(*choice.chosen(), 1);
+        assert_eq!(Choice::new([1, 2], 7, |a, b| a == b).list, [7, 1, 2]);
+    }
+}

@@ -1,0 +1,317 @@
+//! `mode13h demo`: a scene, or a model that turns, in a window.
+//!
+//! | file | what |
+//! |---|---|
+//! | `shading` | the keys for rungs and the budget |
+//! | `motion` | what the clock and the user move |
+//! | `error_map` | how far each pixel is from the truth, over the picture |
+//! | `magnifier`, `account` | the pixels about the mouse, and what the one under it says of itself |
+//! | `figures`, `timing` | what H shows |
+//! | `background` | a thread that the picture does not wait for |
+//! | `choice` | one of a list |
+
+mod account;
+mod background;
+mod choice;
+mod error_map;
+mod figures;
+mod magnifier;
+mod motion;
+mod shading;
+mod timing;
+
+use std::ffi::OsString;
+use std::time::Instant;
+
+use clap::Args;
+use mode13h::palette::{Palette, builtin};
+use mode13h::render::{Mapping, Renderer, Screen, Stats};
+use mode13h::span::Kernel;
+use mode13h::vga::Vga;
+use mode13h::window::{Flow, Input, Key, Window};
+
+use crate::failure::Failure;
+use crate::input::Colors;
+use crate::options::Drawing;
+use crate::overlay::{self, Place};
+use crate::stage::Stage;
+use crate::switches::Switch;
+use crate::{input, output};
+use choice::Choice;
+use error_map::Map;
+use magnifier::{Cells, Magnifier, Pixel};
+use motion::Motion;
+use shading::Shading;
+use timing::Timing;
+
+/// What the help says below the options.
+pub(crate) const KEYS: &str = "\
+Keys in the window: Esc quits, Space stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through
+the rungs, 1 to 9 are the first nine, 0 is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2
+shades); E lays the error map over the picture: how far each pixel is from light worked out at every pixel, in shades; Z
+magnifies what is under the mouse 16 times, and the pixel there explains itself; K next kernel, P next palette, M next
+mapping of textures; L lights, O fog, T texture and D dither off and on; S saves a PNG in the current directory, H shows
+help, the plan, time, error and which rungs shade how many triangles.
+With no display one frame is saved as a PNG.";
+
+#[derive(Args)]
+pub(crate) struct Options {
+    #[arg(default_value = "torus", help = input::help())]
+    input: OsString,
+    #[command(flatten)]
+    drawing: Drawing,
+}
+
+/// How long the title shows where a picture was saved, in seconds.
+const NOTICE: f64 = 3.0;
+
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let mut demo = Demo::new(options)?;
+    let mut window = match Window::open(&demo.name) {
+        Ok(window) => window,
+        Err(no_display) => {
+            demo.draw()?;
+            let path = output::numbered_picture(demo.on_screen()).map_err(Failure::work)?;
+            eprintln!("mode13h: {no_display}; one frame is in {}", path.display());
+            return Ok(());
+        }
+    };
+    let mut title = String::new();
+    loop {
+        let wish = demo.follow(window.input(), window.seconds())?;
+        demo.draw()?;
+        match wish {
+            Wish::Nothing => {}
+            Wish::Picture => demo.save(),
+            Wish::End => return Ok(()),
+        }
+        let new = demo.title();
+        if new != title {
+            window.set_title(&new);
+            title = new;
+        }
+        if window.show(demo.on_screen()).map_err(Failure::work)? == Flow::Close {
+            return Ok(());
+        }
+    }
+}
+
+/// What the keys ask for beyond a change of the picture.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Wish {
+    Nothing,
+    Picture,
+    End,
+}
+
+struct Demo {
+    name: String,
+    triangles: usize,
+    stage: Stage,
+    renderer: Renderer,
+    shading: Shading,
+    kernels: Choice<Kernel>,
+    palettes: Choice<(String, Colors)>,
+    /// `None` leaves it to the plan.
+    mappings: Choice<Option<Mapping>>,
+    motion: Motion,
+    help: bool,
+    maps: bool,
+    magnifies: bool,
+    /// The pixel under the mouse, or the last that was.
+    mouse: Pixel,
+    map: Map,
+    magnifier: Magnifier,
+    /// The picture.
+    vga: Vga,
+    /// The picture with what is laid over it.
+    shown: Vga,
+    /// How many different pictures there were.
+    number: u64,
+    timing: Timing,
+    /// Of making the plan, while it is shown.
+    planning: Timing,
+    stats: Option<Stats>,
+    /// What the title says besides, and until when.
+    notice: Option<(String, f64)>,
+    seconds: f64,
+}
+
+impl Demo {
+    fn new(options: &Options) -> Result<Demo, Failure> {
+        let Options { input, drawing } = options;
+        let kernel = drawing.kernel()?;
+        let shown = input::input(input)?;
+        let name = shown.name().to_string();
+        let stage = drawing.stage(shown)?;
+        let rung = drawing.rung(stage.scene.wishes.rung);
+        let budget = drawing.max_error(stage.scene.wishes.max_error);
+        // A palette without ramps has no order of shades: what has no colours of its own is shown in such a one only if
+        // that was asked for.
+        let has_colors = stage.has_colors();
+        let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
+        let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::from(builtin.palette.clone())));
+        let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
+        // A scene that has none leaves the DAC alone.
+        let colors = stage.colors.clone().unwrap_or(Palette::default().into());
+        // Under its own name, if it has one, it does not stand twice in the list.
+        let usual = match &colors {
+            Colors::Auto => input::AUTO,
+            Colors::Palette(palette) => {
+                let same = builtin::ALL.iter().find(|builtin| builtin.palette.colors() == palette.colors());
+                same.map_or("the scene's", |builtin| builtin.name)
+            }
+        };
+        let palette = (drawing.palette_name().unwrap_or(usual.to_string()), colors);
+        Ok(Demo {
+            triangles: stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum(),
+            stage,
+            name,
+            renderer: drawing.renderer(kernel),
+            shading: Shading::new(rung, budget),
+            kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
+            palettes: Choice::new(palettes, palette, |(a, _), (b, _)| a == b),
+            mappings: Choice::new([None].into_iter().chain(Mapping::ALL.map(Some)), drawing.mapping(), |a, b| a == b),
+            motion: Motion::new(),
+            help: false,
+            maps: false,
+            magnifies: false,
+            mouse: Pixel { x: Vga::WIDTH as u16 / 2, y: Vga::HEIGHT as u16 / 2 },
+            map: Map::default(),
+            magnifier: Magnifier::default(),
+            vga: Vga::new(),
+            shown: Vga::new(),
+            number: 0,
+            timing: Timing::default(),
+            planning: Timing::default(),
+            stats: None,
+            notice: None,
+            seconds: 0.0,
+        })
+    }
+
+    /// Does what the user asks for in the frame that shows the time `seconds`.
+    fn follow(&mut self, input: &Input, seconds: f64) -> Result<Wish, Failure> {
+        self.seconds = seconds;
+        self.notice.take_if(|(_, until)| *until < seconds);
+        self.motion.follow(input, seconds);
+        self.shading.follow(input);
+        if input.pressed(Key::K) {
+            self.kernels.go_round();
+        }
+        if input.pressed(Key::P) {
+            self.palettes.go_round();
+            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::work)?;
+        }
+        if input.pressed(Key::M) {
+            self.mappings.go_round();
+        }
+        for (key, switch) in Switch::KEYS {
+            if input.pressed(key) {
+                switch.turn(&mut self.stage.scene, &mut self.renderer);
+            }
+        }
+        for (key, shown) in [(Key::H, &mut self.help), (Key::E, &mut self.maps), (Key::Z, &mut self.magnifies)] {
+            *shown ^= input.pressed(key);
+        }
+        self.mouse = input.mouse().and_then(Pixel::at).unwrap_or(self.mouse);
+        Ok(if input.pressed(Key::Escape) {
+            Wish::End
+        } else if input.pressed(Key::S) {
+            Wish::Picture
+        } else {
+            Wish::Nothing
+        })
+    }
+
+    /// Draws the picture, and what the keys lay over it.
+    fn draw(&mut self) -> Result<(), Failure> {
+        self.draw_scene()?;
+        if !(self.help || self.maps || self.magnifies) {
+            return Ok(());
+        }
+        // The picture itself stays as it is, for the next frame may be the same.
+        self.shown.clone_from(&self.vga);
+        if self.help || self.maps {
+            let frame = || error_map::Frame {
+                number: self.number,
+                seconds: self.seconds,
+                scene: self.stage.scene.clone(),
+                renderer: self.renderer.set_alike(),
+            };
+            self.map.follow(self.number, frame)?;
+        }
+        if self.maps {
+            self.map.lay_over(&mut self.shown);
+        }
+        if self.magnifies {
+            // The account needs the room that the legend would take.
+            self.magnify()?;
+        } else if self.maps {
+            self.map.legend(&mut self.shown, self.number, self.seconds);
+        }
+        if self.help {
+            let figures = self.figures();
+            overlay::write(&mut self.shown, Place::Top, &figures);
+            overlay::write(&mut self.shown, Place::Bottom, &figures::HELP);
+        }
+        Ok(())
+    }
+
+    fn draw_scene(&mut self) -> Result<(), Failure> {
+        self.stage.show(self.motion.seconds(), self.motion.pose);
+        self.shading.set(&mut self.renderer);
+        self.renderer.set_kernel(*self.kernels.chosen());
+        self.renderer.set_mapping(*self.mappings.chosen());
+        if self.help {
+            let start = Instant::now();
+            self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+            self.planning.add(Some(start.elapsed().as_secs_f64()), self.seconds);
+        }
+        let start = Instant::now();
+        let stats = self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::work)?;
+        let taken = start.elapsed().as_secs_f64();
+        self.timing.add(stats.redrawn.then_some(taken), self.seconds);
+        // What was counted is of the frame that is shown, if that was there already.
+        if stats.redrawn || self.stats.is_none() {
+            self.stats = Some(stats);
+            self.number += 1;
+        }
+        Ok(())
+    }
+
+    fn magnify(&mut self) -> Result<(), Failure> {
+        let pixel = self.mouse;
+        // With the error map the lens shows that.
+        let number = 2 * self.number + u64::from(self.maps);
+        let question = || magnifier::Question {
+            pixel,
+            scene: self.stage.scene.clone(),
+            renderer: self.renderer.set_alike(),
+            cells: Cells::about(pixel, &self.shown),
+        };
+        self.magnifier.follow(number, pixel, question)?;
+        self.magnifier.lay_over(&mut self.shown, pixel);
+        Ok(())
+    }
+
+    /// What was drawn last.
+    fn on_screen(&self) -> &Vga {
+        if self.help || self.maps || self.magnifies { &self.shown } else { &self.vga }
+    }
+
+    /// Saves the picture as it is on the screen. A failure is shown and ends nothing.
+    fn save(&mut self) {
+        let notice = match output::numbered_picture(self.on_screen()) {
+            Ok(path) => format!("saved {}", path.display()),
+            Err(error) => error.to_string(),
+        };
+        eprintln!("mode13h: {notice}");
+        self.notice = Some((notice, self.seconds + NOTICE));
+    }
+
+    fn title(&self) -> String {
+        let notice = self.notice.as_ref().map_or(String::new(), |(notice, _)| format!(" - {notice}"));
+        format!("{} - {} - {} - mode13h{notice}", self.name, self.shading, self.timing)
+    }
+}

@@ -1,0 +1,93 @@
+//! What moves, by the clock and by hand.
+
+use mode13h::vga::Vga;
+use mode13h::window::{Input, Key};
+
+use crate::stage::Pose;
+
+/// How fast the arrow keys turn, in radians a second.
+const ARROW_SPEED: f64 = 2.0;
+/// How far one press of an arrow key turns at once, in radians: a tap shorter than a frame shows too.
+const ARROW_TAP: f64 = 0.05;
+/// How far a drag over one pixel of the frame turns, in radians: half a turn over its width.
+const DRAG: f64 = std::f64::consts::PI / Vga::WIDTH as f64;
+/// A pixel's height in pixel widths.
+const PIXEL_HEIGHT: f64 = Vga::PIXEL_ASPECT.1 as f64 / Vga::PIXEL_ASPECT.0 as f64;
+/// How much one notch of the wheel, or one + or -, enlarges.
+const NOTCH: f64 = 1.1;
+/// The least and the greatest enlargement.
+const ZOOM: (f64, f64) = (0.25, 8.0);
+/// The longest time that a key counts as held for in one frame, in seconds: nothing is caught up with after a pause.
+const LONGEST_FRAME: f64 = 0.1;
+/// What moves: the scene's time, by the clock unless it is stopped, and what the user has turned.
+pub(super) struct Motion {
+    /// The scene's time at the time `since`, in seconds.
+    time: f64,
+    /// When the clock began to move it, in seconds; nothing while it is stopped.
+    since: Option<f64>,
+    pub(super) pose: Pose,
+    now: f64,
+}
+
+impl Motion {
+    pub(super) fn new() -> Motion {
+        Motion { time: 0.0, since: Some(0.0), pose: Pose::FIRST, now: 0.0 }
+    }
+
+    pub(super) fn follow(&mut self, input: &Input, seconds: f64) {
+        let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);
+        self.now = seconds;
+        if input.pressed(Key::Space) {
+            self.time = self.seconds();
+            self.since = if self.since.is_none() { Some(seconds) } else { None };
+        }
+        let arrow = |key| {
+            let held = if input.held(key) { ARROW_SPEED * passed } else { 0.0 };
+            held + if input.pressed(key) { ARROW_TAP } else { 0.0 }
+        };
+        let (right, down) = input.drag();
+        self.pose.turn += arrow(Key::Right) - arrow(Key::Left) + DRAG * f64::from(right);
+        self.pose.tilt += arrow(Key::Down) - arrow(Key::Up) + DRAG * PIXEL_HEIGHT * f64::from(down);
+
+        let typed = |characters: &[char]| input.typed().contains(characters);
+        let mut notches = f64::from(input.wheel());
+        if input.pressed(Key::NumPadPlus) || typed(&['+', '=']) {
+            notches += 1.0;
+        }
+        if input.pressed(Key::NumPadMinus) || typed(&['-', '_']) {
+            notches -= 1.0;
+        }
+        self.pose.zoom = (self.pose.zoom * NOTCH.powf(notches)).clamp(ZOOM.0, ZOOM.1);
+    }
+
+    /// The scene's time at the time of the last [`follow`](Self::follow). It comes from the clock and not from the frames
+    /// that were drawn since.
+    pub(super) fn seconds(&self) -> f64 {
+        self.time + self.since.map_or(0.0, |since| self.now - since)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_comes_from_the_clock_and_not_from_the_frames() {
+        let time_after = |times: &[f64]| {
+            let mut motion = Motion::new();
+            times.iter().for_each(|&seconds| motion.follow(&Input::default(), seconds));
+            (motion.seconds(), motion.pose)
+        };
+        let many: Vec<f64> = (0..=1_000_000).map(|i| f64::from(i) / 1000.0).collect();
+        assert_eq!(time_after(&many), time_after(&[1000.0]));
+    }
+
+    #[test]
+    fn an_hour_in_one_frame_is_an_hour_of_the_scene() {
+        let mut motion = Motion::new();
+        for seconds in [0.0, 0.0, 3600.0, 3599.0] {
+            motion.follow(&Input::default(), seconds);
+            assert_eq!(motion.seconds(), seconds);
+        }
+    }
+}

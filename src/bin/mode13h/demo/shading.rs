@@ -1,0 +1,187 @@
+//! What the keys choose for the shades: a rung, or a budget of error.
+
+use std::fmt;
+
+use mode13h::render::{Renderer, Rung};
+use mode13h::window::{Input, Key};
+
+/// The budgets that B goes through, in shades of 1/255 of full intensity.
+pub(super) const BUDGETS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
+/// The budget of a scene that wishes for none.
+const USUAL: f32 = 2.0;
+
+/// The keys 1 to 9, in the top row and in the number pad, and what they type. The tenth rung has no digit.
+const DIGITS: [(Key, Key, char); 9] = [
+    (Key::Key1, Key::NumPad1, '1'),
+    (Key::Key2, Key::NumPad2, '2'),
+    (Key::Key3, Key::NumPad3, '3'),
+    (Key::Key4, Key::NumPad4, '4'),
+    (Key::Key5, Key::NumPad5, '5'),
+    (Key::Key6, Key::NumPad6, '6'),
+    (Key::Key7, Key::NumPad7, '7'),
+    (Key::Key8, Key::NumPad8, '8'),
+    (Key::Key9, Key::NumPad9, '9'),
+];
+
+/// What a key does.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Wish {
+    /// This rung.
+    Rung(Rung),
+    /// The next cheaper rung.
+    Cheaper,
+    /// The next dearer one.
+    Dearer,
+    /// The budget.
+    Budget,
+    /// The budget, or where that is on a smaller error.
+    Less,
+    /// The budget, or where that is on a greater error.
+    More,
+}
+
+/// What the user wishes, if anything.
+fn wish(input: &Input) -> Option<Wish> {
+    let typed = |character: char| input.typed().contains(character);
+    let is_down = |&(key, pad, character): &(Key, Key, char)| {
+        // Where digits are typed with Shift, as in France, a key of the top row means what it types.
+        input.pressed(pad) || typed(character) || (input.pressed(key) && input.typed().is_empty())
+    };
+    if let Some(rung) = DIGITS.iter().zip(Rung::ALL).find_map(|(digit, rung)| is_down(digit).then_some(rung)) {
+        return Some(Wish::Rung(rung));
+    }
+    if is_down(&(Key::Key0, Key::NumPad0, '0')) {
+        return Some(Wish::Budget);
+    }
+    if input.pressed(Key::B) {
+        return Some(if input.pressed_with_shift(Key::B) { Wish::More } else { Wish::Less });
+    }
+    if input.pressed(Key::LeftBracket) || typed('[') {
+        return Some(Wish::Cheaper);
+    }
+    (input.pressed(Key::RightBracket) || typed(']')).then_some(Wish::Dearer)
+}
+
+/// A rung and a budget, one of which is in force.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Shading {
+    rung: Rung,
+    /// Shades of error.
+    budget: f32,
+    by_budget: bool,
+}
+
+impl Shading {
+    /// The budget, if there is one, or else the rung.
+    pub(super) fn new(rung: Rung, budget: Option<f32>) -> Shading {
+        Shading { rung, budget: budget.unwrap_or(USUAL), by_budget: budget.is_some() }
+    }
+
+    pub(super) fn follow(&mut self, input: &Input) {
+        if let Some(wish) = wish(input) {
+            self.fulfil(wish);
+        }
+    }
+
+    fn fulfil(&mut self, wish: Wish) {
+        let was_by_budget = self.by_budget;
+        self.by_budget = matches!(wish, Wish::Budget | Wish::Less | Wish::More);
+        // The variants are numbered in the order of ALL.
+        let place = self.rung as usize;
+        match wish {
+            Wish::Rung(rung) => self.rung = rung,
+            Wish::Cheaper => self.rung = Rung::ALL[place.saturating_sub(1)],
+            Wish::Dearer => self.rung = Rung::ALL[(place + 1).min(Rung::ALL.len() - 1)],
+            Wish::Budget => {}
+            _ if !was_by_budget => {}
+            // The next in the list, from whatever the command line or the scene says.
+            Wish::Less => {
+                let less = BUDGETS.into_iter().find(|&budget| budget < self.budget);
+                self.budget = less.unwrap_or(self.budget);
+            }
+            Wish::More => {
+                let more = BUDGETS.into_iter().rev().find(|&budget| budget > self.budget);
+                self.budget = more.unwrap_or(self.budget);
+            }
+        }
+    }
+
+    /// Has a renderer draw by it.
+    pub(super) fn set(&self, renderer: &mut Renderer) {
+        if self.by_budget {
+            renderer.set_max_error(Some(self.budget));
+        } else {
+            renderer.set_rung(self.rung);
+        }
+    }
+
+    /// The error that is or would be accepted, in shades.
+    pub(super) fn budget(&self) -> f32 {
+        self.budget
+    }
+}
+
+impl fmt::Display for Shading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.by_budget { write!(f, "budget {} shades", self.budget) } else { f.write_str(self.rung.name()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_the_first_nine_rungs_and_brackets_reach_them_all() {
+        assert_eq!(DIGITS.len(), Rung::ALL.len() - 1);
+        let mut shading = Shading::new(Rung::ALL[4], None);
+        (0..20).for_each(|_| shading.fulfil(Wish::Cheaper));
+        for rung in Rung::ALL {
+            assert_eq!((shading.rung, shading.to_string()), (rung, rung.name().to_string()));
+            shading.fulfil(Wish::Dearer);
+        }
+        assert_eq!(shading.rung, Rung::ALL[9]);
+        for (i, (key, pad, character)) in DIGITS.into_iter().enumerate() {
+            assert_eq!(key as usize, i + 1);
+            assert_eq!(pad as usize, Key::NumPad0 as usize + i + 1);
+            assert_eq!(character.to_digit(10), Some(i as u32 + 1));
+        }
+    }
+
+    #[test]
+    fn b_goes_through_the_budgets_and_shift_b_back() {
+        let mut shading = Shading::new(Rung::Flat, None);
+        // The first press changes from the rung to the budget and nothing else.
+        shading.fulfil(Wish::Less);
+        assert_eq!(shading, Shading::new(Rung::Flat, Some(USUAL)));
+        (0..9).for_each(|_| shading.fulfil(Wish::More));
+        for budget in BUDGETS {
+            assert_eq!(shading.to_string(), format!("budget {budget} shades"));
+            shading.fulfil(Wish::Less);
+        }
+        assert_eq!(shading.budget(), 0.5);
+        shading.fulfil(Wish::More);
+        assert_eq!(shading.budget(), 1.0);
+        shading.fulfil(Wish::Rung(Rung::Phong));
+        assert_eq!(shading.to_string(), "phong");
+        shading.fulfil(Wish::Budget);
+        assert_eq!(shading.to_string(), "budget 1 shades");
+        // One that is not in the list.
+        let mut shading = Shading::new(Rung::Flat, Some(3.0));
+        shading.fulfil(Wish::More);
+        assert_eq!(shading.budget(), 4.0);
+        let mut shading = Shading::new(Rung::Flat, Some(0.1));
+        shading.fulfil(Wish::Less);
+        assert_eq!(shading.budget(), 0.1);
+    }
+
+    #[test]
+    fn a_renderer_draws_by_what_was_chosen() {
+        let scene = mode13h::scene::Scene::new();
+        let mut renderer = Renderer::new();
+        Shading::new(Rung::Flat, Some(4.0)).set(&mut renderer);
+        assert_eq!(renderer.max_error(&scene), Some(4.0));
+        Shading::new(Rung::Phong, None).set(&mut renderer);
+        assert_eq!((renderer.max_error(&scene), renderer.rung()), (None, Rung::Phong));
+    }
+}

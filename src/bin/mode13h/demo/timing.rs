@@ -1,0 +1,59 @@
+//! Times that change slowly enough to be read.
+
+/// The time that drawing a frame takes, and how many are shown, steady enough to be read.
+#[derive(Default)]
+pub(super) struct Timing {
+    sum: f64,
+    drawn: u32,
+    frames: u32,
+    since: f64,
+    /// Seconds for a frame that was drawn, over the last period in which one was.
+    pub(super) frame: f64,
+    /// Frames a second, drawn or not, over the last period.
+    pub(super) rate: f64,
+}
+
+impl Timing {
+    /// The least time from one figure to the next, in seconds.
+    const PERIOD: f64 = 0.5;
+
+    /// A frame was shown at the time `now`. It was drawn in `taken` seconds, or, with `None`, was there already.
+    pub(super) fn add(&mut self, taken: Option<f64>, now: f64) {
+        self.sum += taken.unwrap_or(0.0);
+        self.drawn += u32::from(taken.is_some());
+        self.frames += 1;
+        let passed = now - self.since;
+        if passed >= Self::PERIOD || self.frame == 0.0 {
+            if self.drawn > 0 {
+                self.frame = self.sum / f64::from(self.drawn);
+            }
+            self.rate = if passed > 0.0 { f64::from(self.frames) / passed } else { 0.0 };
+            (self.sum, self.drawn, self.frames, self.since) = (0.0, 0, 0, now);
+        }
+    }
+}
+
+impl std::fmt::Display for Timing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.2} ms", self.frame * 1000.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_that_was_there_already_counts_for_the_rate_alone() {
+        let mut timing = Timing::default();
+        timing.add(Some(0.010), 0.0);
+        for (taken, now) in [(Some(0.002), 0.1), (None, 0.2), (None, 0.3), (Some(0.004), 0.5)] {
+            timing.add(taken, now);
+        }
+        assert_eq!((timing.frame, timing.rate), (0.003, 8.0));
+        for now in [0.6, 1.0] {
+            timing.add(None, now);
+        }
+        assert_eq!((timing.frame, timing.rate), (0.003, 4.0));
+    }
+}
