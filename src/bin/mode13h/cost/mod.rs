@@ -12,7 +12,7 @@ use std::sync::Mutex;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::cost::{self, Settings, Step, Subject};
+use mode13h::cost::{self, Settings, Step, Subject, report};
 use mode13h::export;
 use mode13h::render::Rung;
 use mode13h::scene::Scene;
@@ -106,6 +106,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if let Some(directory) = &directory {
         write(directory, "samples.csv", &samples.to_csv())?;
         write(directory, "cost.json", &as_json)?;
+        write(directory, "chart.svg", &report::chart_svg(&study))?;
+        write(directory, "report.html", &report::html(&study))?;
     }
     output::print(&if *json { as_json } else { text::text(&study, directory.as_deref()) })
 }
