@@ -14,7 +14,8 @@ use core::hint::black_box;
 use core::mem::size_of;
 use std::time::Instant;
 
-use super::statistics::{Chance, Ratio, median};
+use super::clock::Clock;
+use super::statistics::{Chance, Ratio};
 use super::way::{Kind, Way};
 use crate::plan::Effect;
 use crate::render::{RenderError, Renderer, Rung, Shares};
@@ -105,12 +106,14 @@ struct Contender<'a> {
 
 impl Contender<'_> {
     /// Draws all frames; the time in nanoseconds.
-    fn draw(&mut self, vga: &mut Vga) -> Result<f64, RenderError> {
-        let start = Instant::now();
-        for scene in self.scenes {
-            black_box(self.renderer.draw(scene, vga)?);
-        }
-        Ok(start.elapsed().as_nanos() as f64)
+    fn draw(&mut self, vga: &mut Vga, clock: Clock) -> Result<f64, RenderError> {
+        let (time, result) = clock.time(|| {
+            self.scenes.iter().try_for_each(|scene| {
+                black_box(self.renderer.draw(scene, vga)?);
+                Ok(())
+            })
+        });
+        result.map(|()| time)
     }
 
     /// The same, counting the work.
@@ -133,6 +136,16 @@ pub(super) fn always_drawing(mut renderer: Renderer) -> Renderer {
     renderer
 }
 
+/// What times are taken with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spent {
+    pub(super) clock: Clock,
+    /// About how long.
+    pub(super) seconds: f64,
+    /// Of the order.
+    pub(super) seed: u64,
+}
+
 /// What a contest found out.
 pub(super) struct Outcome {
     pub(super) samples: Samples,
@@ -140,17 +153,17 @@ pub(super) struct Outcome {
     pub(super) work: Vec<Work>,
 }
 
-/// Times all ways on their frames (all of one number), about `seconds` long: longer where fewer than 25 rounds would
+/// Times all ways on their frames (all of one number), about as long as `spent` says: longer where fewer than 25 rounds would
 /// fit in, up to four times as long, and twice as long as long as a rung's or a budget's ratio to the first way is not
 /// known to 2 %. `progress` is told the share of the time that is over.
 pub(super) fn contest(
     ways: &[(&Way<'_>, &[Scene])],
     base: &dyn Fn() -> Renderer,
-    seconds: f64,
-    seed: u64,
+    spent: &Spent,
     progress: &dyn Fn(f64),
 ) -> Result<Outcome, RenderError> {
-    let mut chance = Chance::new(seed);
+    let mut chance = Chance::new(spent.seed);
+    let seconds = spent.seconds;
     // One machine for all, so that none has its memory in a better place.
     let mut vga = Vga::new();
     let mut contenders: Vec<Contender<'_>> = ways
@@ -166,7 +179,7 @@ pub(super) fn contest(
     let mut least = f64::INFINITY;
     for contender in &mut contenders {
         contender.count(&mut vga)?;
-        let time = contender.draw(&mut vga)?;
+        let time = contender.draw(&mut vga, spent.clock)?;
         least = least.min(time);
         // At most 4.
         contender.every = (time / least / 10.0).clamp(1.0, 4.0) as usize;
@@ -184,7 +197,10 @@ pub(super) fn contest(
         let enough = match round {
             round if round < ROUNDS.1 => false,
             round if round < ROUNDS.0 => elapsed >= 4.0 * seconds,
-            _ => elapsed >= 2.0 * seconds || (elapsed >= seconds && round % 8 == 0 && is_narrow(ways, &samples, seed)),
+            _ => {
+                elapsed >= 2.0 * seconds
+                    || (elapsed >= seconds && round % 8 == 0 && is_narrow(ways, &samples, spent.seed))
+            }
         };
         if enough {
             break;
@@ -192,7 +208,7 @@ pub(super) fn contest(
         chance.shuffle(&mut order);
         let draws = order.iter().filter(|way| round % contenders[**way].every == 0);
         for (place, way) in draws.copied().collect::<Vec<usize>>().into_iter().enumerate() {
-            let nanoseconds = contenders[way].draw(&mut vga)?;
+            let nanoseconds = contenders[way].draw(&mut vga, spent.clock)?;
             samples.list.push(Sample { round, order: place, way, nanoseconds });
         }
     }
@@ -208,22 +224,6 @@ fn is_narrow(ways: &[(&Way<'_>, &[Scene])], samples: &Samples, seed: u64) -> boo
     })
 }
 
-/// How long a step of the clock is seen to be, in nanoseconds: the median of a hundred.
-pub(super) fn clock_step() -> f64 {
-    let mut steps = Vec::new();
-    for _ in 0..100 {
-        let start = Instant::now();
-        let step = loop {
-            let passed = start.elapsed();
-            if !passed.is_zero() {
-                break passed;
-            }
-        };
-        steps.push(step.as_nanos() as f64);
-    }
-    median(&steps)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -234,7 +234,9 @@ mod tests {
         let frames = [Scene::showing(shapes::torus(12, 6)), Scene::showing(shapes::torus(12, 6))];
         let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong), Way::budget(4.0)];
         let ways: Vec<(&Way<'_>, &[Scene])> = ways.iter().map(|way| (way, &frames[..])).collect();
-        let Ok(Outcome { samples, work }) = contest(&ways, &Renderer::new, 0.001, 1, &|_| {}) else {
+        let Ok(Outcome { samples, work }) =
+            contest(&ways, &Renderer::new, &Spent { clock: Clock::WALL, seconds: 0.001, seed: 1 }, &|_| {})
+        else {
             unreachable!("a scene that can be drawn")
         };
         let rounds = samples.rounds();

@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::claims::claims;
-use super::contest::{Outcome, Samples, clock_step, contest};
+use super::clock::Clock;
+use super::contest::{Outcome, Samples, Spent, contest};
 use super::judge::{Court, Findings};
 use super::split::split;
 use super::statistics::{Chance, Ratio, quartiles};
@@ -32,7 +33,7 @@ pub struct Subject<'a> {
 }
 
 /// How a study is made.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// The rungs that are studied. `gouraud-8.8` is drawn in any case, as ratios are to it.
     pub rungs: Vec<Rung>,
@@ -40,17 +41,27 @@ pub struct Settings {
     pub choices: bool,
     /// Whether the sources' claims are measured, on scenes of their own.
     pub claims: bool,
+    /// What times are read from.
+    pub clock: Clock,
     /// About how long times are taken.
     pub seconds: f64,
     /// What the order of drawing, and resampling, are made from.
     pub seed: u64,
-    /// The machine and the program, as they are to be named. The step of the clock is found out here.
+    /// The machine and the program, as they are to be named. The clock is named here.
     pub host: Host,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { rungs: Rung::ALL.to_vec(), choices: true, claims: true, seconds: 10.0, seed: 13, host: Host::default() }
+        Self {
+            rungs: Rung::ALL.to_vec(),
+            choices: true,
+            claims: true,
+            clock: Clock::WALL,
+            seconds: 10.0,
+            seed: 13,
+            host: Host::default(),
+        }
     }
 }
 
@@ -141,10 +152,11 @@ pub fn measure(
     progress: &(dyn Fn(Step, f64) + Sync),
 ) -> Result<(Study, Samples), CostError> {
     let Subject { name, frames, steps, renderer } = *subject;
-    let Settings { rungs, choices: with_choices, claims: with_claims, seconds, seed, host } = settings;
+    let Settings { rungs, choices: with_choices, claims: with_claims, clock, seconds, seed, host } = settings;
     if frames.is_empty() {
         return Err(CostError::NoFrames);
     }
+    let spent = |share: f64| Spent { clock: *clock, seconds: share * seconds, seed: *seed };
     let mut ways = Way::rungs_and_budgets(rungs);
     if *with_choices {
         ways.extend(choices(frames, renderer)?);
@@ -155,16 +167,12 @@ pub fn measure(
     let dithered = [false, true].map(|dither| with_dither(frames, dither));
     let entrants: Vec<(&Way<'_>, &[Scene])> =
         ways.iter().map(|way| (way, way.dither.map_or(frames, |dither| &dithered[usize::from(dither)]))).collect();
-    let outcome = contest(&entrants, renderer, 0.5 * seconds, *seed, &|share| progress(Step::Times, share))?;
+    let outcome = contest(&entrants, renderer, &spent(0.5), &|share| progress(Step::Times, share))?;
     let of_rungs: Vec<&Way<'_>> = ways.iter().filter(|way| matches!(way.kind, Kind::Rung(_))).collect();
-    let spent = (0.25 * seconds, *seed);
-    let splits = split(&of_rungs, frames, renderer, spent, &|share| progress(Step::Split, share))?;
+    let splits = split(&of_rungs, frames, renderer, &spent(0.25), &|share| progress(Step::Split, share))?;
 
-    let claims = if *with_claims {
-        claims(renderer, 0.25 * seconds, *seed, &|share| progress(Step::Claims, share))?
-    } else {
-        Vec::new()
-    };
+    let claims =
+        if *with_claims { claims(renderer, &spent(0.25), &|share| progress(Step::Claims, share))? } else { Vec::new() };
 
     let rows = Rows { ways: &ways, times: times(&ways, &outcome.samples), findings, outcome: &outcome, seed: *seed };
     let mut of_rungs = rows.rungs(&splits, frames.len());
@@ -172,7 +180,7 @@ pub fn measure(
     of_rungs.retain(|row| rungs.contains(&row.rung));
     let study = Study {
         input: name.to_string(),
-        host: Host { clock_step: clock_step(), ..host.clone() },
+        host: Host { clock: clock.name.to_string(), clock_step: clock.step(), ..host.clone() },
         kernel: renderer().kernel().to_string(),
         frames: frames.len(),
         rounds: outcome.samples.rounds(),

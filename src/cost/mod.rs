@@ -7,13 +7,15 @@
 //! | `measure` | a study from beginning to end |
 //! | `way` | what is measured against each other: rungs, budgets, and what else may be chosen |
 //! | `judge`, `entries` | errors against each standard of truth; what ramp or palette adds |
-//! | `contest`, `split` | times, all ways side by side; where the time goes |
+//! | `clock`, `contest`, `split` | times, all ways side by side; where the time goes |
 //! | `claims` | what the sources claim, measured |
 //! | `statistics` | quartiles, ratios, and what chance makes of them |
 //! | `report` | a study as an HTML file and charts |
 
 #[cfg(feature = "std")]
 mod claims;
+#[cfg(feature = "std")]
+mod clock;
 #[cfg(feature = "std")]
 mod contest;
 #[cfg(feature = "std")]
@@ -33,6 +35,8 @@ mod study;
 #[cfg(feature = "std")]
 mod way;
 
+#[cfg(feature = "std")]
+pub use clock::Clock;
 #[cfg(feature = "std")]
 pub use contest::Samples;
 #[cfg(feature = "std")]

@@ -20,7 +20,8 @@ use core::hint::black_box;
 use std::time::Instant;
 
 use super::Split;
-use super::contest::always_drawing;
+use super::clock::Clock;
+use super::contest::{Spent, always_drawing};
 use super::statistics::{Chance, median};
 use super::way::Way;
 use crate::raster::Frame;
@@ -48,16 +49,29 @@ enum Part {
 
 const PARTS: [Part; 4] = [Part::Plan, Part::Vertices, Part::Frame, Part::WideFrame];
 
-/// Splits the time of each way's frames, about `seconds` for all. Rounds are shuffled, as in a
+impl Part {
+    fn of(self, renderer: &mut Renderer, scene: &Scene, bytes: &mut [u8]) -> Result<(), RenderError> {
+        match self {
+            Self::Plan => renderer.make_plan(scene, Screen::MODE_13H).map(|plan| {
+                black_box(plan);
+            }),
+            Self::Vertices => renderer.make_vertices(scene, Screen::MODE_13H),
+            Self::Frame => draw_into(renderer, scene, Screen::MODE_13H, bytes),
+            Self::WideFrame => draw_into(renderer, scene, WIDE, bytes),
+        }
+    }
+}
+
+/// Splits the time of each way's frames, for about as long as `spent` says. Rounds are shuffled, as in a
 /// [contest](super::contest); of each part the median counts.
 pub(super) fn split(
     ways: &[&Way<'_>],
     frames: &[Scene],
     base: &dyn Fn() -> Renderer,
-    (seconds, seed): (f64, u64),
+    spent: &Spent,
     progress: &dyn Fn(f64),
 ) -> Result<Vec<Split>, RenderError> {
-    let mut chance = Chance::new(seed);
+    let mut chance = Chance::new(spent.seed);
     let frames: Vec<&Scene> = frames.iter().step_by(frames.len().div_ceil(FRAMES)).collect();
     let mut renderers: Vec<[Renderer; 4]> =
         ways.iter().map(|way| PARTS.map(|_| always_drawing(way.apply(base())))).collect();
@@ -66,18 +80,9 @@ pub(super) fn split(
         (0..ways.len()).flat_map(|way| (0..PARTS.len()).map(move |part| (way, part))).collect();
     let mut times: Vec<[Vec<f64>; 4]> = vec![Default::default(); ways.len()];
     let mut draw = |renderer: &mut Renderer, part: Part| -> Result<f64, RenderError> {
-        let start = Instant::now();
-        for scene in &frames {
-            match part {
-                Part::Plan => {
-                    black_box(renderer.make_plan(scene, Screen::MODE_13H)?);
-                }
-                Part::Vertices => renderer.make_vertices(scene, Screen::MODE_13H)?,
-                Part::Frame => draw_into(renderer, scene, Screen::MODE_13H, &mut bytes)?,
-                Part::WideFrame => draw_into(renderer, scene, WIDE, &mut bytes)?,
-            }
-        }
-        Ok(start.elapsed().as_nanos() as f64 / frames.len().max(1) as f64)
+        let (time, result) =
+            spent.clock.time(|| frames.iter().try_for_each(|scene| part.of(renderer, scene, &mut bytes)));
+        result.map(|()| time / frames.len().max(1) as f64)
     };
     // Warm.
     for &(way, part) in &order {
@@ -86,8 +91,8 @@ pub(super) fn split(
     let start = Instant::now();
     for round in 0..ROUNDS.1 {
         let elapsed = start.elapsed().as_secs_f64();
-        progress((elapsed / seconds).min(1.0));
-        if round >= ROUNDS.0 && elapsed >= seconds {
+        progress((elapsed / spent.seconds).min(1.0));
+        if round >= ROUNDS.0 && elapsed >= spent.seconds {
             break;
         }
         chance.shuffle(&mut order);
@@ -96,7 +101,7 @@ pub(super) fn split(
             times[way][part].push(time);
         }
     }
-    let scan_out = scan_out();
+    let scan_out = scan_out(spent.clock);
     Ok(times
         .iter()
         .map(|times| {
@@ -122,15 +127,9 @@ fn draw_into(renderer: &mut Renderer, scene: &Scene, screen: Screen, bytes: &mut
 }
 
 /// The time of a scan-out: the median of 51.
-fn scan_out() -> f64 {
+fn scan_out(clock: Clock) -> f64 {
     let (vga, mut colors) = (Vga::new(), vec![0; Vga::SHOWN]);
-    let times: Vec<f64> = (0..51)
-        .map(|_| {
-            let start = Instant::now();
-            vga.scan_out(black_box(&mut colors));
-            start.elapsed().as_nanos() as f64
-        })
-        .collect();
+    let times: Vec<f64> = (0..51).map(|_| clock.time(|| vga.scan_out(black_box(&mut colors))).0).collect();
     median(&times)
 }
 
@@ -145,7 +144,9 @@ mod tests {
         let frames = [Scene::showing(shapes::sphere(24, 12))];
         let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong)];
         let ways: Vec<&Way<'_>> = ways.iter().collect();
-        let Ok(split) = split(&ways, &frames, &Renderer::new, (0.01, 1), &|_| {}) else {
+        let Ok(split) =
+            split(&ways, &frames, &Renderer::new, &Spent { clock: Clock::WALL, seconds: 0.01, seed: 1 }, &|_| {})
+        else {
             unreachable!("a scene that can be drawn")
         };
         assert_eq!(split.len(), 2);

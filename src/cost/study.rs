@@ -39,7 +39,9 @@ pub struct Host {
     pub compiler: String,
     /// Profile, target and features that the program was built with.
     pub flags: String,
-    /// How long a step of the clock that times were read from is seen to be.
+    /// The clock that times were read from.
+    pub clock: String,
+    /// How long a step of it is seen to be.
     pub clock_step: f64,
 }
 

@@ -17,7 +17,7 @@ use alloc::vec::Vec;
 
 use self::figures::{Figures, Sphere};
 use self::scenes::SLICES;
-use super::contest::{Outcome, contest};
+use super::contest::{Outcome, Spent, contest};
 use super::judge::{against, between};
 use super::statistics::{Chance, Ratio, quartiles};
 use super::way::Way;
@@ -79,19 +79,18 @@ impl Times {
     }
 }
 
-/// Measures all claims, about `seconds` long, errors aside. `progress` is told the share that is done.
+/// Measures all claims, for about as long as `spent` says, errors aside. `progress` is told the share that is done.
 pub(super) fn claims(
     base: &(dyn Fn() -> Renderer + Sync),
-    seconds: f64,
-    seed: u64,
+    spent: &Spent,
     progress: &dyn Fn(f64),
 ) -> Result<Vec<Claim>, CostError> {
     let Entrants { scenes, list } = Entrants::new();
     let ways: Vec<Way<'_>> = list.iter().map(|(rung, _)| Way::rung(*rung)).collect();
     let entrants: Vec<(&Way<'_>, &[Scene])> =
         ways.iter().zip(&list).map(|(way, (_, scene))| (way, scenes[*scene].as_slice())).collect();
-    let Outcome { samples, .. } = contest(&entrants, base, seconds, seed, &|share| progress(share / 2.0))?;
-    let times = Times { times: (0..list.len()).map(|way| samples.of(way)).collect(), list, seed };
+    let Outcome { samples, .. } = contest(&entrants, base, spent, &|share| progress(share / 2.0))?;
+    let times = Times { times: (0..list.len()).map(|way| samples.of(way)).collect(), list, seed: spent.seed };
 
     let mut spheres = Vec::new();
     for (number, slices) in SLICES.into_iter().enumerate() {

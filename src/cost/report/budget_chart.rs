@@ -57,8 +57,10 @@ fn draw(study: &Study, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>
     let inner = Rectangle { left: left + 4, top: top + 2, right: right - 2, bottom: bottom - 4 };
     let named = singles.iter().map(|(at, text)| (area.map_coordinate(at), text.chars().count()));
     let named: Vec<((i32, i32), usize)> = named.collect();
-    let busy: Vec<(i32, i32)> = budgets.iter().map(|at| area.map_coordinate(at)).collect();
-    for (((_, text), &(at, _)), place) in singles.iter().zip(&named).zip(places(&named, &along(&busy), LETTERS, inner))
+    let line: Vec<(i32, i32)> = budgets.iter().map(|at| area.map_coordinate(at)).collect();
+    let marks: Vec<(i32, i32)> = line.iter().copied().chain(named.iter().map(|&(at, _)| at)).collect();
+    for (((_, text), &(at, _)), place) in
+        singles.iter().zip(&named).zip(places(&named, &marks, &along(&line), LETTERS, inner))
     {
         name(root, text, at, place, RUNGS)?;
     }

@@ -99,10 +99,13 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
     let (left, right) = area.get_x_axis_pixel_range().into_pair();
     let (top, bottom) = area.get_y_axis_pixel_range().into_pair();
     let inner = Rectangle { left: left + 4, top: top + 2, right: right - 2, bottom: bottom - 4 };
+    let marks: Vec<(i32, i32)> = points.iter().map(|point| pixel(&point.at)).collect();
     join_budgets(&mut points, |point| pixel(&point.at));
     let named: Vec<((i32, i32), usize)> = points.iter().map(|p| (pixel(&p.at), p.name.chars().count())).collect();
     let joined: Vec<(i32, i32)> = efficient.iter().map(pixel).collect();
-    for ((point, &(at, _)), place) in points.iter().zip(&named).zip(places(&named, &along(&joined), LETTERS, inner)) {
+    for ((point, &(at, _)), place) in
+        points.iter().zip(&named).zip(places(&named, &marks, &along(&joined), LETTERS, inner))
+    {
         let color = if point.budget {
             BUDGETS
         } else if point.efficient {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use mode13h::cost::Host;
+use mode13h::cost::{Clock, Host};
 
 /// Of the features those that what is measured depends on.
 const FEATURES: [(&str, bool); 2] = [("asm", cfg!(feature = "asm")), ("simd", cfg!(feature = "simd"))];
@@ -42,4 +42,18 @@ fn macos() -> Option<String> {
     }
     let output = Command::new("sysctl").args(["-n", "machdep.cpu.brand_string"]).output().ok()?;
     Some(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// What times are read from: how long this thread has run, where the system counts that.
+pub(super) fn clock() -> Clock {
+    #[cfg(unix)]
+    if has_run().is_ok() {
+        return Clock { name: "the time that the thread has run", now: || has_run().unwrap_or_default() };
+    }
+    Clock::WALL
+}
+
+#[cfg(unix)]
+fn has_run() -> nix::Result<std::time::Duration> {
+    Ok(nix::time::clock_gettime(nix::time::ClockId::CLOCK_THREAD_CPUTIME_ID)?.into())
 }

@@ -27,6 +27,7 @@ struct Host<'a> {
     processor: &'a str,
     compiler: &'a str,
     flags: &'a str,
+    clock: &'a str,
     clock_step_ns: f64,
 }
 
@@ -81,6 +82,7 @@ struct JsonBudget {
     max_error: f64,
     within: f64,
     largest: f64,
+    rms: f64,
     largest_patch: usize,
     ns_per_frame: f64,
     ns_per_frame_quartiles: [f64; 2],
@@ -154,6 +156,7 @@ impl From<&BudgetRow> for JsonBudget {
             max_error: row.max_error,
             within: row.within,
             largest: row.largest,
+            rms: row.rms,
             largest_patch: row.patch,
             ns_per_frame: row.per_frame.median,
             ns_per_frame_quartiles: quartiles(&row.per_frame),
@@ -203,6 +206,7 @@ pub(super) fn json(study: &Study, warnings: &[String]) -> Result<String, Failure
             processor: &host.processor,
             compiler: &host.compiler,
             flags: &host.flags,
+            clock: &host.clock,
             clock_step_ns: host.clock_step,
         },
         kernel: &study.kernel,

@@ -73,14 +73,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if *counted {
         return instructions::draw(&frames, &rungs, &|| drawing.renderer(kernel));
     }
-    // Before much time is spent.
     let directory = match (out, json) {
         (Some(directory), _) => Some(directory.clone()),
         (None, true) => None,
         (None, false) => Some(PathBuf::from(format!("cost-{name}"))),
     };
-    if let Some(directory) = &directory {
-        fs::create_dir_all(directory).map_err(|error| Failure::work(format!("{}: {error}", directory.display())))?;
+    // Before much time is spent.
+    if let Some(directory) = directory.as_ref().filter(|directory| directory.exists() && !directory.is_dir()) {
+        return Err(Failure::work(format!("{}: is no directory", directory.display())));
     }
     let counts = if *instructions { Some(instructions::count(&rungs, frames.len())?) } else { None };
     if let Some(counts) = &counts {
@@ -90,7 +90,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let renderer = || drawing.renderer(kernel);
     let subject = Subject { name: &name, frames: &frames, steps: &steps, renderer: &renderer };
     let mut settings = Settings::default();
-    (settings.rungs, settings.seconds, settings.host) = (rungs, *seconds, host::host());
+    (settings.rungs, settings.seconds) = (rungs, *seconds);
+    (settings.host, settings.clock) = (host::host(), host::clock());
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
     progress.bar.finish_and_clear();
@@ -104,6 +105,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let as_json = json::json(&study, &warnings)?;
     if let Some(directory) = &directory {
+        fs::create_dir_all(directory).map_err(|error| Failure::work(format!("{}: {error}", directory.display())))?;
         write(directory, "samples.csv", &samples.to_csv())?;
         write(directory, "cost.json", &as_json)?;
         write(directory, "chart.svg", &report::chart_svg(&study))?;
