@@ -32,11 +32,12 @@ pub(super) const fn width(text_length: usize, height: i32) -> i32 {
     text_length as i32 * height * 6 / 10
 }
 
-/// A place for each point's name, of the given length, within `area`: close to the point, over no other name, no point
-/// and none of the pixels of `busy` (a line), as far as there is room. Points are in pixels.
+/// A place for each point's name, of the given length, within `area`: close to the point, over no other name, none of
+/// `marks` and none of the pixels of `lines`, as far as there is room. Points are in pixels.
 pub(super) fn places(
     points: &[((i32, i32), usize)],
-    busy: &[(i32, i32)],
+    marks: &[(i32, i32)],
+    lines: &[(i32, i32)],
     height: i32,
     area: Rectangle,
 ) -> Vec<Rectangle> {
@@ -61,9 +62,9 @@ pub(super) fn places(
                     continue;
                 }
                 let names: i32 = placed.iter().map(|&other| place.overlap(other)).sum();
-                let marks: i32 = points.iter().map(|&(at, _)| place.overlap(Rectangle::around(at, 6))).sum();
-                let lines: i32 = busy.iter().map(|&at| place.overlap(Rectangle::around(at, 2))).sum();
-                let cost = 4 * names + 4 * marks + lines + 6 * distance;
+                let covered: i32 = marks.iter().map(|&at| place.overlap(Rectangle::around(at, 6))).sum();
+                let crossed: i32 = lines.iter().map(|&at| place.overlap(Rectangle::around(at, 2))).sum();
+                let cost = 4 * names + 4 * covered + crossed + 6 * distance;
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, place));
                 }
@@ -84,7 +85,7 @@ mod tests {
     fn names_of_close_points_do_not_meet() {
         let area = Rectangle { left: 0, top: 0, right: 600, bottom: 400 };
         let points: Vec<((i32, i32), usize)> = (0..7).map(|i| ((100 + 3 * i, 200 - 2 * i), 18)).collect();
-        let names = places(&points, &[], 12, area);
+        let names = places(&points, &points.iter().map(|&(at, _)| at).collect::<Vec<_>>(), &[], 12, area);
         for (i, name) in names.iter().enumerate() {
             assert!(name.is_within(area), "{name:?}");
             assert!(names[..i].iter().all(|other| other.overlap(*name) == 0), "{name:?}");

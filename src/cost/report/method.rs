@@ -17,13 +17,13 @@ pub(super) fn section(study: &Study) -> Markup {
                 dt { "span kernel" } dd { (study.kernel) }
                 dt { "compiler" } dd { (host.compiler) }
                 dt { "flags" } dd { (host.flags) }
-                dt { "clock step" } dd { (time(host.clock_step)) }
+                dt { "clock" } dd { (host.clock) ", steps of " (time(host.clock_step)) }
                 dt { "frames" } dd { (count(study.frames)) " in a round, all over one turn or the scene’s time" }
                 dt { "rounds" } dd { (count(study.rounds)) ", after a warm-up" }
             }
             p {
                 "In every round each rung and each budget draws the same frames, in an order shuffled anew for each round, so that none is always first or always after the "
-                "same other; much slower ones sit out some rounds. One thread draws, and nothing is kept from one frame to the next. A time is the median over the rounds; "
+                "same other; much slower ones sit out some rounds. One thread draws, and every frame is drawn, also one that shows nothing new. A time is the median over the rounds; "
                 "a quarter of the rounds are below the lower quartile, a quarter above the upper. A ratio is the median of the ratios within rounds, and its interval holds "
                 "95 % of what resampling the rounds gives (bootstrap). Where it contains 1 the two cannot be told apart."
             }
