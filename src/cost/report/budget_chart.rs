@@ -3,8 +3,8 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::chart::{Area, BUDGETS, FAINT, INK, IntoPair, LETTERS, RUNGS, name, range, svg, ticks};
-use super::figures::time;
+use super::chart::{Area, BUDGETS, FAINT, INK, IntoPair, LETTERS, RUNGS, along, name, range, svg, ticks};
+use super::figures::time_tick;
 use super::labels::{Rectangle, places};
 use crate::cost::Study;
 
@@ -43,7 +43,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>
         .axis_style(INK)
         .label_style(("sans-serif", LETTERS).into_font().color(&INK))
         .x_label_formatter(&|bound| format!("{bound}"))
-        .y_label_formatter(&|ns| time(*ns))
+        .y_label_formatter(&|ns| time_tick(*ns))
         .x_desc("budget: accepted error in shades of 1/255 (logarithmic)")
         .y_desc("time for a frame (logarithmic)")
         .draw()?;
@@ -58,7 +58,8 @@ fn draw(study: &Study, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>
     let named = singles.iter().map(|(at, text)| (area.map_coordinate(at), text.chars().count()));
     let named: Vec<((i32, i32), usize)> = named.collect();
     let busy: Vec<(i32, i32)> = budgets.iter().map(|at| area.map_coordinate(at)).collect();
-    for (((_, text), &(at, _)), place) in singles.iter().zip(&named).zip(places(&named, &busy, LETTERS, inner)) {
+    for (((_, text), &(at, _)), place) in singles.iter().zip(&named).zip(places(&named, &along(&busy), LETTERS, inner))
+    {
         name(root, text, at, place, RUNGS)?;
     }
 

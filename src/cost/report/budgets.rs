@@ -56,7 +56,7 @@ fn line(row: &BudgetRow) -> Markup {
             Some((times, between)) => { td { (ratio(times)) } td.soft { (interval(between)) } },
             None => { td { "–" } td { "–" } },
         }
-        td.text { (verdict(row)) }
+        td.text.verdict { (verdict(row)) }
     } }
 }
 

@@ -4,7 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figures::{asked, three_digits, time};
+use super::figures::{asked, time_tick};
 use super::labels::{Rectangle, places};
 use crate::cost::{RungRow, Study};
 
@@ -54,7 +54,7 @@ struct Point {
 
 fn draw(study: &Study, root: &Area<'_>) -> Outcome {
     root.fill(&WHITE)?;
-    let points = points(study);
+    let mut points = points(study);
     let (across, down) = (range(points.iter().map(|p| p.at.0)), range(points.iter().map(|p| p.at.1)));
     let x = (across.0..across.1).log_scale().with_key_points(ticks(across));
     let y = (down.0..down.1).log_scale().with_key_points(ticks(down));
@@ -72,8 +72,8 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
         .bold_line_style(FAINT)
         .axis_style(INK)
         .label_style(("sans-serif", LETTERS).into_font().color(&INK))
-        .x_label_formatter(&|ns| time(*ns))
-        .y_label_formatter(&|error| three_digits_of_tick(*error))
+        .x_label_formatter(&|ns| time_tick(*ns))
+        .y_label_formatter(&|error| asked(*error))
         .x_desc("time for a frame (logarithmic)")
         .y_desc(format!("error against lit, root mean square, in shades of 1/255 (logarithmic{floor})"))
         .draw()?;
@@ -81,10 +81,11 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
     let mut efficient: Vec<(f64, f64)> = points.iter().filter(|p| p.efficient).map(|p| p.at).collect();
     efficient.sort_by(|a, b| a.0.total_cmp(&b.0));
     chart.draw_series(LineSeries::new(efficient.iter().copied(), RUNGS.stroke_width(2)))?;
-    for point in &points {
+    // Rungs over budgets that lie at the same place.
+    for point in points.iter().filter(|p| p.budget).chain(points.iter().filter(|p| !p.budget)) {
         let (at, size) = (point.at, 5);
         let shape = if point.budget {
-            TriangleMarker::new(at, size + 1, BUDGETS.filled()).into_dyn()
+            TriangleMarker::new(at, size + 4, BUDGETS.filled()).into_dyn()
         } else if point.efficient {
             Circle::new(at, size, RUNGS.filled()).into_dyn()
         } else {
@@ -98,6 +99,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
     let (left, right) = area.get_x_axis_pixel_range().into_pair();
     let (top, bottom) = area.get_y_axis_pixel_range().into_pair();
     let inner = Rectangle { left: left + 4, top: top + 2, right: right - 2, bottom: bottom - 4 };
+    join_budgets(&mut points, |point| pixel(&point.at));
     let named: Vec<((i32, i32), usize)> = points.iter().map(|p| (pixel(&p.at), p.name.chars().count())).collect();
     let joined: Vec<(i32, i32)> = efficient.iter().map(pixel).collect();
     for ((point, &(at, _)), place) in points.iter().zip(&named).zip(places(&named, &along(&joined), LETTERS, inner)) {
@@ -113,14 +115,6 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
     key(root, study.budget.is_empty())
 }
 
-fn three_digits_of_tick(tick: f64) -> String {
-    if tick < 1.0 {
-        format!("{tick}")
-    } else {
-        three_digits(tick).trim_end_matches('0').trim_end_matches('.').to_string()
-    }
-}
-
 fn points(study: &Study) -> Vec<Point> {
     let rung = |row: &RungRow| Point {
         at: (row.per_frame.median, row.error_lit.rms.max(FLOOR)),
@@ -130,7 +124,7 @@ fn points(study: &Study) -> Vec<Point> {
     };
     let budgets = study.budget.iter().map(|row| Point {
         at: (row.per_frame.median, row.rms.max(FLOOR)),
-        name: format!("≤ {}", asked(row.max_error)),
+        name: asked(row.max_error),
         budget: true,
         efficient: false,
     });
@@ -139,6 +133,26 @@ fn points(study: &Study) -> Vec<Point> {
     points.retain(|p| p.at.0.is_finite() && p.at.1.is_finite() && p.at.0 > 0.0);
     points.sort_by_key(|p| (!p.efficient, p.budget));
     points
+}
+
+/// Budgets that lie at the same place, as far as can be seen, get one name.
+fn join_budgets(points: &mut Vec<Point>, pixel: impl Fn(&Point) -> (i32, i32)) {
+    let mut joined: Vec<Point> = Vec::new();
+    for point in points.drain(..) {
+        let (x, y) = pixel(&point);
+        let meets = |other: &&mut Point| {
+            let (left, top) = pixel(other);
+            other.budget && point.budget && (x - left).abs() <= 8 && (y - top).abs() <= 8
+        };
+        match joined.iter_mut().find(meets) {
+            Some(other) => other.name = format!("{}, {}", other.name, point.name),
+            None => joined.push(point),
+        }
+    }
+    for budget in joined.iter_mut().filter(|point| point.budget) {
+        budget.name = format!("≤ {}", budget.name);
+    }
+    *points = joined;
 }
 
 /// All points, with room, from tick to tick.
@@ -160,7 +174,7 @@ pub(super) fn ticks((low, high): (f64, f64)) -> Vec<f64> {
 }
 
 /// Points every few pixels along a line, that names may keep off.
-fn along(corners: &[(i32, i32)]) -> Vec<(i32, i32)> {
+pub(super) fn along(corners: &[(i32, i32)]) -> Vec<(i32, i32)> {
     let between = |ends: &[(i32, i32)]| {
         let (from, to) = (ends[0], ends[1]);
         let steps = ((to.0 - from.0).abs().max((to.1 - from.1).abs()) / 4).max(1);

@@ -17,6 +17,16 @@ pub(super) fn time(nanoseconds: f64) -> String {
     if nanoseconds.is_finite() { format!("{} {unit}", three_digits(nanoseconds / divisor)) } else { DASH.into() }
 }
 
+/// A time at an axis: 1 ms, not 1.00 ms.
+pub(super) fn time_tick(nanoseconds: f64) -> String {
+    match time(nanoseconds).split_once(' ') {
+        Some((number, unit)) if number.contains('.') => {
+            format!("{} {unit}", number.trim_end_matches('0').trim_end_matches('.'))
+        }
+        _ => time(nanoseconds),
+    }
+}
+
 /// Three digits that count, none after the point beyond that.
 pub(super) fn three_digits(number: f64) -> String {
     match number.abs() {
@@ -134,6 +144,10 @@ mod tests {
     #[test]
     fn times_have_a_unit() {
         assert_eq!([time(12.0), time(229_130.0), time(6.26e6), time(f64::NAN)], ["12.0 ns", "229 µs", "6.26 ms", DASH]);
+        assert_eq!(
+            [time_tick(1e6), time_tick(1e7), time_tick(1e8), time_tick(5e3)],
+            ["1 ms", "10 ms", "100 ms", "5 µs"]
+        );
         assert_eq!(count(1_234_567), "1\u{2009}234\u{2009}567");
     }
 }

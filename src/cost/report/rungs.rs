@@ -6,8 +6,10 @@ use super::figures::{at_most, count, interval, list, percent, ratio, shades, thr
 use super::pictures::{self, COLORS, NONE};
 use crate::cost::{Errors, RungRow, Split, Study};
 
-/// What a frame's time is split into, and each part's class.
-const PARTS: [(&str, &str, fn(&Split) -> f64); 5] = [
+/// A part of a frame's time: its name, its class in the style, and which it is.
+type Part = (&'static str, &'static str, fn(&Split) -> f64);
+
+const PARTS: [Part; 5] = [
     ("plan", "s0", |split| split.plan),
     ("vertices", "s1", |split| split.vertices),
     ("set-up", "s2", |split| split.setup),

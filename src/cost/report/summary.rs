@@ -45,7 +45,7 @@ fn model(linear: &RungRow, phong: Option<&RungRow>) -> String {
         };
     };
     let rest = phong.error_lit.max;
-    let price = takes(phong, linear, "that");
+    let price = takes(phong, linear, "8.8");
     if !left.is_finite() || !rest.is_finite() {
         format!("How far either is from light at every pixel is not known; Phong {price}.")
     } else if left <= NOTHING {
