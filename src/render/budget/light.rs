@@ -1,0 +1,155 @@
+//! How far linear shades are off in the light of one source.
+
+use glam::Vec3;
+
+use super::{CURVATURE, Facet, curve};
+
+/// No point of a triangle is farther from its nearest corner than this share of the longest edge, 1/√3.
+const APART: f32 = 0.578;
+
+/// Highlights of which not more than this is seen are not looked at any closer, in shades.
+const FAINT: f32 = 0.05;
+
+/// Where something is, seen from a vertex.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Towards {
+    /// Unit.
+    direction: Vec3,
+    pub(super) distance: f32,
+}
+
+impl Towards {
+    pub(super) fn new(way: Vec3) -> Self {
+        let distance = way.length();
+        Self { direction: way / distance, distance }
+    }
+}
+
+pub(super) fn narrow([x, y, z]: [f64; 3]) -> Vec3 {
+    Vec3::new(x as f32, y as f32, z as f32)
+}
+
+/// A triangle, on one of its sides, in the light of one source.
+pub(super) struct OneLight<'a> {
+    pub(super) facet: &'a Facet,
+    pub(super) normals: [Vec3; 3],
+    /// Of a matt one anything.
+    pub(super) to_eye: [Towards; 3],
+    /// In shades.
+    pub(super) kd: f32,
+    pub(super) ks: f32,
+    pub(super) shininess: f32,
+}
+
+impl OneLight<'_> {
+    /// In the light of a sun. Where more than `limit` is found, the rest is left out.
+    pub(super) fn sun(&self, towards: Vec3, intensity: f32, limit: f32) -> f32 {
+        let cosines = self.normals.map(|normal| normal.dot(towards));
+        let (most, least) = ends(cosines);
+        if most <= 0.0 {
+            // N·l is linear: nothing of the face sees it.
+            return 0.0;
+        }
+        let body = intensity * self.kd * (most * self.facet.shortening + clamp_error(most, least));
+        if self.ks == 0.0 || body > limit {
+            return body;
+        }
+        body + intensity * self.highlight([towards; 3], cosines, 0.0)
+    }
+
+    /// The same of a lamp.
+    pub(super) fn lamp(&self, to_lamp: [Towards; 3], inverse_square: f32, intensity: f32, limit: f32) -> f32 {
+        let Facet { spread, edge, shortening } = *self.facet;
+        let (farthest, nearest) = ends(to_lamp.map(|lamp| lamp.distance));
+        let nearest = nearest - APART * edge;
+        let part = nearest.max(0.0) * nearest.max(0.0) * inverse_square;
+        if part >= 1.0 {
+            return 0.0;
+        }
+        let turn = if edge < nearest { edge / nearest } else { 4.0 };
+        let towards = to_lamp.map(|lamp| lamp.direction);
+        let cosines = [0, 1, 2].map(|i| self.normals[i].dot(towards[i]));
+        // The fall-off (1 − u)², u = d² / R², and its derivatives along an edge: |u'| ≤ 2√u·e, u'' = 2e², e being the
+        // edge in units of the range.
+        let e = edge * libm::sqrtf(inverse_square);
+        let u = (farthest * farthest * inverse_square).min(1.0);
+        let left = 1.0 - part;
+        let (fall_off, first, second) = (left * left, 4.0 * libm::sqrtf(u) * left * e, (8.0 * u + 4.0 * left) * e * e);
+        // N · L of two sums of vectors, N of the normals, and L of the lamp's directions, as bright as it is: twice the
+        // product of what they turn by, and L's own curvature. N is then made unit.
+        let curvature = 2.0 * spread * (fall_off * turn + first) + fall_off * turn * turn + 2.0 * first * turn + second;
+        let (most, least) = ends(cosines);
+        let unit = most.max(0.0) * shortening + clamp_error(most, least);
+        let body = intensity * self.kd * (CURVATURE * curvature + fall_off * unit);
+        if self.ks == 0.0 || body > limit {
+            return body;
+        }
+        // The highlight's own curvature, and the fall-off's on it.
+        let slope = libm::sqrtf(self.shininess) * (2.0 * spread + turn);
+        let fading = self.ks * CURVATURE * (2.0 * first * slope + second);
+        body + intensity * (fading + fall_off * self.highlight(towards, cosines, turn))
+    }
+
+    /// How far linear highlights are off: by their curvature, or by no more than the brightest.
+    fn highlight(&self, towards: [Vec3; 3], cosines: [f32; 3], light_turn: f32) -> f32 {
+        let (most, least) = ends(cosines);
+        let (_, nearest) = ends(self.to_eye.map(|eye| eye.distance));
+        let eye_turn = self.facet.edge / (nearest - APART * self.facet.edge).max(0.0);
+        let turn = 2.0 * self.facet.spread + light_turn + eye_turn;
+        // Where the light comes over the horizon the highlight begins at once.
+        let curved =
+            if most > 0.0 && least <= 0.0 { f32::INFINITY } else { CURVATURE * curve(self.shininess) * turn * turn };
+        if self.ks * curved <= FAINT {
+            return FAINT;
+        }
+        self.ks * curved.min(libm::powf(self.along(towards, light_turn + eye_turn), self.shininess))
+    }
+
+    /// The greatest r·v of any point: with the half-way vector h between the directions to light and eye, and θ
+    /// the angle between these, r·v = 2(n·l)(n·v) − l·v ≤ 1 − 2cos²(θ/2)·(1 − (n·h)²), the product being no more than
+    /// the square of the mean. `turn` is what the two directions turn by over the triangle.
+    fn along(&self, towards: [Vec3; 3], turn: f32) -> f32 {
+        let sum = towards[0] + self.to_eye[0].direction;
+        let long = sum.length();
+        if long < 0.01 {
+            return 1.0;
+        }
+        let (half_way, apart) = (sum / long, turn / long);
+        let nearest = nearest_normal(&self.normals, half_way).clamp(0.0, 1.0);
+        // Turned towards it by what it may turn itself: cos(μ − a) ≤ cos μ + a·sin μ.
+        let nearest = (nearest + apart * libm::sqrtf(1.0 - nearest * nearest)).min(1.0);
+        let square = (long * long / 4.0 - turn / 2.0).max(0.0);
+        (1.0 - 2.0 * square * (1.0 - nearest * nearest)).max(0.0)
+    }
+}
+
+/// The greatest n·h of any unit n between three normals.
+fn nearest_normal([a, b, c]: &[Vec3; 3], h: Vec3) -> f32 {
+    let sides = [a.cross(*b).dot(h), b.cross(*c).dot(h), c.cross(*a).dot(h)];
+    if sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0) {
+        // It lies among them, or opposite.
+        return if (*a + *b + *c).dot(h) > 0.0 { 1.0 } else { 0.0 };
+    }
+    // On an arc the nearest is an end, or the projection on the arc's plane, if that lies between the ends.
+    let on_arc = |a: &Vec3, b: &Vec3| {
+        let (to_a, to_b, cosine) = (a.dot(h), b.dot(h), a.dot(*b));
+        let between = to_a > cosine * to_b && to_b > cosine * to_a && cosine < 0.999_999;
+        if between {
+            let square = (to_a * to_a + to_b * to_b - 2.0 * to_a * to_b * cosine) / (1.0 - cosine * cosine);
+            libm::sqrtf(square.clamp(0.0, 1.0))
+        } else {
+            to_a.max(to_b)
+        }
+    };
+    on_arc(a, b).max(on_arc(b, c)).max(on_arc(c, a))
+}
+
+/// The greatest and the least.
+fn ends([a, b, c]: [f32; 3]) -> (f32, f32) {
+    (a.max(b).max(c), a.min(b).min(c))
+}
+
+/// How far Σ λᵢ max(0, cᵢ) and max(0, Σ λᵢ cᵢ) are apart at most.
+fn clamp_error(most: f32, least: f32) -> f32 {
+    if most > 0.0 && least < 0.0 { most * least / (least - most) } else { 0.0 }
+}

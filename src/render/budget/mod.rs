@@ -1,0 +1,358 @@
+//! The error budget: for each triangle the cheapest rung that is known to keep within it.
+//!
+//! What the light at a point of a triangle should be, and what a rung makes of it, differ for three reasons, each of
+//! which is bounded here from normals, lights and vertices, without lighting anything but the vertices:
+//!
+//! - **The model.** A linear shade is that of the sum N = Σ λᵢnᵢ of the vertices' normals; light at the point takes N
+//!   made unit. For a light in a fixed direction l that makes N·l / |N| out of N·l: more by (1/|N| − 1) of it, where
+//!   |N| is least at the point of the flat triangle n₁n₂n₃ that is nearest to the centre of the sphere.
+//! - **The clamp.** Of a light that reaches some vertices and others not, linear shades are those of Σ λᵢ max(0, nᵢ·l),
+//!   and should be max(0, Σ λᵢ nᵢ·l). With P the most that a vertex lies in the light and S the most that
+//!   one lies in the dark, these are no farther apart than PS / (P + S).
+//! - **Curvature.** A function whose second derivative along any line is at most M is farther from the linear one
+//!   through the corners of a triangle, whose longest edge is L, by no more than ML²/6: ½M times the square of the
+//!   greatest distance to the nearest corner, L/√3. That bounds lamps, whose directions turn and whose light falls off,
+//!   and highlights, cosˢμ, whose second derivative by the angle is at most s. A highlight's direction turns
+//!   by twice the normals' spread and by what light and eye turn. Angles are taken for their chords; up to 0.3 that
+//!   is off by 1 %, and a fifth is added.
+//! - **The screen.** What is linear on the screen and not on the face moves shades along by a share of at most
+//!   (√ρ − 1) / (√ρ + 1) ≤ (ρ − 1) / 4 of their range, ρ being the ratio of the corners' distances.
+//!
+//! The bounds of the parts are added. Decisions are kept as long as the vertices are.
+
+mod light;
+
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use self::light::{OneLight, Towards, narrow};
+use super::face::Faces;
+use super::paint::Paint;
+use super::vertex::Geometry;
+use crate::light::Lights;
+use crate::mesh::Mesh;
+use crate::raster::Vertex;
+use crate::scene::{Rung, Shared};
+
+/// What rounding adds to a linear shade that starts anew every 64 pixels: a half, and a quarter of drift.
+const LINEAR: f32 = 0.75;
+
+/// What rounding adds to a shade that is exact before it: a half, and what f32 may be off.
+const EXACT: f32 = 0.51;
+
+/// Curvature is taken a fifth too great, for angles that are taken for their chords.
+const CURVATURE: f32 = 1.2 / 6.0;
+
+/// What is decided for a triangle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) enum Choice {
+    /// Nobody has asked yet.
+    #[default]
+    Unknown,
+    Flat,
+    Linear,
+    Float,
+    Phong,
+}
+
+impl Choice {
+    pub(super) const fn rung(self) -> Rung {
+        match self {
+            Self::Flat => Rung::Flat,
+            Self::Float => Rung::Float,
+            Self::Phong => Rung::Phong,
+            Self::Linear | Self::Unknown => Rung::Gouraud88Reseeded,
+        }
+    }
+}
+
+/// What a triangle's normals and edges say, whatever the light.
+#[derive(Clone, Copy, Debug)]
+struct Facet {
+    /// 1/|N| − 1 where |N| is least.
+    shortening: f32,
+    /// The greatest angle between two normals.
+    spread: f32,
+    /// The longest edge.
+    edge: f32,
+}
+
+impl Facet {
+    fn new(positions: [Vec3; 3], normals: [Vec3; 3]) -> Self {
+        let squares = |of: [Vec3; 3]| [(of[0] - of[1]), (of[1] - of[2]), (of[2] - of[0])].map(Vec3::length_squared);
+        let greatest = |squares: [f32; 3]| squares.into_iter().fold(0.0, f32::max);
+        let chords = squares(normals);
+        let chord = greatest(chords);
+        let [a, b, c] = chords;
+        // The nearest point lies on the longest edge, or, of an acute triangle, at the centre of its circumcircle,
+        // of radius R: R² = a²b²c² / 16K², by the squares of the sides.
+        let others = a + b + c - chord;
+        let square = if others <= chord {
+            chord / 4.0
+        } else {
+            a * b * c / (2.0 * (a * b + b * c + c * a) - (a * a + b * b + c * c))
+        };
+        Self {
+            shortening: if square < 1.0 { 1.0 / libm::sqrtf(1.0 - square) - 1.0 } else { f32::INFINITY },
+            spread: 2.0 * libm::asinf((libm::sqrtf(chord) / 2.0).min(1.0)),
+            edge: libm::sqrtf(greatest(squares(positions))),
+        }
+    }
+}
+
+/// What the light on a material comes to at most.
+#[derive(Clone, Copy, Debug)]
+struct Strength {
+    /// The shade of the ramp's first entry, in 1/256 of an entry.
+    first: u16,
+    /// Shades in 1/256 of an entry.
+    scale: f32,
+    /// The ramp's last shade.
+    last: u16,
+    /// What all highlights together curve by, in shades for an angle of 1; 0 without any.
+    curvature: f32,
+}
+
+/// What is kept for an object's decisions.
+#[derive(Debug, Default)]
+pub(super) struct Budget {
+    /// Whose facets these are; of a mesh that was split, none.
+    mesh: Option<Shared<Mesh>>,
+    facets: Vec<Facet>,
+    /// For each vertex a bit for each sun that it sees; the last for all from the 32nd on.
+    suns_seen: Vec<u32>,
+    /// One for each surface.
+    strengths: Vec<Strength>,
+    allowed: f32,
+    /// Whether there are suns alone, and no highlight.
+    simple: bool,
+    /// What an edge of 1 turns the direction to the eye by, at most.
+    eye_turn: f32,
+    /// For each vertex the eye, if there are highlights.
+    to_eye: Vec<Towards>,
+    /// For each lamp and each vertex the lamp.
+    to_lamps: Vec<Towards>,
+}
+
+impl Budget {
+    /// Takes on an object whose vertices are made anew. `whole` is its mesh, if that is what is drawn.
+    #[inline(never)]
+    pub(super) fn renew(
+        &mut self,
+        allowed: f32,
+        geometry: &Geometry<'_>,
+        whole: Option<&Shared<Mesh>>,
+        lights: &Lights<'_>,
+        paints: &[Paint],
+        channels: bool,
+    ) {
+        self.allowed = allowed;
+        let known = matches!((&self.mesh, whole), (Some(known), Some(whole)) if Shared::ptr_eq(known, whole));
+        if !known {
+            self.mesh = whole.map(Shared::clone);
+            self.facets.clear();
+            let corners = |of: &[Vec3], indices: [u32; 3]| indices.map(|i| of[i as usize]);
+            let facet = |&i: &[u32; 3]| Facet::new(corners(geometry.positions, i), corners(geometry.normals, i));
+            self.facets.extend(geometry.triangles.iter().map(facet));
+        }
+        self.suns_seen.clear();
+        self.suns_seen.resize(geometry.normals.len(), 0);
+        for (i, sun) in lights.suns.iter().enumerate() {
+            for (seen, normal) in self.suns_seen.iter_mut().zip(geometry.normals) {
+                *seen |= u32::from(normal.dot(sun.towards) > 0.0) << i.min(31);
+            }
+        }
+        self.strengths.clear();
+        self.strengths.extend(paints.iter().map(|paint| {
+            // A ramp has at most 256 entries.
+            let entries = paint.ramp.entries();
+            let first = u16::from(paint.ramp.first()) << 8;
+            let scale = if entries > 1 { 255.0 / (256.0 * f32::from(entries - 1)) } else { 0.0 };
+            let suns = lights.suns.iter().map(|sun| brightest(sun.intensity, sun.channels, channels));
+            let lamps = lights.lamps.iter().map(|lamp| brightest(lamp.intensity, lamp.channels, channels));
+            let all: f32 = suns.chain(lamps).sum();
+            let (ks, s) = highlight(paint, channels);
+            let curvature = if ks == 0.0 { 0.0 } else { CURVATURE * curve(s) * ks * all };
+            Strength { first, scale, last: first + ((entries - 1) << 8), curvature }
+        }));
+        self.to_eye.clear();
+        self.to_lamps.clear();
+        self.simple = lights.lamps.is_empty() && !channels && self.strengths.iter().all(|of| of.curvature == 0.0);
+        self.eye_turn = 0.0;
+        if self.simple {
+            return;
+        }
+        let positions = geometry.positions.iter();
+        self.to_lamps.extend(lights.lamps.iter().flat_map(|lamp| {
+            let at = narrow(lamp.position);
+            positions.clone().map(move |position| Towards::new(at - *position))
+        }));
+        if self.strengths.iter().any(|of| of.curvature != 0.0) {
+            let eye = narrow(lights.eye);
+            self.to_eye.extend(positions.map(|position| Towards::new(eye - *position)));
+            // The eye is at least this far away.
+            self.eye_turn = 1.0 / self.to_eye.iter().map(|eye| eye.distance).fold(f32::INFINITY, f32::min);
+        }
+    }
+
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        self.facets.capacity() * size_of::<Facet>()
+            + self.suns_seen.capacity() * 4
+            + (self.to_eye.capacity() + self.to_lamps.capacity()) * size_of::<Towards>()
+            + self.strengths.capacity() * size_of::<Strength>()
+    }
+}
+
+/// The greatest second derivative of cosˢ by its angle. Below s = 1 there is none: it is steep where it ends.
+fn curve(shininess: f32) -> f32 {
+    if shininess >= 1.0 { shininess } else { f32::INFINITY }
+}
+
+/// A light's greatest channel, or its one.
+fn brightest(intensity: f32, channels: [f32; 3], in_color: bool) -> f32 {
+    if in_color { channels.into_iter().fold(0.0, |most, c| most.max(c.abs())) } else { intensity.abs() }
+}
+
+/// The highlight's strength in shades, and its exponent.
+fn highlight(paint: &Paint, in_color: bool) -> (f32, f32) {
+    let color = if in_color { paint.answer.highlight.into_iter().fold(0.0, f64::max) } else { 1.0 };
+    ((paint.answer.specular * color).abs() as f32 * 255.0, paint.answer.shininess as f32)
+}
+
+/// A triangle that is to be decided on.
+pub(super) struct Question {
+    /// Its place.
+    pub(super) triangle: usize,
+    pub(super) indices: [u32; 3],
+    pub(super) surface: u16,
+    pub(super) turned: bool,
+    /// The corners' shades, or, of the channels, the three of each.
+    pub(super) shades: [[u16; 3]; 3],
+    /// The corners' depths; 0 if one has none.
+    pub(super) depths: [u32; 3],
+}
+
+impl Budget {
+    /// The cheapest rung of a face that suns light, all that it sees from each of its corners, and whose shades are
+    /// not clamped, where that is known at once. The corners are given on the side that is seen.
+    #[inline(always)]
+    pub(super) fn decide_at_once(
+        &self,
+        triangle: usize,
+        indices: [u32; 3],
+        surface: u16,
+        vertices: &[Vertex; 3],
+    ) -> Choice {
+        let [a, b, c] = indices.map(|i| self.suns_seen[i as usize]);
+        if !self.simple || a != b || b != c {
+            return Choice::Unknown;
+        }
+        let strength = &self.strengths[usize::from(surface)];
+        let [a, b, c] = vertices.map(|vertex| vertex.shade().to_bits());
+        let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+        if most >= strength.last {
+            return Choice::Unknown;
+        }
+        let range = f32::from(most - least) * strength.scale;
+        // A corner's shade lies in its ramp.
+        let model = f32::from(most - strength.first) * strength.scale * self.facets[triangle].shortening;
+        let left = self.allowed - model;
+        if range / 2.0 + EXACT <= left {
+            return Choice::Flat;
+        }
+        let [a, b, c] = vertices.map(|vertex| vertex.depth());
+        let (far, near) = (a.min(b).min(c), a.max(b).max(c));
+        // Below 2³²; rounded, which is nothing to a bound that is rounded up in every step.
+        if (near - far) as f32 * range <= 4.0 * far as f32 * (left - LINEAR) { Choice::Linear } else { Choice::Unknown }
+    }
+}
+
+impl Faces<'_> {
+    /// The cheapest rung that keeps within the budget.
+    pub(super) fn cheapest_within(&self, budget: &Budget, question: &Question) -> Choice {
+        let facet = &budget.facets[question.triangle];
+        let strength = &budget.strengths[usize::from(question.surface)];
+        let [a, b, c] = question.shades;
+        let channels = if self.channels { 3 } else { 1 };
+        let (mut range, mut top, mut clamped) = (0, 0, false);
+        for channel in 0..channels {
+            let least = a[channel].min(b[channel]).min(c[channel]);
+            let most = a[channel].max(b[channel]).max(c[channel]);
+            range = range.max(most - least);
+            top = top.max(most - strength.first);
+            clamped |= most >= strength.last && least < strength.last;
+        }
+        let (range, top) = (f32::from(range) * strength.scale, f32::from(top) * strength.scale);
+
+        // For suns alone, all of them above the horizon or all below.
+        let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
+        let mut model = top * facet.shortening + strength.curvature * turned * turned;
+        let seen = question.indices.map(|i| budget.suns_seen[i as usize]);
+        let some = (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
+        let lamps = !self.lights.lamps.is_empty();
+        let near = model + EXACT <= budget.allowed;
+        let hopeless = top * facet.shortening > 2.0 * budget.allowed;
+        if lamps || ((some || clamped) && near) || (strength.curvature > 0.0 && !near && !hopeless) {
+            model = self.model_error(budget, question, budget.allowed);
+            if clamped {
+                // What lies above the clamp is lost at some corners, by which the others are too dark at most.
+                model += range;
+            }
+        }
+        let bound = budget.allowed;
+        if model + range / 2.0 + EXACT <= bound {
+            return Choice::Flat;
+        }
+        // Depth is in proportion to 1 / w.
+        let [a, b, c] = question.depths;
+        let (far, near) = (a.min(b).min(c), a.max(b).max(c));
+        let bend = (near - far) as f32 * range;
+        // A corner behind the near plane has no depth.
+        if far > 0 && bend <= 4.0 * far as f32 * (bound - model - LINEAR) {
+            Choice::Linear
+        } else if model + EXACT <= bound {
+            Choice::Float
+        } else if self.lights_pixels {
+            Choice::Phong
+        } else {
+            Choice::Float
+        }
+    }
+
+    /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it.
+    #[inline(never)]
+    fn model_error(&self, budget: &Budget, question: &Question, limit: f32) -> f32 {
+        let paint = &self.paints[usize::from(question.surface)];
+        let side = if question.turned { -1.0 } else { 1.0 };
+        let color = if self.channels { paint.answer.color.into_iter().fold(0.0, f64::max) } else { 1.0 };
+        let (ks, shininess) = highlight(paint, self.channels);
+        let corners = question.indices.map(|i| i as usize);
+        let light = OneLight {
+            facet: &budget.facets[question.triangle],
+            normals: corners.map(|i| self.geometry.normals[i] * side),
+            to_eye: if ks == 0.0 { [Towards::default(); 3] } else { corners.map(|i| budget.to_eye[i]) },
+            kd: (paint.answer.diffuse * color).abs() as f32 * 255.0,
+            ks,
+            shininess,
+        };
+        let mut sum = 0.0;
+        for sun in self.lights.suns {
+            let intensity = brightest(sun.intensity, sun.channels, self.channels);
+            sum += light.sun(sun.towards, intensity, limit - sum);
+            if sum > limit {
+                return f32::INFINITY;
+            }
+        }
+        let vertices = self.geometry.positions.len();
+        for (lamp, to_lamp) in self.lights.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
+            let intensity = brightest(lamp.intensity, lamp.channels, self.channels);
+            sum += light.lamp(corners.map(|i| to_lamp[i]), lamp.inverse_square as f32, intensity, limit - sum);
+            if sum > limit {
+                return f32::INFINITY;
+            }
+        }
+        sum
+    }
+}
