@@ -215,7 +215,7 @@ mod tests {
             ..Sphere::default()
         };
         Figures {
-            spheres: alloc::vec![sphere(100, 1.0), sphere(1000, 0.1), sphere(10_000, 0.01)],
+            spheres: alloc::vec![sphere(100, 1.0), sphere(1000, 0.05), sphere(10_000, 0.01)],
             fixed: [errors(1.5, 0.4), errors(0.7, 0.3), errors(0.5, 0.3)],
             float: errors(0.5, 0.3),
             of_default: [0.9, 1.2, 3.0],
