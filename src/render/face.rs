@@ -220,14 +220,15 @@ impl Faces<'_> {
             *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), shades, [0; 3]);
         }
         let (choice, before) = (*choice, stats.drawn);
+        let shading = choice.rung().shading();
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice == Choice::Phong {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
-            self.parts::<CULLS, _>(at, corners, carried, turned, stats, |vertices, carried, _| {
+            self.parts::<CULLS, _>(at, corners, carried, shading, turned, stats, |vertices, carried, _| {
                 hand_on_within(vertices, carried.map(|carried| carried.attributes), surface, choice, sink);
             });
         } else {
-            self.parts::<CULLS, _>(at, corners, [(); 3], turned, stats, |vertices, _, _| {
+            self.parts::<CULLS, _>(at, corners, [(); 3], shading, turned, stats, |vertices, _, _| {
                 sink.plain(&vertices, choice.shading(&vertices));
             });
         }
