@@ -899,13 +899,11 @@ mod lit {
     #[test]
     fn wrong_points_are_caught() {
         let accumulated: Interpolate = |first, a, da, d, dd| {
-            let mut points = interpolate(first, a, da, d, dd);
-            for lane in 1..LANES {
-                for i in 0..6 {
-                    let steps = lane as f64;
-                    let start = a[i] + f64::from(first) * da[i];
-                    let divisor = (d + f64::from(first) * dd) + steps * dd;
-                    points[i][lane] = ((start + steps * da[i]) * (1.0 / divisor)) as f32;
+            let (from, mut points) = (f64::from(first), interpolate(first, a, da, d, dd));
+            for (i, values) in points.iter_mut().enumerate() {
+                for (steps, value) in (0..).map(f64::from).zip(values).skip(1) {
+                    let divisor = (d + from * dd) + steps * dd;
+                    *value = (((a[i] + from * da[i]) + steps * da[i]) * (1.0 / divisor)) as f32;
                 }
             }
             points
@@ -913,11 +911,9 @@ mod lit {
         assert_caught("sums that run on", check(accumulated));
         let reciprocal: Interpolate = |first, a, da, d, dd| {
             let mut points = [[0.0; LANES]; 6];
-            for lane in 0..LANES {
-                let k = f64::from(first) + lane as f64;
-                let reciprocal = (1.0 / (d + k * dd)) as f32;
-                for i in 0..6 {
-                    points[i][lane] = (a[i] + k * da[i]) as f32 * reciprocal;
+            for (i, values) in points.iter_mut().enumerate() {
+                for (k, value) in (u32::from(first)..).map(f64::from).zip(values) {
+                    *value = (a[i] + k * da[i]) as f32 * (1.0 / (d + k * dd)) as f32;
                 }
             }
             points

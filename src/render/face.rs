@@ -224,11 +224,11 @@ impl Faces<'_> {
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice == Choice::Phong {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
-            self.parts::<CULLS, _>(at, corners, carried, shading, turned, stats, |vertices, carried, _| {
+            self.parts::<CULLS, _>(at, corners, carried, (shading, turned), stats, |vertices, carried, _| {
                 hand_on_within(vertices, carried.map(|carried| carried.attributes), surface, choice, sink);
             });
         } else {
-            self.parts::<CULLS, _>(at, corners, [(); 3], shading, turned, stats, |vertices, _, _| {
+            self.parts::<CULLS, _>(at, corners, [(); 3], (shading, turned), stats, |vertices, _, _| {
                 sink.plain(&vertices, choice.shading(&vertices));
             });
         }
@@ -252,13 +252,13 @@ impl Faces<'_> {
             let carried =
                 indices.map(|i| WithEffects { attributes: self.extras[i as usize].side(turned), affine: self.affine });
             let shading = self.rung.shading();
-            self.parts::<CULLS, _>(at, corners, carried, shading, turned, stats, |vertices, carried, stats| {
+            self.parts::<CULLS, _>(at, corners, carried, (shading, turned), stats, |vertices, carried, stats| {
                 let attributes = carried.map(|carried| carried.attributes);
                 self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
             });
         } else {
             let shading = self.shading(indices, surface, turned, stats);
-            self.parts::<CULLS, _>(at, corners, [(); 3], shading, turned, stats, |vertices, _, _| {
+            self.parts::<CULLS, _>(at, corners, [(); 3], (shading, turned), stats, |vertices, _, _| {
                 sink.plain(&vertices, shading)
             });
         }
@@ -270,8 +270,7 @@ impl Faces<'_> {
         at: [Homogeneous; 3],
         corners: &[LitVertex; 3],
         carried: [C; 3],
-        shading: Shading,
-        turned: bool,
+        (shading, turned): (Shading, bool),
         stats: &mut Stats,
         mut part: impl FnMut([Vertex; 3], [C; 3], &mut Stats),
     ) {

@@ -48,13 +48,11 @@ pub(super) fn normal_table(lights: &Lights<'_>, paint: &Paint) -> Table {
         // By rows: the columns of one after the other, eight at a time.
         let lane = usize::from(column) % LANES;
         if lane == 0 {
-            let mut points = [[0.0; LANES]; 6];
-            for lane in 0..LANES {
-                // 248 + 7 at most.
-                let (x, y) = (at(column + lane as u8), at(row));
-                let z = libm::sqrtf((1.0 - x * x - y * y).max(0.0));
-                [points[0][lane], points[1][lane], points[2][lane]] = [x, y, z];
-            }
+            // 248 + 7 at most.
+            let x: Lanes<f32> = core::array::from_fn(|lane| at(column + lane as u8));
+            let y = at(row);
+            let z = x.map(|x| libm::sqrtf((1.0 - x * x - y * y).max(0.0)));
+            let points = [x, [y; LANES], z, [0.0; LANES], [0.0; LANES], [0.0; LANES]];
             let intensities = lights.front_of_one_channel(&paint.answer, &points);
             eight = intensities.map(|intensity| paint.shade(intensity).nearest());
         }
