@@ -12,7 +12,7 @@ use mode13h::span::depth::{copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
 use mode13h::span::float::fill_float;
 use mode13h::span::hyperbolic::fill_quotients;
-use mode13h::span::lit::interpolate;
+use mode13h::span::lit::{LANES, Points, interpolate};
 use mode13h::span::texture::{Texels, fill_affine, fill_perspective, fill_perspective_portable};
 use mode13h::span::wide::fill_16_16;
 use mode13h::span::{Kernel, lookup};
@@ -30,7 +30,7 @@ struct Memory {
     row: Vec<u8>,
     channels: [Vec<u8>; 3],
     depth: Vec<u32>,
-    points: Vec<[f32; 6]>,
+    points: Points,
     texture: Vec<u8>,
     table: Box<[u8; 65_536]>,
     map: Box<[u8; 32_768]>,
@@ -47,7 +47,7 @@ type MixNearest = fn(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize, u8, &[u8; 
 type Nearer = fn(&mut [u8], &mut [u32], &[u8], i64, i64) -> u32;
 type Before = fn(&mut [u8], &[u32], &[u8], i64, i64) -> u32;
 type Quotients = fn(&mut [u8], i128, i128, i128, i128);
-type Interpolate = fn(&mut [[f32; 6]], [f64; 6], [f64; 6], f64, f64);
+type Interpolate = fn(u16, &[f64; 6], &[f64; 6], f64, f64) -> Points;
 type Wide = fn(&mut [u8], u32, u32);
 type Float = fn(&mut [u8], i32, [f32; 2], [f32; 2], [f32; 2]);
 
@@ -88,9 +88,11 @@ const LOOPS: [(&str, Draw); 16] = [
         let (n_dn, d_dd) = ([1e20, 1e17], [1e18, 1e15]);
         black_box(fill_float as Float)(&mut m.row[start..start + n], -3, n_dn, d_dd, [0.0, 255.0]);
     }),
-    ("lit", |m, start, n| {
+    ("lit", |m, _, n| {
         let (a, da) = ([0.3, -0.5, 0.8, 4.0, -3.0, 9.0], [0.01, 0.02, -0.01, 0.1, 0.05, -0.02]);
-        black_box(interpolate as Interpolate)(&mut m.points[start..start + n], a, da, 0.4, 0.001);
+        for first in (0..n).step_by(LANES) {
+            m.points = black_box(interpolate as Interpolate)(first as u16, &a, &da, 0.4, 0.001);
+        }
     }),
 ];
 
@@ -128,7 +130,7 @@ fn main() {
         channels: [bytes(ROOM), bytes(ROOM), bytes(ROOM)],
         // Above and below the depths drawn, at random: half of the pixels are nearer, at first.
         depth: bytes(ROOM).into_iter().map(|byte| u32::from(byte) << 21).collect(),
-        points: vec![[0.0; 6]; ROOM],
+        points: [[0.0; LANES]; 6],
         texture: bytes(65_536),
         table: bytes(65_536).try_into().expect("as long"),
         map: bytes(32_768).try_into().expect("as long"),

@@ -11,6 +11,7 @@ use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
 use mode13h::span::dither::BAYER;
+use mode13h::span::lit::{Lanes, Points};
 use mode13h::span::texture::Texels;
 use support::oracle::{self, Point, Ratio};
 use support::random::Random;
@@ -46,20 +47,19 @@ impl Stock {
 struct Sum;
 
 impl Sum {
-    fn of(point: &[f32; 6]) -> u16 {
-        (point[0] + point[1] + point[2]).clamp(0.0, 65_280.0) as u16
+    fn of([a, b, c]: [f32; 3]) -> u16 {
+        (a + b + c).clamp(0.0, 65_280.0) as u16
     }
 }
 
 impl Lighting for Sum {
-    fn shades(&self, points: &[[f32; 6]], shades: &mut [u16]) {
-        points.iter().zip(shades).for_each(|(point, shade)| *shade = Self::of(point));
+    fn shades(&self, points: &Points) -> Lanes<u16> {
+        core::array::from_fn(|lane| Self::of([0, 1, 2].map(|i| points[i][lane])))
     }
 
-    fn channels(&self, points: &[[f32; 6]], channels: [&mut [u16]; 3]) {
-        for (i, channel) in channels.into_iter().enumerate() {
-            points.iter().zip(channel).for_each(|(point, shade)| *shade = Self::of(point) >> i);
-        }
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
+        let shades = self.shades(points);
+        [0, 1, 2].map(|i| shades.map(|shade| shade >> i))
     }
 }
 
@@ -185,11 +185,11 @@ impl<'a> Naive<'a> {
         let lit = || {
             // Whole numbers below 2¹⁵ times depths below 2³⁰ times areas: the sum's nearest f64 is off by
             // some parts in 2⁵¹, the f32 by one in 2²⁴.
-            let point = [0, 1, 2, 3, 4, 5].map(|i| {
+            let point = [0, 1, 2].map(|i| {
                 let exact = self.on_face(self.attributes.each_ref().map(|a| a.lit[i] as i128), x, y);
                 (exact.n as f64 / exact.d as f64) as f32
             });
-            Sum::of(&point)
+            Sum::of(point)
         };
         let textured = self.look.texture.as_ref().map(|texture| (texture, self.texel(texture, seed, last, x, y)));
         let mut byte = if let Some(mix) = &self.look.channels {

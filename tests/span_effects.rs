@@ -10,7 +10,7 @@ use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::depth::{Cell, copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
 use mode13h::span::float::fill_float;
-use mode13h::span::lit::interpolate;
+use mode13h::span::lit::{LANES, Points, interpolate};
 use mode13h::span::lookup;
 use mode13h::span::texture::{Texels, TexelsError, fill_affine, fill_perspective, fill_perspective_portable};
 use mode13h::span::wide::fill_16_16;
@@ -859,40 +859,28 @@ mod depth_tested {
 mod lit {
     use super::*;
 
-    type Interpolate = fn(&mut [[f32; 6]], [f64; 6], [f64; 6], f64, f64);
-
-    /// Points before and behind that have to stay as they were.
-    const GUARD: usize = 8;
+    type Interpolate = fn(u16, &[f64; 6], &[f64; 6], f64, f64) -> Points;
 
     fn check(interpolate: Interpolate) -> Result<u64, String> {
         let mut random = Random::named("lit");
         let mut cases = 0;
-        for length in (0..=320).chain([1_000, 4_095]) {
+        for first in (0..=320).chain([1_000, 4_088, 65_535]) {
             for case in 0..8 {
                 let mut any = |most: f64| (random.unit() * 2.0 - 1.0) * most;
                 let a = std::array::from_fn(|_| any(50.0));
-                // Half of them pass through zero half-way along the row, where the least rounding shows.
-                let half_way = (length / 2).max(1) as f64;
-                let da = if case % 2 == 0 { a.map(|a: f64| -a / half_way) } else { std::array::from_fn(|_| any(0.5)) };
+                // Half of them pass through zero among the points, where the least rounding shows.
+                let zero = f64::from(first) + 3.0;
+                let da = if case % 2 == 0 { a.map(|a: f64| -a / zero) } else { std::array::from_fn(|_| any(0.5)) };
                 let (d, dd) = (0.001 + any(1.0).abs(), any(1.0).abs() * 0.01);
-                let untouched = f32::from_bits(0x7FC1_2345);
-                let mut points = vec![[untouched; 6]; length + 2 * GUARD];
-                interpolate(&mut points[GUARD..GUARD + length], a, da, d, dd);
-                for (place, point) in points.iter().enumerate() {
-                    for (i, value) in point.iter().enumerate() {
-                        let should = match place.checked_sub(GUARD).filter(|k| *k < length) {
-                            Some(k) => {
-                                let steps = k as f64;
-                                let numerator: f64 = a[i] + steps * da[i];
-                                let denominator: f64 = d + steps * dd;
-                                (numerator / denominator) as f32
-                            }
-                            None => untouched,
-                        };
+                let points = interpolate(first, &a, &da, d, dd);
+                for (i, values) in points.iter().enumerate() {
+                    for (lane, value) in values.iter().enumerate() {
+                        let k = f64::from(u32::from(first) + lane as u32);
+                        let reciprocal: f64 = 1.0 / (d + k * dd);
+                        let should = ((a[i] + k * da[i]) * reciprocal) as f32;
                         if value.to_bits() != should.to_bits() {
                             return Err(format!(
-                                "{length} points from {a:?} by {da:?} over {d} by {dd}: point {} [{i}] is {value}, not {should}",
-                                place as isize - GUARD as isize
+                                "from {first}, {a:?} by {da:?} over {d} by {dd}: point {lane} [{i}] is {value}, not {should}"
                             ));
                         }
                     }
@@ -905,34 +893,37 @@ mod lit {
 
     #[test]
     fn points_are_the_definition() {
-        assert_right("lit", 323 * 8, check(interpolate));
+        assert_right("lit", 324 * 8, check(interpolate));
     }
 
     #[test]
     fn wrong_points_are_caught() {
-        let accumulated: Interpolate = |points, a, da, d, dd| {
-            let (mut a, mut d) = (a, d);
-            for point in points {
-                *point = a.map(|a| (a / d) as f32);
-                a = std::array::from_fn(|i| a[i] + da[i]);
-                d += dd;
+        let accumulated: Interpolate = |first, a, da, d, dd| {
+            let (from, mut points) = (f64::from(first), interpolate(first, a, da, d, dd));
+            for (i, values) in points.iter_mut().enumerate() {
+                for (steps, value) in (0..).map(f64::from).zip(values).skip(1) {
+                    let divisor = (d + from * dd) + steps * dd;
+                    *value = (((a[i] + from * da[i]) + steps * da[i]) * (1.0 / divisor)) as f32;
+                }
             }
+            points
         };
         assert_caught("sums that run on", check(accumulated));
-        let reciprocal: Interpolate = |points, a, da, d, dd| {
-            for (k, point) in points.iter_mut().enumerate() {
-                let k = k as f64;
-                let reciprocal = (1.0 / (d + k * dd)) as f32;
-                *point = std::array::from_fn(|i| (a[i] + k * da[i]) as f32 * reciprocal);
+        let reciprocal: Interpolate = |first, a, da, d, dd| {
+            let mut points = [[0.0; LANES]; 6];
+            for (i, values) in points.iter_mut().enumerate() {
+                for (k, value) in (u32::from(first)..).map(f64::from).zip(values) {
+                    *value = (a[i] + k * da[i]) as f32 * (1.0 / (d + k * dd)) as f32;
+                }
             }
+            points
         };
         assert_caught("products with an f32 reciprocal", check(reciprocal));
-        let long: Interpolate = |points, a, da, d, dd| {
-            interpolate(points, a, da, d, dd);
-            if let Some(last) = points.last_mut() {
-                last[5] = 0.0;
-            }
+        let last: Interpolate = |first, a, da, d, dd| {
+            let mut points = interpolate(first, a, da, d, dd);
+            points[5][LANES - 1] = 0.0;
+            points
         };
-        assert_caught("the last point", check(long));
+        assert_caught("the last point", check(last));
     }
 }

@@ -13,7 +13,7 @@ use mode13h::raster::FrameError;
 use mode13h::render::{RenderError, Renderer, Rung, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::span::channels::mix_cube;
-use mode13h::truth::{ErrorMap, Face, Screen, Shown, Standard, Truth, TruthFrame};
+use mode13h::truth::{Bound, ErrorMap, Face, Screen, Shown, Standard, Truth, TruthFrame};
 use mode13h::vga::Vga;
 use support::random::Random;
 use support::scenes;
@@ -134,29 +134,58 @@ fn check_cover(name: &str, scene: &Scene, truth: &Truth, frame: &TruthFrame, sho
     others
 }
 
-/// The rungs that are linear between vertices, what is right for each, and how far a byte may be from it, in shades:
-/// what the raster adds, and 1/512 for the rounding of a vertex's shade. What is left to a whole shade, or to two, is
-/// for f32 before the vertices: one of a hundred coordinates is rounded to the unit beside the right one.
-const LINEAR: [(Rung, Standard, f64); 3] = [
-    (Rung::Gouraud88, Standard::Gouraud, 2.0),
-    (Rung::Gouraud88Reseeded, Standard::Gouraud, 1.0),
-    (Rung::GouraudHyperbolic, Standard::GouraudPerspective, 1.0),
-];
+/// Intensities in f32, before they are rounded to 1/256 shade: a few parts in 2²⁴ of 255 shades, and of a highlight some
+/// dozens.
+const F32: f64 = 0.01;
 
-/// Checks all of `LINEAR` on a scene.
+/// What is right at each pixel changes by so much over 1/256 pixel across and down, in shades. From its neighbours of the same
+/// face, a pixel away: a quarter more for what bends between. Where a face has no other pixel in a row or column it counts
+/// as level there.
+fn over_a_unit(frame: &TruthFrame, place: usize) -> f64 {
+    let (x, y) = (place % 320, place / 320);
+    let Some(here) = frame.pixels[place] else { return 0.0 };
+    let change = |x: Option<usize>, y: Option<usize>| {
+        let there = frame.pixels[x.filter(|x| *x < 320)? + 320 * y.filter(|y| *y < 200)?]?;
+        let apart = (0..3).map(|i| (there.intensity[i] - here.intensity[i]).abs()).fold(0.0, f64::max);
+        (there.face == here.face).then_some(apart)
+    };
+    let most = |one: Option<f64>, other: Option<f64>| f64::max(one.unwrap_or(0.0), other.unwrap_or(0.0));
+    let across = most(change(x.checked_sub(1), Some(y)), change(Some(x + 1), Some(y)));
+    let down = most(change(Some(x), y.checked_sub(1)), change(Some(x), Some(y + 1)));
+    1.25 * 255.0 * (across + down) / 256.0
+}
+
+/// How many of the pixels are farther off than `bound` and what shades change by over 1/256 pixel. Of a hundred
+/// coordinates one is rounded to the unit beside the right one, as the engine's come from f32, and a face that is clipped
+/// has new corners, which are rounded too; either moves shades by no more than a unit.
+fn beyond(frame: &TruthFrame, errors: &ErrorMap, bound: f64) -> u64 {
+    let beyond = |(place, error): (usize, Option<f64>)| {
+        error.is_some_and(|error| error > bound && error > bound + over_a_unit(frame, place))
+    };
+    errors.errors().enumerate().filter(|&pixel| beyond(pixel)).count() as u64
+}
+
+/// Checks every rung that claims a bound, and is linear between vertices, on a scene.
 fn check_linear(tried: &mut Tried, name: &str, scene: &Scene) {
     let truth = truth(scene);
-    let channels = [Standard::Gouraud, Standard::GouraudPerspective].map(|standard| truth.draw(standard));
-    for (rung, standard, bound) in LINEAR {
+    let right = [Standard::Gouraud, Standard::GouraudPerspective].map(|standard| truth.draw(standard));
+    for rung in Rung::ALL {
+        let Some(Bound { standard, shades }) = Bound::of(rung, SCREEN.width) else { continue };
+        if standard == Standard::Lit {
+            continue;
+        }
         let shown = look(scene, rung);
-        // Channels run linearly on the screen on every rung.
-        let in_color = channels[0].pixels.iter().flatten().any(|p| p.intensity.iter().any(|&i| i != p.intensity[0]));
-        let frame = &channels[usize::from(standard == Standard::GouraudPerspective && !in_color)];
+        let frame = &right[usize::from(standard == Standard::GouraudPerspective)];
         let errors = compare(frame, &shown);
         let figures = errors.figures();
-        assert!(figures.max <= bound, "{name}, {rung}: {:.3} shades from {standard}", figures.max);
+        // A pixel of a face that is moved: what is left to a whole shade, or to two.
+        assert!(figures.max <= shades.ceil(), "{name}, {rung}: {:.3} shades from {standard}", figures.max);
+        // Where a face is a pixel wide what its shades change by is not known.
+        let beyond = beyond(frame, &errors, shades + F32);
+        assert!(beyond * 1_000 <= figures.count, "{name}, {rung}: {beyond} of {} beyond {shades:.4}", figures.count);
         tried.add(figures.count);
         tried.worst("shades", figures.max);
+        tried.worst("pixels beyond the bound", beyond as f64);
         let others = check_cover(name, scene, &truth, frame, &shown);
         tried.worst("pixels of another face", others as f64);
         assert_eq!(others, errors.cover_errors());
@@ -236,6 +265,106 @@ fn phong_is_lit_at_every_pixel_on_random_scenes() {
     for i in 0..12 {
         check_lit(&mut tried, &format!("random scene {i}"), &random_scene(&mut random));
     }
+}
+
+/// The same bodies with each face's own normal at its corners; and with each face in three that meet in its middle.
+fn flattened(scene: &Scene) -> [Scene; 2] {
+    let [mut flat, mut parted] = [scene.clone(), scene.clone()];
+    for (i, object) in scene.objects().iter().enumerate() {
+        let with = |mesh: Mesh| {
+            let mut with = Object::new(mesh);
+            (with.pivot, with.position, with.scale) = (object.pivot, object.position, object.scale);
+            (with.up_axis, with.materials) = (object.up_axis, object.materials.clone());
+            with.set_angles(object.angles());
+            with
+        };
+        let mut mesh = object.mesh().clone();
+        mesh.flat();
+        flat.objects_mut()[i] = with(mesh);
+        let mut positions = Vec::new();
+        let mut triangles = Vec::new();
+        for corners in object.mesh().triangles() {
+            let [a, b, c] = corners.map(|corner| object.mesh().positions()[corner as usize]);
+            let first = positions.len() as u32;
+            positions.extend([a, b, c, a / 3.0 + b / 3.0 + c / 3.0]);
+            triangles.extend([[0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|corners| corners.map(|corner| first + corner)));
+        }
+        let normals = vec![Vec3::Z; positions.len()];
+        parted.objects_mut()[i] = with(Mesh::with_normals(positions, normals, triangles).expect("a mesh"));
+    }
+    [flat, parted]
+}
+
+/// Where a face's middle lies on the screen, in pixels: the corner that its three parts have in common. `None` where
+/// it is clipped, or rounding leaves a part no area.
+fn middle(parted: &Truth, face: Face) -> Option<[f64; 2]> {
+    let parts = [0, 1, 2].map(|part| parted.rounded_triangles(Face { triangle: 3 * face.triangle + part, ..face }));
+    let [[a], [b], [c]] = parts.each_ref().map(Vec::as_slice) else { return None };
+    let mut common = a.iter().filter(|corner| b.contains(corner) && c.contains(corner));
+    let ([x, y], None) = (common.next()?, common.next()) else { return None };
+    Some([*x as f64 / 256.0, *y as f64 / 256.0])
+}
+
+/// A flat face has the model's shade at its middle, by its own normal: ½ for the byte, 1/512 for the shade, f32,
+/// and what light changes by where the middle may be instead.
+#[test]
+fn flat_faces_have_the_light_at_their_middle() {
+    let mut tried = Tried::new("flat_faces_have_the_light_at_their_middle", stated() / 4);
+    for (name, scene) in all() {
+        let shown = look(&scene, Rung::Flat);
+        let [flat, parted] = flattened(&scene);
+        let (truth, parted) = (truth(&flat), self::truth(&parted));
+        let mut shades = std::collections::BTreeMap::new();
+        for (face, shade) in shown.faces.iter().zip(&shown.shades) {
+            let Some(face) = *face else { continue };
+            let right = shades.entry(face).or_insert_with(|| {
+                let [x, y] = middle(&parted, face)?;
+                let at = |dx: f64, dy: f64| Some(truth.lit_at(face, x + VERTEX * dx, y + VERTEX * dy)?.intensity);
+                let right = at(0.0, 0.0)?;
+                let mut moved = 0.0_f64;
+                for (dx, dy) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
+                    let near = at(dx, dy)?;
+                    moved = (0..3).fold(moved, |most, i| most.max((near[i] - right[i]).abs()));
+                }
+                Some((right, 0.5 + 1.0 / 512.0 + F32 + 2.0 * 255.0 * moved))
+            });
+            let Some((right, allowed)) = right else { continue };
+            let error = (0..3).fold(0.0, |most, i| f64::max(most, (shade[i] - 255.0 * right[i]).abs()));
+            assert!(error <= *allowed, "{name}: {face:?} is {error:.3} off its middle's shade, not {allowed:.3}");
+            tried.add(1);
+            tried.worst("shades", error);
+        }
+    }
+}
+
+/// Rungs that claim no bound are measured as all others; and splitting brings linear shades nearer to `lit`.
+#[test]
+fn rungs_without_a_bound_are_measured() {
+    let mut tried = Tried::new("rungs_without_a_bound_are_measured", 8 * stated() / 10);
+    let (mut split, mut linear) = (0.0, 0.0);
+    for (name, scene) in all() {
+        let truth = truth(&scene);
+        let frame = truth.draw(Standard::Lit);
+        let rms = |rung: Rung| {
+            let figures = compare(&frame, &look(&scene, rung)).figures();
+            assert!(figures.max.is_finite() && figures.rms() <= figures.max + 1e-9, "{name}, {rung}: {figures:?}");
+            (figures.rms(), figures.count)
+        };
+        let (reseeded, _) = rms(Rung::Gouraud88Reseeded);
+        for rung in Rung::ALL.into_iter().filter(|rung| Bound::of(*rung, SCREEN.width).is_none()) {
+            let (rms, count) = rms(rung);
+            tried.add(count);
+            match rung {
+                // The split faces' corners are rounded anew, and a byte has its half.
+                Rung::GouraudTessellated => {
+                    assert!(rms <= reseeded + 0.5, "{name}: {rms} split, {reseeded} not");
+                    (split, linear) = (split + rms, linear + reseeded);
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(split < 0.5 * linear, "{split} split, {linear} not");
 }
 
 // The probe

@@ -78,19 +78,25 @@ fn nearest(n: i128, d: i128) -> i128 {
     (2 * n + d).div_euclid(2 * d)
 }
 
-/// The point where an edge meets a plane.
-fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_inside: i128, d_outside: i128) -> Corner {
+/// The point where an edge meets a plane. `on_face`: shades are linear on the face in space, and not on the screen.
+fn cut(
+    view: &ObjectView,
+    on_face: bool,
+    plane: usize,
+    [inside, outside]: [&Corner; 2],
+    [d_inside, d_outside]: [i128; 2],
+) -> Corner {
     // Above 0: one distance is 0 or more, the other less.
     let whole = d_inside - d_outside;
     let between = |a: i128, b: i128| a + nearest((b - a) * d_inside, whole);
     let w = if plane == 0 { i128::from(view.near) << EXTRA } else { between(inside.w, outside.w) };
     // 0 to 1, with 32 bits: 2⁷⁶ · 2³³ on the way.
     let t = nearest(d_inside << PARAMETER, whole);
-    // Shades are linear on the screen. On the edge's projection the point lies at t·wb / w. Where
-    // the other end has no projection, beyond the near plane, they are linear along the edge.
-    let on_screen = if plane == 0 { t } else { nearest(t * outside.w, w).clamp(0, 1 << PARAMETER) };
+    // On the edge's projection the point lies at t·wb / w. Where the other end has no projection, beyond the
+    // near plane, shades that are linear on the screen are linear along the edge too.
+    let part = if plane == 0 || on_face { t } else { nearest(t * outside.w, w).clamp(0, 1 << PARAMETER) };
     // 2⁴⁸ · 2³³ on the way; the shade lies between the two.
-    let change = (i128::from(outside.shade - inside.shade) * on_screen) >> PARAMETER;
+    let change = (i128::from(outside.shade - inside.shade) * part) >> PARAMETER;
     Corner {
         x: between(inside.x, outside.x),
         y: between(inside.y, outside.y),
@@ -100,12 +106,15 @@ fn cut(view: &ObjectView, plane: usize, inside: &Corner, outside: &Corner, d_ins
     }
 }
 
-/// Clips a triangle. Returns `None` if nothing is left.
-pub(super) fn clip(view: &ObjectView, corners: [Corner; 3]) -> Option<Clipped> {
+/// Clips a triangle, whose shades are linear on the face in space if `on_face`, else on the screen. Returns `None` if
+/// nothing is left.
+pub(super) fn clip(view: &ObjectView, on_face: bool, corners: [Corner; 3]) -> Option<Clipped> {
     let left = clip_triangle(
         corners,
         |plane, corner| distance(view, plane, corner),
-        |plane, inside, outside, d_inside, d_outside| cut(view, plane, inside, outside, d_inside, d_outside),
+        |plane, inside, outside, d_inside, d_outside| {
+            cut(view, on_face, plane, [inside, outside], [d_inside, d_outside])
+        },
     )?;
     left.project(|corner| corner.project(view))
 }

@@ -166,7 +166,8 @@ impl<'a, I: Index> Stage<'a, I> {
             let shade = if turned { back } else { vertex.shade() };
             Corner::new(at[i], shade, (!needs_clipping).then(|| vertex.with_shade(shade)))
         };
-        let Some(clipped) = clip(&self.view, [corner(0), corner(1), corner(2)]) else { return };
+        let on_face = self.technique == Technique::GouraudHyperbolic;
+        let Some(clipped) = clip(&self.view, on_face, [corner(0), corner(1), corner(2)]) else { return };
         if self.is_culled(clipped.doubled_area()) {
             counts.culled += 1;
             return;

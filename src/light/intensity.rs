@@ -2,9 +2,10 @@
 
 use glam::Vec3;
 
+use super::power::Shininess;
 use crate::mesh::Bounds;
 
-type Wide = [f64; 3];
+pub(super) type Wide = [f64; 3];
 
 /// A sun as an object sees it: its direction turned into the object's own space.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -148,9 +149,10 @@ impl Lights<'_> {
         let is_specular = !cfg!(mode13h_leave_out = "specular") && answer.specular != 0.0;
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
         let to_eye = is_specular.then(|| unit(sub(self.eye, at))).flatten();
+        let shininess = Shininess::new(answer.shininess);
         for sun in self.suns {
             let cosine = f64::from(normal.dot(sun.towards));
-            let highlight = highlight(to_eye, wide_normal, widen(sun.towards), cosine, answer.shininess);
+            let highlight = highlight(to_eye, wide_normal, widen(sun.towards), cosine, shininess);
             if cosine > 0.0 {
                 front.add(of_sun(sun), cosine, highlight);
             } else if cosine < 0.0 {
@@ -167,7 +169,7 @@ impl Lights<'_> {
             // A lamp at the point itself lies in the plane of any face through it, and lights none.
             let Some(towards) = unit(to_lamp) else { continue };
             let cosine = dot(wide_normal, towards);
-            let highlight = highlight(to_eye, wide_normal, towards, cosine, answer.shininess);
+            let highlight = highlight(to_eye, wide_normal, towards, cosine, shininess);
             let fall_off = (1.0 - square) * (1.0 - square);
             let light = of_lamp(lamp).map(|intensity| intensity * fall_off);
             if cosine > 0.0 {
@@ -184,10 +186,10 @@ impl Lights<'_> {
 ///
 /// The normal comes in twice, so both sides of a surface have the same.
 #[inline]
-fn highlight(to_eye: Option<Wide>, normal: Wide, towards: Wide, cosine: f64, shininess: f64) -> f64 {
+fn highlight(to_eye: Option<Wide>, normal: Wide, towards: Wide, cosine: f64, shininess: Shininess) -> f64 {
     let Some(to_eye) = to_eye else { return 0.0 };
     let along = 2.0 * cosine * dot(normal, to_eye) - dot(towards, to_eye);
-    if along > 0.0 { libm::pow(along, shininess) } else { 0.0 }
+    shininess.of(along)
 }
 
 fn widen(v: Vec3) -> Wide {
@@ -205,5 +207,6 @@ fn dot(a: Wide, b: Wide) -> f64 {
 /// `None` for the zero vector.
 fn unit(v: Wide) -> Option<Wide> {
     let length = libm::sqrt(dot(v, v));
-    (length > 0.0).then(|| v.map(|c| c / length))
+    let part = 1.0 / length;
+    (length > 0.0).then(|| v.map(|c| c * part))
 }

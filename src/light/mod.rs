@@ -16,9 +16,13 @@
 //! | `source` | [`Light`]: suns, and lamps with a position and a fall-off (S0) |
 //! | `material` | [`Material`]: what a surface answers |
 //! | `intensity` | the sum |
+//! | `lanes` | the same at eight points at a time |
+//! | `power` | how narrow a highlight is |
 
 mod intensity;
+mod lanes;
 mod material;
+mod power;
 mod source;
 
 pub(crate) use intensity::{Answer, Beam, LampBeam, Lights, both_sides, lamp_reaches};

@@ -32,7 +32,7 @@ use crate::fixed::U8F8;
 use crate::span::channels::{mix_cube, mix_nearest};
 use crate::span::depth::{copy_before, copy_nearer};
 use crate::span::hyperbolic::floor_quotient;
-use crate::span::lit::interpolate;
+use crate::span::lit::{LANES, Lanes, Points, interpolate};
 use crate::span::texture::{Texels, fill_affine, fill_perspective};
 use crate::span::{Kernel, lookup};
 
@@ -61,11 +61,11 @@ pub struct Attributes {
 /// Light at every pixel.
 pub trait Lighting: core::fmt::Debug {
     /// The shade at each point (normal and position, perspective-correct, the normal of any length), in
-    /// 8.8, 0 to 0xFF00. Both slices are of one length.
-    fn shades(&self, points: &[[f32; 6]], shades: &mut [u16]);
+    /// 8.8, 0 to 0xFF00. Points beyond the end of a row may be anything, and what is made of them is not used.
+    fn shades(&self, points: &Points) -> Lanes<u16>;
 
     /// The same for red, green and blue.
-    fn channels(&self, points: &[[f32; 6]], channels: [&mut [u16]; 3]);
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3];
 }
 
 /// Where a pixel's shade comes from.
@@ -243,6 +243,8 @@ struct LitPlane {
     weights: Weights,
     /// Of each corner, its values times its depth, then its depth.
     values: [[f64; 7]; 3],
+    /// What their sum changes by from one pixel to the next.
+    step: ([f64; 6], f64),
 }
 
 impl LitPlane {
@@ -252,21 +254,25 @@ impl LitPlane {
             let [a, b, c, d, e, f] = corners[k].lit.map(|value| f64::from(value) * depth);
             [a, b, c, d, e, f, depth]
         });
-        Self { weights: Weights::new(triangle), values }
+        let weights = Weights::new(triangle);
+        Self { weights, values, step: Self::sum(&values, weights.per_column()) }
     }
 
     /// The sum over the corners, in their order from top to bottom, of the values with these weights.
-    fn sum(&self, [wa, wb, wc]: [f64; 3]) -> ([f64; 6], f64) {
-        let [va, vb, vc] = &self.values;
+    fn sum([va, vb, vc]: &[[f64; 7]; 3], [wa, wb, wc]: [f64; 3]) -> ([f64; 6], f64) {
         let value = |i: usize| wa * va[i] + wb * vb[i] + wc * vc[i];
         (core::array::from_fn(value), value(6))
     }
 
-    /// Points from pixel (`x`, `y`) on.
-    fn points(&self, x: i32, y: i32, points: &mut [[f32; 6]]) {
-        let (a, d) = self.sum(self.weights.at(x, y));
-        let (da, dd) = self.sum(self.weights.per_column());
-        interpolate(points, a, da, d, dd);
+    /// Hands points from pixel (`x`, `y`) on to `light`, with the pixels from there that they are of.
+    fn points(&self, x: i32, y: i32, pixels: usize, mut light: impl FnMut(Range<usize>, &Points)) {
+        let (a, d) = Self::sum(&self.values, self.weights.at(x, y));
+        let (da, dd) = &self.step;
+        for first in (0..pixels).step_by(LANES) {
+            // At most 64.
+            let points = interpolate(first as u16, &a, da, d, *dd);
+            light(first..pixels.min(first + LANES), &points);
+        }
     }
 }
 
@@ -443,22 +449,20 @@ impl<'a> EffectPaint<'a> {
                 return self.mix(row, seed, channels, thresholds, piece);
             }
             Planes::Lit(plane) => {
-                let mut points = [[0.0; 6]; PIECE];
-                plane.points(seed, row.y, &mut points[..length]);
                 let Source::Lit(lighting) = self.look.source else { return };
-                let mut shades = [[0_u16; PIECE]; 3];
                 if self.look.channels().is_some() {
-                    let [red, green, blue] = &mut shades;
-                    let rows = [&mut red[..length], &mut green[..length], &mut blue[..length]];
-                    lighting.channels(&points[..length], rows);
                     let mut channels = [[0; PIECE]; 3];
-                    for (shades, channel) in shades.iter().zip(&mut channels) {
-                        to_bytes(&shades[..length], &HALVES[0], column, &mut channel[..length]);
-                    }
+                    plane.points(seed, row.y, length, |pixels, points| {
+                        for (shades, channel) in lighting.channels(points).iter().zip(&mut channels) {
+                            to_bytes(shades, &HALVES[0], column, &mut channel[pixels.clone()]);
+                        }
+                    });
                     return self.mix(row, seed, channels, thresholds, piece);
                 }
-                lighting.shades(&points[..length], &mut shades[0][..length]);
-                to_bytes(&shades[0][..length], thresholds, column, piece);
+                plane.points(seed, row.y, length, |pixels, points| {
+                    let column = column + pixels.start;
+                    to_bytes(&lighting.shades(points), thresholds, column, &mut piece[pixels]);
+                });
             }
         }
         if let Some(texture) = self.look.texture() {

@@ -15,8 +15,12 @@
 //! depth is off by 5 parts in 10⁶ at most, a shade by 0.003.
 
 use super::cover::Ordered;
+use super::weights::WholeWeights;
+use crate::fixed::HAS_F64;
+use crate::span::hyperbolic::{fill_estimated_quotients, fill_quotients, floor_quotient};
 
 /// A function that is linear over the screen, at pixel centres.
+#[cfg(feature = "alloc")]
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Linear {
     origin: i128,
@@ -24,6 +28,7 @@ pub(super) struct Linear {
     per_row: i128,
 }
 
+#[cfg(feature = "alloc")]
 impl Linear {
     /// Of a triangle that is not degenerate, with these values at its vertices; each below 2⁶⁴.
     pub(super) fn new(triangle: &Ordered, [v0, v1, v2]: [i128; 3]) -> Self {
@@ -53,8 +58,9 @@ impl Linear {
 /// The perspective-correct shades of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct HyperbolicPlane {
-    numerator: Linear,
-    denominator: Linear,
+    weights: WholeWeights,
+    depths: [i64; 3],
+    shades: [i64; 3],
 }
 
 impl HyperbolicPlane {
@@ -62,27 +68,133 @@ impl HyperbolicPlane {
     /// its vertices. A depth of 0 counts as 1.
     #[must_use]
     pub fn of_values(triangle: &Ordered, shades: [i64; 3]) -> Self {
-        let depths = triangle.vertices.each_ref().map(|v| i128::from(v.depth().max(1)));
-        let weighted = [0, 1, 2].map(|i| depths[i] * i128::from(shades[i]));
-        Self { numerator: Linear::new(triangle, weighted), denominator: Linear::new(triangle, depths) }
+        let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1)));
+        Self { weights: WholeWeights::new(triangle), depths, shades }
+    }
+
+    /// The sums, over the corners, of weight times depth times shade (with `more` added to each) and of weight times
+    /// depth. Depth times shade is below 2⁴⁹.
+    fn sums(&self, weights: [i64; 3], more: i64) -> (i128, i128) {
+        let sum = |value: [i64; 3]| {
+            let [a, b, c] = [0, 1, 2].map(|i| i128::from(weights[i]) * i128::from(value[i]));
+            a + b + c
+        };
+        (sum([0, 1, 2].map(|i| self.depths[i] * (self.shades[i] + more))), sum(self.depths))
     }
 
     /// Numerator and denominator of the exact shade at pixel (`x`, `y`), in 1/256.
+    #[cfg(feature = "alloc")]
     pub(super) fn shade(&self, x: i32, y: i32) -> (i128, i128) {
-        (self.numerator.at(x, y), self.denominator.at(x, y))
+        self.sums(self.weights.at(x, y), 0)
     }
 
     /// Numerator and denominator of the byte at pixel (`x`, `y`), whose centre lies in the triangle.
     #[must_use]
     pub fn quotient(&self, x: i32, y: i32) -> (i128, i128) {
-        let (n, d) = self.shade(x, y);
-        (n + 128 * d, 256 * d)
+        let (n, d) = self.sums(self.weights.at(x, y), 128);
+        (n, 256 * d)
     }
 
     /// What both change by from one pixel to the next.
     #[must_use]
     pub fn step(&self) -> (i128, i128) {
-        let (n, d) = (self.numerator.per_column(), self.denominator.per_column());
-        (n + 128 * d, 256 * d)
+        let (n, d) = self.sums(self.weights.per_column(), 128);
+        (n, 256 * d)
+    }
+
+    /// The bytes from pixel (`x`, `y`) on, all of whose centres lie in the triangle.
+    pub(super) fn fill(&self, x: i32, y: i32, pixels: &mut [u8]) {
+        if self.fill_estimated(x, y, pixels) {
+            return;
+        }
+        let ((n, d), (dn, dd)) = (self.quotient(x, y), self.step());
+        fill_quotients(pixels, n, dn, d, dd);
+    }
+
+    /// The same from quotients in f64, exact where these cannot decide. Returns whether it was done.
+    ///
+    /// What is estimated is t = 2¹⁶·I/256 with the half added: below T = 2²⁴. With ε = 2⁻⁵³, N(k) and D(k) the exact
+    /// sums at pixel k, their largest values N and D at the two ends, and R = D over the least D(k), which lies at an end
+    /// too:
+    ///
+    /// 1. Weights are exact, and so are depths times shades. Three products and two sums, of numbers that are not
+    ///    negative: N(0) is off by 3εN.
+    /// 2. No weight is negative at either end, so what k steps change one by is at most the sum of both its values there;
+    ///    the step is off by 3ε of the sum of its terms' sizes, and k of them by 3ε·(N(0) + N(last)), 6εN.
+    /// 3. Their product with k has εN more, the sum another: the numerator is off by less than 12εN, and the divisor by
+    ///    12εD likewise.
+    /// 4. As N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹. Rounded to a whole number
+    ///    it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two multiples.
+    fn fill_estimated(&self, x: i32, y: i32, pixels: &mut [u8]) -> bool {
+        const MAX_RATIO: f64 = 32_768.0;
+
+        if !HAS_F64 {
+            return false;
+        }
+        // Exact: 32 bits, and 49 of them times a power of two.
+        let depths = self.depths.map(|depth| depth as f64);
+        let values = [0, 1, 2].map(|i| (self.depths[i] * (self.shades[i] + 128)) as f64 * 256.0);
+        let sums = |weights: [i64; 3]| {
+            let [a, b, c] = weights.map(|weight| weight as f64);
+            (a * values[0] + b * values[1] + c * values[2], a * depths[0] + b * depths[1] + c * depths[2])
+        };
+        let ((n, d), (dn, dd)) = (sums(self.weights.at(x, y)), sums(self.weights.per_column()));
+        // At most 4,096 pixels.
+        let last = d + pixels.len().saturating_sub(1) as f64 * dd;
+        // False for what is not a number, too.
+        let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
+        if is_sure {
+            fill_estimated_quotients(pixels, [n, dn], [d, dd], |k| {
+                // A column.
+                let (n, d) = self.quotient(x + k as i32, y);
+                // At most 255: the nearest byte to a mean of shades.
+                floor_quotient(n, d) as u8
+            });
+        }
+        is_sure
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::frame::Rect;
+    use super::super::vertex::Vertex;
+    use super::*;
+    use crate::fixed::{I24F8, U8F8};
+    use proptest::prelude::*;
+
+    fn corner() -> impl Strategy<Value = (i32, i32, u16, u32)> {
+        // Halves, where a quotient is a whole number all along a triangle of one shade, among the shades, and all sizes of
+        // depths.
+        let shade = prop_oneof![0_u16..=0xFF00, Just(0x4080), Just(0), Just(0xFF00), Just(0x40FF)];
+        let depth = (0_u32..32, any::<u32>()).prop_map(|(bits, depth)| depth >> bits);
+        (-20_000..100_000_i32, -20_000..20_000_i32, shade, depth)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(3_000))]
+        /// Whole rows, and parts of them.
+        #[test]
+        fn estimates_give_the_bytes_of_exact_quotients(corners in prop::array::uniform3(corner()), part in 0_i32..7) {
+            let vertices = corners.map(|(x, y, shade, depth)| {
+                Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from_bits(shade), depth).expect("in range")
+            });
+            let triangle = Ordered::new(&vertices);
+            prop_assume!(triangle.doubled_area != 0);
+            let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
+            let mut wrong = None;
+            triangle.rows(320, Rect { x0: 0, y0: 0, x1: 320, y1: 60 }, |row| {
+                let x = (row.x0 + part).min(row.last);
+                let (mut bytes, mut exact) = ([0; 320], [0; 320]);
+                let length = (row.x1 - x) as usize;
+                plane.fill(x, row.y, &mut bytes[..length]);
+                let ((n, d), (dn, dd)) = (plane.quotient(x, row.y), plane.step());
+                fill_quotients(&mut exact[..length], n, dn, d, dd);
+                if bytes != exact {
+                    wrong = Some(row);
+                }
+            });
+            prop_assert!(wrong.is_none(), "{:?} of {:?}", wrong, vertices);
+        }
     }
 }

@@ -62,7 +62,6 @@ pub mod shade;
 pub mod shading;
 pub mod triangle;
 pub mod vertex;
-#[cfg(feature = "alloc")]
 mod weights;
 pub mod wide;
 

@@ -18,8 +18,10 @@ use super::wide::WideShadePlane;
 use crate::span::dither::fill_dithered;
 #[cfg(feature = "alloc")]
 use crate::span::float;
+#[cfg(feature = "alloc")]
+use crate::span::hyperbolic;
 use crate::span::wide::fill_16_16;
-use crate::span::{Kernel, depth, hyperbolic};
+use crate::span::{Kernel, depth};
 
 /// The shades of one triangle, or another value of its corners, ready to be painted row by row.
 #[derive(Clone, Copy, Debug)]
@@ -147,10 +149,7 @@ impl Paint {
     fn fill(&self, row: &Row, x: i32, pixels: &mut [u8]) {
         match self {
             Self::Wide(plane) => fill_16_16(pixels, wide_start(plane, row, x), plane.step()),
-            Self::Hyperbolic(plane) => {
-                let ((n, d), (dn, dd)) = (plane.quotient(x, row.y), plane.step());
-                hyperbolic::fill_quotients(pixels, n, dn, d, dd);
-            }
+            Self::Hyperbolic(plane) => plane.fill(x, row.y, pixels),
             #[cfg(feature = "alloc")]
             Self::Float(plane) => {
                 let at = plane.row(row);

@@ -71,6 +71,17 @@ impl Shading {
         !matches!(self, Self::GouraudPeriod)
     }
 
+    /// Whether shades are linear on the face in space, and not on the screen.
+    #[must_use]
+    pub const fn is_linear_on_the_face(self) -> bool {
+        match self {
+            Self::GouraudHyperbolic => true,
+            #[cfg(feature = "alloc")]
+            Self::Float => true,
+            _ => false,
+        }
+    }
+
     /// What is added to a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
     #[must_use]
     pub const fn rounding(self) -> u8 {

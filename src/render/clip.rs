@@ -6,21 +6,31 @@
 //! planes in an order that leaves no crack.
 
 use crate::fixed::U8F8;
-use crate::raster::Vertex;
 use crate::raster::clip::{Clipped, clip as clip_triangle};
 use crate::raster::effects::Attributes;
+use crate::raster::{Shading, Vertex};
 use crate::view::{Homogeneous, ObjectView};
+
+/// Which part of the way from one end of an edge to the other a cut lies at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parts {
+    /// Along the edge in space.
+    on_face: f64,
+    /// On the screen.
+    on_screen: f64,
+    /// That of the two that shades are linear along.
+    of_shades: f64,
+}
 
 /// The values that a corner carries beside its shade.
 pub(super) trait Carried: Copy {
-    /// The value at `on_face` of the way from `self` to `other` along the edge in space, which is
-    /// `on_screen` of the way on the screen.
-    fn between(&self, other: &Self, on_face: f64, on_screen: f64) -> Self;
+    /// The value where the edge from `self` to `other` is cut.
+    fn between(&self, other: &Self, parts: Parts) -> Self;
 }
 
 /// Nothing.
 impl Carried for () {
-    fn between(&self, (): &Self, _: f64, _: f64) -> Self {}
+    fn between(&self, (): &Self, _: Parts) -> Self {}
 }
 
 /// What effects need, and whether the image's coordinates are linear on the screen.
@@ -31,13 +41,13 @@ pub(super) struct WithEffects {
 }
 
 impl Carried for WithEffects {
-    fn between(&self, other: &Self, on_face: f64, on_screen: f64) -> Self {
+    fn between(&self, other: &Self, Parts { on_face, on_screen, of_shades }: Parts) -> Self {
         let (a, b) = (&self.attributes, &other.attributes);
-        let shade = |from: U8F8, to: U8F8| {
+        let shade = |from: U8F8, to: U8F8, part: f64| {
             let (from, to) = (f64::from(from.to_bits()), f64::from(to.to_bits()));
             let (low, high) = (from.min(to), from.max(to));
             // At most 0xFF00: between two values that are. The cast truncates after the half.
-            U8F8::from_bits(((from + (to - from) * on_screen).max(low).min(high) + 0.5) as u16)
+            U8F8::from_bits(((from + (to - from) * part).max(low).min(high) + 0.5) as u16)
         };
         let coordinate = |from: i32, to: i32| {
             let part = if self.affine { on_screen } else { on_face };
@@ -49,9 +59,9 @@ impl Carried for WithEffects {
         Self {
             attributes: Attributes {
                 texture: core::array::from_fn(|i| coordinate(a.texture[i], b.texture[i])),
-                fog: shade(a.fog, b.fog),
-                channels: core::array::from_fn(|i| shade(a.channels[i], b.channels[i])),
-                slope: core::array::from_fn(|i| shade(a.slope[i], b.slope[i])),
+                fog: shade(a.fog, b.fog, on_screen),
+                channels: core::array::from_fn(|i| shade(a.channels[i], b.channels[i], of_shades)),
+                slope: core::array::from_fn(|i| shade(a.slope[i], b.slope[i], on_screen)),
                 lit: core::array::from_fn(|i| {
                     let (from, to) = (f64::from(a.lit[i]), f64::from(b.lit[i]));
                     (from + (to - from) * on_face) as f32
@@ -98,6 +108,7 @@ fn distance<C>(view: &ObjectView, plane: usize, corner: &Corner<C>) -> f64 {
 /// the next plane would throw the point away, and the face with it.
 fn cut<C: Carried>(
     view: &ObjectView,
+    shading: Shading,
     plane: usize,
     inside: &Corner<C>,
     outside: &Corner<C>,
@@ -121,27 +132,33 @@ fn cut<C: Carried>(
         4 => (limit - cy) * w,
         _ => between(a.y, b.y),
     };
-    // Shades are linear on the screen. On the edge's projection the point lies at t·wb / w. Where
-    // the other end has no projection, beyond the near plane, they are linear along the edge.
-    let t = d_inside / whole;
-    let on_screen = if plane == 0 { t } else { t * b.w / w };
-    let shade = inside.shade + (outside.shade - inside.shade) * on_screen;
+    // On the edge's projection the point lies at t·wb / w. Where the other end has no projection, beyond the near
+    // plane, what is linear on the screen is linear along the edge.
+    let on_face = d_inside / whole;
+    let on_screen = if plane == 0 { on_face } else { on_face * b.w / w };
+    let of_shades = if shading.is_linear_on_the_face() { on_face } else { on_screen };
+    let shade = inside.shade + (outside.shade - inside.shade) * of_shades;
     // Rounding in `shade` must not leave the range of the two ends.
     let (low, high) = (inside.shade.min(outside.shade), inside.shade.max(outside.shade));
     Corner {
         at: Homogeneous { x, y, w },
         shade: shade.max(low).min(high),
         vertex: None,
-        carried: inside.carried.between(&outside.carried, t, on_screen),
+        carried: inside.carried.between(&outside.carried, Parts { on_face, on_screen, of_shades }),
     }
 }
 
-/// Clips a triangle. Returns `None` if nothing is left, else the polygon and what its corners carry.
-pub(super) fn clip<C: Carried>(view: &ObjectView, corners: [Corner<C>; 3]) -> Option<(Clipped, impl Fn(usize) -> C)> {
+/// Clips a triangle that is drawn with `shading`. Returns `None` if nothing is left, else the polygon and what its
+/// corners carry.
+pub(super) fn clip<C: Carried>(
+    view: &ObjectView,
+    shading: Shading,
+    corners: [Corner<C>; 3],
+) -> Option<(Clipped, impl Fn(usize) -> C)> {
     let left = clip_triangle(
         corners,
         |plane, corner| distance(view, plane, corner),
-        |plane, inside, outside, d_inside, d_outside| cut(view, plane, inside, outside, d_inside, d_outside),
+        |plane, inside, outside, d_inside, d_outside| cut(view, shading, plane, inside, outside, d_inside, d_outside),
     )?;
     let polygon = left.project(|corner| {
         // At most 0xFF00: between two shades that are. The cast truncates after the half.

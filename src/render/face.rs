@@ -220,14 +220,15 @@ impl Faces<'_> {
             *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), shades, [0; 3]);
         }
         let (choice, before) = (*choice, stats.drawn);
+        let shading = choice.rung().shading();
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice == Choice::Phong {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
-            self.parts::<CULLS, _>(at, corners, carried, turned, stats, |vertices, carried, _| {
+            self.parts::<CULLS, _>(at, corners, carried, (shading, turned), stats, |vertices, carried, _| {
                 hand_on_within(vertices, carried.map(|carried| carried.attributes), surface, choice, sink);
             });
         } else {
-            self.parts::<CULLS, _>(at, corners, [(); 3], turned, stats, |vertices, _, _| {
+            self.parts::<CULLS, _>(at, corners, [(); 3], (shading, turned), stats, |vertices, _, _| {
                 sink.plain(&vertices, choice.shading(&vertices));
             });
         }
@@ -250,13 +251,14 @@ impl Faces<'_> {
         if EFFECTS && self.paints[usize::from(surface)].has_effects {
             let carried =
                 indices.map(|i| WithEffects { attributes: self.extras[i as usize].side(turned), affine: self.affine });
-            self.parts::<CULLS, _>(at, corners, carried, turned, stats, |vertices, carried, stats| {
+            let shading = self.rung.shading();
+            self.parts::<CULLS, _>(at, corners, carried, (shading, turned), stats, |vertices, carried, stats| {
                 let attributes = carried.map(|carried| carried.attributes);
                 self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
             });
         } else {
             let shading = self.shading(indices, surface, turned, stats);
-            self.parts::<CULLS, _>(at, corners, [(); 3], turned, stats, |vertices, _, _| {
+            self.parts::<CULLS, _>(at, corners, [(); 3], (shading, turned), stats, |vertices, _, _| {
                 sink.plain(&vertices, shading)
             });
         }
@@ -268,7 +270,7 @@ impl Faces<'_> {
         at: [Homogeneous; 3],
         corners: &[LitVertex; 3],
         carried: [C; 3],
-        turned: bool,
+        (shading, turned): (Shading, bool),
         stats: &mut Stats,
         mut part: impl FnMut([Vertex; 3], [C; 3], &mut Stats),
     ) {
@@ -278,7 +280,7 @@ impl Faces<'_> {
             let projected = (!needs_clipping).then(|| vertex.with_shade(shade));
             Corner { at: at[i], shade: f64::from(shade.to_bits()), vertex: projected, carried: carried[i] }
         };
-        let Some((polygon, carried)) = clip(self.view, [corner(0), corner(1), corner(2)]) else { return };
+        let Some((polygon, carried)) = clip(self.view, shading, [corner(0), corner(1), corner(2)]) else { return };
         let area = polygon.doubled_area();
         if area == 0 || (CULLS && area > 0) {
             stats.culled += 1;

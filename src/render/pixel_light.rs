@@ -1,47 +1,38 @@
 //! Light at every pixel: S1's Phong, and the table that stood in for it in 1994.
 
-use glam::Vec3;
-
 use super::paint::Paint;
 use crate::light::Lights;
-use crate::mesh::normals::unit;
 use crate::palette::Table;
 use crate::raster::effects::Lighting;
+use crate::span::lit::{LANES, Lanes, Points};
 
 /// One surface of an object, lit pixel by pixel in the object's own space.
+///
+/// Where the normals of two ends cancel there is none: no light falls there but the ambient.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelLight<'a> {
     pub(super) lights: Lights<'a>,
     pub(super) paint: &'a Paint,
 }
 
-impl PixelLight<'_> {
-    /// The position and the unit normal of a point. Where the normals of two ends cancel there is none:
-    /// no light falls there but the ambient.
-    fn point(point: &[f32; 6]) -> (Vec3, Vec3) {
-        let [nx, ny, nz, x, y, z] = *point;
-        (Vec3::new(x, y, z), unit(Vec3::new(nx, ny, nz)).unwrap_or(Vec3::ZERO))
-    }
-}
-
 impl Lighting for PixelLight<'_> {
     #[inline(never)]
-    fn shades(&self, points: &[[f32; 6]], shades: &mut [u16]) {
-        for (point, shade) in points.iter().zip(shades) {
-            let (position, normal) = Self::point(point);
-            let (front, _) = self.lights.one_channel(&self.paint.answer, position, normal);
-            *shade = self.paint.shade(front).to_bits();
-        }
+    fn shades(&self, points: &Points) -> Lanes<u16> {
+        let intensities = self.lights.front_of_one_channel(&self.paint.answer, points);
+        intensities.map(|intensity| self.paint.shade(intensity).to_bits())
     }
 
     #[inline(never)]
-    fn channels(&self, points: &[[f32; 6]], [red, green, blue]: [&mut [u16]; 3]) {
-        for (((point, red), green), blue) in points.iter().zip(red).zip(green).zip(blue) {
-            let (position, normal) = Self::point(point);
-            let (front, _) = self.lights.three_channels(&self.paint.answer, position, normal);
-            let channels = Paint::channels(front);
-            [*red, *green, *blue] = channels.map(|channel| channel.to_bits());
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
+        let [red, green, blue] = self.lights.front_of_three_channels(&self.paint.answer, points);
+        let mut channels = [[0; LANES]; 3];
+        for lane in 0..LANES {
+            let shades = Paint::channels([red[lane], green[lane], blue[lane]]);
+            for (channel, shade) in channels.iter_mut().zip(shades) {
+                channel[lane] = shade.to_bits();
+            }
         }
+        channels
     }
 }
 
@@ -51,12 +42,20 @@ impl Lighting for PixelLight<'_> {
 /// `lights` are in the eye's space, the eye far away on z.
 #[inline(never)]
 pub(super) fn normal_table(lights: &Lights<'_>, paint: &Paint) -> Table {
+    let mut eight = [0; LANES];
     Table::from_fn(|row, column| {
         let at = |step: u8| (f32::from(step) - 127.5) / 127.5;
-        let (x, y) = (at(column), at(row));
-        let z = libm::sqrtf((1.0 - x * x - y * y).max(0.0));
-        let normal = unit(Vec3::new(x, y, z)).unwrap_or(Vec3::Z);
-        let (front, _) = lights.one_channel(&paint.answer, Vec3::ZERO, normal);
-        paint.shade(front).nearest()
+        // By rows: the columns of one after the other, eight at a time.
+        let lane = usize::from(column) % LANES;
+        if lane == 0 {
+            // 248 + 7 at most.
+            let x: Lanes<f32> = core::array::from_fn(|lane| at(column + lane as u8));
+            let y = at(row);
+            let z = x.map(|x| libm::sqrtf((1.0 - x * x - y * y).max(0.0)));
+            let points = [x, [y; LANES], z, [0.0; LANES], [0.0; LANES], [0.0; LANES]];
+            let intensities = lights.front_of_one_channel(&paint.answer, &points);
+            eight = intensities.map(|intensity| paint.shade(intensity).nearest());
+        }
+        eight[lane]
     })
 }

@@ -40,6 +40,20 @@ pub(super) struct Tessellated {
     triangle_surfaces: Vec<u16>,
     /// Of each vertex, the number of its point: vertices in one place have the same.
     points: Vec<u32>,
+    /// Of each triangle, whether its edges have been looked at, and none of them bent.
+    settled: Vec<bool>,
+    /// Of each vertex, its light, and how far what it mirrors is from each light.
+    known: Known,
+}
+
+/// What the light at the vertices is found out to be, once for each.
+#[derive(Debug, Default)]
+struct Known {
+    /// Intensities of front and back.
+    light: Vec<(f64, f64)>,
+    /// One for each sun and each lamp, if any surface has a highlight: the angle between the eye and the light,
+    /// mirrored.
+    angles: Vec<f64>,
 }
 
 impl Tessellated {
@@ -68,7 +82,12 @@ impl Tessellated {
         self.triangle_surfaces.extend_from_slice(geometry.triangle_surfaces);
         self.points.clear();
         self.points.extend_from_slice(points);
-        let bend = Bend { lights, paints, tolerance: f64::from(tolerance) / 255.0 };
+        self.settled.clear();
+        self.settled.resize(self.triangles.len(), false);
+        self.known.light.clear();
+        self.known.angles.clear();
+        let has_highlights = paints.iter().any(|paint| paint.answer.specular != 0.0);
+        let bend = Bend { lights, paints, tolerance: f64::from(tolerance) / 255.0, has_highlights };
         for _ in 0..DEPTH {
             if self.triangles.len() >= MOST || !self.halve(&bend) {
                 return;
@@ -96,6 +115,9 @@ impl Tessellated {
             + (self.vertex_surfaces.capacity() + self.triangle_surfaces.capacity()) * 2
             + self.triangles.capacity() * size_of::<[u32; 3]>()
             + self.points.capacity() * 4
+            + self.settled.capacity()
+            + self.known.light.capacity() * size_of::<(f64, f64)>()
+            + self.known.angles.capacity() * size_of::<f64>()
     }
 
     /// The edge between two vertices, whichever way it is run through, and whichever vertices at its two
@@ -107,11 +129,16 @@ impl Tessellated {
 
     /// Halves every edge that bends, once. Returns whether there was one.
     fn halve(&mut self, bend: &Bend<'_>) -> bool {
+        self.light(bend);
         // The edges that are split, by their points, and the number of the new point.
         let mut halved: BTreeMap<(u32, u32), u32> = BTreeMap::new();
         // Below 2³¹, as a mesh's vertices are, and splitting ends before there are twice as many.
         let mut points = self.points.iter().max().map_or(0, |last| last + 1);
-        for &[a, b, c] in &self.triangles {
+        for (&[a, b, c], settled) in self.triangles.iter().zip(&self.settled) {
+            // What did not bend does not bend now.
+            if *settled {
+                continue;
+            }
             for (a, b) in [(a, b), (b, c), (c, a)] {
                 let edge = self.edge(a, b);
                 // Two faces that meet at a crease have normals of their own there: it is enough that one
@@ -138,7 +165,10 @@ impl Tessellated {
             let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
             let mut parts: [Option<[u32; 3]>; 4] = [None; 4];
             match (ab, bc, ca) {
-                (None, None, None) => continue,
+                (None, None, None) => {
+                    self.settled[i] = true;
+                    continue;
+                }
                 (Some(ab), Some(bc), Some(ca)) => {
                     parts = [Some([a, ab, ca]), Some([ab, b, bc]), Some([ca, bc, c]), Some([ab, bc, ca])];
                 }
@@ -152,13 +182,27 @@ impl Tessellated {
             for (k, part) in parts.into_iter().flatten().enumerate() {
                 if k == 0 {
                     self.triangles[i] = part;
+                    self.settled[i] = false;
                 } else {
                     self.triangles.push(part);
+                    self.settled.push(false);
                     self.triangle_surfaces.push(surface);
                 }
             }
         }
         true
+    }
+
+    /// Lights the vertices that are new.
+    fn light(&mut self, bend: &Bend<'_>) {
+        for vertex in self.known.light.len()..self.positions.len() {
+            let (position, normal) = (self.positions[vertex], self.normals[vertex]);
+            let paint = &bend.paints[usize::from(self.vertex_surfaces[vertex])];
+            self.known.light.push(bend.lights.one_channel(&paint.answer, position, normal));
+            if bend.has_highlights {
+                self.known.angles.extend(bend.angles(position, normal));
+            }
+        }
     }
 
     fn add_middle(&mut self, a: u32, b: u32, point: u32) -> u32 {
@@ -193,6 +237,8 @@ struct Bend<'a> {
     paints: &'a [Paint],
     /// Of full intensity.
     tolerance: f64,
+    /// Whether any surface has one.
+    has_highlights: bool,
 }
 
 impl Bend<'_> {
@@ -219,14 +265,13 @@ impl Bend<'_> {
             }
         }
         // A highlight, of which the eye sees something here.
-        if paint.answer.specular != 0.0 && self.mirrors(paint, ends, [na, nb], square, eight) {
+        if paint.answer.specular != 0.0 && self.mirrors(mesh, [a, b], paint, square, eight) {
             return true;
         }
         // Normals that turn.
         let middle = unit(na + nb).unwrap_or(na);
         let light = |position: Vec3, normal: Vec3| self.lights.one_channel(&paint.answer, position, normal);
-        let (fa, ba) = light(pa, na);
-        let (fb, bb) = light(pb, nb);
+        let ((fa, ba), (fb, bb)) = (mesh.known.light[a], mesh.known.light[b]);
         let (fm, bm) = light(pa * 0.5 + pb * 0.5, middle);
         let off = |a: f64, b: f64, m: f64| {
             let shown = |i: f64| i.clamp(0.0, 1.0);
@@ -235,34 +280,48 @@ impl Bend<'_> {
         off(fa, fb, fm) > self.tolerance || off(ba, bb, bm) > self.tolerance
     }
 
-    /// Whether a highlight near the edge bends too much along it.
-    fn mirrors(&self, paint: &Paint, ends: [[f64; 3]; 2], normals: [Vec3; 2], square: f64, eight: f64) -> bool {
-        let eye = to_segment(self.lights.eye, ends);
-        let shininess = paint.answer.shininess.max(1.0);
-        let towards = |i: usize, light: [f64; 3]| {
-            let n = widen(normals[i]);
-            let (l, v) = (unit3(light), unit3(sub(self.lights.eye, ends[i])));
+    /// Between the eye and each light, suns first, mirrored at a point.
+    fn angles(&self, position: Vec3, normal: Vec3) -> impl Iterator<Item = f64> {
+        let (at, n) = (widen(position), widen(normal));
+        let v = unit3(sub(self.lights.eye, at));
+        let angle = move |light: [f64; 3]| {
+            let l = unit3(light);
             let along = 2.0 * dot(n, l) * dot(n, v) - dot(l, v);
             libm::acos(along.clamp(-1.0, 1.0))
         };
+        let suns = self.lights.suns.iter().map(|sun| widen(sun.towards));
+        suns.chain(self.lights.lamps.iter().map(move |lamp| sub(lamp.position, at))).map(angle)
+    }
+
+    /// Whether a highlight near the edge bends too much along it.
+    fn mirrors(&self, mesh: &Tessellated, edge: [usize; 2], paint: &Paint, square: f64, eight: f64) -> bool {
+        let ends = edge.map(|vertex| widen(mesh.positions[vertex]));
+        let normals = edge.map(|vertex| mesh.normals[vertex]);
+        let count = self.lights.suns.len() + self.lights.lamps.len();
+        let angles = |light: usize| edge.map(|vertex| mesh.known.angles[vertex * count + light]);
+        let eye = to_segment(self.lights.eye, ends);
+        let shininess = paint.answer.shininess.max(1.0);
+        // What its normals turn by, twice.
+        let turned = 2.0 * libm::acos(f64::from(normals[0].dot(normals[1])).clamp(-1.0, 1.0));
         let strong = |nearest: f64, angles: [f64; 2], intensity: f64| {
+            let strength = paint.answer.specular.abs() * intensity;
+            let bends = square * shininess * strength > eight * nearest;
+            if !bends {
+                return false;
+            }
             // Along the edge the mirrored direction turns by no more than the edge is seen under, from
             // the eye and from the lamp, and twice what its normals turn by.
-            let turn = libm::sqrt(square / nearest.max(f64::MIN_POSITIVE))
-                + 2.0 * libm::acos(f64::from(normals[0].dot(normals[1])).clamp(-1.0, 1.0));
+            let turn = libm::sqrt(square / nearest.max(f64::MIN_POSITIVE)) + turned;
             let angle = (angles[0].min(angles[1]) - turn).max(0.0);
             let most = if angle < core::f64::consts::FRAC_PI_2 { libm::pow(libm::cos(angle), shininess) } else { 0.0 };
-            let strength = paint.answer.specular.abs() * intensity;
-            most * strength > self.tolerance && square * shininess * strength > eight * nearest
+            most * strength > self.tolerance
         };
-        let suns = self.lights.suns.iter().any(|sun| {
-            let angles = [0, 1].map(|i| towards(i, widen(sun.towards)));
-            strong(eye, angles, f64::from(sun.intensity.abs()))
-        });
-        suns || self.lights.lamps.iter().any(|lamp| {
-            let angles = [0, 1].map(|i| towards(i, sub(lamp.position, ends[i])));
-            strong(eye.min(to_segment(lamp.position, ends)), angles, f64::from(lamp.intensity.abs()))
-        })
+        let suns = self.lights.suns.iter().enumerate();
+        let lamps = (self.lights.suns.len()..).zip(self.lights.lamps);
+        suns.into_iter().any(|(i, sun)| strong(eye, angles(i), f64::from(sun.intensity.abs())))
+            || lamps.into_iter().any(|(i, lamp)| {
+                strong(eye.min(to_segment(lamp.position, ends)), angles(i), f64::from(lamp.intensity.abs()))
+            })
     }
 }
 

@@ -1,27 +1,43 @@
 //! What light needs at every pixel: normal and position, perspective-correct. A pass that writes no pixel.
 
-/// Six numbers at each pixel of a row, each the quotient of two that change linearly along it:
+/// Pixels that are lit at a time: two to eight vectors of a processor, and no more than short spans have.
+pub const LANES: usize = 8;
+
+/// One number for each of so many pixels that follow each other.
+pub type Lanes<T> = [T; LANES];
+
+/// Normal and position, x, y and z each, of as many pixels.
+pub type Points = [Lanes<f32>; 6];
+
+/// Six numbers at each of eight pixels of a row, from pixel `first` on, each the quotient of two that change
+/// linearly along it:
 ///
 /// ```text
-/// points[k][i] = (a[i] + k·da[i]) / (d + k·dd)
+/// points[i][k − first] = (a[i] + k·da[i]) · (1 / (d + k·dd))
 /// ```
 ///
-/// in f64, a product, a sum and a quotient, each rounded once and in this order, then to f32. Every point
+/// in f64, products, sums and one reciprocal, each rounded once and in this order, then to f32. Every point
 /// is made from its own k: it does not depend on how many were made before it, but for k itself.
 ///
-/// For Phong's shading `a` is normal and position at the first pixel, each over w, and `d` is 1/w; `da` and
-/// `dd` are what they change by from one pixel to the next.
+/// For Phong's shading `a` is normal and position at pixel 0, each over w, and `d` is 1/w; `da` and
+/// `dd` are what they change by from one pixel to the next. Beyond the end of a row points may be anything.
 ///
 /// Floats are what it is about, so a processor without them pays for calling it (and only then: it is
 /// compiled where it is called).
 #[inline]
-pub fn interpolate(points: &mut [[f32; 6]], a: [f64; 6], da: [f64; 6], d: f64, dd: f64) {
-    for (k, point) in points.iter_mut().enumerate() {
-        // Exact: no row is 2⁵³ pixels long.
-        let k = k as f64;
-        let divisor = d + k * dd;
-        for (value, (a, da)) in point.iter_mut().zip(a.iter().zip(&da)) {
-            *value = ((a + k * da) / divisor) as f32;
+#[must_use]
+pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+    let mut places = [0.0; LANES];
+    let mut reciprocals = [0.0; LANES];
+    for (lane, (place, reciprocal)) in (0_u16..).zip(places.iter_mut().zip(&mut reciprocals)) {
+        *place = f64::from(first) + f64::from(lane);
+        *reciprocal = 1.0 / (d + *place * dd);
+    }
+    let mut points = [[0.0; LANES]; 6];
+    for (values, (a, da)) in points.iter_mut().zip(a.iter().zip(da)) {
+        for (value, (place, reciprocal)) in values.iter_mut().zip(places.iter().zip(&reciprocals)) {
+            *value = ((a + place * da) * reciprocal) as f32;
         }
     }
+    points
 }

@@ -35,6 +35,7 @@
 //! What the engine makes of the scene, as [`Shown`], is compared by [`ErrorMap`].
 
 mod body;
+mod bound;
 mod clip;
 mod cover;
 mod error;
@@ -48,6 +49,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use self::body::{Body, Corner};
+pub use self::bound::Bound;
 use self::cover::Rounded;
 pub use self::error::{ErrorMap, Figures, Shown, Swim};
 use self::eye::Eye;

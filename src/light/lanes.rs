@@ -1,0 +1,324 @@
+//! The sum of all light at eight points of a surface at a time, in plain arrays that the compiler vectorises.
+//!
+//! The same numbers as [`Lights::one_channel`] and [`Lights::three_channels`] give for the front of each point: the
+//! same operations in the same order, and each of them (sum, product, quotient, square root) rounds alike in a vector
+//! and alone. Where a point has no part in a light, nought is added, which changes no sum: none is −0, as each
+//! begins at +0.
+
+use super::intensity::{Answer, Lights, Wide};
+use super::power::Shininess;
+use crate::span::lit::{LANES, Lanes, Points};
+
+type Wides = Lanes<f64>;
+
+/// x, y and z.
+type Vectors = [Wides; 3];
+
+const NOUGHT: Wides = [0.0; LANES];
+
+/// What falls on the points, for each channel.
+struct Front<const N: usize> {
+    diffuse: [Wides; N],
+    specular: [Wides; N],
+}
+
+impl<const N: usize> Front<N> {
+    #[inline]
+    fn add(&mut self, light: [f64; N], fall_off: Option<&Wides>, cosines: &Wides, highlights: Option<&Wides>) {
+        for (channel, intensity) in light.into_iter().enumerate() {
+            let mut lights = [intensity; LANES];
+            if let Some(fall_off) = fall_off {
+                for (light, fall_off) in lights.iter_mut().zip(fall_off) {
+                    *light *= fall_off;
+                }
+            }
+            for (sum, (light, cosine)) in self.diffuse[channel].iter_mut().zip(lights.iter().zip(cosines)) {
+                *sum += light * cosine;
+            }
+            let Some(highlights) = highlights else { continue };
+            for (sum, (light, highlight)) in self.specular[channel].iter_mut().zip(lights.iter().zip(highlights)) {
+                *sum += light * highlight;
+            }
+        }
+    }
+}
+
+/// The normals at the points, made unit and rounded to f32; 0 where there are none, as their ends cancel.
+#[inline]
+fn unit_normals(points: &Points) -> [Lanes<f32>; 3] {
+    let wide = [0, 1, 2].map(|axis| widen(&points[axis]));
+    let squares = dot(&wide, &wide);
+    let mut parts = NOUGHT;
+    for (part, square) in parts.iter_mut().zip(&squares) {
+        let length = square_root(*square);
+        *part = if length > 0.0 && length < f64::INFINITY { 1.0 / length } else { 0.0 };
+    }
+    let mut normals = [[0.0; LANES]; 3];
+    for (values, wide) in normals.iter_mut().zip(&wide) {
+        for (value, (wide, part)) in values.iter_mut().zip(wide.iter().zip(&parts)) {
+            // Of −0 too, as where one normal is made unit.
+            *value = (wide * part) as f32 + 0.0;
+        }
+    }
+    normals
+}
+
+impl Lights<'_> {
+    /// The whole sum on one channel, not yet clamped, for the side that the points' normals, of any length, point
+    /// away from.
+    pub(crate) fn front_of_one_channel(&self, answer: &Answer, points: &Points) -> Wides {
+        let front = self.front(answer, points, |sun| [f64::from(sun.intensity)], |lamp| [f64::from(lamp.intensity)]);
+        let [mut body] = front.diffuse;
+        for (body, highlight) in body.iter_mut().zip(&front.specular[0]) {
+            *body = (answer.ambient + answer.diffuse * *body) + answer.specular * highlight;
+        }
+        body
+    }
+
+    /// The same on three channels: red, green, blue.
+    pub(crate) fn front_of_three_channels(&self, answer: &Answer, points: &Points) -> [Wides; 3] {
+        let front = self.front(answer, points, |sun| sun.channels.map(f64::from), |lamp| lamp.channels.map(f64::from));
+        let mut channels = front.diffuse;
+        for (i, channel) in channels.iter_mut().enumerate() {
+            for (body, highlight) in channel.iter_mut().zip(&front.specular[i]) {
+                let (own, mirrored) = (answer.ambient + answer.diffuse * *body, answer.specular * highlight);
+                *body = own * answer.color[i] + mirrored * answer.highlight[i];
+            }
+        }
+        channels
+    }
+
+    #[inline]
+    fn front<const N: usize>(
+        &self,
+        answer: &Answer,
+        points: &Points,
+        of_sun: impl Fn(&super::Beam) -> [f64; N],
+        of_lamp: impl Fn(&super::LampBeam) -> [f64; N],
+    ) -> Front<N> {
+        let mut front = Front { diffuse: [NOUGHT; N], specular: [NOUGHT; N] };
+        let narrow = unit_normals(points);
+        let normals = narrow.each_ref().map(widen);
+        let places = [3, 4, 5].map(|axis| widen(&points[axis]));
+        // As in `Lights::sum`.
+        let is_specular = !cfg!(mode13h_leave_out = "specular") && answer.specular != 0.0;
+        let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
+        let shininess = Shininess::new(answer.shininess);
+        let eye = is_specular.then(|| Eye::new(unit(&from(&self.eye, &places)), &normals));
+        for sun in self.suns {
+            let towards = sun.towards.to_array();
+            let mut cosines = NOUGHT;
+            for (lane, cosine) in cosines.iter_mut().enumerate() {
+                let [x, y, z] = [0, 1, 2].map(|axis| narrow[axis][lane] * towards[axis]);
+                *cosine = f64::from((x + y) + z);
+            }
+            let cosines = positive(&cosines);
+            if cosines == NOUGHT {
+                continue;
+            }
+            let highlights = eye.as_ref().map(|eye| {
+                let towards = towards.map(|c| [f64::from(c); LANES]);
+                eye.highlights(&towards, &cosines, shininess)
+            });
+            front.add(of_sun(sun), None, &cosines, highlights.as_ref());
+        }
+        for lamp in lamps {
+            let to_lamp = from(&lamp.position, &places);
+            let squares = dot(&to_lamp, &to_lamp).map(|square| square * lamp.inverse_square);
+            let towards = unit(&to_lamp);
+            let mut cosines = positive(&dot(&normals, &towards));
+            let mut fall_off = NOUGHT;
+            for (cosine, (fall_off, square)) in cosines.iter_mut().zip(fall_off.iter_mut().zip(&squares)) {
+                // NaN, of what is too far to be squared, fails it too.
+                let is_in_range = *square < 1.0;
+                *fall_off = if is_in_range { (1.0 - square) * (1.0 - square) } else { 0.0 };
+                *cosine = if is_in_range { *cosine } else { 0.0 };
+            }
+            if cosines == NOUGHT {
+                continue;
+            }
+            let highlights = eye.as_ref().map(|eye| eye.highlights(&towards, &cosines, shininess));
+            front.add(of_lamp(lamp), Some(&fall_off), &cosines, highlights.as_ref());
+        }
+        front
+    }
+}
+
+/// The eye, for highlights.
+struct Eye {
+    /// Unit; not a number where the eye is at the point itself.
+    towards: Vectors,
+    /// Its cosine with the normal.
+    cosines: Wides,
+}
+
+impl Eye {
+    #[inline]
+    fn new(towards: Vectors, normals: &Vectors) -> Self {
+        Self { towards, cosines: dot(normals, &towards) }
+    }
+
+    /// max(0, r·v)^s; 0 where the light's own cosine is.
+    #[inline]
+    fn highlights(&self, towards: &Vectors, cosines: &Wides, shininess: Shininess) -> Wides {
+        let mut along = dot(towards, &self.towards);
+        for (along, (cosine, eye)) in along.iter_mut().zip(cosines.iter().zip(&self.cosines)) {
+            let mirrored = 2.0 * cosine * eye - *along;
+            *along = if *cosine > 0.0 { mirrored } else { 0.0 };
+        }
+        let along = positive(&along);
+        if along == NOUGHT { NOUGHT } else { shininess.of_lanes(&along) }
+    }
+}
+
+/// What is above 0; nought for the rest, and for what is no number.
+#[inline]
+fn positive(values: &Wides) -> Wides {
+    let mut positive = NOUGHT;
+    for (positive, value) in positive.iter_mut().zip(values) {
+        *positive = if *value > 0.0 { *value } else { 0.0 };
+    }
+    positive
+}
+
+#[inline]
+fn widen(values: &Lanes<f32>) -> Wides {
+    let mut wide = NOUGHT;
+    for (wide, value) in wide.iter_mut().zip(values) {
+        *wide = f64::from(*value);
+    }
+    wide
+}
+
+/// From the points to `to`.
+#[inline]
+fn from(to: &Wide, points: &Vectors) -> Vectors {
+    let mut vectors = *points;
+    for (values, to) in vectors.iter_mut().zip(to) {
+        for value in values {
+            *value = to - *value;
+        }
+    }
+    vectors
+}
+
+#[inline]
+fn dot(a: &Vectors, b: &Vectors) -> Wides {
+    let mut sums = NOUGHT;
+    for (lane, sum) in sums.iter_mut().enumerate() {
+        *sum = a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane];
+    }
+    sums
+}
+
+/// Not a number where there is no direction.
+#[inline]
+fn unit(vectors: &Vectors) -> Vectors {
+    let squares = dot(vectors, vectors);
+    let mut parts = NOUGHT;
+    for (part, square) in parts.iter_mut().zip(&squares) {
+        *part = 1.0 / square_root(*square);
+    }
+    let mut units = *vectors;
+    for values in &mut units {
+        for (value, part) in values.iter_mut().zip(&parts) {
+            *value *= part;
+        }
+    }
+    units
+}
+
+/// Both are the number nearest to the root, so they are one number. The compiler makes vectors of the first.
+#[inline]
+fn square_root(square: f64) -> f64 {
+    #[cfg(feature = "std")]
+    {
+        square.sqrt()
+    }
+    #[cfg(not(feature = "std"))]
+    {
+        libm::sqrt(square)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Beam, LampBeam};
+    use super::*;
+    use crate::mesh::normals;
+    use glam::Vec3;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = [f32; 3]> {
+        // Near 0, as a face has it, and at the ends of what there is.
+        prop_oneof![
+            8 => prop::array::uniform3(-2.0_f32..2.0),
+            1 => Just([0.0; 3]),
+            1 => prop::array::uniform3(prop::sample::select(vec![f32::MAX, -f32::MAX, 1e-40, -0.0, 1.0, 0.0])),
+        ]
+    }
+
+    fn sun() -> impl Strategy<Value = Beam> {
+        (vector(), -1.0_f32..2.0, prop::array::uniform3(0.0_f32..1.0)).prop_map(|(v, intensity, channels)| Beam {
+            towards: normals::unit(Vec3::from(v)).unwrap_or(Vec3::Z),
+            intensity,
+            channels,
+        })
+    }
+
+    fn lamp() -> impl Strategy<Value = LampBeam> {
+        (vector(), 0.01_f64..10.0, -1.0_f32..2.0, prop::array::uniform3(0.0_f32..1.0)).prop_map(
+            |(v, inverse_square, intensity, channels)| LampBeam {
+                position: v.map(f64::from),
+                intensity,
+                channels,
+                inverse_square,
+            },
+        )
+    }
+
+    fn answer() -> impl Strategy<Value = Answer> {
+        let shininess = prop_oneof![(0_u32..200).prop_map(f64::from), 0.0..60.0];
+        (prop::array::uniform3(0.0..1.0), prop::bool::ANY, shininess, prop::array::uniform3(0.0..1.0)).prop_map(
+            |([ambient, diffuse, specular], is_specular, shininess, color)| Answer {
+                ambient,
+                diffuse,
+                specular: if is_specular { specular } else { 0.0 },
+                shininess,
+                color,
+                highlight: [1.0, 0.5, 0.25],
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2_000))]
+        /// Every bit of every lane is that of one point alone.
+        #[test]
+        fn eight_points_are_each_for_itself(
+            ends in prop::array::uniform8((vector(), vector())),
+            suns in prop::collection::vec(sun(), 0..4),
+            lamps in prop::collection::vec(lamp(), 0..4),
+            eye in vector(),
+            answer in answer(),
+        ) {
+            let lights = Lights { suns: &suns, lamps: &lamps, eye: eye.map(f64::from) };
+            let mut points = [[0.0; LANES]; 6];
+            for (lane, (normal, position)) in ends.iter().enumerate() {
+                for axis in 0..3 {
+                    points[axis][lane] = normal[axis];
+                    points[axis + 3][lane] = position[axis];
+                }
+            }
+            let one = lights.front_of_one_channel(&answer, &points);
+            let three = lights.front_of_three_channels(&answer, &points);
+            for (lane, (normal, position)) in ends.into_iter().enumerate() {
+                let (normal, position) = (normals::unit(normal.into()).unwrap_or(Vec3::ZERO), Vec3::from(position));
+                let (front, _) = lights.one_channel(&answer, position, normal);
+                prop_assert_eq!(one[lane].to_bits(), front.to_bits(), "{} and {}", one[lane], front);
+                let (front, _) = lights.three_channels(&answer, position, normal);
+                prop_assert_eq!(three.map(|channel| channel[lane].to_bits()), front.map(f64::to_bits));
+            }
+        }
+    }
+}
