@@ -13,6 +13,7 @@ use crate::palette::Table;
 use crate::raster::effects::{Attributes, Lighting, Look, Mix, Source, TextureLook};
 use crate::raster::{Drawn, Frame, Raster, Rect, Vertex};
 use crate::span::Kernel;
+use crate::span::lit::{Lanes, Points};
 
 /// Where the shades of a face come from.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -95,23 +96,38 @@ impl OnePixel {
     }
 }
 
-/// Notes what is asked of a light.
+/// Notes what is asked of a light last: eight points, and the shades of each on three channels.
 #[derive(Debug)]
 struct Noted<'a> {
     light: &'a dyn Lighting,
-    last: Cell<Option<([f32; 6], [u16; 3])>>,
+    last: Cell<Option<(Points, [Lanes<u16>; 3])>>,
 }
 
 impl Lighting for Noted<'_> {
-    fn shades(&self, points: &[[f32; 6]], shades: &mut [u16]) {
-        self.light.shades(points, shades);
-        self.last.set(points.last().copied().zip(shades.last().map(|shade| [*shade; 3])));
+    fn shades(&self, points: &Points) -> Lanes<u16> {
+        let shades = self.light.shades(points);
+        self.last.set(Some((*points, [shades; 3])));
+        shades
     }
 
-    fn channels(&self, points: &[[f32; 6]], [red, green, blue]: [&mut [u16]; 3]) {
-        self.light.channels(points, [&mut *red, &mut *green, &mut *blue]);
-        let [red, green, blue] = [red, green, blue].map(|channel| channel.last().copied().unwrap_or_default());
-        self.last.set(points.last().map(|point| (*point, [red, green, blue])));
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
+        let channels = self.light.channels(points);
+        self.last.set(Some((*points, channels)));
+        channels
+    }
+}
+
+/// Shows which of eight points a pixel is.
+#[derive(Debug)]
+struct Numbers;
+
+impl Lighting for Numbers {
+    fn shades(&self, _: &Points) -> Lanes<u16> {
+        core::array::from_fn(|lane| (lane as u16) << 8)
+    }
+
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
+        [self.shades(points); 3]
     }
 }
 
@@ -172,7 +188,11 @@ fn stages(
         Source::Lit(light) => {
             let noted = Noted { light, last: Cell::new(None) };
             pixel.look(met, behind, &Look { source: Source::Lit(&noted), ..bare });
-            if let Some(([nx, ny, nz, x, y, z], shades)) = noted.last.get() {
+            let lane = usize::from(pixel.look(met, behind, &Look { source: Source::Lit(&Numbers), ..single }));
+            if let Some((points, shades)) = noted.last.get() {
+                // Below 8.
+                let [nx, ny, nz, x, y, z] = points.map(|of| of[lane]);
+                let shades = shades.map(|of| of[lane]);
                 made.shaded_by = ShadedBy::Light { normal: [nx, ny, nz], position: [x, y, z], shades };
             }
         }
