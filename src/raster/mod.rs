@@ -22,6 +22,7 @@
 //! | [`depth`] | whether it is in front |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
+//! | [`batch`] | the same for many triangles at a time: [`Raster::batch`] |
 //! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
 //! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
@@ -38,6 +39,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod batch;
 pub mod clip;
 pub mod cover;
 pub mod depth;
@@ -63,6 +65,7 @@ pub mod vertex;
 mod weights;
 pub mod wide;
 
+pub use batch::Batch;
 pub use depth::DepthBuffer;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;

@@ -84,6 +84,7 @@ pub(super) mod arrays {
 #[cfg(target_arch = "x86_64")]
 pub(super) mod sse2 {
     use super::super::dither::fill_dithered_portable;
+    use super::super::list::{Listed, each};
     use core::arch::x86_64::*;
 
     /// Even and odd shades of a block of 16 pixels.
@@ -149,6 +150,12 @@ pub(super) mod sse2 {
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
         // SAFETY: x86-64 includes SSE2.
         unsafe { vectors(row, shade, step) }
+    }
+
+    /// Every span of a list.
+    pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
+        // SAFETY: x86-64 includes SSE2.
+        each(pixels, spans, |row, shade, step| unsafe { vectors(row, shade, step) });
     }
 
     /// Rows of less than 16, each with stores that overlap instead of a loop for the rest.
@@ -232,6 +239,7 @@ pub(super) mod sse2 {
 
 #[cfg(target_arch = "x86_64")]
 pub(super) mod avx2 {
+    use super::super::list::{Listed, each};
     use super::sse2;
     use core::arch::x86_64::*;
 
@@ -247,6 +255,16 @@ pub(super) mod avx2 {
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
         // SAFETY: the table gives this function out only where AVX2 was found.
         unsafe { vectors(row, shade, step) }
+    }
+
+    /// Every span of a list, only for such a processor.
+    pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
+        #[target_feature(enable = "avx2")]
+        fn list(pixels: &mut [u8], spans: &[Listed]) {
+            each(pixels, spans, |row, shade, step| vectors(row, shade, step));
+        }
+        // SAFETY: the table gives this function out only where AVX2 was found.
+        unsafe { list(pixels, spans) }
     }
 
     #[derive(Clone, Copy)]
@@ -312,6 +330,8 @@ pub(super) mod avx2 {
 /// AVX-512 in assembly: its intrinsics came with Rust 1.89, and this crate builds with 1.88.
 #[cfg(target_arch = "x86_64")]
 pub(super) mod avx512 {
+    use super::super::list::Listed;
+
     /// What the vectors start from, read by the assembly at the offsets beside it.
     #[repr(C, align(64))]
     struct Constants {
@@ -345,9 +365,17 @@ pub(super) mod avx512 {
         #[cfg(feature = "std")]
         return std::arch::is_x86_feature_detected!("avx512f")
             && std::arch::is_x86_feature_detected!("avx512bw")
+            && std::arch::is_x86_feature_detected!("avx512vl")
+            && std::arch::is_x86_feature_detected!("avx2")
             && std::arch::is_x86_feature_detected!("bmi2");
         #[cfg(not(feature = "std"))]
-        return cfg!(all(target_feature = "avx512f", target_feature = "avx512bw", target_feature = "bmi2"));
+        return cfg!(all(
+            target_feature = "avx512f",
+            target_feature = "avx512bw",
+            target_feature = "avx512vl",
+            target_feature = "avx2",
+            target_feature = "bmi2"
+        ));
     }
 
     /// Only for a processor for which [`found`] is true.
@@ -411,6 +439,43 @@ pub(super) mod avx512 {
                 out("k1") _, out("k2") _,
                 options(nostack),
             );
+        }
+    }
+
+    /// Every span of a list, only for such a processor: those of at most 16 pixels, which are nearly all, by one
+    /// masked store each, with even and odd pixels as in `fill`. Longer ones go to `fill`.
+    pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
+        for span in spans {
+            let at = span.at as usize;
+            let Some(row) = pixels.get_mut(at..at.saturating_add(span.length as usize)) else { continue };
+            if row.len() > 16 {
+                fill(row, span.shade, span.step);
+                continue;
+            }
+            // SAFETY: as in `fill`. Written are the first `row.len()` bytes of `row`, at most 16, by the mask. Read are
+            // `CONSTANTS` and the two last fields of `span`, at the offsets of `repr(C)`.
+            unsafe {
+                core::arch::asm!(
+                    "vpbroadcastw xmm16, word ptr [{span} + 10]",       // step
+                    "vpbroadcastw xmm17, word ptr [{span} + 8]",        // shade
+                    "bzhi       {mask:e}, {mask:e}, {length:e}",
+                    "vpmullw    xmm18, xmm16, [{constants}]",
+                    "vpaddw     xmm18, xmm18, xmm17",                   // even
+                    "kmovd      k1, {mask:e}",
+                    "vpaddw     xmm19, xmm18, xmm16",                   // odd
+                    "vpsrlw     xmm18, xmm18, 8",
+                    "vpternlogd xmm18, xmm19, [{constants} + 88]{{1to4}}, 0xF8", // even >> 8 | odd & 0xFF00
+                    "vmovdqu8   [{row}]{{k1}}, xmm18",
+                    span = in(reg) span,
+                    row = in(reg) row.as_mut_ptr(),
+                    length = in(reg) row.len() as u32, // at most 16
+                    mask = inout(reg) u32::MAX => _,
+                    constants = in(reg) &raw const CONSTANTS,
+                    out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _,
+                    out("k1") _,
+                    options(nostack),
+                );
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::ffi::c_int;
 
 use mode13h::fixed::U8F8;
-use mode13h::raster::{Frame, Raster, Shading, Vertex};
+use mode13h::raster::{Batch, Frame, Raster, Shading, Vertex};
 use mode13h::span::Kernel;
 use retrofire_core::geom::vertex;
 use retrofire_core::math::point::pt3;
@@ -39,6 +39,7 @@ pub fn all(triangles: &[[Vertex; 3]], shade: Shade) -> Vec<Box<dyn Contender>> {
     ];
     for kernel in [Kernel::PORTABLE, Kernel::fastest()] {
         all.push(Box::new(Ours::new(triangles, shade, kernel)));
+        all.push(Box::new(Batches::new(triangles, shade, kernel)));
     }
     all
 }
@@ -53,6 +54,13 @@ fn is_inside(triangles: &[[Vertex; 3]]) -> bool {
     triangles.iter().flatten().all(|v| within(v.x().to_bits(), WIDTH) && within(v.y().to_bits(), HEIGHT))
 }
 
+fn shading(vertices: &[Vertex; 3], shade: Shade) -> Shading {
+    match shade {
+        Shade::Linear => Shading::GouraudReseeded,
+        Shade::Flat => Shading::Flat(vertices[0].shade().nearest()),
+    }
+}
+
 /// The raster, a triangle a call.
 struct Ours {
     triangles: Vec<([Vertex; 3], Shading)>,
@@ -62,18 +70,14 @@ struct Ours {
 
 impl Ours {
     fn new(triangles: &[[Vertex; 3]], shade: Shade, kernel: Kernel) -> Self {
-        let shading = |vertices: &[Vertex; 3]| match shade {
-            Shade::Linear => Shading::GouraudReseeded,
-            Shade::Flat => Shading::Flat(vertices[0].shade().nearest()),
-        };
-        let triangles = triangles.iter().map(|vertices| (*vertices, shading(vertices))).collect();
+        let triangles = triangles.iter().map(|vertices| (*vertices, shading(vertices, shade))).collect();
         Self { triangles, kernel, bytes: vec![0; WIDTH * HEIGHT] }
     }
 }
 
 impl Contender for Ours {
     fn name(&self) -> String {
-        format!("mode13h, {}", self.kernel)
+        format!("one by one, {}", self.kernel)
     }
 
     fn is_ours(&self) -> bool {
@@ -89,6 +93,53 @@ impl Contender for Ours {
         let mut raster = Raster::new(frame).with_kernel(self.kernel);
         for (vertices, shading) in &self.triangles {
             raster.triangle(vertices, *shading);
+        }
+    }
+
+    fn read(&mut self, bytes: &mut [u8]) {
+        bytes.copy_from_slice(&self.bytes);
+    }
+}
+
+/// The raster, a batch a call.
+struct Batches {
+    batches: Vec<Batch>,
+    kernel: Kernel,
+    bytes: Vec<u8>,
+}
+
+impl Batches {
+    fn new(triangles: &[[Vertex; 3]], shade: Shade, kernel: Kernel) -> Self {
+        let mut batches = Vec::new();
+        for triangles in triangles.chunks(Batch::CAPACITY) {
+            let mut batch = Batch::new();
+            for vertices in triangles {
+                assert!(batch.push(vertices, shading(vertices, shade)), "there is room");
+            }
+            batches.push(batch);
+        }
+        Self { batches, kernel, bytes: vec![0; WIDTH * HEIGHT] }
+    }
+}
+
+impl Contender for Batches {
+    fn name(&self) -> String {
+        format!("batches, {}", self.kernel)
+    }
+
+    fn is_ours(&self) -> bool {
+        true
+    }
+
+    fn clear(&mut self, index: u8) {
+        self.bytes.fill(index);
+    }
+
+    fn draw(&mut self) {
+        let frame = Frame::new(&mut self.bytes, WIDTH as u32, HEIGHT as u32, WIDTH).expect("a legal frame");
+        let mut raster = Raster::new(frame).with_kernel(self.kernel);
+        for batch in &self.batches {
+            raster.batch(batch);
         }
     }
 
