@@ -25,31 +25,48 @@ pub(super) const MOST_COLUMNS: i32 = 64;
 /// The highest.
 pub(super) const MOST_ROWS: i32 = 16;
 /// Triangles at a time.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 /// 1.5 · 2⁵².
-const MAGIC: f64 = 6_755_399_441_055_744.0;
+pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
 
-/// A list of spans, with room for those of several groups.
+/// A list of spans, with room for those of several groups, and the numbers on the way there. Filled in place: a
+/// copy of a group would cost as much as its rows.
 pub(super) struct Spans {
     spans: [Listed; Self::ROOM + 1],
-    /// The triangle of each.
-    triangles: [u8; Self::ROOM + 1],
     count: usize,
     covered: u32,
+    group: Group,
+    table: [Row; MOST_ROWS as usize],
 }
 
 impl Spans {
-    const ROOM: usize = 4 * LANES * MOST_ROWS as usize;
+    const ROOM: usize = 2 * LANES * MOST_ROWS as usize;
 
-    pub(super) fn new() -> Self {
-        let none = Listed { at: 0, length: 0, shade: 0, step: 0 };
-        Self { spans: [none; Self::ROOM + 1], triangles: [0; Self::ROOM + 1], count: 0, covered: 0 }
+    pub(super) const fn new() -> Self {
+        Self {
+            spans: [Listed { at: 0, length: 0, shade: 0, step: 0 }; Self::ROOM + 1],
+            count: 0,
+            covered: 0,
+            group: Group {
+                at: [0; LANES],
+                rows: [0; LANES],
+                long: NO_EDGES,
+                upper: NO_EDGES,
+                lower: NO_EDGES,
+                split: [0; LANES],
+                n: [0.0; LANES],
+                per_row: [0.0; LANES],
+                per_column: [0.0; LANES],
+                inverse: [0.0; LANES],
+                step: [0; LANES],
+            },
+            table: [const { Row { at: [0; LANES], length: [0; LANES], paint: [0; LANES] } }; MOST_ROWS as usize],
+        }
     }
 
     pub(super) fn as_slice(&self) -> &[Listed] {
         &self.spans[..self.count]
     }
-
 
     /// Pixels of all spans.
     pub(super) fn covered(&self) -> u32 {
@@ -70,44 +87,60 @@ pub(super) struct Place {
     pub(super) pitch: u32,
 }
 
-type Floats = [f64; LANES];
+pub(super) type Floats = [f64; LANES];
 type Ints = [i32; LANES];
 
 /// An edge: the first pixel on it or right of it in row j is `nearest((n + j·per_row) · inverse)`.
 #[derive(Clone, Copy)]
-struct Edges {
-    n: Floats,
-    per_row: Floats,
-    inverse: Floats,
+pub(super) struct Edges {
+    pub(super) n: Floats,
+    pub(super) per_row: Floats,
+    pub(super) inverse: Floats,
 }
 
 const NO_EDGES: Edges = Edges { n: [0.0; LANES], per_row: [0.0; LANES], inverse: [0.0; LANES] };
 
 /// Eight triangles.
-struct Group {
+pub(super) struct Group {
     /// The offset of the box's first pixel.
-    at: Ints,
-    rows: Ints,
-    long: Edges,
-    upper: Edges,
-    lower: Edges,
+    pub(super) at: Ints,
+    pub(super) rows: Ints,
+    pub(super) long: Edges,
+    pub(super) upper: Edges,
+    pub(super) lower: Edges,
     /// The first row of the lower edge.
-    split: Ints,
+    pub(super) split: Ints,
     /// Shades: `nearest((n + j·per_row + i·per_column) · inverse)`.
-    n: Floats,
-    per_row: Floats,
-    per_column: Floats,
-    inverse: Floats,
-    step: Ints,
+    pub(super) n: Floats,
+    pub(super) per_row: Floats,
+    pub(super) per_column: Floats,
+    pub(super) inverse: Floats,
+    /// In the upper half.
+    pub(super) step: Ints,
+}
+
+/// A row of each of eight triangles, counted from each one's first.
+pub(super) struct Row {
+    /// The offset of the first pixel.
+    pub(super) at: Ints,
+    pub(super) length: Ints,
+    /// The shade, and above it the step.
+    pub(super) paint: Ints,
 }
 
 /// Lists the rows of as many of the small triangles `kept` as there is room for, and says how many that were.
 pub(super) fn rows(batch: &Batch, kept: &[(u8, Kind)], place: Place, spans: &mut Spans) -> usize {
-    rows_inlined(batch, kept, place, spans)
+    rows_by(batch, kept, place, spans, row)
 }
 
 #[inline(always)]
-pub(super) fn rows_inlined(batch: &Batch, kept: &[(u8, Kind)], place: Place, spans: &mut Spans) -> usize {
+pub(super) fn rows_by(
+    batch: &Batch,
+    kept: &[(u8, Kind)],
+    place: Place,
+    spans: &mut Spans,
+    row: impl Fn(&Group, i32, i32, &mut Row),
+) -> usize {
     let mut listed = 0;
     for group in kept.chunks(LANES) {
         if spans.count + LANES * MOST_ROWS as usize > Spans::ROOM {
@@ -124,8 +157,8 @@ pub(super) fn rows_inlined(batch: &Batch, kept: &[(u8, Kind)], place: Place, spa
                 shade[corner][lane] = i32::from(batch.shade[corner][at]);
             }
         }
-        let set = set_up(&x, &y, &shade, place);
-        list(&set, group, place, spans);
+        set_up(&x, &y, &shade, place, &mut spans.group);
+        list(group.len(), place, spans, &row);
     }
     listed
 }
@@ -142,11 +175,8 @@ fn edge((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> (f64, f64, f64) {
 
 /// Edges and shades.
 #[inline(always)]
-fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place) -> Group {
-    let (mut long, mut upper, mut lower) = (NO_EDGES, NO_EDGES, NO_EDGES);
-    let (mut at, mut rows, mut split, mut step) = ([0; LANES], [0; LANES], [0; LANES], [0; LANES]);
-    let (mut n, mut per_row) = ([0.0; LANES], [0.0; LANES]);
-    let (mut per_column, mut inverse) = ([0.0; LANES], [0.0; LANES]);
+fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: &mut Group) {
+    let Group { at, rows, long, upper, lower, split, n, per_row, per_column, inverse, step } = group;
     // A column and a row are below 4,096, the pitch is at most 2¹⁶.
     let (pitch, first_row) = (place.pitch as i32, place.first_row as i32);
     for i in 0..LANES {
@@ -176,8 +206,7 @@ fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place) -> Grou
         split[i] = (p1.1 + 255) >> 8;
 
         // As `Ordered::gradient`, of any order of the corners: the quotients are the same.
-        let (dx1, dy1, dx2, dy2) =
-            (f64::from(bx - ax), f64::from(by - ay), f64::from(cx - ax), f64::from(cy - ay));
+        let (dx1, dy1, dx2, dy2) = (f64::from(bx - ax), f64::from(by - ay), f64::from(cx - ax), f64::from(cy - ay));
         let s = f64::from(shade[0][i]);
         let (ds1, ds2) = (f64::from(shade[1][i] - shade[0][i]), f64::from(shade[2][i] - shade[0][i]));
         let signed = dx1 * dy2 - dx2 * dy1;
@@ -193,10 +222,9 @@ fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place) -> Grou
         per_column[i] = gx * 256.0;
         // Toward zero. The wrap is meant, as in `ShadePlane`.
         let magnitude = whole((gx.abs() * 256.0 - half) * inverse[i] + MAGIC);
-        step[i] = if falls { magnitude.wrapping_neg() } else { magnitude };
+        step[i] = (if falls { magnitude.wrapping_neg() } else { magnitude }) << 16;
         rows[i] = if area == 0.0 { 0 } else { ((high_y + 127) >> 8) - row };
     }
-    Group { at, rows, long, upper, lower, split, n, per_row, per_column, inverse, step }
 }
 
 /// The whole number in the low bits of a sum with `MAGIC`.
@@ -206,42 +234,43 @@ fn whole(sum: f64) -> i32 {
     sum.to_bits() as i32
 }
 
-/// Puts the rows of a group into the list, triangle by triangle.
+/// Row number `row` of every triangle of a group.
 #[inline(always)]
-fn list(set: &Group, group: &[(u8, Kind)], place: Place, spans: &mut Spans) {
-    let mut first = [[0_i32; LANES]; MOST_ROWS as usize];
-    let mut end = [[0_i32; LANES]; MOST_ROWS as usize];
-    let mut shade = [[0_i32; LANES]; MOST_ROWS as usize];
-    let most = set.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
-    let table = first.iter_mut().zip(&mut end).zip(&mut shade);
-    for (row, ((first, end), shade)) in (0..most).zip(table) {
-        let j = f64::from(row);
-        for i in 0..LANES {
-            let at = |edges: &Edges| (edges.n[i] + edges.per_row[i] * j) * edges.inverse[i] + MAGIC;
-            let (long, upper, lower) = (at(&set.long), at(&set.upper), at(&set.lower));
-            let short = if row < set.split[i] { upper } else { lower };
-            let (left, right) = if long < short { (long, short) } else { (short, long) };
-            first[i] = whole(left);
-            end[i] = whole(right);
-            let n = set.n[i] + set.per_row[i] * j + set.per_column[i] * (left - MAGIC);
-            shade[i] = whole(n * set.inverse[i] + MAGIC);
-        }
+fn row(group: &Group, row: i32, pitch: i32, to: &mut Row) {
+    let j = f64::from(row);
+    for i in 0..LANES {
+        let at = |edges: &Edges| (edges.n[i] + edges.per_row[i] * j) * edges.inverse[i] + MAGIC;
+        let (long, upper, lower) = (at(&group.long), at(&group.upper), at(&group.lower));
+        let short = if row < group.split[i] { upper } else { lower };
+        let (left, right) = if long < short { (long, short) } else { (short, long) };
+        let (first, end) = (whole(left), whole(right));
+        let n = group.n[i] + group.per_row[i] * j + group.per_column[i] * (left - MAGIC);
+        let shade = whole(n * group.inverse[i] + MAGIC);
+        to.at[i] = group.at[i] + row * pitch + first;
+        to.length[i] = if row < group.rows[i] { end - first } else { 0 };
+        to.paint[i] = (shade & 0xFFFF) | group.step[i];
     }
-    let (mut count, mut covered) = (spans.count, 0);
-    for (i, &(triangle, _)) in group.iter().enumerate() {
-        let mut at = set.at[i];
+}
+
+/// Puts the rows of the group's first `triangles` into the list, triangle by triangle.
+#[inline(always)]
+fn list(triangles: usize, place: Place, spans: &mut Spans, row: impl Fn(&Group, i32, i32, &mut Row)) {
+    let Spans { spans, count, covered, group, table } = spans;
+    let most = group.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
+    for (number, to) in (0..most).zip(table.iter_mut()) {
+        row(group, number, place.pitch as i32, to);
+    }
+    let mut pixels = 0;
+    for i in 0..triangles {
         // At most `MOST_ROWS`.
-        for j in 0..set.rows[i] as usize % (MOST_ROWS as usize + 1) {
-            let (x, length) = (first[j][i], end[j][i] - first[j][i]);
-            // All are non-negative; shade and step are meant modulo 2¹⁶.
-            spans.spans[count] =
-                Listed { at: (at + x) as u32, length: length as u32, shade: shade[j][i] as u16, step: set.step[i] as u16 };
-            spans.triangles[count] = triangle;
-            count += usize::from(length > 0);
-            covered += length as u32;
-            at += place.pitch as i32;
+        for row in &table[..(group.rows[i] as usize).min(MOST_ROWS as usize)] {
+            let (length, paint) = (row.length[i], row.paint[i] as u32);
+            // Both are non-negative; shade and step are halves.
+            spans[*count] =
+                Listed { at: row.at[i] as u32, length: length as u32, shade: paint as u16, step: (paint >> 16) as u16 };
+            *count += usize::from(length > 0);
+            pixels += length as u32;
         }
     }
-    spans.count = count;
-    spans.covered += covered;
+    *covered += pixels;
 }
