@@ -3,6 +3,10 @@
 //! ```text
 //! for every span of the list:  fill(pixels[at .. at + length], shade, step)
 //! ```
+//!
+//! or, with a list of depths beside it, `fill_nearer`.
+
+use super::depth::{Cell, fill_nearer};
 
 /// A span and where it lies.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -16,6 +20,31 @@ pub struct Listed {
     pub shade: u16,
     /// In 8.8.
     pub step: u16,
+}
+
+/// The depths of a span, and where they lie in the depth buffer.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(C)]
+pub struct Depths {
+    /// That of the first pixel, with 24 fraction bits, as `fill_nearer` takes it.
+    pub z: i64,
+    /// From one pixel to the next.
+    pub dz: i64,
+    /// The offset of its first cell.
+    pub at: u32,
+}
+
+/// Fills every span of a list where it is nearer. Returns the number of pixels written.
+pub(super) fn each_nearer<D: Cell>(pixels: &mut [u8], cells: &mut [D], spans: &[Listed], depths: &[Depths]) -> u32 {
+    let mut written = 0;
+    for (span, depth) in spans.iter().zip(depths) {
+        let (at, cell, length) = (span.at as usize, depth.at as usize, span.length as usize);
+        let row = pixels.get_mut(at..at.saturating_add(length));
+        if let (Some(row), Some(cells)) = (row, cells.get_mut(cell..cell.saturating_add(length))) {
+            written += fill_nearer(row, cells, span.shade, span.step, depth.z, depth.dz);
+        }
+    }
+    written
 }
 
 /// Fills every span of a list.

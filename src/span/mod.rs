@@ -238,6 +238,25 @@ impl Kernel {
         (self.fill_list)(pixels, spans);
     }
 
+    /// The same with a depth test, as [`depth::fill_nearer`] does it, with as many `depths` as spans. Returns
+    /// the number of pixels written.
+    #[inline]
+    pub fn fill_list_nearer<D: depth::Cell>(
+        self,
+        pixels: &mut [u8],
+        cells: &mut [D],
+        spans: &[list::Listed],
+        depths: &[list::Depths],
+    ) -> u32 {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if self.level == "avx512"
+            && let Some(cells) = D::as_u32(cells)
+        {
+            return simd::avx512::fill_list_nearer(pixels, cells, spans, depths);
+        }
+        list::each_nearer(pixels, cells, spans, depths)
+    }
+
     /// Whether the processor has AVX2 and this kernel may use it.
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     pub(crate) fn has_avx2(self) -> bool {

@@ -330,7 +330,8 @@ pub(super) mod avx2 {
 /// AVX-512 in assembly: its intrinsics came with Rust 1.89, and this crate builds with 1.88.
 #[cfg(target_arch = "x86_64")]
 pub(super) mod avx512 {
-    use super::super::list::Listed;
+    use super::super::depth::fill_nearer;
+    use super::super::list::{Depths, Listed};
 
     /// What the vectors start from, read by the assembly at the offsets beside it.
     #[repr(C, align(64))]
@@ -343,7 +344,12 @@ pub(super) mod avx512 {
         even_bytes: u64,
         /// 88: the odd bytes of two lanes.
         odd_bytes: u32,
+        /// 128: the numbers of eight pixels.
+        numbers: Numbers,
     }
+
+    #[repr(C, align(64))]
+    struct Numbers([u64; 8]);
 
     static CONSTANTS: Constants = Constants {
         even: {
@@ -358,6 +364,7 @@ pub(super) mod avx512 {
         upper: [1, 1, 3, 3, 5, 5, 7, 7, 9, 9, 11, 11, 13, 13, 15, 15],
         even_bytes: 0x5555_5555_5555_5555,
         odd_bytes: 0xFF00_FF00,
+        numbers: Numbers([0, 1, 2, 3, 4, 5, 6, 7]),
     };
 
     /// Whether this processor has what [`fill`] needs.
@@ -365,16 +372,20 @@ pub(super) mod avx512 {
         #[cfg(feature = "std")]
         return std::arch::is_x86_feature_detected!("avx512f")
             && std::arch::is_x86_feature_detected!("avx512bw")
+            && std::arch::is_x86_feature_detected!("avx512dq")
             && std::arch::is_x86_feature_detected!("avx512vl")
             && std::arch::is_x86_feature_detected!("avx2")
-            && std::arch::is_x86_feature_detected!("bmi2");
+            && std::arch::is_x86_feature_detected!("bmi2")
+            && std::arch::is_x86_feature_detected!("popcnt");
         #[cfg(not(feature = "std"))]
         return cfg!(all(
             target_feature = "avx512f",
             target_feature = "avx512bw",
+            target_feature = "avx512dq",
             target_feature = "avx512vl",
             target_feature = "avx2",
-            target_feature = "bmi2"
+            target_feature = "bmi2",
+            target_feature = "popcnt"
         ));
     }
 
@@ -396,7 +407,7 @@ pub(super) mod avx512 {
     ///    each tried, none faster at 320 pixels and at 8.
     /// 4. Registers 16 to 31 need no `vzeroupper`, and no calling convention saves them.
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
-        // SAFETY: the table gives this function out only where AVX-512 F, AVX-512 BW and BMI2 were found.
+        // SAFETY: the table gives this function out only where AVX-512 F, AVX-512 BW and BMI2 were found (`found`).
         // Written are the row's first 64 bytes, and the next, for as long as more than 64 are left, and then
         // as many bytes as are left, by the mask. Read is `CONSTANTS`, at the offsets of `repr(C)`. The
         // stack is not used; flags and all registers written are given up.
@@ -477,5 +488,69 @@ pub(super) mod avx512 {
                 );
             }
         }
+    }
+
+    /// Every span of a list where it is nearer, only for such a processor: those of at most 16 pixels, which are nearly
+    /// all, by masked stores, first eight depths and then, of longer ones, eight more.
+    pub(crate) fn fill_list_nearer(pixels: &mut [u8], cells: &mut [u32], spans: &[Listed], depths: &[Depths]) -> u32 {
+        let mut written = 0;
+        for (span, depth) in spans.iter().zip(depths) {
+            let (at, cell, length) = (span.at as usize, depth.at as usize, span.length as usize);
+            let Some(row) = pixels.get_mut(at..at.saturating_add(length)) else { continue };
+            let Some(cells) = cells.get_mut(cell..cell.saturating_add(length)) else { continue };
+            if length > 16 {
+                written += fill_nearer(row, cells, span.shade, span.step, depth.z, depth.dz);
+                continue;
+            }
+            let nearer: u32;
+            // SAFETY: as in `fill_list`. Written are, by masks, at most the first `length` bytes of `row` and as many of
+            // `cells`, of which those that the masks leave are read; masked loads and stores touch no other memory.
+            // Read are `CONSTANTS`, the last fields of `span` and the first two of `depth`, at the offsets of `repr(C)`.
+            unsafe {
+                core::arch::asm!(
+                    "bzhi       {mask:e}, {mask:e}, {length:e}",
+                    "vpbroadcastq zmm20, qword ptr [{depth} + 8]",      // dz
+                    "kmovd      k1, {mask:e}",
+                    "vpmullq    zmm21, zmm20, [{constants} + 128]",
+                    "vpaddq     zmm21, zmm21, qword ptr [{depth}]{{1to8}}", // z
+                    "vmovdqu32  zmm23{{k1}}{{z}}, [{cells}]",
+                    "vpsrlq     zmm22, zmm21, 24",
+                    "vpmovqd    ymm22, zmm22",
+                    "cmp        {length:e}, 8",
+                    "jbe        3f",
+                    "vpsllq     zmm20, zmm20, 3",
+                    "vpaddq     zmm21, zmm21, zmm20",
+                    "vpsrlq     zmm21, zmm21, 24",
+                    "vpmovqd    ymm21, zmm21",
+                    "vinserti64x4 zmm22, zmm22, ymm21, 1",
+                    "3:",
+                    "vpcmpud    k1{{k1}}, zmm22, zmm23, 6",             // greater
+                    "vmovdqu32  [{cells}]{{k1}}, zmm22",
+                    "vpbroadcastw xmm16, word ptr [{span} + 10]",       // step
+                    "vpbroadcastw xmm17, word ptr [{span} + 8]",        // shade
+                    "vpmullw    xmm18, xmm16, [{constants}]",
+                    "vpaddw     xmm18, xmm18, xmm17",                   // even
+                    "vpaddw     xmm19, xmm18, xmm16",                   // odd
+                    "vpsrlw     xmm18, xmm18, 8",
+                    "vpternlogd xmm18, xmm19, [{constants} + 88]{{1to4}}, 0xF8", // even >> 8 | odd & 0xFF00
+                    "vmovdqu8   [{row}]{{k1}}, xmm18",
+                    "kmovd      {mask:e}, k1",
+                    "popcnt     {mask:e}, {mask:e}",
+                    span = in(reg) span,
+                    depth = in(reg) depth,
+                    row = in(reg) row.as_mut_ptr(),
+                    cells = in(reg) cells.as_mut_ptr(),
+                    length = in(reg) length as u32, // at most 16
+                    mask = inout(reg) u32::MAX => nearer,
+                    constants = in(reg) &raw const CONSTANTS,
+                    out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
+                    out("zmm22") _, out("zmm23") _,
+                    out("k1") _,
+                    options(nostack),
+                );
+            }
+            written += nearer;
+        }
+        written
     }
 }

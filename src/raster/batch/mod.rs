@@ -14,7 +14,7 @@
 //! when its turn comes. The bytes are those of a call of it for each triangle in turn.
 
 use super::Shading;
-use super::depth::Cell;
+use super::depth::{Cell, DepthPlane};
 use super::triangle::{Drawn, Raster};
 use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, I24F8, U8F8};
@@ -115,6 +115,11 @@ impl Batch {
         self.count = 0;
     }
 
+    fn depth_plane(&self, at: usize) -> DepthPlane {
+        let at = at % Self::CAPACITY;
+        DepthPlane::of_corners([0, 1, 2].map(|corner| (self.x[corner][at], self.y[corner][at], self.depth[corner][at])))
+    }
+
     /// A triangle as it was put in, but that the vertices of a flat one have its shade.
     fn triangle(&self, at: usize) -> ([Vertex; 3], Shading) {
         let vertex = |corner: usize| {
@@ -139,8 +144,10 @@ impl<D: Cell> Raster<'_, D> {
     pub fn batch(&mut self, batch: &Batch) -> Drawn {
         let mut drawn = Drawn::default();
         let (_, pitch) = self.frame.pixels_mut();
-        // Offsets of pixels are kept in 32 bits.
-        if !HAS_F64 || pitch > 1 << 16 || self.depth.is_some() {
+        let (width, rows) = (self.frame.width(), self.frame.rows());
+        // Offsets of pixels are kept in 32 bits, and a depth buffer has to hold the frame's rows and no others.
+        let fits = pitch <= 1 << 16 && self.depth.as_ref().is_none_or(|depth| depth.holds(width, &rows));
+        if !HAS_F64 || !fits {
             for at in 0..batch.count {
                 drawn += self.one_of(batch, at);
             }
@@ -149,7 +156,8 @@ impl<D: Cell> Raster<'_, D> {
         let stages = Stages::of(self.kernel);
         let mut kept = Kept::new();
         (stages.sieve)(batch, self.clip, &mut kept);
-        let place = Place { first_row: self.frame.rows().start, pitch: pitch as u32 };
+        let depth_width = self.depth.is_some().then_some(width);
+        let place = Place { first_row: rows.start, pitch: pitch as u32, depth_width };
         let mut spans = Spans::new();
         let mut left = kept.triangles();
         while let Some(&(first, kind)) = left.first() {
@@ -161,7 +169,7 @@ impl<D: Cell> Raster<'_, D> {
             let small = left.iter().position(|(_, kind)| *kind == Kind::Other).unwrap_or(left.len());
             let listed = (stages.rows)(batch, &left[..small], place, &mut spans);
             left = &left[listed..];
-            self.fill(batch, &spans, &mut drawn);
+            self.fill(&spans, &mut drawn);
             spans.clear();
         }
         drawn
@@ -174,15 +182,24 @@ impl<D: Cell> Raster<'_, D> {
 
     /// Draws the spans of small triangles.
     #[inline]
-    fn fill(&mut self, batch: &Batch, spans: &Spans, drawn: &mut Drawn) {
-        let (spans, covered) = (spans.as_slice(), spans.covered());
+    fn fill(&mut self, spans: &Spans, drawn: &mut Drawn) {
+        let covered = spans.covered();
         // At most 2¹¹ spans of 64 pixels.
-        drawn.spans += spans.len() as u32;
+        drawn.spans += spans.as_slice().len() as u32;
         drawn.covered += covered;
         let (pixels, _) = self.frame.pixels_mut();
-        self.kernel.fill_list(pixels, spans);
-        drawn.pixels += covered;
-        let _ = batch;
+        // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
+        match self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces")) {
+            None => {
+                self.kernel.fill_list(pixels, spans.as_slice());
+                drawn.pixels += covered;
+            }
+            Some(depth) => {
+                drawn.tested += covered;
+                let (cells, spans, depths) = (depth.values_mut(), spans.as_slice(), spans.depths());
+                drawn.pixels += self.kernel.fill_list_nearer(pixels, cells, spans, depths);
+            }
+        }
     }
 }
 

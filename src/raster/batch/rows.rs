@@ -18,7 +18,7 @@
 
 use super::Batch;
 use super::sieve::Kind;
-use crate::span::list::Listed;
+use crate::span::list::{Depths, Listed};
 
 /// The widest that a small triangle is, in pixels: a span of that many has no start but its first.
 pub(super) const MOST_COLUMNS: i32 = 64;
@@ -35,6 +35,8 @@ pub(super) struct Spans {
     spans: [Listed; Self::ROOM + 1],
     count: usize,
     covered: u32,
+    /// Of each span, where there is a depth buffer.
+    depths: [Depths; Self::ROOM + 1],
     group: Group,
     table: [Row; MOST_ROWS as usize],
 }
@@ -47,7 +49,10 @@ impl Spans {
             spans: [Listed { at: 0, length: 0, shade: 0, step: 0 }; Self::ROOM + 1],
             count: 0,
             covered: 0,
+            depths: [Depths { at: 0, z: 0, dz: 0 }; Self::ROOM + 1],
             group: Group {
+                column: [0; LANES],
+                row: [0; LANES],
                 at: [0; LANES],
                 rows: [0; LANES],
                 long: NO_EDGES,
@@ -68,6 +73,11 @@ impl Spans {
         &self.spans[..self.count]
     }
 
+    /// As many as spans, where there is a depth buffer.
+    pub(super) fn depths(&self) -> &[Depths] {
+        &self.depths[..self.count]
+    }
+
     /// Pixels of all spans.
     pub(super) fn covered(&self) -> u32 {
         self.covered
@@ -85,6 +95,8 @@ pub(super) struct Place {
     pub(super) first_row: u32,
     /// At most 2¹⁶.
     pub(super) pitch: u32,
+    /// Columns, if there is a depth buffer.
+    pub(super) depth_width: Option<u32>,
 }
 
 pub(super) type Floats = [f64; LANES];
@@ -102,7 +114,9 @@ const NO_EDGES: Edges = Edges { n: [0.0; LANES], per_row: [0.0; LANES], inverse:
 
 /// Eight triangles.
 pub(super) struct Group {
-    /// The offset of the box's first pixel.
+    /// The box's first pixel, and its offset.
+    pub(super) column: Ints,
+    pub(super) row: Ints,
     pub(super) at: Ints,
     pub(super) rows: Ints,
     pub(super) long: Edges,
@@ -158,7 +172,7 @@ pub(super) fn rows_by(
             }
         }
         set_up(&x, &y, &shade, place, &mut spans.group);
-        list(group.len(), place, spans, &row);
+        list(batch, group, place, spans, &row);
     }
     listed
 }
@@ -176,13 +190,28 @@ fn edge((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> (f64, f64, f64) {
 /// Edges and shades.
 #[inline(always)]
 fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: &mut Group) {
-    let Group { at, rows, long, upper, lower, split, n, per_row, per_column, inverse, step } = group;
+    let Group {
+        column: columns,
+        row: top_rows,
+        at,
+        rows,
+        long,
+        upper,
+        lower,
+        split,
+        n,
+        per_row,
+        per_column,
+        inverse,
+        step,
+    } = group;
     // A column and a row are below 4,096, the pitch is at most 2¹⁶.
     let (pitch, first_row) = (place.pitch as i32, place.first_row as i32);
     for i in 0..LANES {
         let (low_x, low_y) = (x[0][i].min(x[1][i]).min(x[2][i]), y[0][i].min(y[1][i]).min(y[2][i]));
         let high_y = y[0][i].max(y[1][i]).max(y[2][i]);
         let (column, row) = ((low_x + 127) >> 8, (low_y + 127) >> 8);
+        (columns[i], top_rows[i]) = (column, row);
         at[i] = (row - first_row) * pitch + column;
         // From the first pixel's centre, within ±2¹⁵.
         let (left, top) = (column * 256 + 128, row * 256 + 128);
@@ -246,30 +275,54 @@ fn row(group: &Group, row: i32, pitch: i32, to: &mut Row) {
         let (first, end) = (whole(left), whole(right));
         let n = group.n[i] + group.per_row[i] * j + group.per_column[i] * (left - MAGIC);
         let shade = whole(n * group.inverse[i] + MAGIC);
-        to.at[i] = group.at[i] + row * pitch + first;
+        // Beyond the last row anything may come out.
+        to.at[i] = (group.at[i] + row * pitch).wrapping_add(first);
         to.length[i] = if row < group.rows[i] { end - first } else { 0 };
         to.paint[i] = (shade & 0xFFFF) | group.step[i];
     }
 }
 
-/// Puts the rows of the group's first `triangles` into the list, triangle by triangle.
+/// Puts the rows of a group, which is of these triangles, into the list, triangle by triangle.
 #[inline(always)]
-fn list(triangles: usize, place: Place, spans: &mut Spans, row: impl Fn(&Group, i32, i32, &mut Row)) {
-    let Spans { spans, count, covered, group, table } = spans;
+fn list(
+    batch: &Batch,
+    triangles: &[(u8, Kind)],
+    place: Place,
+    spans: &mut Spans,
+    row: impl Fn(&Group, i32, i32, &mut Row),
+) {
+    let Spans { spans, count, covered, depths, group, table } = spans;
     let most = group.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
     for (number, to) in (0..most).zip(table.iter_mut()) {
         row(group, number, place.pitch as i32, to);
     }
     let mut pixels = 0;
-    for i in 0..triangles {
+    for i in 0..triangles.len() {
         // At most `MOST_ROWS`.
-        for row in &table[..(group.rows[i] as usize).min(MOST_ROWS as usize)] {
+        let rows = &table[..(group.rows[i] as usize).min(MOST_ROWS as usize)];
+        let (first, before) = (*count, pixels);
+        for row in rows {
             let (length, paint) = (row.length[i], row.paint[i] as u32);
             // Both are non-negative; shade and step are halves.
             spans[*count] =
                 Listed { at: row.at[i] as u32, length: length as u32, shade: paint as u16, step: (paint >> 16) as u16 };
             *count += usize::from(length > 0);
             pixels += length as u32;
+        }
+        if let Some(width) = place.depth_width
+            && pixels > before
+        {
+            let plane = batch.depth_plane(usize::from(triangles[i].0));
+            // Offsets of a frame's pixels, below 2²⁸; columns and rows are below 4,096.
+            let (width, first_row) = (width as i32, place.first_row as i32);
+            let (column, row) = (group.column[i], group.row[i]);
+            for (span, depths) in spans[first..*count].iter().zip(&mut depths[first..*count]) {
+                let below = span.at as i32 - group.at[i];
+                let j = below / place.pitch as i32;
+                let (x, y) = (column + below - j * place.pitch as i32, row + j);
+                let at = ((y - first_row) * width + x) as u32;
+                *depths = Depths { at, z: plane.fixed_at(x, y), dz: plane.step() };
+            }
         }
     }
     *covered += pixels;
