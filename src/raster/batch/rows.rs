@@ -301,11 +301,15 @@ fn list(
         // At most `MOST_ROWS`.
         let rows = &table[..(group.rows[i] as usize).min(MOST_ROWS as usize)];
         let (first, before) = (*count, pixels);
-        for row in rows {
+        for (j, row) in (0..).zip(rows) {
             let (length, paint) = (row.length[i], row.paint[i] as u32);
             // Both are non-negative; shade and step are halves.
             spans[*count] =
                 Listed { at: row.at[i] as u32, length: length as u32, shade: paint as u16, step: (paint >> 16) as u16 };
+            if place.depth_width.is_some() {
+                // For now the row; when there is a plane, the rest.
+                depths[*count].at = j;
+            }
             *count += usize::from(length > 0);
             pixels += length as u32;
         }
@@ -313,14 +317,12 @@ fn list(
             && pixels > before
         {
             let plane = batch.depth_plane(usize::from(triangles[i].0));
-            // Offsets of a frame's pixels, below 2²⁸; columns and rows are below 4,096.
-            let (width, first_row) = (width as i32, place.first_row as i32);
             let (column, row) = (group.column[i], group.row[i]);
             for (span, depths) in spans[first..*count].iter().zip(&mut depths[first..*count]) {
-                let below = span.at as i32 - group.at[i];
-                let j = below / place.pitch as i32;
-                let (x, y) = (column + below - j * place.pitch as i32, row + j);
-                let at = ((y - first_row) * width + x) as u32;
+                // Offsets of a frame's pixels are below 2²⁸; columns and rows are below 4,096.
+                let j = depths.at as i32;
+                let (x, y) = (column + span.at as i32 - group.at[i] - j * place.pitch as i32, row + j);
+                let at = ((y - place.first_row as i32) * width as i32 + x) as u32;
                 *depths = Depths { at, z: plane.fixed_at(x, y), dz: plane.step() };
             }
         }
