@@ -23,6 +23,8 @@ pub(crate) struct Inputs<'a> {
     pub(crate) forced: &'a Forced,
     /// On the 16.16 path one that it has.
     pub(crate) rung: Rung,
+    /// The budget; then the rung is the default.
+    pub(crate) max_error: Option<f32>,
     pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
     pub(crate) mapping: Option<Mapping>,
     /// Whether the frame holds the whole screen.
@@ -94,7 +96,7 @@ struct Rules<'a> {
 impl Rules<'_> {
     fn all(&self, lamps_in_range: usize) -> ObjectPlan {
         let decisions = [Decision::off(Why::SceneHasNone); Effect::COUNT];
-        let mut plan = ObjectPlan { decisions, rung: self.inputs.rung };
+        let mut plan = ObjectPlan { decisions, rung: self.inputs.rung, max_error: None };
         for effect in Effect::ALL {
             let mut decision = self.decision(effect, lamps_in_range, &plan);
             if effect.is_left_out() {
@@ -112,7 +114,27 @@ impl Rules<'_> {
             }
             plan.set(effect, decision);
         }
+        if let Some(max_error) = self.inputs.max_error {
+            self.keep_within(max_error, &mut plan);
+        }
         plan
+    }
+
+    /// Leaves it to a budget how faces are shaded, where that is not known for all of them.
+    fn keep_within(&self, max_error: f32, plan: &mut ObjectPlan) {
+        if self.inputs.integer || !plan.is_on(Effect::Lighting) {
+            return;
+        }
+        if self.is_lit_by_face(plan) {
+            plan.rung = Rung::Flat;
+        } else {
+            plan.max_error = Some(max_error);
+        }
+    }
+
+    /// Whether light at every pixel would give each face one shade, that of its own normal.
+    fn is_lit_by_face(&self, before: &ObjectPlan) -> bool {
+        self.object.is_faceted() && !before.is_on(Effect::PositionalLights) && !before.is_on(Effect::Specular)
     }
 
     /// `before`: what has been decided so far, in the order of [`Effect::ALL`].
@@ -128,7 +150,7 @@ impl Rules<'_> {
             Effect::Specular => self.specular(before),
             Effect::Gouraud => self.gouraud(before),
             Effect::Fog => self.fog(),
-            Effect::Phong => self.phong(),
+            Effect::Phong => self.phong(before),
             Effect::Tessellation => self.tessellation(before),
             Effect::RgbChannels => self.rgb_channels(),
             Effect::Texture => self.material_has(|material| material.texture.is_some()),
@@ -223,6 +245,12 @@ impl Rules<'_> {
         if !before.is_on(Effect::Lighting) {
             return Decision::off(Why::OneShade);
         }
+        if let Some(max_error) = self.inputs.max_error {
+            return match self.is_lit_by_face(before) {
+                true => Decision::off(Why::Faceted),
+                false => Decision::on(Why::Budget { max_error }).choosing("budget"),
+            };
+        }
         match self.inputs.rung {
             Rung::Flat => Decision::off(Why::FlatAsked),
             rung if rung.lights_pixels() => Decision::off(Why::Asked).choosing(rung.name()),
@@ -240,7 +268,16 @@ impl Rules<'_> {
         }
     }
 
-    fn phong(&self) -> Decision {
+    fn phong(&self, before: &ObjectPlan) -> Decision {
+        if let Some(max_error) = self.inputs.max_error {
+            return if !before.is_on(Effect::Lighting) {
+                Decision::off(before.decision(Effect::Lighting).why)
+            } else if self.is_lit_by_face(before) {
+                Decision::off(Why::Faceted)
+            } else {
+                Decision::on(Why::Budget { max_error }).choosing(Rung::Phong.name())
+            };
+        }
         match self.inputs.rung {
             rung if rung.lights_pixels() => Decision::on(Why::Asked).choosing(rung.name()),
             _ => Decision::off(Why::NotAsked).choosing(""),

@@ -57,6 +57,7 @@ impl Decision {
 pub struct ObjectPlan {
     decisions: [Decision; Effect::COUNT],
     rung: Rung,
+    max_error: Option<f32>,
 }
 
 impl ObjectPlan {
@@ -78,6 +79,13 @@ impl ObjectPlan {
     #[must_use]
     pub fn rung(&self) -> Rung {
         self.rung
+    }
+
+    /// The budget that its triangles are shaded by, each as is cheapest: how many shades of error are accepted.
+    /// `None` where there is none, or one rung is known to be the cheapest for all.
+    #[must_use]
+    pub fn max_error(&self) -> Option<f32> {
+        self.max_error
     }
 
     pub(crate) fn set(&mut self, effect: Effect, decision: Decision) {

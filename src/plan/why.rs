@@ -95,6 +95,13 @@ pub enum Why {
     NoMaterialHas,
     /// The shades of the vertices differ.
     ShadesDiffer,
+    /// An error budget is kept to, face by face.
+    Budget {
+        /// How many shades of error are accepted.
+        max_error: f32,
+    },
+    /// Every normal is that of its face, and what lights it is far away: one shade for a face is right.
+    Faceted,
     /// One shade for a face was asked for.
     FlatAsked,
     /// Every vertex has the same shade.
@@ -194,6 +201,10 @@ impl Why {
             Self::MaterialHas { material: i } => format!("{} has it", material(i)),
             Self::NoMaterialHas => none(),
             Self::ShadesDiffer => "shades differ from vertex to vertex".to_string(),
+            Self::Budget { max_error } => format!("within an error budget of {max_error} shades, face by face"),
+            Self::Faceted => {
+                "every normal is that of its face, and the light is far away: one shade a face is right".to_string()
+            }
             Self::FlatAsked => "one shade a face was asked for".to_string(),
             Self::OneShade => "every vertex has the same shade".to_string(),
             Self::SceneHasNone => "the scene has none".to_string(),

@@ -68,7 +68,6 @@ impl HyperbolicPlane {
     }
 
     /// Numerator and denominator of the exact shade at pixel (`x`, `y`), in 1/256.
-    #[cfg(feature = "alloc")]
     pub(super) fn shade(&self, x: i32, y: i32) -> (i128, i128) {
         (self.numerator.at(x, y), self.denominator.at(x, y))
     }

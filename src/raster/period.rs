@@ -22,7 +22,7 @@
 //!   cut of x to its pixel does here, left of the frame too; a division (`idiv`) rounds toward zero. So x
 //!   and the shade on an edge stay between its ends.
 //!
-//! No cover and no range is promised. That bytes do stay in [min >> 8, max >> 8] of the vertices is
+//! No cover and no range is promised. That bytes do stay in the range from min >> 8 to max >> 8 of the vertices is
 //! because all quotients are cut toward zero; S0's own fractions of Ax and Bx would lose it. The order of
 //! the vertices, clip rectangles and bands make no difference: a byte depends on its place and
 //! the three vertices alone, and so does the pixel's being drawn.

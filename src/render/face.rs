@@ -5,6 +5,7 @@
 //! test for it.
 
 use super::Stats;
+use super::budget::{Budget, Choice, Question};
 use super::clip::{Carried, Corner, WithEffects, clip};
 use super::paint::Paint;
 use super::vertex::{Extra, Geometry, LitVertex};
@@ -21,8 +22,8 @@ use crate::view::{Homogeneous, ObjectView};
 pub(super) trait Sink {
     /// A face without effects.
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading);
-    /// A face whose pixels pass through stages, and the number of its surface.
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16);
+    /// A face whose pixels pass through stages, the number of its surface, and the rung that shades it.
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung);
 }
 
 /// One object in one frame.
@@ -51,13 +52,31 @@ pub(super) struct Faces<'a> {
     pub(super) channels: bool,
     /// Whether texture coordinates are linear on the screen.
     pub(super) affine: bool,
+    /// Whether pixels may be lit each for itself.
+    pub(super) lights_pixels: bool,
+    /// What faces are decided on by, if that is done for each.
+    pub(super) budget: Option<&'a Budget>,
 }
 
 impl Faces<'_> {
-    /// Hands the faces that are to be drawn to `sink`.
-    pub(super) fn draw(&self, stats: &mut Stats, sink: &mut impl Sink) {
+    /// Hands the faces that are to be drawn to `sink`. `choices` are those that a budget led to, one for each face.
+    pub(super) fn draw(&self, choices: &mut [Choice], stats: &mut Stats, sink: &mut impl Sink) {
         stats.faces += self.geometry.triangles.len() as u64;
         let effects = !self.extras.is_empty();
+        if let Some(budget) = self.budget {
+            let choices = (budget, choices);
+            return match (self.clips, self.culls, effects) {
+                (false, false, false) => self.each_within::<false, false, false>(choices, stats, sink),
+                (false, true, false) => self.each_within::<false, true, false>(choices, stats, sink),
+                (true, false, false) => self.each_within::<true, false, false>(choices, stats, sink),
+                (true, true, false) => self.each_within::<true, true, false>(choices, stats, sink),
+                (false, false, true) => self.each_within::<false, false, true>(choices, stats, sink),
+                (false, true, true) => self.each_within::<false, true, true>(choices, stats, sink),
+                (true, false, true) => self.each_within::<true, false, true>(choices, stats, sink),
+                (true, true, true) => self.each_within::<true, true, true>(choices, stats, sink),
+            };
+        }
+        let before = stats.drawn;
         match (self.clips, self.culls, effects) {
             (false, false, false) => self.each::<false, false, false>(stats, sink),
             (false, true, false) => self.each::<false, true, false>(stats, sink),
@@ -68,6 +87,7 @@ impl Faces<'_> {
             (true, false, true) => self.each::<true, false, true>(stats, sink),
             (true, true, true) => self.each::<true, true, true>(stats, sink),
         }
+        stats.shares.add(self.rung, stats.drawn - before);
     }
 
     #[inline(never)]
@@ -98,6 +118,120 @@ impl Faces<'_> {
                 sink.plain(&vertices, shading);
             }
         }
+    }
+
+    /// The same, each by the rung that is decided for it.
+    #[inline(never)]
+    fn each_within<const CLIPS: bool, const CULLS: bool, const EFFECTS: bool>(
+        &self,
+        (budget, choices): (&Budget, &mut [Choice]),
+        stats: &mut Stats,
+        sink: &mut impl Sink,
+    ) {
+        let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
+        for (triangle, ((&indices, &surface), choice)) in
+            triangles.iter().zip(triangle_surfaces).zip(choices).enumerate()
+        {
+            let corners = indices.map(|i| self.lit[i as usize]);
+            if CLIPS && corners.iter().any(|corner| corner.needs_clipping) {
+                stats.clipped += 1;
+                self.clipped_within::<CULLS, EFFECTS>(
+                    (triangle, indices, surface),
+                    &corners,
+                    (budget, choice),
+                    stats,
+                    sink,
+                );
+                continue;
+            }
+            let vertices = corners.map(|corner| corner.vertex);
+            let area = doubled_area(&vertices);
+            if area == 0 || (CULLS && area > 0) {
+                stats.culled += 1;
+                continue;
+            }
+            stats.drawn += 1;
+            let turned = !CULLS && area > 0;
+            let vertices = if turned { corners.map(|corner| corner.vertex.with_shade(corner.back)) } else { vertices };
+            if *choice == Choice::Unknown {
+                *choice = budget.decide_at_once(triangle, indices, surface, &vertices);
+                if *choice == Choice::Unknown {
+                    let shades = vertices.map(|vertex| vertex.shade());
+                    let depths = vertices.map(|vertex| vertex.depth());
+                    *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), shades, depths);
+                }
+            }
+            stats.shares.add(choice.rung(), 1);
+            if (EFFECTS && self.paints[usize::from(surface)].has_effects) || *choice == Choice::Phong {
+                let attributes = self.attributes::<EFFECTS>(indices, turned, *choice);
+                hand_on_within(vertices, attributes, surface, *choice, sink);
+            } else {
+                sink.plain(&vertices, choice.shading(&vertices));
+            }
+        }
+    }
+
+    /// Decides on a face on which nothing was known at once.
+    #[inline(never)]
+    fn decide<const EFFECTS: bool>(
+        &self,
+        budget: &Budget,
+        (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
+        shades: [U8F8; 3],
+        depths: [u32; 3],
+    ) -> Choice {
+        let shades = if EFFECTS && self.channels {
+            indices.map(|i| self.extras[i as usize].side(turned).channels.map(U8F8::to_bits))
+        } else {
+            shades.map(|shade| [shade.to_bits(); 3])
+        };
+        self.cheapest_within(budget, &Question { triangle, indices, surface, turned, shades, depths })
+    }
+
+    /// What the corners of a face carry that is shaded by choice.
+    #[inline]
+    fn attributes<const EFFECTS: bool>(&self, indices: [u32; 3], turned: bool, choice: Choice) -> [Attributes; 3] {
+        indices.map(|i| {
+            let mut attributes = if EFFECTS { self.extras[i as usize].side(turned) } else { Attributes::default() };
+            if choice == Choice::Phong {
+                let (normal, position) = (self.geometry.normals[i as usize], self.geometry.positions[i as usize]);
+                let normal = if turned { -normal } else { normal };
+                attributes.lit = [normal.x, normal.y, normal.z, position.x, position.y, position.z];
+            }
+            attributes
+        })
+    }
+
+    /// As [`clipped`](Self::clipped), for a face that is shaded by choice.
+    #[cold]
+    #[inline(never)]
+    fn clipped_within<const CULLS: bool, const EFFECTS: bool>(
+        &self,
+        (triangle, indices, surface): (usize, [u32; 3], u16),
+        corners: &[LitVertex; 3],
+        (budget, choice): (&Budget, &mut Choice),
+        stats: &mut Stats,
+        sink: &mut impl Sink,
+    ) {
+        let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
+        let turned = !CULLS && is_turned_away(&at);
+        if *choice == Choice::Unknown {
+            let shades = corners.map(|corner| if turned { corner.back } else { corner.vertex.shade() });
+            *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), shades, [0; 3]);
+        }
+        let (choice, before) = (*choice, stats.drawn);
+        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice == Choice::Phong {
+            let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
+            let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
+            self.parts::<CULLS, _>(at, corners, carried, turned, stats, |vertices, carried, _| {
+                hand_on_within(vertices, carried.map(|carried| carried.attributes), surface, choice, sink);
+            });
+        } else {
+            self.parts::<CULLS, _>(at, corners, [(); 3], turned, stats, |vertices, _, _| {
+                sink.plain(&vertices, choice.shading(&vertices));
+            });
+        }
+        stats.shares.add(choice.rung(), stats.drawn - before);
     }
 
     /// A face that reaches beyond the near plane or the guard band. Kept apart: it is rare.
@@ -179,7 +313,7 @@ impl Faces<'_> {
                 vertices = vertices.map(|vertex| vertex.with_shade(shade));
             }
         }
-        sink.with_effects(&vertices, &attributes, surface);
+        sink.with_effects(&vertices, &attributes, surface, self.rung);
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
@@ -216,6 +350,51 @@ impl Faces<'_> {
         let normal = face_normal(a, b, c).unwrap_or(self.geometry.normals[indices[0] as usize]);
         // Each third by itself: the sum of three might overflow.
         (a / 3.0 + b / 3.0 + c / 3.0, normal)
+    }
+}
+
+/// Hands on a face with effects that is shaded by choice. Of a flat one every corner gets the shade in the middle.
+fn hand_on_within(
+    mut vertices: [Vertex; 3],
+    mut attributes: [Attributes; 3],
+    surface: u16,
+    choice: Choice,
+    sink: &mut impl Sink,
+) {
+    let mut rung = choice.rung();
+    if choice == Choice::Flat {
+        let shade = middle(vertices.map(|vertex| vertex.shade()));
+        vertices = vertices.map(|vertex| vertex.with_shade(shade));
+        let [a, b, c] = attributes.map(|corner| corner.channels);
+        let channels = [0, 1, 2].map(|channel| middle([a[channel], b[channel], c[channel]]));
+        attributes.iter_mut().for_each(|corner| corner.channels = channels);
+        rung = Rung::Gouraud88Reseeded;
+    }
+    sink.with_effects(&vertices, &attributes, surface, rung);
+}
+
+/// Whether no row of a triangle has more than 64 pixels.
+fn is_narrow(vertices: &[Vertex; 3]) -> bool {
+    let [a, b, c] = vertices.map(|vertex| vertex.x().to_bits());
+    a.max(b).max(c) - a.min(b).min(c) <= 64 << 8
+}
+
+/// Half-way between the least and the greatest.
+fn middle([a, b, c]: [U8F8; 3]) -> U8F8 {
+    let (least, most) = (a.min(b).min(c).to_bits(), a.max(b).max(c).to_bits());
+    U8F8::from_bits(least + (most - least) / 2)
+}
+
+impl Choice {
+    /// How the raster shades a face without effects.
+    #[inline]
+    fn shading(self, vertices: &[Vertex; 3]) -> Shading {
+        match self {
+            Self::Flat => Shading::Flat(middle(vertices.map(|vertex| vertex.shade())).nearest()),
+            // Narrower than 64 pixels nothing starts anew, and that takes less.
+            Self::Linear if is_narrow(vertices) => Shading::Gouraud,
+            choice => choice.rung().shading(),
+        }
     }
 }
 

@@ -93,8 +93,12 @@ impl Looks<'_> {
             && self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
     }
 
-    /// Hands the look of a surface to `draw`. Of one that is not there, nothing is drawn.
-    pub(super) fn with(&self, object: usize, surface: u16, draw: impl FnOnce(&Look<'_>) -> Drawn) -> Drawn {
+    /// Hands the look of a surface of an object, shaded by a rung, to `draw`. Of one that is not there, nothing is drawn.
+    pub(super) fn with(
+        &self,
+        (object, surface, rung): (usize, u16, Rung),
+        draw: impl FnOnce(&Look<'_>) -> Drawn,
+    ) -> Drawn {
         let (Some(plan), Some(state), Some(paint)) =
             (self.plan.objects().get(object), self.states.get(object), self.paint(object, surface))
         else {
@@ -129,7 +133,6 @@ impl Looks<'_> {
             None => None,
         };
         let blends = paint.blend != Blend::Opaque || is_forced(plan, Effect::Transparency);
-        let rung = plan.rung();
         let look = Look {
             source: source(plan, rung, channels.is_some(), state.normal_table(surface), &light),
             channels,
@@ -157,7 +160,7 @@ fn source<'a>(
     table: Option<&'a [u8; 65_536]>,
     light: &'a PixelLight<'a>,
 ) -> Source<'a> {
-    if plan.is_on(Effect::Phong) {
+    if plan.is_on(Effect::Phong) && rung.lights_pixels() {
         return match table {
             Some(table) if rung == Rung::PhongTable && !channels => Source::NormalTable(table),
             _ => Source::Lit(light),

@@ -7,6 +7,7 @@
 //! | `tessellate` | faces split along their edges |
 //! | `face` | the stage of faces, with `clip`: near plane and guard band |
 //! | `bound` | how far linear shades may be from light at every pixel |
+//! | `budget` | the error budget: which rung for which triangle |
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `stats` | what a frame came to |
@@ -18,6 +19,7 @@
 
 mod automatic;
 mod bound;
+mod budget;
 mod clip;
 mod face;
 mod integer;
@@ -109,6 +111,7 @@ struct Kept {
     attributes: [Attributes; 3],
     object: usize,
     surface: u16,
+    rung: Rung,
 }
 
 impl Kept {
@@ -282,7 +285,8 @@ impl Renderer {
 
     /// The technique of shading that a scene is drawn by.
     pub(crate) fn rung_for(&self, scene: &Scene) -> Rung {
-        self.rung.or(scene.wishes.rung).unwrap_or_default()
+        let rung = self.rung.or(if self.max_error.is_none() { scene.wishes.rung } else { None });
+        rung.unwrap_or_default()
     }
 
     /// Chooses the technique of shading, or leaves it to the scene. Returns what was chosen before.
@@ -354,7 +358,7 @@ impl Renderer {
     /// # Errors
     /// As [`draw`](Self::draw), but for what 16.16 can't hold, which shows only when it is drawn.
     pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
-        let view = checked(scene, screen)?;
+        let view = self.checked(scene, screen)?;
         self.decide(scene, &view, true);
         Ok(&self.plan)
     }
@@ -445,7 +449,7 @@ impl Renderer {
         shown: Option<&Palette>,
         whole: bool,
     ) -> Result<(Stats, bool), RenderError> {
-        let view = checked(scene, screen)?;
+        let view = self.checked(scene, screen)?;
         if self.vertex_path == VertexPath::Integer {
             self.integer.prepare(scene, screen)?;
         }
@@ -466,6 +470,9 @@ impl Renderer {
         }
 
         let mut stats = Stats::new(rung, self.vertex_path, self.kernel, self.plan.hidden_surfaces());
+        if self.vertex_path == VertexPath::Float {
+            stats.max_error = self.max_error(scene);
+        }
         for (i, (object, state)) in scene.objects().iter().zip(&mut self.states).enumerate() {
             let plan = &self.plan.objects[i];
             if self.vertex_path == VertexPath::Integer {
@@ -483,6 +490,14 @@ impl Renderer {
         Ok((stats, changed))
     }
 
+    /// The view of a scene in which nothing is wrong.
+    fn checked(&self, scene: &Scene, screen: Screen) -> Result<View, RenderError> {
+        check(scene)?;
+        let wishes = Wishes { max_error: self.max_error(scene), ..scene.wishes };
+        wishes.check().map_err(RenderError::Wishes)?;
+        View::new(&scene.camera, screen).map_err(RenderError::Camera)
+    }
+
     /// Makes the plan of a scene that has been checked. Returns the rung that shades.
     fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Rung {
         self.views.clear();
@@ -491,10 +506,11 @@ impl Renderer {
             VertexPath::Integer => self.rung_for(scene).in_integers(),
             VertexPath::Float => self.rung_for(scene),
         };
+        let max_error = self.max_error(scene);
         self.states.resize_with(scene.objects().len(), ObjectState::default);
         self.since.clear();
         for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {
-            self.since.push(state.renew(scene, object, view, rung));
+            self.since.push(state.renew(scene, object, view, (rung, max_error)));
         }
         let inputs = Inputs {
             scene,
@@ -502,6 +518,7 @@ impl Renderer {
             since: &self.since,
             forced: &self.forced,
             rung,
+            max_error,
             hidden_surfaces: self.hidden_surfaces.or(scene.wishes.hidden_surfaces),
             mapping: self.mapping.or(scene.wishes.mapping),
             whole,
@@ -534,7 +551,8 @@ impl Renderer {
             }
         }
         self.depths = depths;
-        stats.shares.add(stats.rung, stats.drawn);
+        // Those of the 16.16 path are not counted one by one.
+        stats.shares.complete(stats.rung, stats.drawn);
     }
 
     /// Draws each face as it comes, then those that shine through.
@@ -542,10 +560,11 @@ impl Renderer {
         let mut transparent = mem::take(&mut self.transparent);
         transparent.clear();
         let mut integer = mem::take(&mut self.integer);
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
         for &object in &self.plan.order {
             let plan = &self.plan.objects[object];
             let mut drawn = Drawn::default();
+            let mut choices = self.states[object].take_choices();
+            let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
             if self.vertex_path == VertexPath::Integer {
                 let mut plain = Bare(|vertices: &[Vertex; 3], shading| drawn += raster.triangle(vertices, shading));
                 integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain.0);
@@ -558,7 +577,7 @@ impl Renderer {
                         object,
                         transparent: &mut transparent,
                     };
-                    faces.draw(stats, &mut sink);
+                    faces.draw(&mut choices, stats, &mut sink);
                 } else {
                     let mut sink = Direct::<false> {
                         raster: &mut raster,
@@ -567,9 +586,10 @@ impl Renderer {
                         object,
                         transparent: &mut transparent,
                     };
-                    faces.draw(stats, &mut sink);
+                    faces.draw(&mut choices, stats, &mut sink);
                 }
             }
+            self.states[object].put_choices(choices);
             stats.raster += drawn;
         }
         self.integer = integer;
@@ -588,7 +608,7 @@ impl Renderer {
         sort_by_depth(&mut transparent, Kept::depth);
         let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
         for face in &transparent {
-            stats.raster += looks.with(face.object, face.surface, |look| {
+            stats.raster += looks.with((face.object, face.surface, face.rung), |look| {
                 raster.triangle_with_effects(&face.vertices, &face.attributes, look)
             });
         }
@@ -599,12 +619,14 @@ impl Renderer {
     /// Hands every face to `sink`.
     fn faces(&mut self, scene: &Scene, stats: &mut Stats, sink: &mut Bare<impl FnMut(&[Vertex; 3], Shading)>) {
         for &object in &self.plan.order {
+            let mut choices = self.states[object].take_choices();
             if self.vertex_path == VertexPath::Integer {
                 self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut sink.0);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                faces.draw(stats, sink);
+                faces.draw(&mut choices, stats, sink);
             }
+            self.states[object].put_choices(choices);
         }
     }
 
@@ -618,6 +640,7 @@ impl Renderer {
         kept.clear();
         transparent.clear();
         for &object in &self.plan.order {
+            let mut choices = self.states[object].take_choices();
             if self.vertex_path == VertexPath::Integer {
                 let mut plain = |vertices: &[Vertex; 3], shading| {
                     triangles.push((*vertices, shading));
@@ -635,8 +658,9 @@ impl Renderer {
                     looks: &looks,
                     object,
                 };
-                faces.draw(stats, &mut sink);
+                faces.draw(&mut choices, stats, &mut sink);
             }
+            self.states[object].put_choices(choices);
         }
         (self.triangles, self.kept_places, self.kept, self.transparent) = (triangles, places, kept, transparent);
     }
@@ -651,7 +675,7 @@ impl Renderer {
             stats.raster += match self.kept_places[i] {
                 Some(place) => {
                     let face = &self.kept[place as usize];
-                    looks.with(face.object, face.surface, |look| {
+                    looks.with((face.object, face.surface, face.rung), |look| {
                         raster.triangle_with_effects(vertices, &face.attributes, look)
                     })
                 }
@@ -669,7 +693,7 @@ impl Renderer {
         stats.raster += raster
             .scan_line_with(&self.triangles, scratch, |i, row, pixels, kernel, drawn| {
                 let Some(face) = places[i].and_then(|place| kept.get(place as usize)) else { return false };
-                looks.with(face.object, face.surface, |look| {
+                looks.with((face.object, face.surface, face.rung), |look| {
                     crate::raster::effects::paint_row(
                         &face.vertices,
                         &face.attributes,
@@ -705,12 +729,6 @@ impl Default for Renderer {
     }
 }
 
-/// The view of a scene in which nothing is wrong.
-fn checked(scene: &Scene, screen: Screen) -> Result<View, RenderError> {
-    check(scene)?;
-    View::new(&scene.camera, screen).map_err(RenderError::Camera)
-}
-
 /// What is wrong with a scene, if anything.
 fn check(scene: &Scene) -> Result<(), RenderError> {
     if !scene.ambient.is_finite() {
@@ -739,7 +757,7 @@ impl<F: FnMut(&[Vertex; 3], Shading)> Sink for Bare<F> {
         (self.0)(vertices, shading);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16) {
+    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: Rung) {
         (self.0)(vertices, Shading::default());
     }
 }
@@ -763,13 +781,13 @@ impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
         };
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16) {
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung) {
         if self.looks.is_transparent(self.object, surface) {
             let (vertices, attributes) = (*vertices, *attributes);
-            self.transparent.push(Kept { vertices, attributes, object: self.object, surface });
+            self.transparent.push(Kept { vertices, attributes, object: self.object, surface, rung });
             return;
         }
-        *self.drawn += self.looks.with(self.object, surface, |look| {
+        *self.drawn += self.looks.with((self.object, surface, rung), |look| {
             if CLIPS {
                 self.raster.triangle_with_effects(vertices, attributes, look)
             } else {
@@ -795,8 +813,8 @@ impl Sink for Gathered<'_> {
         self.places.push(None);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16) {
-        let face = Kept { vertices: *vertices, attributes: *attributes, object: self.object, surface };
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung) {
+        let face = Kept { vertices: *vertices, attributes: *attributes, object: self.object, surface, rung };
         if self.looks.is_transparent(self.object, surface) {
             self.transparent.push(face);
             return;

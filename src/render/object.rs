@@ -4,6 +4,7 @@
 use alloc::vec::Vec;
 
 use super::Stats;
+use super::budget::{Budget, Choice};
 use super::face::Faces;
 use super::paint::Paint;
 use super::pixel_light::normal_table;
@@ -28,14 +29,14 @@ struct Source {
     /// As the materials' ramps depend on it.
     ramps: usize,
     fog: Option<Fog>,
-    rung: Rung,
+    rung: (Rung, Option<f32>),
     tessellation: Option<f32>,
 }
 
 impl Source {
     /// Takes on what the object is now. Says whether that is another thing than before. Nothing is
     /// allocated as long as there are no more lights or materials than before.
-    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, rung: Rung) -> bool {
+    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, rung: (Rung, Option<f32>)) -> bool {
         let mut changed = false;
         if !Shared::ptr_eq(&self.mesh, object.shared_mesh()) {
             self.mesh = Shared::clone(object.shared_mesh());
@@ -118,11 +119,20 @@ pub(super) struct ObjectState {
     points: Option<(Shared<Mesh>, Vec<u32>)>,
     /// One for each surface, and what they were made from.
     normal_tables: Vec<(Vec<Beam>, Paint, Table)>,
+    /// What a budget's decisions are made from, and those that were made, one for each triangle.
+    budget: Option<Budget>,
+    choices: Vec<Choice>,
 }
 
 impl ObjectState {
-    /// Takes on what the object is now. Says what became of it since its vertices were made.
-    pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, rung: Rung) -> Since {
+    /// Takes on what the object is now, and the rung and the budget that it is drawn by. Says what became of it since its vertices were made.
+    pub(super) fn renew(
+        &mut self,
+        scene: &Scene,
+        object: &Object,
+        view: &ObjectView,
+        rung: (Rung, Option<f32>),
+    ) -> Since {
         match &mut self.source {
             Some(source) => self.stale |= source.renew(scene, object, view, rung),
             None => {
@@ -225,8 +235,9 @@ impl ObjectState {
         }
         let channels = plan.is_on(Effect::RgbChannels);
         let full = plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular);
-        let by_face = Self::is_flat(source.rung) && plan.is_on(Effect::Lighting);
-        let by_vertex = !by_face && !plan.is_on(Effect::Phong);
+        let by_face = Self::is_flat(plan.rung()) && plan.is_on(Effect::Lighting);
+        let by_pixel = plan.is_on(Effect::Phong) && plan.max_error().is_none();
+        let by_vertex = !by_face && !by_pixel;
         if !plan.is_on(Effect::Lighting) && !channels {
             vertex::light_none(&geometry, &self.paints, &mut self.lit);
         } else if by_vertex {
@@ -250,8 +261,17 @@ impl ObjectState {
         {
             vertex::fog_levels(&geometry, &source.view, fog, &mut self.extras);
         }
-        if plan.is_on(Effect::Phong) {
-            if source.rung == Rung::PhongTable && !channels {
+        if let Some(max_error) = plan.max_error() {
+            let whole = (!plan.is_on(Effect::Tessellation)).then(|| object.shared_mesh());
+            let budget = self.budget.get_or_insert_default();
+            budget.renew(max_error, &geometry, whole, &lights, &self.paints, channels);
+            self.choices.clear();
+            self.choices.resize(geometry.triangles.len(), Choice::Unknown);
+        } else if self.budget.is_some() {
+            (self.budget, self.choices) = (None, Vec::new());
+        }
+        if by_pixel {
+            if source.rung.0 == Rung::PhongTable && !channels {
                 vertex::slopes(&geometry, &source.view, &mut self.extras);
                 self.tables_of_normals(scene, object, view);
             } else {
@@ -318,7 +338,7 @@ impl ObjectState {
     pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &ObjectPlan) -> Option<Faces<'a>> {
         let source = self.source.as_ref()?;
         Some(Faces {
-            rung: source.rung,
+            rung: plan.rung(),
             geometry: self.tessellated.as_ref().map_or_else(|| mesh_geometry(object), Tessellated::geometry),
             view: &source.view,
             lights: self.lights(plan),
@@ -330,11 +350,22 @@ impl ObjectState {
             is_lit: plan.is_on(Effect::Lighting),
             runs: plan.is_on(Effect::Gouraud),
             full: plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular),
-            flat: Self::is_flat(source.rung),
+            flat: Self::is_flat(plan.rung()),
             channels: plan.is_on(Effect::RgbChannels),
             affine: !plan.is_on(Effect::Perspective)
                 || plan.decision(Effect::Perspective).choice == Mapping::Affine.name(),
+            lights_pixels: plan.is_on(Effect::Phong),
+            budget: self.budget.as_ref(),
         })
+    }
+
+    /// The budget's choices, to be completed while faces are drawn, and then put back.
+    pub(super) fn take_choices(&mut self) -> Vec<Choice> {
+        core::mem::take(&mut self.choices)
+    }
+
+    pub(super) fn put_choices(&mut self, choices: Vec<Choice>) {
+        self.choices = choices;
     }
 
     /// Bytes that it holds.
@@ -346,6 +377,8 @@ impl ObjectState {
             + self.tessellated.as_ref().map_or(0, Tessellated::bytes)
             + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)
             + self.normal_tables.len() * Table::BYTES
+            + self.budget.as_ref().map_or(0, Budget::bytes)
+            + self.choices.capacity()
     }
 }
 

@@ -32,8 +32,8 @@ impl Paint {
         let blend = if plan.is_on(Effect::Transparency) { material.blend } else { Blend::Opaque };
         let channels = plan.is_on(Effect::RgbChannels);
         let image = texture_size.is_some() || environment_size.is_some();
-        let everywhere =
-            [Effect::Fog, Effect::Phong, Effect::RgbChannels, Effect::Dither].iter().any(|effect| plan.is_on(*effect));
+        let everywhere = [Effect::Fog, Effect::RgbChannels, Effect::Dither].iter().any(|effect| plan.is_on(*effect))
+            || (plan.is_on(Effect::Phong) && plan.max_error().is_none());
         // Switched on by hand, an effect runs on every surface, with neutral input where it has none.
         let forced = [Effect::Texture, Effect::EnvironmentMap, Effect::Transparency]
             .iter()

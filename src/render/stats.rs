@@ -7,11 +7,13 @@ use crate::raster::Drawn;
 use crate::span::Kernel;
 
 /// The work of one frame.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Stats {
-    /// The rung that shaded.
+    /// The rung that shaded, where there was no budget.
     pub rung: Rung,
+    /// The budget: how many shades of error were accepted.
+    pub max_error: Option<f32>,
     /// The way from mesh to vertices.
     pub vertex_path: VertexPath,
     /// The name of the span kernel that drew.
@@ -52,6 +54,11 @@ impl Shares {
         self.0[rung as usize] += triangles;
     }
 
+    /// Counts those that were not counted yet, of `drawn`.
+    pub(super) fn complete(&mut self, rung: Rung, drawn: u64) {
+        self.add(rung, drawn - self.0.iter().sum::<u64>());
+    }
+
     /// The triangles of one rung.
     #[must_use]
     pub fn of(&self, rung: Rung) -> u64 {
@@ -68,6 +75,7 @@ impl Stats {
     pub(super) fn new(rung: Rung, vertex_path: VertexPath, kernel: Kernel, hidden_surfaces: HiddenSurfaces) -> Self {
         Self {
             rung,
+            max_error: None,
             vertex_path,
             kernel: kernel.name(),
             hidden_surfaces,

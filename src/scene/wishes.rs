@@ -123,7 +123,8 @@ pub struct Wishes {
     pub tessellation: Option<f32>,
     /// Shades between two entries of a ramp are shown as a pattern of both.
     pub dither: bool,
-    /// How many shades of error are accepted. Kept for the budget; nothing looks at it yet.
+    /// How many shades of error are accepted, of 1/255 of full intensity; above 0. Each triangle then gets the
+    /// cheapest rung that is known to keep within, whatever `rung` says.
     pub max_error: Option<f32>,
     /// The palette is to be made from the scene's materials.
     pub auto_palette: bool,
