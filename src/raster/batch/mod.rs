@@ -142,6 +142,16 @@ impl<D: Cell> Raster<'_, D> {
     /// Draws the triangles of a batch, one after the other: the bytes, depths and counts are those of
     /// [`triangle`](Self::triangle) called for each.
     pub fn batch(&mut self, batch: &Batch) -> Drawn {
+        self.draw_batch::<true>(batch)
+    }
+
+    /// The same for triangles that all lie wholly inside the frame, as
+    /// [`triangle_inside`](Self::triangle_inside).
+    pub fn batch_inside(&mut self, batch: &Batch) -> Drawn {
+        self.draw_batch::<false>(batch)
+    }
+
+    fn draw_batch<const CLIPS: bool>(&mut self, batch: &Batch) -> Drawn {
         let mut drawn = Drawn::default();
         let (_, pitch) = self.frame.pixels_mut();
         let (width, rows) = (self.frame.width(), self.frame.rows());
@@ -149,7 +159,7 @@ impl<D: Cell> Raster<'_, D> {
         let fits = pitch <= 1 << 16 && self.depth.as_ref().is_none_or(|depth| depth.holds(width, &rows));
         if !HAS_F64 || !fits {
             for at in 0..batch.count {
-                drawn += self.one_of(batch, at);
+                drawn += self.one_of::<CLIPS>(batch, at);
             }
             return drawn;
         }
@@ -162,7 +172,7 @@ impl<D: Cell> Raster<'_, D> {
         let mut left = kept.triangles();
         while let Some(&(first, kind)) = left.first() {
             if kind == Kind::Other {
-                drawn += self.one_of(batch, usize::from(first));
+                drawn += self.one_of::<CLIPS>(batch, usize::from(first));
                 left = &left[1..];
                 continue;
             }
@@ -175,9 +185,9 @@ impl<D: Cell> Raster<'_, D> {
         drawn
     }
 
-    fn one_of(&mut self, batch: &Batch, at: usize) -> Drawn {
+    fn one_of<const CLIPS: bool>(&mut self, batch: &Batch, at: usize) -> Drawn {
         let (vertices, shading) = batch.triangle(at);
-        self.triangle(&vertices, shading)
+        if CLIPS { self.triangle(&vertices, shading) } else { self.triangle_inside(&vertices, shading) }
     }
 
     /// Draws the spans of small triangles.

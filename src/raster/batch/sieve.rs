@@ -40,8 +40,11 @@ pub(super) fn sieve_inlined(batch: &Batch, clip: Rect, kept: &mut Kept) {
     let [left, top, right, bottom] = [clip.x0, clip.y0, clip.x1, clip.y1].map(|side| side as i32);
     // 0: not kept, 1: small, 2: another.
     let mut kinds = [0_i32; Batch::CAPACITY];
-    let ([x0, x1, x2], [y0, y1, y2]) = (&batch.x, &batch.y);
-    for i in 0..Batch::CAPACITY {
+    // Whole vectors of eight; what stands in the last after the batch's own triangles is not looked at.
+    let most = batch.count.next_multiple_of(8).min(Batch::CAPACITY);
+    let [x0, x1, x2] = batch.x.each_ref().map(|x| &x[..most]);
+    let [y0, y1, y2] = batch.y.each_ref().map(|y| &y[..most]);
+    for (i, kind) in kinds[..most].iter_mut().enumerate() {
         let (low_x, high_x) = (x0[i].min(x1[i]).min(x2[i]), x0[i].max(x1[i]).max(x2[i]));
         let (low_y, high_y) = (y0[i].min(y1[i]).min(y2[i]), y0[i].max(y1[i]).max(y2[i]));
         // `I24F8::first_centre`, of coordinates of at most 2²⁰.
@@ -50,7 +53,7 @@ pub(super) fn sieve_inlined(batch: &Batch, clip: Rect, kept: &mut Kept) {
         let covers = (column.max(left) < end_column.min(right)) & (row.max(top) < end_row.min(bottom));
         let inside = (column >= left) & (end_column <= right) & (row >= top) & (end_row <= bottom);
         let few = (end_column - column <= MOST_COLUMNS) & (end_row - row <= MOST_ROWS);
-        kinds[i] = if covers { 2 - i32::from(inside & few) } else { 0 };
+        *kind = if covers { 2 - i32::from(inside & few) } else { 0 };
     }
     let mut count = 0;
     for (at, &kind) in kinds[..batch.count].iter().enumerate() {
