@@ -35,7 +35,7 @@ fn any(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
     match random.within(0, 9) {
         0 => triangle(random, width, height),
         _ => {
-            let reach = random.log_uniform(14) as i64;
+            let reach = random.log_uniform(16) as i64;
             small(random, width, height, reach)
         }
     }

@@ -26,8 +26,8 @@ mod sieve;
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86;
 
-use rows::{Place, Spans};
-use sieve::{Kept, Kind};
+use rows::{Draw, Place, Spans};
+use sieve::{Chosen, Kept, Kind};
 
 /// Triangles to be drawn one after the other, in arrays.
 #[derive(Clone, Debug)]
@@ -176,8 +176,13 @@ impl<D: Cell> Raster<'_, D> {
                 left = &left[1..];
                 continue;
             }
-            let small = left.iter().position(|(_, kind)| *kind == Kind::Other).unwrap_or(left.len());
-            let listed = (stages.rows)(batch, &left[..small], place, &mut spans);
+            let alike = left.iter().position(|(_, other)| *other != kind).unwrap_or(left.len());
+            if kind == Kind::Tall {
+                (stages.tall)(batch, &left[..alike], place, &mut spans, &mut |spans| self.fill(spans, &mut drawn));
+                left = &left[alike..];
+                continue;
+            }
+            let listed = (stages.rows)(batch, &left[..alike], place, &mut spans);
             left = &left[listed..];
             self.fill(&spans, &mut drawn);
             spans.clear();
@@ -216,16 +221,17 @@ impl<D: Cell> Raster<'_, D> {
 /// The stages as the kernel's processor runs them best.
 struct Stages {
     sieve: fn(&Batch, super::frame::Rect, &mut Kept),
-    rows: fn(&Batch, &[(u8, Kind)], Place, &mut Spans) -> usize,
+    rows: fn(&Batch, &[Chosen], Place, &mut Spans) -> usize,
+    tall: fn(&Batch, &[Chosen], Place, &mut Spans, Draw<'_>),
 }
 
 impl Stages {
     fn of(kernel: Kernel) -> Self {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
-            return Self { sieve: x86::sieve, rows: x86::rows };
+            return Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall };
         }
         let _ = kernel;
-        Self { sieve: sieve::sieve, rows: rows::rows }
+        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall }
     }
 }

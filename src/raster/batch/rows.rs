@@ -17,14 +17,21 @@
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
 
 use super::Batch;
-use super::sieve::Kind;
+use super::sieve::Chosen;
+use crate::raster::depth::DepthPlane;
+use crate::raster::shade::RESEED;
+use crate::raster::shading::Shading;
 use crate::span::list::{Depths, Listed};
 
 /// The widest that a small triangle is, in pixels: a span of that many has no start but its first.
 pub(super) const MOST_COLUMNS: i32 = 64;
 /// The highest.
 pub(super) const MOST_ROWS: i32 = 16;
-/// Triangles at a time.
+/// The longest side of a tall triangle's box, in 1/256 pixel.
+pub(super) const MOST_UNITS: i32 = 256 * 256;
+/// Pieces of a row, each of which starts anew.
+pub(super) const MOST_PIECES: usize = MOST_UNITS as usize / 256 / RESEED as usize;
+/// Triangles at a time, or rows of one.
 pub(super) const LANES: usize = 8;
 /// 1.5 · 2⁵².
 pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
@@ -133,6 +140,29 @@ pub(super) struct Group {
     pub(super) step: Ints,
 }
 
+impl Group {
+    /// The depths of spans of a triangle, which hold the numbers of their rows.
+    #[inline(always)]
+    fn depths(
+        &self,
+        triangle: usize,
+        plane: &DepthPlane,
+        place: Place,
+        width: u32,
+        spans: &[Listed],
+        depths: &mut [Depths],
+    ) {
+        let (column, row, corner) = (self.column[triangle], self.row[triangle], self.at[triangle]);
+        for (span, depths) in spans.iter().zip(depths) {
+            // Offsets of a frame's pixels are below 2²⁸; columns and rows are below 4,096.
+            let j = depths.at as i32;
+            let (x, y) = (column + span.at as i32 - corner - j * place.pitch as i32, row + j);
+            let at = ((y - place.first_row as i32) * width as i32 + x) as u32;
+            *depths = Depths { at, z: plane.fixed_at(x, y), dz: plane.step() };
+        }
+    }
+}
+
 /// A row of each of eight triangles, counted from each one's first.
 pub(super) struct Row {
     /// The offset of the first pixel.
@@ -143,14 +173,14 @@ pub(super) struct Row {
 }
 
 /// Lists the rows of as many of the small triangles `kept` as there is room for, and says how many that were.
-pub(super) fn rows(batch: &Batch, kept: &[(u8, Kind)], place: Place, spans: &mut Spans) -> usize {
+pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans) -> usize {
     rows_by(batch, kept, place, spans, row)
 }
 
 #[inline(always)]
 pub(super) fn rows_by(
     batch: &Batch,
-    kept: &[(u8, Kind)],
+    kept: &[Chosen],
     place: Place,
     spans: &mut Spans,
     row: impl Fn(&Group, i32, i32, &mut Row),
@@ -161,20 +191,25 @@ pub(super) fn rows_by(
             break;
         }
         listed += group.len();
-        // Those that a last group lacks are points.
-        let (mut x, mut y, mut shade) = ([[0; LANES]; 3], [[0; LANES]; 3], [[0; LANES]; 3]);
-        for (lane, &(at, _)) in group.iter().enumerate() {
-            let at = usize::from(at) % Batch::CAPACITY;
-            for corner in 0..3 {
-                x[corner][lane] = batch.x[corner][at];
-                y[corner][lane] = batch.y[corner][at];
-                shade[corner][lane] = i32::from(batch.shade[corner][at]);
-            }
-        }
-        set_up(&x, &y, &shade, place, &mut spans.group);
+        gather(batch, group, place, &mut spans.group);
         list(batch, group, place, spans, &row);
     }
     listed
+}
+
+/// Sets up a group. Triangles that it lacks are points.
+#[inline(always)]
+fn gather(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
+    let (mut x, mut y, mut shade) = ([[0; LANES]; 3], [[0; LANES]; 3], [[0; LANES]; 3]);
+    for (lane, &(at, _)) in kept.iter().take(LANES).enumerate() {
+        let at = usize::from(at) % Batch::CAPACITY;
+        for corner in 0..3 {
+            x[corner][lane] = batch.x[corner][at];
+            y[corner][lane] = batch.y[corner][at];
+            shade[corner][lane] = i32::from(batch.shade[corner][at]);
+        }
+    }
+    set_up(&x, &y, &shade, place, group);
 }
 
 /// The edge from `a` down to `b`.
@@ -213,22 +248,17 @@ fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: 
         let (column, row) = ((low_x + 127) >> 8, (low_y + 127) >> 8);
         (columns[i], top_rows[i]) = (column, row);
         at[i] = (row - first_row) * pitch + column;
-        // From the first pixel's centre, within ±2¹⁵.
+        // From the first pixel's centre, within ±2¹⁷.
         let (left, top) = (column * 256 + 128, row * 256 + 128);
         let (ax, ay) = (x[0][i] - left, y[0][i] - top);
         let (bx, by) = (x[1][i] - left, y[1][i] - top);
         let (cx, cy) = (x[2][i] - left, y[2][i] - top);
 
-        // Top, middle and bottom, by y and x in one number.
-        let (ka, kb, kc) = ((ay << 16) + ax, (by << 16) + bx, (cy << 16) + cx);
-        let (low, high) = (ka.min(kb), ka.max(kb));
-        let (k0, rest) = (low.min(kc), low.max(kc));
-        let (k1, k2) = (rest.min(high), rest.max(high));
-        let point = |k: i32| {
-            let x = (k << 16) >> 16;
-            (x, (k - x) >> 16)
-        };
-        let (p0, p1, p2) = (point(k0), point(k1), point(k2));
+        // Top, middle and bottom. Which of two at the same height comes first is of no matter here.
+        let order = |p: (i32, i32), q: (i32, i32)| if q.1 < p.1 { (q, p) } else { (p, q) };
+        let (p0, p1) = order((ax, ay), (bx, by));
+        let (p1, p2) = order(p1, (cx, cy));
+        let (p0, p1) = order(p0, p1);
         (long.n[i], long.per_row[i], long.inverse[i]) = edge(p0, p2);
         (upper.n[i], upper.per_row[i], upper.inverse[i]) = edge(p0, p1);
         (lower.n[i], lower.per_row[i], lower.inverse[i]) = edge(p1, p2);
@@ -286,7 +316,7 @@ fn row(group: &Group, row: i32, pitch: i32, to: &mut Row) {
 #[inline(always)]
 fn list(
     batch: &Batch,
-    triangles: &[(u8, Kind)],
+    triangles: &[Chosen],
     place: Place,
     spans: &mut Spans,
     row: impl Fn(&Group, i32, i32, &mut Row),
@@ -317,15 +347,106 @@ fn list(
             && pixels > before
         {
             let plane = batch.depth_plane(usize::from(triangles[i].0));
-            let (column, row) = (group.column[i], group.row[i]);
-            for (span, depths) in spans[first..*count].iter().zip(&mut depths[first..*count]) {
-                // Offsets of a frame's pixels are below 2²⁸; columns and rows are below 4,096.
-                let j = depths.at as i32;
-                let (x, y) = (column + span.at as i32 - group.at[i] - j * place.pitch as i32, row + j);
-                let at = ((y - place.first_row as i32) * width as i32 + x) as u32;
-                *depths = Depths { at, z: plane.fixed_at(x, y), dz: plane.step() };
-            }
+            group.depths(i, &plane, place, width, &spans[first..*count], &mut depths[first..*count]);
         }
     }
     *covered += pixels;
+}
+
+/// Eight rows of one triangle.
+pub(super) struct Lines {
+    /// As in `Row`.
+    pub(super) at: Ints,
+    pub(super) length: Ints,
+    /// Of each piece of the rows.
+    pub(super) paint: [Ints; MOST_PIECES],
+}
+
+impl Lines {
+    pub(super) const NONE: Self = Self { at: [0; LANES], length: [0; LANES], paint: [[0; LANES]; MOST_PIECES] };
+}
+
+/// Draws the spans that are listed.
+pub(super) type Draw<'a> = &'a mut dyn FnMut(&Spans);
+
+/// Draws tall triangles: one after the other, eight rows at a time, through `draw`, which takes what is listed.
+pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans, draw: Draw<'_>) {
+    tall_by(batch, kept, place, spans, draw, lines);
+}
+
+#[inline(always)]
+pub(super) fn tall_by(
+    batch: &Batch,
+    kept: &[Chosen],
+    place: Place,
+    spans: &mut Spans,
+    draw: Draw<'_>,
+    lines: impl Fn(&Group, usize, i32, i32, &mut Lines),
+) {
+    let mut found = Lines::NONE;
+    for eight in kept.chunks(LANES) {
+        gather(batch, eight, place, &mut spans.group);
+        for (i, &(number, _)) in eight.iter().enumerate() {
+            let number = usize::from(number);
+            let plane = place.depth_width.map(|_| batch.depth_plane(number));
+            let pieces = match batch.shading[number % Batch::CAPACITY] {
+                Shading::GouraudReseeded => MOST_PIECES,
+                _ => 1,
+            };
+            for first in (0..spans.group.rows[i]).step_by(LANES) {
+                lines(&spans.group, i, first, place.pitch as i32, &mut found);
+                let before = spans.count;
+                for j in 0..LANES.min((spans.group.rows[i] - first) as usize) {
+                    // Non-negative, and at most 256.
+                    let (mut at, mut left) = (found.at[j] as u32, found.length[j] as u32);
+                    for (piece, paint) in found.paint.iter().enumerate() {
+                        if left == 0 {
+                            break;
+                        }
+                        let length = if piece + 1 == pieces { left } else { left.min(RESEED as u32) };
+                        let paint = paint[j] as u32;
+                        spans.spans[spans.count] =
+                            Listed { at, length, shade: paint as u16, step: (paint >> 16) as u16 };
+                        spans.depths[spans.count].at = (first as u32) + j as u32;
+                        spans.count += 1;
+                        spans.covered += length;
+                        (at, left) = (at + length, left - length);
+                    }
+                }
+                if let (Some(plane), Some(width)) = (&plane, place.depth_width) {
+                    let Spans { spans, depths, count, group, .. } = spans;
+                    group.depths(i, plane, place, width, &spans[before..*count], &mut depths[before..*count]);
+                }
+                if spans.count + LANES * MOST_PIECES > Spans::ROOM {
+                    draw(spans);
+                    spans.clear();
+                }
+            }
+        }
+    }
+    draw(spans);
+    spans.clear();
+}
+
+/// Eight rows of triangle `i` of a group, from number `first` on.
+#[inline(always)]
+fn lines(group: &Group, i: usize, first: i32, pitch: i32, to: &mut Lines) {
+    for lane in 0..LANES {
+        // Below 8.
+        let row = first + lane as i32;
+        let j = f64::from(row);
+        let at = |edges: &Edges| (edges.n[i] + edges.per_row[i] * j) * edges.inverse[i] + MAGIC;
+        let (long, upper, lower) = (at(&group.long), at(&group.upper), at(&group.lower));
+        let short = if row < group.split[i] { upper } else { lower };
+        let (left, right) = if long < short { (long, short) } else { (short, long) };
+        let (first, end) = (whole(left), whole(right));
+        // Beyond the last row anything may come out.
+        to.at[lane] = (group.at[i] + row * pitch).wrapping_add(first);
+        to.length[lane] = end.wrapping_sub(first);
+        let n = group.n[i] + group.per_row[i] * j + group.per_column[i] * (left - MAGIC);
+        for (piece, paint) in (0_i32..).zip(&mut to.paint) {
+            let n = n + group.per_column[i] * f64::from(piece * RESEED);
+            paint[lane] = (whole(n * group.inverse[i] + MAGIC) & 0xFFFF) | group.step[i];
+        }
+    }
 }

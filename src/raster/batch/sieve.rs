@@ -1,7 +1,7 @@
 //! The sieve: which triangles of a batch may cover a pixel.
 
 use super::Batch;
-use super::rows::{MOST_COLUMNS, MOST_ROWS};
+use super::rows::{MOST_COLUMNS, MOST_ROWS, MOST_UNITS};
 use crate::raster::frame::Rect;
 
 /// What becomes of a triangle that has a pixel centre in its box.
@@ -9,13 +9,18 @@ use crate::raster::frame::Rect;
 pub(super) enum Kind {
     /// It lies inside the clip rectangle and is small enough for `rows`.
     Small,
+    /// It lies inside the clip rectangle and is small enough for `tall`.
+    Tall,
     Other,
 }
+
+/// A triangle's number, and what becomes of it.
+pub(super) type Chosen = (u8, Kind);
 
 /// Numbers of triangles, in order.
 pub(super) struct Kept {
     // One place more than triangles: every triangle is written, and those that are not kept are written over.
-    triangles: [(u8, Kind); Batch::CAPACITY + 1],
+    triangles: [Chosen; Batch::CAPACITY + 1],
     count: usize,
 }
 
@@ -24,7 +29,7 @@ impl Kept {
         Self { triangles: [(0, Kind::Other); Batch::CAPACITY + 1], count: 0 }
     }
 
-    pub(super) fn triangles(&self) -> &[(u8, Kind)] {
+    pub(super) fn triangles(&self) -> &[Chosen] {
         &self.triangles[..self.count]
     }
 }
@@ -38,7 +43,7 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
 pub(super) fn sieve_inlined(batch: &Batch, clip: Rect, kept: &mut Kept) {
     // Inside a frame, at most 4,096.
     let [left, top, right, bottom] = [clip.x0, clip.y0, clip.x1, clip.y1].map(|side| side as i32);
-    // 0: not kept, 1: small, 2: another.
+    // 0: not kept, 1: small, 2: tall, 3: another.
     let mut kinds = [0_i32; Batch::CAPACITY];
     // Whole vectors of eight; what stands in the last after the batch's own triangles is not looked at.
     let most = batch.count.next_multiple_of(8).min(Batch::CAPACITY);
@@ -53,12 +58,18 @@ pub(super) fn sieve_inlined(batch: &Batch, clip: Rect, kept: &mut Kept) {
         let covers = (column.max(left) < end_column.min(right)) & (row.max(top) < end_row.min(bottom));
         let inside = (column >= left) & (end_column <= right) & (row >= top) & (end_row <= bottom);
         let few = (end_column - column <= MOST_COLUMNS) & (end_row - row <= MOST_ROWS);
-        *kind = if covers { 2 - i32::from(inside & few) } else { 0 };
+        let more = (high_x - low_x <= MOST_UNITS) & (high_y - low_y <= MOST_UNITS);
+        *kind = if covers { 3 - i32::from(inside & more) - i32::from(inside & few) } else { 0 };
     }
     let mut count = 0;
     for (at, &kind) in kinds[..batch.count].iter().enumerate() {
         // Below 128.
-        kept.triangles[count] = (at as u8, if kind == 1 { Kind::Small } else { Kind::Other });
+        let is = match kind {
+            1 => Kind::Small,
+            2 => Kind::Tall,
+            _ => Kind::Other,
+        };
+        kept.triangles[count] = (at as u8, is);
         count += usize::from(kind != 0);
     }
     kept.count = count;
