@@ -184,6 +184,12 @@ impl<'a> Frame<'a> {
         self.pixels.get_mut(start..start + self.width as usize)
     }
 
+    /// All pixels that it holds, and the bytes from one row to the next.
+    #[inline]
+    pub(super) fn pixels_mut(&mut self) -> (&mut [u8], usize) {
+        (self.pixels, self.pitch)
+    }
+
     /// Sets every pixel that it holds to `index`; bytes between the rows stay.
     pub fn clear(&mut self, index: u8) {
         for y in self.rows() {

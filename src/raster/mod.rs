@@ -23,6 +23,7 @@
 //! | `account` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
+//! | [`batch`] | the same for many triangles at a time: [`Raster::batch`] |
 //! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
 //! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
@@ -41,6 +42,7 @@
 
 #[cfg(feature = "alloc")]
 pub mod account;
+pub mod batch;
 pub mod clip;
 pub mod cover;
 pub mod depth;
@@ -65,6 +67,7 @@ pub mod vertex;
 mod weights;
 pub mod wide;
 
+pub use batch::Batch;
 pub use depth::DepthBuffer;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;

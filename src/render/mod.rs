@@ -50,7 +50,7 @@ use crate::palette::{BIOS, Palette};
 use crate::plan::{self, Effect, Forced, Inputs, Plan, Since, decide, sort_by_depth};
 use crate::raster::effects::Attributes;
 use crate::raster::scan_line::Lists;
-use crate::raster::{Drawn, Frame, Raster, Shading, Vertex};
+use crate::raster::{Batch, Drawn, Frame, Raster, Shading, Vertex};
 pub use crate::scene::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung};
 use crate::scene::{Scene, Wishes};
 use crate::span::Kernel;
@@ -606,33 +606,30 @@ impl Renderer {
         let mut transparent = mem::take(&mut self.transparent);
         transparent.clear();
         let mut integer = mem::take(&mut self.integer);
+        let mut batch = Batch::new();
         for &object in &self.plan.order {
             let plan = &self.plan.objects[object];
             let mut drawn = Drawn::default();
             let mut choices = self.states[object].take_choices();
             let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
             if self.vertex_path == VertexPath::Integer {
-                let mut plain = Bare(|vertices: &[Vertex; 3], shading| drawn += raster.triangle(vertices, shading));
-                integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain.0);
+                let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
+                let mut plain = |vertices: &[Vertex; 3], shading| batched.triangle(vertices, shading);
+                integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
+                batched.draw();
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], plan) {
+                let (raster, batch, drawn) = (&mut raster, &mut batch, &mut drawn);
+                let (looks, transparent) = (&looks, &mut transparent);
                 if plan.is_on(Effect::ScreenClipping) {
-                    let mut sink = Direct::<true> {
-                        raster: &mut raster,
-                        drawn: &mut drawn,
-                        looks: &looks,
-                        object,
-                        transparent: &mut transparent,
-                    };
+                    let batched = Batched::<true> { raster, batch, drawn };
+                    let mut sink = Direct { batched, looks, object, transparent };
                     faces.draw(&mut choices, stats, &mut sink);
+                    sink.batched.draw();
                 } else {
-                    let mut sink = Direct::<false> {
-                        raster: &mut raster,
-                        drawn: &mut drawn,
-                        looks: &looks,
-                        object,
-                        transparent: &mut transparent,
-                    };
+                    let batched = Batched::<false> { raster, batch, drawn };
+                    let mut sink = Direct { batched, looks, object, transparent };
                     faces.draw(&mut choices, stats, &mut sink);
+                    sink.batched.draw();
                 }
             }
             self.states[object].put_choices(choices);
@@ -716,18 +713,21 @@ impl Renderer {
         let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
         let mut order: Vec<usize> = (0..self.triangles.len()).collect();
         sort_by_depth(&mut order, |&i| depth_of(&self.triangles[i].0));
+        let mut batch = Batch::new();
+        let mut batched = Batched::<true> { raster, batch: &mut batch, drawn: &mut stats.raster };
         for i in order {
             let (vertices, shading) = &self.triangles[i];
-            stats.raster += match self.kept_places[i] {
-                Some(place) => {
-                    let face = &self.kept[place as usize];
-                    looks.with((face.object, face.surface, face.rung), |look| {
-                        raster.triangle_with_effects(vertices, &face.attributes, look)
-                    })
-                }
-                None => raster.triangle(vertices, *shading),
+            let Some(place) = self.kept_places[i] else {
+                batched.triangle(vertices, *shading);
+                continue;
             };
+            batched.draw();
+            let face = &self.kept[place as usize];
+            *batched.drawn += looks.with((face.object, face.surface, face.rung), |look| {
+                batched.raster.triangle_with_effects(vertices, &face.attributes, look)
+            });
         }
+        batched.draw();
     }
 
     /// All at once, each pixel once.
@@ -810,8 +810,7 @@ impl<F: FnMut(&[Vertex; 3], Shading)> Sink for Bare<F> {
 
 /// Draws faces as they come; keeps those that shine through.
 struct Direct<'a, 'b, const CLIPS: bool> {
-    raster: &'a mut Raster<'b>,
-    drawn: &'a mut Drawn,
+    batched: Batched<'a, 'b, CLIPS>,
     looks: &'a Looks<'a>,
     object: usize,
     transparent: &'a mut Vec<Kept>,
@@ -820,11 +819,7 @@ struct Direct<'a, 'b, const CLIPS: bool> {
 impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
     #[inline]
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        *self.drawn += if CLIPS {
-            self.raster.triangle(vertices, shading)
-        } else {
-            self.raster.triangle_inside(vertices, shading)
-        };
+        self.batched.triangle(vertices, shading);
     }
 
     fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung) {
@@ -833,13 +828,53 @@ impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
             self.transparent.push(Kept { vertices, attributes, object: self.object, surface, rung });
             return;
         }
-        *self.drawn += self.looks.with((self.object, surface, rung), |look| {
+        // In the order in which they came: of equal depths the first stays.
+        self.batched.draw();
+        let Batched { raster, drawn, .. } = &mut self.batched;
+        **drawn += self.looks.with((self.object, surface, rung), |look| {
             if CLIPS {
-                self.raster.triangle_with_effects(vertices, attributes, look)
+                raster.triangle_with_effects(vertices, attributes, look)
             } else {
-                self.raster.triangle_with_effects_inside(vertices, attributes, look)
+                raster.triangle_with_effects_inside(vertices, attributes, look)
             }
         });
+    }
+}
+
+/// Draws faces without effects, many at a time.
+struct Batched<'a, 'b, const CLIPS: bool> {
+    raster: &'a mut Raster<'b>,
+    batch: &'a mut Batch,
+    drawn: &'a mut Drawn,
+}
+
+impl<const CLIPS: bool> Batched<'_, '_, CLIPS> {
+    #[inline]
+    fn triangle(&mut self, vertices: &[Vertex; 3], shading: Shading) {
+        if !self.batch.push(vertices, shading) {
+            self.past_the_batch(vertices, shading);
+        }
+    }
+
+    /// A triangle that a full batch has no room for, or that is for no batch.
+    #[inline(never)]
+    fn past_the_batch(&mut self, vertices: &[Vertex; 3], shading: Shading) {
+        self.draw();
+        if !self.batch.push(vertices, shading) {
+            *self.drawn += if CLIPS {
+                self.raster.triangle(vertices, shading)
+            } else {
+                self.raster.triangle_inside(vertices, shading)
+            };
+        }
+    }
+
+    /// Draws those that are waiting.
+    fn draw(&mut self) {
+        if !self.batch.is_empty() {
+            *self.drawn += if CLIPS { self.raster.batch(self.batch) } else { self.raster.batch_inside(self.batch) };
+            self.batch.clear();
+        }
     }
 }
 

@@ -9,9 +9,20 @@
 //! then `d` is narrowed first ([`Cell`]).
 
 mod sealed {
-    pub trait Sealed {}
-    impl Sealed for u32 {}
-    impl Sealed for u16 {}
+    pub trait Sealed: Sized {
+        /// The same cells, if they are of 32 bits: those have kernels of their own.
+        fn as_u32(cells: &mut [Self]) -> Option<&mut [u32]>;
+    }
+    impl Sealed for u32 {
+        fn as_u32(cells: &mut [Self]) -> Option<&mut [u32]> {
+            Some(cells)
+        }
+    }
+    impl Sealed for u16 {
+        fn as_u32(_: &mut [Self]) -> Option<&mut [u32]> {
+            None
+        }
+    }
 }
 
 /// What a depth buffer holds for a pixel: greater is nearer, 0 is nothing yet.

@@ -47,6 +47,7 @@ pub mod depth;
 pub mod dither;
 pub mod float;
 pub mod hyperbolic;
+pub mod list;
 pub mod lit;
 mod lookup;
 mod portable;
@@ -74,6 +75,8 @@ pub mod entry {
 
 /// What every kernel is: `row` (any length), `shade` and `step` in 8.8.
 type Fill = fn(row: &mut [u8], shade: u16, step: u16);
+/// The same for a list of spans.
+type FillList = fn(pixels: &mut [u8], spans: &[list::Listed]);
 
 /// A way to fill a span that this machine has.
 ///
@@ -94,24 +97,28 @@ pub struct Kernel {
     name: &'static str,
     level: &'static str,
     fill: Fill,
+    fill_list: FillList,
 }
 
 /// A row of the table of kernels.
 struct Listed {
     name: &'static str,
-    /// The level it draws with and its function; `None` where the machine or the build lacks it.
-    find: fn() -> Option<(&'static str, Fill)>,
+    /// The level it draws with and its functions; `None` where the machine or the build lacks it.
+    find: fn() -> Option<Level>,
 }
+
+/// What a kernel draws with, and its functions.
+type Level = (&'static str, Fill, FillList);
 
 impl Listed {
     fn kernel(&self) -> Option<Kernel> {
-        (self.find)().map(|(level, fill)| Kernel { name: self.name, level, fill })
+        (self.find)().map(|(level, fill, fill_list)| Kernel { name: self.name, level, fill, fill_list })
     }
 }
 
 /// Every kernel there is, portable first.
 static LISTED: [Listed; 8] = [
-    Listed { name: "portable", find: || Some(("portable", portable::fill)) },
+    Listed { name: "portable", find: || Some(("portable", portable::fill, portable::fill_list)) },
     Listed { name: "asm", find: find_asm },
     Listed { name: "asm-unrolled", find: find_asm_unrolled },
     Listed { name: "simd", find: find_simd },
@@ -121,57 +128,58 @@ static LISTED: [Listed; 8] = [
     Listed { name: "simd-avx512", find: find_avx512 },
 ];
 
-fn find_asm() -> Option<(&'static str, Fill)> {
+fn find_asm() -> Option<Level> {
     #[cfg(all(feature = "asm", target_arch = "x86_64"))]
-    return Some(("x86-64", x86::fill));
+    return Some(("x86-64", x86::fill, |pixels, spans| list::each(pixels, spans, x86::fill)));
     #[cfg(all(feature = "asm", target_arch = "x86"))]
-    return Some(("i686", x86::fill));
+    return Some(("i686", x86::fill, |pixels, spans| list::each(pixels, spans, x86::fill)));
     #[cfg(not(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86"))))]
     return None;
 }
 
-fn find_asm_unrolled() -> Option<(&'static str, Fill)> {
+fn find_asm_unrolled() -> Option<Level> {
     #[cfg(all(feature = "asm", target_arch = "x86_64"))]
-    return Some(("x86-64", x86::fill_unrolled));
+    return Some(("x86-64", x86::fill_unrolled, |pixels, spans| list::each(pixels, spans, x86::fill_unrolled)));
     #[cfg(not(all(feature = "asm", target_arch = "x86_64")))]
     return None;
 }
 
-fn find_simd() -> Option<(&'static str, Fill)> {
+fn find_simd() -> Option<Level> {
     find_avx512().or_else(find_avx2).or_else(find_sse2).or_else(find_arrays)
 }
 
-fn find_arrays() -> Option<(&'static str, Fill)> {
+fn find_arrays() -> Option<Level> {
     #[cfg(feature = "simd")]
-    return Some(("arrays", simd::arrays::fill));
+    return Some(("arrays", simd::arrays::fill, |pixels, spans| list::each(pixels, spans, simd::arrays::fill)));
     #[cfg(not(feature = "simd"))]
     return None;
 }
 
-fn find_sse2() -> Option<(&'static str, Fill)> {
+fn find_sse2() -> Option<Level> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return Some(("sse2", simd::sse2::fill));
+    return Some(("sse2", simd::sse2::fill, simd::sse2::fill_list));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
 
-fn find_avx2() -> Option<(&'static str, Fill)> {
+fn find_avx2() -> Option<Level> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return simd::avx2::found().then_some(("avx2", simd::avx2::fill));
+    return simd::avx2::found().then_some(("avx2", simd::avx2::fill, simd::avx2::fill_list));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
 
-fn find_avx512() -> Option<(&'static str, Fill)> {
+fn find_avx512() -> Option<Level> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return simd::avx512::found().then_some(("avx512", simd::avx512::fill));
+    return simd::avx512::found().then_some(("avx512", simd::avx512::fill, simd::avx512::fill_list));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
 
 impl Kernel {
     /// The specification, in Rust.
-    pub const PORTABLE: Self = Self { name: "portable", level: "portable", fill: portable::fill };
+    pub const PORTABLE: Self =
+        Self { name: "portable", level: "portable", fill: portable::fill, fill_list: portable::fill_list };
 
     /// The kernels that this machine and this build have, `portable` first.
     ///
@@ -187,7 +195,7 @@ impl Kernel {
     pub fn fastest() -> Self {
         // Not the assembly: the compiler makes vectors of the portable loop, and they beat it at every length.
         match find_simd() {
-            Some((level, fill)) => Self { name: "simd", level, fill },
+            Some((level, fill, fill_list)) => Self { name: "simd", level, fill, fill_list },
             None => Self::PORTABLE,
         }
     }
@@ -221,6 +229,38 @@ impl Kernel {
     #[inline]
     pub fn fill(self, row: &mut [u8], shade: u16, step: u16) {
         (self.fill)(row, shade, step);
+    }
+
+    /// Fills every span of a list, in order, as [`fill`](Self::fill) does. Of a span that reaches beyond
+    /// `pixels` nothing is drawn.
+    #[inline]
+    pub fn fill_list(self, pixels: &mut [u8], spans: &[list::Listed]) {
+        (self.fill_list)(pixels, spans);
+    }
+
+    /// The same with a depth test, as [`depth::fill_nearer`] does it, with as many `depths` as spans. Returns
+    /// the number of pixels written.
+    #[inline]
+    pub fn fill_list_nearer<D: depth::Cell>(
+        self,
+        pixels: &mut [u8],
+        cells: &mut [D],
+        spans: &[list::Listed],
+        depths: &[list::Depths],
+    ) -> u32 {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if self.level == "avx512"
+            && let Some(cells) = D::as_u32(cells)
+        {
+            return simd::avx512::fill_list_nearer(pixels, cells, spans, depths);
+        }
+        list::each_nearer(pixels, cells, spans, depths)
+    }
+
+    /// Whether the processor has AVX2 and this kernel may use it.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    pub(crate) fn has_avx2(self) -> bool {
+        matches!(self.level, "avx2" | "avx512")
     }
 }
 

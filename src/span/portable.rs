@@ -1,6 +1,9 @@
 //! The loop of 1994, and the specification: what this writes is right.
 
+use super::list::{Listed, each};
+
 /// `mov [edi],ah` / `inc edi` / `add ax,bx` / `loop`, with `row` for EDI and CX.
+#[inline]
 pub(super) fn fill(row: &mut [u8], shade: u16, step: u16) {
     let mut ax = shade;
     for pixel in row {
@@ -8,4 +11,9 @@ pub(super) fn fill(row: &mut [u8], shade: u16, step: u16) {
         *pixel = ah;
         ax = ax.wrapping_add(step);
     }
+}
+
+/// The same for every span of a list.
+pub(super) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
+    each(pixels, spans, fill);
 }

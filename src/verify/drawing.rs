@@ -1,7 +1,7 @@
 //! A record drawn by the raster, in a frame with guard bytes on all sides.
 
 use crate::raster::scan_line::Lists;
-use crate::raster::{Frame, FrameError, Raster, Shading, Vertex};
+use crate::raster::{Batch, Frame, FrameError, Raster, Shading, Vertex};
 use crate::record::Record;
 use crate::render::HiddenSurfaces;
 use crate::span::Kernel;
@@ -71,11 +71,7 @@ fn draw_band(record: &Record, way: Way, band: Frame<'_>) {
         raster = raster.with_clip(clip);
     }
     match way.hidden_surfaces {
-        HiddenSurfaces::BackFaces => {
-            for (vertices, shading) in &record.triangles {
-                raster.triangle(vertices, *shading);
-            }
-        }
+        HiddenSurfaces::BackFaces => in_batches(&mut raster, &record.triangles),
         HiddenSurfaces::PainterOrder => {
             for (vertices, shading) in far_to_near(&record.triangles) {
                 raster.triangle(vertices, *shading);
@@ -83,10 +79,7 @@ fn draw_band(record: &Record, way: Way, band: Frame<'_>) {
         }
         HiddenSurfaces::DepthBuffer => {
             let mut depths: Vec<u32> = Vec::new();
-            let mut raster = raster.with_cleared_depth(&mut depths);
-            for (vertices, shading) in &record.triangles {
-                raster.triangle(vertices, *shading);
-            }
+            in_batches(&mut raster.with_cleared_depth(&mut depths), &record.triangles);
         }
         HiddenSurfaces::ScanLine => {
             let mut lists = Lists::default();
@@ -94,6 +87,22 @@ fn draw_band(record: &Record, way: Way, band: Frame<'_>) {
             let _ = raster.scan_line(&record.triangles, lists.scratch(record.triangles.len()));
         }
     }
+}
+
+/// As the renderer draws them.
+fn in_batches(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Shading)]) {
+    let mut batch = Batch::new();
+    for (vertices, shading) in triangles {
+        if batch.push(vertices, *shading) {
+            continue;
+        }
+        raster.batch(&batch);
+        batch.clear();
+        if !batch.push(vertices, *shading) {
+            raster.triangle(vertices, *shading);
+        }
+    }
+    raster.batch(&batch);
 }
 
 /// Painter's order, by the mean depth of the three vertices.

@@ -1,0 +1,81 @@
+//! What is drawn: prepared triangles, back to front, and the meshes that they come from.
+
+use std::error::Error;
+use std::path::Path;
+
+use mode13h::fixed::{I24F8, U8F8};
+use mode13h::mesh::{Mesh, obj, shapes};
+use mode13h::raster::Vertex;
+use mode13h::render::{Renderer, Screen};
+use mode13h::scene::Scene;
+
+use crate::refine::refined;
+
+/// Triangles, rounded as the engine rounds them: every peer's numbers hold these exactly.
+pub struct Workload {
+    pub name: String,
+    pub triangles: Vec<[Vertex; 3]>,
+    pub mesh: Option<Mesh>,
+}
+
+impl Workload {
+    /// The front faces of a mesh that fills the frame, by the mean depth of their vertices.
+    fn of_mesh(name: String, mesh: Mesh) -> Result<Self, Box<dyn Error>> {
+        let mut scene = Scene::showing(mesh.clone());
+        scene.objects_mut()[0].set_angles([0.4, 0.6, 0.0]);
+        let mut triangles = Vec::new();
+        Renderer::new().for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| triangles.push(*vertices))?;
+        triangles.sort_by_key(|vertices| vertices.iter().map(|v| u64::from(v.depth())).sum::<u64>());
+        Ok(Self { name, triangles, mesh: Some(mesh) })
+    }
+
+    /// A little-endian u32 count, then for each triangle three times f32 x, y and shade (pixels,
+    /// pixels, 0 to 255), back to front.
+    fn of_tri(path: &Path) -> Result<Self, Box<dyn Error>> {
+        let bytes = std::fs::read(path)?;
+        let (count, rest) = bytes.split_first_chunk::<4>().ok_or("too short for a count")?;
+        let count = u32::from_le_bytes(*count) as usize;
+        let mut numbers = rest.as_chunks::<4>().0.iter().map(|four| f32::from_le_bytes(*four));
+        let mut vertex = || -> Result<Vertex, Box<dyn Error>> {
+            let mut next = || numbers.next().ok_or("fewer numbers than its count says");
+            let (x, y, shade) = (next()?, next()?, next()?);
+            let coordinate = |pixels| I24F8::round_from_f32(pixels).ok_or("a coordinate out of range");
+            Ok(Vertex::new(coordinate(x)?, coordinate(y)?, U8F8::from_intensity(shade / 255.0, 0, 256), 0)?)
+        };
+        let mut triangles = Vec::new();
+        for _ in 0..count {
+            triangles.push([vertex()?, vertex()?, vertex()?]);
+        }
+        Ok(Self { name: name_of(path), triangles, mesh: None })
+    }
+
+    /// The shapes, the rabbit (or, without one, a rough sphere) ever finer, and the files.
+    pub fn all(rabbit: Option<&Path>, files: &[String]) -> Result<Vec<Self>, Box<dyn Error>> {
+        let mut all = Vec::new();
+        for name in ["cube", "torus", "teapot"] {
+            all.push(Self::of_mesh(name.to_owned(), shapes::by_name(name).ok_or("a shape that is not there")?)?);
+        }
+        let (name, mesh) = match rabbit {
+            Some(path) => (name_of(path), obj::load(path)?.mesh),
+            None => ("sphere".to_owned(), refined(&shapes::by_name("cube").ok_or("no cube")?, 3_600)),
+        };
+        all.push(Self::of_mesh(name.clone(), mesh.clone())?);
+        for thousands in [11, 48, 200, 870] {
+            all.push(Self::of_mesh(format!("{name}, {thousands} thousand"), refined(&mesh, thousands * 1_000))?);
+        }
+        for file in files {
+            let path = Path::new(file);
+            let workload = if path.extension().is_some_and(|end| end == "tri") {
+                Self::of_tri(path)
+            } else {
+                obj::load(path).map_err(Into::into).and_then(|loaded| Self::of_mesh(name_of(path), loaded.mesh))
+            };
+            all.push(workload.map_err(|error| format!("{file}: {error}"))?);
+        }
+        Ok(all)
+    }
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_stem().map_or_else(|| path.display().to_string(), |stem| stem.to_string_lossy().into_owned())
+}

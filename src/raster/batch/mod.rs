@@ -1,0 +1,237 @@
+//! Many triangles at once: what covers no pixel is found out with vectors, and so are the rows of what is small.
+//!
+//! Half of the triangles of a fine model cover no pixel centre, and most of the others a few. So a triangle's own
+//! work has to be small: no sorting by branches, no division for itself, no loop for a row of one pixel. A
+//! [`Batch`] holds triangles as a structure of arrays, and they pass three stages:
+//!
+//! | stage | lanes | what |
+//! |---|---|---|
+//! | [`sieve`] | triangles | which have a pixel centre in their box, and which of these are small |
+//! | [`rows`] | triangles | of eight small ones at a time edges, shade plane and rows, as a list of spans |
+//! | [`Kernel::fill_list`](crate::span::Kernel::fill_list) | pixels | the bytes |
+//!
+//! What is not small, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
+//! when its turn comes. The bytes are those of a call of it for each triangle in turn.
+
+use super::Shading;
+use super::depth::{Cell, DepthPlane};
+use super::triangle::{Drawn, Raster};
+use super::vertex::Vertex;
+use crate::fixed::{HAS_F64, I24F8, U8F8};
+use crate::span::Kernel;
+
+mod rows;
+mod sieve;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
+mod x86;
+
+use rows::{Draw, Place, Spans};
+use sieve::{Chosen, Kept, Kind};
+
+/// Triangles to be drawn one after the other, in arrays.
+#[derive(Clone, Debug)]
+pub struct Batch {
+    count: usize,
+    /// Of each corner, of all triangles: x and y in 1/256 pixel, shade in 1/256.
+    x: [[i32; Self::CAPACITY]; 3],
+    y: [[i32; Self::CAPACITY]; 3],
+    shade: [[u16; Self::CAPACITY]; 3],
+    depth: [[u32; Self::CAPACITY]; 3],
+    shading: [Shading; Self::CAPACITY],
+}
+
+impl Batch {
+    /// The most triangles. With 64 the group of eight that ends a batch is oftener part empty.
+    pub const CAPACITY: usize = 128;
+
+    /// Without a triangle.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            count: 0,
+            x: [[0; Self::CAPACITY]; 3],
+            y: [[0; Self::CAPACITY]; 3],
+            shade: [[0; Self::CAPACITY]; 3],
+            depth: [[0; Self::CAPACITY]; 3],
+            shading: [Shading::Flat(0); Self::CAPACITY],
+        }
+    }
+
+    /// Whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
+    #[must_use]
+    #[inline]
+    pub const fn takes(shading: Shading) -> bool {
+        matches!(shading, Shading::Flat(_) | Shading::Gouraud | Shading::GouraudReseeded)
+    }
+
+    /// Puts a triangle behind the others. Returns `false`, and leaves it out, if the batch is full or does not
+    /// [take](Self::takes) this shading.
+    #[inline]
+    pub fn push(&mut self, vertices: &[Vertex; 3], shading: Shading) -> bool {
+        let at = self.count;
+        if at >= Self::CAPACITY || !Self::takes(shading) {
+            return false;
+        }
+        for (corner, v) in vertices.iter().enumerate() {
+            self.x[corner][at] = v.x().to_bits();
+            self.y[corner][at] = v.y().to_bits();
+            // A flat triangle is one whose corners agree: the nearest of a whole shade is that shade.
+            self.shade[corner][at] = match shading {
+                Shading::Flat(index) => u16::from(index) << 8,
+                _ => v.shade().to_bits(),
+            };
+            self.depth[corner][at] = v.depth();
+        }
+        self.shading[at] = shading;
+        self.count = at + 1;
+        true
+    }
+
+    /// How many triangles it holds.
+    #[must_use]
+    #[inline]
+    pub const fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether it holds none.
+    #[must_use]
+    #[inline]
+    pub const fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Whether there is no room left.
+    #[must_use]
+    #[inline]
+    pub const fn is_full(&self) -> bool {
+        self.count == Self::CAPACITY
+    }
+
+    /// Takes all triangles out.
+    #[inline]
+    pub const fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    fn depth_plane(&self, at: usize) -> DepthPlane {
+        let at = at % Self::CAPACITY;
+        DepthPlane::of_corners([0, 1, 2].map(|corner| (self.x[corner][at], self.y[corner][at], self.depth[corner][at])))
+    }
+
+    /// A triangle as it was put in, but that the vertices of a flat one have its shade.
+    fn triangle(&self, at: usize) -> ([Vertex; 3], Shading) {
+        let vertex = |corner: usize| {
+            let (x, y) = (I24F8::from_bits(self.x[corner][at]), I24F8::from_bits(self.y[corner][at]));
+            let shade = U8F8::from_bits(self.shade[corner][at]);
+            // They came out of a vertex; with another shade none would be drawn.
+            Vertex::new(x, y, shade, self.depth[corner][at]).unwrap_or_default()
+        };
+        ([vertex(0), vertex(1), vertex(2)], self.shading[at])
+    }
+}
+
+impl Default for Batch {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<D: Cell> Raster<'_, D> {
+    /// Draws the triangles of a batch, one after the other: the bytes, depths and counts are those of
+    /// [`triangle`](Self::triangle) called for each.
+    pub fn batch(&mut self, batch: &Batch) -> Drawn {
+        self.draw_batch::<true>(batch)
+    }
+
+    /// The same for triangles that all lie wholly inside the frame, as
+    /// [`triangle_inside`](Self::triangle_inside).
+    pub fn batch_inside(&mut self, batch: &Batch) -> Drawn {
+        self.draw_batch::<false>(batch)
+    }
+
+    fn draw_batch<const CLIPS: bool>(&mut self, batch: &Batch) -> Drawn {
+        let mut drawn = Drawn::default();
+        let (_, pitch) = self.frame.pixels_mut();
+        let (width, rows) = (self.frame.width(), self.frame.rows());
+        // Offsets of pixels are kept in 32 bits, and a depth buffer has to hold the frame's rows and no others.
+        let fits = pitch <= 1 << 16 && self.depth.as_ref().is_none_or(|depth| depth.holds(width, &rows));
+        if !HAS_F64 || !fits {
+            for at in 0..batch.count {
+                drawn += self.one_of::<CLIPS>(batch, at);
+            }
+            return drawn;
+        }
+        let stages = Stages::of(self.kernel);
+        let mut kept = Kept::new();
+        (stages.sieve)(batch, self.clip, &mut kept);
+        let depth_width = self.depth.is_some().then_some(width);
+        let place = Place { first_row: rows.start, pitch: pitch as u32, depth_width };
+        let mut spans = Spans::new();
+        let mut left = kept.triangles();
+        while let Some(&(first, kind)) = left.first() {
+            if kind == Kind::Other {
+                drawn += self.one_of::<CLIPS>(batch, usize::from(first));
+                left = &left[1..];
+                continue;
+            }
+            let alike = left.iter().position(|(_, other)| *other != kind).unwrap_or(left.len());
+            if kind == Kind::Tall {
+                (stages.tall)(batch, &left[..alike], place, &mut spans, &mut |spans| self.fill(spans, &mut drawn));
+                left = &left[alike..];
+                continue;
+            }
+            let listed = (stages.rows)(batch, &left[..alike], place, &mut spans);
+            left = &left[listed..];
+            self.fill(&spans, &mut drawn);
+            spans.clear();
+        }
+        drawn
+    }
+
+    fn one_of<const CLIPS: bool>(&mut self, batch: &Batch, at: usize) -> Drawn {
+        let (vertices, shading) = batch.triangle(at);
+        if CLIPS { self.triangle(&vertices, shading) } else { self.triangle_inside(&vertices, shading) }
+    }
+
+    /// Draws the spans of small triangles.
+    #[inline]
+    fn fill(&mut self, spans: &Spans, drawn: &mut Drawn) {
+        let covered = spans.covered();
+        // At most 2¹¹ spans of 64 pixels.
+        drawn.spans += spans.as_slice().len() as u32;
+        drawn.covered += covered;
+        let (pixels, _) = self.frame.pixels_mut();
+        // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
+        match self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces")) {
+            None => {
+                self.kernel.fill_list(pixels, spans.as_slice());
+                drawn.pixels += covered;
+            }
+            Some(depth) => {
+                drawn.tested += covered;
+                let (cells, spans, depths) = (depth.values_mut(), spans.as_slice(), spans.depths());
+                drawn.pixels += self.kernel.fill_list_nearer(pixels, cells, spans, depths);
+            }
+        }
+    }
+}
+
+/// The stages as the kernel's processor runs them best.
+struct Stages {
+    sieve: fn(&Batch, super::frame::Rect, &mut Kept),
+    rows: fn(&Batch, &[Chosen], Place, &mut Spans) -> usize,
+    tall: fn(&Batch, &[Chosen], Place, &mut Spans, Draw<'_>),
+}
+
+impl Stages {
+    fn of(kernel: Kernel) -> Self {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if kernel.has_avx2() {
+            return Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall };
+        }
+        let _ = kernel;
+        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall }
+    }
+}

@@ -1,0 +1,452 @@
+//! The rows of small triangles, eight triangles at a time.
+//!
+//! Coordinates are taken from the centre of the box's first pixel, so all numbers are small, and f64 holds every
+//! numerator exactly. A quotient is a product with the divisor's reciprocal, and its floor is exact by a margin: for a whole
+//! n and a whole d
+//!
+//! ```text
+//! floor(n / d) = nearest((n + ½ − d/2) / d)
+//! ```
+//!
+//! where what is rounded lies at least 1/(2d) from the middle between two whole numbers. The reciprocal and the
+//! product are each off by at most one part in 2⁵³, which for a quotient below 2¹⁶ is 2⁻³⁶ together; with at most 64 × 64 pixels twice the area is
+//! below 2²⁹, so the margin is above 2⁻³⁰. (n + ½ − d/2 is exact: below 2⁵⁰, and a multiple of ½.) The whole number is found by adding 1.5 · 2⁵²,
+//! which leaves it in the low bits. So there is no correction, no branch, and the same result on every processor.
+//!
+//! Left and right are the lesser and the greater of two edges: where the long edge and a short one meet a row, one
+//! lies left of the other in exact arithmetic, and rounding up keeps their order.
+
+use super::Batch;
+use super::sieve::Chosen;
+use crate::raster::depth::DepthPlane;
+use crate::raster::shade::RESEED;
+use crate::raster::shading::Shading;
+use crate::span::list::{Depths, Listed};
+
+/// The widest that a small triangle is, in pixels: a span of that many has no start but its first.
+pub(super) const MOST_COLUMNS: i32 = 64;
+/// The highest.
+pub(super) const MOST_ROWS: i32 = 16;
+/// The longest side of a tall triangle's box, in 1/256 pixel.
+pub(super) const MOST_UNITS: i32 = 256 * 256;
+/// Pieces of a row, each of which starts anew.
+pub(super) const MOST_PIECES: usize = MOST_UNITS as usize / 256 / RESEED as usize;
+/// Triangles at a time, or rows of one.
+pub(super) const LANES: usize = 8;
+/// 1.5 · 2⁵².
+pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
+
+/// A list of spans, with room for those of several groups, and the numbers on the way there. Filled in place: a
+/// copy of a group would cost as much as its rows.
+pub(super) struct Spans {
+    spans: [Listed; Self::ROOM + 1],
+    count: usize,
+    covered: u32,
+    /// Of each span, where there is a depth buffer.
+    depths: [Depths; Self::ROOM + 1],
+    group: Group,
+    table: [Row; MOST_ROWS as usize],
+}
+
+impl Spans {
+    const ROOM: usize = 2 * LANES * MOST_ROWS as usize;
+
+    pub(super) const fn new() -> Self {
+        Self {
+            spans: [Listed { at: 0, length: 0, shade: 0, step: 0 }; Self::ROOM + 1],
+            count: 0,
+            covered: 0,
+            depths: [Depths { at: 0, z: 0, dz: 0 }; Self::ROOM + 1],
+            group: Group {
+                column: [0; LANES],
+                row: [0; LANES],
+                at: [0; LANES],
+                rows: [0; LANES],
+                long: NO_EDGES,
+                upper: NO_EDGES,
+                lower: NO_EDGES,
+                split: [0; LANES],
+                n: [0.0; LANES],
+                per_row: [0.0; LANES],
+                per_column: [0.0; LANES],
+                inverse: [0.0; LANES],
+                step: [0; LANES],
+            },
+            table: [const { Row { at: [0; LANES], length: [0; LANES], paint: [0; LANES] } }; MOST_ROWS as usize],
+        }
+    }
+
+    pub(super) fn as_slice(&self) -> &[Listed] {
+        &self.spans[..self.count]
+    }
+
+    /// As many as spans, where there is a depth buffer.
+    pub(super) fn depths(&self) -> &[Depths] {
+        &self.depths[..self.count]
+    }
+
+    /// Pixels of all spans.
+    pub(super) fn covered(&self) -> u32 {
+        self.covered
+    }
+
+    pub(super) fn clear(&mut self) {
+        (self.count, self.covered) = (0, 0);
+    }
+}
+
+/// Where the frame's pixels lie.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    /// The row whose pixels come first.
+    pub(super) first_row: u32,
+    /// At most 2¹⁶.
+    pub(super) pitch: u32,
+    /// Columns, if there is a depth buffer.
+    pub(super) depth_width: Option<u32>,
+}
+
+pub(super) type Floats = [f64; LANES];
+type Ints = [i32; LANES];
+
+/// An edge: the first pixel on it or right of it in row j is `nearest((n + j·per_row) · inverse)`.
+#[derive(Clone, Copy)]
+pub(super) struct Edges {
+    pub(super) n: Floats,
+    pub(super) per_row: Floats,
+    pub(super) inverse: Floats,
+}
+
+const NO_EDGES: Edges = Edges { n: [0.0; LANES], per_row: [0.0; LANES], inverse: [0.0; LANES] };
+
+/// Eight triangles.
+pub(super) struct Group {
+    /// The box's first pixel, and its offset.
+    pub(super) column: Ints,
+    pub(super) row: Ints,
+    pub(super) at: Ints,
+    pub(super) rows: Ints,
+    pub(super) long: Edges,
+    pub(super) upper: Edges,
+    pub(super) lower: Edges,
+    /// The first row of the lower edge.
+    pub(super) split: Ints,
+    /// Shades: `nearest((n + j·per_row + i·per_column) · inverse)`.
+    pub(super) n: Floats,
+    pub(super) per_row: Floats,
+    pub(super) per_column: Floats,
+    pub(super) inverse: Floats,
+    /// In the upper half.
+    pub(super) step: Ints,
+}
+
+impl Group {
+    /// The depths of spans of a triangle, which hold the numbers of their rows.
+    #[inline(always)]
+    fn depths(
+        &self,
+        triangle: usize,
+        plane: &DepthPlane,
+        place: Place,
+        width: u32,
+        spans: &[Listed],
+        depths: &mut [Depths],
+    ) {
+        let (column, row, corner) = (self.column[triangle], self.row[triangle], self.at[triangle]);
+        for (span, depths) in spans.iter().zip(depths) {
+            // Offsets of a frame's pixels are below 2²⁸; columns and rows are below 4,096.
+            let j = depths.at as i32;
+            let (x, y) = (column + span.at as i32 - corner - j * place.pitch as i32, row + j);
+            let at = ((y - place.first_row as i32) * width as i32 + x) as u32;
+            *depths = Depths { at, z: plane.fixed_at(x, y), dz: plane.step() };
+        }
+    }
+}
+
+/// A row of each of eight triangles, counted from each one's first.
+pub(super) struct Row {
+    /// The offset of the first pixel.
+    pub(super) at: Ints,
+    pub(super) length: Ints,
+    /// The shade, and above it the step.
+    pub(super) paint: Ints,
+}
+
+/// Lists the rows of as many of the small triangles `kept` as there is room for, and says how many that were.
+pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans) -> usize {
+    rows_by(batch, kept, place, spans, row)
+}
+
+#[inline(always)]
+pub(super) fn rows_by(
+    batch: &Batch,
+    kept: &[Chosen],
+    place: Place,
+    spans: &mut Spans,
+    row: impl Fn(&Group, i32, i32, &mut Row),
+) -> usize {
+    let mut listed = 0;
+    for group in kept.chunks(LANES) {
+        if spans.count + LANES * MOST_ROWS as usize > Spans::ROOM {
+            break;
+        }
+        listed += group.len();
+        gather(batch, group, place, &mut spans.group);
+        list(batch, group, place, spans, &row);
+    }
+    listed
+}
+
+/// Sets up a group. Triangles that it lacks are points.
+#[inline(always)]
+fn gather(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
+    let (mut x, mut y, mut shade) = ([[0; LANES]; 3], [[0; LANES]; 3], [[0; LANES]; 3]);
+    for (lane, &(at, _)) in kept.iter().take(LANES).enumerate() {
+        let at = usize::from(at) % Batch::CAPACITY;
+        for corner in 0..3 {
+            x[corner][lane] = batch.x[corner][at];
+            y[corner][lane] = batch.y[corner][at];
+            shade[corner][lane] = i32::from(batch.shade[corner][at]);
+        }
+    }
+    set_up(&x, &y, &shade, place, group);
+}
+
+/// The edge from `a` down to `b`.
+#[inline(always)]
+fn edge((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> (f64, f64, f64) {
+    let (x, y) = (f64::from(ax), f64::from(ay));
+    let (dx, dy) = (f64::from(bx - ax), f64::from(by - ay));
+    // x = (ax·dy + dx·(256·j − ay)) / (256·dy), rounded up: the floor of one unit less, plus one.
+    // Along a row, where dy is 0, what comes out is not used.
+    (x * dy - dx * y + (128.0 * dy - 0.5), 256.0 * dx, 1.0 / (256.0 * dy))
+}
+
+/// Edges and shades.
+#[inline(always)]
+fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: &mut Group) {
+    let Group {
+        column: columns,
+        row: top_rows,
+        at,
+        rows,
+        long,
+        upper,
+        lower,
+        split,
+        n,
+        per_row,
+        per_column,
+        inverse,
+        step,
+    } = group;
+    // A column and a row are below 4,096, the pitch is at most 2¹⁶.
+    let (pitch, first_row) = (place.pitch as i32, place.first_row as i32);
+    for i in 0..LANES {
+        let (low_x, low_y) = (x[0][i].min(x[1][i]).min(x[2][i]), y[0][i].min(y[1][i]).min(y[2][i]));
+        let high_y = y[0][i].max(y[1][i]).max(y[2][i]);
+        let (column, row) = ((low_x + 127) >> 8, (low_y + 127) >> 8);
+        (columns[i], top_rows[i]) = (column, row);
+        at[i] = (row - first_row) * pitch + column;
+        // From the first pixel's centre, within ±2¹⁷.
+        let (left, top) = (column * 256 + 128, row * 256 + 128);
+        let (ax, ay) = (x[0][i] - left, y[0][i] - top);
+        let (bx, by) = (x[1][i] - left, y[1][i] - top);
+        let (cx, cy) = (x[2][i] - left, y[2][i] - top);
+
+        // Top, middle and bottom. Which of two at the same height comes first is of no matter here.
+        let order = |p: (i32, i32), q: (i32, i32)| if q.1 < p.1 { (q, p) } else { (p, q) };
+        let (p0, p1) = order((ax, ay), (bx, by));
+        let (p1, p2) = order(p1, (cx, cy));
+        let (p0, p1) = order(p0, p1);
+        (long.n[i], long.per_row[i], long.inverse[i]) = edge(p0, p2);
+        (upper.n[i], upper.per_row[i], upper.inverse[i]) = edge(p0, p1);
+        (lower.n[i], lower.per_row[i], lower.inverse[i]) = edge(p1, p2);
+        split[i] = (p1.1 + 255) >> 8;
+
+        // As `Ordered::gradient`, of any order of the corners: the quotients are the same.
+        let (dx1, dy1, dx2, dy2) = (f64::from(bx - ax), f64::from(by - ay), f64::from(cx - ax), f64::from(cy - ay));
+        let s = f64::from(shade[0][i]);
+        let (ds1, ds2) = (f64::from(shade[1][i] - shade[0][i]), f64::from(shade[2][i] - shade[0][i]));
+        let signed = dx1 * dy2 - dx2 * dy1;
+        let sign = if signed < 0.0 { -1.0 } else { 1.0 };
+        let area = signed * sign;
+        let (gx, gy) = ((ds1 * dy2 - ds2 * dy1) * sign, (ds2 * dx1 - ds1 * dx2) * sign);
+        let falls = gx < 0.0;
+        inverse[i] = 1.0 / area;
+        // As `ShadePlane::start`: the floor, or of falling shades the ceiling, and half a shade.
+        let half = area * 0.5 - 0.5;
+        n[i] = s * area - gx * f64::from(ax) - gy * f64::from(ay) + area * 128.0 + if falls { half } else { -half };
+        per_row[i] = gy * 256.0;
+        per_column[i] = gx * 256.0;
+        // Toward zero. The wrap is meant, as in `ShadePlane`.
+        let magnitude = whole((gx.abs() * 256.0 - half) * inverse[i] + MAGIC);
+        step[i] = (if falls { magnitude.wrapping_neg() } else { magnitude }) << 16;
+        rows[i] = if area == 0.0 { 0 } else { ((high_y + 127) >> 8) - row };
+    }
+}
+
+/// The whole number in the low bits of a sum with `MAGIC`.
+#[inline(always)]
+fn whole(sum: f64) -> i32 {
+    // Its lower half; the number is within ±2³¹, or it is meant modulo 2¹⁶.
+    sum.to_bits() as i32
+}
+
+/// Row number `row` of every triangle of a group.
+#[inline(always)]
+fn row(group: &Group, row: i32, pitch: i32, to: &mut Row) {
+    let j = f64::from(row);
+    for i in 0..LANES {
+        let at = |edges: &Edges| (edges.n[i] + edges.per_row[i] * j) * edges.inverse[i] + MAGIC;
+        let (long, upper, lower) = (at(&group.long), at(&group.upper), at(&group.lower));
+        let short = if row < group.split[i] { upper } else { lower };
+        let (left, right) = if long < short { (long, short) } else { (short, long) };
+        let (first, end) = (whole(left), whole(right));
+        let n = group.n[i] + group.per_row[i] * j + group.per_column[i] * (left - MAGIC);
+        let shade = whole(n * group.inverse[i] + MAGIC);
+        // Beyond the last row anything may come out.
+        to.at[i] = (group.at[i] + row * pitch).wrapping_add(first);
+        to.length[i] = if row < group.rows[i] { end - first } else { 0 };
+        to.paint[i] = (shade & 0xFFFF) | group.step[i];
+    }
+}
+
+/// Puts the rows of a group, which is of these triangles, into the list, triangle by triangle.
+#[inline(always)]
+fn list(
+    batch: &Batch,
+    triangles: &[Chosen],
+    place: Place,
+    spans: &mut Spans,
+    row: impl Fn(&Group, i32, i32, &mut Row),
+) {
+    let Spans { spans, count, covered, depths, group, table } = spans;
+    let most = group.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
+    for (number, to) in (0..most).zip(table.iter_mut()) {
+        row(group, number, place.pitch as i32, to);
+    }
+    let mut pixels = 0;
+    for i in 0..triangles.len() {
+        // At most `MOST_ROWS`.
+        let rows = &table[..(group.rows[i] as usize).min(MOST_ROWS as usize)];
+        let (first, before) = (*count, pixels);
+        for (j, row) in (0..).zip(rows) {
+            let (length, paint) = (row.length[i], row.paint[i] as u32);
+            // Both are non-negative; shade and step are halves.
+            spans[*count] =
+                Listed { at: row.at[i] as u32, length: length as u32, shade: paint as u16, step: (paint >> 16) as u16 };
+            if place.depth_width.is_some() {
+                // For now the row; when there is a plane, the rest.
+                depths[*count].at = j;
+            }
+            *count += usize::from(length > 0);
+            pixels += length as u32;
+        }
+        if let Some(width) = place.depth_width
+            && pixels > before
+        {
+            let plane = batch.depth_plane(usize::from(triangles[i].0));
+            group.depths(i, &plane, place, width, &spans[first..*count], &mut depths[first..*count]);
+        }
+    }
+    *covered += pixels;
+}
+
+/// Eight rows of one triangle.
+pub(super) struct Lines {
+    /// As in `Row`.
+    pub(super) at: Ints,
+    pub(super) length: Ints,
+    /// Of each piece of the rows.
+    pub(super) paint: [Ints; MOST_PIECES],
+}
+
+impl Lines {
+    pub(super) const NONE: Self = Self { at: [0; LANES], length: [0; LANES], paint: [[0; LANES]; MOST_PIECES] };
+}
+
+/// Draws the spans that are listed.
+pub(super) type Draw<'a> = &'a mut dyn FnMut(&Spans);
+
+/// Draws tall triangles: one after the other, eight rows at a time, through `draw`, which takes what is listed.
+pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans, draw: Draw<'_>) {
+    tall_by(batch, kept, place, spans, draw, lines);
+}
+
+#[inline(always)]
+pub(super) fn tall_by(
+    batch: &Batch,
+    kept: &[Chosen],
+    place: Place,
+    spans: &mut Spans,
+    draw: Draw<'_>,
+    lines: impl Fn(&Group, usize, i32, i32, &mut Lines),
+) {
+    let mut found = Lines::NONE;
+    for eight in kept.chunks(LANES) {
+        gather(batch, eight, place, &mut spans.group);
+        for (i, &(number, _)) in eight.iter().enumerate() {
+            let number = usize::from(number);
+            let plane = place.depth_width.map(|_| batch.depth_plane(number));
+            let pieces = match batch.shading[number % Batch::CAPACITY] {
+                Shading::GouraudReseeded => MOST_PIECES,
+                _ => 1,
+            };
+            for first in (0..spans.group.rows[i]).step_by(LANES) {
+                lines(&spans.group, i, first, place.pitch as i32, &mut found);
+                let before = spans.count;
+                for j in 0..LANES.min((spans.group.rows[i] - first) as usize) {
+                    // Non-negative, and at most 256.
+                    let (mut at, mut left) = (found.at[j] as u32, found.length[j] as u32);
+                    for (piece, paint) in found.paint.iter().enumerate() {
+                        if left == 0 {
+                            break;
+                        }
+                        let length = if piece + 1 == pieces { left } else { left.min(RESEED as u32) };
+                        let paint = paint[j] as u32;
+                        spans.spans[spans.count] =
+                            Listed { at, length, shade: paint as u16, step: (paint >> 16) as u16 };
+                        spans.depths[spans.count].at = (first as u32) + j as u32;
+                        spans.count += 1;
+                        spans.covered += length;
+                        (at, left) = (at + length, left - length);
+                    }
+                }
+                if let (Some(plane), Some(width)) = (&plane, place.depth_width) {
+                    let Spans { spans, depths, count, group, .. } = spans;
+                    group.depths(i, plane, place, width, &spans[before..*count], &mut depths[before..*count]);
+                }
+                if spans.count + LANES * MOST_PIECES > Spans::ROOM {
+                    draw(spans);
+                    spans.clear();
+                }
+            }
+        }
+    }
+    draw(spans);
+    spans.clear();
+}
+
+/// Eight rows of triangle `i` of a group, from number `first` on.
+#[inline(always)]
+fn lines(group: &Group, i: usize, first: i32, pitch: i32, to: &mut Lines) {
+    for lane in 0..LANES {
+        // Below 8.
+        let row = first + lane as i32;
+        let j = f64::from(row);
+        let at = |edges: &Edges| (edges.n[i] + edges.per_row[i] * j) * edges.inverse[i] + MAGIC;
+        let (long, upper, lower) = (at(&group.long), at(&group.upper), at(&group.lower));
+        let short = if row < group.split[i] { upper } else { lower };
+        let (left, right) = if long < short { (long, short) } else { (short, long) };
+        let (first, end) = (whole(left), whole(right));
+        // Beyond the last row anything may come out.
+        to.at[lane] = (group.at[i] + row * pitch).wrapping_add(first);
+        to.length[lane] = end.wrapping_sub(first);
+        let n = group.n[i] + group.per_row[i] * j + group.per_column[i] * (left - MAGIC);
+        for (piece, paint) in (0_i32..).zip(&mut to.paint) {
+            let n = n + group.per_column[i] * f64::from(piece * RESEED);
+            paint[lane] = (whole(n * group.inverse[i] + MAGIC) & 0xFFFF) | group.step[i];
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Batches of triangles: each kernel against the oracle, and against the same triangles drawn one by one.
+
+mod support;
+
+use mode13h::raster::{Batch, Drawn, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::span::Kernel;
+use support::oracle;
+use support::random::Random;
+use support::triangles::{triangle, vertex};
+
+/// Shadings that a batch takes.
+fn shading(random: &mut Random) -> Shading {
+    match random.within(0, 2) {
+        0 => Shading::Flat(random.within(0, 255) as u8),
+        1 => Shading::Gouraud,
+        _ => Shading::GouraudReseeded,
+    }
+}
+
+/// A triangle of at most `reach` units about somewhere in or near the frame; one in four on whole or half pixels.
+fn small(random: &mut Random, width: i64, height: i64, reach: i64) -> [Vertex; 3] {
+    let (cx, cy) = (random.within(-300, width * 256 + 300), random.within(-300, height * 256 + 300));
+    let snap = random.one_of(&[1, 1, 1, 128]);
+    let mut place = || {
+        let shade = random.one_of(&[0, 0xFF00, -1, -1, -1]);
+        let shade = if shade < 0 { random.within(0, 0xFF00) } else { shade };
+        let (x, y) = (cx + random.within(-reach, reach), cy + random.within(-reach, reach));
+        vertex(x / snap * snap, y / snap * snap, shade, random.log_uniform(30) as i64)
+    };
+    [place(), place(), place()]
+}
+
+/// Anything from smaller than a pixel to larger than what batches draw themselves, and what `support` has.
+fn any(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
+    match random.within(0, 9) {
+        0 => triangle(random, width, height),
+        _ => {
+            let reach = random.log_uniform(16) as i64;
+            small(random, width, height, reach)
+        }
+    }
+}
+
+#[test]
+fn small_triangles_are_the_oracles_with_every_kernel() {
+    const SIDE: i32 = 24;
+    let mut random = Random::named("batches against the oracle");
+    let mut pixels = 0;
+    for _ in 0..20_000 {
+        let reach = random.one_of(&[100, 300, 900, 2_000]);
+        let vertices = small(&mut random, SIDE.into(), SIDE.into(), reach);
+        let shading = shading(&mut random);
+        let mut expected = vec![None; (SIDE * SIDE) as usize];
+        for pixel in oracle::pixels(&vertices, shading, SIDE, SIDE) {
+            expected[(pixel.y * SIDE + pixel.x) as usize] = Some(pixel.byte);
+            pixels += 1;
+        }
+        let mut batch = Batch::new();
+        assert!(batch.push(&vertices, shading));
+        for kernel in Kernel::available() {
+            let on = |empty: u8| {
+                let mut bytes = vec![empty; (SIDE * SIDE) as usize];
+                let frame = Frame::new(&mut bytes, SIDE as u32, SIDE as u32, SIDE as usize).expect("legal");
+                Raster::new(frame).with_kernel(kernel).batch(&batch);
+                bytes
+            };
+            let drawn: Vec<Option<u8>> =
+                on(0).into_iter().zip(on(1)).map(|(on_0, on_1)| (on_0 == on_1).then_some(on_0)).collect();
+            assert_eq!(drawn, expected, "{kernel}, {shading:?}, {vertices:?}");
+        }
+    }
+    assert!(pixels > 50_000, "{pixels}");
+}
+
+/// Where a test draws.
+struct Place {
+    width: u32,
+    height: u32,
+    pitch: usize,
+    clip: Option<Rect>,
+    band: std::ops::Range<u32>,
+    depth: bool,
+}
+
+/// The bytes, the depths and the counts of drawing with `draw`.
+fn drawn(
+    place: &Place,
+    kernel: Kernel,
+    mut plain: impl FnMut(&mut Raster<'_>) -> Drawn,
+    mut deep: impl FnMut(&mut Raster<'_, u32>) -> Drawn,
+) -> (Vec<u8>, Vec<u32>, Drawn) {
+    let mut bytes = vec![99; place.pitch * (place.band.end - place.band.start) as usize];
+    let mut depths = Vec::new();
+    let frame = Frame::band(&mut bytes, place.width, place.height, place.pitch, place.band.clone()).expect("legal");
+    let mut raster = Raster::new(frame).with_kernel(kernel);
+    if let Some(clip) = place.clip {
+        raster = raster.with_clip(clip);
+    }
+    let drawn = if place.depth { deep(&mut raster.with_cleared_depth(&mut depths)) } else { plain(&mut raster) };
+    (bytes, depths, drawn)
+}
+
+#[test]
+fn batches_draw_what_single_triangles_do() {
+    let mut random = Random::named("batches against single triangles");
+    let mut total = Drawn::default();
+    for round in 0..600 {
+        let (width, height) = random.one_of(&[(320, 200), (97, 40), (9, 300), (1, 1), (700, 3)]);
+        let mut some_rect = |most_x: i64, most_y: i64| {
+            let mut side = |most| {
+                let (a, b) = (random.within(0, most) as u32, random.within(0, most) as u32);
+                (a.min(b), a.max(b))
+            };
+            let ((x0, x1), (y0, y1)) = (side(most_x), side(most_y));
+            Rect { x0, y0, x1, y1 }
+        };
+        let (clip, band) = (some_rect(width, height), some_rect(1, height - 1));
+        let place = Place {
+            width: width as u32,
+            height: height as u32,
+            pitch: width as usize + random.one_of(&[0, 0, 3]),
+            clip: (round % 3 == 0).then_some(clip),
+            band: if round % 4 == 0 { band.y0..band.y1 + 1 } else { 0..height as u32 },
+            depth: round % 2 == 0,
+        };
+        let count = random.within(0, Batch::CAPACITY as i64);
+        let triangles: Vec<([Vertex; 3], Shading)> =
+            (0..count).map(|_| (any(&mut random, width, height), shading(&mut random))).collect();
+        let mut batch = Batch::new();
+        assert!(triangles.iter().all(|(vertices, shading)| batch.push(vertices, *shading)));
+        let expected = drawn(
+            &place,
+            Kernel::PORTABLE,
+            |raster| {
+                let mut sum = Drawn::default();
+                triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
+                sum
+            },
+            |raster| {
+                let mut sum = Drawn::default();
+                triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
+                sum
+            },
+        );
+        for kernel in Kernel::available() {
+            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
+            assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
+        }
+        total += expected.2;
+    }
+    assert!(total.pixels > 100_000, "{total:?}");
+}
+
+#[test]
+fn a_batch_takes_what_it_has_room_for() {
+    let vertices = [vertex(0, 0, 0, 0), vertex(512, 0, 0, 0), vertex(0, 512, 0, 0)];
+    let mut batch = Batch::default();
+    assert!(!batch.push(&vertices, Shading::GouraudHyperbolic) && batch.is_empty());
+    for _ in 0..Batch::CAPACITY {
+        assert!(!batch.is_full() && batch.push(&vertices, Shading::Flat(3)));
+    }
+    assert!(batch.is_full() && !batch.push(&vertices, Shading::Flat(3)));
+    assert_eq!(batch.len(), Batch::CAPACITY);
+    batch.clear();
+    assert!(batch.is_empty());
+}
