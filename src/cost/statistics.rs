@@ -120,7 +120,6 @@ impl Ratio {
 
 #[cfg(test)]
 mod tests {
-    use alloc::vec;
 
     use super::*;
 
@@ -183,7 +182,7 @@ mod tests {
         let (a, b, slower) = (noise(100.0), noise(100.0), noise(110.0));
         assert!(Ratio::new(&a, &b, &mut Chance::new(5)).cannot_be_told());
         assert!(!Ratio::new(&slower, &a, &mut Chance::new(5)).cannot_be_told());
-        assert!(Ratio::new(&vec![], &[], &mut Chance::new(5)).cannot_be_told());
+        assert!(Ratio::new(&[], &[], &mut Chance::new(5)).cannot_be_told());
     }
 
     /// Of a hundred pairs that are alike the interval holds 1 in about 95: at least 88, three standard deviations below.

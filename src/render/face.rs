@@ -129,6 +129,7 @@ impl Faces<'_> {
         sink: &mut impl Sink,
     ) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
+        let mut linear = 0;
         for (triangle, ((&indices, &surface), choice)) in
             triangles.iter().zip(triangle_surfaces).zip(choices).enumerate()
         {
@@ -154,20 +155,39 @@ impl Faces<'_> {
             let turned = !CULLS && area > 0;
             let vertices = if turned { corners.map(|corner| corner.vertex.with_shade(corner.back)) } else { vertices };
             if *choice == Choice::Unknown {
-                *choice = budget.decide_at_once(triangle, indices, surface, &vertices);
+                *choice = budget.decide_at_once(triangle, surface, &corners, turned);
                 if *choice == Choice::Unknown {
                     let shades = vertices.map(|vertex| vertex.shade());
                     let depths = vertices.map(|vertex| vertex.depth());
                     *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), shades, depths);
                 }
             }
-            stats.shares.add(choice.rung(), 1);
-            if (EFFECTS && self.paints[usize::from(surface)].has_effects) || *choice == Choice::Phong {
-                let attributes = self.attributes::<EFFECTS>(indices, turned, *choice);
-                hand_on_within(vertices, attributes, surface, *choice, sink);
+            if *choice == Choice::Linear && !(EFFECTS && self.paints[usize::from(surface)].has_effects) {
+                linear += 1;
+                sink.plain(&vertices, Rung::Gouraud88Reseeded.shading());
             } else {
-                sink.plain(&vertices, choice.shading(&vertices));
+                self.of_another_kind::<EFFECTS>((indices, surface, turned), vertices, *choice, stats, sink);
             }
+        }
+        stats.shares.add(Rung::Gouraud88Reseeded, linear);
+    }
+
+    /// Hands on a face that is not linear, or has effects.
+    #[inline(never)]
+    fn of_another_kind<const EFFECTS: bool>(
+        &self,
+        (indices, surface, turned): ([u32; 3], u16, bool),
+        vertices: [Vertex; 3],
+        choice: Choice,
+        stats: &mut Stats,
+        sink: &mut impl Sink,
+    ) {
+        stats.shares.add(choice.rung(), 1);
+        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice == Choice::Phong {
+            let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
+            hand_on_within(vertices, attributes, surface, choice, sink);
+        } else {
+            sink.plain(&vertices, choice.shading(&vertices));
         }
     }
 
@@ -275,7 +295,7 @@ impl Faces<'_> {
         mut part: impl FnMut([Vertex; 3], [C; 3], &mut Stats),
     ) {
         let corner = |i: usize| {
-            let LitVertex { vertex, back, needs_clipping } = corners[i];
+            let LitVertex { vertex, back, needs_clipping, .. } = corners[i];
             let shade = if turned { back } else { vertex.shade() };
             let projected = (!needs_clipping).then(|| vertex.with_shade(shade));
             Corner { at: at[i], shade: f64::from(shade.to_bits()), vertex: projected, carried: carried[i] }
@@ -375,12 +395,6 @@ fn hand_on_within(
     sink.with_effects(&vertices, &attributes, surface, rung);
 }
 
-/// Whether no row of a triangle has more than 64 pixels.
-fn is_narrow(vertices: &[Vertex; 3]) -> bool {
-    let [a, b, c] = vertices.map(|vertex| vertex.x().to_bits());
-    a.max(b).max(c) - a.min(b).min(c) <= 64 << 8
-}
-
 /// Half-way between the least and the greatest.
 fn middle([a, b, c]: [U8F8; 3]) -> U8F8 {
     let (least, most) = (a.min(b).min(c).to_bits(), a.max(b).max(c).to_bits());
@@ -393,8 +407,6 @@ impl Choice {
     fn shading(self, vertices: &[Vertex; 3]) -> Shading {
         match self {
             Self::Flat => Shading::Flat(middle(vertices.map(|vertex| vertex.shade())).nearest()),
-            // Narrower than 64 pixels nothing starts anew, and that takes less.
-            Self::Linear if is_narrow(vertices) => Shading::Gouraud,
             choice => choice.rung().shading(),
         }
     }

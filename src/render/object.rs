@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use super::Stats;
-use super::budget::{Budget, Choice};
+use super::budget::{Budget, Choice, Lit};
 use super::face::Faces;
 use super::paint::Paint;
 use super::pixel_light::normal_table;
@@ -264,7 +264,16 @@ impl ObjectState {
         if let Some(max_error) = plan.max_error() {
             let whole = (!plan.is_on(Effect::Tessellation)).then(|| object.shared_mesh());
             let budget = self.budget.get_or_insert_default();
-            budget.renew(max_error, &geometry, whole, &lights, &self.paints, channels);
+            let lit = Lit {
+                geometry: &geometry,
+                whole,
+                view: &source.view,
+                bounds: object.mesh().bounds(),
+                lights: &lights,
+                paints: &self.paints,
+                channels,
+            };
+            budget.renew(max_error, &lit, &mut self.lit);
             self.choices.clear();
             self.choices.resize(geometry.triangles.len(), Choice::Unknown);
         } else if self.budget.is_some() {

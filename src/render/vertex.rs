@@ -33,6 +33,8 @@ pub(super) struct LitVertex {
     pub(super) vertex: Vertex,
     pub(super) back: U8F8,
     pub(super) needs_clipping: bool,
+    /// Where a budget asks: a bit for each sun that it sees; the last for all from the eighth on.
+    pub(super) suns_seen: u8,
 }
 
 /// What effects need of a vertex, for its front; and the channels of its back.
@@ -77,7 +79,7 @@ pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, lit: &m
     lit.clear();
     lit.extend(geometry.positions.iter().map(|&position| {
         let vertex = view.project(position);
-        LitVertex { needs_clipping: vertex.is_none(), vertex: vertex.unwrap_or_default(), back: U8F8::default() }
+        LitVertex { needs_clipping: vertex.is_none(), vertex: vertex.unwrap_or_default(), ..LitVertex::default() }
     }));
 }
 

@@ -388,7 +388,8 @@ pub(super) fn tall_by(
         gather(batch, eight, place, &mut spans.group);
         for (i, &(number, _)) in eight.iter().enumerate() {
             let number = usize::from(number);
-            let plane = place.depth_width.map(|_| batch.depth_plane(number));
+            // Of a triangle without area, which has no spans, there is none.
+            let mut plane = None;
             let pieces = match batch.shading[number % Batch::CAPACITY] {
                 Shading::GouraudReseeded => MOST_PIECES,
                 _ => 1,
@@ -413,7 +414,8 @@ pub(super) fn tall_by(
                         (at, left) = (at + length, left - length);
                     }
                 }
-                if let (Some(plane), Some(width)) = (&plane, place.depth_width) {
+                if let Some(width) = place.depth_width.filter(|_| spans.count > before) {
+                    let plane = plane.get_or_insert_with(|| batch.depth_plane(number));
                     let Spans { spans, depths, count, group, .. } = spans;
                     group.depths(i, plane, place, width, &spans[before..*count], &mut depths[before..*count]);
                 }

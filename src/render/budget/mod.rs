@@ -29,11 +29,11 @@ use glam::Vec3;
 use self::light::{OneLight, Towards, narrow};
 use super::face::Faces;
 use super::paint::Paint;
-use super::vertex::Geometry;
+use super::vertex::{Geometry, LitVertex};
 use crate::light::Lights;
-use crate::mesh::Mesh;
-use crate::raster::Vertex;
+use crate::mesh::{Bounds, Mesh};
 use crate::scene::{Rung, Shared};
+use crate::view::{ObjectView, Reach};
 
 /// What rounding adds to a linear shade that starts anew every 64 pixels: a half, and a quarter of drift.
 const LINEAR: f32 = 0.75;
@@ -110,8 +110,23 @@ struct Strength {
     scale: f32,
     /// The ramp's last shade.
     last: u16,
+    /// What all suns that shine straight at it add, in shades.
+    body: f32,
     /// What all highlights together curve by, in shades for an angle of 1; 0 without any.
     curvature: f32,
+}
+
+/// An object, projected and lit.
+#[derive(Clone, Copy)]
+pub(super) struct Lit<'a> {
+    pub(super) geometry: &'a Geometry<'a>,
+    /// Its mesh, if that is what is drawn.
+    pub(super) whole: Option<&'a Shared<Mesh>>,
+    pub(super) view: &'a ObjectView,
+    pub(super) bounds: Bounds,
+    pub(super) lights: &'a Lights<'a>,
+    pub(super) paints: &'a [Paint],
+    pub(super) channels: bool,
 }
 
 /// What is kept for an object's decisions.
@@ -120,13 +135,18 @@ pub(super) struct Budget {
     /// Whose facets these are; of a mesh that was split, none.
     mesh: Option<Shared<Mesh>>,
     facets: Vec<Facet>,
-    /// For each vertex a bit for each sun that it sees; the last for all from the 32nd on.
-    suns_seen: Vec<u32>,
     /// One for each surface.
     strengths: Vec<Strength>,
     allowed: f32,
+    longest_edge: f32,
+    most_shortening: f32,
+    most_spread: f32,
+    /// A quarter of ρ − 1, at most, of any triangle that no plane clips.
+    bend: f32,
     /// Whether there are suns alone, and no highlight.
     simple: bool,
+    /// Then, whether linear shades keep within wherever all corners see the same suns, and none is clamped.
+    linear_unless_mixed: bool,
     /// What an edge of 1 turns the direction to the eye by, at most.
     eye_turn: f32,
     /// For each vertex the eye, if there are highlights.
@@ -136,17 +156,10 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Takes on an object whose vertices are made anew. `whole` is its mesh, if that is what is drawn.
+    /// Takes on an object whose vertices are made anew, and marks those with the suns that they see.
     #[inline(never)]
-    pub(super) fn renew(
-        &mut self,
-        allowed: f32,
-        geometry: &Geometry<'_>,
-        whole: Option<&Shared<Mesh>>,
-        lights: &Lights<'_>,
-        paints: &[Paint],
-        channels: bool,
-    ) {
+    pub(super) fn renew(&mut self, allowed: f32, object: &Lit<'_>, lit: &mut [LitVertex]) {
+        let Lit { geometry, whole, view, bounds, lights, paints, channels } = *object;
         self.allowed = allowed;
         let known = matches!((&self.mesh, whole), (Some(known), Some(whole)) if Shared::ptr_eq(known, whole));
         if !known {
@@ -155,12 +168,16 @@ impl Budget {
             let corners = |of: &[Vec3], indices: [u32; 3]| indices.map(|i| of[i as usize]);
             let facet = |&i: &[u32; 3]| Facet::new(corners(geometry.positions, i), corners(geometry.normals, i));
             self.facets.extend(geometry.triangles.iter().map(facet));
+            let most = |of: fn(&Facet) -> f32| self.facets.iter().map(of).fold(0.0, f32::max);
+            (self.longest_edge, self.most_shortening) = (most(|facet| facet.edge), most(|facet| facet.shortening));
+            self.most_spread = most(|facet| facet.spread);
         }
-        self.suns_seen.clear();
-        self.suns_seen.resize(geometry.normals.len(), 0);
+        let Reach { nearest, .. } = view.reach(bounds);
+        let nearest = nearest.max(f64::from(view.near()));
+        self.bend = (f64::from(self.longest_edge) * view.scale() / nearest / 4.0) as f32;
         for (i, sun) in lights.suns.iter().enumerate() {
-            for (seen, normal) in self.suns_seen.iter_mut().zip(geometry.normals) {
-                *seen |= u32::from(normal.dot(sun.towards) > 0.0) << i.min(31);
+            for (lit, normal) in lit.iter_mut().zip(geometry.normals) {
+                lit.suns_seen |= u8::from(normal.dot(sun.towards) > 0.0) << i.min(7);
             }
         }
         self.strengths.clear();
@@ -174,12 +191,22 @@ impl Budget {
             let all: f32 = suns.chain(lamps).sum();
             let (ks, s) = highlight(paint, channels);
             let curvature = if ks == 0.0 { 0.0 } else { CURVATURE * curve(s) * ks * all };
-            Strength { first, scale, last: first + ((entries - 1) << 8), curvature }
+            let body = (paint.answer.diffuse.abs() * 255.0) as f32
+                * lights.suns.iter().map(|s| s.intensity.abs()).sum::<f32>();
+            Strength { body, first, scale, last: first + ((entries - 1) << 8), curvature }
         }));
         self.to_eye.clear();
         self.to_lamps.clear();
         self.simple = lights.lamps.is_empty() && !channels && self.strengths.iter().all(|of| of.curvature == 0.0);
         self.eye_turn = 0.0;
+        let last = self.strengths.iter().map(|of| of.last).min().unwrap_or(0);
+        self.linear_unless_mixed = self.simple
+            && self.strengths.iter().all(|of| {
+                let top = f32::from(of.last - of.first) * of.scale;
+                let range = (of.body * self.most_spread).min(top);
+                top * self.most_shortening + range * self.bend + LINEAR <= self.allowed
+            })
+            && lit.iter().all(|lit| lit.vertex.shade().to_bits().max(lit.back.to_bits()) < last);
         if self.simple {
             return;
         }
@@ -199,7 +226,6 @@ impl Budget {
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
         self.facets.capacity() * size_of::<Facet>()
-            + self.suns_seen.capacity() * 4
             + (self.to_eye.capacity() + self.to_lamps.capacity()) * size_of::<Towards>()
             + self.strengths.capacity() * size_of::<Strength>()
     }
@@ -241,31 +267,34 @@ impl Budget {
     pub(super) fn decide_at_once(
         &self,
         triangle: usize,
-        indices: [u32; 3],
         surface: u16,
-        vertices: &[Vertex; 3],
+        corners: &[LitVertex; 3],
+        turned: bool,
     ) -> Choice {
-        let [a, b, c] = indices.map(|i| self.suns_seen[i as usize]);
-        if !self.simple || a != b || b != c {
+        let [a, b, c] = corners.each_ref().map(|corner| corner.suns_seen);
+        if self.linear_unless_mixed && a == b && b == c {
+            return Choice::Linear;
+        }
+        if !self.simple {
             return Choice::Unknown;
         }
         let strength = &self.strengths[usize::from(surface)];
-        let [a, b, c] = vertices.map(|vertex| vertex.shade().to_bits());
+        // n·l differs by no more than the normals do, which is P + S at most; and PS / (P + S) ≤ (P + S) / 4.
+        let facet = &self.facets[triangle];
+        let clamp = if a == b && b == c { 0.0 } else { strength.body * facet.spread / 4.0 };
+        let shade = |corner: &LitVertex| if turned { corner.back } else { corner.vertex.shade() }.to_bits();
+        let [a, b, c] = corners.each_ref().map(shade);
         let (least, most) = (a.min(b).min(c), a.max(b).max(c));
         if most >= strength.last {
             return Choice::Unknown;
         }
-        let range = f32::from(most - least) * strength.scale;
         // A corner's shade lies in its ramp.
-        let model = f32::from(most - strength.first) * strength.scale * self.facets[triangle].shortening;
-        let left = self.allowed - model;
-        if range / 2.0 + EXACT <= left {
-            return Choice::Flat;
+        let model = clamp + f32::from(most - strength.first) * strength.scale * facet.shortening;
+        if least == most {
+            return if model + EXACT <= self.allowed { Choice::Flat } else { Choice::Unknown };
         }
-        let [a, b, c] = vertices.map(|vertex| vertex.depth());
-        let (far, near) = (a.min(b).min(c), a.max(b).max(c));
-        // Below 2³²; rounded, which is nothing to a bound that is rounded up in every step.
-        if (near - far) as f32 * range <= 4.0 * far as f32 * (left - LINEAR) { Choice::Linear } else { Choice::Unknown }
+        let range = f32::from(most - least) * strength.scale;
+        if model + range * self.bend + LINEAR <= self.allowed { Choice::Linear } else { Choice::Unknown }
     }
 }
 
@@ -289,7 +318,7 @@ impl Faces<'_> {
         // For suns alone, all of them above the horizon or all below.
         let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
         let mut model = top * facet.shortening + strength.curvature * turned * turned;
-        let seen = question.indices.map(|i| budget.suns_seen[i as usize]);
+        let seen = question.indices.map(|i| self.lit[i as usize].suns_seen);
         let some = (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
         let near = model + EXACT <= budget.allowed;
@@ -302,22 +331,21 @@ impl Faces<'_> {
             }
         }
         let bound = budget.allowed;
-        if model + range / 2.0 + EXACT <= bound {
-            return Choice::Flat;
-        }
         // Depth is in proportion to 1 / w.
         let [a, b, c] = question.depths;
         let (far, near) = (a.min(b).min(c), a.max(b).max(c));
         let bend = (near - far) as f32 * range;
         // A corner behind the near plane has no depth.
-        if far > 0 && bend <= 4.0 * far as f32 * (bound - model - LINEAR) {
+        let linear = far > 0 && bend <= 4.0 * far as f32 * (bound - model - LINEAR);
+        // Linear shades cost no more than one shade where they differ at all: the same spans, by the same loop.
+        if model + range / 2.0 + EXACT <= bound && (range == 0.0 || !linear) {
+            Choice::Flat
+        } else if linear {
             Choice::Linear
-        } else if model + EXACT <= bound {
+        } else if model + EXACT <= bound || !self.lights_pixels {
             Choice::Float
-        } else if self.lights_pixels {
-            Choice::Phong
         } else {
-            Choice::Float
+            Choice::Phong
         }
     }
 

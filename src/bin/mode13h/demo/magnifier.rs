@@ -396,7 +396,7 @@ mod tests {
                 let cells = Cells::about(pixel, &vga);
                 for (column, row, byte) in cells.each() {
                     let (at_x, at_y) = (i32::from(x + column) - 5, i32::from(y + row) - 3);
-                    let outside = at_x < 0 || at_x > 319 || at_y < 0 || at_y > 199;
+                    let outside = !(0..=319).contains(&at_x) || !(0..=199).contains(&at_y);
                     let expected = (!outside).then(|| vga.pixels()[(at_y * 320 + at_x) as usize]);
                     assert_eq!(byte, expected, "{pixel:?}: {column}, {row}");
                 }
