@@ -62,6 +62,7 @@ impl Spans {
                 row: [0; LANES],
                 at: [0; LANES],
                 rows: [0; LANES],
+                columns: [0; LANES],
                 long: NO_EDGES,
                 upper: NO_EDGES,
                 lower: NO_EDGES,
@@ -107,7 +108,7 @@ pub(super) struct Place {
 }
 
 pub(super) type Floats = [f64; LANES];
-type Ints = [i32; LANES];
+pub(super) type Ints = [i32; LANES];
 
 /// An edge: the first pixel on it or right of it in row j is `nearest((n + j·per_row) · inverse)`.
 #[derive(Clone, Copy)]
@@ -126,6 +127,8 @@ pub(super) struct Group {
     pub(super) row: Ints,
     pub(super) at: Ints,
     pub(super) rows: Ints,
+    /// Of the box.
+    pub(super) columns: Ints,
     pub(super) long: Edges,
     pub(super) upper: Edges,
     pub(super) lower: Edges,
@@ -226,8 +229,9 @@ fn edge((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> (f64, f64, f64) {
 #[inline(always)]
 fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: &mut Group) {
     let Group {
-        column: columns,
+        column: left_columns,
         row: top_rows,
+        columns,
         at,
         rows,
         long,
@@ -244,9 +248,10 @@ fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: 
     let (pitch, first_row) = (place.pitch as i32, place.first_row as i32);
     for i in 0..LANES {
         let (low_x, low_y) = (x[0][i].min(x[1][i]).min(x[2][i]), y[0][i].min(y[1][i]).min(y[2][i]));
-        let high_y = y[0][i].max(y[1][i]).max(y[2][i]);
+        let (high_x, high_y) = (x[0][i].max(x[1][i]).max(x[2][i]), y[0][i].max(y[1][i]).max(y[2][i]));
         let (column, row) = ((low_x + 127) >> 8, (low_y + 127) >> 8);
-        (columns[i], top_rows[i]) = (column, row);
+        (left_columns[i], top_rows[i]) = (column, row);
+        columns[i] = ((high_x + 127) >> 8) - column;
         at[i] = (row - first_row) * pitch + column;
         // From the first pixel's centre, within ±2¹⁷.
         let (left, top) = (column * 256 + 128, row * 256 + 128);
@@ -381,7 +386,7 @@ pub(super) fn tall_by(
     place: Place,
     spans: &mut Spans,
     draw: Draw<'_>,
-    lines: impl Fn(&Group, usize, i32, i32, &mut Lines),
+    lines: impl Fn(&Group, usize, i32, i32, &mut Ints, &mut Ints, &mut [Ints]),
 ) {
     let mut found = Lines::NONE;
     for eight in kept.chunks(LANES) {
@@ -389,35 +394,47 @@ pub(super) fn tall_by(
         for (i, &(number, _)) in eight.iter().enumerate() {
             let number = usize::from(number);
             let plane = place.depth_width.map(|_| batch.depth_plane(number));
-            let pieces = match batch.shading[number % Batch::CAPACITY] {
-                Shading::GouraudReseeded => MOST_PIECES,
-                _ => 1,
+            // A row that does not start anew is one piece, however long.
+            let (pieces, longest) = match batch.shading[number % Batch::CAPACITY] {
+                // At most 256 pixels.
+                Shading::GouraudReseeded => {
+                    ((spans.group.columns[i] - 1) as usize / RESEED as usize + 1, RESEED as u32)
+                }
+                _ => (1, MOST_UNITS as u32),
             };
+            let pieces = pieces.clamp(1, MOST_PIECES);
             for first in (0..spans.group.rows[i]).step_by(LANES) {
-                lines(&spans.group, i, first, place.pitch as i32, &mut found);
-                let before = spans.count;
-                for j in 0..LANES.min((spans.group.rows[i] - first) as usize) {
-                    // Non-negative, and at most 256.
+                let Spans { spans: list, depths, count, covered, group, .. } = &mut *spans;
+                lines(
+                    group,
+                    i,
+                    first,
+                    place.pitch as i32,
+                    &mut found.at,
+                    &mut found.length,
+                    &mut found.paint[..pieces],
+                );
+                let (before, mut end) = (*count, *count);
+                for j in 0..LANES.min((group.rows[i] - first) as usize) {
+                    // All are non-negative, and a length is at most 256.
                     let (mut at, mut left) = (found.at[j] as u32, found.length[j] as u32);
-                    for (piece, paint) in found.paint.iter().enumerate() {
+                    *covered += left;
+                    for paint in &found.paint {
                         if left == 0 {
                             break;
                         }
-                        let length = if piece + 1 == pieces { left } else { left.min(RESEED as u32) };
-                        let paint = paint[j] as u32;
-                        spans.spans[spans.count] =
-                            Listed { at, length, shade: paint as u16, step: (paint >> 16) as u16 };
-                        spans.depths[spans.count].at = (first as u32) + j as u32;
-                        spans.count += 1;
-                        spans.covered += length;
+                        let (length, paint) = (left.min(longest), paint[j] as u32);
+                        list[end] = Listed { at, length, shade: paint as u16, step: (paint >> 16) as u16 };
+                        depths[end].at = first as u32 + j as u32;
+                        end += 1;
                         (at, left) = (at + length, left - length);
                     }
                 }
+                *count = end;
                 if let (Some(plane), Some(width)) = (&plane, place.depth_width) {
-                    let Spans { spans, depths, count, group, .. } = spans;
-                    group.depths(i, plane, place, width, &spans[before..*count], &mut depths[before..*count]);
+                    group.depths(i, plane, place, width, &list[before..end], &mut depths[before..end]);
                 }
-                if spans.count + LANES * MOST_PIECES > Spans::ROOM {
+                if end + LANES * MOST_PIECES > Spans::ROOM {
                     draw(spans);
                     spans.clear();
                 }
@@ -430,7 +447,7 @@ pub(super) fn tall_by(
 
 /// Eight rows of triangle `i` of a group, from number `first` on.
 #[inline(always)]
-fn lines(group: &Group, i: usize, first: i32, pitch: i32, to: &mut Lines) {
+fn lines(group: &Group, i: usize, first: i32, pitch: i32, to_at: &mut Ints, length: &mut Ints, paints: &mut [Ints]) {
     for lane in 0..LANES {
         // Below 8.
         let row = first + lane as i32;
@@ -441,10 +458,10 @@ fn lines(group: &Group, i: usize, first: i32, pitch: i32, to: &mut Lines) {
         let (left, right) = if long < short { (long, short) } else { (short, long) };
         let (first, end) = (whole(left), whole(right));
         // Beyond the last row anything may come out.
-        to.at[lane] = (group.at[i] + row * pitch).wrapping_add(first);
-        to.length[lane] = end.wrapping_sub(first);
+        to_at[lane] = (group.at[i] + row * pitch).wrapping_add(first);
+        length[lane] = end.wrapping_sub(first);
         let n = group.n[i] + group.per_row[i] * j + group.per_column[i] * (left - MAGIC);
-        for (piece, paint) in (0_i32..).zip(&mut to.paint) {
+        for (piece, paint) in (0_i32..).zip(&mut *paints) {
             let n = n + group.per_column[i] * f64::from(piece * RESEED);
             paint[lane] = (whole(n * group.inverse[i] + MAGIC) & 0xFFFF) | group.step[i];
         }
