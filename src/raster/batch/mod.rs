@@ -26,7 +26,7 @@ mod sieve;
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86;
 
-use rows::{Draw, Place, Spans};
+use rows::{DEPTHS, Draw, Place, Spans};
 use sieve::{Chosen, Kept, Kind};
 
 /// Triangles to be drawn one after the other, in arrays.
@@ -168,7 +168,23 @@ impl<D: Cell> Raster<'_, D> {
         (stages.sieve)(batch, self.clip, &mut kept);
         let depth_width = self.depth.is_some().then_some(width);
         let place = Place { first_row: rows.start, pitch: pitch as u32, depth_width };
-        let mut spans = Spans::new();
+        if depth_width.is_some() {
+            self.draw_kept::<CLIPS>(batch, &stages, &kept, place, Spans::new(&mut { DEPTHS }))
+        } else {
+            self.draw_kept::<CLIPS>(batch, &stages, &kept, place, Spans::new(&mut []))
+        }
+    }
+
+    /// Draws what the sieve has kept.
+    fn draw_kept<const CLIPS: bool>(
+        &mut self,
+        batch: &Batch,
+        stages: &Stages,
+        kept: &Kept,
+        place: Place,
+        mut spans: Spans<'_>,
+    ) -> Drawn {
+        let mut drawn = Drawn::default();
         let mut left = kept.triangles();
         while let Some(&(first, kind)) = left.first() {
             if kind == Kind::Other {
@@ -197,7 +213,7 @@ impl<D: Cell> Raster<'_, D> {
 
     /// Draws the spans of small triangles.
     #[inline]
-    fn fill(&mut self, spans: &Spans, drawn: &mut Drawn) {
+    fn fill(&mut self, spans: &Spans<'_>, drawn: &mut Drawn) {
         let covered = spans.covered();
         // At most 2¹¹ spans of 64 pixels.
         drawn.spans += spans.as_slice().len() as u32;
@@ -221,8 +237,8 @@ impl<D: Cell> Raster<'_, D> {
 /// The stages as the kernel's processor runs them best.
 struct Stages {
     sieve: fn(&Batch, super::frame::Rect, &mut Kept),
-    rows: fn(&Batch, &[Chosen], Place, &mut Spans) -> usize,
-    tall: fn(&Batch, &[Chosen], Place, &mut Spans, Draw<'_>),
+    rows: fn(&Batch, &[Chosen], Place, &mut Spans<'_>) -> usize,
+    tall: fn(&Batch, &[Chosen], Place, &mut Spans<'_>, Draw<'_>),
 }
 
 impl Stages {

@@ -36,27 +36,32 @@ pub(super) const LANES: usize = 8;
 /// 1.5 · 2⁵².
 pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
 
-/// A list of spans, with room for those of several groups, and the numbers on the way there. Filled in place: a
+/// Room for the spans of a group, and for eight rows of a tall triangle. All is cleared for every batch: more room costs
+/// more than it saves.
+const ROOM: usize = LANES * MOST_ROWS as usize + LANES * MOST_PIECES;
+
+/// Room for the depths of as many spans.
+pub(super) const DEPTHS: [Depths; ROOM + 1] = [Depths { at: 0, z: 0, dz: 0 }; ROOM + 1];
+
+/// A list of spans, and the numbers on the way there. Filled in place: a
 /// copy of a group would cost as much as its rows.
-pub(super) struct Spans {
-    spans: [Listed; Self::ROOM + 1],
+pub(super) struct Spans<'a> {
+    spans: [Listed; ROOM + 1],
     count: usize,
     covered: u32,
-    /// Of each span, where there is a depth buffer.
-    depths: [Depths; Self::ROOM + 1],
+    /// Of each span, where there is a depth buffer; else there is no room for any.
+    depths: &'a mut [Depths],
     group: Group,
     table: [Row; MOST_ROWS as usize],
 }
 
-impl Spans {
-    const ROOM: usize = 2 * LANES * MOST_ROWS as usize;
-
-    pub(super) const fn new() -> Self {
+impl<'a> Spans<'a> {
+    pub(super) fn new(depths: &'a mut [Depths]) -> Self {
         Self {
-            spans: [Listed { at: 0, length: 0, shade: 0, step: 0 }; Self::ROOM + 1],
+            spans: [Listed { at: 0, length: 0, shade: 0, step: 0 }; ROOM + 1],
             count: 0,
             covered: 0,
-            depths: [Depths { at: 0, z: 0, dz: 0 }; Self::ROOM + 1],
+            depths,
             group: Group {
                 column: [0; LANES],
                 row: [0; LANES],
@@ -83,7 +88,7 @@ impl Spans {
 
     /// As many as spans, where there is a depth buffer.
     pub(super) fn depths(&self) -> &[Depths] {
-        &self.depths[..self.count]
+        self.depths.get(..self.count).unwrap_or_default()
     }
 
     /// Pixels of all spans.
@@ -176,7 +181,7 @@ pub(super) struct Row {
 }
 
 /// Lists the rows of as many of the small triangles `kept` as there is room for, and says how many that were.
-pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans) -> usize {
+pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
     rows_by(batch, kept, place, spans, row)
 }
 
@@ -185,12 +190,12 @@ pub(super) fn rows_by(
     batch: &Batch,
     kept: &[Chosen],
     place: Place,
-    spans: &mut Spans,
+    spans: &mut Spans<'_>,
     row: impl Fn(&Group, i32, i32, &mut Row),
 ) -> usize {
     let mut listed = 0;
     for group in kept.chunks(LANES) {
-        if spans.count + LANES * MOST_ROWS as usize > Spans::ROOM {
+        if spans.count + LANES * MOST_ROWS as usize > ROOM {
             break;
         }
         listed += group.len();
@@ -323,7 +328,7 @@ fn list(
     batch: &Batch,
     triangles: &[Chosen],
     place: Place,
-    spans: &mut Spans,
+    spans: &mut Spans<'_>,
     row: impl Fn(&Group, i32, i32, &mut Row),
 ) {
     let Spans { spans, count, covered, depths, group, table } = spans;
@@ -372,10 +377,10 @@ impl Lines {
 }
 
 /// Draws the spans that are listed.
-pub(super) type Draw<'a> = &'a mut dyn FnMut(&Spans);
+pub(super) type Draw<'a> = &'a mut dyn FnMut(&Spans<'_>);
 
 /// Draws tall triangles: one after the other, eight rows at a time, through `draw`, which takes what is listed.
-pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans, draw: Draw<'_>) {
+pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
     tall_by(batch, kept, place, spans, draw, lines);
 }
 
@@ -384,7 +389,7 @@ pub(super) fn tall_by(
     batch: &Batch,
     kept: &[Chosen],
     place: Place,
-    spans: &mut Spans,
+    spans: &mut Spans<'_>,
     draw: Draw<'_>,
     lines: impl Fn(&Group, usize, i32, i32, &mut Ints, &mut Ints, &mut [Ints]),
 ) {
@@ -425,7 +430,9 @@ pub(super) fn tall_by(
                         }
                         let (length, paint) = (left.min(longest), paint[j] as u32);
                         list[end] = Listed { at, length, shade: paint as u16, step: (paint >> 16) as u16 };
-                        depths[end].at = first as u32 + j as u32;
+                        if let Some(depths) = depths.get_mut(end) {
+                            depths.at = first as u32 + j as u32;
+                        }
                         end += 1;
                         (at, left) = (at + length, left - length);
                     }
@@ -434,7 +441,7 @@ pub(super) fn tall_by(
                 if let (Some(plane), Some(width)) = (&plane, place.depth_width) {
                     group.depths(i, plane, place, width, &list[before..end], &mut depths[before..end]);
                 }
-                if end + LANES * MOST_PIECES > Spans::ROOM {
+                if end + LANES * MOST_PIECES > ROOM {
                     draw(spans);
                     spans.clear();
                 }

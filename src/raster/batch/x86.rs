@@ -19,9 +19,9 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
 }
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
-pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans) -> usize {
+pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
     #[target_feature(enable = "avx2")]
-    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans) -> usize {
+    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
         rows_by(batch, kept, place, spans, |group, number, pitch, to| row(group, number, pitch, to))
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
@@ -29,9 +29,9 @@ pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
 }
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
-pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans, draw: Draw<'_>) {
+pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
     #[target_feature(enable = "avx2")]
-    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans, draw: Draw<'_>) {
+    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
         tall_by(batch, kept, place, spans, draw, |group, i, first, pitch, at, length, paints| {
             lines(group, i, first, pitch, at, length, paints)
         });
