@@ -199,7 +199,7 @@ pub(super) fn rows_by(
             break;
         }
         listed += group.len();
-        gather(batch, group, place, &mut spans.group);
+        gather::<false>(batch, group, place, &mut spans.group);
         list(batch, group, place, spans, &row);
     }
     listed
@@ -207,7 +207,7 @@ pub(super) fn rows_by(
 
 /// Sets up a group. Triangles that it lacks are points.
 #[inline(always)]
-fn gather(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
+fn gather<const TALL: bool>(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
     let (mut x, mut y, mut shade) = ([[0; LANES]; 3], [[0; LANES]; 3], [[0; LANES]; 3]);
     for (lane, &(at, _)) in kept.iter().take(LANES).enumerate() {
         let at = usize::from(at) % Batch::CAPACITY;
@@ -217,7 +217,7 @@ fn gather(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
             shade[corner][lane] = i32::from(batch.shade[corner][at]);
         }
     }
-    set_up(&x, &y, &shade, place, group);
+    set_up::<TALL>(&x, &y, &shade, place, group);
 }
 
 /// The edge from `a` down to `b`.
@@ -232,7 +232,7 @@ fn edge((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> (f64, f64, f64) {
 
 /// Edges and shades.
 #[inline(always)]
-fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: &mut Group) {
+fn set_up<const TALL: bool>(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: &mut Group) {
     let Group {
         column: left_columns,
         row: top_rows,
@@ -265,10 +265,23 @@ fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: 
         let (cx, cy) = (x[2][i] - left, y[2][i] - top);
 
         // Top, middle and bottom. Which of two at the same height comes first is of no matter here.
-        let order = |p: (i32, i32), q: (i32, i32)| if q.1 < p.1 { (q, p) } else { (p, q) };
-        let (p0, p1) = order((ax, ay), (bx, by));
-        let (p1, p2) = order(p1, (cx, cy));
-        let (p0, p1) = order(p0, p1);
+        let (p0, p1, p2) = if TALL {
+            let order = |p: (i32, i32), q: (i32, i32)| if q.1 < p.1 { (q, p) } else { (p, q) };
+            let (p0, p1) = order((ax, ay), (bx, by));
+            let (p1, p2) = order(p1, (cx, cy));
+            let (p0, p1) = order(p0, p1);
+            (p0, p1, p2)
+        } else {
+            // Both coordinates, within ±2¹⁵, in one number: half as many operations.
+            let (a, b, c) = ((ay << 16) + ax, (by << 16) + bx, (cy << 16) + cx);
+            let (low, high) = (a.min(b), a.max(b));
+            let (first, rest) = (low.min(c), low.max(c));
+            let point = |both: i32| {
+                let x = (both << 16) >> 16;
+                (x, (both - x) >> 16)
+            };
+            (point(first), point(rest.min(high)), point(rest.max(high)))
+        };
         (long.n[i], long.per_row[i], long.inverse[i]) = edge(p0, p2);
         (upper.n[i], upper.per_row[i], upper.inverse[i]) = edge(p0, p1);
         (lower.n[i], lower.per_row[i], lower.inverse[i]) = edge(p1, p2);
@@ -395,7 +408,7 @@ pub(super) fn tall_by(
 ) {
     let mut found = Lines::NONE;
     for eight in kept.chunks(LANES) {
-        gather(batch, eight, place, &mut spans.group);
+        gather::<true>(batch, eight, place, &mut spans.group);
         for (i, &(number, _)) in eight.iter().enumerate() {
             let number = usize::from(number);
             let plane = place.depth_width.map(|_| batch.depth_plane(number));
