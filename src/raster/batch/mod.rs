@@ -7,10 +7,10 @@
 //! | stage | lanes | what |
 //! |---|---|---|
 //! | [`sieve`] | triangles | which have a pixel centre in their box, and which of these are small |
-//! | [`rows`] | triangles | of eight small ones at a time edges, shade plane and rows, as a list of spans |
+//! | [`rows`] | triangles, or rows of one | of eight small ones at a time edges, shade plane and rows, as a list of spans; of one up to 256 pixels a side eight rows at a time |
 //! | [`Kernel::fill_list`](crate::span::Kernel::fill_list) | pixels | the bytes |
 //!
-//! What is not small, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
+//! What is larger, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
 //! when its turn comes. The bytes are those of a call of it for each triangle in turn.
 
 use super::Shading;

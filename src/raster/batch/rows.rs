@@ -1,17 +1,19 @@
-//! The rows of small triangles, eight triangles at a time.
+//! The rows of small triangles, eight triangles at a time, and of larger ones, eight rows at a time.
 //!
 //! Coordinates are taken from the centre of the box's first pixel, so all numbers are small, and f64 holds every
-//! numerator exactly. A quotient is a product with the divisor's reciprocal, and its floor is exact by a margin: for a whole
-//! n and a whole d
+//! numerator exactly. A quotient is a product with the divisor's reciprocal, and its floor is exact by a margin:
+//! for a whole n and a whole d
 //!
 //! ```text
 //! floor(n / d) = nearest((n + ½ − d/2) / d)
 //! ```
 //!
 //! where what is rounded lies at least 1/(2d) from the middle between two whole numbers. The reciprocal and the
-//! product are each off by at most one part in 2⁵³, which for a quotient below 2¹⁶ is 2⁻³⁶ together; with at most 64 × 64 pixels twice the area is
-//! below 2²⁹, so the margin is above 2⁻³⁰. (n + ½ − d/2 is exact: below 2⁵⁰, and a multiple of ½.) The whole number is found by adding 1.5 · 2⁵²,
-//! which leaves it in the low bits. So there is no correction, no branch, and the same result on every processor.
+//! product are each off by at most one part in 2⁵³: for a shade, below 2¹⁶, by 2⁻³⁶ together. A box of at most
+//! 256 × 256 pixels is 2¹⁶ units a side, so twice the area is at most 2³², and the margin at least 2⁻³³. A column is
+//! below 2⁹, its divisor at most 2²⁴. (n + ½ − d/2 is exact: a multiple of ½ whose terms are below 2⁵⁰.) A step has any
+//! size, but below 2⁴¹ / d, so it is off by less than 2⁻¹¹ / d. The whole number is found by adding 1.5 · 2⁵², which
+//! leaves it in the low bits. So there is no correction, no branch, and the same result on every processor.
 //!
 //! Left and right are the lesser and the greater of two edges: where the long edge and a short one meet a row, one
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
