@@ -35,6 +35,7 @@ pub struct Depths {
 }
 
 /// Fills every span of a list where it is nearer. Returns the number of pixels written.
+#[inline(never)]
 pub(super) fn each_nearer<D: Cell>(pixels: &mut [u8], cells: &mut [D], spans: &[Listed], depths: &[Depths]) -> u32 {
     let mut written = 0;
     for (span, depth) in spans.iter().zip(depths) {

@@ -38,6 +38,7 @@
 //! | [`lookup()`] | shades of texels, fog, transparency, Phong's table: one byte of two |
 //! | [`channels::mix_cube`], [`channels::mix_nearest`] | red, green and blue to an index, with dither |
 //! | [`depth::fill_nearer`], [`depth::copy_nearer`], [`depth::copy_before`] | with a depth test |
+//! | [`Kernel::fill_list`], [`Kernel::fill_list_nearer`] | a list of short spans in one call |
 //! | [`lit::interpolate`] | writes no pixels: normals and positions for Phong's shading |
 
 use core::fmt;

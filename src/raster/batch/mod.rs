@@ -7,10 +7,10 @@
 //! | stage | lanes | what |
 //! |---|---|---|
 //! | [`sieve`] | triangles | which have a pixel centre in their box, and which of these are small |
-//! | [`rows`] | triangles | of eight small ones at a time edges, shade plane and rows, as a list of spans |
+//! | [`rows`] | triangles, or rows of one | of eight small ones at a time edges, shade plane and rows, as a list of spans; of one up to 256 pixels a side eight rows at a time |
 //! | [`Kernel::fill_list`](crate::span::Kernel::fill_list) | pixels | the bytes |
 //!
-//! What is not small, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
+//! What is larger, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
 //! when its turn comes. The bytes are those of a call of it for each triangle in turn.
 
 use super::Shading;
@@ -26,7 +26,7 @@ mod sieve;
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86;
 
-use rows::{Draw, Place, Spans};
+use rows::{DEPTHS, Draw, Place, Spans};
 use sieve::{Chosen, Kept, Kind};
 
 /// Triangles to be drawn one after the other, in arrays.
@@ -168,7 +168,23 @@ impl<D: Cell> Raster<'_, D> {
         (stages.sieve)(batch, self.clip, &mut kept);
         let depth_width = self.depth.is_some().then_some(width);
         let place = Place { first_row: rows.start, pitch: pitch as u32, depth_width };
-        let mut spans = Spans::new();
+        if depth_width.is_some() {
+            self.draw_kept::<CLIPS>(batch, &stages, &kept, place, Spans::new(&mut { DEPTHS }))
+        } else {
+            self.draw_kept::<CLIPS>(batch, &stages, &kept, place, Spans::new(&mut []))
+        }
+    }
+
+    /// Draws what the sieve has kept.
+    fn draw_kept<const CLIPS: bool>(
+        &mut self,
+        batch: &Batch,
+        stages: &Stages,
+        kept: &Kept,
+        place: Place,
+        mut spans: Spans<'_>,
+    ) -> Drawn {
+        let mut drawn = Drawn::default();
         let mut left = kept.triangles();
         while let Some(&(first, kind)) = left.first() {
             if kind == Kind::Other {
@@ -197,7 +213,7 @@ impl<D: Cell> Raster<'_, D> {
 
     /// Draws the spans of small triangles.
     #[inline]
-    fn fill(&mut self, spans: &Spans, drawn: &mut Drawn) {
+    fn fill(&mut self, spans: &Spans<'_>, drawn: &mut Drawn) {
         let covered = spans.covered();
         // At most 2¹¹ spans of 64 pixels.
         drawn.spans += spans.as_slice().len() as u32;
@@ -221,8 +237,8 @@ impl<D: Cell> Raster<'_, D> {
 /// The stages as the kernel's processor runs them best.
 struct Stages {
     sieve: fn(&Batch, super::frame::Rect, &mut Kept),
-    rows: fn(&Batch, &[Chosen], Place, &mut Spans) -> usize,
-    tall: fn(&Batch, &[Chosen], Place, &mut Spans, Draw<'_>),
+    rows: fn(&Batch, &[Chosen], Place, &mut Spans<'_>) -> usize,
+    tall: fn(&Batch, &[Chosen], Place, &mut Spans<'_>, Draw<'_>),
 }
 
 impl Stages {

@@ -1,17 +1,19 @@
-//! The rows of small triangles, eight triangles at a time.
+//! The rows of small triangles, eight triangles at a time, and of larger ones, eight rows at a time.
 //!
 //! Coordinates are taken from the centre of the box's first pixel, so all numbers are small, and f64 holds every
-//! numerator exactly. A quotient is a product with the divisor's reciprocal, and its floor is exact by a margin: for a whole
-//! n and a whole d
+//! numerator exactly. A quotient is a product with the divisor's reciprocal, and its floor is exact by a margin:
+//! for a whole n and a whole d
 //!
 //! ```text
 //! floor(n / d) = nearest((n + ½ − d/2) / d)
 //! ```
 //!
 //! where what is rounded lies at least 1/(2d) from the middle between two whole numbers. The reciprocal and the
-//! product are each off by at most one part in 2⁵³, which for a quotient below 2¹⁶ is 2⁻³⁶ together; with at most 64 × 64 pixels twice the area is
-//! below 2²⁹, so the margin is above 2⁻³⁰. (n + ½ − d/2 is exact: below 2⁵⁰, and a multiple of ½.) The whole number is found by adding 1.5 · 2⁵²,
-//! which leaves it in the low bits. So there is no correction, no branch, and the same result on every processor.
+//! product are each off by at most one part in 2⁵³: for a shade, below 2¹⁶, by 2⁻³⁶ together. A box of at most
+//! 256 × 256 pixels is 2¹⁶ units a side, so twice the area is at most 2³², and the margin at least 2⁻³³. A column is
+//! below 2⁹, its divisor at most 2²⁴. (n + ½ − d/2 is exact: a multiple of ½ whose terms are below 2⁵⁰.) A step has any
+//! size, but below 2⁴¹ / d, so it is off by less than 2⁻¹¹ / d. The whole number is found by adding 1.5 · 2⁵², which
+//! leaves it in the low bits. So there is no correction, no branch, and the same result on every processor.
 //!
 //! Left and right are the lesser and the greater of two edges: where the long edge and a short one meet a row, one
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
@@ -36,32 +38,38 @@ pub(super) const LANES: usize = 8;
 /// 1.5 · 2⁵².
 pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
 
-/// A list of spans, with room for those of several groups, and the numbers on the way there. Filled in place: a
+/// Room for the spans of a group, and for eight rows of a tall triangle. All is cleared for every batch: more room costs
+/// more than it saves.
+const ROOM: usize = LANES * MOST_ROWS as usize + LANES * MOST_PIECES;
+
+/// Room for the depths of as many spans.
+pub(super) const DEPTHS: [Depths; ROOM + 1] = [Depths { at: 0, z: 0, dz: 0 }; ROOM + 1];
+
+/// A list of spans, and the numbers on the way there. Filled in place: a
 /// copy of a group would cost as much as its rows.
-pub(super) struct Spans {
-    spans: [Listed; Self::ROOM + 1],
+pub(super) struct Spans<'a> {
+    spans: [Listed; ROOM + 1],
     count: usize,
     covered: u32,
-    /// Of each span, where there is a depth buffer.
-    depths: [Depths; Self::ROOM + 1],
+    /// Of each span, where there is a depth buffer; else there is no room for any.
+    depths: &'a mut [Depths],
     group: Group,
     table: [Row; MOST_ROWS as usize],
 }
 
-impl Spans {
-    const ROOM: usize = 2 * LANES * MOST_ROWS as usize;
-
-    pub(super) const fn new() -> Self {
+impl<'a> Spans<'a> {
+    pub(super) fn new(depths: &'a mut [Depths]) -> Self {
         Self {
-            spans: [Listed { at: 0, length: 0, shade: 0, step: 0 }; Self::ROOM + 1],
+            spans: [Listed { at: 0, length: 0, shade: 0, step: 0 }; ROOM + 1],
             count: 0,
             covered: 0,
-            depths: [Depths { at: 0, z: 0, dz: 0 }; Self::ROOM + 1],
+            depths,
             group: Group {
                 column: [0; LANES],
                 row: [0; LANES],
                 at: [0; LANES],
                 rows: [0; LANES],
+                columns: [0; LANES],
                 long: NO_EDGES,
                 upper: NO_EDGES,
                 lower: NO_EDGES,
@@ -82,7 +90,7 @@ impl Spans {
 
     /// As many as spans, where there is a depth buffer.
     pub(super) fn depths(&self) -> &[Depths] {
-        &self.depths[..self.count]
+        self.depths.get(..self.count).unwrap_or_default()
     }
 
     /// Pixels of all spans.
@@ -107,7 +115,7 @@ pub(super) struct Place {
 }
 
 pub(super) type Floats = [f64; LANES];
-type Ints = [i32; LANES];
+pub(super) type Ints = [i32; LANES];
 
 /// An edge: the first pixel on it or right of it in row j is `nearest((n + j·per_row) · inverse)`.
 #[derive(Clone, Copy)]
@@ -126,6 +134,8 @@ pub(super) struct Group {
     pub(super) row: Ints,
     pub(super) at: Ints,
     pub(super) rows: Ints,
+    /// Of the box.
+    pub(super) columns: Ints,
     pub(super) long: Edges,
     pub(super) upper: Edges,
     pub(super) lower: Edges,
@@ -173,7 +183,7 @@ pub(super) struct Row {
 }
 
 /// Lists the rows of as many of the small triangles `kept` as there is room for, and says how many that were.
-pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans) -> usize {
+pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
     rows_by(batch, kept, place, spans, row)
 }
 
@@ -182,16 +192,16 @@ pub(super) fn rows_by(
     batch: &Batch,
     kept: &[Chosen],
     place: Place,
-    spans: &mut Spans,
+    spans: &mut Spans<'_>,
     row: impl Fn(&Group, i32, i32, &mut Row),
 ) -> usize {
     let mut listed = 0;
     for group in kept.chunks(LANES) {
-        if spans.count + LANES * MOST_ROWS as usize > Spans::ROOM {
+        if spans.count + LANES * MOST_ROWS as usize > ROOM {
             break;
         }
         listed += group.len();
-        gather(batch, group, place, &mut spans.group);
+        gather::<false>(batch, group, place, &mut spans.group);
         list(batch, group, place, spans, &row);
     }
     listed
@@ -199,7 +209,7 @@ pub(super) fn rows_by(
 
 /// Sets up a group. Triangles that it lacks are points.
 #[inline(always)]
-fn gather(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
+fn gather<const TALL: bool>(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
     let (mut x, mut y, mut shade) = ([[0; LANES]; 3], [[0; LANES]; 3], [[0; LANES]; 3]);
     for (lane, &(at, _)) in kept.iter().take(LANES).enumerate() {
         let at = usize::from(at) % Batch::CAPACITY;
@@ -209,7 +219,7 @@ fn gather(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
             shade[corner][lane] = i32::from(batch.shade[corner][at]);
         }
     }
-    set_up(&x, &y, &shade, place, group);
+    set_up::<TALL>(&x, &y, &shade, place, group);
 }
 
 /// The edge from `a` down to `b`.
@@ -224,10 +234,11 @@ fn edge((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> (f64, f64, f64) {
 
 /// Edges and shades.
 #[inline(always)]
-fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: &mut Group) {
+fn set_up<const TALL: bool>(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: &mut Group) {
     let Group {
-        column: columns,
+        column: left_columns,
         row: top_rows,
+        columns,
         at,
         rows,
         long,
@@ -244,9 +255,10 @@ fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: 
     let (pitch, first_row) = (place.pitch as i32, place.first_row as i32);
     for i in 0..LANES {
         let (low_x, low_y) = (x[0][i].min(x[1][i]).min(x[2][i]), y[0][i].min(y[1][i]).min(y[2][i]));
-        let high_y = y[0][i].max(y[1][i]).max(y[2][i]);
+        let (high_x, high_y) = (x[0][i].max(x[1][i]).max(x[2][i]), y[0][i].max(y[1][i]).max(y[2][i]));
         let (column, row) = ((low_x + 127) >> 8, (low_y + 127) >> 8);
-        (columns[i], top_rows[i]) = (column, row);
+        (left_columns[i], top_rows[i]) = (column, row);
+        columns[i] = ((high_x + 127) >> 8) - column;
         at[i] = (row - first_row) * pitch + column;
         // From the first pixel's centre, within ±2¹⁷.
         let (left, top) = (column * 256 + 128, row * 256 + 128);
@@ -255,10 +267,23 @@ fn set_up(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: 
         let (cx, cy) = (x[2][i] - left, y[2][i] - top);
 
         // Top, middle and bottom. Which of two at the same height comes first is of no matter here.
-        let order = |p: (i32, i32), q: (i32, i32)| if q.1 < p.1 { (q, p) } else { (p, q) };
-        let (p0, p1) = order((ax, ay), (bx, by));
-        let (p1, p2) = order(p1, (cx, cy));
-        let (p0, p1) = order(p0, p1);
+        let (p0, p1, p2) = if TALL {
+            let order = |p: (i32, i32), q: (i32, i32)| if q.1 < p.1 { (q, p) } else { (p, q) };
+            let (p0, p1) = order((ax, ay), (bx, by));
+            let (p1, p2) = order(p1, (cx, cy));
+            let (p0, p1) = order(p0, p1);
+            (p0, p1, p2)
+        } else {
+            // Both coordinates, within ±2¹⁵, in one number: half as many operations.
+            let (a, b, c) = ((ay << 16) + ax, (by << 16) + bx, (cy << 16) + cx);
+            let (low, high) = (a.min(b), a.max(b));
+            let (first, rest) = (low.min(c), low.max(c));
+            let point = |both: i32| {
+                let x = (both << 16) >> 16;
+                (x, (both - x) >> 16)
+            };
+            (point(first), point(rest.min(high)), point(rest.max(high)))
+        };
         (long.n[i], long.per_row[i], long.inverse[i]) = edge(p0, p2);
         (upper.n[i], upper.per_row[i], upper.inverse[i]) = edge(p0, p1);
         (lower.n[i], lower.per_row[i], lower.inverse[i]) = edge(p1, p2);
@@ -318,7 +343,7 @@ fn list(
     batch: &Batch,
     triangles: &[Chosen],
     place: Place,
-    spans: &mut Spans,
+    spans: &mut Spans<'_>,
     row: impl Fn(&Group, i32, i32, &mut Row),
 ) {
     let Spans { spans, count, covered, depths, group, table } = spans;
@@ -367,10 +392,10 @@ impl Lines {
 }
 
 /// Draws the spans that are listed.
-pub(super) type Draw<'a> = &'a mut dyn FnMut(&Spans);
+pub(super) type Draw<'a> = &'a mut dyn FnMut(&Spans<'_>);
 
 /// Draws tall triangles: one after the other, eight rows at a time, through `draw`, which takes what is listed.
-pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans, draw: Draw<'_>) {
+pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
     tall_by(batch, kept, place, spans, draw, lines);
 }
 
@@ -379,47 +404,61 @@ pub(super) fn tall_by(
     batch: &Batch,
     kept: &[Chosen],
     place: Place,
-    spans: &mut Spans,
+    spans: &mut Spans<'_>,
     draw: Draw<'_>,
-    lines: impl Fn(&Group, usize, i32, i32, &mut Lines),
+    lines: impl Fn(&Group, usize, i32, i32, &mut Ints, &mut Ints, &mut [Ints]),
 ) {
     let mut found = Lines::NONE;
     for eight in kept.chunks(LANES) {
-        gather(batch, eight, place, &mut spans.group);
+        gather::<true>(batch, eight, place, &mut spans.group);
         for (i, &(number, _)) in eight.iter().enumerate() {
             let number = usize::from(number);
             // Of a triangle without area, which has no spans, there is none.
             let mut plane = None;
-            let pieces = match batch.shading[number % Batch::CAPACITY] {
-                Shading::GouraudReseeded => MOST_PIECES,
-                _ => 1,
+            // A row that does not start anew is one piece, however long.
+            let (pieces, longest) = match batch.shading[number % Batch::CAPACITY] {
+                // At most 256 pixels.
+                Shading::GouraudReseeded => {
+                    ((spans.group.columns[i] - 1) as usize / RESEED as usize + 1, RESEED as u32)
+                }
+                _ => (1, MOST_UNITS as u32),
             };
+            let pieces = pieces.clamp(1, MOST_PIECES);
             for first in (0..spans.group.rows[i]).step_by(LANES) {
-                lines(&spans.group, i, first, place.pitch as i32, &mut found);
-                let before = spans.count;
-                for j in 0..LANES.min((spans.group.rows[i] - first) as usize) {
-                    // Non-negative, and at most 256.
+                let Spans { spans: list, depths, count, covered, group, .. } = &mut *spans;
+                lines(
+                    group,
+                    i,
+                    first,
+                    place.pitch as i32,
+                    &mut found.at,
+                    &mut found.length,
+                    &mut found.paint[..pieces],
+                );
+                let (before, mut end) = (*count, *count);
+                for j in 0..LANES.min((group.rows[i] - first) as usize) {
+                    // All are non-negative, and a length is at most 256.
                     let (mut at, mut left) = (found.at[j] as u32, found.length[j] as u32);
-                    for (piece, paint) in found.paint.iter().enumerate() {
+                    *covered += left;
+                    for paint in &found.paint {
                         if left == 0 {
                             break;
                         }
-                        let length = if piece + 1 == pieces { left } else { left.min(RESEED as u32) };
-                        let paint = paint[j] as u32;
-                        spans.spans[spans.count] =
-                            Listed { at, length, shade: paint as u16, step: (paint >> 16) as u16 };
-                        spans.depths[spans.count].at = (first as u32) + j as u32;
-                        spans.count += 1;
-                        spans.covered += length;
+                        let (length, paint) = (left.min(longest), paint[j] as u32);
+                        list[end] = Listed { at, length, shade: paint as u16, step: (paint >> 16) as u16 };
+                        if let Some(depths) = depths.get_mut(end) {
+                            depths.at = first as u32 + j as u32;
+                        }
+                        end += 1;
                         (at, left) = (at + length, left - length);
                     }
                 }
-                if let Some(width) = place.depth_width.filter(|_| spans.count > before) {
+                *count = end;
+                if let Some(width) = place.depth_width.filter(|_| end > before) {
                     let plane = plane.get_or_insert_with(|| batch.depth_plane(number));
-                    let Spans { spans, depths, count, group, .. } = spans;
-                    group.depths(i, plane, place, width, &spans[before..*count], &mut depths[before..*count]);
+                    group.depths(i, plane, place, width, &list[before..end], &mut depths[before..end]);
                 }
-                if spans.count + LANES * MOST_PIECES > Spans::ROOM {
+                if end + LANES * MOST_PIECES > ROOM {
                     draw(spans);
                     spans.clear();
                 }
@@ -432,7 +471,7 @@ pub(super) fn tall_by(
 
 /// Eight rows of triangle `i` of a group, from number `first` on.
 #[inline(always)]
-fn lines(group: &Group, i: usize, first: i32, pitch: i32, to: &mut Lines) {
+fn lines(group: &Group, i: usize, first: i32, pitch: i32, to_at: &mut Ints, length: &mut Ints, paints: &mut [Ints]) {
     for lane in 0..LANES {
         // Below 8.
         let row = first + lane as i32;
@@ -443,10 +482,10 @@ fn lines(group: &Group, i: usize, first: i32, pitch: i32, to: &mut Lines) {
         let (left, right) = if long < short { (long, short) } else { (short, long) };
         let (first, end) = (whole(left), whole(right));
         // Beyond the last row anything may come out.
-        to.at[lane] = (group.at[i] + row * pitch).wrapping_add(first);
-        to.length[lane] = end.wrapping_sub(first);
+        to_at[lane] = (group.at[i] + row * pitch).wrapping_add(first);
+        length[lane] = end.wrapping_sub(first);
         let n = group.n[i] + group.per_row[i] * j + group.per_column[i] * (left - MAGIC);
-        for (piece, paint) in (0_i32..).zip(&mut to.paint) {
+        for (piece, paint) in (0_i32..).zip(&mut *paints) {
             let n = n + group.per_column[i] * f64::from(piece * RESEED);
             paint[lane] = (whole(n * group.inverse[i] + MAGIC) & 0xFFFF) | group.step[i];
         }

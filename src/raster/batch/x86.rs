@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 
 use super::Batch;
-use super::rows::{Draw, Edges, Floats, Group, Lines, MAGIC, Place, Row, Spans, rows_by, tall_by};
+use super::rows::{Draw, Edges, Floats, Group, Ints, MAGIC, Place, Row, Spans, rows_by, tall_by};
 use super::sieve::{Chosen, Kept, sieve_inlined};
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
@@ -19,9 +19,9 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
 }
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
-pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans) -> usize {
+pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
     #[target_feature(enable = "avx2")]
-    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans) -> usize {
+    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
         rows_by(batch, kept, place, spans, |group, number, pitch, to| row(group, number, pitch, to))
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
@@ -29,10 +29,12 @@ pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
 }
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
-pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans, draw: Draw<'_>) {
+pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
     #[target_feature(enable = "avx2")]
-    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans, draw: Draw<'_>) {
-        tall_by(batch, kept, place, spans, draw, |group, i, first, pitch, to| lines(group, i, first, pitch, to));
+    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
+        tall_by(batch, kept, place, spans, draw, |group, i, first, pitch, at, length, paints| {
+            lines(group, i, first, pitch, at, length, paints)
+        });
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
     unsafe { avx2(batch, kept, place, spans, draw) }
@@ -122,7 +124,7 @@ fn row(group: &Group, row: i32, pitch: i32, to: &mut Row) {
 /// `rows::lines`.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn lines(group: &Group, i: usize, first: i32, pitch: i32, to: &mut Lines) {
+fn lines(group: &Group, i: usize, first: i32, pitch: i32, to_at: &mut Ints, length: &mut Ints, paints: &mut [Ints]) {
     let all = |x: f64| Eight(_mm256_set1_pd(x), _mm256_set1_pd(x));
     let magic = all(MAGIC);
     let numbers = _mm256_add_epi32(_mm256_set1_epi32(first), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
@@ -141,13 +143,13 @@ fn lines(group: &Group, i: usize, first: i32, pitch: i32, to: &mut Lines) {
     let right = long.with(short, |a, b| _mm256_max_pd(a, b));
     let (begin, end) = (left.whole(), right.whole());
     let down = _mm256_mullo_epi32(numbers, _mm256_set1_epi32(pitch));
-    store(&mut to.at, _mm256_add_epi32(_mm256_add_epi32(_mm256_set1_epi32(group.at[i]), down), begin));
-    store(&mut to.length, _mm256_sub_epi32(end, begin));
+    store(to_at, _mm256_add_epi32(_mm256_add_epi32(_mm256_set1_epi32(group.at[i]), down), begin));
+    store(length, _mm256_sub_epi32(end, begin));
     let (per_column, inverse) = (all(group.per_column[i]), all(group.inverse[i]));
     let column = left.with(magic, |a, b| _mm256_sub_pd(a, b));
     let mut n = all(group.n[i]).plus(all(group.per_row[i]).times(j)).plus(per_column.times(column));
     let (step, next) = (_mm256_set1_epi32(group.step[i]), per_column.times(all(f64::from(RESEED))));
-    for paint in &mut to.paint {
+    for paint in paints {
         store(paint, _mm256_blend_epi16(n.times(inverse).plus(magic).whole(), step, 0b1010_1010));
         n = n.plus(next);
     }
