@@ -55,36 +55,6 @@ fn all() -> Vec<(String, Scene)> {
     all
 }
 
-/// A scene of a few bodies, some of which may reach behind the eye, under lights of both kinds.
-fn random_scene(random: &mut Random) -> Scene {
-    let mut scene = Scene::new();
-    let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
-    scene.camera.near = between(0.05, 0.3) as f32;
-    scene.camera.field_of_view = between(0.4, 1.8) as f32;
-    for _ in 0..between(1.0, 4.0) as u32 {
-        let mesh = shapes::by_name(shapes::NAMES[between(0.0, 6.999) as usize]).expect("listed");
-        let mut object = Object::new(mesh);
-        object.position = [0.0; 3].map(|_| between(-1.5, 1.5) as f32).into();
-        object.scale = between(0.3, 2.5) as f32;
-        object.set_angles([0.0; 3].map(|_| between(0.0, 7.0)));
-        let material = &mut object.materials[0];
-        material.diffuse = between(0.3, 1.0) as f32;
-        if between(0.0, 1.0) < 0.5 {
-            material.specular = between(0.1, 0.6) as f32;
-            material.shininess = between(1.0, 40.0) as f32;
-        }
-        scene.add(object);
-    }
-    for _ in 0..between(1.0, 4.0) as u32 {
-        let place = [0.0; 3].map(|_| between(-2.0, 2.0) as f32);
-        scene.add_light(match between(0.0, 1.0) < 0.5 {
-            true => Light::sun(place).with_intensity(0.7),
-            false => Light::lamp(place, between(1.0, 5.0) as f32),
-        });
-    }
-    scene
-}
-
 /// How far a vertex on the screen may be from where it should be, in pixels: half of 1/256 for rounding, and what
 /// f32 makes: 2⁻²⁴ of what a coordinate's terms reach, some 2¹¹ pixels, a few times over.
 const VERTEX: f64 = 0.5 / 256.0 + 0.001;
@@ -212,7 +182,7 @@ fn linear_rungs_keep_their_bounds_on_random_scenes() {
     let mut tried = Tried::new("linear_rungs_keep_their_bounds_on_random_scenes", 200_000);
     let mut random = Random::named("truth linear");
     for i in 0..12 {
-        check_linear(&mut tried, &format!("random scene {i}"), &random_scene(&mut random));
+        check_linear(&mut tried, &format!("random scene {i}"), &scenes::random(&mut random));
     }
 }
 
@@ -263,7 +233,7 @@ fn phong_is_lit_at_every_pixel_on_random_scenes() {
     let mut tried = Tried::new("phong_is_lit_at_every_pixel_on_random_scenes", 100_000);
     let mut random = Random::named("truth lit");
     for i in 0..12 {
-        check_lit(&mut tried, &format!("random scene {i}"), &random_scene(&mut random));
+        check_lit(&mut tried, &format!("random scene {i}"), &scenes::random(&mut random));
     }
 }
 

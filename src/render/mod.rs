@@ -345,11 +345,17 @@ impl Renderer {
 
     /// The plan of the frame that was drawn last, in words: [`Plan::rows`] of `scene`, which it must have
     /// been drawn from, and how far the picture may be off where light at every pixel or splitting is not
-    /// on. That is worked out here, face by face, and only here.
+    /// on. That is worked out here, face by face, and only here. Of an object that is drawn within an error budget,
+    /// how many of its triangles each rung got.
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         let mut rows = self.plan.rows(scene);
         for row in &mut rows {
+            if row.effect == Effect::Gouraud
+                && let Some(shares) = self.states.get(row.place).and_then(ObjectState::shares)
+            {
+                row.why = format!("{}: {shares}", row.why);
+            }
             if !row.on
                 && matches!(row.effect, Effect::Phong | Effect::Tessellation)
                 && let Some(shades) = self.linear_error(scene, row.place)

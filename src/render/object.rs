@@ -1,10 +1,11 @@
 //! What a renderer keeps of an object from frame to frame: its vertices, lit and projected, and what
 //! they were made from. As long as that stays, so do they.
 
+use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::Stats;
-use super::budget::{Budget, Choice, Lit};
+use super::budget::{self, Budget, Choice, Lit};
 use super::face::Faces;
 use super::paint::Paint;
 use super::pixel_light::normal_table;
@@ -376,6 +377,11 @@ impl ObjectState {
     /// The budget's choices, to be completed while faces are drawn, and then put back.
     pub(super) fn take_choices(&mut self) -> Vec<Choice> {
         core::mem::take(&mut self.choices)
+    }
+
+    /// How many triangles a budget's choices gave to each rung, and why, in words; `None` without a budget.
+    pub(super) fn shares(&self) -> Option<String> {
+        self.budget.as_ref().map(|_| budget::shares(&self.choices))
     }
 
     /// The same, as they are.

@@ -7,6 +7,8 @@ use mode13h::palette::{Rgb, builtin};
 use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Rung, Scene, Shared, Wishes};
 use mode13h::texture::Texture;
 
+use super::random::Random;
+
 /// A scene with one shape, turned a little.
 pub fn showing(shape: &str) -> Scene {
     let mut scene = Scene::showing(shapes::by_name(shape).expect("listed"));
@@ -30,6 +32,36 @@ fn lamp_on_wall(slices: u32) -> Scene {
     scene.add(Object::new(shapes::wall(slices, slices)).named("wall"));
     scene.add_light(Light::lamp([0.1, 0.2, 0.25], 2.0));
     scene.camera.near = 0.1;
+    scene
+}
+
+/// A scene of a few bodies, some of which may reach behind the eye, under lights of both kinds.
+pub fn random(random: &mut Random) -> Scene {
+    let mut scene = Scene::new();
+    let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
+    scene.camera.near = between(0.05, 0.3) as f32;
+    scene.camera.field_of_view = between(0.4, 1.8) as f32;
+    for _ in 0..between(1.0, 4.0) as u32 {
+        let mesh = shapes::by_name(shapes::NAMES[between(0.0, 6.999) as usize]).expect("listed");
+        let mut object = Object::new(mesh);
+        object.position = [0.0; 3].map(|_| between(-1.5, 1.5) as f32).into();
+        object.scale = between(0.3, 2.5) as f32;
+        object.set_angles([0.0; 3].map(|_| between(0.0, 7.0)));
+        let material = &mut object.materials[0];
+        material.diffuse = between(0.3, 1.0) as f32;
+        if between(0.0, 1.0) < 0.5 {
+            material.specular = between(0.1, 0.6) as f32;
+            material.shininess = between(1.0, 40.0) as f32;
+        }
+        scene.add(object);
+    }
+    for _ in 0..between(1.0, 4.0) as u32 {
+        let place = [0.0; 3].map(|_| between(-2.0, 2.0) as f32);
+        scene.add_light(match between(0.0, 1.0) < 0.5 {
+            true => Light::sun(place).with_intensity(0.7),
+            false => Light::lamp(place, between(1.0, 5.0) as f32),
+        });
+    }
     scene
 }
 

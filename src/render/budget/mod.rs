@@ -22,6 +22,8 @@
 
 mod light;
 
+use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
 
 use glam::Vec3;
@@ -65,6 +67,25 @@ impl Choice {
             Self::Linear | Self::Unknown => Rung::Gouraud88Reseeded,
         }
     }
+}
+
+/// How many triangles went to which rung, and why.
+pub(super) fn shares(choices: &[Choice]) -> String {
+    let kinds = [
+        (Choice::Flat, "one shade at their corners, or near enough"),
+        (Choice::Linear, "light is linear enough on them"),
+        (Choice::Float, "so it is, but not on the screen"),
+        (Choice::Phong, "it is not known to be"),
+    ];
+    let mut text = String::new();
+    for (choice, why) in kinds {
+        let count = choices.iter().filter(|of| **of == choice).count();
+        if count > 0 {
+            text += &format!("{count} {} ({why}), ", choice.rung());
+        }
+    }
+    let unseen = choices.iter().filter(|of| **of == Choice::Unknown).count();
+    text + &format!("{unseen} not drawn")
 }
 
 /// What a triangle's normals and edges say, whatever the light.

@@ -1,0 +1,185 @@
+//! The error budget: what it promises, measured against light at every pixel.
+#![cfg(feature = "alloc")]
+
+mod support;
+
+use mode13h::cost::Probe;
+use mode13h::mesh::shapes;
+use mode13h::plan::Effect;
+use mode13h::render::{RenderError, Renderer, Rung, VertexPath};
+use mode13h::scene::Scene;
+use mode13h::truth::{ErrorMap, Screen, Shown, Standard, Truth};
+use mode13h::vga::Vga;
+use support::random::Random;
+use support::scenes;
+use support::tried::Tried;
+
+const SCREEN: Screen = Screen::MODE_13H;
+const BUDGETS: [f32; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
+
+fn within(max_error: f32) -> Renderer {
+    let mut renderer = Renderer::new();
+    renderer.set_max_error(Some(max_error));
+    renderer
+}
+
+fn look(renderer: Renderer, scene: &Scene) -> Shown {
+    Probe::new(renderer).look(scene, SCREEN).expect("a legal scene")
+}
+
+fn draw(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Vec<u8> {
+    renderer.draw(scene, vga).expect("a legal scene");
+    vga.pixels().to_vec()
+}
+
+/// At least 99.9 % of the pixels are within.
+fn check(tried: &mut Tried, name: &str, scene: &Scene, budgets: &[f32]) {
+    let truth = Truth::new(scene, SCREEN).expect("a legal scene").draw(Standard::Lit);
+    for &max_error in budgets {
+        let errors = ErrorMap::new(&truth, &look(within(max_error), scene)).expect("of one size");
+        let share = errors.share_within(f64::from(max_error));
+        assert!(share >= 0.999, "{name}: {share} within {max_error}, {} at most", errors.figures().max);
+        tried.add(errors.figures().count);
+        tried.worst("share beyond", 1.0 - share);
+    }
+}
+
+#[test]
+fn every_scene_is_within_its_budget() {
+    let stated = if cfg!(feature = "scene-files") { 2_000_000 } else { 800_000 };
+    let mut tried = Tried::new("every_scene_is_within_its_budget", stated);
+    for (name, scene) in scenes::all() {
+        check(&mut tried, &name, &scene, &BUDGETS);
+    }
+}
+
+/// Bodies that reach behind the eye, lamps inside of them, and whatever else comes.
+#[test]
+fn random_scenes_are_within_their_budgets() {
+    let mut tried = Tried::new("random_scenes_are_within_their_budgets", 500_000);
+    let mut random = Random::named("budget");
+    for i in 0..16 {
+        let scene = scenes::random(&mut random);
+        check(&mut tried, &format!("random scene {i}"), &scene, &[12.0, 3.0, 1.0]);
+    }
+}
+
+/// Faces that are shaded by different rungs meet as those of one: each pixel shows the same face.
+#[test]
+fn r12_neighbours_on_different_rungs_leave_no_crack() {
+    let mut tried = Tried::new("r12_neighbours_on_different_rungs_leave_no_crack", 40);
+    let mut mixed = 0;
+    for (name, mut scene) in scenes::all() {
+        scene.wishes.tessellation = None;
+        let faces = look(Renderer::new(), &scene).faces;
+        for max_error in [8.0, 1.5] {
+            let shown = look(within(max_error), &scene);
+            let differ = faces.iter().zip(&shown.faces).filter(|(a, b)| a != b).count();
+            assert_eq!(differ, 0, "{name} within {max_error}");
+            tried.add(1);
+        }
+        let stats = within(4.0).draw(&scene, &mut Vga::new()).expect("a legal scene");
+        mixed += usize::from(stats.shares.iter().count() > 1);
+    }
+    assert!(mixed > 10, "{mixed} scenes are shaded by several rungs");
+}
+
+/// Every triangle that is drawn got a rung; of an object without light, and where there is one rung, its own.
+#[test]
+fn shares_are_of_all_triangles() {
+    for (name, scene) in scenes::all() {
+        for mut renderer in [Renderer::new(), within(4.0), within(0.3)] {
+            let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
+            let shared: u64 = stats.shares.iter().map(|(_, triangles)| triangles).sum();
+            assert_eq!(shared, stats.drawn, "{name}: {stats}");
+        }
+        let mut flat = Renderer::new();
+        flat.set_rung(Rung::Flat);
+        let stats = flat.draw(&scene, &mut Vga::new()).expect("a legal scene");
+        assert_eq!(stats.shares.of(Rung::Flat), stats.drawn, "{name}");
+    }
+}
+
+/// Decisions that are kept give the frames that new ones give, whatever changes in between.
+#[test]
+fn kept_decisions_are_those_that_would_be_made() {
+    let mut tried = Tried::new("kept_decisions_are_those_that_would_be_made", 100);
+    for (name, mut scene) in scenes::all() {
+        let mut renderer = within(4.0);
+        let mut vga = Vga::new();
+        for change in 0..6 {
+            let max_error = match change {
+                1 | 2 => 1.0,
+                3 => 9.0,
+                _ => 4.0,
+            };
+            if change == 4 {
+                scene.objects_mut()[0].rotate_y(0.3);
+            }
+            if change == 5 {
+                scene.lights_mut().iter_mut().for_each(|light| *light = light.with_intensity(0.6));
+            }
+            renderer.set_max_error(Some(max_error));
+            let kept = draw(&mut renderer, &scene, &mut vga);
+            assert_eq!(kept, draw(&mut within(max_error), &scene, &mut Vga::new()), "{name}, change {change}");
+            tried.add(1);
+        }
+    }
+}
+
+/// Wider budgets never take more pixels that are lit each for itself.
+#[test]
+fn a_wider_budget_lights_fewer_pixels() {
+    for (name, scene) in scenes::all() {
+        let lit = BUDGETS.map(|max_error| {
+            within(max_error).draw(&scene, &mut Vga::new()).expect("a legal scene").shares.of(Rung::Phong)
+        });
+        assert!(lit.is_sorted(), "{name}: {lit:?}");
+    }
+}
+
+#[test]
+fn the_budget_is_the_renderers_or_the_scenes() {
+    let mut scene = Scene::showing(shapes::torus(24, 12));
+    scene.wishes.max_error = Some(3.0);
+    let mut renderer = Renderer::new();
+    assert_eq!(renderer.max_error(&scene), Some(3.0));
+    renderer.set_max_error(Some(5.0));
+    assert_eq!(renderer.max_error(&scene), Some(5.0));
+    renderer.set_rung(Rung::Phong);
+    assert_eq!(renderer.max_error(&scene), None);
+    let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
+    assert_eq!((stats.max_error, stats.shares.of(Rung::Phong)), (None, stats.drawn));
+    for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let drawn = within(wrong).draw(&scene, &mut Vga::new());
+        assert!(matches!(drawn, Err(RenderError::Wishes(_))), "{wrong}");
+    }
+}
+
+/// The 16.16 path has no budget, and says so.
+#[test]
+fn integers_know_no_budget() {
+    let scene = Scene::showing(shapes::torus(24, 12));
+    let mut renderer = within(2.0);
+    renderer.set_vertex_path(VertexPath::Integer);
+    let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
+    assert_eq!(stats.max_error, None);
+    assert_eq!(stats.shares.of(Rung::Gouraud88Reseeded), stats.drawn);
+    assert_eq!(renderer.plan().objects()[0].max_error(), None);
+}
+
+/// The plan names the budget and what came of it.
+#[test]
+fn the_plan_says_who_got_what() {
+    let scene = Scene::showing(shapes::torus(24, 12));
+    let mut renderer = within(14.0);
+    renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
+    let rows = renderer.rows(&scene);
+    let row = rows.iter().find(|row| row.effect == Effect::Gouraud).expect("listed");
+    assert!(row.on && row.why.starts_with("within an error budget of 14 shades"), "{}", row.why);
+    assert!(row.why.contains(" gouraud-8.8-reseeded (") && row.why.contains(" not drawn"), "{}", row.why);
+    let cube = Scene::showing(shapes::cube());
+    renderer.draw(&cube, &mut Vga::new()).expect("a legal scene");
+    let row = renderer.rows(&cube).into_iter().find(|row| row.effect == Effect::Gouraud).expect("listed");
+    assert!(!row.on && row.why.contains("one shade a face is right"), "{}", row.why);
+}
