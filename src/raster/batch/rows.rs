@@ -352,7 +352,7 @@ fn list(
         row(group, number, place.pitch as i32, to);
     }
     let mut pixels = 0;
-    for i in 0..triangles.len() {
+    for (i, &(number, _)) in triangles.iter().enumerate().take(LANES) {
         let rows = group.rows[i];
         let (first, before) = (*count, pixels);
         // Two at a time, one that there is not with no length: the end of a loop over rows is not foreseen. (Of 2.7
@@ -384,7 +384,7 @@ fn list(
         if let Some(width) = place.depth_width
             && pixels > before
         {
-            let plane = batch.depth_plane(usize::from(triangles[i].0));
+            let plane = batch.depth_plane(usize::from(number));
             group.depths(i, &plane, place, width, &spans[first..*count], &mut depths[first..*count]);
         }
     }
