@@ -6,8 +6,8 @@
 //!
 //! | stage | lanes | what |
 //! |---|---|---|
-//! | [`sieve`] | triangles | which have a pixel centre in their box, and which of these are small |
-//! | [`rows`] | triangles, or rows of one | of eight small ones at a time edges, shade plane and rows, as a list of spans; of one up to 256 pixels a side eight rows at a time |
+//! | `sieve` | triangles | which have a pixel centre in their box, and which of these are small |
+//! | `rows` | triangles, or rows of one | of eight small ones at a time edges, shade plane and rows, as a list of spans; of one up to 256 pixels a side eight rows at a time |
 //! | [`Kernel::fill_list`](crate::span::Kernel::fill_list) | pixels | the bytes |
 //!
 //! What is larger, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]

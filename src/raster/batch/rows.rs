@@ -352,26 +352,39 @@ fn list(
         row(group, number, place.pitch as i32, to);
     }
     let mut pixels = 0;
-    for i in 0..triangles.len() {
-        // At most `MOST_ROWS`.
-        let rows = &table[..(group.rows[i] as usize).min(MOST_ROWS as usize)];
+    for (i, &(number, _)) in triangles.iter().enumerate().take(LANES) {
+        let rows = group.rows[i];
         let (first, before) = (*count, pixels);
-        for (j, row) in (0..).zip(rows) {
-            let (length, paint) = (row.length[i], row.paint[i] as u32);
-            // Both are non-negative; shade and step are halves.
-            spans[*count] =
-                Listed { at: row.at[i] as u32, length: length as u32, shade: paint as u16, step: (paint >> 16) as u16 };
-            if place.depth_width.is_some() {
-                // For now the row; when there is a plane, the rest.
-                depths[*count].at = j;
+        // Two at a time, one that there is not with no length: the end of a loop over rows is not foreseen. (Of 2.7
+        // pixels 22 ns a triangle where row by row is 24, and four at a time 22; of 0.6 16, 16 and 17.)
+        let mut j = 0;
+        for two in table.as_chunks::<2>().0 {
+            if j >= rows {
+                break;
             }
-            *count += usize::from(length > 0);
-            pixels += length as u32;
+            for row in two {
+                let length = if j < rows { row.length[i] } else { 0 };
+                let paint = row.paint[i] as u32;
+                // Both are non-negative; shade and step are halves.
+                spans[*count] = Listed {
+                    at: row.at[i] as u32,
+                    length: length as u32,
+                    shade: paint as u16,
+                    step: (paint >> 16) as u16,
+                };
+                if place.depth_width.is_some() {
+                    // For now the row; when there is a plane, the rest.
+                    depths[*count].at = j as u32;
+                }
+                *count += usize::from(length > 0);
+                pixels += length as u32;
+                j += 1;
+            }
         }
         if let Some(width) = place.depth_width
             && pixels > before
         {
-            let plane = batch.depth_plane(usize::from(triangles[i].0));
+            let plane = batch.depth_plane(usize::from(number));
             group.depths(i, &plane, place, width, &spans[first..*count], &mut depths[first..*count]);
         }
     }
