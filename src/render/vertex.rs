@@ -33,7 +33,7 @@ pub(super) struct LitVertex {
     pub(super) vertex: Vertex,
     pub(super) back: U8F8,
     pub(super) needs_clipping: bool,
-    /// Where a budget asks: a bit for each sun that it sees; the last for all from the eighth on.
+    /// Where a budget asks: a bit for each of the first eight suns, whether it sees it.
     pub(super) suns_seen: u8,
 }
 

@@ -43,6 +43,9 @@ const LINEAR: f32 = 0.75;
 /// What rounding adds to a shade that is exact before it: a half, and what f32 may be off.
 const EXACT: f32 = 0.51;
 
+/// Suns that a vertex has a bit for.
+const SUNS: usize = 8;
+
 /// Curvature is taken a fifth too great, for angles that are taken for their chords.
 const CURVATURE: f32 = 1.2 / 6.0;
 
@@ -131,6 +134,8 @@ struct Strength {
     scale: f32,
     /// The ramp's last shade.
     last: u16,
+    /// The shade without any light but ambient light.
+    dark: u16,
     /// What all suns that shine straight at it add, in shades.
     body: f32,
     /// What all highlights together curve by, in shades for an angle of 1; 0 without any.
@@ -164,7 +169,10 @@ pub(super) struct Budget {
     most_spread: f32,
     /// A quarter of ρ − 1, at most, of any triangle that no plane clips.
     bend: f32,
-    /// Whether there are suns alone, and no highlight.
+    /// Whether there are more suns than a vertex has bits for, and whether there is one.
+    many_suns: bool,
+    one_sun: bool,
+    /// Whether there are suns alone, no more than that, and no highlight.
     simple: bool,
     /// Then, whether linear shades keep within wherever all corners see the same suns, and none is clamped.
     linear_unless_mixed: bool,
@@ -196,11 +204,6 @@ impl Budget {
         let Reach { nearest, .. } = view.reach(bounds);
         let nearest = nearest.max(f64::from(view.near()));
         self.bend = (f64::from(self.longest_edge) * view.scale() / nearest / 4.0) as f32;
-        for (i, sun) in lights.suns.iter().enumerate() {
-            for (lit, normal) in lit.iter_mut().zip(geometry.normals) {
-                lit.suns_seen |= u8::from(normal.dot(sun.towards) > 0.0) << i.min(7);
-            }
-        }
         self.strengths.clear();
         self.strengths.extend(paints.iter().map(|paint| {
             // A ramp has at most 256 entries.
@@ -214,20 +217,38 @@ impl Budget {
             let curvature = if ks == 0.0 { 0.0 } else { CURVATURE * curve(s) * ks * all };
             let body = (paint.answer.diffuse.abs() * 255.0) as f32
                 * lights.suns.iter().map(|s| s.intensity.abs()).sum::<f32>();
-            Strength { body, first, scale, last: first + ((entries - 1) << 8), curvature }
+            let dark = paint.constant().to_bits();
+            Strength { body, dark, first, scale, last: first + ((entries - 1) << 8), curvature }
         }));
         self.to_eye.clear();
         self.to_lamps.clear();
-        self.simple = lights.lamps.is_empty() && !channels && self.strengths.iter().all(|of| of.curvature == 0.0);
+        self.many_suns = lights.suns.len() > SUNS;
+        self.one_sun = lights.suns.len() == 1;
+        self.simple = lights.lamps.is_empty()
+            && !channels
+            && !self.many_suns
+            && self.strengths.iter().all(|of| of.curvature == 0.0);
         self.eye_turn = 0.0;
         let last = self.strengths.iter().map(|of| of.last).min().unwrap_or(0);
+        let mut clamped = false;
+        let (first_sun, others) =
+            lights.suns.split_first().map_or((Vec3::ZERO, [].as_slice()), |(s, rest)| (s.towards, rest));
+        for (lit, normal) in lit.iter_mut().zip(geometry.normals) {
+            lit.suns_seen = u8::from(normal.dot(first_sun) > 0.0);
+            clamped |= lit.vertex.shade().to_bits().max(lit.back.to_bits()) >= last;
+        }
+        for (i, sun) in (1..SUNS).zip(others) {
+            for (lit, normal) in lit.iter_mut().zip(geometry.normals) {
+                lit.suns_seen |= u8::from(normal.dot(sun.towards) > 0.0) << i;
+            }
+        }
         self.linear_unless_mixed = self.simple
             && self.strengths.iter().all(|of| {
                 let top = f32::from(of.last - of.first) * of.scale;
                 let range = (of.body * self.most_spread).min(top);
                 top * self.most_shortening + range * self.bend + LINEAR <= self.allowed
             })
-            && lit.iter().all(|lit| lit.vertex.shade().to_bits().max(lit.back.to_bits()) < last);
+            && !clamped;
         if self.simple {
             return;
         }
@@ -302,13 +323,23 @@ impl Budget {
         let strength = &self.strengths[usize::from(surface)];
         // n·l differs by no more than the normals do, which is P + S at most; and PS / (P + S) ≤ (P + S) / 4.
         let facet = &self.facets[triangle];
-        let clamp = if a == b && b == c { 0.0 } else { strength.body * facet.spread / 4.0 };
+        let apart = strength.body * facet.spread;
+        let mixed = a != b || b != c;
         let shade = |corner: &LitVertex| if turned { corner.back } else { corner.vertex.shade() }.to_bits();
         let [a, b, c] = corners.each_ref().map(shade);
         let (least, most) = (a.min(b).min(c), a.max(b).max(c));
         if most >= strength.last {
             return Choice::Unknown;
         }
+        let clamp = if !mixed {
+            0.0
+        } else if self.one_sun {
+            // P is what the brightest corner has of it.
+            let lit = f32::from(most.saturating_sub(strength.dark)) * strength.scale;
+            if lit < apart { lit * (apart - lit) / apart } else { 0.0 }
+        } else {
+            apart / 4.0
+        };
         // A corner's shade lies in its ramp.
         let model = clamp + f32::from(most - strength.first) * strength.scale * facet.shortening;
         if least == most {
@@ -340,7 +371,7 @@ impl Faces<'_> {
         let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
         let mut model = top * facet.shortening + strength.curvature * turned * turned;
         let seen = question.indices.map(|i| self.lit[i as usize].suns_seen);
-        let some = (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
+        let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
         let near = model + EXACT <= budget.allowed;
         let hopeless = top * facet.shortening > 2.0 * budget.allowed;
