@@ -189,6 +189,8 @@ impl ObjectState {
         if !plan.is_on(Effect::Transform) && self.made_by == Some(on) {
             return false;
         }
+        // Made again by force they are what they were, and so is what was decided on.
+        let changed = self.stale || self.made_by != Some(on);
         (self.made_by, self.stale) = (Some(on), false);
         let Some(source) = &self.source else { return false };
         self.paints.clear();
@@ -274,9 +276,12 @@ impl ObjectState {
                 paints: &self.paints,
                 channels,
             };
-            budget.renew(max_error, &lit, &mut self.lit);
-            self.choices.clear();
-            self.choices.resize(geometry.triangles.len(), Choice::Unknown);
+            if changed {
+                budget.renew(max_error, &lit);
+                self.choices.clear();
+                self.choices.resize(geometry.triangles.len(), Choice::Unknown);
+            }
+            budget.mark(&lit, &mut self.lit);
         } else if self.budget.is_some() {
             (self.budget, self.choices) = (None, Vec::new());
         }

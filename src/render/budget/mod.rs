@@ -185,9 +185,9 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Takes on an object whose vertices are made anew, and marks those with the suns that they see.
+    /// Takes on an object, or the same as it is now.
     #[inline(never)]
-    pub(super) fn renew(&mut self, allowed: f32, object: &Lit<'_>, lit: &mut [LitVertex]) {
+    pub(super) fn renew(&mut self, allowed: f32, object: &Lit<'_>) {
         let Lit { geometry, whole, view, bounds, lights, paints, channels } = *object;
         self.allowed = allowed;
         let known = matches!((&self.mesh, whole), (Some(known), Some(whole)) if Shared::ptr_eq(known, whole));
@@ -229,6 +229,26 @@ impl Budget {
             && !self.many_suns
             && self.strengths.iter().all(|of| of.curvature == 0.0);
         self.eye_turn = 0.0;
+        if self.simple {
+            return;
+        }
+        let positions = geometry.positions.iter();
+        self.to_lamps.extend(lights.lamps.iter().flat_map(|lamp| {
+            let at = narrow(lamp.position);
+            positions.clone().map(move |position| Towards::new(at - *position))
+        }));
+        if self.strengths.iter().any(|of| of.curvature != 0.0) {
+            let eye = narrow(lights.eye);
+            self.to_eye.extend(positions.map(|position| Towards::new(eye - *position)));
+            // The eye is at least this far away.
+            self.eye_turn = 1.0 / self.to_eye.iter().map(|eye| eye.distance).fold(f32::INFINITY, f32::min);
+        }
+    }
+
+    /// Marks the object's vertices with the suns that they see, and finds out what holds for all of it.
+    #[inline(never)]
+    pub(super) fn mark(&mut self, object: &Lit<'_>, lit: &mut [LitVertex]) {
+        let Lit { geometry, lights, .. } = *object;
         let last = self.strengths.iter().map(|of| of.last).min().unwrap_or(0);
         let mut clamped = false;
         let (first_sun, others) =
@@ -249,20 +269,6 @@ impl Budget {
                 top * self.most_shortening + range * self.bend + LINEAR <= self.allowed
             })
             && !clamped;
-        if self.simple {
-            return;
-        }
-        let positions = geometry.positions.iter();
-        self.to_lamps.extend(lights.lamps.iter().flat_map(|lamp| {
-            let at = narrow(lamp.position);
-            positions.clone().map(move |position| Towards::new(at - *position))
-        }));
-        if self.strengths.iter().any(|of| of.curvature != 0.0) {
-            let eye = narrow(lights.eye);
-            self.to_eye.extend(positions.map(|position| Towards::new(eye - *position)));
-            // The eye is at least this far away.
-            self.eye_turn = 1.0 / self.to_eye.iter().map(|eye| eye.distance).fold(f32::INFINITY, f32::min);
-        }
     }
 
     /// Bytes that it holds.
