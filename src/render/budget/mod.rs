@@ -174,7 +174,7 @@ pub(super) struct Budget {
     one_sun: bool,
     /// Whether there are suns alone, no more than that, and no highlight.
     simple: bool,
-    /// Then, whether linear shades keep within wherever all corners see the same suns, and none is clamped.
+    /// Then, whether linear shades keep within wherever all corners see the same suns and none is clamped.
     linear_unless_mixed: bool,
     /// What an edge of 1 turns the direction to the eye by, at most.
     eye_turn: f32,
@@ -249,17 +249,11 @@ impl Budget {
     #[inline(never)]
     pub(super) fn mark(&mut self, object: &Lit<'_>, lit: &mut [LitVertex]) {
         let Lit { geometry, lights, .. } = *object;
-        let last = self.strengths.iter().map(|of| of.last).min().unwrap_or(0);
-        let mut clamped = false;
-        let (first_sun, others) =
-            lights.suns.split_first().map_or((Vec3::ZERO, [].as_slice()), |(s, rest)| (s.towards, rest));
-        for (lit, normal) in lit.iter_mut().zip(geometry.normals) {
-            lit.suns_seen = u8::from(normal.dot(first_sun) > 0.0);
-            clamped |= lit.vertex.shade().to_bits().max(lit.back.to_bits()) >= last;
-        }
-        for (i, sun) in (1..SUNS).zip(others) {
-            for (lit, normal) in lit.iter_mut().zip(geometry.normals) {
-                lit.suns_seen |= u8::from(normal.dot(sun.towards) > 0.0) << i;
+        if !self.by_shades() {
+            for (i, sun) in (0..SUNS).zip(lights.suns) {
+                for (lit, normal) in lit.iter_mut().zip(geometry.normals) {
+                    lit.suns_seen |= u8::from(normal.dot(sun.towards) > 0.0) << i;
+                }
             }
         }
         self.linear_unless_mixed = self.simple
@@ -267,8 +261,20 @@ impl Budget {
                 let top = f32::from(of.last - of.first) * of.scale;
                 let range = (of.body * self.most_spread).min(top);
                 top * self.most_shortening + range * self.bend + LINEAR <= self.allowed
-            })
-            && !clamped;
+            });
+    }
+
+    /// Whether a vertex says by its shades which sun it sees: there is one, and no other light. Only what it sees by
+    /// less than a step of its shades goes unnoticed.
+    #[inline]
+    fn by_shades(&self) -> bool {
+        self.simple && self.one_sun
+    }
+
+    /// The suns that a vertex sees, a bit for each.
+    #[inline]
+    fn suns_seen(&self, lit: &LitVertex) -> u8 {
+        if self.by_shades() { u8::from(lit.vertex.shade() > lit.back) } else { lit.suns_seen }
     }
 
     /// Bytes that it holds.
@@ -319,24 +325,25 @@ impl Budget {
         corners: &[LitVertex; 3],
         turned: bool,
     ) -> Choice {
-        let [a, b, c] = corners.each_ref().map(|corner| corner.suns_seen);
-        if self.linear_unless_mixed && a == b && b == c {
-            return Choice::Linear;
-        }
         if !self.simple {
             return Choice::Unknown;
         }
-        let strength = &self.strengths[usize::from(surface)];
-        // n·l differs by no more than the normals do, which is P + S at most; and PS / (P + S) ≤ (P + S) / 4.
-        let facet = &self.facets[triangle];
-        let apart = strength.body * facet.spread;
+        let [a, b, c] = corners.each_ref().map(|corner| self.suns_seen(corner));
         let mixed = a != b || b != c;
+        let strength = &self.strengths[usize::from(surface)];
         let shade = |corner: &LitVertex| if turned { corner.back } else { corner.vertex.shade() }.to_bits();
         let [a, b, c] = corners.each_ref().map(shade);
-        let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+        let most = a.max(b).max(c);
         if most >= strength.last {
             return Choice::Unknown;
         }
+        if self.linear_unless_mixed && !mixed {
+            return Choice::Linear;
+        }
+        // n·l differs by no more than the normals do, which is P + S at most; and PS / (P + S) ≤ (P + S) / 4.
+        let facet = &self.facets[triangle];
+        let apart = strength.body * facet.spread;
+        let least = a.min(b).min(c);
         let clamp = if !mixed {
             0.0
         } else if self.one_sun {
@@ -376,7 +383,7 @@ impl Faces<'_> {
         // For suns alone, all of them above the horizon or all below.
         let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
         let mut model = top * facet.shortening + strength.curvature * turned * turned;
-        let seen = question.indices.map(|i| self.lit[i as usize].suns_seen);
+        let seen = question.indices.map(|i| budget.suns_seen(&self.lit[i as usize]));
         let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
         let near = model + EXACT <= budget.allowed;
