@@ -141,7 +141,7 @@ fn an_account_ends_with_the_byte_of_the_frame() {
             }
         }
     }
-    assert!(all > 2_000 && with_face * 2 > all, "{with_face} of {all}");
+    assert!(all > scenes::all().len() * 50 && with_face * 2 > all, "{with_face} of {all}");
 }
 
 /// The same for every way to hidden surfaces and both vertex paths.
@@ -175,7 +175,8 @@ fn an_account_follows_the_way_to_hidden_surfaces() {
             }
         }
     }
-    assert!(losers > 300, "{losers}");
+    // The shipped scenes, which are files, have most of the overlaps.
+    assert!(losers > if cfg!(feature = "scene-files") { 300 } else { 50 }, "{losers}");
 }
 
 /// The frames after an account are those without it.

@@ -1,4 +1,5 @@
 //! Batches of triangles: each kernel against the oracle, and against the same triangles drawn one by one.
+#![cfg(feature = "alloc")]
 
 mod support;
 
