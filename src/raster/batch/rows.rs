@@ -20,6 +20,7 @@
 
 use super::Batch;
 use super::sieve::Chosen;
+use crate::fixed::HAS_F64;
 use crate::raster::depth::DepthPlane;
 use crate::raster::shade::RESEED;
 use crate::raster::shading::Shading;
@@ -184,6 +185,10 @@ pub(super) struct Row {
 
 /// Lists the rows of as many of the small triangles `kept` as there is room for, and says how many that were.
 pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
+    // Nobody comes here then, and a chip's program must not hold what follows.
+    if !HAS_F64 {
+        return kept.len();
+    }
     rows_by(batch, kept, place, spans, row)
 }
 
@@ -409,6 +414,10 @@ pub(super) type Draw<'a> = &'a mut dyn FnMut(&Spans<'_>);
 
 /// Draws tall triangles: one after the other, eight rows at a time, through `draw`, which takes what is listed.
 pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
+    // As for `rows`.
+    if !HAS_F64 {
+        return;
+    }
     tall_by(batch, kept, place, spans, draw, lines);
 }
 
