@@ -31,7 +31,7 @@ impl Shininess {
     }
 
     /// base ^ exponent of a base above 0; 0 of any other.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn of(self, base: f64) -> f64 {
         if base > 0.0 { self.raise([base])[0] } else { 0.0 }
     }
