@@ -159,7 +159,8 @@ impl Eye {
     }
 
     /// max(0, r·v)^s; 0 where the light's own cosine is.
-    #[inline]
+    // A function of its own, so that `.ci/off_is_free` can see where it is entered.
+    #[inline(never)]
     fn highlights(&self, towards: &Vectors, cosines: &Wides, shininess: Shininess) -> Wides {
         let mut along = dot(towards, &self.towards);
         for (along, (cosine, eye)) in along.iter_mut().zip(cosines.iter().zip(&self.cosines)) {
