@@ -1,6 +1,6 @@
 //! The sum of all light at eight points of a surface at a time, in plain arrays that the compiler vectorises.
 //!
-//! The same numbers as [`Lights::one_channel`] and [`Lights::three_channels`] give for the front of each point: the
+//! The same numbers as [`Lights::one_channel`] and [`Lights::three_channels`] give for each point: the
 //! same operations in the same order, and each of them (sum, product, quotient, square root) rounds alike in a vector
 //! and alone. Where a point has no part in a light, nought is added, which changes no sum: none is −0, as each
 //! begins at +0.
@@ -67,7 +67,18 @@ impl Lights<'_> {
     /// The whole sum on one channel, not yet clamped, for the side that the points' normals, of any length, point
     /// away from.
     pub(crate) fn front_of_one_channel(&self, answer: &Answer, points: &Points) -> Wides {
-        let front = self.front(answer, points, |sun| [f64::from(sun.intensity)], |lamp| [f64::from(lamp.intensity)]);
+        self.one_channel_of_eight(answer, &unit_normals(points), points)
+    }
+
+    /// The same for normals that are unit already, which are taken as they are.
+    pub(crate) fn unit_front_of_one_channel(&self, answer: &Answer, points: &Points) -> Wides {
+        self.one_channel_of_eight(answer, &[points[0], points[1], points[2]], points)
+    }
+
+    #[inline]
+    fn one_channel_of_eight(&self, answer: &Answer, normals: &[Lanes<f32>; 3], points: &Points) -> Wides {
+        let of_sun = |sun: &super::Beam| [f64::from(sun.intensity)];
+        let front = self.front(answer, normals, points, of_sun, |lamp| [f64::from(lamp.intensity)]);
         let [mut body] = front.diffuse;
         for (body, highlight) in body.iter_mut().zip(&front.specular[0]) {
             *body = (answer.ambient + answer.diffuse * *body) + answer.specular * highlight;
@@ -77,7 +88,18 @@ impl Lights<'_> {
 
     /// The same on three channels: red, green, blue.
     pub(crate) fn front_of_three_channels(&self, answer: &Answer, points: &Points) -> [Wides; 3] {
-        let front = self.front(answer, points, |sun| sun.channels.map(f64::from), |lamp| lamp.channels.map(f64::from));
+        self.three_channels_of_eight(answer, &unit_normals(points), points)
+    }
+
+    /// The same for normals that are unit already, which are taken as they are.
+    pub(crate) fn unit_front_of_three_channels(&self, answer: &Answer, points: &Points) -> [Wides; 3] {
+        self.three_channels_of_eight(answer, &[points[0], points[1], points[2]], points)
+    }
+
+    #[inline]
+    fn three_channels_of_eight(&self, answer: &Answer, normals: &[Lanes<f32>; 3], points: &Points) -> [Wides; 3] {
+        let of_sun = |sun: &super::Beam| sun.channels.map(f64::from);
+        let front = self.front(answer, normals, points, of_sun, |lamp| lamp.channels.map(f64::from));
         let mut channels = front.diffuse;
         for (i, channel) in channels.iter_mut().enumerate() {
             for (body, highlight) in channel.iter_mut().zip(&front.specular[i]) {
@@ -92,12 +114,12 @@ impl Lights<'_> {
     fn front<const N: usize>(
         &self,
         answer: &Answer,
+        narrow: &[Lanes<f32>; 3],
         points: &Points,
         of_sun: impl Fn(&super::Beam) -> [f64; N],
         of_lamp: impl Fn(&super::LampBeam) -> [f64; N],
     ) -> Front<N> {
         let mut front = Front { diffuse: [NOUGHT; N], specular: [NOUGHT; N] };
-        let narrow = unit_normals(points);
         let normals = narrow.each_ref().map(widen);
         let places = [3, 4, 5].map(|axis| widen(&points[axis]));
         // As in `Lights::sum`.
@@ -313,12 +335,28 @@ mod tests {
             }
             let one = lights.front_of_one_channel(&answer, &points);
             let three = lights.front_of_three_channels(&answer, &points);
+            let mut unit_points = points;
+            for (lane, (normal, _)) in ends.iter().enumerate() {
+                let unit = normals::unit((*normal).into()).unwrap_or(Vec3::ZERO).to_array();
+                (0..3).for_each(|axis| unit_points[axis][lane] = unit[axis]);
+            }
+            let mut turned = unit_points;
+            turned[..3].iter_mut().flatten().for_each(|c| *c = -*c);
+            let sides = [unit_points, turned].map(|points| {
+                let one = lights.unit_front_of_one_channel(&answer, &points);
+                (one, lights.unit_front_of_three_channels(&answer, &points))
+            });
             for (lane, (normal, position)) in ends.into_iter().enumerate() {
                 let (normal, position) = (normals::unit(normal.into()).unwrap_or(Vec3::ZERO), Vec3::from(position));
                 let (front, _) = lights.one_channel(&answer, position, normal);
                 prop_assert_eq!(one[lane].to_bits(), front.to_bits(), "{} and {}", one[lane], front);
                 let (front, _) = lights.three_channels(&answer, position, normal);
                 prop_assert_eq!(three.map(|channel| channel[lane].to_bits()), front.map(f64::to_bits));
+                let (ones, threes) = (lights.one_channel(&answer, position, normal), lights.three_channels(&answer, position, normal));
+                for (side, (one, three)) in sides.iter().zip([(ones.0, threes.0), (ones.1, threes.1)]) {
+                    prop_assert_eq!(side.0[lane].to_bits(), one.to_bits(), "{} and {}", side.0[lane], one);
+                    prop_assert_eq!(side.1.map(|channel| channel[lane].to_bits()), three.map(f64::to_bits));
+                }
             }
         }
     }

@@ -288,6 +288,8 @@ impl Rules<'_> {
         // Faces are split for their shades alone.
         if !before.is_on(Effect::Lighting) {
             Decision::off(before.decision(Effect::Lighting).why)
+        } else if self.inputs.max_error.is_some() && !self.inputs.integer {
+            Decision::off(Why::LeftToBudget)
         } else if self.inputs.rung == Rung::GouraudTessellated || self.scene.wishes.tessellation.is_some() {
             Decision::on(Why::Asked)
         } else {

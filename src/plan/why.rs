@@ -100,6 +100,8 @@ pub enum Why {
         /// How many shades of error are accepted.
         max_error: f32,
     },
+    /// An error budget sees to it that shades follow the light, face by face.
+    LeftToBudget,
     /// Every normal is that of its face, and what lights it is far away: one shade for a face is right.
     Faceted,
     /// One shade for a face was asked for.
@@ -202,6 +204,7 @@ impl Why {
             Self::NoMaterialHas => none(),
             Self::ShadesDiffer => "shades differ from vertex to vertex".to_string(),
             Self::Budget { max_error } => format!("within an error budget of {max_error} shades, face by face"),
+            Self::LeftToBudget => "the error budget sees to it, face by face".into(),
             Self::Faceted => {
                 "every normal is that of its face, and the light is far away: one shade a face is right".to_string()
             }

@@ -159,7 +159,10 @@ impl Faces<'_> {
                 if *choice == Choice::Unknown {
                     let shades = vertices.map(|vertex| vertex.shade());
                     let depths = vertices.map(|vertex| vertex.depth());
-                    *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), shades, depths);
+                    // In 1/256 pixel, and twice.
+                    let pixels = area.unsigned_abs() as f32 / 131_072.0;
+                    let face = (triangle, indices, surface, turned);
+                    *choice = self.decide::<EFFECTS>(budget, face, (shades, depths, pixels));
                 }
             }
             if *choice == Choice::Linear && !(EFFECTS && self.paints[usize::from(surface)].has_effects) {
@@ -197,15 +200,14 @@ impl Faces<'_> {
         &self,
         budget: &Budget,
         (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
-        shades: [U8F8; 3],
-        depths: [u32; 3],
+        (shades, depths, pixels): ([U8F8; 3], [u32; 3], f32),
     ) -> Choice {
         let shades = if EFFECTS && self.channels {
             indices.map(|i| self.extras[i as usize].side(turned).channels.map(U8F8::to_bits))
         } else {
             shades.map(|shade| [shade.to_bits(); 3])
         };
-        self.cheapest_within(budget, &Question { triangle, indices, surface, turned, shades, depths })
+        self.cheapest_within(budget, &Question { triangle, indices, surface, turned, shades, depths, pixels })
     }
 
     /// What the corners of a face carry that is shaded by choice.
@@ -237,7 +239,7 @@ impl Faces<'_> {
         let turned = !CULLS && is_turned_away(&at);
         if *choice == Choice::Unknown {
             let shades = corners.map(|corner| if turned { corner.back } else { corner.vertex.shade() });
-            *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), shades, [0; 3]);
+            *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), (shades, [0; 3], f32::MAX));
         }
         let (choice, before) = (*choice, stats.drawn);
         let shading = choice.rung().shading();

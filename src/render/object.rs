@@ -241,14 +241,16 @@ impl ObjectState {
         let by_face = Self::is_flat(plan.rung()) && plan.is_on(Effect::Lighting);
         let by_pixel = plan.is_on(Effect::Phong) && plan.max_error().is_none();
         let by_vertex = !by_face && !by_pixel;
+        // Of a closed body nobody sees the back.
+        let both = !plan.is_on(Effect::BackFaceCulling);
         if !plan.is_on(Effect::Lighting) && !channels {
             vertex::light_none(&geometry, &self.paints, &mut self.lit);
         } else if by_vertex {
             stats.lit += count as u64;
             if channels {
-                vertex::light_channels(&geometry, &self.paints, &lights, &mut self.extras);
+                vertex::light_channels(&geometry, &self.paints, &lights, both, &mut self.extras);
             } else if full {
-                vertex::light_all(&geometry, &self.paints, &lights, &mut self.lit);
+                vertex::light_all(&geometry, &self.paints, &lights, both, &mut self.lit);
             } else {
                 vertex::light_suns(&geometry, &self.paints, &lights, &mut self.lit);
             }

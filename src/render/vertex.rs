@@ -2,6 +2,7 @@
 //! the plan calls for it: what is off costs nothing.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use glam::{Vec2, Vec3};
 
@@ -12,6 +13,7 @@ use crate::palette::Ramp;
 use crate::raster::Vertex;
 use crate::raster::effects::Attributes;
 use crate::scene::Fog;
+use crate::span::lit::{LANES, Points};
 use crate::view::ObjectView;
 
 /// What is drawn of an object: its mesh, or what tessellation made of it.
@@ -116,28 +118,80 @@ pub(super) fn light_suns(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lig
     }
 }
 
-/// Suns, lamps and highlights.
+/// Suns, lamps and highlights; on the side that the normals point away from, or on `both`.
 #[inline(never)]
-pub(super) fn light_all(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, lit: &mut [LitVertex]) {
-    let vertices = geometry.positions.iter().zip(geometry.normals).zip(geometry.vertex_surfaces);
-    for (lit, ((position, normal), &surface)) in lit.iter_mut().zip(vertices) {
-        let paint = &paints[usize::from(surface)];
-        let (front, back) = lights.one_channel(&paint.answer, *position, *normal);
-        lit.vertex = lit.vertex.with_shade(paint.shade(front));
-        lit.back = paint.shade(back);
-    }
+pub(super) fn light_all(
+    geometry: &Geometry<'_>,
+    paints: &[Paint],
+    lights: &Lights<'_>,
+    both: bool,
+    lit: &mut [LitVertex],
+) {
+    each_eight(geometry, |vertices, surface, points| {
+        let paint = &paints[surface];
+        let lit = &mut lit[vertices];
+        let fronts = lights.unit_front_of_one_channel(&paint.answer, points);
+        for (lit, front) in lit.iter_mut().zip(fronts) {
+            lit.vertex = lit.vertex.with_shade(paint.shade(front));
+        }
+        if both {
+            let backs = lights.unit_front_of_one_channel(&paint.answer, &from_behind(points));
+            for (lit, back) in lit.iter_mut().zip(backs) {
+                lit.back = paint.shade(back);
+            }
+        }
+    });
 }
 
 /// The same on three channels.
 #[inline(never)]
-pub(super) fn light_channels(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, extras: &mut [Extra]) {
-    let vertices = geometry.positions.iter().zip(geometry.normals).zip(geometry.vertex_surfaces);
-    for (extra, ((position, normal), &surface)) in extras.iter_mut().zip(vertices) {
-        let paint = &paints[usize::from(surface)];
-        let (front, back) = lights.three_channels(&paint.answer, *position, *normal);
-        extra.front.channels = Paint::channels(front);
-        extra.back_channels = Paint::channels(back);
+pub(super) fn light_channels(
+    geometry: &Geometry<'_>,
+    paints: &[Paint],
+    lights: &Lights<'_>,
+    both: bool,
+    extras: &mut [Extra],
+) {
+    each_eight(geometry, |vertices, surface, points| {
+        let paint = &paints[surface];
+        let extras = &mut extras[vertices];
+        let [red, green, blue] = lights.unit_front_of_three_channels(&paint.answer, points);
+        for (lane, extra) in extras.iter_mut().enumerate() {
+            extra.front.channels = Paint::channels([red[lane], green[lane], blue[lane]]);
+        }
+        if both {
+            let [red, green, blue] = lights.unit_front_of_three_channels(&paint.answer, &from_behind(points));
+            for (lane, extra) in extras.iter_mut().enumerate() {
+                extra.back_channels = Paint::channels([red[lane], green[lane], blue[lane]]);
+            }
+        }
+    });
+}
+
+/// Hands on the vertices, up to eight of one surface at a time: which they are, their surface, and their normals
+/// and positions.
+fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize, &Points)) {
+    let mut first = 0;
+    for alike in geometry.vertex_surfaces.chunk_by(|a, b| a == b) {
+        for part in alike.chunks(LANES) {
+            let vertices = first..first + part.len();
+            let mut points = [[0.0; LANES]; 6];
+            let both = geometry.normals[vertices.clone()].iter().zip(&geometry.positions[vertices.clone()]);
+            for (lane, (normal, position)) in both.enumerate() {
+                for (axis, (n, p)) in normal.to_array().into_iter().zip(position.to_array()).enumerate() {
+                    (points[axis][lane], points[axis + 3][lane]) = (n, p);
+                }
+            }
+            first = vertices.end;
+            eight(vertices, usize::from(part[0]), &points);
+        }
     }
+}
+
+/// The same points with their normals turned round.
+fn from_behind(points: &Points) -> Points {
+    let [x, y, z, ..] = points.map(|values| values.map(|value| -value));
+    [x, y, z, points[3], points[4], points[5]]
 }
 
 /// Texture coordinates in texels, for surfaces that have an image.

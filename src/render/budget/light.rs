@@ -7,6 +7,14 @@ use super::{CURVATURE, Facet, curve};
 /// No point of a triangle is farther from its nearest corner than this share of the longest edge, 1/√3.
 const APART: f32 = 0.578;
 
+/// No point of a triangle is farther from the corner that has the most of it than this share of an edge: 2/3, of the
+/// chord that normals turn by, and a little for their angle.
+const FROM_ONE: f32 = 0.7;
+
+/// A unit vector along a line turns with a second derivative of at most √2 times the square of what it turns by; a sixth
+/// of that, see `CURVATURE`.
+const BEND: f32 = 0.236;
+
 /// Highlights of which not more than this is seen are not looked at any closer, in shades.
 const FAINT: f32 = 0.05;
 
@@ -39,6 +47,8 @@ pub(super) struct OneLight<'a> {
     pub(super) kd: f32,
     pub(super) ks: f32,
     pub(super) shininess: f32,
+    /// The edges of the parts that the triangle is looked at in, in edges of its own: 1 for the whole.
+    pub(super) part: f32,
 }
 
 impl OneLight<'_> {
@@ -50,23 +60,35 @@ impl OneLight<'_> {
             // N·l is linear: nothing of the face sees it.
             return 0.0;
         }
-        let body = intensity * self.kd * (most * self.facet.shortening + clamp_error(most, least));
+        let body = intensity * self.kd * self.matt(most, least);
         if self.ks == 0.0 || body > limit {
             return body;
         }
-        body + intensity * self.highlight([towards; 3], cosines, 0.0)
+        body + intensity * self.highlight([towards; 3], cosines, 0.0, (limit - body) / intensity)
+    }
+
+    /// For light from one direction, of cosines up to these: what is lost as normals are not made unit, and at the clamp.
+    fn matt(&self, most: f32, least: f32) -> f32 {
+        let (unit, clamp) = (most.max(0.0) * self.facet.shortening, clamp_error(most, least));
+        if self.part == 1.0 {
+            return unit + clamp;
+        }
+        // What a part's normals turn by, made unit.
+        let turn = self.part * self.facet.spread * (1.0 + self.facet.shortening);
+        unit.min(BEND * turn * turn) + clamp.min(turn / 4.0)
     }
 
     /// The same of a lamp.
     pub(super) fn lamp(&self, to_lamp: [Towards; 3], inverse_square: f32, intensity: f32, limit: f32) -> f32 {
-        let Facet { spread, edge, shortening } = *self.facet;
+        let Facet { spread, edge, .. } = *self.facet;
         let (farthest, nearest) = ends(to_lamp.map(|lamp| lamp.distance));
         let nearest = nearest - APART * edge;
         let part = nearest.max(0.0) * nearest.max(0.0) * inverse_square;
         if part >= 1.0 {
             return 0.0;
         }
-        let turn = if edge < nearest { edge / nearest } else { 4.0 };
+        let turn = self.part * if edge < nearest { edge / nearest } else { 4.0 };
+        let (spread, edge) = (self.part * spread, self.part * edge);
         let towards = to_lamp.map(|lamp| lamp.direction);
         let cosines = [0, 1, 2].map(|i| self.normals[i].dot(towards[i]));
         // The fall-off (1 − u)², u = d² / R², and its derivatives along an edge: |u'| ≤ 2√u·e, u'' = 2e², e being the
@@ -79,30 +101,48 @@ impl OneLight<'_> {
         // product of what they turn by, and L's own curvature. N is then made unit.
         let curvature = 2.0 * spread * (fall_off * turn + first) + fall_off * turn * turn + 2.0 * first * turn + second;
         let (most, least) = ends(cosines);
-        let unit = most.max(0.0) * shortening + clamp_error(most, least);
-        let body = intensity * self.kd * (CURVATURE * curvature + fall_off * unit);
+        let body = intensity * self.kd * (CURVATURE * curvature + fall_off * self.matt(most, least));
         if self.ks == 0.0 || body > limit {
             return body;
         }
         // The highlight's own curvature, and the fall-off's on it.
         let slope = libm::sqrtf(self.shininess) * (2.0 * spread + turn);
         let fading = self.ks * CURVATURE * (2.0 * first * slope + second);
-        body + intensity * (fading + fall_off * self.highlight(towards, cosines, turn))
+        body + intensity * (fading + fall_off * self.highlight(towards, cosines, turn, (limit - body) / intensity))
     }
 
-    /// How far linear highlights are off: by their curvature, or by no more than the brightest.
-    fn highlight(&self, towards: [Vec3; 3], cosines: [f32; 3], light_turn: f32) -> f32 {
+    /// How far linear highlights are off: by their curvature, or by no more than the brightest. What is not more than
+    /// `limit` is not looked at any closer.
+    fn highlight(&self, towards: [Vec3; 3], cosines: [f32; 3], light_turn: f32, limit: f32) -> f32 {
         let (most, least) = ends(cosines);
         let (_, nearest) = ends(self.to_eye.map(|eye| eye.distance));
-        let eye_turn = self.facet.edge / (nearest - APART * self.facet.edge).max(0.0);
-        let turn = 2.0 * self.facet.spread + light_turn + eye_turn;
+        let eye_turn = self.part * self.facet.edge / (nearest - APART * self.facet.edge).max(0.0);
+        let turn = 2.0 * self.part * self.facet.spread + light_turn + eye_turn;
         // Where the light comes over the horizon the highlight begins at once.
         let curved =
             if most > 0.0 && least <= 0.0 { f32::INFINITY } else { CURVATURE * curve(self.shininess) * turn * turn };
         if self.ks * curved <= FAINT {
             return FAINT;
         }
-        self.ks * curved.min(libm::powf(self.along(towards, light_turn + eye_turn), self.shininess))
+        // As bright as at no point: at the corners, and what it turns by from there.
+        let (whole, light_turn) = (turn / self.part, light_turn / self.part);
+        let along = (0..3).map(|i| {
+            let eye = self.to_eye[i].direction;
+            2.0 * cosines[i] * self.normals[i].dot(eye) - towards[i].dot(eye)
+        });
+        // cos(μ − t) ≤ cos μ + t·sin μ, and t²/2 more where cos μ is below 0.
+        let (along, turn) = (along.fold(-1.0, f32::max).min(1.0), FROM_ONE * whole);
+        let more = if along < 0.0 { 0.5 * turn * turn } else { 0.0 };
+        let along = (along + turn * libm::sqrtf(1.0 - along * along) + more).clamp(0.0, 1.0);
+        // xˢ ≤ exp(−y), y = s(1 − x).
+        let y = self.shininess * (1.0 - along);
+        let bright = if along == 0.0 { 0.0 } else { 1.0 / (1.0 + y * (1.0 + y * (0.5 + y / 6.0))) };
+        let least = curved.min(bright);
+        if self.ks * least <= limit {
+            return self.ks * least;
+        }
+        let eye_turn = eye_turn / self.part;
+        self.ks * least.min(libm::powf(self.along(towards, light_turn + eye_turn), self.shininess))
     }
 
     /// The greatest r·v of any point: with the half-way vector h between the directions to light and eye, and θ

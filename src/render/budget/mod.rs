@@ -35,6 +35,7 @@ use super::vertex::{Geometry, LitVertex};
 use crate::light::Lights;
 use crate::mesh::{Bounds, Mesh};
 use crate::scene::{Rung, Shared};
+use crate::span::lit::LANES;
 use crate::view::{ObjectView, Reach};
 
 /// What rounding adds to a linear shade that starts anew every 64 pixels: a half, and a quarter of drift.
@@ -48,6 +49,29 @@ const SUNS: usize = 8;
 
 /// Curvature is taken a fifth too great, for angles that are taken for their chords.
 const CURVATURE: f32 = 1.2 / 6.0;
+
+/// Pixels from which on it pays to light a face at some points before it is lit at all of them.
+const WORTH_SAMPLES: f32 = 12.0;
+
+/// Points of a triangle that divide each edge in four, by their weights; the corners first, and at the end one once more.
+const SAMPLES: [[f32; 3]; 16] = {
+    let mut points = [[1.0, 0.0, 0.0]; 16];
+    points[1] = [0.0, 1.0, 0.0];
+    points[2] = [0.0, 0.0, 1.0];
+    let (mut at, mut a) = (3, 0);
+    while a < 4 {
+        let mut b = 0;
+        while a + b <= 4 {
+            if b < 4 && a + b > 0 {
+                points[at] = [a as f32 / 4.0, b as f32 / 4.0, (4 - a - b) as f32 / 4.0];
+                at += 1;
+            }
+            b += 1;
+        }
+        a += 1;
+    }
+    points
+};
 
 /// What is decided for a triangle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -140,6 +164,8 @@ struct Strength {
     body: f32,
     /// What all highlights together curve by, in shades for an angle of 1; 0 without any.
     curvature: f32,
+    /// What all highlights at their brightest add, in shades.
+    highlights: f32,
 }
 
 /// An object, projected and lit.
@@ -218,7 +244,7 @@ impl Budget {
             let body = (paint.answer.diffuse.abs() * 255.0) as f32
                 * lights.suns.iter().map(|s| s.intensity.abs()).sum::<f32>();
             let dark = paint.constant().to_bits();
-            Strength { body, dark, first, scale, last: first + ((entries - 1) << 8), curvature }
+            Strength { body, dark, first, scale, last: first + ((entries - 1) << 8), curvature, highlights: ks * all }
         }));
         self.to_eye.clear();
         self.to_lamps.clear();
@@ -312,6 +338,8 @@ pub(super) struct Question {
     pub(super) shades: [[u16; 3]; 3],
     /// The corners' depths; 0 if one has none.
     pub(super) depths: [u32; 3],
+    /// Its area on the screen; of what is clipped anything.
+    pub(super) pixels: f32,
 }
 
 impl Budget {
@@ -383,16 +411,22 @@ impl Faces<'_> {
         // For suns alone, all of them above the horizon or all below.
         let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
         let mut model = top * facet.shortening + strength.curvature * turned * turned;
+        let spare = budget.allowed - EXACT;
+        // What the body alone is off by, at least as it is known, whatever the light.
+        let hopeless = (top - strength.highlights) * facet.shortening > spare;
         let seen = question.indices.map(|i| budget.suns_seen(&self.lit[i as usize]));
         let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
-        let near = model + EXACT <= budget.allowed;
-        let hopeless = top * facet.shortening > 2.0 * budget.allowed;
-        if lamps || ((some || clamped) && near) || (strength.curvature > 0.0 && !near && !hopeless) {
-            model = self.model_error(budget, question, budget.allowed);
+        let near = model <= spare;
+        if !hopeless && (lamps || ((some || clamped) && near) || (strength.curvature > 0.0 && !near)) {
+            let light = self.one_light(budget, question, 1.0);
+            model = self.model_error(budget, question, &light, spare);
             if clamped {
                 // What lies above the clamp is lost at some corners, by which the others are too dark at most.
                 model += range;
+            }
+            if model > spare && question.pixels >= WORTH_SAMPLES {
+                model = self.error_between_samples(budget, question, spare);
             }
         }
         let bound = budget.allowed;
@@ -414,22 +448,28 @@ impl Faces<'_> {
         }
     }
 
-    /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it.
-    #[inline(never)]
-    fn model_error(&self, budget: &Budget, question: &Question, limit: f32) -> f32 {
+    /// What light from one source needs to know.
+    fn one_light<'a>(&self, budget: &'a Budget, question: &Question, part: f32) -> OneLight<'a> {
         let paint = &self.paints[usize::from(question.surface)];
         let side = if question.turned { -1.0 } else { 1.0 };
         let color = if self.channels { paint.answer.color.into_iter().fold(0.0, f64::max) } else { 1.0 };
         let (ks, shininess) = highlight(paint, self.channels);
         let corners = question.indices.map(|i| i as usize);
-        let light = OneLight {
+        OneLight {
             facet: &budget.facets[question.triangle],
             normals: corners.map(|i| self.geometry.normals[i] * side),
             to_eye: if ks == 0.0 { [Towards::default(); 3] } else { corners.map(|i| budget.to_eye[i]) },
             kd: (paint.answer.diffuse * color).abs() as f32 * 255.0,
             ks,
             shininess,
-        };
+            part,
+        }
+    }
+
+    /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it.
+    #[inline(never)]
+    fn model_error(&self, budget: &Budget, question: &Question, light: &OneLight<'_>, limit: f32) -> f32 {
+        let corners = question.indices.map(|i| i as usize);
         let mut sum = 0.0;
         for sun in self.lights.suns {
             let intensity = brightest(sun.intensity, sun.channels, self.channels);
@@ -447,5 +487,61 @@ impl Faces<'_> {
             }
         }
         sum
+    }
+
+    /// The same, found at twelve points between the corners, which divide each edge in four: between them the
+    /// function is no farther from linear than a part of a fourth of the size may be.
+    #[inline(never)]
+    fn error_between_samples(&self, budget: &Budget, question: &Question, limit: f32) -> f32 {
+        let light = self.one_light(budget, question, 0.25);
+        let between = self.model_error(budget, question, &light, limit);
+        if between > limit {
+            return between;
+        }
+        let corners = question.indices.map(|i| i as usize);
+        let normals =
+            corners.map(|i| if question.turned { -self.geometry.normals[i] } else { self.geometry.normals[i] });
+        let positions = corners.map(|i| self.geometry.positions[i]);
+        let answer = &self.paints[usize::from(question.surface)].answer;
+        // The corners are among the points.
+        let mut intensities = [[0.0_f32; 3]; SAMPLES.len()];
+        for (weights, intensities) in SAMPLES.chunks_exact(LANES).zip(intensities.chunks_exact_mut(LANES)) {
+            let mut points = [[0.0; LANES]; 6];
+            for (lane, [a, b, c]) in weights.iter().enumerate() {
+                let between = |of: &[Vec3; 3]| (of[0] * *a + of[1] * *b + of[2] * *c).to_array();
+                for (axis, (n, p)) in between(&normals).into_iter().zip(between(&positions)).enumerate() {
+                    (points[axis][lane], points[axis + 3][lane]) = (n, p);
+                }
+            }
+            // Shown, they are clamped.
+            let shown = |intensity: f64| intensity.clamp(0.0, 1.0) as f32;
+            if self.channels {
+                let channels = self.lights.front_of_three_channels(answer, &points);
+                for (lane, of) in intensities.iter_mut().enumerate() {
+                    *of = channels.each_ref().map(|channel| shown(channel[lane]));
+                }
+            } else {
+                let all = self.lights.front_of_one_channel(answer, &points);
+                for (of, intensity) in intensities.iter_mut().zip(all) {
+                    *of = [shown(intensity); 3];
+                }
+            }
+        }
+        let [a, b, c, ..] = intensities;
+        let (mut off, mut clamp) = (0.0_f32, 0.0_f32);
+        for channel in 0..3 {
+            let (a, b, c) = (a[channel], b[channel], c[channel]);
+            let (mut least, mut most) = (1.0_f32, 0.0_f32);
+            for (weights, intensities) in SAMPLES.iter().zip(&intensities) {
+                let at = intensities[channel];
+                off = off.max((a * weights[0] + b * weights[1] + c * weights[2] - at).abs());
+                (least, most) = (least.min(at), most.max(at));
+            }
+            if most >= 1.0 {
+                clamp = clamp.max(most - least);
+            }
+        }
+        // Of PS / (P + S), P what lies above the clamp, no more than a fourth of both.
+        between + 255.0 * (off + clamp / 4.0)
     }
 }
