@@ -82,7 +82,8 @@ fn look<'a>(random: &mut Random, stock: &'a Stock) -> Look<'a> {
         source: match random.within(0, 9) {
             0 => Source::NormalTable(&stock.tables[0]),
             1 => Source::Lit(&Sum),
-            2 => Source::Shaded(Shading::Flat(random.within(0, 255) as u8)),
+            2 => Source::LitEvery16(&Sum),
+            3 => Source::Shaded(Shading::Flat(random.within(0, 255) as u8)),
             _ => Source::Shaded(random.one_of(Shading::INTERPOLATED)),
         },
         channels: channels.then(|| match random.within(0, 1) {
@@ -182,7 +183,7 @@ impl<'a> Naive<'a> {
             let values = self.attributes.each_ref().map(|a| value(a).to_bits());
             byte_of(self.linear(values, seed, x, y), threshold)
         };
-        let lit = || {
+        let lit_at = |x: i32| {
             // Whole numbers below 2¹⁵ times depths below 2³⁰ times areas: the sum's nearest f64 is off by
             // some parts in 2⁵¹, the f32 by one in 2²⁴.
             let point = [0, 1, 2].map(|i| {
@@ -191,10 +192,21 @@ impl<'a> Naive<'a> {
             });
             Sum::of(point)
         };
+        // The shift of a channel, before what is between the lit pixels is made of it.
+        let lit = |shift: usize| match self.look.source {
+            Source::LitEvery16(_) => {
+                let from = seed + (x - seed) / 16 * 16;
+                let to = (from + 16).min(last).max(from);
+                let [a, b] = [from, to].map(|x| i128::from(lit_at(x) >> shift));
+                let step = if to == from { 0 } else { (b - a) * 256 / i128::from(to - from) };
+                a + (step * i128::from(x - from)).div_euclid(256)
+            }
+            _ => i128::from(lit_at(x) >> shift),
+        };
         let textured = self.look.texture.as_ref().map(|texture| (texture, self.texel(texture, seed, last, x, y)));
         let mut byte = if let Some(mix) = &self.look.channels {
             let mut channels = match self.look.source {
-                Source::Lit(_) => [0, 1, 2].map(|i| byte_of(i128::from(lit() >> i), 128)),
+                Source::Lit(_) | Source::LitEvery16(_) => [0, 1, 2].map(|i| byte_of(lit(i), 128)),
                 _ => [0, 1, 2].map(|i| self.shades[i].byte((first, last), x, y, None)),
             };
             if let Some((texture, texel)) = textured {
@@ -212,7 +224,7 @@ impl<'a> Naive<'a> {
             let shade = match self.look.source {
                 Source::Shaded(_) => self.shades[0].byte((first, last), x, y, self.look.dither.map(|_| threshold)),
                 Source::NormalTable(table) => lookup(table, linear(|a| a.slope[1], 128), linear(|a| a.slope[0], 128)),
-                Source::Lit(_) => byte_of(i128::from(lit()), threshold),
+                Source::Lit(_) | Source::LitEvery16(_) => byte_of(lit(0), threshold),
                 _ => unreachable!("all sources are tried"),
             };
             match textured {
@@ -265,7 +277,7 @@ fn draw(
 }
 
 fn sum_is_exact(look: &Look<'_>) -> bool {
-    !matches!(look.source, Source::Lit(_))
+    !matches!(look.source, Source::Lit(_) | Source::LitEvery16(_))
 }
 
 #[test]

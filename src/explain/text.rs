@@ -133,7 +133,7 @@ impl Pixel {
         };
         match seen.shaded_by {
             ShadedBy::NormalTable => Rung::PhongTable,
-            ShadedBy::Light { .. } => Rung::Phong,
+            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } => Rung::Phong,
             ShadedBy::Corners if face.is_part && by_shading == Rung::Gouraud88Reseeded => Rung::GouraudTessellated,
             ShadedBy::Corners if self.rung == Rung::Flat => Rung::Flat,
             ShadedBy::Corners => by_shading,
@@ -162,6 +162,14 @@ impl Pixel {
                     point(normal),
                     point(position),
                     in_shades(seen, shades),
+                );
+                text.say("light", &words);
+            }
+            (ShadedBy::BetweenLit { before, after }, _) => {
+                let words = format!(
+                    "linear between two pixels of its row, at most 16 apart, that are lit by the whole model: {} and {}",
+                    in_shades(seen, before),
+                    in_shades(seen, after),
                 );
                 text.say("light", &words);
             }

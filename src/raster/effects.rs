@@ -32,15 +32,19 @@ use crate::fixed::U8F8;
 use crate::span::channels::{mix_cube, mix_nearest};
 use crate::span::depth::{copy_before, copy_nearer};
 use crate::span::hyperbolic::floor_quotient;
-use crate::span::lit::{LANES, Lanes, Points, interpolate};
+use crate::span::lit::{LANES, Lanes, Points, interpolate, interpolate_at};
 use crate::span::texture::{Texels, fill_affine, fill_perspective};
 use crate::span::{Kernel, lookup};
 
 /// Pixels in a piece.
 const PIECE: usize = RESEED as usize;
 
-/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`].
+/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`], and between two lit points of
+/// [`Source::LitEvery16`].
 const EVERY: usize = 16;
+
+/// The most places in a piece that are lit, its end being one.
+const KNOTS: usize = PIECE / EVERY + 1;
 
 /// The values of a corner beyond its position, shade and depth. What a look does not use may be
 /// anything.
@@ -80,6 +84,9 @@ pub enum Source<'a> {
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`], linear on the face, lit.
     Lit(&'a dyn Lighting),
+    /// The same lit at the row's first pixel inside the frame, at every sixteenth from there and at its last; shades
+    /// are linear between.
+    LitEvery16(&'a dyn Lighting),
 }
 
 /// How texture coordinates run along a row.
@@ -274,6 +281,55 @@ impl LitPlane {
             light(first..pixels.min(first + LANES), &points);
         }
     }
+
+    /// The points at some pixels from pixel (`x`, `y`) on.
+    fn points_at(&self, x: i32, y: i32, places: &Lanes<f64>) -> Points {
+        let (a, d) = Self::sum(&self.values, self.weights.at(x, y));
+        let (da, dd) = &self.step;
+        interpolate_at(places, &a, da, d, *dd)
+    }
+}
+
+/// Places of a piece that are lit, in pixels from its seed, and those between.
+#[derive(Clone, Copy, Debug)]
+struct Knots {
+    places: [i32; KNOTS],
+}
+
+impl Knots {
+    /// Of the piece at `seed`. Where the row ends inside of it, its last pixel is one, whatever the clip rectangle.
+    fn new(row: &Row, seed: i32) -> Self {
+        let mut places = [0; KNOTS];
+        for (place, number) in places.iter_mut().zip(0..) {
+            *place = (number * EVERY as i32).min((row.last - seed).max(0));
+        }
+        Self { places }
+    }
+
+    /// As there are pixels to be lit at a time.
+    fn lanes(&self) -> Lanes<f64> {
+        core::array::from_fn(|lane| f64::from(self.places[lane.min(KNOTS - 1)]))
+    }
+
+    /// The bytes of shades in 8.8 that are linear between those at the knots.
+    fn fill(&self, knots: &Lanes<u16>, thresholds: &[u8; 8], column: usize, piece: &mut [u8]) {
+        for (i, piece) in piece.chunks_mut(EVERY).enumerate() {
+            let (from, to) = (i32::from(knots[i]), i32::from(knots[i + 1]));
+            let pixels = self.places[i + 1] - self.places[i];
+            // In 1/256 of a shade's unit. Rounded toward zero: no sum goes beyond `to`.
+            let step = if pixels == 0 { 0 } else { ((to - from) << 8) / pixels };
+            for (eight, bytes) in piece.chunks_mut(LANES).enumerate() {
+                // Below 16.
+                let first = (eight * LANES) as i32;
+                let mut shades: Lanes<u16> = [0; LANES];
+                for (k, shade) in (first..).zip(&mut shades) {
+                    // Beyond the knot anything, which is not used.
+                    *shade = (from + ((step * k) >> 8)) as u16;
+                }
+                to_bytes(&shades, thresholds, column + i * EVERY + eight * LANES, bytes);
+            }
+        }
+    }
 }
 
 /// The values of one triangle that its look uses.
@@ -340,7 +396,7 @@ impl<'a> EffectPaint<'a> {
             Planes::Channels([0, 1, 2].map(|i| Paint::of_values(triangle, values(&|c| c.channels[i]), shading)))
         };
         let planes = match (look.source, look.channels()) {
-            (Source::Lit(_), _) => Planes::Lit(LitPlane::new(triangle, corners)),
+            (Source::Lit(_) | Source::LitEvery16(_), _) => Planes::Lit(LitPlane::new(triangle, corners)),
             (Source::Shaded(shading), None) => Planes::Shade(Paint::new(triangle, shading)),
             (Source::Shaded(shading), Some(_)) => channels(shading),
             (Source::NormalTable(_), Some(_)) => channels(Shading::default()),
@@ -420,7 +476,8 @@ impl<'a> EffectPaint<'a> {
         add(self.look.fog().is_some(), &mut drawn.fogged);
         add(self.look.blend().is_some(), &mut drawn.blended);
         add(self.look.channels().is_some(), &mut drawn.mixed);
-        add(matches!(self.planes, Planes::Lit(_) | Planes::Slope(_)), &mut drawn.lit);
+        let by_table = matches!(self.planes, Planes::Slope(_));
+        add(by_table || matches!(self.look.source, Source::Lit(_)), &mut drawn.lit);
     }
 
     /// The bytes from pixel `seed` on: shades, with their texture, or mixed.
@@ -449,20 +506,22 @@ impl<'a> EffectPaint<'a> {
                 return self.mix(row, seed, channels, thresholds, piece);
             }
             Planes::Lit(plane) => {
-                let Source::Lit(lighting) = self.look.source else { return };
                 if self.look.channels().is_some() {
-                    let mut channels = [[0; PIECE]; 3];
-                    plane.points(seed, row.y, length, |pixels, points| {
-                        for (shades, channel) in lighting.channels(points).iter().zip(&mut channels) {
-                            to_bytes(shades, &HALVES[0], column, &mut channel[pixels.clone()]);
-                        }
-                    });
+                    let channels = self.lit_channels(plane, row, seed, length);
                     return self.mix(row, seed, channels, thresholds, piece);
                 }
-                plane.points(seed, row.y, length, |pixels, points| {
-                    let column = column + pixels.start;
-                    to_bytes(&lighting.shades(points), thresholds, column, &mut piece[pixels]);
-                });
+                match self.look.source {
+                    Source::Lit(lighting) => plane.points(seed, row.y, length, |pixels, points| {
+                        let column = column + pixels.start;
+                        to_bytes(&lighting.shades(points), thresholds, column, &mut piece[pixels]);
+                    }),
+                    Source::LitEvery16(lighting) => {
+                        let knots = Knots::new(row, seed);
+                        let points = plane.points_at(seed, row.y, &knots.lanes());
+                        knots.fill(&lighting.shades(&points), thresholds, column, piece);
+                    }
+                    _ => {}
+                }
             }
         }
         if let Some(texture) = self.look.texture() {
@@ -472,6 +531,27 @@ impl<'a> EffectPaint<'a> {
             lookup(texels, piece, texture.tables[0]);
             piece.copy_from_slice(texels);
         }
+    }
+
+    /// Red, green and blue of a piece that is lit.
+    fn lit_channels(&self, plane: &LitPlane, row: &Row, seed: i32, length: usize) -> [Piece; 3] {
+        let mut channels = [[0; PIECE]; 3];
+        match self.look.source {
+            Source::Lit(lighting) => plane.points(seed, row.y, length, |pixels, points| {
+                for (shades, channel) in lighting.channels(points).iter().zip(&mut channels) {
+                    to_bytes(shades, &HALVES[0], 0, &mut channel[pixels.clone()]);
+                }
+            }),
+            Source::LitEvery16(lighting) => {
+                let knots = Knots::new(row, seed);
+                let points = plane.points_at(seed, row.y, &knots.lanes());
+                for (shades, channel) in lighting.channels(&points).iter().zip(&mut channels) {
+                    knots.fill(shades, &HALVES[0], 0, &mut channel[..length]);
+                }
+            }
+            _ => {}
+        }
+        channels
     }
 
     /// Channels to indices, through the texture if there is one.

@@ -18,12 +18,20 @@ use crate::raster::{Shading, Vertex};
 use crate::scene::Rung;
 use crate::view::{Homogeneous, ObjectView};
 
+/// How a face with effects is shaded.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct Manner {
+    pub(super) rung: Rung,
+    /// Whether, where pixels are lit, only every sixteenth of a row is, and shades are linear between.
+    pub(super) every_16: bool,
+}
+
 /// Takes faces as they are to be drawn.
 pub(super) trait Sink {
     /// A face without effects.
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading);
-    /// A face whose pixels pass through stages, the number of its surface, and the rung that shades it.
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung);
+    /// A face whose pixels pass through stages, the number of its surface, and what shades it.
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner);
 }
 
 /// One object in one frame.
@@ -158,11 +166,8 @@ impl Faces<'_> {
                 *choice = budget.decide_at_once(triangle, surface, &corners, turned);
                 if *choice == Choice::Unknown {
                     let shades = vertices.map(|vertex| vertex.shade());
-                    let depths = vertices.map(|vertex| vertex.depth());
-                    // In 1/256 pixel, and twice.
-                    let pixels = area.unsigned_abs() as f32 / 131_072.0;
                     let face = (triangle, indices, surface, turned);
-                    *choice = self.decide::<EFFECTS>(budget, face, (shades, depths, pixels));
+                    *choice = self.decide::<EFFECTS>(budget, face, (shades, Some(&vertices)));
                 }
             }
             if *choice == Choice::Linear && !(EFFECTS && self.paints[usize::from(surface)].has_effects) {
@@ -186,7 +191,7 @@ impl Faces<'_> {
         sink: &mut impl Sink,
     ) {
         stats.shares.add(choice.rung(), 1);
-        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice == Choice::Phong {
+        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.lights_pixels() {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             hand_on_within(vertices, attributes, surface, choice, sink);
         } else {
@@ -200,14 +205,14 @@ impl Faces<'_> {
         &self,
         budget: &Budget,
         (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
-        (shades, depths, pixels): ([U8F8; 3], [u32; 3], f32),
+        (shades, vertices): ([U8F8; 3], Option<&[Vertex; 3]>),
     ) -> Choice {
         let shades = if EFFECTS && self.channels {
             indices.map(|i| self.extras[i as usize].side(turned).channels.map(U8F8::to_bits))
         } else {
             shades.map(|shade| [shade.to_bits(); 3])
         };
-        self.cheapest_within(budget, &Question { triangle, indices, surface, turned, shades, depths, pixels })
+        self.cheapest_within(budget, &Question { triangle, indices, surface, turned, shades, vertices })
     }
 
     /// What the corners of a face carry that is shaded by choice.
@@ -215,7 +220,7 @@ impl Faces<'_> {
     fn attributes<const EFFECTS: bool>(&self, indices: [u32; 3], turned: bool, choice: Choice) -> [Attributes; 3] {
         indices.map(|i| {
             let mut attributes = if EFFECTS { self.extras[i as usize].side(turned) } else { Attributes::default() };
-            if choice == Choice::Phong {
+            if choice.lights_pixels() {
                 let (normal, position) = (self.geometry.normals[i as usize], self.geometry.positions[i as usize]);
                 let normal = if turned { -normal } else { normal };
                 attributes.lit = [normal.x, normal.y, normal.z, position.x, position.y, position.z];
@@ -239,11 +244,11 @@ impl Faces<'_> {
         let turned = !CULLS && is_turned_away(&at);
         if *choice == Choice::Unknown {
             let shades = corners.map(|corner| if turned { corner.back } else { corner.vertex.shade() });
-            *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), (shades, [0; 3], f32::MAX));
+            *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), (shades, None));
         }
         let (choice, before) = (*choice, stats.drawn);
         let shading = choice.rung().shading();
-        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice == Choice::Phong {
+        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.lights_pixels() {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
             self.parts::<CULLS, _>(at, corners, carried, (shading, turned), stats, |vertices, carried, _| {
@@ -337,7 +342,7 @@ impl Faces<'_> {
                 vertices = vertices.map(|vertex| vertex.with_shade(shade));
             }
         }
-        sink.with_effects(&vertices, &attributes, surface, self.rung);
+        sink.with_effects(&vertices, &attributes, surface, Manner { rung: self.rung, every_16: false });
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
@@ -394,7 +399,7 @@ fn hand_on_within(
         attributes.iter_mut().for_each(|corner| corner.channels = channels);
         rung = Rung::Gouraud88Reseeded;
     }
-    sink.with_effects(&vertices, &attributes, surface, rung);
+    sink.with_effects(&vertices, &attributes, surface, Manner { rung, every_16: choice == Choice::PhongEvery16 });
 }
 
 /// Half-way between the least and the greatest.

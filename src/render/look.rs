@@ -1,5 +1,6 @@
 //! What is done to the pixels of a surface: the plan, the material and the tables, put together.
 
+use super::face::Manner;
 use super::object::ObjectState;
 use super::paint::Paint;
 use super::pixel_light::PixelLight;
@@ -96,7 +97,7 @@ impl Looks<'_> {
     /// Hands the look of a surface of an object, shaded by a rung, to `draw`. Of one that is not there, nothing is drawn.
     pub(super) fn with(
         &self,
-        (object, surface, rung): (usize, u16, Rung),
+        (object, surface, manner): (usize, u16, Manner),
         draw: impl FnOnce(&Look<'_>) -> Drawn,
     ) -> Drawn {
         let (Some(plan), Some(state), Some(paint)) =
@@ -134,11 +135,11 @@ impl Looks<'_> {
         };
         let blends = paint.blend != Blend::Opaque || is_forced(plan, Effect::Transparency);
         let look = Look {
-            source: source(plan, rung, channels.is_some(), state.normal_table(surface), &light),
+            source: source(plan, manner, channels.is_some(), state.normal_table(surface), &light),
             channels,
             dither: match dither {
                 true if is_forced(plan, Effect::Dither) && !self.scene.wishes.dither => {
-                    let cut = rung.shading().rounding() == 0 && channels.is_none();
+                    let cut = manner.rung.shading().rounding() == 0 && channels.is_none();
                     Some(if cut { &NO_THRESHOLD } else { &NO_AMPLITUDE })
                 }
                 true => Some(&BAYER),
@@ -155,7 +156,7 @@ impl Looks<'_> {
 
 fn source<'a>(
     plan: &ObjectPlan,
-    rung: Rung,
+    Manner { rung, every_16 }: Manner,
     channels: bool,
     table: Option<&'a [u8; 65_536]>,
     light: &'a PixelLight<'a>,
@@ -163,6 +164,7 @@ fn source<'a>(
     if plan.is_on(Effect::Phong) && rung.lights_pixels() {
         return match table {
             Some(table) if rung == Rung::PhongTable && !channels => Source::NormalTable(table),
+            _ if every_16 => Source::LitEvery16(light),
             _ => Source::Lit(light),
         };
     }

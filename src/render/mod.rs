@@ -41,7 +41,7 @@ use alloc::vec::Vec;
 use core::fmt;
 use core::mem;
 
-use self::face::Sink;
+use self::face::{Manner, Sink};
 use self::integer::IntegerPath;
 use self::look::Looks;
 use self::object::ObjectState;
@@ -116,7 +116,7 @@ struct Kept {
     attributes: [Attributes; 3],
     object: usize,
     surface: u16,
-    rung: Rung,
+    manner: Manner,
 }
 
 impl Kept {
@@ -657,7 +657,7 @@ impl Renderer {
         sort_by_depth(&mut transparent, Kept::depth);
         let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
         for face in &transparent {
-            stats.raster += looks.with((face.object, face.surface, face.rung), |look| {
+            stats.raster += looks.with((face.object, face.surface, face.manner), |look| {
                 raster.triangle_with_effects(&face.vertices, &face.attributes, look)
             });
         }
@@ -729,7 +729,7 @@ impl Renderer {
             };
             batched.draw();
             let face = &self.kept[place as usize];
-            *batched.drawn += looks.with((face.object, face.surface, face.rung), |look| {
+            *batched.drawn += looks.with((face.object, face.surface, face.manner), |look| {
                 batched.raster.triangle_with_effects(vertices, &face.attributes, look)
             });
         }
@@ -745,7 +745,7 @@ impl Renderer {
         stats.raster += raster
             .scan_line_with(&self.triangles, scratch, |i, row, pixels, kernel, drawn| {
                 let Some(face) = places[i].and_then(|place| kept.get(place as usize)) else { return false };
-                looks.with((face.object, face.surface, face.rung), |look| {
+                looks.with((face.object, face.surface, face.manner), |look| {
                     crate::raster::effects::paint_row(
                         &face.vertices,
                         &face.attributes,
@@ -809,7 +809,7 @@ impl<F: FnMut(&[Vertex; 3], Shading)> Sink for Bare<F> {
         (self.0)(vertices, shading);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: Rung) {
+    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: Manner) {
         (self.0)(vertices, Shading::default());
     }
 }
@@ -828,16 +828,16 @@ impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
         self.batched.triangle(vertices, shading);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung) {
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner) {
         if self.looks.is_transparent(self.object, surface) {
             let (vertices, attributes) = (*vertices, *attributes);
-            self.transparent.push(Kept { vertices, attributes, object: self.object, surface, rung });
+            self.transparent.push(Kept { vertices, attributes, object: self.object, surface, manner });
             return;
         }
         // In the order in which they came: of equal depths the first stays.
         self.batched.draw();
         let Batched { raster, drawn, .. } = &mut self.batched;
-        **drawn += self.looks.with((self.object, surface, rung), |look| {
+        **drawn += self.looks.with((self.object, surface, manner), |look| {
             if CLIPS {
                 raster.triangle_with_effects(vertices, attributes, look)
             } else {
@@ -900,8 +900,8 @@ impl Sink for Gathered<'_> {
         self.places.push(None);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung) {
-        let face = Kept { vertices: *vertices, attributes: *attributes, object: self.object, surface, rung };
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner) {
+        let face = Kept { vertices: *vertices, attributes: *attributes, object: self.object, surface, manner };
         if self.looks.is_transparent(self.object, surface) {
             self.transparent.push(face);
             return;

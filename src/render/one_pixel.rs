@@ -13,7 +13,7 @@ use crate::palette::Table;
 use crate::raster::effects::{Attributes, Lighting, Look, Mix, Source, TextureLook};
 use crate::raster::{Drawn, Frame, Raster, Rect, Vertex};
 use crate::span::Kernel;
-use crate::span::lit::{Lanes, Points};
+use crate::span::lit::{LANES, Lanes, Points};
 
 /// Where the shades of a face come from.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -30,6 +30,13 @@ pub enum ShadedBy {
         position: [f32; 3],
         /// The shades in 8.8, of three channels or three times the same.
         shades: [u16; 3],
+    },
+    /// Between two pixels of its row, at most 16 apart, that are lit.
+    BetweenLit {
+        /// The shades in 8.8 of the one before it, or of itself, of three channels or three times the same.
+        before: [u16; 3],
+        /// Those of the next.
+        after: [u16; 3],
     },
 }
 
@@ -157,7 +164,7 @@ pub(super) fn bytes(looks: &Looks<'_>, met: &Met, pixel: &mut OnePixel, behind: 
         return plain(byte, scan_line || met.shading.has_exact_cover());
     };
     let mut made = plain(behind, true);
-    looks.with((met.object, surface, met.rung), |look| {
+    looks.with((met.object, surface, met.manner), |look| {
         made = stages(look, (&met.vertices, &attributes), pixel, behind, made);
         Drawn::default()
     });
@@ -194,6 +201,17 @@ fn stages(
                 let [nx, ny, nz, x, y, z] = points.map(|of| of[lane]);
                 let shades = shades.map(|of| of[lane]);
                 made.shaded_by = ShadedBy::Light { normal: [nx, ny, nz], position: [x, y, z], shades };
+            }
+        }
+        Source::LitEvery16(light) => {
+            let noted = Noted { light, last: Cell::new(None) };
+            pixel.look(met, behind, &Look { source: Source::LitEvery16(&noted), ..bare });
+            // Rounded down it is the number of the pixel before.
+            let numbered = Look { source: Source::LitEvery16(&Numbers), dither: Some(&[[0; 8]; 8]), ..single };
+            let lane = usize::from(pixel.look(met, behind, &numbered));
+            if let Some((_, shades)) = noted.last.get() {
+                let of = |lane: usize| shades.map(|of| of[lane.min(LANES - 1)]);
+                made.shaded_by = ShadedBy::BetweenLit { before: of(lane), after: of(lane + 1) };
             }
         }
     }

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::mem;
 
 use super::budget::Choice;
-use super::face::Sink;
+use super::face::{Manner, Sink};
 use super::look::Looks;
 use super::one_pixel::{Bytes, OnePixel, bytes};
 use super::vertex::Geometry;
@@ -15,7 +15,7 @@ use crate::raster::cover::Ordered;
 use crate::raster::depth::DepthPlane;
 use crate::raster::effects::Attributes;
 use crate::raster::{Shading, Vertex};
-use crate::scene::{Rung, Scene};
+use crate::scene::Scene;
 
 /// A triangle that covers the pixel, or whose edge runs through its centre.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct Met {
     pub(crate) vertices: [Vertex; 3],
     pub(crate) shading: Shading,
     /// Of a face with effects.
-    pub(super) rung: Rung,
+    pub(super) manner: Manner,
     /// Of a face with effects.
     pub(crate) attributes: Option<[Attributes; 3]>,
     pub(super) surface: Option<u16>,
@@ -73,7 +73,7 @@ struct Meeting<'a> {
 }
 
 impl Meeting<'_> {
-    fn keep(&mut self, vertices: &[Vertex; 3], shading: Shading, of_effects: Option<([Attributes; 3], u16, Rung)>) {
+    fn keep(&mut self, vertices: &[Vertex; 3], shading: Shading, of_effects: Option<([Attributes; 3], u16, Manner)>) {
         let by = if self.exact || of_effects.is_some() { Shading::Flat(0) } else { shading };
         let covers = self.pixel.draw(0, |raster| raster.triangle(vertices, by)).is_some();
         if !covers && (!by.has_exact_cover() || !self.pixel.is_on_edge(vertices)) {
@@ -92,7 +92,7 @@ impl Meeting<'_> {
             place: None,
             vertices: *vertices,
             shading,
-            rung: of_effects.map_or(Rung::default(), |(_, _, rung)| rung),
+            manner: of_effects.map_or(Manner::default(), |(_, _, manner)| manner),
             attributes: of_effects.map(|(attributes, ..)| attributes),
             surface: of_effects.map(|(_, surface, _)| surface),
             depth,
@@ -107,8 +107,8 @@ impl Sink for Meeting<'_> {
         self.keep(vertices, shading, None);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung) {
-        self.keep(vertices, rung.shading(), Some((*attributes, surface, rung)));
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner) {
+        self.keep(vertices, manner.rung.shading(), Some((*attributes, surface, manner)));
     }
 }
 
@@ -130,7 +130,7 @@ impl Sink for Same<'_> {
         self.look(vertices);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: Rung) {
+    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: Manner) {
         self.look(vertices);
     }
 }

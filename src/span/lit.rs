@@ -28,9 +28,18 @@ pub type Points = [Lanes<f32>; 6];
 #[must_use]
 pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
     let mut places = [0.0; LANES];
-    let mut reciprocals = [0.0; LANES];
-    for (lane, (place, reciprocal)) in (0_u16..).zip(places.iter_mut().zip(&mut reciprocals)) {
+    for (lane, place) in (0_u16..).zip(&mut places) {
         *place = f64::from(first) + f64::from(lane);
+    }
+    interpolate_at(&places, a, da, d, dd)
+}
+
+/// The same at any eight pixels, by their numbers.
+#[inline]
+#[must_use]
+pub fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+    let mut reciprocals = [0.0; LANES];
+    for (place, reciprocal) in places.iter().zip(&mut reciprocals) {
         *reciprocal = 1.0 / (d + *place * dd);
     }
     let mut points = [[0.0; LANES]; 6];

@@ -155,12 +155,14 @@ fn seen_json(seen: &Seen) -> Value {
         ShadedBy::Light { normal, position, shades } => {
             json!({ "normal": normal, "position": position, "shades_256": shades })
         }
+        ShadedBy::BetweenLit { before, after } => json!({ "before_256": before, "after_256": after }),
         _ => Value::Null,
     };
     let shaded_by = match seen.shaded_by {
         ShadedBy::Corners => "corners",
         ShadedBy::NormalTable => "normal-table",
         ShadedBy::Light { .. } => "light",
+        ShadedBy::BetweenLit { .. } => "between-lit",
     };
     let against = seen.against.iter().map(
         |against| json!({ "standard": against.standard.name(), "shades": against.shades, "error": against.error }),

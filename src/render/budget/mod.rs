@@ -34,6 +34,8 @@ use super::paint::Paint;
 use super::vertex::{Geometry, LitVertex};
 use crate::light::Lights;
 use crate::mesh::{Bounds, Mesh};
+use crate::raster::Vertex;
+use crate::raster::clip::doubled_area;
 use crate::scene::{Rung, Shared};
 use crate::span::lit::LANES;
 use crate::view::{ObjectView, Reach};
@@ -52,6 +54,9 @@ const CURVATURE: f32 = 1.2 / 6.0;
 
 /// Pixels from which on it pays to light a face at some points before it is lit at all of them.
 const WORTH_SAMPLES: f32 = 12.0;
+
+/// The widest row of a triangle that it pays to light every sixteenth pixel of, in pixels.
+const WORTH_KNOTS: f32 = 24.0;
 
 /// Points of a triangle that divide each edge in four, by their weights; the corners first, and at the end one once more.
 const SAMPLES: [[f32; 3]; 16] = {
@@ -82,6 +87,8 @@ pub(super) enum Choice {
     Flat,
     Linear,
     Float,
+    /// Light at every sixteenth pixel of a row, linear between.
+    PhongEvery16,
     Phong,
 }
 
@@ -90,9 +97,16 @@ impl Choice {
         match self {
             Self::Flat => Rung::Flat,
             Self::Float => Rung::Float,
-            Self::Phong => Rung::Phong,
+            Self::Phong | Self::PhongEvery16 => Rung::Phong,
             Self::Linear | Self::Unknown => Rung::Gouraud88Reseeded,
         }
+    }
+}
+
+impl Choice {
+    /// Whether pixels are lit, all or some.
+    pub(super) fn lights_pixels(self) -> bool {
+        matches!(self, Self::Phong | Self::PhongEvery16)
     }
 }
 
@@ -102,6 +116,7 @@ pub(super) fn shares(choices: &[Choice]) -> String {
         (Choice::Flat, "one shade at their corners, or near enough"),
         (Choice::Linear, "light is linear enough on them"),
         (Choice::Float, "so it is, but not on the screen"),
+        (Choice::PhongEvery16, "it is not known to be, but along 16 pixels"),
         (Choice::Phong, "it is not known to be"),
     ];
     let mut text = String::new();
@@ -328,7 +343,7 @@ fn highlight(paint: &Paint, in_color: bool) -> (f32, f32) {
 }
 
 /// A triangle that is to be decided on.
-pub(super) struct Question {
+pub(super) struct Question<'a> {
     /// Its place.
     pub(super) triangle: usize,
     pub(super) indices: [u32; 3],
@@ -336,10 +351,8 @@ pub(super) struct Question {
     pub(super) turned: bool,
     /// The corners' shades, or, of the channels, the three of each.
     pub(super) shades: [[u16; 3]; 3],
-    /// The corners' depths; 0 if one has none.
-    pub(super) depths: [u32; 3],
-    /// Its area on the screen; of what is clipped anything.
-    pub(super) pixels: f32,
+    /// Where it is on the screen; of what is clipped nowhere.
+    pub(super) vertices: Option<&'a [Vertex; 3]>,
 }
 
 impl Budget {
@@ -391,9 +404,31 @@ impl Budget {
     }
 }
 
+impl Question<'_> {
+    /// The least and the greatest depth, which is in proportion to 1 / w; 0 if a corner has none.
+    fn depths(&self) -> (u32, u32) {
+        let [a, b, c] = self.vertices.map_or([0; 3], |vertices| vertices.each_ref().map(Vertex::depth));
+        (a.min(b).min(c), a.max(b).max(c))
+    }
+
+    /// Its area on the screen.
+    fn pixels(&self) -> f32 {
+        // In 1/256 pixel, and twice.
+        self.vertices.map_or(f32::MAX, |vertices| doubled_area(vertices).unsigned_abs() as f32 / 131_072.0)
+    }
+
+    /// The widest of its rows, in pixels; 0 where it is nowhere.
+    fn width(&self) -> f32 {
+        let Some(vertices) = self.vertices else { return 0.0 };
+        let [a, b, c] = vertices.each_ref().map(|vertex| vertex.y().to_bits());
+        let height = a.max(b).max(c) - a.min(b).min(c);
+        if height == 0 { 0.0 } else { 512.0 * self.pixels() / height as f32 }
+    }
+}
+
 impl Faces<'_> {
     /// The cheapest rung that keeps within the budget.
-    pub(super) fn cheapest_within(&self, budget: &Budget, question: &Question) -> Choice {
+    pub(super) fn cheapest_within(&self, budget: &Budget, question: &Question<'_>) -> Choice {
         let facet = &budget.facets[question.triangle];
         let strength = &budget.strengths[usize::from(question.surface)];
         let [a, b, c] = question.shades;
@@ -425,14 +460,13 @@ impl Faces<'_> {
                 // What lies above the clamp is lost at some corners, by which the others are too dark at most.
                 model += range;
             }
-            if model > spare && question.pixels >= WORTH_SAMPLES {
+            if model > spare && question.pixels() >= WORTH_SAMPLES {
                 model = self.error_between_samples(budget, question, spare);
             }
         }
         let bound = budget.allowed;
         // Depth is in proportion to 1 / w.
-        let [a, b, c] = question.depths;
-        let (far, near) = (a.min(b).min(c), a.max(b).max(c));
+        let (far, near) = question.depths();
         let bend = (near - far) as f32 * range;
         // A corner behind the near plane has no depth.
         let linear = far > 0 && bend <= 4.0 * far as f32 * (bound - model - LINEAR);
@@ -443,13 +477,49 @@ impl Faces<'_> {
             Choice::Linear
         } else if model + EXACT <= bound || !self.lights_pixels {
             Choice::Float
+        } else if self.is_linear_along_16(budget, question, clamped) {
+            Choice::PhongEvery16
         } else {
             Choice::Phong
         }
     }
 
+    /// Whether light is linear enough between two pixels of a row that are 16 apart.
+    #[inline(never)]
+    fn is_linear_along_16(&self, budget: &Budget, question: &Question<'_>, clamped: bool) -> bool {
+        let ((far, near), width) = (question.depths(), question.width());
+        if far == 0 || width < WORTH_KNOTS {
+            return false;
+        }
+        // A pixel is a step on the face that is greater by the ratio of distances where it is farthest than where it is
+        // nearest.
+        let ratio = near as f32 / far as f32;
+        let part = 16.0 * ratio / width;
+        if part > 0.75 {
+            return false;
+        }
+        let facet = &budget.facets[question.triangle];
+        let strength = &budget.strengths[usize::from(question.surface)];
+        let lamps = !self.lights.lamps.is_empty();
+        let highlights = strength.curvature > 0.0;
+        // What shades differ by over the face at most; cosˢ is nowhere steeper than √(s/e).
+        let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
+        let shininess = self.paints[usize::from(question.surface)].answer.shininess as f32;
+        let differ = if lamps {
+            255.0
+        } else {
+            let body = strength.body * facet.spread * (1.0 + facet.shortening);
+            (body + strength.highlights * 0.61 * libm::sqrtf(shininess) * turned).min(255.0)
+        };
+        // Shades that are cut off above 1 somewhere on the way: a fourth of what they differ by along 16 pixels.
+        let cut = if clamped || highlights { part * differ / 4.0 } else { 0.0 };
+        let bend = (ratio - 1.0) / 4.0 * part * part * differ;
+        let spare = budget.allowed - EXACT - cut - bend;
+        spare > 0.0 && self.model_error(budget, question, &self.one_light(budget, question, part), spare) <= spare
+    }
+
     /// What light from one source needs to know.
-    fn one_light<'a>(&self, budget: &'a Budget, question: &Question, part: f32) -> OneLight<'a> {
+    fn one_light<'a>(&self, budget: &'a Budget, question: &Question<'_>, part: f32) -> OneLight<'a> {
         let paint = &self.paints[usize::from(question.surface)];
         let side = if question.turned { -1.0 } else { 1.0 };
         let color = if self.channels { paint.answer.color.into_iter().fold(0.0, f64::max) } else { 1.0 };
@@ -468,7 +538,7 @@ impl Faces<'_> {
 
     /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it.
     #[inline(never)]
-    fn model_error(&self, budget: &Budget, question: &Question, light: &OneLight<'_>, limit: f32) -> f32 {
+    fn model_error(&self, budget: &Budget, question: &Question<'_>, light: &OneLight<'_>, limit: f32) -> f32 {
         let corners = question.indices.map(|i| i as usize);
         let mut sum = 0.0;
         for sun in self.lights.suns {
@@ -492,7 +562,7 @@ impl Faces<'_> {
     /// The same, found at twelve points between the corners, which divide each edge in four: between them the
     /// function is no farther from linear than a part of a fourth of the size may be.
     #[inline(never)]
-    fn error_between_samples(&self, budget: &Budget, question: &Question, limit: f32) -> f32 {
+    fn error_between_samples(&self, budget: &Budget, question: &Question<'_>, limit: f32) -> f32 {
         let light = self.one_light(budget, question, 0.25);
         let between = self.model_error(budget, question, &light, limit);
         if between > limit {
