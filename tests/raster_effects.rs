@@ -6,7 +6,7 @@
 mod support;
 
 use mode13h::fixed::U8F8;
-use mode13h::raster::effects::{Attributes, Lighting, Look, Mix, Source, TextureLook, TextureMapping};
+use mode13h::raster::effects::{Apart, Attributes, Lighting, Look, Mix, Source, TextureLook, TextureMapping};
 use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
@@ -82,7 +82,7 @@ fn look<'a>(random: &mut Random, stock: &'a Stock) -> Look<'a> {
         source: match random.within(0, 9) {
             0 => Source::NormalTable(&stock.tables[0]),
             1 => Source::Lit(&Sum),
-            2 => Source::LitEvery16(&Sum),
+            2 => Source::LitEvery(random.one_of(&Apart::ALL), &Sum),
             3 => Source::Shaded(Shading::Flat(random.within(0, 255) as u8)),
             _ => Source::Shaded(random.one_of(Shading::INTERPOLATED)),
         },
@@ -194,9 +194,10 @@ impl<'a> Naive<'a> {
         };
         // The shift of a channel, before what is between the lit pixels is made of it.
         let lit = |shift: usize| match self.look.source {
-            Source::LitEvery16(_) => {
-                let from = seed + (x - seed) / 16 * 16;
-                let to = (from + 16).min(last).max(from);
+            Source::LitEvery(apart, _) => {
+                let apart = apart.pixels() as i32;
+                let from = seed + (x - seed) / apart * apart;
+                let to = (from + apart).min(last).max(from);
                 let [a, b] = [from, to].map(|x| i128::from(lit_at(x) >> shift));
                 let step = if to == from { 0 } else { (b - a) * 256 / i128::from(to - from) };
                 a + (step * i128::from(x - from)).div_euclid(256)
@@ -206,7 +207,7 @@ impl<'a> Naive<'a> {
         let textured = self.look.texture.as_ref().map(|texture| (texture, self.texel(texture, seed, last, x, y)));
         let mut byte = if let Some(mix) = &self.look.channels {
             let mut channels = match self.look.source {
-                Source::Lit(_) | Source::LitEvery16(_) => [0, 1, 2].map(|i| byte_of(lit(i), 128)),
+                Source::Lit(_) | Source::LitEvery(..) => [0, 1, 2].map(|i| byte_of(lit(i), 128)),
                 _ => [0, 1, 2].map(|i| self.shades[i].byte((first, last), x, y, None)),
             };
             if let Some((texture, texel)) = textured {
@@ -224,7 +225,7 @@ impl<'a> Naive<'a> {
             let shade = match self.look.source {
                 Source::Shaded(_) => self.shades[0].byte((first, last), x, y, self.look.dither.map(|_| threshold)),
                 Source::NormalTable(table) => lookup(table, linear(|a| a.slope[1], 128), linear(|a| a.slope[0], 128)),
-                Source::Lit(_) | Source::LitEvery16(_) => byte_of(lit(0), threshold),
+                Source::Lit(_) | Source::LitEvery(..) => byte_of(lit(0), threshold),
                 _ => unreachable!("all sources are tried"),
             };
             match textured {
@@ -277,7 +278,7 @@ fn draw(
 }
 
 fn sum_is_exact(look: &Look<'_>) -> bool {
-    !matches!(look.source, Source::Lit(_) | Source::LitEvery16(_))
+    !matches!(look.source, Source::Lit(_) | Source::LitEvery(..))
 }
 
 #[test]

@@ -39,12 +39,11 @@ use crate::span::{Kernel, lookup};
 /// Pixels in a piece.
 const PIECE: usize = RESEED as usize;
 
-/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`], and between two lit points of
-/// [`Source::LitEvery16`].
+/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`].
 const EVERY: usize = 16;
 
-/// The most places in a piece that are lit, its end being one.
-const KNOTS: usize = PIECE / EVERY + 1;
+/// The most places in a piece that are lit for [`Source::LitEvery`], its end being one, and as many as are lit at once.
+const KNOTS: usize = (PIECE / Apart::Four.pixels() + 1).next_multiple_of(LANES);
 
 /// The values of a corner beyond its position, shade and depth. What a look does not use may be
 /// anything.
@@ -84,9 +83,35 @@ pub enum Source<'a> {
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`], linear on the face, lit.
     Lit(&'a dyn Lighting),
-    /// The same lit at the row's first pixel inside the frame, at every sixteenth from there and at its last; shades
-    /// are linear between.
-    LitEvery16(&'a dyn Lighting),
+    /// The same lit at the row's first pixel inside the frame, at some from there and at its last; shades are linear
+    /// between.
+    LitEvery(Apart, &'a dyn Lighting),
+}
+
+/// How far two pixels of a row that are lit lie apart.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Apart {
+    /// 4 pixels.
+    Four,
+    /// 8 pixels.
+    Eight,
+    /// 16 pixels.
+    Sixteen,
+}
+
+impl Apart {
+    /// All of them, the nearest first.
+    pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
+
+    /// In pixels.
+    #[must_use]
+    pub const fn pixels(self) -> usize {
+        match self {
+            Self::Four => 4,
+            Self::Eight => 8,
+            Self::Sixteen => 16,
+        }
+    }
 }
 
 /// How texture coordinates run along a row.
@@ -290,30 +315,43 @@ impl LitPlane {
     }
 }
 
-/// Places of a piece that are lit, in pixels from its seed, and those between.
+/// Pixels of a piece that are lit, and those between.
 #[derive(Clone, Copy, Debug)]
 struct Knots {
+    apart: usize,
+    /// From the piece's seed, in pixels.
     places: [i32; KNOTS],
+    /// How many there are, at least two.
+    count: usize,
 }
 
 impl Knots {
-    /// Of the piece at `seed`. Where the row ends inside of it, its last pixel is one, whatever the clip rectangle.
-    fn new(row: &Row, seed: i32) -> Self {
+    /// Of so many pixels from `seed` on. Where the row ends inside of the piece, its last pixel is one, whatever the clip
+    /// rectangle.
+    fn new(row: &Row, seed: i32, pixels: usize, apart: Apart) -> Self {
+        let apart = apart.pixels();
         let mut places = [0; KNOTS];
         for (place, number) in places.iter_mut().zip(0..) {
-            *place = (number * EVERY as i32).min((row.last - seed).max(0));
+            // At most 24 · 16.
+            *place = (number * apart as i32).min((row.last - seed).max(0));
         }
-        Self { places }
+        Self { apart, places, count: pixels.div_ceil(apart) + 1 }
     }
 
-    /// As there are pixels to be lit at a time.
-    fn lanes(&self) -> Lanes<f64> {
-        core::array::from_fn(|lane| f64::from(self.places[lane.min(KNOTS - 1)]))
+    /// Lights them, eight at a time, and hands the eight on with the number of the first.
+    fn light(&self, plane: &LitPlane, (x, y): (i32, i32), mut light: impl FnMut(usize, &Points)) {
+        for (first, eight) in self.places[..self.count].chunks(LANES).enumerate() {
+            let mut places = [0.0; LANES];
+            for (to, place) in places.iter_mut().zip(eight) {
+                *to = f64::from(*place);
+            }
+            light(first * LANES, &plane.points_at(x, y, &places));
+        }
     }
 
     /// The bytes of shades in 8.8 that are linear between those at the knots.
-    fn fill(&self, knots: &Lanes<u16>, thresholds: &[u8; 8], column: usize, piece: &mut [u8]) {
-        for (i, piece) in piece.chunks_mut(EVERY).enumerate() {
+    fn fill(&self, knots: &[u16; KNOTS], thresholds: &[u8; 8], column: usize, piece: &mut [u8]) {
+        for (i, piece) in piece.chunks_mut(self.apart).enumerate() {
             let (from, to) = (i32::from(knots[i]), i32::from(knots[i + 1]));
             let pixels = self.places[i + 1] - self.places[i];
             // In 1/256 of a shade's unit. Rounded toward zero: no sum goes beyond `to`.
@@ -326,7 +364,7 @@ impl Knots {
                     // Beyond the knot anything, which is not used.
                     *shade = (from + ((step * k) >> 8)) as u16;
                 }
-                to_bytes(&shades, thresholds, column + i * EVERY + eight * LANES, bytes);
+                to_bytes(&shades, thresholds, column + i * self.apart + eight * LANES, bytes);
             }
         }
     }
@@ -396,7 +434,7 @@ impl<'a> EffectPaint<'a> {
             Planes::Channels([0, 1, 2].map(|i| Paint::of_values(triangle, values(&|c| c.channels[i]), shading)))
         };
         let planes = match (look.source, look.channels()) {
-            (Source::Lit(_) | Source::LitEvery16(_), _) => Planes::Lit(LitPlane::new(triangle, corners)),
+            (Source::Lit(_) | Source::LitEvery(..), _) => Planes::Lit(LitPlane::new(triangle, corners)),
             (Source::Shaded(shading), None) => Planes::Shade(Paint::new(triangle, shading)),
             (Source::Shaded(shading), Some(_)) => channels(shading),
             (Source::NormalTable(_), Some(_)) => channels(Shading::default()),
@@ -515,10 +553,12 @@ impl<'a> EffectPaint<'a> {
                         let column = column + pixels.start;
                         to_bytes(&lighting.shades(points), thresholds, column, &mut piece[pixels]);
                     }),
-                    Source::LitEvery16(lighting) => {
-                        let knots = Knots::new(row, seed);
-                        let points = plane.points_at(seed, row.y, &knots.lanes());
-                        knots.fill(&lighting.shades(&points), thresholds, column, piece);
+                    Source::LitEvery(apart, lighting) => {
+                        let (knots, mut lit) = (Knots::new(row, seed, length, apart), [0; KNOTS]);
+                        knots.light(plane, (seed, row.y), |first, points| {
+                            lit[first..first + LANES].copy_from_slice(&lighting.shades(points));
+                        });
+                        knots.fill(&lit, thresholds, column, piece);
                     }
                     _ => {}
                 }
@@ -542,11 +582,15 @@ impl<'a> EffectPaint<'a> {
                     to_bytes(shades, &HALVES[0], 0, &mut channel[pixels.clone()]);
                 }
             }),
-            Source::LitEvery16(lighting) => {
-                let knots = Knots::new(row, seed);
-                let points = plane.points_at(seed, row.y, &knots.lanes());
-                for (shades, channel) in lighting.channels(&points).iter().zip(&mut channels) {
-                    knots.fill(shades, &HALVES[0], 0, &mut channel[..length]);
+            Source::LitEvery(apart, lighting) => {
+                let (knots, mut lit) = (Knots::new(row, seed, length, apart), [[0; KNOTS]; 3]);
+                knots.light(plane, (seed, row.y), |first, points| {
+                    for (lit, shades) in lit.iter_mut().zip(lighting.channels(points)) {
+                        lit[first..first + LANES].copy_from_slice(&shades);
+                    }
+                });
+                for (lit, channel) in lit.iter().zip(&mut channels) {
+                    knots.fill(lit, &HALVES[0], 0, &mut channel[..length]);
                 }
             }
             _ => {}

@@ -13,7 +13,7 @@ use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
 use crate::raster::clip::doubled_area;
-use crate::raster::effects::Attributes;
+use crate::raster::effects::{Apart, Attributes};
 use crate::raster::{Shading, Vertex};
 use crate::scene::Rung;
 use crate::view::{Homogeneous, ObjectView};
@@ -22,8 +22,8 @@ use crate::view::{Homogeneous, ObjectView};
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct Manner {
     pub(super) rung: Rung,
-    /// Whether, where pixels are lit, only every sixteenth of a row is, and shades are linear between.
-    pub(super) every_16: bool,
+    /// Where pixels are lit: how far apart they are, if not all are.
+    pub(super) apart: Option<Apart>,
 }
 
 /// Takes faces as they are to be drawn.
@@ -342,7 +342,7 @@ impl Faces<'_> {
                 vertices = vertices.map(|vertex| vertex.with_shade(shade));
             }
         }
-        sink.with_effects(&vertices, &attributes, surface, Manner { rung: self.rung, every_16: false });
+        sink.with_effects(&vertices, &attributes, surface, Manner { rung: self.rung, apart: None });
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
@@ -399,7 +399,7 @@ fn hand_on_within(
         attributes.iter_mut().for_each(|corner| corner.channels = channels);
         rung = Rung::Gouraud88Reseeded;
     }
-    sink.with_effects(&vertices, &attributes, surface, Manner { rung, every_16: choice == Choice::PhongEvery16 });
+    sink.with_effects(&vertices, &attributes, surface, Manner { rung, apart: choice.apart() });
 }
 
 /// Half-way between the least and the greatest.

@@ -156,7 +156,7 @@ impl Looks<'_> {
 
 fn source<'a>(
     plan: &ObjectPlan,
-    Manner { rung, every_16 }: Manner,
+    Manner { rung, apart }: Manner,
     channels: bool,
     table: Option<&'a [u8; 65_536]>,
     light: &'a PixelLight<'a>,
@@ -164,8 +164,7 @@ fn source<'a>(
     if plan.is_on(Effect::Phong) && rung.lights_pixels() {
         return match table {
             Some(table) if rung == Rung::PhongTable && !channels => Source::NormalTable(table),
-            _ if every_16 => Source::LitEvery16(light),
-            _ => Source::Lit(light),
+            _ => apart.map_or(Source::Lit(light), |apart| Source::LitEvery(apart, light)),
         };
     }
     Source::Shaded(rung.shading())

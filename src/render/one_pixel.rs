@@ -4,7 +4,7 @@
 //! byte is what is drawn with the stages after it taken away.
 
 use alloc::vec::Vec;
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 
 use super::Screen;
 use super::look::Looks;
@@ -124,6 +124,52 @@ impl Lighting for Noted<'_> {
     }
 }
 
+/// Lists what is asked of a light: the shades of all points, on three channels.
+#[derive(Debug)]
+struct Listed<'a> {
+    light: &'a dyn Lighting,
+    all: RefCell<Vec<[u16; 3]>>,
+}
+
+impl Listed<'_> {
+    fn list(&self, channels: &[Lanes<u16>; 3]) {
+        self.all.borrow_mut().extend((0..LANES).map(|lane| channels.map(|of| of[lane])));
+    }
+}
+
+impl Lighting for Listed<'_> {
+    fn shades(&self, points: &Points) -> Lanes<u16> {
+        let shades = self.light.shades(points);
+        self.list(&[shades; 3]);
+        shades
+    }
+
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
+        let channels = self.light.channels(points);
+        self.list(&channels);
+        channels
+    }
+}
+
+/// Numbers the points that are asked for, in whole shades.
+#[derive(Debug, Default)]
+struct Counted {
+    count: Cell<u16>,
+}
+
+impl Lighting for Counted {
+    fn shades(&self, _: &Points) -> Lanes<u16> {
+        let first = self.count.get();
+        // At most 24.
+        self.count.set(first + LANES as u16);
+        core::array::from_fn(|lane| (first + lane as u16) << 8)
+    }
+
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
+        [self.shades(points); 3]
+    }
+}
+
 /// Shows which of eight points a pixel is.
 #[derive(Debug)]
 struct Numbers;
@@ -203,16 +249,16 @@ fn stages(
                 made.shaded_by = ShadedBy::Light { normal: [nx, ny, nz], position: [x, y, z], shades };
             }
         }
-        Source::LitEvery16(light) => {
-            let noted = Noted { light, last: Cell::new(None) };
-            pixel.look(met, behind, &Look { source: Source::LitEvery16(&noted), ..bare });
-            // Rounded down it is the number of the pixel before.
-            let numbered = Look { source: Source::LitEvery16(&Numbers), dither: Some(&[[0; 8]; 8]), ..single };
-            let lane = usize::from(pixel.look(met, behind, &numbered));
-            if let Some((_, shades)) = noted.last.get() {
-                let of = |lane: usize| shades.map(|of| of[lane.min(LANES - 1)]);
-                made.shaded_by = ShadedBy::BetweenLit { before: of(lane), after: of(lane + 1) };
-            }
+        Source::LitEvery(apart, light) => {
+            let listed = Listed { light, all: RefCell::default() };
+            pixel.look(met, behind, &Look { source: Source::LitEvery(apart, &listed), ..bare });
+            // Numbered, and rounded down, it is the number of the pixel before.
+            let numbers = Counted::default();
+            let numbered = Look { source: Source::LitEvery(apart, &numbers), dither: Some(&[[0; 8]; 8]), ..single };
+            let place = usize::from(pixel.look(met, behind, &numbered));
+            let all = listed.all.borrow();
+            let of = |place: usize| all.get(place).or(all.last()).copied().unwrap_or_default();
+            made.shaded_by = ShadedBy::BetweenLit { before: of(place), after: of(place + 1) };
         }
     }
     // A row of a table is a shade, a level or the new byte; a column a texel or the byte that was there.

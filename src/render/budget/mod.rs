@@ -36,6 +36,7 @@ use crate::light::Lights;
 use crate::mesh::{Bounds, Mesh};
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
+use crate::raster::effects::Apart;
 use crate::scene::{Rung, Shared};
 use crate::span::lit::LANES;
 use crate::view::{ObjectView, Reach};
@@ -55,8 +56,8 @@ const CURVATURE: f32 = 1.2 / 6.0;
 /// Pixels from which on it pays to light a face at some points before it is lit at all of them.
 const WORTH_SAMPLES: f32 = 12.0;
 
-/// The widest row of a triangle that it pays to light every sixteenth pixel of, in pixels.
-const WORTH_KNOTS: f32 = 24.0;
+/// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
+const WORTH_KNOTS: f32 = 16.0;
 
 /// Points of a triangle that divide each edge in four, by their weights; the corners first, and at the end one once more.
 const SAMPLES: [[f32; 3]; 16] = {
@@ -87,8 +88,8 @@ pub(super) enum Choice {
     Flat,
     Linear,
     Float,
-    /// Light at every sixteenth pixel of a row, linear between.
-    PhongEvery16,
+    /// Light at pixels of a row that lie apart, linear between.
+    PhongEvery(Apart),
     Phong,
 }
 
@@ -97,7 +98,7 @@ impl Choice {
         match self {
             Self::Flat => Rung::Flat,
             Self::Float => Rung::Float,
-            Self::Phong | Self::PhongEvery16 => Rung::Phong,
+            Self::Phong | Self::PhongEvery(_) => Rung::Phong,
             Self::Linear | Self::Unknown => Rung::Gouraud88Reseeded,
         }
     }
@@ -106,7 +107,12 @@ impl Choice {
 impl Choice {
     /// Whether pixels are lit, all or some.
     pub(super) fn lights_pixels(self) -> bool {
-        matches!(self, Self::Phong | Self::PhongEvery16)
+        matches!(self, Self::Phong | Self::PhongEvery(_))
+    }
+
+    /// How far those are apart that are lit, if not all are.
+    pub(super) fn apart(self) -> Option<Apart> {
+        if let Self::PhongEvery(apart) = self { Some(apart) } else { None }
     }
 }
 
@@ -116,7 +122,9 @@ pub(super) fn shares(choices: &[Choice]) -> String {
         (Choice::Flat, "one shade at their corners, or near enough"),
         (Choice::Linear, "light is linear enough on them"),
         (Choice::Float, "so it is, but not on the screen"),
-        (Choice::PhongEvery16, "it is not known to be, but along 16 pixels"),
+        (Choice::PhongEvery(Apart::Sixteen), "at every 16th pixel of a row, and so it is between"),
+        (Choice::PhongEvery(Apart::Eight), "at every 8th"),
+        (Choice::PhongEvery(Apart::Four), "at every 4th"),
         (Choice::Phong, "it is not known to be"),
     ];
     let mut text = String::new();
@@ -477,24 +485,24 @@ impl Faces<'_> {
             Choice::Linear
         } else if model + EXACT <= bound || !self.lights_pixels {
             Choice::Float
-        } else if self.is_linear_along_16(budget, question, clamped) {
-            Choice::PhongEvery16
         } else {
-            Choice::Phong
+            let linear = |apart: &Apart| self.is_linear_between(budget, question, clamped, *apart);
+            Apart::ALL.into_iter().rev().find(linear).map_or(Choice::Phong, Choice::PhongEvery)
         }
     }
 
-    /// Whether light is linear enough between two pixels of a row that are 16 apart.
+    /// Whether light is linear enough between two pixels of a row that are so far apart.
     #[inline(never)]
-    fn is_linear_along_16(&self, budget: &Budget, question: &Question<'_>, clamped: bool) -> bool {
-        let ((far, near), width) = (question.depths(), question.width());
-        if far == 0 || width < WORTH_KNOTS {
+    fn is_linear_between(&self, budget: &Budget, question: &Question<'_>, clamped: bool, apart: Apart) -> bool {
+        // At most 16.
+        let ((far, near), width, apart) = (question.depths(), question.width(), apart.pixels() as f32);
+        if far == 0 || width < WORTH_KNOTS.max(1.5 * apart) {
             return false;
         }
         // A pixel is a step on the face that is greater by the ratio of distances where it is farthest than where it is
         // nearest.
         let ratio = near as f32 / far as f32;
-        let part = 16.0 * ratio / width;
+        let part = apart * ratio / width;
         if part > 0.75 {
             return false;
         }
@@ -511,7 +519,7 @@ impl Faces<'_> {
             let body = strength.body * facet.spread * (1.0 + facet.shortening);
             (body + strength.highlights * 0.61 * libm::sqrtf(shininess) * turned).min(255.0)
         };
-        // Shades that are cut off above 1 somewhere on the way: a fourth of what they differ by along 16 pixels.
+        // Shades that are cut off above 1 somewhere on the way: a fourth of what they differ by there.
         let cut = if clamped || highlights { part * differ / 4.0 } else { 0.0 };
         let bend = (ratio - 1.0) / 4.0 * part * part * differ;
         let spare = budget.allowed - EXACT - cut - bend;
@@ -565,8 +573,9 @@ impl Faces<'_> {
     fn error_between_samples(&self, budget: &Budget, question: &Question<'_>, limit: f32) -> f32 {
         let light = self.one_light(budget, question, 0.25);
         let between = self.model_error(budget, question, &light, limit);
-        if between > limit {
-            return between;
+        // A bound that is 16 times as much is seldom wrong by half.
+        if between > limit / 5.0 {
+            return f32::INFINITY;
         }
         let corners = question.indices.map(|i| i as usize);
         let normals =
