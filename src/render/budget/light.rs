@@ -79,24 +79,24 @@ impl OneLight<'_> {
     }
 
     /// The same of a lamp.
-    pub(super) fn lamp(&self, to_lamp: [Towards; 3], inverse_square: f32, intensity: f32, limit: f32) -> f32 {
+    pub(super) fn lamp(&self, to_lamp: [Towards; 3], inverse_range: f32, intensity: f32, limit: f32) -> f32 {
         let Facet { spread, edge, .. } = *self.facet;
         let (farthest, nearest) = ends(to_lamp.map(|lamp| lamp.distance));
         let nearest = nearest - APART * edge;
-        let part = nearest.max(0.0) * nearest.max(0.0) * inverse_square;
+        let part = nearest.max(0.0) * inverse_range;
         if part >= 1.0 {
             return 0.0;
         }
+        let left = 1.0 - part * part;
         let turn = self.part * if edge < nearest { edge / nearest } else { 4.0 };
         let (spread, edge) = (self.part * spread, self.part * edge);
         let towards = to_lamp.map(|lamp| lamp.direction);
         let cosines = [0, 1, 2].map(|i| self.normals[i].dot(towards[i]));
         // The fall-off (1 − u)², u = d² / R², and its derivatives along an edge: |u'| ≤ 2√u·e, u'' = 2e², e being the
         // edge in units of the range.
-        let e = edge * libm::sqrtf(inverse_square);
-        let u = (farthest * farthest * inverse_square).min(1.0);
-        let left = 1.0 - part;
-        let (fall_off, first, second) = (left * left, 4.0 * libm::sqrtf(u) * left * e, (8.0 * u + 4.0 * left) * e * e);
+        let e = edge * inverse_range;
+        let d = (farthest * inverse_range).min(1.0);
+        let (fall_off, first, second) = (left * left, 4.0 * d * left * e, (8.0 * d * d + 4.0 * left) * e * e);
         // N · L of two sums of vectors, N of the normals, and L of the lamp's directions, as bright as it is: twice the
         // product of what they turn by, and L's own curvature. N is then made unit.
         let curvature = 2.0 * spread * (fall_off * turn + first) + fall_off * turn * turn + 2.0 * first * turn + second;

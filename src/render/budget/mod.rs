@@ -229,7 +229,8 @@ pub(super) struct Budget {
     eye_turn: f32,
     /// For each vertex the eye, if there are highlights.
     to_eye: Vec<Towards>,
-    /// For each lamp and each vertex the lamp.
+    /// For each lamp 1 / range and its intensity, that of its brightest channel; and for each vertex where it is.
+    lamps: Vec<(f32, f32)>,
     to_lamps: Vec<Towards>,
 }
 
@@ -281,6 +282,11 @@ impl Budget {
         if self.simple {
             return;
         }
+        self.lamps.clear();
+        self.lamps.extend(lights.lamps.iter().map(|lamp| {
+            let inverse_range = libm::sqrt(lamp.inverse_square) as f32;
+            (inverse_range, brightest(lamp.intensity, lamp.channels, channels))
+        }));
         let positions = geometry.positions.iter();
         self.to_lamps.extend(lights.lamps.iter().flat_map(|lamp| {
             let at = narrow(lamp.position);
@@ -330,6 +336,7 @@ impl Budget {
     pub(super) fn bytes(&self) -> usize {
         self.facets.capacity() * size_of::<Facet>()
             + (self.to_eye.capacity() + self.to_lamps.capacity()) * size_of::<Towards>()
+            + self.lamps.capacity() * size_of::<(f32, f32)>()
             + self.strengths.capacity() * size_of::<Strength>()
     }
 }
@@ -557,9 +564,8 @@ impl Faces<'_> {
             }
         }
         let vertices = self.geometry.positions.len();
-        for (lamp, to_lamp) in self.lights.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
-            let intensity = brightest(lamp.intensity, lamp.channels, self.channels);
-            sum += light.lamp(corners.map(|i| to_lamp[i]), lamp.inverse_square as f32, intensity, limit - sum);
+        for (&(inverse_range, intensity), to_lamp) in budget.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
+            sum += light.lamp(corners.map(|i| to_lamp[i]), inverse_range, intensity, limit - sum);
             if sum > limit {
                 return f32::INFINITY;
             }
@@ -574,7 +580,7 @@ impl Faces<'_> {
         let light = self.one_light(budget, question, 0.25);
         let between = self.model_error(budget, question, &light, limit);
         // A bound that is 16 times as much is seldom wrong by half.
-        if between > limit / 5.0 {
+        if between > limit / 3.0 {
             return f32::INFINITY;
         }
         let corners = question.indices.map(|i| i as usize);
