@@ -7,8 +7,9 @@
 use super::Stats;
 use super::budget::{Budget, Choice, Question};
 use super::clip::{Carried, Corner, WithEffects, clip};
+use super::lit::{LitVertex, LitVertices};
 use super::paint::Paint;
-use super::vertex::{Extra, Geometry, LitVertex};
+use super::vertex::{Extra, Geometry};
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
@@ -34,7 +35,7 @@ pub(super) struct Faces<'a> {
     pub(super) lights: Lights<'a>,
     /// One for each surface of the mesh.
     pub(super) paints: &'a [Paint],
-    pub(super) lit: &'a [LitVertex],
+    pub(super) lit: &'a LitVertices,
     /// As many, if there are effects.
     pub(super) extras: &'a [Extra],
     /// Whether vertices may need clipping.
@@ -95,7 +96,7 @@ impl Faces<'_> {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         for (&indices, &surface) in triangles.iter().zip(triangle_surfaces) {
             // In range: the mesh saw to it, and every vertex is lit.
-            let corners = indices.map(|i| self.lit[i as usize]);
+            let corners = indices.map(|i| self.lit.get(i as usize));
             if CLIPS && corners.iter().any(|corner| corner.needs_clipping) {
                 stats.clipped += 1;
                 self.clipped::<CULLS, EFFECTS>(indices, surface, &corners, stats, sink);
@@ -133,7 +134,7 @@ impl Faces<'_> {
         for (triangle, ((&indices, &surface), choice)) in
             triangles.iter().zip(triangle_surfaces).zip(choices).enumerate()
         {
-            let corners = indices.map(|i| self.lit[i as usize]);
+            let corners = indices.map(|i| self.lit.get(i as usize));
             if CLIPS && corners.iter().any(|corner| corner.needs_clipping) {
                 stats.clipped += 1;
                 self.clipped_within::<CULLS, EFFECTS>(
@@ -347,8 +348,7 @@ impl Faces<'_> {
         }
         if !self.runs {
             // All corners have the same, wherever the plan says so.
-            let LitVertex { vertex, back, .. } = self.lit[indices[0] as usize];
-            return Shading::Flat(if turned { back } else { vertex.shade() }.nearest());
+            return Shading::Flat(self.lit.shades[indices[0] as usize][usize::from(turned)].nearest());
         }
         self.rung.shading()
     }

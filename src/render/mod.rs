@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `object` | what is kept of an object: its vertices, and what they were made from |
-//! | `vertex` | the stages of vertices: projected, lit, given what effects need |
+//! | `vertex`, `lit` | the stages of vertices: projected, lit, given what effects need; what they come to, in arrays |
 //! | `tessellate` | faces split along their edges |
 //! | `face` | the stage of faces, with `clip`: near plane and guard band |
 //! | `bound` | how far linear shades may be from light at every pixel |
@@ -24,6 +24,7 @@ mod budget;
 mod clip;
 mod face;
 mod integer;
+mod lit;
 mod look;
 mod object;
 pub(crate) mod one_pixel;

@@ -7,10 +7,11 @@ use alloc::vec::Vec;
 use super::Stats;
 use super::budget::{self, Budget, Choice, Lit};
 use super::face::Faces;
+use super::lit::LitVertices;
 use super::paint::Paint;
 use super::pixel_light::normal_table;
 use super::tessellate::Tessellated;
-use super::vertex::{self, Extra, Geometry, LitVertex};
+use super::vertex::{self, Extra, Geometry};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
 use crate::palette::{Palette, Table};
@@ -113,7 +114,7 @@ pub(super) struct ObjectState {
     paints: Vec<Paint>,
     /// Of the source's lamps, those in range.
     lamps: Vec<LampBeam>,
-    lit: Vec<LitVertex>,
+    lit: LitVertices,
     extras: Vec<Extra>,
     tessellated: Option<Tessellated>,
     /// Of the mesh, for tessellation.
@@ -225,6 +226,7 @@ impl ObjectState {
 
         let count = geometry.positions.len();
         stats.vertices += count as u64;
+        self.lit.begin(count);
         if plan.is_on(Effect::NearClipping) || plan.is_on(Effect::ScreenClipping) {
             vertex::project_tested(&source.view, &geometry, &mut self.lit);
         } else {
@@ -246,12 +248,15 @@ impl ObjectState {
         } else if by_vertex {
             stats.lit += count as u64;
             if channels {
+                self.lit.leave_without_light();
                 vertex::light_channels(&geometry, &self.paints, &lights, &mut self.extras);
             } else if full {
                 vertex::light_all(&geometry, &self.paints, &lights, &mut self.lit);
             } else {
                 vertex::light_suns(&geometry, &self.paints, &lights, &mut self.lit);
             }
+        } else {
+            self.lit.leave_without_light();
         }
         if plan.is_on(Effect::Texture) {
             vertex::texture_coordinates(&geometry, &self.paints, &mut self.extras);
@@ -400,7 +405,7 @@ impl ObjectState {
 
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
-        self.lit.capacity() * size_of::<LitVertex>()
+        self.lit.bytes()
             + self.extras.capacity() * size_of::<Extra>()
             + self.paints.capacity() * size_of::<Paint>()
             + self.lamps.capacity() * size_of::<LampBeam>()

@@ -30,8 +30,9 @@ use glam::Vec3;
 
 use self::light::{OneLight, Towards, narrow};
 use super::face::Faces;
+use super::lit::{LitVertex, LitVertices};
 use super::paint::Paint;
-use super::vertex::{Geometry, LitVertex};
+use super::vertex::Geometry;
 use crate::light::Lights;
 use crate::mesh::{Bounds, Mesh};
 use crate::scene::{Rung, Shared};
@@ -247,12 +248,13 @@ impl Budget {
 
     /// Marks the object's vertices with the suns that they see, and finds out what holds for all of it.
     #[inline(never)]
-    pub(super) fn mark(&mut self, object: &Lit<'_>, lit: &mut [LitVertex]) {
+    pub(super) fn mark(&mut self, object: &Lit<'_>, lit: &mut LitVertices) {
         let Lit { geometry, lights, .. } = *object;
         if !self.by_shades() {
+            lit.suns_seen.resize(geometry.normals.len(), 0);
             for (i, sun) in (0..SUNS).zip(lights.suns) {
-                for (lit, normal) in lit.iter_mut().zip(geometry.normals) {
-                    lit.suns_seen |= u8::from(normal.dot(sun.towards) > 0.0) << i;
+                for (seen, normal) in lit.suns_seen.iter_mut().zip(geometry.normals) {
+                    *seen |= u8::from(normal.dot(sun.towards) > 0.0) << i;
                 }
             }
         }
@@ -383,7 +385,7 @@ impl Faces<'_> {
         // For suns alone, all of them above the horizon or all below.
         let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
         let mut model = top * facet.shortening + strength.curvature * turned * turned;
-        let seen = question.indices.map(|i| budget.suns_seen(&self.lit[i as usize]));
+        let seen = question.indices.map(|i| budget.suns_seen(&self.lit.get(i as usize)));
         let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
         let near = model + EXACT <= budget.allowed;
