@@ -9,6 +9,7 @@ use super::budget::{Budget, Choice, Question};
 use super::clip::{Carried, Corner, WithEffects, clip};
 use super::lit::{LitVertex, LitVertices};
 use super::paint::Paint;
+use super::sift::{self, Sieve};
 use super::vertex::{Extra, Geometry};
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
@@ -25,6 +26,10 @@ pub(super) trait Sink {
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading);
     /// A face whose pixels pass through stages, the number of its surface, and the rung that shades it.
     fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, rung: Rung);
+    /// What faces without effects may be left out by, if any: those that cover no pixel centre.
+    fn sieve(&self) -> Option<Sieve> {
+        None
+    }
 }
 
 /// One object in one frame.
@@ -78,6 +83,15 @@ impl Faces<'_> {
             };
         }
         let before = stats.drawn;
+        // A shading with a cover of its own draws beside pixel centres.
+        let sieve = if self.rung.shading().has_exact_cover() && !effects { sink.sieve() } else { None };
+        if let Some(sieve) = sieve {
+            match self.culls {
+                true => self.sifted::<true>(&sieve, stats, sink),
+                false => self.sifted::<false>(&sieve, stats, sink),
+            }
+            return stats.shares.add(self.rung, stats.drawn - before);
+        }
         match (self.clips, self.culls, effects) {
             (false, false, false) => self.each::<false, false, false>(stats, sink),
             (false, true, false) => self.each::<false, true, false>(stats, sink),
@@ -115,6 +129,37 @@ impl Faces<'_> {
                 let attributes = indices.map(|i| self.extras[i as usize].side(turned));
                 self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
             } else {
+                let shading = self.shading(indices, surface, turned, stats);
+                sink.plain(&vertices, shading);
+            }
+        }
+    }
+
+    /// The same for faces without effects, of which those that cover no pixel centre are left out, though they count as
+    /// drawn.
+    #[inline(never)]
+    fn sifted<const CULLS: bool>(&self, sieve: &Sieve, stats: &mut Stats, sink: &mut impl Sink) {
+        let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
+        for (triangles, surfaces) in triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST)) {
+            let sifted = sieve.sift(&self.lit.places, triangles);
+            let drawn = if CULLS { sifted.front } else { sifted.front | sifted.back };
+            let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(sifted.clipped.count_ones()));
+            stats.drawn += drawn_here;
+            stats.clipped += clipped;
+            stats.culled += triangles.len() as u64 - drawn_here - clipped;
+            let mut left = (drawn & sifted.covers) | sifted.clipped;
+            while left != 0 {
+                let at = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let (indices, surface) = (triangles[at], surfaces[at]);
+                let is = |bits: u64| bits >> at & 1 == 1;
+                if is(sifted.clipped) {
+                    let corners = indices.map(|i| self.lit.get(i as usize));
+                    self.clipped::<CULLS, false>(indices, surface, &corners, stats, sink);
+                    continue;
+                }
+                let turned = !CULLS && is(sifted.back);
+                let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
                 let shading = self.shading(indices, surface, turned, stats);
                 sink.plain(&vertices, shading);
             }

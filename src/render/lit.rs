@@ -20,6 +20,7 @@ pub(super) struct LitVertex {
 
 /// Where a vertex is on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(C)]
 pub(super) struct Place {
     pub(super) x: i32,
     pub(super) y: i32,
@@ -83,6 +84,14 @@ impl LitVertices {
             needs_clipping,
             suns_seen: self.suns_seen.get(i).copied().unwrap_or(0),
         }
+    }
+
+    /// Vertex number `i`, which there is and needs no clipping, with the shade of the front or the back.
+    #[inline]
+    pub(super) fn vertex(&self, i: usize, turned: bool) -> Vertex {
+        let Place { x, y } = self.places[i];
+        let shade = self.shades[i][usize::from(turned)];
+        Vertex::of_projected(I24F8::from_bits(x), I24F8::from_bits(y), shade, self.depths[i])
     }
 
     /// Bytes that they hold.
