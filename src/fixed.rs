@@ -168,6 +168,23 @@ impl U8F8 {
         let shade = u32::from(first) * 256 + above;
         Self(if shade > 0xFF00 { 0xFF00 } else { shade as u16 })
     }
+
+    /// The same of eight, by comparisons that the compiler makes vectors of.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    pub(crate) fn from_eight_intensities(intensities: &[f32; 8], first: u8, entries: u16) -> [Self; 8] {
+        let units = f64::from(entries.saturating_sub(1)) * 256.0;
+        let mut shades = [Self(0); 8];
+        for (shade, &intensity) in shades.iter_mut().zip(intensities) {
+            let above_nought = if intensity > 0.0 { intensity } else { 0.0 };
+            let clamped = if above_nought < 1.0 { above_nought } else { 1.0 };
+            // Below 2²⁴, so in range of i32 too.
+            let above = (f64::from(clamped) * units + 0.5) as i32;
+            let sum = i32::from(first) * 256 + above;
+            *shade = Self(if sum > 0xFF00 { 0xFF00 } else { sum as u16 });
+        }
+        shades
+    }
 }
 
 /// A 16.16 number: the integer vertex path of S4, whose unit vectors have length 65,536.

@@ -533,7 +533,7 @@ impl Renderer {
                 state.forget();
                 continue;
             }
-            if state.vertices(scene, object, &view, plan, &mut stats) {
+            if state.vertices(scene, object, &view, plan, self.kernel, &mut stats) {
                 changed = true;
                 if self.vertex_bits < VERTEX_BITS {
                     state.round_vertices(self.vertex_bits);

@@ -17,6 +17,7 @@ use crate::mesh::Mesh;
 use crate::palette::{Palette, Table};
 use crate::plan::{Effect, LEAST_TESSELLATION, ObjectPlan, Since};
 use crate::scene::{Fog, Mapping, Object, Rung, Scene, Shared};
+use crate::span::Kernel;
 use crate::view::{ObjectView, View};
 
 /// What an object's vertices depend on, beside the plan.
@@ -184,6 +185,7 @@ impl ObjectState {
         object: &Object,
         view: &View,
         plan: &ObjectPlan,
+        kernel: Kernel,
         stats: &mut Stats,
     ) -> bool {
         let on = Effect::ALL.map(|effect| effect != Effect::Transform && plan.is_on(effect));
@@ -228,9 +230,9 @@ impl ObjectState {
         stats.vertices += count as u64;
         self.lit.begin(count);
         if plan.is_on(Effect::NearClipping) || plan.is_on(Effect::ScreenClipping) {
-            vertex::project_tested(&source.view, &geometry, &mut self.lit);
+            vertex::project_tested(&source.view, &geometry, kernel, &mut self.lit);
         } else {
-            vertex::project_inside(&source.view, &geometry, &mut self.lit);
+            vertex::project_inside(&source.view, &geometry, kernel, &mut self.lit);
         }
         if self.paints.iter().any(|paint| paint.has_effects) {
             self.extras.clear();
@@ -253,7 +255,7 @@ impl ObjectState {
             } else if full {
                 vertex::light_all(&geometry, &self.paints, &lights, &mut self.lit);
             } else {
-                vertex::light_suns(&geometry, &self.paints, &lights, &mut self.lit);
+                vertex::light_suns(&geometry, &self.paints, &lights, kernel, &mut self.lit);
             }
         } else {
             self.lit.leave_without_light();

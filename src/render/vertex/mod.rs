@@ -1,5 +1,5 @@
 //! The stages of an object's vertices. Each is a loop of its own over all of them, entered only where
-//! the plan calls for it: what is off costs nothing.
+//! the plan calls for it: what is off costs nothing. The commonest take eight at a time (`lanes`).
 
 use glam::{Vec2, Vec3};
 
@@ -10,7 +10,13 @@ use crate::light::{Lights, both_sides};
 use crate::palette::Ramp;
 use crate::raster::effects::Attributes;
 use crate::scene::Fog;
+use crate::span::Kernel;
 use crate::view::ObjectView;
+
+mod lanes;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
+mod x86;
 
 /// What is drawn of an object: its mesh, or what tessellation made of it.
 #[derive(Clone, Copy, Debug)]
@@ -49,18 +55,30 @@ impl Extra {
 
 /// Every vertex on the screen, none of which can need clipping.
 #[inline(never)]
-pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, lit: &mut LitVertices) {
-    for (i, &position) in geometry.positions.iter().enumerate() {
-        lit.put(i, Some(view.project_inside(position)));
-    }
+pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut LitVertices) {
+    project::<false>(view, geometry.positions, kernel, lit);
 }
 
 /// Every vertex on the screen, with a mark on those that need clipping.
 #[inline(never)]
-pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, lit: &mut LitVertices) {
-    for (i, &position) in geometry.positions.iter().enumerate() {
-        lit.put(i, view.project(position));
+pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut LitVertices) {
+    project::<true>(view, geometry.positions, kernel, lit);
+}
+
+#[inline(always)]
+fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Kernel, lit: &mut LitVertices) {
+    let Some(narrow) = view.narrow() else {
+        for (i, &position) in positions.iter().enumerate() {
+            lit.put(i, if TESTED { view.project(position) } else { Some(view.project_inside(position)) });
+        }
+        return;
+    };
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    if kernel.has_avx2() {
+        return x86::project::<TESTED>(view, &narrow, positions, lit);
     }
+    let _ = kernel;
+    lanes::project::<TESTED>(view, &narrow, positions, lit);
 }
 
 /// Vertices that are rounded already rounded again, to fewer bits after the point, half up.
@@ -84,12 +102,26 @@ pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[Paint], lit: &mut Li
 
 /// Suns on matt surfaces.
 #[inline(never)]
-pub(super) fn light_suns(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, lit: &mut LitVertices) {
-    for ((shades, normal), &surface) in lit.shades.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
-        let paint = &paints[usize::from(surface)];
-        let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, *normal);
-        *shades = [paint.shade(front), paint.shade(back)];
+pub(super) fn light_suns(
+    geometry: &Geometry<'_>,
+    paints: &[Paint],
+    lights: &Lights<'_>,
+    kernel: Kernel,
+    lit: &mut LitVertices,
+) {
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    if kernel.has_avx2() {
+        return x86::light_suns(geometry, paints, lights, lit);
     }
+    let _ = kernel;
+    lanes::light_suns(geometry, paints, lights, lit);
+}
+
+/// The shades of a vertex of this normal, front and back.
+#[inline]
+fn light_one(paint: &Paint, lights: &Lights<'_>, normal: Vec3) -> [U8F8; 2] {
+    let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, normal);
+    [paint.shade(front), paint.shade(back)]
 }
 
 /// Suns, lamps and highlights.
