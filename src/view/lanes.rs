@@ -16,6 +16,7 @@
 use glam::{Mat3, Vec3};
 
 use super::ObjectView;
+use crate::fixed::whole_part;
 use crate::raster::Vertex;
 pub(crate) use crate::span::lit::LANES;
 
@@ -31,12 +32,12 @@ pub(crate) struct Narrow {
 /// Eight vertices on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Eight {
-    /// Whether it is in front of the near plane and within the limit. Of others the numbers below mean nothing.
-    pub(crate) is_within: [bool; LANES],
+    /// −1 if it is in front of the near plane and within the limit, else 0. Of others the numbers below mean nothing.
+    pub(crate) within: [i32; LANES],
     /// In 1/256 pixel.
     pub(crate) x: [i32; LANES],
     pub(crate) y: [i32; LANES],
-    pub(crate) depth: [u32; LANES],
+    pub(crate) depth: [i32; LANES],
 }
 
 impl ObjectView {
@@ -67,19 +68,22 @@ impl Narrow {
             x[i] = centre.0 + row(0) * inverse;
             y[i] = centre.1 + row(1) * inverse;
         }
-        let mut eight = Eight { is_within: [false; LANES], x: [0; LANES], y: [0; LANES], depth: [0; LANES] };
+        let mut eight = Eight { within: [0; LANES], x: [0; LANES], y: [0; LANES], depth: [0; LANES] };
         for i in 0..LANES {
             // What is no number fails it.
-            eight.is_within[i] = (w[i] >= *near) & (x[i].abs() <= LIMIT) & (y[i].abs() <= LIMIT);
+            let is_within = (w[i] >= *near) & (x[i].abs() <= LIMIT) & (y[i].abs() <= LIMIT);
+            eight.within[i] = -i32::from(is_within);
         }
         for i in 0..LANES {
             eight.x[i] = units(x[i]);
+        }
+        for i in 0..LANES {
             eight.y[i] = units(y[i]);
         }
         for i in 0..LANES {
             // As `ObjectView::depth`; 1 to 2³⁰ of what is within.
-            let depth = f64::from(*near) / f64::from(w[i]) * 1_073_741_824.0 + 0.5;
-            eight.depth[i] = (depth as i32).max(1).cast_unsigned();
+            let depth = whole_part(f64::from(*near) / f64::from(w[i]) * 1_073_741_824.0 + 0.5);
+            eight.depth[i] = if depth > 1 { depth } else { 1 };
         }
         eight
     }

@@ -21,31 +21,34 @@ pub(super) fn project<const TESTED: bool>(
     let (eights, rest) = positions.as_chunks::<LANES>();
     let (places, _) = lit.places.as_chunks_mut::<LANES>();
     let (depths, _) = lit.depths.as_chunks_mut::<LANES>();
-    let mut strays = false;
     for ((points, places), depths) in eights.iter().zip(places).zip(depths) {
         let eight = narrow.project(points);
-        for i in 0..LANES {
-            let is_within = eight.is_within[i];
-            places[i].x = if is_within { eight.x[i] } else { Place::NEEDS_CLIPPING.x };
-            places[i].y = if is_within { eight.y[i] } else { Place::NEEDS_CLIPPING.y };
-            depths[i] = if is_within { eight.depth[i] } else { 0 };
-            strays |= !is_within;
+        for (i, place) in places.iter_mut().enumerate() {
+            let within = eight.within[i];
+            place.x = (eight.x[i] & within) | (Place::NEEDS_CLIPPING.x & !within);
+            place.y = eight.y[i] & within;
+        }
+        for (i, depth) in depths.iter_mut().enumerate() {
+            *depth = (eight.depth[i] & eight.within[i]).cast_unsigned();
         }
     }
-    for (i, &position) in rest.iter().enumerate() {
-        lit.put(eights.len() * LANES + i, project_one::<TESTED>(view, position));
-    }
-    if !TESTED && strays {
-        // An object that is said to lie inside and does not.
-        for (i, &position) in positions.iter().enumerate() {
-            lit.put(i, project_one::<false>(view, position));
-        }
-    }
+    // Those that are left; or, of an object that is said to lie inside and does not, all.
+    let strays = !TESTED && lit.places[..positions.len() - rest.len()].iter().any(|place| place.needs_clipping());
+    let first = if strays { 0 } else { positions.len() - rest.len() };
+    one_by_one::<TESTED>(view, positions, first, lit);
 }
 
-#[inline]
-fn project_one<const TESTED: bool>(view: &ObjectView, position: Vec3) -> Option<crate::raster::Vertex> {
-    if TESTED { view.project(position) } else { Some(view.project_inside(position)) }
+/// The definition, of vertices from number `first` on.
+#[inline(never)]
+pub(super) fn one_by_one<const TESTED: bool>(
+    view: &ObjectView,
+    positions: &[Vec3],
+    first: usize,
+    lit: &mut LitVertices,
+) {
+    for (i, &position) in positions.iter().enumerate().skip(first) {
+        lit.put(i, if TESTED { view.project(position) } else { Some(view.project_inside(position)) });
+    }
 }
 
 /// [`light_suns`](super::light_suns).

@@ -68,10 +68,7 @@ pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, kernel:
 #[inline(always)]
 fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Kernel, lit: &mut LitVertices) {
     let Some(narrow) = view.narrow() else {
-        for (i, &position) in positions.iter().enumerate() {
-            lit.put(i, if TESTED { view.project(position) } else { Some(view.project_inside(position)) });
-        }
-        return;
+        return lanes::one_by_one::<TESTED>(view, positions, 0, lit);
     };
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     if kernel.has_avx2() {
