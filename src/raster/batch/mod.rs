@@ -20,6 +20,7 @@ use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, I24F8, U8F8};
 use crate::span::Kernel;
 
+mod depths;
 mod rows;
 mod sieve;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]

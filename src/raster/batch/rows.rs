@@ -19,6 +19,7 @@
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
 
 use super::Batch;
+use super::depths::Planes;
 use super::sieve::Chosen;
 use crate::fixed::HAS_F64;
 use crate::raster::depth::DepthPlane;
@@ -189,7 +190,7 @@ pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     if !HAS_F64 {
         return kept.len();
     }
-    rows_by(batch, kept, place, spans, row)
+    rows_by(batch, kept, place, spans, row, Planes::of)
 }
 
 #[inline(always)]
@@ -199,6 +200,7 @@ pub(super) fn rows_by(
     place: Place,
     spans: &mut Spans<'_>,
     row: impl Fn(&Group, i32, i32, &mut Row),
+    planes: impl Fn(&Batch, &[Chosen], &Group) -> Planes,
 ) -> usize {
     let mut listed = 0;
     for group in kept.chunks(LANES) {
@@ -207,7 +209,7 @@ pub(super) fn rows_by(
         }
         listed += group.len();
         gather::<false>(batch, group, place, &mut spans.group);
-        list(batch, group, place, spans, &row);
+        list(batch, group, place, spans, &row, &planes);
     }
     listed
 }
@@ -350,14 +352,16 @@ fn list(
     place: Place,
     spans: &mut Spans<'_>,
     row: impl Fn(&Group, i32, i32, &mut Row),
+    planes: impl Fn(&Batch, &[Chosen], &Group) -> Planes,
 ) {
     let Spans { spans, count, covered, depths, group, table } = spans;
     let most = group.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
     for (number, to) in (0..most).zip(table.iter_mut()) {
         row(group, number, place.pitch as i32, to);
     }
+    let planes = place.depth_width.map(|width| (width, planes(batch, triangles, group)));
     let mut pixels = 0;
-    for (i, &(number, _)) in triangles.iter().enumerate().take(LANES) {
+    for i in 0..triangles.len().min(LANES) {
         let rows = group.rows[i];
         let (first, before) = (*count, pixels);
         // Two at a time, one that there is not with no length: the end of a loop over rows is not foreseen. (Of 2.7
@@ -386,11 +390,10 @@ fn list(
                 j += 1;
             }
         }
-        if let Some(width) = place.depth_width
+        if let Some((width, planes)) = &planes
             && pixels > before
         {
-            let plane = batch.depth_plane(usize::from(number));
-            group.depths(i, &plane, place, width, &spans[first..*count], &mut depths[first..*count]);
+            planes.depths(i, group, place, *width, &spans[first..*count], &mut depths[first..*count]);
         }
     }
     *covered += pixels;

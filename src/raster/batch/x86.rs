@@ -3,6 +3,7 @@
 use core::arch::x86_64::*;
 
 use super::Batch;
+use super::depths::Planes;
 use super::rows::{Draw, Edges, Floats, Group, Ints, MAGIC, Place, Row, Spans, rows_by, tall_by};
 use super::sieve::{Chosen, Kept, sieve_inlined};
 use crate::raster::frame::Rect;
@@ -22,7 +23,14 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
 pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
-        rows_by(batch, kept, place, spans, |group, number, pitch, to| row(group, number, pitch, to))
+        rows_by(
+            batch,
+            kept,
+            place,
+            spans,
+            |group, number, pitch, to| row(group, number, pitch, to),
+            |batch, triangles, group| planes(batch, triangles, group),
+        )
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
     unsafe { avx2(batch, kept, place, spans) }
@@ -38,6 +46,13 @@ pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
     unsafe { avx2(batch, kept, place, spans, draw) }
+}
+
+/// Apart, as the compiler would else keep eight triangles in registers that it has not.
+#[inline(never)]
+#[target_feature(enable = "avx2")]
+fn planes(batch: &Batch, triangles: &[Chosen], group: &Group) -> Planes {
+    Planes::of(batch, triangles, group)
 }
 
 /// Eight f64.
