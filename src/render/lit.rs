@@ -18,21 +18,43 @@ pub(super) struct LitVertex {
     pub(super) suns_seen: u8,
 }
 
-/// Where a vertex is on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping.
+/// Where a vertex is on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping. In one number,
+/// so that it is read at once.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[repr(C)]
-pub(super) struct Place {
-    pub(super) x: i32,
-    pub(super) y: i32,
-}
+pub(super) struct Place(u64);
 
 impl Place {
-    /// Far outside of the guard band.
-    pub(super) const NEEDS_CLIPPING: Self = Self { x: i32::MIN, y: 0 };
+    /// The x of those that need clipping: far outside of the guard band.
+    pub(super) const BEYOND: i32 = i32::MIN;
+    pub(super) const NEEDS_CLIPPING: Self = Self::new(Self::BEYOND, 0);
+
+    #[inline(always)]
+    pub(super) const fn new(x: i32, y: i32) -> Self {
+        Self(x.cast_unsigned() as u64 | (y.cast_unsigned() as u64) << 32)
+    }
+
+    #[inline(always)]
+    pub(super) const fn x(self) -> i32 {
+        // The lower half.
+        self.0 as i32
+    }
+
+    #[inline(always)]
+    pub(super) const fn y(self) -> i32 {
+        // The upper half.
+        (self.0 >> 32) as i32
+    }
+
+    /// x in the lower half, y in the upper.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[inline(always)]
+    pub(super) const fn to_bits(self) -> u64 {
+        self.0
+    }
 
     #[inline]
-    pub(super) fn needs_clipping(self) -> bool {
-        self.x == i32::MIN
+    pub(super) const fn needs_clipping(self) -> bool {
+        self.x() == Self::BEYOND
     }
 }
 
@@ -66,7 +88,7 @@ impl LitVertices {
     #[inline]
     pub(super) fn put(&mut self, i: usize, vertex: Option<Vertex>) {
         (self.places[i], self.depths[i]) = match vertex {
-            Some(v) => (Place { x: v.x().to_bits(), y: v.y().to_bits() }, v.depth()),
+            Some(v) => (Place::new(v.x().to_bits(), v.y().to_bits()), v.depth()),
             None => (Place::NEEDS_CLIPPING, 0),
         };
     }
@@ -77,9 +99,9 @@ impl LitVertices {
         let [front, back] = self.shades[i];
         let place = self.places[i];
         let needs_clipping = place.needs_clipping();
-        let Place { x, y } = if needs_clipping { Place { x: 0, y: 0 } } else { place };
+        let place = if needs_clipping { Place::new(0, 0) } else { place };
         LitVertex {
-            vertex: Vertex::of_projected(I24F8::from_bits(x), I24F8::from_bits(y), front, self.depths[i]),
+            vertex: vertex(place, front, self.depths[i]),
             back,
             needs_clipping,
             suns_seen: self.suns_seen.get(i).copied().unwrap_or(0),
@@ -89,9 +111,7 @@ impl LitVertices {
     /// Vertex number `i`, which there is and needs no clipping, with the shade of the front or the back.
     #[inline]
     pub(super) fn vertex(&self, i: usize, turned: bool) -> Vertex {
-        let Place { x, y } = self.places[i];
-        let shade = self.shades[i][usize::from(turned)];
-        Vertex::of_projected(I24F8::from_bits(x), I24F8::from_bits(y), shade, self.depths[i])
+        vertex(self.places[i], self.shades[i][usize::from(turned)], self.depths[i])
     }
 
     /// Bytes that they hold.
@@ -101,4 +121,9 @@ impl LitVertices {
             + self.shades.capacity() * size_of::<[U8F8; 2]>()
             + self.suns_seen.capacity()
     }
+}
+
+#[inline]
+fn vertex(place: Place, shade: U8F8, depth: u32) -> Vertex {
+    Vertex::of_projected(I24F8::from_bits(place.x()), I24F8::from_bits(place.y()), shade, depth)
 }

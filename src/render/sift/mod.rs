@@ -28,7 +28,8 @@ pub(super) struct Sifted {
     pub(super) front: u64,
     /// Turned away. What is neither has no area.
     pub(super) back: u64,
-    /// A pixel centre of the sieve's rectangle lies in the face's box, its left and top sides included.
+    /// A pixel centre of the sieve's rectangle lies in the face's box, its left and top sides included; and if the box has
+    /// but 2 × 2, one of them in the face.
     pub(super) covers: u64,
 }
 
@@ -62,18 +63,45 @@ impl Sifted {
             self.clipped |= 1 << at;
             return;
         }
-        let [a, b, c] = corners;
+        let [a, b, c] = corners.map(|corner| (corner.x(), corner.y()));
         // As `doubled_area`: in the guard band differences are at most 2²¹.
         let product = |p: i32, q: i32| i64::from(p) * i64::from(q);
-        let area = product(b.x - a.x, c.y - a.y) - product(c.x - a.x, b.y - a.y);
+        let area = product(b.0 - a.0, c.1 - a.1) - product(c.0 - a.0, b.1 - a.1);
         self.front |= u64::from(area < 0) << at;
         self.back |= u64::from(area > 0) << at;
         // `I24F8::first_centre`.
         let centres = |a: i32, b: i32, c: i32| ((a.min(b).min(c) + 127) >> 8, (a.max(b).max(c) + 127) >> 8);
-        let ((column, end_column), (row, end_row)) = (centres(a.x, b.x, c.x), centres(a.y, b.y, c.y));
-        let covers = (column.max(left) < end_column.min(right)) & (row.max(top) < end_row.min(bottom));
+        let ((column, end_column), (row, end_row)) = (centres(a.0, b.0, c.0), centres(a.1, b.1, c.1));
+        let mut covers = (column.max(left) < end_column.min(right)) & (row.max(top) < end_row.min(bottom));
+        if (end_column - column <= MOST_LOOKED_AT) & (end_row - row <= MOST_LOOKED_AT) {
+            let from_first = |(x, y): (i32, i32)| (x - column * 256 - 128, y - row * 256 - 128);
+            covers &= covers_one_of_four(from_first(a), from_first(b), from_first(c));
+        }
         self.covers |= u64::from(covers) << at;
     }
+}
+
+/// The longer side, in pixels, of the box of a face whose pixels are looked at one by one.
+const MOST_LOOKED_AT: i32 = 2;
+
+/// Whether a triangle has one of four pixels: that at the origin, the next, and the two below. Of corners less than
+/// 1,024 units away.
+///
+/// ```text
+/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if turned over, negative
+/// ```
+///
+/// On an edge lies inside if it is a left one or a top one: of others E has to be one step more.
+fn covers_one_of_four(a: (i32, i32), b: (i32, i32), c: (i32, i32)) -> bool {
+    let area = (b.0 - a.0) * (c.1 - a.1) - (c.0 - a.0) * (b.1 - a.1);
+    let (b, c) = if area < 0 { (c, b) } else { (b, c) };
+    [(0, 0), (256, 0), (0, 256), (256, 256)].into_iter().any(|p| {
+        [(a, b), (b, c), (c, a)].into_iter().all(|(from, to)| {
+            let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+            let is_in = dy < 0 || (dy == 0 && dx > 0);
+            dx * (p.1 - from.1) - dy * (p.0 - from.0) >= i32::from(!is_in)
+        })
+    })
 }
 
 #[cfg(test)]
@@ -92,7 +120,10 @@ mod tests {
         let far = (-MOST_UNITS..=MOST_UNITS, -MOST_UNITS..=MOST_UNITS);
         let end = prop::sample::select(vec![-MOST_UNITS, MOST_UNITS, 0]);
         let ends = (end.clone(), end);
-        let legal = prop_oneof![4 => near, 2 => on_centres, 1 => far, 1 => ends].prop_map(|(x, y)| Place { x, y });
+        let tiny = (2_000_i32..2_800, 2_000_i32..2_800);
+        let on_halves = (15_i32..23, 15_i32..23).prop_map(|(x, y)| (x * 128, y * 128));
+        let legal = prop_oneof![4 => near, 2 => on_centres, 8 => tiny, 8 => on_halves, 1 => far, 1 => ends]
+            .prop_map(|(x, y)| Place::new(x, y));
         prop_oneof![30 => legal, 1 => Just(Place::NEEDS_CLIPPING)]
     }
 
@@ -108,7 +139,7 @@ mod tests {
         fn what_is_left_out_covers_nothing(
             places in prop::collection::vec(place(), 1..60),
             corners in prop::collection::vec((any::<u32>(), any::<u32>(), any::<u32>()), 0..=MOST),
-            clip in (0_u32..20, 0_u32..20, 12_u32..=32, 12_u32..=32),
+            clip in prop_oneof![Just((0, 0, 32, 32)), (0_u32..20, 0_u32..20, 12_u32..=32, 12_u32..=32)],
         ) {
             let index = |i: u32| i % places.len() as u32;
             let triangles: Vec<[u32; 3]> = corners.iter().map(|&(a, b, c)| [index(a), index(b), index(c)]).collect();
@@ -131,13 +162,23 @@ mod tests {
                     prop_assert!(!is(front) && !is(back) && !is(covers));
                     continue;
                 }
-                let vertices = corners.map(|Place { x, y }| {
-                    Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::default(), 1).expect("legal")
+                let vertices = corners.map(|place| {
+                    Vertex::new(I24F8::from_bits(place.x()), I24F8::from_bits(place.y()), U8F8::default(), 1).expect("legal")
                 });
                 let area = doubled_area(&vertices);
                 prop_assert_eq!((is(front), is(back)), (area < 0, area > 0));
+                let drawn = raster.triangle(&vertices, Shading::Flat(1));
                 if !is(covers) {
-                    prop_assert_eq!(raster.triangle(&vertices, Shading::Flat(1)), Default::default());
+                    prop_assert_eq!(drawn, Default::default());
+                }
+                let centres = |units: fn(&Vertex) -> I24F8| {
+                    let centres = vertices.each_ref().map(|v| units(v).first_centre());
+                    centres.iter().max().zip(centres.iter().min()).map(|(max, min)| max - min)
+                };
+                let is_tiny = centres(Vertex::x) <= Some(MOST_LOOKED_AT) && centres(Vertex::y) <= Some(MOST_LOOKED_AT);
+                if is_tiny && clip == (Rect { x0: 0, y0: 0, x1: 32, y1: 32 }) {
+                    prop_assert_eq!(is(covers), drawn.covered > 0, "{:?}", vertices);
+                    prop_assert!(!is(covers) || area != 0);
                 }
             }
         }

@@ -1,14 +1,8 @@
 //! Eight faces at a time with AVX2.
 
-use core::arch::x86_64::{
-    __m256d, __m256i, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_epi32, _mm256_and_si256, _mm256_castps_si256,
-    _mm256_castsi256_ps, _mm256_castsi256_si128, _mm256_cmp_pd, _mm256_cmpeq_epi32, _mm256_cmpgt_epi32,
-    _mm256_cvtepi32_pd, _mm256_extracti128_si256, _mm256_max_epi32, _mm256_min_epi32, _mm256_movemask_pd,
-    _mm256_movemask_ps, _mm256_mul_pd, _mm256_set_epi64x, _mm256_set1_epi32, _mm256_setzero_pd, _mm256_shuffle_ps,
-    _mm256_srai_epi32, _mm256_sub_epi32, _mm256_sub_pd,
-};
+use core::arch::x86_64::*;
 
-use super::{MOST, Sifted};
+use super::{MOST, MOST_LOOKED_AT, Sifted};
 use crate::render::lit::Place;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
@@ -35,36 +29,25 @@ fn avx2(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4]) -> Sifted {
     sifted
 }
 
-/// x and y of one corner of eight faces.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn corner(places: &[Place], triangles: &[[u32; 3]; 8], corner: usize) -> (__m256i, __m256i) {
-    // One load of eight bytes.
-    let at = |face: usize| {
-        let Place { x, y } = places[triangles[face][corner] as usize];
-        i64::from(y) << 32 | i64::from(x.cast_unsigned())
-    };
-    // So that the shuffles, which keep to the halves of a vector, leave the faces in order.
-    let low = _mm256_castsi256_ps(_mm256_set_epi64x(at(5), at(4), at(1), at(0)));
-    let high = _mm256_castsi256_ps(_mm256_set_epi64x(at(7), at(6), at(3), at(2)));
-    (
-        _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0b10_00_10_00)),
-        _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0b11_01_11_01)),
-    )
-}
-
 /// `Sifted::add` of eight faces.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn sift_eight(places: &[Place], triangles: &[[u32; 3]; 8], sides: [i32; 4]) -> [u64; 4] {
-    let (ax, ay) = corner(places, triangles, 0);
-    let (bx, by) = corner(places, triangles, 1);
-    let (cx, cy) = corner(places, triangles, 2);
+    let mut corners = [(_mm256_setzero_si256(), _mm256_setzero_si256()); 3];
+    for (corner, place) in corners.iter_mut().enumerate() {
+        let at = |face: usize| places[triangles[face][corner] as usize].to_bits().cast_signed();
+        // So that the shuffles, which keep to the halves of a vector, leave the faces in order.
+        let low = _mm256_castsi256_ps(_mm256_set_epi64x(at(5), at(4), at(1), at(0)));
+        let high = _mm256_castsi256_ps(_mm256_set_epi64x(at(7), at(6), at(3), at(2)));
+        let x = _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0b10_00_10_00));
+        *place = (x, _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0b11_01_11_01)));
+    }
+    let [(ax, ay), (bx, by), (cx, cy)] = corners;
     let (low_x, high_x) = ends(ax, bx, cx);
     let (low_y, high_y) = ends(ay, by, cy);
     // The mark is the least number there is.
     // Of such a face the other numbers mean nothing.
-    let clipped = mask(_mm256_cmpeq_epi32(low_x, _mm256_set1_epi32(Place::NEEDS_CLIPPING.x)));
+    let clipped = mask(_mm256_cmpeq_epi32(low_x, _mm256_set1_epi32(Place::BEYOND)));
 
     // Exact in f64: differences are at most 2²¹, products 2⁴².
     let (dx1, dy1) = (_mm256_sub_epi32(bx, ax), _mm256_sub_epi32(by, ay));
@@ -79,10 +62,62 @@ fn sift_eight(places: &[Place], triangles: &[[u32; 3]; 8], sides: [i32; 4]) -> [
     let back = both(_mm256_cmp_pd(low, nought, _CMP_GT_OQ), _mm256_cmp_pd(high, nought, _CMP_GT_OQ));
 
     let [left, top, right, bottom] = sides.map(|side| _mm256_set1_epi32(side));
-    let in_columns = overlap(low_x, high_x, left, right);
-    let in_rows = overlap(low_y, high_y, top, bottom);
-    let covers = mask(_mm256_and_si256(in_columns, in_rows));
-    [clipped, front & !clipped, back & !clipped, covers & !clipped]
+    let (column, end_column) = (first_centre(low_x), first_centre(high_x));
+    let (row, end_row) = (first_centre(low_y), first_centre(high_y));
+    let in_columns = overlap(column, end_column, left, right);
+    let in_rows = overlap(row, end_row, top, bottom);
+    let box_covers = _mm256_and_si256(in_columns, in_rows);
+    let mut covers = mask(box_covers) & !clipped;
+    let three = _mm256_set1_epi32(MOST_LOOKED_AT + 1);
+    let few_columns = _mm256_cmpgt_epi32(three, _mm256_sub_epi32(end_column, column));
+    let few_rows = _mm256_cmpgt_epi32(three, _mm256_sub_epi32(end_row, row));
+    let tiny = mask(_mm256_and_si256(few_columns, few_rows)) & covers;
+    if tiny != 0 {
+        let centre = |number| _mm256_add_epi32(_mm256_slli_epi32(number, 8), _mm256_set1_epi32(128));
+        let (x, y) = (centre(column), centre(row));
+        let from_first = |(px, py)| (_mm256_sub_epi32(px, x), _mm256_sub_epi32(py, y));
+        let [a, b, c] = corners;
+        let none = covers_none_of_four(from_first(a), from_first(b), from_first(c));
+        covers &= !(tiny & none);
+    }
+    [clipped, front & !clipped, back & !clipped, covers]
+}
+
+type Point = (__m256i, __m256i);
+
+/// Not `covers_one_of_four`.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn covers_none_of_four(a: Point, b: Point, c: Point) -> u64 {
+    let cross =
+        |(ax, ay): Point, (bx, by): Point| _mm256_sub_epi32(_mm256_mullo_epi32(ax, by), _mm256_mullo_epi32(ay, bx));
+    // The edges at the origin, whose sum is twice the area.
+    let (ab, bc, ca) = (cross(a, b), cross(b, c), cross(c, a));
+    // −1 if it is negative: then all is turned over.
+    let turned = _mm256_srai_epi32(_mm256_add_epi32(_mm256_add_epi32(ab, bc), ca), 31);
+    let ab = at_four(ab, a, b, turned);
+    let bc = at_four(bc, b, c, turned);
+    let ca = at_four(ca, c, a, turned);
+    let mut none = _mm256_set1_epi32(-1);
+    for pixel in 0..4 {
+        none = _mm256_and_si256(none, _mm256_or_si256(_mm256_or_si256(ab[pixel], bc[pixel]), ca[pixel]));
+    }
+    mask(none)
+}
+
+/// An edge at the four pixels, negative where these are outside; from its cross product at the first.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn at_four(cross: __m256i, from: Point, to: Point, turned: __m256i) -> [__m256i; 4] {
+    let turn = |n| _mm256_sub_epi32(_mm256_xor_si256(n, turned), turned);
+    let dx = turn(_mm256_sub_epi32(to.0, from.0));
+    let dy = turn(_mm256_sub_epi32(to.1, from.1));
+    // Up, or level and to the right: −1. |dx| is below 1,024.
+    let is_in = _mm256_srai_epi32(_mm256_sub_epi32(_mm256_slli_epi32(dy, 10), dx), 31);
+    let first = _mm256_sub_epi32(_mm256_sub_epi32(turn(cross), _mm256_set1_epi32(1)), is_in);
+    let (right, down) = (_mm256_slli_epi32(dy, 8), _mm256_slli_epi32(dx, 8));
+    let below = _mm256_add_epi32(first, down);
+    [first, _mm256_sub_epi32(first, right), below, _mm256_sub_epi32(below, right)]
 }
 
 /// Twice the area.
@@ -99,12 +134,18 @@ fn ends(a: __m256i, b: __m256i, c: __m256i) -> (__m256i, __m256i) {
     (_mm256_min_epi32(_mm256_min_epi32(a, b), c), _mm256_max_epi32(_mm256_max_epi32(a, b), c))
 }
 
-/// Where pixel centres lie between `low` and `high` of those from `first` to before `end`.
+/// `I24F8::first_centre`.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn overlap(low: __m256i, high: __m256i, first: __m256i, end: __m256i) -> __m256i {
-    let centre = |units| _mm256_srai_epi32(_mm256_add_epi32(units, _mm256_set1_epi32(127)), 8);
-    _mm256_cmpgt_epi32(_mm256_min_epi32(centre(high), end), _mm256_max_epi32(centre(low), first))
+fn first_centre(units: __m256i) -> __m256i {
+    _mm256_srai_epi32(_mm256_add_epi32(units, _mm256_set1_epi32(127)), 8)
+}
+
+/// Where two ranges overlap.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn overlap(from: __m256i, to: __m256i, first: __m256i, end: __m256i) -> __m256i {
+    _mm256_cmpgt_epi32(_mm256_min_epi32(to, end), _mm256_max_epi32(from, first))
 }
 
 /// A bit for each lane of a mask.

@@ -25,8 +25,7 @@ pub(super) fn project<const TESTED: bool>(
         let eight = narrow.project(points);
         for (i, place) in places.iter_mut().enumerate() {
             let within = eight.within[i];
-            place.x = (eight.x[i] & within) | (Place::NEEDS_CLIPPING.x & !within);
-            place.y = eight.y[i] & within;
+            *place = Place::new((eight.x[i] & within) | (Place::BEYOND & !within), eight.y[i] & within);
         }
         for (i, depth) in depths.iter_mut().enumerate() {
             *depth = (eight.depth[i] & eight.within[i]).cast_unsigned();

@@ -85,7 +85,7 @@ pub(super) fn round_further(bits: u32, lit: &mut LitVertices) {
     // Within the guard band, which is a multiple of the unit, so no sum is near the ends of i32, and none leaves it.
     let round = |c: i32| (c + unit / 2).div_euclid(unit) * unit;
     for place in lit.places.iter_mut().filter(|place| !place.needs_clipping()) {
-        *place = Place { x: round(place.x), y: round(place.y) };
+        *place = Place::new(round(place.x()), round(place.y()));
     }
 }
 
