@@ -54,7 +54,7 @@ pub(super) struct Spans<'a> {
     covered: u32,
     /// Of each span, where there is a depth buffer; else there is no room for any.
     depths: &'a mut [Depths],
-    group: Group,
+    pub(super) group: Group,
     table: [Row; MOST_ROWS as usize],
 }
 
@@ -214,7 +214,7 @@ pub(super) fn rows_by(
 
 /// Sets up a group. Triangles that it lacks are points.
 #[inline(always)]
-fn gather<const TALL: bool>(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
+pub(super) fn gather<const TALL: bool>(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
     let (mut x, mut y, mut shade) = ([[0; LANES]; 3], [[0; LANES]; 3], [[0; LANES]; 3]);
     for (lane, &(at, _)) in kept.iter().take(LANES).enumerate() {
         let at = usize::from(at) % Batch::CAPACITY;

@@ -3,10 +3,12 @@
 use core::arch::x86_64::*;
 
 use super::Batch;
-use super::rows::{Draw, Edges, Floats, Group, Ints, MAGIC, Place, Row, Spans, rows_by, tall_by};
+use super::avx512::Tall;
+use super::rows::{Draw, Edges, Floats, Group, Ints, LANES, MAGIC, Place, Row, Spans, gather, rows_by, tall_by};
 use super::sieve::{Chosen, Kept, sieve_inlined};
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
+use crate::raster::triangle::Drawn;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
@@ -38,6 +40,33 @@ pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
     unsafe { avx2(batch, kept, place, spans, draw) }
+}
+
+/// Draws tall triangles where there is no depth buffer, without a list. Only with a kernel for which
+/// `Kernel::has_avx512` is true.
+pub(super) fn tall_at_once(
+    batch: &Batch,
+    kept: &[Chosen],
+    place: Place,
+    group: &mut Group,
+    pixels: &mut [u8],
+) -> Drawn {
+    #[target_feature(enable = "avx2")]
+    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group, pixels: &mut [u8]) -> (u32, u32) {
+        let mut tall = Tall::new();
+        for eight in kept.chunks(LANES) {
+            gather::<true>(batch, eight, place, group);
+            for (i, &(number, _)) in eight.iter().enumerate() {
+                let shading = batch.shading[usize::from(number) % Batch::CAPACITY];
+                // SAFETY: such a kernel is given out only where AVX-512 was found.
+                unsafe { tall.draw(group, i, shading, place, pixels) };
+            }
+        }
+        tall.drawn()
+    }
+    // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
+    let (spans, covered) = unsafe { avx2(batch, kept, place, group, pixels) };
+    Drawn { spans, covered, pixels: covered, ..Drawn::default() }
 }
 
 /// Eight f64.
