@@ -4,7 +4,9 @@ use core::arch::x86_64::*;
 
 use super::Batch;
 use super::avx512::Tall;
-use super::rows::{Draw, Edges, Floats, Group, Ints, LANES, MAGIC, Place, Row, Spans, gather, rows_by, tall_by};
+use super::rows::{
+    Draw, Edges, Floats, Gathered, Group, Ints, LANES, MAGIC, Place, Row, Spans, rows_by, set_up, tall_by,
+};
 use super::sieve::{Chosen, Kept, sieve_inlined};
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
@@ -55,7 +57,7 @@ pub(super) fn tall_at_once(
     fn avx2(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group, pixels: &mut [u8]) -> (u32, u32) {
         let mut tall = Tall::new();
         for eight in kept.chunks(LANES) {
-            gather::<true>(batch, eight, place, group);
+            set_up::<true>(&Gathered::of(batch, eight), place, group);
             for (i, &(number, _)) in eight.iter().enumerate() {
                 let shading = batch.shading[usize::from(number) % Batch::CAPACITY];
                 // SAFETY: such a kernel is given out only where AVX-512 was found.
