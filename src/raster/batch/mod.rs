@@ -260,8 +260,11 @@ impl Stages {
     fn of(kernel: Kernel) -> Self {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
-            let tall_at_once = kernel.has_avx512().then_some(x86::tall_at_once as TallAtOnce);
-            return Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, tall_at_once };
+            let stages = Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, tall_at_once: None };
+            if kernel.has_avx512() {
+                return Self { rows: x86::rows_512, tall_at_once: Some(x86::tall_at_once), ..stages };
+            }
+            return stages;
         }
         let _ = kernel;
         Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall, tall_at_once: None }

@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 
 use super::Batch;
-use super::avx512::Tall;
+use super::avx512::{self, Tall};
 use super::rows::{
     Draw, Edges, Floats, Gathered, Group, Ints, LANES, MAGIC, Place, Row, Spans, rows_by, set_up, tall_by,
 };
@@ -29,6 +29,17 @@ pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
         rows_by(batch, kept, place, spans, |group, number, pitch, to| row(group, number, pitch, to))
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
+    unsafe { avx2(batch, kept, place, spans) }
+}
+
+/// Only with a kernel for which `Kernel::has_avx512` is true.
+pub(super) fn rows_512(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
+    #[target_feature(enable = "avx2")]
+    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
+        // SAFETY: such a kernel is given out only where AVX-512 was found.
+        rows_by(batch, kept, place, spans, |group, number, pitch, to| unsafe { avx512::row(group, number, pitch, to) })
+    }
+    // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
     unsafe { avx2(batch, kept, place, spans) }
 }
 
