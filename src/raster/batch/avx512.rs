@@ -7,7 +7,8 @@
 use core::arch::asm;
 use core::mem::offset_of;
 
-use super::rows::{Edges, Group, LANES, MAGIC, Place, Row};
+use super::rows::{Edges, Group, Ints, LANES, MAGIC, Place, Row};
+use super::sieve::Chosen;
 use crate::raster::shade::RESEED;
 use crate::raster::shading::Shading;
 
@@ -70,6 +71,35 @@ impl Edge {
     fn of(edges: &Edges, i: usize) -> Self {
         Self { n: edges.n[i], per_eight: edges.per_row[i] * LANES as f64, inverse: edges.inverse[i] }
     }
+}
+
+/// `sieve::pack`.
+///
+/// # Safety
+/// Only for a processor for which `span::simd::avx512::found` is true.
+#[inline(always)]
+pub(super) unsafe fn pack(eight: &Ints, to: &mut [Chosen; LANES]) -> usize {
+    let count: u64;
+    // SAFETY: the caller has AVX-512 F and VL and POPCNT found. Read are the eight numbers, written the eight places of 16
+    // bits, of which any number makes a `Chosen`. The stack is not used; flags and all registers written are given up.
+    unsafe {
+        asm!(
+            "vmovdqu32  ymm16, [{eight}]",
+            "vptestmd   k1, ymm16, ymm16",
+            "vpcompressd ymm16{{k1}}{{z}}, ymm16",
+            "vpmovdw    xmm16, ymm16",
+            "vmovdqu32  [{to}], xmm16",
+            "kmovd      {count:e}, k1",
+            "popcnt     {count:e}, {count:e}",
+            eight = in(reg) eight,
+            to = in(reg) to,
+            count = out(reg) count,
+            out("zmm16") _, out("k1") _,
+            options(nostack),
+        );
+    }
+    // At most eight.
+    count as usize
 }
 
 /// `rows::row`: row number `row` of eight triangles.

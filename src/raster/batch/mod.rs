@@ -189,13 +189,14 @@ impl<D: Cell> Raster<'_, D> {
     ) -> Drawn {
         let mut drawn = Drawn::default();
         let mut left = kept.triangles();
-        while let Some(&(first, kind)) = left.first() {
+        while let Some(first) = left.first() {
+            let kind = first.kind();
             if kind == Kind::Other {
-                drawn += self.one_of::<CLIPS>(batch, usize::from(first));
+                drawn += self.one_of::<CLIPS>(batch, first.number());
                 left = &left[1..];
                 continue;
             }
-            let alike = left.iter().position(|(_, other)| *other != kind).unwrap_or(left.len());
+            let alike = Chosen::alike(left);
             if kind == Kind::Tall
                 && let (None, Some(tall)) = (&self.depth, stages.tall_at_once)
             {
@@ -262,7 +263,8 @@ impl Stages {
         if kernel.has_avx2() {
             let stages = Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, tall_at_once: None };
             if kernel.has_avx512() {
-                return Self { rows: x86::rows_512, tall_at_once: Some(x86::tall_at_once), ..stages };
+                let tall_at_once = Some(x86::tall_at_once as TallAtOnce);
+                return Self { sieve: x86::sieve_512, rows: x86::rows_512, tall_at_once, ..stages };
             }
             return stages;
         }

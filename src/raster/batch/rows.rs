@@ -234,8 +234,8 @@ impl Gathered {
     /// The first eight. Where there are less the last place's are others.
     #[inline(always)]
     pub(super) fn gather(&mut self, batch: &Batch, triangles: &[Chosen]) {
-        for (lane, &(at, _)) in triangles.iter().take(LANES).enumerate() {
-            let at = usize::from(at) % Batch::CAPACITY;
+        for (lane, triangle) in triangles.iter().take(LANES).enumerate() {
+            let at = triangle.number();
             for corner in 0..3 {
                 self.x[corner][lane] = batch.x[corner][at];
                 self.y[corner][lane] = batch.y[corner][at];
@@ -377,7 +377,7 @@ fn list(
         row(group, number, place.pitch as i32, to);
     }
     let mut pixels = 0;
-    for (i, &(number, _)) in triangles.iter().enumerate().take(LANES) {
+    for (i, triangle) in triangles.iter().enumerate().take(LANES) {
         let rows = group.rows[i];
         let (first, before) = (*count, pixels);
         // Two at a time, one that there is not with no length: the end of a loop over rows is not foreseen. (Of 2.7
@@ -409,7 +409,7 @@ fn list(
         if let Some(width) = place.depth_width
             && pixels > before
         {
-            let plane = batch.depth_plane(usize::from(number));
+            let plane = batch.depth_plane(triangle.number());
             group.depths(i, &plane, place, width, &spans[first..*count], &mut depths[first..*count]);
         }
     }
@@ -453,12 +453,12 @@ pub(super) fn tall_by(
     let mut found = Lines::NONE;
     for eight in kept.chunks(LANES) {
         set_up::<true>(&Gathered::of(batch, eight), place, &mut spans.group);
-        for (i, &(number, _)) in eight.iter().enumerate() {
-            let number = usize::from(number);
+        for (i, triangle) in eight.iter().enumerate() {
+            let number = triangle.number();
             // Of a triangle without area, which has no spans, there is none.
             let mut plane = None;
             // A row that does not start anew is one piece, however long.
-            let (pieces, longest) = match batch.shading[number % Batch::CAPACITY] {
+            let (pieces, longest) = match batch.shading[number] {
                 // At most 256 pixels.
                 Shading::GouraudReseeded => {
                     ((spans.group.columns[i] - 1) as usize / RESEED as usize + 1, RESEED as u32)

@@ -1,7 +1,7 @@
 //! The sieve: which triangles of a batch may cover a pixel.
 
 use super::Batch;
-use super::rows::{LANES, MOST_COLUMNS, MOST_ROWS, MOST_UNITS};
+use super::rows::{Ints, LANES, MOST_COLUMNS, MOST_ROWS, MOST_UNITS};
 use crate::raster::frame::Rect;
 
 /// What becomes of a triangle that has a pixel centre in its box.
@@ -14,19 +14,49 @@ pub(super) enum Kind {
     Other,
 }
 
-/// A triangle's number, and what becomes of it.
-pub(super) type Chosen = (u8, Kind);
+/// A triangle's number, and above it what becomes of it: 1 small, 2 tall, 3 another.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub(super) struct Chosen(u16);
 
-/// Numbers of triangles, in order.
+impl Chosen {
+    /// Below `Batch::CAPACITY`.
+    #[inline(always)]
+    pub(super) fn number(self) -> usize {
+        usize::from(self.0) % Batch::CAPACITY
+    }
+
+    #[inline(always)]
+    pub(super) fn kind(self) -> Kind {
+        match self.0 >> 8 {
+            1 => Kind::Small,
+            2 => Kind::Tall,
+            _ => Kind::Other,
+        }
+    }
+
+    /// How many of those kept, from the first on, become the same.
+    #[inline(always)]
+    pub(super) fn alike(kept: &[Self]) -> usize {
+        let Some(first) = kept.first() else { return 0 };
+        let differs = |other: &Self| (other.0 ^ first.0) >> 8;
+        // Mostly all. (One by one 2 ns a triangle.)
+        let alike = |eight: &&[Self; LANES]| eight.iter().fold(0, |any, other| any | differs(other)) == 0;
+        let whole = kept.as_chunks::<LANES>().0.iter().take_while(alike).count() * LANES;
+        whole + kept[whole..].iter().take_while(|other| differs(other) == 0).count()
+    }
+}
+
+/// Those of numbers in order that are kept, packed.
 pub(super) struct Kept {
-    // One place more than triangles: every triangle is written, and those that are not kept are written over.
-    triangles: [Chosen; Batch::CAPACITY + 1],
+    // Eight places more than triangles: eight are written at a time, and those that are not kept are written over.
+    triangles: [Chosen; Batch::CAPACITY + LANES],
     count: usize,
 }
 
 impl Kept {
     pub(super) fn new() -> Self {
-        Self { triangles: [(0, Kind::Other); Batch::CAPACITY + 1], count: 0 }
+        Self { triangles: [Chosen(0); Batch::CAPACITY + LANES], count: 0 }
     }
 
     pub(super) fn triangles(&self) -> &[Chosen] {
@@ -34,24 +64,43 @@ impl Kept {
     }
 }
 
+/// Writes those of eight that are not 0 one after the other, anything behind them, and says how many they are.
+#[inline(always)]
+pub(super) fn pack(eight: &Ints, to: &mut [Chosen; LANES]) -> usize {
+    let mut count = 0;
+    for &chosen in eight {
+        // Below 1,024; fewer than eight come before it.
+        to[count % LANES] = Chosen(chosen as u16);
+        count += usize::from(chosen != 0);
+    }
+    count
+}
+
 /// Keeps the triangles that have a pixel centre in their box and inside `clip`.
 pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
-    sieve_inlined(batch, clip, kept);
+    sieve_by(batch, clip, kept, pack);
 }
 
 /// The longer side of the box of a triangle whose pixels are looked at one by one.
 const MOST_LOOKED_AT: i32 = 2;
 
 #[inline(always)]
-pub(super) fn sieve_inlined(batch: &Batch, clip: Rect, kept: &mut Kept) {
+pub(super) fn sieve_by(
+    batch: &Batch,
+    clip: Rect,
+    kept: &mut Kept,
+    pack: impl Fn(&Ints, &mut [Chosen; LANES]) -> usize,
+) {
     // Inside a frame, at most 4,096.
     let [left, top, right, bottom] = [clip.x0, clip.y0, clip.x1, clip.y1].map(|side| side as i32);
-    // 0: not kept, 1: small, 2: tall, 3: another.
-    let mut kinds = [0_i32; Batch::CAPACITY];
-    // Whole vectors of eight; what stands in the last after the batch's own triangles is not looked at.
+    // Whole vectors of eight; what stands in the last after the batch's own triangles is not kept.
     let [x0, x1, x2] = batch.x.each_ref().map(|x| x.as_chunks::<LANES>().0);
     let [y0, y1, y2] = batch.y.each_ref().map(|y| y.as_chunks::<LANES>().0);
-    for (at, kinds) in kinds.as_chunks_mut::<LANES>().0.iter_mut().take(batch.count.div_ceil(LANES)).enumerate() {
+    let mut count = 0;
+    for at in 0..batch.count.div_ceil(LANES).min(Batch::CAPACITY / LANES) {
+        // At most 128.
+        let (first, most) = ((at * LANES) as i32, batch.count as i32);
+        let mut chosen = [0_i32; LANES];
         let (x, y) = ([x0[at], x1[at], x2[at]], [y0[at], y1[at], y2[at]]);
         let (mut columns, mut rows, mut are_tiny) = ([0; LANES], [0; LANES], [0; LANES]);
         for i in 0..LANES {
@@ -65,7 +114,9 @@ pub(super) fn sieve_inlined(batch: &Batch, clip: Rect, kept: &mut Kept) {
             let few = (end_column - column <= MOST_COLUMNS) & (end_row - row <= MOST_ROWS);
             let more = (high_x - low_x <= MOST_UNITS) & (high_y - low_y <= MOST_UNITS);
             let tiny = (end_column - column <= MOST_LOOKED_AT) & (end_row - row <= MOST_LOOKED_AT);
-            kinds[i] = if covers { 3 - i32::from(inside & more) - i32::from(inside & few) } else { 0 };
+            let number = first + i as i32; // below 128
+            let kind = 3 - i32::from(inside & more) - i32::from(inside & few);
+            chosen[i] = if covers & (number < most) { kind << 8 | number } else { 0 };
             are_tiny[i] = i32::from(covers & inside & tiny);
             (columns[i], rows[i]) = (column, row);
         }
@@ -74,20 +125,12 @@ pub(super) fn sieve_inlined(batch: &Batch, clip: Rect, kept: &mut Kept) {
                 let (left, top) = (columns[i] * 256 + 128, rows[i] * 256 + 128);
                 let corner = |k: usize| (x[k][i] - left, y[k][i] - top);
                 let none = covers_none(corner(0), corner(1), corner(2));
-                kinds[i] -= are_tiny[i] & i32::from(none);
+                chosen[i] = if none & (are_tiny[i] != 0) { 0 } else { chosen[i] };
             }
         }
-    }
-    let mut count = 0;
-    for (at, &kind) in kinds[..batch.count].iter().enumerate() {
-        // Below 128.
-        let is = match kind {
-            1 => Kind::Small,
-            2 => Kind::Tall,
-            _ => Kind::Other,
-        };
-        kept.triangles[count] = (at as u8, is);
-        count += usize::from(kind != 0);
+        if let Some(to) = kept.triangles[count..].first_chunk_mut::<LANES>() {
+            count += pack(&chosen, to);
+        }
     }
     kept.count = count;
 }

@@ -7,7 +7,7 @@ use super::avx512::{self, Tall};
 use super::rows::{
     Draw, Edges, Floats, Gathered, Group, Ints, LANES, MAGIC, Place, Row, Spans, rows_by, set_up, tall_by,
 };
-use super::sieve::{Chosen, Kept, sieve_inlined};
+use super::sieve::{Chosen, Kept, pack, sieve_by};
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
 use crate::raster::triangle::Drawn;
@@ -16,9 +16,20 @@ use crate::raster::triangle::Drawn;
 pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, clip: Rect, kept: &mut Kept) {
-        sieve_inlined(batch, clip, kept);
+        sieve_by(batch, clip, kept, pack);
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
+    unsafe { avx2(batch, clip, kept) }
+}
+
+/// Only with a kernel for which `Kernel::has_avx512` is true.
+pub(super) fn sieve_512(batch: &Batch, clip: Rect, kept: &mut Kept) {
+    #[target_feature(enable = "avx2")]
+    fn avx2(batch: &Batch, clip: Rect, kept: &mut Kept) {
+        // SAFETY: such a kernel is given out only where AVX-512 was found.
+        sieve_by(batch, clip, kept, |eight, to| unsafe { avx512::pack(eight, to) });
+    }
+    // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
     unsafe { avx2(batch, clip, kept) }
 }
 
@@ -69,8 +80,8 @@ pub(super) fn tall_at_once(
         let mut tall = Tall::new();
         for eight in kept.chunks(LANES) {
             set_up::<true>(&Gathered::of(batch, eight), place, group);
-            for (i, &(number, _)) in eight.iter().enumerate() {
-                let shading = batch.shading[usize::from(number) % Batch::CAPACITY];
+            for (i, triangle) in eight.iter().enumerate() {
+                let shading = batch.shading[triangle.number()];
                 // SAFETY: such a kernel is given out only where AVX-512 was found.
                 unsafe { tall.draw(group, i, shading, place, pixels) };
             }
