@@ -189,7 +189,7 @@ pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     if !HAS_F64 {
         return kept.len();
     }
-    rows_by(batch, kept, place, spans, row)
+    rows_by(batch, kept, place, spans, set_up::<false>, row)
 }
 
 #[inline(always)]
@@ -198,6 +198,7 @@ pub(super) fn rows_by(
     kept: &[Chosen],
     place: Place,
     spans: &mut Spans<'_>,
+    set_up: impl Fn(&Gathered, Place, &mut Group),
     row: impl Fn(&Group, i32, i32, &mut Row),
 ) -> usize {
     let mut listed = 0;
@@ -207,7 +208,7 @@ pub(super) fn rows_by(
             break;
         }
         listed += group.len();
-        set_up::<false>(&gathered, place, &mut spans.group);
+        set_up(&gathered, place, &mut spans.group);
         // The next before this one's rows are listed: vectors that are read just after their numbers were stored one by
         // one wait for these. (??? ns a triangle of 2.7 pixels)
         gathered.gather(batch, &kept[listed.min(kept.len())..]);
@@ -218,9 +219,9 @@ pub(super) fn rows_by(
 
 /// Corners of eight triangles.
 pub(super) struct Gathered {
-    x: [Ints; 3],
-    y: [Ints; 3],
-    shade: [Ints; 3],
+    pub(super) x: [Ints; 3],
+    pub(super) y: [Ints; 3],
+    pub(super) shade: [Ints; 3],
 }
 
 impl Gathered {

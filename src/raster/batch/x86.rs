@@ -37,7 +37,7 @@ pub(super) fn sieve_512(batch: &Batch, clip: Rect, kept: &mut Kept) {
 pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
-        rows_by(batch, kept, place, spans, |group, number, pitch, to| row(group, number, pitch, to))
+        rows_by(batch, kept, place, spans, set_up::<false>, |group, number, pitch, to| row(group, number, pitch, to))
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
     unsafe { avx2(batch, kept, place, spans) }
@@ -48,7 +48,10 @@ pub(super) fn rows_512(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
         // SAFETY: such a kernel is given out only where AVX-512 was found.
-        rows_by(batch, kept, place, spans, |group, number, pitch, to| unsafe { avx512::row(group, number, pitch, to) })
+        let set_up = |gathered: &Gathered, place, group: &mut Group| unsafe { avx512::set_up(gathered, place, group) };
+        // SAFETY: the same.
+        let row = |group: &Group, number, pitch, to: &mut Row| unsafe { avx512::row(group, number, pitch, to) };
+        rows_by(batch, kept, place, spans, set_up, row)
     }
     // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
     unsafe { avx2(batch, kept, place, spans) }
@@ -79,7 +82,8 @@ pub(super) fn tall_at_once(
     fn avx2(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group, pixels: &mut [u8]) -> (u32, u32) {
         let mut tall = Tall::new();
         for eight in kept.chunks(LANES) {
-            set_up::<true>(&Gathered::of(batch, eight), place, group);
+            // SAFETY: such a kernel is given out only where AVX-512 was found.
+            unsafe { avx512::set_up(&Gathered::of(batch, eight), place, group) };
             for (i, triangle) in eight.iter().enumerate() {
                 let shading = batch.shading[triangle.number()];
                 // SAFETY: such a kernel is given out only where AVX-512 was found.
