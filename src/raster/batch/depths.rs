@@ -16,9 +16,7 @@
 //! whole number and 1/(2A) more.) A small triangle's box is less than 65 × 17 pixels, so A is below 2²⁷, |n| below 2⁴⁸ and
 //! 2²⁴·r below 2⁵¹: both are exact, and the quotients, off by at most |n| / A · 2⁻⁵², less than 1/(2A) off.
 
-use super::Batch;
-use super::rows::{Floats, Group, LANES, MAGIC, Place};
-use super::sieve::Chosen;
+use super::rows::{Floats, Gathered, Group, LANES, MAGIC, Place};
 use crate::span::list::{Depths, Listed};
 
 /// Depths of eight triangles, with 24 fraction bits, modulo 2⁶⁴.
@@ -32,15 +30,8 @@ pub(super) struct Planes {
 impl Planes {
     /// Of the small triangles of a group that is set up.
     #[inline(always)]
-    pub(super) fn of(batch: &Batch, triangles: &[Chosen], group: &Group) -> Self {
-        // Where there are less than eight, the first again: a loop of as many turns as there are took as long as the rest.
-        let first = triangles.first().map_or(0, |&(at, _)| at);
-        let places: [usize; LANES] = core::array::from_fn(|lane| {
-            usize::from(triangles.get(lane).map_or(first, |&(at, _)| at)) % Batch::CAPACITY
-        });
-        let x = batch.x.each_ref().map(|x| places.map(|at| x[at]));
-        let y = batch.y.each_ref().map(|y| places.map(|at| y[at]));
-        let depth = batch.depth.each_ref().map(|depth| places.map(|at| depth[at]));
+    pub(super) fn of(gathered: &Gathered, group: &Group) -> Self {
+        let Gathered { x, y, depth, .. } = gathered;
         let mut planes = Self { at: [0; LANES], per_column: [0; LANES], per_row: [0; LANES] };
         let (mut gx, mut gy) = ([0; LANES], [0; LANES]);
         let (mut area, mut nx, mut ny): (Floats, Floats, Floats) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
@@ -57,19 +48,20 @@ impl Planes {
         }
         gradients(&nx, &area, &group.inverse, &mut gx);
         gradients(&ny, &area, &group.inverse, &mut gy);
-        let (mut right, mut down, mut of_first) = ([0; LANES], [0; LANES], [0; LANES]);
+        let (mut right, mut down, mut of_first) = ([0; LANES], [0; LANES], [0_u32; LANES]);
         for i in 0..LANES {
-            // The first corner by (y, x).
-            let (mut first, mut d) = ((y[0][i], x[0][i]), depth[0][i]);
+            // The first corner by (y, x), in masks: −1 or 0.
+            let (mut fx, mut fy, mut d) = (x[0][i], y[0][i], depth[0][i].cast_signed());
             for corner in 1..3 {
-                let (cy, cx) = (y[corner][i], x[corner][i]);
-                let is_before = (cy < first.0) | ((cy == first.0) & (cx < first.1));
-                first = (if is_before { cy } else { first.0 }, if is_before { cx } else { first.1 });
-                d = if is_before { depth[corner][i] } else { d };
+                let (cx, cy) = (x[corner][i], y[corner][i]);
+                let is_before = -i32::from(cy < fy) | (-i32::from(cy == fy) & -i32::from(cx < fx));
+                fx ^= (fx ^ cx) & is_before;
+                fy ^= (fy ^ cy) & is_before;
+                d ^= (d ^ depth[corner][i].cast_signed()) & is_before;
             }
-            right[i] = group.column[i] * 256 + 128 - first.1;
-            down[i] = group.row[i] * 256 + 128 - first.0;
-            of_first[i] = d;
+            right[i] = group.column[i] * 256 + 128 - fx;
+            down[i] = group.row[i] * 256 + 128 - fy;
+            of_first[i] = d.cast_unsigned();
         }
         for i in 0..LANES {
             let sum = (i64::from(of_first[i]) << 24) + (1 << 23);
