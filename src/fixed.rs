@@ -30,6 +30,19 @@ pub(crate) fn nearest_whole(x: f64) -> i64 {
     (x + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()) as i64
 }
 
+/// The whole part of a value of at least 0 and below 2³¹; of anything else some number. A cast would saturate, which keeps
+/// the compiler from making vectors of it.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+pub(crate) fn whole_part(x: f64) -> i32 {
+    // As in `nearest_whole`; what was rounded up is one too much.
+    const MAGIC: f64 = 6_755_399_441_055_744.0;
+    let sum = x + MAGIC;
+    // Its lower half.
+    let nearest = sum.to_bits() as i32;
+    nearest.wrapping_sub(i32::from(sum - MAGIC > x))
+}
+
 /// A screen coordinate in 1/256 pixel: 24 bits before the point, 8 behind it.
 ///
 /// Pixel `p` has its centre at `256·p + 128` units.
@@ -167,6 +180,22 @@ impl U8F8 {
         let above = (f64::from(intensity.max(0.0).min(1.0)) * units + 0.5) as u32;
         let shade = u32::from(first) * 256 + above;
         Self(if shade > 0xFF00 { 0xFF00 } else { shade as u16 })
+    }
+
+    /// The same of eight, in a form that the compiler makes vectors of.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    pub(crate) fn from_eight_intensities(intensities: &[f32; 8], first: u8, entries: u16) -> [Self; 8] {
+        let units = f64::from(entries.saturating_sub(1)) * 256.0;
+        let mut shades = [Self(0); 8];
+        for (shade, &intensity) in shades.iter_mut().zip(intensities) {
+            #[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
+            let clamped = intensity.max(0.0).min(1.0);
+            let sum = i32::from(first) * 256 + whole_part(f64::from(clamped) * units + 0.5);
+            // Neither part is above 2¹⁶.
+            *shade = Self(if sum > 0xFF00 { 0xFF00 } else { sum as u16 });
+        }
+        shades
     }
 }
 

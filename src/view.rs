@@ -17,6 +17,8 @@ use crate::mesh::Bounds;
 use crate::raster::Vertex;
 use crate::scene::{Camera, Object, matrix_product};
 
+pub(crate) mod lanes;
+
 /// What is drawn on: size in pixels, and the shape of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Screen {

@@ -16,6 +16,7 @@
 //! | `source` | [`Light`]: suns, and lamps with a position and a fall-off (S0) |
 //! | `material` | [`Material`]: what a surface answers |
 //! | `intensity` | the sum |
+//! | `suns` | that of suns on matt surfaces at eight vertices at a time |
 //! | `lanes` | the same at eight points at a time |
 //! | `power` | how narrow a highlight is |
 
@@ -24,7 +25,9 @@ mod lanes;
 mod material;
 mod power;
 mod source;
+mod suns;
 
 pub(crate) use intensity::{Answer, Beam, LampBeam, Lights, both_sides, lamp_reaches};
 pub use material::{Blend, Material, RampChoice};
 pub use source::Light;
+pub(crate) use suns::both_sides_of_eight;

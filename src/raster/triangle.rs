@@ -106,6 +106,18 @@ impl<'a, D: Cell> Raster<'a, D> {
         self
     }
 
+    /// The rectangle that is drawn in.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn clip(&self) -> Rect {
+        self.clip
+    }
+
+    /// The kernel that draws.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn kernel(&self) -> Kernel {
+        self.kernel
+    }
+
     /// The frame that is drawn into.
     pub fn frame(&mut self) -> Frame<'_> {
         self.frame.reborrow()

@@ -74,6 +74,13 @@ impl Vertex {
         Ok(Self { x: h, y: v, shade: shade.to_bits(), depth })
     }
 
+    /// A vertex that has been one before, or is legal by the way it was made.
+    #[inline]
+    pub(crate) fn of_projected(x: I24F8, y: I24F8, shade: U8F8, depth: u32) -> Self {
+        debug_assert!(Self::new(x, y, shade, depth).is_ok(), "({x:?}, {y:?}), {shade:?}");
+        Self { x: x.to_bits(), y: y.to_bits(), shade: shade.to_bits(), depth }
+    }
+
     /// The same vertex with another shade; what is above 255.0 counts as that.
     #[must_use]
     #[inline]

@@ -7,8 +7,10 @@
 use super::Stats;
 use super::budget::{Budget, Choice, Question};
 use super::clip::{Carried, Corner, WithEffects, clip};
+use super::lit::{LitVertex, LitVertices};
 use super::paint::Paint;
-use super::vertex::{Extra, Geometry, LitVertex};
+use super::sift::{self, Sieve};
+use super::vertex::{Extra, Geometry};
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
@@ -32,6 +34,10 @@ pub(super) trait Sink {
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading);
     /// A face whose pixels pass through stages, the number of its surface, and what shades it.
     fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner);
+    /// What faces without effects may be left out by, if any: those that cover no pixel centre.
+    fn sieve(&self) -> Option<Sieve> {
+        None
+    }
 }
 
 /// One object in one frame.
@@ -42,7 +48,7 @@ pub(super) struct Faces<'a> {
     pub(super) lights: Lights<'a>,
     /// One for each surface of the mesh.
     pub(super) paints: &'a [Paint],
-    pub(super) lit: &'a [LitVertex],
+    pub(super) lit: &'a LitVertices,
     /// As many, if there are effects.
     pub(super) extras: &'a [Extra],
     /// Whether vertices may need clipping.
@@ -73,18 +79,23 @@ impl Faces<'_> {
         let effects = !self.extras.is_empty();
         if let Some(budget) = self.budget {
             let choices = (budget, choices);
-            return match (self.clips, self.culls, effects) {
-                (false, false, false) => self.each_within::<false, false, false>(choices, stats, sink),
-                (false, true, false) => self.each_within::<false, true, false>(choices, stats, sink),
-                (true, false, false) => self.each_within::<true, false, false>(choices, stats, sink),
-                (true, true, false) => self.each_within::<true, true, false>(choices, stats, sink),
-                (false, false, true) => self.each_within::<false, false, true>(choices, stats, sink),
-                (false, true, true) => self.each_within::<false, true, true>(choices, stats, sink),
-                (true, false, true) => self.each_within::<true, false, true>(choices, stats, sink),
-                (true, true, true) => self.each_within::<true, true, true>(choices, stats, sink),
+            return match (self.culls, effects) {
+                (false, false) => self.sifted_within::<false, false>(choices, stats, sink),
+                (true, false) => self.sifted_within::<true, false>(choices, stats, sink),
+                (false, true) => self.sifted_within::<false, true>(choices, stats, sink),
+                (true, true) => self.sifted_within::<true, true>(choices, stats, sink),
             };
         }
         let before = stats.drawn;
+        // A shading with a cover of its own draws beside pixel centres.
+        let sieve = if self.rung.shading().has_exact_cover() && !effects { sink.sieve() } else { None };
+        if let Some(sieve) = sieve {
+            match self.culls {
+                true => self.sifted::<true>(&sieve, stats, sink),
+                false => self.sifted::<false>(&sieve, stats, sink),
+            }
+            return stats.shares.add(self.rung, stats.drawn - before);
+        }
         match (self.clips, self.culls, effects) {
             (false, false, false) => self.each::<false, false, false>(stats, sink),
             (false, true, false) => self.each::<false, true, false>(stats, sink),
@@ -103,7 +114,7 @@ impl Faces<'_> {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         for (&indices, &surface) in triangles.iter().zip(triangle_surfaces) {
             // In range: the mesh saw to it, and every vertex is lit.
-            let corners = indices.map(|i| self.lit[i as usize]);
+            let corners = indices.map(|i| self.lit.get(i as usize));
             if CLIPS && corners.iter().any(|corner| corner.needs_clipping) {
                 stats.clipped += 1;
                 self.clipped::<CULLS, EFFECTS>(indices, surface, &corners, stats, sink);
@@ -128,53 +139,87 @@ impl Faces<'_> {
         }
     }
 
-    /// The same, each by the rung that is decided for it.
+    /// The same for faces without effects, of which those that cover no pixel centre are left out, though they count as
+    /// drawn.
     #[inline(never)]
-    fn each_within<const CLIPS: bool, const CULLS: bool, const EFFECTS: bool>(
+    fn sifted<const CULLS: bool>(&self, sieve: &Sieve, stats: &mut Stats, sink: &mut impl Sink) {
+        let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
+        for (triangles, surfaces) in triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST)) {
+            let sifted = sieve.sift(&self.lit.places, triangles);
+            let drawn = if CULLS { sifted.front } else { sifted.front | sifted.back };
+            let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(sifted.clipped.count_ones()));
+            stats.drawn += drawn_here;
+            stats.clipped += clipped;
+            stats.culled += triangles.len() as u64 - drawn_here - clipped;
+            let mut left = (drawn & sifted.covers) | sifted.clipped;
+            while left != 0 {
+                let at = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let (indices, surface) = (triangles[at], surfaces[at]);
+                let is = |bits: u64| bits >> at & 1 == 1;
+                if is(sifted.clipped) {
+                    let corners = indices.map(|i| self.lit.get(i as usize));
+                    self.clipped::<CULLS, false>(indices, surface, &corners, stats, sink);
+                    continue;
+                }
+                let turned = !CULLS && is(sifted.back);
+                let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
+                let shading = self.shading(indices, surface, turned, stats);
+                sink.plain(&vertices, shading);
+            }
+        }
+    }
+
+    /// The same, with effects or without, each by the rung that is decided for it. (Every rung that there is a choice of
+    /// has exact cover.) On what covers no pixel centre nothing is decided.
+    #[inline(never)]
+    fn sifted_within<const CULLS: bool, const EFFECTS: bool>(
         &self,
         (budget, choices): (&Budget, &mut [Choice]),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
+        let sieve = sink.sieve();
+        let (sieve, all) = sieve.map_or((Sieve::EVERYTHING, !0), |sieve| (sieve, 0));
         let mut linear = 0;
-        for (triangle, ((&indices, &surface), choice)) in
-            triangles.iter().zip(triangle_surfaces).zip(choices).enumerate()
-        {
-            let corners = indices.map(|i| self.lit[i as usize]);
-            if CLIPS && corners.iter().any(|corner| corner.needs_clipping) {
-                stats.clipped += 1;
-                self.clipped_within::<CULLS, EFFECTS>(
-                    (triangle, indices, surface),
-                    &corners,
-                    (budget, choice),
-                    stats,
-                    sink,
-                );
-                continue;
-            }
-            let vertices = corners.map(|corner| corner.vertex);
-            let area = doubled_area(&vertices);
-            if area == 0 || (CULLS && area > 0) {
-                stats.culled += 1;
-                continue;
-            }
-            stats.drawn += 1;
-            let turned = !CULLS && area > 0;
-            let vertices = if turned { corners.map(|corner| corner.vertex.with_shade(corner.back)) } else { vertices };
-            if *choice == Choice::Unknown {
-                *choice = budget.decide_at_once(triangle, surface, &corners, turned);
+        for (chunk, triangles) in triangles.chunks(sift::MOST).enumerate() {
+            let first = chunk * sift::MOST;
+            let (surfaces, choices) = (&triangle_surfaces[first..], &mut choices[first..]);
+            let sifted = sieve.sift(&self.lit.places, triangles);
+            let drawn = if CULLS { sifted.front } else { sifted.front | sifted.back };
+            let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(sifted.clipped.count_ones()));
+            stats.drawn += drawn_here;
+            stats.clipped += clipped;
+            stats.culled += triangles.len() as u64 - drawn_here - clipped;
+            let mut left = (drawn & (sifted.covers | all)) | sifted.clipped;
+            while left != 0 {
+                let at = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let (indices, surface, choice) = (triangles[at], surfaces[at], &mut choices[at]);
+                let is = |bits: u64| bits >> at & 1 == 1;
+                if is(sifted.clipped) {
+                    let corners = indices.map(|i| self.lit.get(i as usize));
+                    let face = (first + at, indices, surface);
+                    self.clipped_within::<CULLS, EFFECTS>(face, &corners, (budget, choice), stats, sink);
+                    continue;
+                }
+                let turned = !CULLS && is(sifted.back);
+                if *choice == Choice::Unknown {
+                    *choice = budget.decide_at_once(first + at, surface, self.lit, indices, turned);
+                }
+                let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
                 if *choice == Choice::Unknown {
                     let shades = vertices.map(|vertex| vertex.shade());
-                    let face = (triangle, indices, surface, turned);
+                    let face = (first + at, indices, surface, turned);
                     *choice = self.decide::<EFFECTS>(budget, face, (shades, Some(&vertices)));
                 }
-            }
-            if *choice == Choice::Linear && !(EFFECTS && self.paints[usize::from(surface)].has_effects) {
-                linear += 1;
-                sink.plain(&vertices, Rung::Gouraud88Reseeded.shading());
-            } else {
-                self.of_another_kind::<EFFECTS>((indices, surface, turned), vertices, *choice, stats, sink);
+                if *choice == Choice::Linear && !(EFFECTS && self.paints[usize::from(surface)].has_effects) {
+                    linear += 1;
+                    sink.plain(&vertices, Rung::Gouraud88Reseeded.shading());
+                } else {
+                    self.of_another_kind::<EFFECTS>((indices, surface, turned), vertices, *choice, stats, sink);
+                }
             }
         }
         stats.shares.add(Rung::Gouraud88Reseeded, linear);
@@ -354,8 +399,7 @@ impl Faces<'_> {
         }
         if !self.runs {
             // All corners have the same, wherever the plan says so.
-            let LitVertex { vertex, back, .. } = self.lit[indices[0] as usize];
-            return Shading::Flat(if turned { back } else { vertex.shade() }.nearest());
+            return Shading::Flat(self.lit.shades[indices[0] as usize][usize::from(turned)].nearest());
         }
         self.rung.shading()
     }

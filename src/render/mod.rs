@@ -3,8 +3,9 @@
 //! | file | what |
 //! |---|---|
 //! | `object` | what is kept of an object: its vertices, and what they were made from |
-//! | `vertex` | the stages of vertices: projected, lit, given what effects need |
+//! | `vertex`, `lit` | the stages of vertices: projected, lit, given what effects need; what they come to, in arrays |
 //! | `tessellate` | faces split along their edges |
+//! | `sift` | which faces are turned away, and which cover no pixel centre |
 //! | `face` | the stage of faces, with `clip`: near plane and guard band |
 //! | `bound` | how far linear shades may be from light at every pixel |
 //! | `budget` | the error budget: which rung for which triangle |
@@ -24,11 +25,13 @@ mod budget;
 mod clip;
 mod face;
 mod integer;
+mod lit;
 mod look;
 mod object;
 pub(crate) mod one_pixel;
 mod paint;
 mod pixel_light;
+mod sift;
 mod stats;
 mod tables;
 mod tessellate;
@@ -45,6 +48,7 @@ use self::face::{Manner, Sink};
 use self::integer::IntegerPath;
 use self::look::Looks;
 use self::object::ObjectState;
+use self::sift::Sieve;
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
 use crate::plan::{self, Effect, Forced, Inputs, Plan, Since, decide, sort_by_depth};
@@ -529,7 +533,7 @@ impl Renderer {
                 state.forget();
                 continue;
             }
-            if state.vertices(scene, object, &view, plan, &mut stats) {
+            if state.vertices(scene, object, &view, plan, self.kernel, &mut stats) {
                 changed = true;
                 if self.vertex_bits < VERTEX_BITS {
                     state.round_vertices(self.vertex_bits);
@@ -823,6 +827,11 @@ struct Direct<'a, 'b, const CLIPS: bool> {
 }
 
 impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
+    fn sieve(&self) -> Option<Sieve> {
+        let raster = &self.batched.raster;
+        Some(Sieve { clip: raster.clip(), kernel: raster.kernel() })
+    }
+
     #[inline]
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
         self.batched.triangle(vertices, shading);

@@ -7,15 +7,17 @@ use alloc::vec::Vec;
 use super::Stats;
 use super::budget::{self, Budget, Choice, Lit};
 use super::face::Faces;
+use super::lit::LitVertices;
 use super::paint::Paint;
 use super::pixel_light::normal_table;
 use super::tessellate::Tessellated;
-use super::vertex::{self, Extra, Geometry, LitVertex};
+use super::vertex::{self, Extra, Geometry};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
 use crate::palette::{Palette, Table};
 use crate::plan::{Effect, LEAST_TESSELLATION, ObjectPlan, Since};
 use crate::scene::{Fog, Mapping, Object, Rung, Scene, Shared};
+use crate::span::Kernel;
 use crate::view::{ObjectView, View};
 
 /// What an object's vertices depend on, beside the plan.
@@ -113,7 +115,7 @@ pub(super) struct ObjectState {
     paints: Vec<Paint>,
     /// Of the source's lamps, those in range.
     lamps: Vec<LampBeam>,
-    lit: Vec<LitVertex>,
+    lit: LitVertices,
     extras: Vec<Extra>,
     tessellated: Option<Tessellated>,
     /// Of the mesh, for tessellation.
@@ -183,6 +185,7 @@ impl ObjectState {
         object: &Object,
         view: &View,
         plan: &ObjectPlan,
+        kernel: Kernel,
         stats: &mut Stats,
     ) -> bool {
         let on = Effect::ALL.map(|effect| effect != Effect::Transform && plan.is_on(effect));
@@ -225,10 +228,11 @@ impl ObjectState {
 
         let count = geometry.positions.len();
         stats.vertices += count as u64;
+        self.lit.begin(count);
         if plan.is_on(Effect::NearClipping) || plan.is_on(Effect::ScreenClipping) {
-            vertex::project_tested(&source.view, &geometry, &mut self.lit);
+            vertex::project_tested(&source.view, &geometry, kernel, &mut self.lit);
         } else {
-            vertex::project_inside(&source.view, &geometry, &mut self.lit);
+            vertex::project_inside(&source.view, &geometry, kernel, &mut self.lit);
         }
         if self.paints.iter().any(|paint| paint.has_effects) {
             self.extras.clear();
@@ -248,12 +252,15 @@ impl ObjectState {
         } else if by_vertex {
             stats.lit += count as u64;
             if channels {
+                self.lit.leave_without_light();
                 vertex::light_channels(&geometry, &self.paints, &lights, both, &mut self.extras);
             } else if full {
                 vertex::light_all(&geometry, &self.paints, &lights, both, &mut self.lit);
             } else {
-                vertex::light_suns(&geometry, &self.paints, &lights, &mut self.lit);
+                vertex::light_suns(&geometry, &self.paints, &lights, kernel, &mut self.lit);
             }
+        } else {
+            self.lit.leave_without_light();
         }
         if plan.is_on(Effect::Texture) {
             vertex::texture_coordinates(&geometry, &self.paints, &mut self.extras);
@@ -284,6 +291,9 @@ impl ObjectState {
                 self.choices.resize(geometry.triangles.len(), Choice::Unknown);
             }
             budget.mark(&lit, &mut self.lit);
+            if changed && budget.is_linear_throughout() {
+                self.choices.fill(Choice::Linear);
+            }
         } else if self.budget.is_some() {
             (self.budget, self.choices) = (None, Vec::new());
         }
@@ -402,7 +412,7 @@ impl ObjectState {
 
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
-        self.lit.capacity() * size_of::<LitVertex>()
+        self.lit.bytes()
             + self.extras.capacity() * size_of::<Extra>()
             + self.paints.capacity() * size_of::<Paint>()
             + self.lamps.capacity() * size_of::<LampBeam>()

@@ -62,6 +62,12 @@ impl Paint {
         U8F8::from_intensity(intensity as f32, self.ramp.first(), self.ramp.entries())
     }
 
+    /// The same of eight.
+    #[inline(always)]
+    pub(super) fn shade_of_eight(&self, intensities: &[f64; 8]) -> [U8F8; 8] {
+        U8F8::from_eight_intensities(&intensities.map(|i| i as f32), self.ramp.first(), self.ramp.entries())
+    }
+
     /// The shade without any light but the ambient.
     pub(super) fn constant(&self) -> U8F8 {
         self.shade(self.answer.ambient)

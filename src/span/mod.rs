@@ -263,6 +263,12 @@ impl Kernel {
     pub(crate) fn has_avx2(self) -> bool {
         matches!(self.level, "avx2" | "avx512")
     }
+
+    /// The same of the parts of AVX-512 that `simd::avx512::found` names.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    pub(crate) fn has_avx512(self) -> bool {
+        self.level == "avx512"
+    }
 }
 
 /// The name, and for `simd` the level in brackets.

@@ -20,13 +20,17 @@ use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, I24F8, U8F8};
 use crate::span::Kernel;
 
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[expect(unsafe_code, reason = "assembly for processors found only when the program runs")]
+mod avx512;
+mod depths;
 mod rows;
 mod sieve;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86;
 
-use rows::{DEPTHS, Draw, Place, Spans};
+use rows::{DEPTHS, Draw, Group, Place, Spans};
 use sieve::{Chosen, Kept, Kind};
 
 /// Triangles to be drawn one after the other, in arrays.
@@ -186,13 +190,21 @@ impl<D: Cell> Raster<'_, D> {
     ) -> Drawn {
         let mut drawn = Drawn::default();
         let mut left = kept.triangles();
-        while let Some(&(first, kind)) = left.first() {
+        while let Some(first) = left.first() {
+            let kind = first.kind();
             if kind == Kind::Other {
-                drawn += self.one_of::<CLIPS>(batch, usize::from(first));
+                drawn += self.one_of::<CLIPS>(batch, first.number());
                 left = &left[1..];
                 continue;
             }
-            let alike = left.iter().position(|(_, other)| *other != kind).unwrap_or(left.len());
+            let alike = Chosen::alike(left);
+            if kind == Kind::Tall
+                && let (None, Some(tall)) = (&self.depth, stages.tall_at_once)
+            {
+                drawn += tall(batch, &left[..alike], place, &mut spans.group, self.frame.pixels_mut().0);
+                left = &left[alike..];
+                continue;
+            }
             if kind == Kind::Tall {
                 (stages.tall)(batch, &left[..alike], place, &mut spans, &mut |spans| self.fill(spans, &mut drawn));
                 left = &left[alike..];
@@ -239,15 +251,25 @@ struct Stages {
     sieve: fn(&Batch, super::frame::Rect, &mut Kept),
     rows: fn(&Batch, &[Chosen], Place, &mut Spans<'_>) -> usize,
     tall: fn(&Batch, &[Chosen], Place, &mut Spans<'_>, Draw<'_>),
+    /// The same without a depth buffer.
+    tall_at_once: Option<TallAtOnce>,
 }
+
+/// Draws tall triangles into pixels.
+type TallAtOnce = fn(&Batch, &[Chosen], Place, &mut Group, &mut [u8]) -> Drawn;
 
 impl Stages {
     fn of(kernel: Kernel) -> Self {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
-            return Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall };
+            let stages = Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, tall_at_once: None };
+            if kernel.has_avx512() {
+                let tall_at_once = Some(x86::tall_at_once as TallAtOnce);
+                return Self { sieve: x86::sieve_512, rows: x86::rows_512, tall_at_once, ..stages };
+            }
+            return stages;
         }
         let _ = kernel;
-        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall }
+        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall, tall_at_once: None }
     }
 }

@@ -19,6 +19,7 @@
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
 
 use super::Batch;
+use super::depths::Planes;
 use super::sieve::Chosen;
 use crate::fixed::HAS_F64;
 use crate::raster::depth::DepthPlane;
@@ -54,7 +55,7 @@ pub(super) struct Spans<'a> {
     covered: u32,
     /// Of each span, where there is a depth buffer; else there is no room for any.
     depths: &'a mut [Depths],
-    group: Group,
+    pub(super) group: Group,
     table: [Row; MOST_ROWS as usize],
 }
 
@@ -189,7 +190,7 @@ pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     if !HAS_F64 {
         return kept.len();
     }
-    rows_by(batch, kept, place, spans, row)
+    rows_by(batch, kept, place, spans, set_up::<false>, row, Planes::of)
 }
 
 #[inline(always)]
@@ -198,33 +199,64 @@ pub(super) fn rows_by(
     kept: &[Chosen],
     place: Place,
     spans: &mut Spans<'_>,
+    set_up: impl Fn(&Gathered, Place, &mut Group),
     row: impl Fn(&Group, i32, i32, &mut Row),
+    planes: impl Fn(&Gathered, &Group) -> Planes,
 ) -> usize {
     let mut listed = 0;
+    let mut gathered = Gathered::of(batch, kept, place);
     for group in kept.chunks(LANES) {
         if spans.count + LANES * MOST_ROWS as usize > ROOM {
             break;
         }
         listed += group.len();
-        gather::<false>(batch, group, place, &mut spans.group);
-        list(batch, group, place, spans, &row);
+        set_up(&gathered, place, &mut spans.group);
+        let planes = place.depth_width.map(|width| (width, planes(&gathered, &spans.group)));
+        // The next before this one's rows are listed: vectors that are read just after their numbers were stored one by
+        // one wait for these. (??? ns a triangle of 2.7 pixels)
+        gathered.gather(batch, &kept[listed.min(kept.len())..], place);
+        list(group.len(), place, spans, planes.as_ref(), &row);
     }
     listed
 }
 
-/// Sets up a group. Triangles that it lacks are points.
-#[inline(always)]
-fn gather<const TALL: bool>(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group) {
-    let (mut x, mut y, mut shade) = ([[0; LANES]; 3], [[0; LANES]; 3], [[0; LANES]; 3]);
-    for (lane, &(at, _)) in kept.iter().take(LANES).enumerate() {
-        let at = usize::from(at) % Batch::CAPACITY;
-        for corner in 0..3 {
-            x[corner][lane] = batch.x[corner][at];
-            y[corner][lane] = batch.y[corner][at];
-            shade[corner][lane] = i32::from(batch.shade[corner][at]);
+/// Corners of eight triangles.
+pub(super) struct Gathered {
+    pub(super) x: [Ints; 3],
+    pub(super) y: [Ints; 3],
+    pub(super) shade: [Ints; 3],
+    /// Where there is a depth buffer.
+    pub(super) depth: [[u32; LANES]; 3],
+}
+
+impl Gathered {
+    #[inline(always)]
+    pub(super) fn of(batch: &Batch, triangles: &[Chosen], place: Place) -> Self {
+        let mut gathered =
+            Self { x: [[0; LANES]; 3], y: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3] };
+        gathered.gather(batch, triangles, place);
+        gathered
+    }
+
+    /// The first eight. Where there are less the last place's are others.
+    #[inline(always)]
+    pub(super) fn gather(&mut self, batch: &Batch, triangles: &[Chosen], place: Place) {
+        for (lane, triangle) in triangles.iter().take(LANES).enumerate() {
+            let at = triangle.number();
+            for corner in 0..3 {
+                self.x[corner][lane] = batch.x[corner][at];
+                self.y[corner][lane] = batch.y[corner][at];
+                self.shade[corner][lane] = i32::from(batch.shade[corner][at]);
+            }
+        }
+        if place.depth_width.is_some() {
+            for (lane, triangle) in triangles.iter().take(LANES).enumerate() {
+                for corner in 0..3 {
+                    self.depth[corner][lane] = batch.depth[corner][triangle.number()];
+                }
+            }
         }
     }
-    set_up::<TALL>(&x, &y, &shade, place, group);
 }
 
 /// The edge from `a` down to `b`.
@@ -239,7 +271,8 @@ fn edge((ax, ay): (i32, i32), (bx, by): (i32, i32)) -> (f64, f64, f64) {
 
 /// Edges and shades.
 #[inline(always)]
-fn set_up<const TALL: bool>(x: &[Ints; 3], y: &[Ints; 3], shade: &[Ints; 3], place: Place, group: &mut Group) {
+pub(super) fn set_up<const TALL: bool>(gathered: &Gathered, place: Place, group: &mut Group) {
+    let Gathered { x, y, shade, .. } = gathered;
     let Group {
         column: left_columns,
         row: top_rows,
@@ -342,22 +375,22 @@ fn row(group: &Group, row: i32, pitch: i32, to: &mut Row) {
     }
 }
 
-/// Puts the rows of a group, which is of these triangles, into the list, triangle by triangle.
+/// Puts the rows of a group, which is of so many triangles, into the list, triangle by triangle.
 #[inline(always)]
 fn list(
-    batch: &Batch,
-    triangles: &[Chosen],
+    triangles: usize,
     place: Place,
     spans: &mut Spans<'_>,
+    planes: Option<&(u32, Planes)>,
     row: impl Fn(&Group, i32, i32, &mut Row),
 ) {
     let Spans { spans, count, covered, depths, group, table } = spans;
-    let most = group.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
+    let most = group.rows[..triangles.min(LANES)].iter().fold(0, |most, &rows| if rows > most { rows } else { most });
     for (number, to) in (0..most).zip(table.iter_mut()) {
         row(group, number, place.pitch as i32, to);
     }
     let mut pixels = 0;
-    for (i, &(number, _)) in triangles.iter().enumerate().take(LANES) {
+    for i in 0..triangles.min(LANES) {
         let rows = group.rows[i];
         let (first, before) = (*count, pixels);
         // Two at a time, one that there is not with no length: the end of a loop over rows is not foreseen. (Of 2.7
@@ -386,11 +419,10 @@ fn list(
                 j += 1;
             }
         }
-        if let Some(width) = place.depth_width
+        if let Some((width, planes)) = planes
             && pixels > before
         {
-            let plane = batch.depth_plane(usize::from(number));
-            group.depths(i, &plane, place, width, &spans[first..*count], &mut depths[first..*count]);
+            planes.depths(i, group, place, *width, &spans[first..*count], &mut depths[first..*count]);
         }
     }
     *covered += pixels;
@@ -432,13 +464,13 @@ pub(super) fn tall_by(
 ) {
     let mut found = Lines::NONE;
     for eight in kept.chunks(LANES) {
-        gather::<true>(batch, eight, place, &mut spans.group);
-        for (i, &(number, _)) in eight.iter().enumerate() {
-            let number = usize::from(number);
+        set_up::<true>(&Gathered::of(batch, eight, place), place, &mut spans.group);
+        for (i, triangle) in eight.iter().enumerate() {
+            let number = triangle.number();
             // Of a triangle without area, which has no spans, there is none.
             let mut plane = None;
             // A row that does not start anew is one piece, however long.
-            let (pieces, longest) = match batch.shading[number % Batch::CAPACITY] {
+            let (pieces, longest) = match batch.shading[number] {
                 // At most 256 pixels.
                 Shading::GouraudReseeded => {
                     ((spans.group.columns[i] - 1) as usize / RESEED as usize + 1, RESEED as u32)

@@ -3,18 +3,34 @@
 use core::arch::x86_64::*;
 
 use super::Batch;
-use super::rows::{Draw, Edges, Floats, Group, Ints, MAGIC, Place, Row, Spans, rows_by, tall_by};
-use super::sieve::{Chosen, Kept, sieve_inlined};
+use super::avx512::{self, Tall};
+use super::depths::Planes;
+use super::rows::{
+    Draw, Edges, Floats, Gathered, Group, Ints, LANES, MAGIC, Place, Row, Spans, rows_by, set_up, tall_by,
+};
+use super::sieve::{Chosen, Kept, pack, sieve_by};
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
+use crate::raster::triangle::Drawn;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, clip: Rect, kept: &mut Kept) {
-        sieve_inlined(batch, clip, kept);
+        sieve_by(batch, clip, kept, pack);
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
+    unsafe { avx2(batch, clip, kept) }
+}
+
+/// Only with a kernel for which `Kernel::has_avx512` is true.
+pub(super) fn sieve_512(batch: &Batch, clip: Rect, kept: &mut Kept) {
+    #[target_feature(enable = "avx2")]
+    fn avx2(batch: &Batch, clip: Rect, kept: &mut Kept) {
+        // SAFETY: such a kernel is given out only where AVX-512 was found.
+        sieve_by(batch, clip, kept, |eight, to| unsafe { avx512::pack(eight, to) });
+    }
+    // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
     unsafe { avx2(batch, clip, kept) }
 }
 
@@ -22,9 +38,24 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
 pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
-        rows_by(batch, kept, place, spans, |group, number, pitch, to| row(group, number, pitch, to))
+        let row = |group: &Group, number, pitch, to: &mut Row| row(group, number, pitch, to);
+        rows_by(batch, kept, place, spans, set_up::<false>, row, |gathered, group| planes(gathered, group))
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
+    unsafe { avx2(batch, kept, place, spans) }
+}
+
+/// Only with a kernel for which `Kernel::has_avx512` is true.
+pub(super) fn rows_512(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
+    #[target_feature(enable = "avx2")]
+    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
+        // SAFETY: such a kernel is given out only where AVX-512 was found.
+        let set_up = |gathered: &Gathered, place, group: &mut Group| unsafe { avx512::set_up(gathered, place, group) };
+        // SAFETY: the same.
+        let row = |group: &Group, number, pitch, to: &mut Row| unsafe { avx512::row(group, number, pitch, to) };
+        rows_by(batch, kept, place, spans, set_up, row, |gathered, group| planes(gathered, group))
+    }
+    // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
     unsafe { avx2(batch, kept, place, spans) }
 }
 
@@ -38,6 +69,41 @@ pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
     unsafe { avx2(batch, kept, place, spans, draw) }
+}
+
+/// Draws tall triangles where there is no depth buffer, without a list. Only with a kernel for which
+/// `Kernel::has_avx512` is true.
+pub(super) fn tall_at_once(
+    batch: &Batch,
+    kept: &[Chosen],
+    place: Place,
+    group: &mut Group,
+    pixels: &mut [u8],
+) -> Drawn {
+    #[target_feature(enable = "avx2")]
+    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group, pixels: &mut [u8]) -> (u32, u32) {
+        let mut tall = Tall::new();
+        for eight in kept.chunks(LANES) {
+            // SAFETY: such a kernel is given out only where AVX-512 was found.
+            unsafe { avx512::set_up(&Gathered::of(batch, eight, place), place, group) };
+            for (i, triangle) in eight.iter().enumerate() {
+                let shading = batch.shading[triangle.number()];
+                // SAFETY: such a kernel is given out only where AVX-512 was found.
+                unsafe { tall.draw(group, i, shading, place, pixels) };
+            }
+        }
+        tall.drawn()
+    }
+    // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
+    let (spans, covered) = unsafe { avx2(batch, kept, place, group, pixels) };
+    Drawn { spans, covered, pixels: covered, ..Drawn::default() }
+}
+
+/// Apart, as the compiler would else keep eight triangles in registers that it has not.
+#[inline(never)]
+#[target_feature(enable = "avx2")]
+fn planes(gathered: &Gathered, group: &Group) -> Planes {
+    Planes::of(gathered, group)
 }
 
 /// Eight f64.

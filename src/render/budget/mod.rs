@@ -30,8 +30,9 @@ use glam::Vec3;
 
 use self::light::{OneLight, Towards, narrow};
 use super::face::Faces;
+use super::lit::{LitVertex, LitVertices};
 use super::paint::Paint;
-use super::vertex::{Geometry, LitVertex};
+use super::vertex::Geometry;
 use crate::light::Lights;
 use crate::mesh::{Bounds, Mesh};
 use crate::raster::Vertex;
@@ -225,6 +226,8 @@ pub(super) struct Budget {
     simple: bool,
     /// Then, whether linear shades keep within wherever all corners see the same suns and none is clamped.
     linear_unless_mixed: bool,
+    /// And there, too.
+    linear_throughout: bool,
     /// What an edge of 1 turns the direction to the eye by, at most.
     eye_turn: f32,
     /// For each vertex the eye, if there are highlights.
@@ -302,21 +305,35 @@ impl Budget {
 
     /// Marks the object's vertices with the suns that they see, and finds out what holds for all of it.
     #[inline(never)]
-    pub(super) fn mark(&mut self, object: &Lit<'_>, lit: &mut [LitVertex]) {
+    pub(super) fn mark(&mut self, object: &Lit<'_>, lit: &mut LitVertices) {
         let Lit { geometry, lights, .. } = *object;
-        if !self.by_shades() {
+        // How far linear shades are off at most, but where some corners see a sun and others not, or some are clamped.
+        let keeps_within = |of: &Strength, more: f32| {
+            let top = f32::from(of.last - of.first) * of.scale;
+            let range = (of.body * self.most_spread).min(top);
+            top * self.most_shortening + range * self.bend + more + LINEAR <= self.allowed
+        };
+        self.linear_unless_mixed = self.simple && self.strengths.iter().all(|of| keeps_within(of, 0.0));
+        // And there too; see `decide_at_once`.
+        self.linear_throughout = self.linear_unless_mixed
+            && self.strengths.iter().all(|of| {
+                let brightest = f32::from(of.dark - of.first) * of.scale + of.body;
+                let is_clamped = brightest >= f32::from(of.last - of.first) * of.scale;
+                !is_clamped && keeps_within(of, of.body * self.most_spread / 4.0)
+            });
+        if !self.by_shades() && !self.linear_throughout {
+            lit.suns_seen.resize(geometry.normals.len(), 0);
             for (i, sun) in (0..SUNS).zip(lights.suns) {
-                for (lit, normal) in lit.iter_mut().zip(geometry.normals) {
-                    lit.suns_seen |= u8::from(normal.dot(sun.towards) > 0.0) << i;
+                for (seen, normal) in lit.suns_seen.iter_mut().zip(geometry.normals) {
+                    *seen |= u8::from(normal.dot(sun.towards) > 0.0) << i;
                 }
             }
         }
-        self.linear_unless_mixed = self.simple
-            && self.strengths.iter().all(|of| {
-                let top = f32::from(of.last - of.first) * of.scale;
-                let range = (of.body * self.most_spread).min(top);
-                top * self.most_shortening + range * self.bend + LINEAR <= self.allowed
-            });
+    }
+
+    /// Whether linear shades keep within on all of the object.
+    pub(super) fn is_linear_throughout(&self) -> bool {
+        self.linear_throughout
     }
 
     /// Whether a vertex says by its shades which sun it sees: there is one, and no other light. Only what it sees by
@@ -378,17 +395,23 @@ impl Budget {
         &self,
         triangle: usize,
         surface: u16,
-        corners: &[LitVertex; 3],
+        lit: &LitVertices,
+        indices: [u32; 3],
         turned: bool,
     ) -> Choice {
         if !self.simple {
             return Choice::Unknown;
         }
-        let [a, b, c] = corners.each_ref().map(|corner| self.suns_seen(corner));
+        let corners = indices.map(|i| i as usize);
+        let shades = corners.map(|i| lit.shades[i]);
+        let [a, b, c] = if self.by_shades() {
+            shades.map(|[front, back]| u8::from(front > back))
+        } else {
+            corners.map(|i| lit.suns_seen[i])
+        };
         let mixed = a != b || b != c;
         let strength = &self.strengths[usize::from(surface)];
-        let shade = |corner: &LitVertex| if turned { corner.back } else { corner.vertex.shade() }.to_bits();
-        let [a, b, c] = corners.each_ref().map(shade);
+        let [a, b, c] = shades.map(|sides| sides[usize::from(turned)].to_bits());
         let most = a.max(b).max(c);
         if most >= strength.last {
             return Choice::Unknown;
@@ -464,7 +487,7 @@ impl Faces<'_> {
         let spare = budget.allowed - EXACT;
         // What the body alone is off by, at least as it is known, whatever the light.
         let hopeless = (top - strength.highlights) * facet.shortening > spare;
-        let seen = question.indices.map(|i| budget.suns_seen(&self.lit[i as usize]));
+        let seen = question.indices.map(|i| budget.suns_seen(&self.lit.get(i as usize)));
         let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
         let near = model <= spare;

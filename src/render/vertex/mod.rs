@@ -1,20 +1,25 @@
 //! The stages of an object's vertices. Each is a loop of its own over all of them, entered only where
-//! the plan calls for it: what is off costs nothing.
+//! the plan calls for it: what is off costs nothing. The commonest take eight at a time (`lanes`).
 
-use alloc::vec::Vec;
 use core::ops::Range;
 
 use glam::{Vec2, Vec3};
 
+use super::lit::{LitVertices, Place};
 use super::paint::Paint;
-use crate::fixed::{I24F8, U8F8};
+use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::palette::Ramp;
-use crate::raster::Vertex;
 use crate::raster::effects::Attributes;
 use crate::scene::Fog;
+use crate::span::Kernel;
 use crate::span::lit::{LANES, Points};
 use crate::view::ObjectView;
+
+mod lanes;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
+mod x86;
 
 /// What is drawn of an object: its mesh, or what tessellation made of it.
 #[derive(Clone, Copy, Debug)]
@@ -25,18 +30,6 @@ pub(super) struct Geometry<'a> {
     pub(super) vertex_surfaces: &'a [u16],
     pub(super) triangles: &'a [[u32; 3]],
     pub(super) triangle_surfaces: &'a [u16],
-}
-
-/// A vertex of the object at hand, lit and projected.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LitVertex {
-    /// Its shade is that of the front: the side that the normal points away from. Of a vertex that
-    /// needs clipping only the shade counts.
-    pub(super) vertex: Vertex,
-    pub(super) back: U8F8,
-    pub(super) needs_clipping: bool,
-    /// Where a budget asks: a bit for each of the first eight suns, whether it sees it.
-    pub(super) suns_seen: u8,
 }
 
 /// What effects need of a vertex, for its front; and the channels of its back.
@@ -65,57 +58,70 @@ impl Extra {
 
 /// Every vertex on the screen, none of which can need clipping.
 #[inline(never)]
-pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, lit: &mut Vec<LitVertex>) {
-    lit.clear();
-    lit.extend(
-        geometry
-            .positions
-            .iter()
-            .map(|&position| LitVertex { vertex: view.project_inside(position), ..LitVertex::default() }),
-    );
+pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut LitVertices) {
+    project::<false>(view, geometry.positions, kernel, lit);
 }
 
 /// Every vertex on the screen, with a mark on those that need clipping.
 #[inline(never)]
-pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, lit: &mut Vec<LitVertex>) {
-    lit.clear();
-    lit.extend(geometry.positions.iter().map(|&position| {
-        let vertex = view.project(position);
-        LitVertex { needs_clipping: vertex.is_none(), vertex: vertex.unwrap_or_default(), ..LitVertex::default() }
-    }));
+pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut LitVertices) {
+    project::<true>(view, geometry.positions, kernel, lit);
+}
+
+#[inline(always)]
+fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Kernel, lit: &mut LitVertices) {
+    let Some(narrow) = view.narrow() else {
+        return lanes::one_by_one::<TESTED>(view, positions, 0, lit);
+    };
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    if kernel.has_avx2() {
+        return x86::project::<TESTED>(view, &narrow, positions, lit);
+    }
+    let _ = kernel;
+    lanes::project::<TESTED>(view, &narrow, positions, lit);
 }
 
 /// Vertices that are rounded already rounded again, to fewer bits after the point, half up.
 #[cold]
-pub(super) fn round_further(bits: u32, lit: &mut [LitVertex]) {
+pub(super) fn round_further(bits: u32, lit: &mut LitVertices) {
     let unit = 1 << (8 - bits.min(8));
-    // Within the guard band, which is a multiple of the unit, so no sum is near the ends of i32.
-    let round = |c: I24F8| I24F8::from_bits((c.to_bits() + unit / 2).div_euclid(unit) * unit);
-    for LitVertex { vertex, .. } in lit {
-        let rounded = Vertex::new(round(vertex.x()), round(vertex.y()), vertex.shade(), vertex.depth());
-        *vertex = rounded.unwrap_or(*vertex);
+    // Within the guard band, which is a multiple of the unit, so no sum is near the ends of i32, and none leaves it.
+    let round = |c: i32| (c + unit / 2).div_euclid(unit) * unit;
+    for place in lit.places.iter_mut().filter(|place| !place.needs_clipping()) {
+        *place = Place::new(round(place.x()), round(place.y()));
     }
 }
 
 /// No light: each surface has one shade.
 #[inline(never)]
-pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[Paint], lit: &mut [LitVertex]) {
-    for (lit, &surface) in lit.iter_mut().zip(geometry.vertex_surfaces) {
-        let shade = paints[usize::from(surface)].constant();
-        lit.vertex = lit.vertex.with_shade(shade);
-        lit.back = shade;
+pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[Paint], lit: &mut LitVertices) {
+    for (shades, &surface) in lit.shades.iter_mut().zip(geometry.vertex_surfaces) {
+        *shades = [paints[usize::from(surface)].constant(); 2];
     }
 }
 
 /// Suns on matt surfaces.
 #[inline(never)]
-pub(super) fn light_suns(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, lit: &mut [LitVertex]) {
-    for ((lit, normal), &surface) in lit.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
-        let paint = &paints[usize::from(surface)];
-        let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, *normal);
-        lit.vertex = lit.vertex.with_shade(paint.shade(front));
-        lit.back = paint.shade(back);
+pub(super) fn light_suns(
+    geometry: &Geometry<'_>,
+    paints: &[Paint],
+    lights: &Lights<'_>,
+    kernel: Kernel,
+    lit: &mut LitVertices,
+) {
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    if kernel.has_avx2() {
+        return x86::light_suns(geometry, paints, lights, lit);
     }
+    let _ = kernel;
+    lanes::light_suns(geometry, paints, lights, lit);
+}
+
+/// The shades of a vertex of this normal, front and back.
+#[inline]
+fn light_one(paint: &Paint, lights: &Lights<'_>, normal: Vec3) -> [U8F8; 2] {
+    let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, normal);
+    [paint.shade(front), paint.shade(back)]
 }
 
 /// Suns, lamps and highlights; on the side that the normals point away from, or on `both`.
@@ -125,19 +131,19 @@ pub(super) fn light_all(
     paints: &[Paint],
     lights: &Lights<'_>,
     both: bool,
-    lit: &mut [LitVertex],
+    lit: &mut LitVertices,
 ) {
     each_eight(geometry, |vertices, surface, points| {
         let paint = &paints[surface];
-        let lit = &mut lit[vertices];
+        let lit = &mut lit.shades[vertices];
         let fronts = lights.unit_front_of_one_channel(&paint.answer, points);
-        for (lit, front) in lit.iter_mut().zip(fronts) {
-            lit.vertex = lit.vertex.with_shade(paint.shade(front));
+        for ([shade, _], front) in lit.iter_mut().zip(fronts) {
+            *shade = paint.shade(front);
         }
         if both {
             let backs = lights.unit_front_of_one_channel(&paint.answer, &from_behind(points));
-            for (lit, back) in lit.iter_mut().zip(backs) {
-                lit.back = paint.shade(back);
+            for ([_, shade], back) in lit.iter_mut().zip(backs) {
+                *shade = paint.shade(back);
             }
         }
     });

@@ -1,0 +1,32 @@
+//! What suns give eight vertices of a matt surface, in plain arrays that the compiler vectorises.
+
+use glam::Vec3;
+
+use super::Beam;
+use crate::span::lit::{LANES, Lanes};
+
+/// [`both_sides`](super::both_sides) of eight normals: the same operations in the same order. Where it adds nothing,
+/// nought is added, which changes no sum: none is −0, as each begins at +0.
+#[inline(always)]
+pub(crate) fn both_sides_of_eight(
+    ambient: f64,
+    diffuse: f64,
+    suns: &[Beam],
+    normals: &[Vec3; LANES],
+) -> [Lanes<f64>; 2] {
+    let (mut front, mut back) = ([0.0; LANES], [0.0; LANES]);
+    let [mut x, mut y, mut z] = [[0.0; LANES]; 3];
+    for (lane, normal) in normals.iter().enumerate() {
+        (x[lane], y[lane], z[lane]) = (normal.x, normal.y, normal.z);
+    }
+    for sun in suns {
+        for lane in 0..LANES {
+            // As glam has it.
+            let cosine = (x[lane] * sun.towards.x + y[lane] * sun.towards.y) + z[lane] * sun.towards.z;
+            let light = f64::from(sun.intensity) * f64::from(cosine);
+            front[lane] += if cosine > 0.0 { light } else { 0.0 };
+            back[lane] -= if cosine < 0.0 { light } else { 0.0 };
+        }
+    }
+    [front, back].map(|side| side.map(|light| ambient + diffuse * light))
+}

@@ -1,0 +1,113 @@
+//! The depth planes of eight small triangles at a time.
+//!
+//! Those of [`DepthPlane`](crate::raster::depth::DepthPlane), whose gradients are
+//!
+//! ```text
+//! g = floor((2²⁴·n + (A >> 1)) / A)        n: the numerator, A: twice the area
+//! ```
+//!
+//! in two quotients of f64, by the rule at the head of `rows`:
+//!
+//! ```text
+//! q = floor(n / A)        r = n − q·A        g = 2²⁴·q + floor(2²⁴·r / A + ½) = 2²⁴·q + nearest((2²⁴·r + ½) / A)
+//! ```
+//!
+//! (A half of an odd A that is dropped changes no floor: 2²⁴·r / A + ½ is a multiple of 1/(2A), and never between a
+//! whole number and 1/(2A) more.) A small triangle's box is less than 65 × 17 pixels, so A is below 2²⁷, |n| below 2⁴⁸ and
+//! 2²⁴·r below 2⁵¹: both are exact, and the quotients, off by at most |n| / A · 2⁻⁵², less than 1/(2A) off.
+
+use super::rows::{Floats, Gathered, Group, LANES, MAGIC, Place};
+use crate::span::list::{Depths, Listed};
+
+/// Depths of eight triangles, with 24 fraction bits, modulo 2⁶⁴.
+pub(super) struct Planes {
+    /// At the first pixel of the box, the half included.
+    at: [i64; LANES],
+    per_column: [i64; LANES],
+    per_row: [i64; LANES],
+}
+
+impl Planes {
+    /// Of the small triangles of a group that is set up.
+    #[inline(always)]
+    pub(super) fn of(gathered: &Gathered, group: &Group) -> Self {
+        let Gathered { x, y, depth, .. } = gathered;
+        let mut planes = Self { at: [0; LANES], per_column: [0; LANES], per_row: [0; LANES] };
+        let (mut gx, mut gy) = ([0; LANES], [0; LANES]);
+        let (mut area, mut nx, mut ny): (Floats, Floats, Floats) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let (dx1, dy1) = (f64::from(x[1][i] - x[0][i]), f64::from(y[1][i] - y[0][i]));
+            let (dx2, dy2) = (f64::from(x[2][i] - x[0][i]), f64::from(y[2][i] - y[0][i]));
+            let d = f64::from(depth[0][i]);
+            let (dd1, dd2) = (f64::from(depth[1][i]) - d, f64::from(depth[2][i]) - d);
+            let signed = dx1 * dy2 - dx2 * dy1;
+            let sign = if signed < 0.0 { -1.0 } else { 1.0 };
+            area[i] = signed * sign;
+            nx[i] = (dd1 * dy2 - dd2 * dy1) * sign;
+            ny[i] = (dd2 * dx1 - dd1 * dx2) * sign;
+        }
+        gradients(&nx, &area, &group.inverse, &mut gx);
+        gradients(&ny, &area, &group.inverse, &mut gy);
+        let (mut right, mut down, mut of_first) = ([0; LANES], [0; LANES], [0_u32; LANES]);
+        for i in 0..LANES {
+            // The first corner by (y, x), in masks: −1 or 0.
+            let (mut fx, mut fy, mut d) = (x[0][i], y[0][i], depth[0][i].cast_signed());
+            for corner in 1..3 {
+                let (cx, cy) = (x[corner][i], y[corner][i]);
+                let is_before = -i32::from(cy < fy) | (-i32::from(cy == fy) & -i32::from(cx < fx));
+                fx ^= (fx ^ cx) & is_before;
+                fy ^= (fy ^ cy) & is_before;
+                d ^= (d ^ depth[corner][i].cast_signed()) & is_before;
+            }
+            right[i] = group.column[i] * 256 + 128 - fx;
+            down[i] = group.row[i] * 256 + 128 - fy;
+            of_first[i] = d.cast_unsigned();
+        }
+        for i in 0..LANES {
+            let sum = (i64::from(of_first[i]) << 24) + (1 << 23);
+            let (right, down) = (i64::from(right[i]), i64::from(down[i]));
+            planes.at[i] = sum.wrapping_add(gx[i].wrapping_mul(right)).wrapping_add(gy[i].wrapping_mul(down));
+            (planes.per_column[i], planes.per_row[i]) = (gx[i] << 8, gy[i] << 8);
+        }
+        planes
+    }
+
+    /// The depths of spans of triangle `i`, which hold the numbers of their rows.
+    #[inline(always)]
+    pub(super) fn depths(
+        &self,
+        i: usize,
+        group: &Group,
+        place: Place,
+        width: u32,
+        spans: &[Listed],
+        depths: &mut [Depths],
+    ) {
+        let (at, per_column, per_row) = (self.at[i], self.per_column[i], self.per_row[i]);
+        // As in `Group::depths`: offsets of a frame's pixels are below 2²⁸, columns and rows below 4,096.
+        let (corner, pitch, width) = (group.at[i], place.pitch as i32, width as i32);
+        let first = (group.row[i] - place.first_row as i32) * width + group.column[i];
+        for (span, depths) in spans.iter().zip(depths) {
+            let row = depths.at as i32;
+            let column = span.at as i32 - corner - row * pitch;
+            let z = at
+                .wrapping_add(per_row.wrapping_mul(i64::from(row)))
+                .wrapping_add(per_column.wrapping_mul(i64::from(column)));
+            *depths = Depths { at: (first + row * width + column) as u32, z, dz: per_column };
+        }
+    }
+}
+
+/// Gradients from numerators, areas and the inverses of these; of a triangle without area any number.
+#[inline(always)]
+fn gradients(numerators: &Floats, areas: &Floats, inverses: &Floats, gradients: &mut [i64; LANES]) {
+    for i in 0..LANES {
+        let (n, area, inverse) = (numerators[i], areas[i], inverses[i]);
+        let whole = (n + (0.5 - area * 0.5)) * inverse + MAGIC;
+        let rest = n - (whole - MAGIC) * area;
+        let part = (rest * 16_777_216.0 + 0.5) * inverse + MAGIC;
+        let bits = |sum: f64| sum.to_bits().wrapping_sub(MAGIC.to_bits()).cast_signed();
+        // The wrap is meant: see `raster::depth`.
+        gradients[i] = (bits(whole) << 24).wrapping_add(bits(part));
+    }
+}

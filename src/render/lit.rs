@@ -1,0 +1,129 @@
+//! An object's vertices, lit and projected, in arrays: the faces that are turned away, most of a fine model, need
+//! places alone.
+
+use alloc::vec::Vec;
+
+use crate::fixed::{I24F8, U8F8};
+use crate::raster::Vertex;
+
+/// A vertex of the object at hand, lit and projected.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct LitVertex {
+    /// Its shade is that of the front: the side that the normal points away from. Of a vertex that
+    /// needs clipping only the shade counts.
+    pub(super) vertex: Vertex,
+    pub(super) back: U8F8,
+    pub(super) needs_clipping: bool,
+    /// Where a budget asks: a bit for each of the first eight suns, whether it sees it.
+    pub(super) suns_seen: u8,
+}
+
+/// Where a vertex is on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping. In one number,
+/// so that it is read at once.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Place(u64);
+
+impl Place {
+    /// The x of those that need clipping: far outside of the guard band.
+    pub(super) const BEYOND: i32 = i32::MIN;
+    pub(super) const NEEDS_CLIPPING: Self = Self::new(Self::BEYOND, 0);
+
+    #[inline(always)]
+    pub(super) const fn new(x: i32, y: i32) -> Self {
+        Self(x.cast_unsigned() as u64 | (y.cast_unsigned() as u64) << 32)
+    }
+
+    #[inline(always)]
+    pub(super) const fn x(self) -> i32 {
+        // The lower half.
+        self.0 as i32
+    }
+
+    #[inline(always)]
+    pub(super) const fn y(self) -> i32 {
+        // The upper half.
+        (self.0 >> 32) as i32
+    }
+
+    /// x in the lower half, y in the upper.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[inline(always)]
+    pub(super) const fn to_bits(self) -> u64 {
+        self.0
+    }
+
+    #[inline]
+    pub(super) const fn needs_clipping(self) -> bool {
+        self.x() == Self::BEYOND
+    }
+}
+
+/// All vertices of an object.
+#[derive(Debug, Default)]
+pub(super) struct LitVertices {
+    pub(super) places: Vec<Place>,
+    /// 0 of those that need clipping.
+    pub(super) depths: Vec<u32>,
+    /// Front and back.
+    pub(super) shades: Vec<[U8F8; 2]>,
+    /// None, or as many.
+    pub(super) suns_seen: Vec<u8>,
+}
+
+impl LitVertices {
+    /// As many vertices, of which nothing is known yet: they are to be put, and lit or left without light.
+    pub(super) fn begin(&mut self, count: usize) {
+        self.places.resize(count, Place::NEEDS_CLIPPING);
+        self.depths.resize(count, 0);
+        self.shades.resize(count, [U8F8::default(); 2]);
+        self.suns_seen.clear();
+    }
+
+    /// Where faces or pixels are lit: no vertex has a shade.
+    pub(super) fn leave_without_light(&mut self) {
+        self.shades.fill([U8F8::default(); 2]);
+    }
+
+    /// Puts a vertex on the screen, or says that it needs clipping.
+    #[inline]
+    pub(super) fn put(&mut self, i: usize, vertex: Option<Vertex>) {
+        (self.places[i], self.depths[i]) = match vertex {
+            Some(v) => (Place::new(v.x().to_bits(), v.y().to_bits()), v.depth()),
+            None => (Place::NEEDS_CLIPPING, 0),
+        };
+    }
+
+    /// Vertex number `i`, which there is.
+    #[inline]
+    pub(super) fn get(&self, i: usize) -> LitVertex {
+        let [front, back] = self.shades[i];
+        let place = self.places[i];
+        let needs_clipping = place.needs_clipping();
+        let place = if needs_clipping { Place::new(0, 0) } else { place };
+        LitVertex {
+            vertex: vertex(place, front, self.depths[i]),
+            back,
+            needs_clipping,
+            suns_seen: self.suns_seen.get(i).copied().unwrap_or(0),
+        }
+    }
+
+    /// Vertex number `i`, which there is and needs no clipping, with the shade of the front or the back.
+    #[inline]
+    pub(super) fn vertex(&self, i: usize, turned: bool) -> Vertex {
+        vertex(self.places[i], self.shades[i][usize::from(turned)], self.depths[i])
+    }
+
+    /// Bytes that they hold.
+    pub(super) fn bytes(&self) -> usize {
+        self.places.capacity() * size_of::<Place>()
+            + self.depths.capacity() * size_of::<u32>()
+            + self.shades.capacity() * size_of::<[U8F8; 2]>()
+            + self.suns_seen.capacity()
+    }
+}
+
+#[inline]
+fn vertex(place: Place, shade: U8F8, depth: u32) -> Vertex {
+    Vertex::of_projected(I24F8::from_bits(place.x()), I24F8::from_bits(place.y()), shade, depth)
+}
