@@ -141,7 +141,7 @@ impl Faces<'_> {
     fn sifted<const CULLS: bool>(&self, sieve: &Sieve, stats: &mut Stats, sink: &mut impl Sink) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         for (triangles, surfaces) in triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST)) {
-            let sifted = sieve.sift(&self.lit.places, triangles);
+            let sifted = sieve.sift(&self.lit.places, triangles, CULLS);
             let drawn = if CULLS { sifted.front } else { sifted.front | sifted.back };
             let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(sifted.clipped.count_ones()));
             stats.drawn += drawn_here;
