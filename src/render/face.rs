@@ -5,16 +5,15 @@
 //! test for it.
 
 use super::Stats;
-use super::budget::{Budget, Choice, Question};
+use super::budget::{Budget, Choice, Decided, Question};
 use super::clip::{Carried, Corner, WithEffects, clip};
 use super::lit::{LitVertex, LitVertices};
 use super::paint::Paint;
-use super::sift::{self, Sieve};
+use super::sift::{self, Sieve, Sifted};
 use super::vertex::{Extra, Geometry};
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
-use crate::raster::clip::doubled_area;
 use crate::raster::effects::{Apart, Attributes};
 use crate::raster::{Shading, Vertex};
 use crate::scene::Rung;
@@ -51,8 +50,6 @@ pub(super) struct Faces<'a> {
     pub(super) lit: &'a LitVertices,
     /// As many, if there are effects.
     pub(super) extras: &'a [Extra],
-    /// Whether vertices may need clipping.
-    pub(super) clips: bool,
     /// Whether faces that are turned away are left out.
     pub(super) culls: bool,
     /// Whether any light falls on it.
@@ -73,85 +70,55 @@ pub(super) struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    /// Hands the faces that are to be drawn to `sink`. `choices` are those that a budget led to, one for each face.
-    pub(super) fn draw(&self, choices: &mut [Choice], stats: &mut Stats, sink: &mut impl Sink) {
+    /// Hands the faces that are to be drawn to `sink`. `decided` is what a budget led to, for each face.
+    pub(super) fn draw(&self, decided: &mut [Decided], stats: &mut Stats, sink: &mut impl Sink) {
         stats.faces += self.geometry.triangles.len() as u64;
         let effects = !self.extras.is_empty();
         if let Some(budget) = self.budget {
-            let choices = (budget, choices);
+            let decided = (budget, decided);
             return match (self.culls, effects) {
-                (false, false) => self.sifted_within::<false, false>(choices, stats, sink),
-                (true, false) => self.sifted_within::<true, false>(choices, stats, sink),
-                (false, true) => self.sifted_within::<false, true>(choices, stats, sink),
-                (true, true) => self.sifted_within::<true, true>(choices, stats, sink),
+                (false, false) => self.each_within::<false, false>(decided, stats, sink),
+                (true, false) => self.each_within::<true, false>(decided, stats, sink),
+                (false, true) => self.each_within::<false, true>(decided, stats, sink),
+                (true, true) => self.each_within::<true, true>(decided, stats, sink),
             };
         }
         let before = stats.drawn;
-        // A shading with a cover of its own draws beside pixel centres.
-        let sieve = if self.rung.shading().has_exact_cover() && !effects { sink.sieve() } else { None };
-        if let Some(sieve) = sieve {
-            match self.culls {
-                true => self.sifted::<true>(&sieve, stats, sink),
-                false => self.sifted::<false>(&sieve, stats, sink),
-            }
-            return stats.shares.add(self.rung, stats.drawn - before);
-        }
-        match (self.clips, self.culls, effects) {
-            (false, false, false) => self.each::<false, false, false>(stats, sink),
-            (false, true, false) => self.each::<false, true, false>(stats, sink),
-            (true, false, false) => self.each::<true, false, false>(stats, sink),
-            (true, true, false) => self.each::<true, true, false>(stats, sink),
-            (false, false, true) => self.each::<false, false, true>(stats, sink),
-            (false, true, true) => self.each::<false, true, true>(stats, sink),
-            (true, false, true) => self.each::<true, false, true>(stats, sink),
-            (true, true, true) => self.each::<true, true, true>(stats, sink),
+        match (self.culls, effects) {
+            (false, false) => self.each::<false, false>(stats, sink),
+            (true, false) => self.each::<true, false>(stats, sink),
+            (false, true) => self.each::<false, true>(stats, sink),
+            (true, true) => self.each::<true, true>(stats, sink),
         }
         stats.shares.add(self.rung, stats.drawn - before);
     }
 
-    #[inline(never)]
-    fn each<const CLIPS: bool, const CULLS: bool, const EFFECTS: bool>(&self, stats: &mut Stats, sink: &mut impl Sink) {
-        let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
-        for (&indices, &surface) in triangles.iter().zip(triangle_surfaces) {
-            // In range: the mesh saw to it, and every vertex is lit.
-            let corners = indices.map(|i| self.lit.get(i as usize));
-            if CLIPS && corners.iter().any(|corner| corner.needs_clipping) {
-                stats.clipped += 1;
-                self.clipped::<CULLS, EFFECTS>(indices, surface, &corners, stats, sink);
-                continue;
-            }
-            let vertices = corners.map(|corner| corner.vertex);
-            let area = doubled_area(&vertices);
-            if area == 0 || (CULLS && area > 0) {
-                stats.culled += 1;
-                continue;
-            }
-            stats.drawn += 1;
-            let turned = !CULLS && area > 0;
-            let vertices = if turned { corners.map(|corner| corner.vertex.with_shade(corner.back)) } else { vertices };
-            if EFFECTS && self.paints[usize::from(surface)].has_effects {
-                let attributes = indices.map(|i| self.extras[i as usize].side(turned));
-                self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
-            } else {
-                let shading = self.shading(indices, surface, turned, stats);
-                sink.plain(&vertices, shading);
-            }
-        }
+    /// Which of up to 64 faces are to be drawn, those that need clipping among them. A face that covers no pixel centre is
+    /// left out where it would draw nothing, though it counts as drawn.
+    #[inline]
+    fn sift<const CULLS: bool>(
+        &self,
+        sieve: Option<&Sieve>,
+        triangles: &[[u32; 3]],
+        stats: &mut Stats,
+    ) -> (Sifted, u64) {
+        let sifted = sieve.unwrap_or(&Sieve::EVERYTHING).sift(&self.lit.places, triangles, CULLS);
+        let drawn = if CULLS { sifted.front } else { sifted.front | sifted.back };
+        let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(sifted.clipped.count_ones()));
+        stats.drawn += drawn_here;
+        stats.clipped += clipped;
+        stats.culled += triangles.len() as u64 - drawn_here - clipped;
+        let covers = if sieve.is_some() { sifted.covers } else { !0 };
+        (sifted, (drawn & covers) | sifted.clipped)
     }
 
-    /// The same for faces without effects, of which those that cover no pixel centre are left out, though they count as
-    /// drawn.
     #[inline(never)]
-    fn sifted<const CULLS: bool>(&self, sieve: &Sieve, stats: &mut Stats, sink: &mut impl Sink) {
+    fn each<const CULLS: bool, const EFFECTS: bool>(&self, stats: &mut Stats, sink: &mut impl Sink) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
+        // Without effects, a shading with a cover of its own draws beside pixel centres.
+        let sieve = if self.rung.shading().has_exact_cover() { sink.sieve() } else { None };
         for (triangles, surfaces) in triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST)) {
-            let sifted = sieve.sift(&self.lit.places, triangles);
-            let drawn = if CULLS { sifted.front } else { sifted.front | sifted.back };
-            let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(sifted.clipped.count_ones()));
-            stats.drawn += drawn_here;
-            stats.clipped += clipped;
-            stats.culled += triangles.len() as u64 - drawn_here - clipped;
-            let mut left = (drawn & sifted.covers) | sifted.clipped;
+            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), triangles, stats);
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
@@ -159,13 +126,18 @@ impl Faces<'_> {
                 let is = |bits: u64| bits >> at & 1 == 1;
                 if is(sifted.clipped) {
                     let corners = indices.map(|i| self.lit.get(i as usize));
-                    self.clipped::<CULLS, false>(indices, surface, &corners, stats, sink);
+                    self.clipped::<CULLS, EFFECTS>(indices, surface, &corners, stats, sink);
                     continue;
                 }
                 let turned = !CULLS && is(sifted.back);
                 let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
-                let shading = self.shading(indices, surface, turned, stats);
-                sink.plain(&vertices, shading);
+                if EFFECTS && self.paints[usize::from(surface)].has_effects {
+                    let attributes = indices.map(|i| self.extras[i as usize].side(turned));
+                    self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
+                } else {
+                    let shading = self.shading(indices, surface, turned, stats);
+                    sink.plain(&vertices, shading);
+                }
             }
         }
     }
@@ -173,52 +145,45 @@ impl Faces<'_> {
     /// The same, with effects or without, each by the rung that is decided for it. (Every rung that there is a choice of
     /// has exact cover.) On what covers no pixel centre nothing is decided.
     #[inline(never)]
-    fn sifted_within<const CULLS: bool, const EFFECTS: bool>(
+    fn each_within<const CULLS: bool, const EFFECTS: bool>(
         &self,
-        (budget, choices): (&Budget, &mut [Choice]),
+        (budget, decided): (&Budget, &mut [Decided]),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         let sieve = sink.sieve();
-        let (sieve, all) = sieve.map_or((Sieve::EVERYTHING, !0), |sieve| (sieve, 0));
         let mut linear = 0;
         for (chunk, triangles) in triangles.chunks(sift::MOST).enumerate() {
             let first = chunk * sift::MOST;
-            let (surfaces, choices) = (&triangle_surfaces[first..], &mut choices[first..]);
-            let sifted = sieve.sift(&self.lit.places, triangles);
-            let drawn = if CULLS { sifted.front } else { sifted.front | sifted.back };
-            let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(sifted.clipped.count_ones()));
-            stats.drawn += drawn_here;
-            stats.clipped += clipped;
-            stats.culled += triangles.len() as u64 - drawn_here - clipped;
-            let mut left = (drawn & (sifted.covers | all)) | sifted.clipped;
+            let (surfaces, decided) = (&triangle_surfaces[first..], &mut decided[first..]);
+            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), triangles, stats);
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
-                let (indices, surface, choice) = (triangles[at], surfaces[at], &mut choices[at]);
+                let (indices, surface, decided) = (triangles[at], surfaces[at], &mut decided[at]);
                 let is = |bits: u64| bits >> at & 1 == 1;
                 if is(sifted.clipped) {
                     let corners = indices.map(|i| self.lit.get(i as usize));
                     let face = (first + at, indices, surface);
-                    self.clipped_within::<CULLS, EFFECTS>(face, &corners, (budget, choice), stats, sink);
+                    self.clipped_within::<CULLS, EFFECTS>(face, &corners, (budget, decided), stats, sink);
                     continue;
                 }
                 let turned = !CULLS && is(sifted.back);
-                if *choice == Choice::Unknown {
-                    *choice = budget.decide_at_once(first + at, surface, self.lit, indices, turned);
+                if decided.choice == Choice::Unknown {
+                    decided.choice = budget.decide_at_once(first + at, surface, self.lit, indices, turned);
                 }
                 let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
-                if *choice == Choice::Unknown {
+                if decided.choice == Choice::Unknown {
                     let shades = vertices.map(|vertex| vertex.shade());
                     let face = (first + at, indices, surface, turned);
-                    *choice = self.decide::<EFFECTS>(budget, face, (shades, Some(&vertices)));
+                    self.decide::<EFFECTS>((budget, decided), face, (shades, Some(&vertices)));
                 }
-                if *choice == Choice::Linear && !(EFFECTS && self.paints[usize::from(surface)].has_effects) {
+                if decided.choice == Choice::Linear && !(EFFECTS && self.paints[usize::from(surface)].has_effects) {
                     linear += 1;
                     sink.plain(&vertices, Rung::Gouraud88Reseeded.shading());
                 } else {
-                    self.of_another_kind::<EFFECTS>((indices, surface, turned), vertices, *choice, stats, sink);
+                    self.of_another_kind::<EFFECTS>((indices, surface, turned), vertices, decided.choice, stats, sink);
                 }
             }
         }
@@ -248,16 +213,17 @@ impl Faces<'_> {
     #[inline(never)]
     fn decide<const EFFECTS: bool>(
         &self,
-        budget: &Budget,
+        (budget, decided): (&Budget, &mut Decided),
         (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
         (shades, vertices): ([U8F8; 3], Option<&[Vertex; 3]>),
-    ) -> Choice {
+    ) {
         let shades = if EFFECTS && self.channels {
             indices.map(|i| self.extras[i as usize].side(turned).channels.map(U8F8::to_bits))
         } else {
             shades.map(|shade| [shade.to_bits(); 3])
         };
-        self.cheapest_within(budget, &Question { triangle, indices, surface, turned, shades, vertices })
+        let question = Question { triangle, indices, surface, turned, shades, vertices };
+        decided.choice = self.cheapest_within(budget, &question, decided);
     }
 
     /// What the corners of a face carry that is shaded by choice.
@@ -281,17 +247,17 @@ impl Faces<'_> {
         &self,
         (triangle, indices, surface): (usize, [u32; 3], u16),
         corners: &[LitVertex; 3],
-        (budget, choice): (&Budget, &mut Choice),
+        (budget, decided): (&Budget, &mut Decided),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
         let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
         let turned = !CULLS && is_turned_away(&at);
-        if *choice == Choice::Unknown {
+        if decided.choice == Choice::Unknown {
             let shades = corners.map(|corner| if turned { corner.back } else { corner.vertex.shade() });
-            *choice = self.decide::<EFFECTS>(budget, (triangle, indices, surface, turned), (shades, None));
+            self.decide::<EFFECTS>((budget, decided), (triangle, indices, surface, turned), (shades, None));
         }
-        let (choice, before) = (*choice, stats.drawn);
+        let (choice, before) = (decided.choice, stats.drawn);
         let shading = choice.rung().shading();
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.lights_pixels() {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);

@@ -620,7 +620,7 @@ impl Renderer {
         for &object in &self.plan.order {
             let plan = &self.plan.objects[object];
             let mut drawn = Drawn::default();
-            let mut choices = self.states[object].take_choices();
+            let mut decided = self.states[object].take_decided();
             let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
             if self.vertex_path == VertexPath::Integer {
                 let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
@@ -633,16 +633,16 @@ impl Renderer {
                 if plan.is_on(Effect::ScreenClipping) {
                     let batched = Batched::<true> { raster, batch, drawn };
                     let mut sink = Direct { batched, looks, object, transparent };
-                    faces.draw(&mut choices, stats, &mut sink);
+                    faces.draw(&mut decided, stats, &mut sink);
                     sink.batched.draw();
                 } else {
                     let batched = Batched::<false> { raster, batch, drawn };
                     let mut sink = Direct { batched, looks, object, transparent };
-                    faces.draw(&mut choices, stats, &mut sink);
+                    faces.draw(&mut decided, stats, &mut sink);
                     sink.batched.draw();
                 }
             }
-            self.states[object].put_choices(choices);
+            self.states[object].put_decided(decided);
             stats.raster += drawn;
         }
         self.integer = integer;
@@ -672,14 +672,14 @@ impl Renderer {
     /// Hands every face to `sink`.
     fn faces(&mut self, scene: &Scene, stats: &mut Stats, sink: &mut Bare<impl FnMut(&[Vertex; 3], Shading)>) {
         for &object in &self.plan.order {
-            let mut choices = self.states[object].take_choices();
+            let mut decided = self.states[object].take_decided();
             if self.vertex_path == VertexPath::Integer {
                 self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut sink.0);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                faces.draw(&mut choices, stats, sink);
+                faces.draw(&mut decided, stats, sink);
             }
-            self.states[object].put_choices(choices);
+            self.states[object].put_decided(decided);
         }
     }
 
@@ -693,7 +693,7 @@ impl Renderer {
         kept.clear();
         transparent.clear();
         for &object in &self.plan.order {
-            let mut choices = self.states[object].take_choices();
+            let mut decided = self.states[object].take_decided();
             if self.vertex_path == VertexPath::Integer {
                 let mut plain = |vertices: &[Vertex; 3], shading| {
                     triangles.push((*vertices, shading));
@@ -711,9 +711,9 @@ impl Renderer {
                     looks: &looks,
                     object,
                 };
-                faces.draw(&mut choices, stats, &mut sink);
+                faces.draw(&mut decided, stats, &mut sink);
             }
-            self.states[object].put_choices(choices);
+            self.states[object].put_decided(decided);
         }
         (self.triangles, self.kept_places, self.kept, self.transparent) = (triangles, places, kept, transparent);
     }

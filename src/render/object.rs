@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::Stats;
-use super::budget::{self, Budget, Choice, Lit};
+use super::budget::{self, Budget, Decided, Lit};
 use super::face::Faces;
 use super::lit::LitVertices;
 use super::paint::Paint;
@@ -15,7 +15,7 @@ use super::vertex::{self, Extra, Geometry};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
 use crate::palette::{Palette, Table};
-use crate::plan::{Effect, LEAST_TESSELLATION, ObjectPlan, Since};
+use crate::plan::{Effect, LEAST_TESSELLATION, ObjectPlan, Since, Why};
 use crate::scene::{Fog, Mapping, Object, Rung, Scene, Shared};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
@@ -124,7 +124,7 @@ pub(super) struct ObjectState {
     normal_tables: Vec<(Vec<Beam>, Paint, Table)>,
     /// What a budget's decisions are made from, and those that were made, one for each triangle.
     budget: Option<Budget>,
-    choices: Vec<Choice>,
+    decided: Vec<Decided>,
 }
 
 impl ObjectState {
@@ -201,7 +201,7 @@ impl ObjectState {
         self.paints.extend(object.materials.iter().map(|m| Paint::new(m, scene.ambient, palette, plan)));
         self.lamps.clear();
         if plan.is_on(Effect::PositionalLights) {
-            let forced = plan.decision(Effect::PositionalLights).why == crate::plan::Why::Forced;
+            let forced = plan.decision(Effect::PositionalLights).why == Why::Forced;
             let bounds = object.mesh().bounds();
             let in_range = |lamp: &&LampBeam| forced || crate::light::lamp_reaches(lamp, bounds);
             self.lamps.extend(source.lamps.iter().filter(in_range).copied());
@@ -280,22 +280,23 @@ impl ObjectState {
                 geometry: &geometry,
                 whole,
                 view: &source.view,
-                bounds: object.mesh().bounds(),
+                nearest: match plan.decision(Effect::NearClipping).why {
+                    Why::Nearest { nearest, .. } => nearest,
+                    _ => source.view.reach(object.mesh().bounds()).nearest,
+                },
                 lights: &lights,
                 paints: &self.paints,
                 channels,
             };
             if changed {
-                budget.renew(max_error, &lit);
-                self.choices.clear();
-                self.choices.resize(geometry.triangles.len(), Choice::Unknown);
+                budget.renew(max_error, &lit, &mut self.decided);
             }
             budget.mark(&lit, &mut self.lit);
             if changed && budget.is_linear_throughout() {
-                self.choices.fill(Choice::Linear);
+                self.decided.fill(Decided::LINEAR);
             }
         } else if self.budget.is_some() {
-            (self.budget, self.choices) = (None, Vec::new());
+            (self.budget, self.decided) = (None, Vec::new());
         }
         if by_pixel {
             if source.rung.0 == Rung::PhongTable && !channels {
@@ -377,7 +378,6 @@ impl ObjectState {
             paints: &self.paints,
             lit: &self.lit,
             extras: &self.extras,
-            clips: plan.is_on(Effect::NearClipping) || plan.is_on(Effect::ScreenClipping),
             culls: plan.is_on(Effect::BackFaceCulling),
             is_lit: plan.is_on(Effect::Lighting),
             runs: plan.is_on(Effect::Gouraud),
@@ -391,23 +391,23 @@ impl ObjectState {
         })
     }
 
-    /// The budget's choices, to be completed while faces are drawn, and then put back.
-    pub(super) fn take_choices(&mut self) -> Vec<Choice> {
-        core::mem::take(&mut self.choices)
+    /// The budget's decisions, to be completed while faces are drawn, and then put back.
+    pub(super) fn take_decided(&mut self) -> Vec<Decided> {
+        core::mem::take(&mut self.decided)
     }
 
     /// How many triangles a budget's choices gave to each rung, and why, in words; `None` without a budget.
     pub(super) fn shares(&self) -> Option<String> {
-        self.budget.as_ref().map(|_| budget::shares(&self.choices))
+        self.budget.as_ref().map(|_| budget::shares(&self.decided))
     }
 
     /// The same, as they are.
-    pub(super) fn choices(&self) -> &[Choice] {
-        &self.choices
+    pub(super) fn decided(&self) -> &[Decided] {
+        &self.decided
     }
 
-    pub(super) fn put_choices(&mut self, choices: Vec<Choice>) {
-        self.choices = choices;
+    pub(super) fn put_decided(&mut self, decided: Vec<Decided>) {
+        self.decided = decided;
     }
 
     /// Bytes that it holds.
@@ -420,7 +420,7 @@ impl ObjectState {
             + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)
             + self.normal_tables.len() * Table::BYTES
             + self.budget.as_ref().map_or(0, Budget::bytes)
-            + self.choices.capacity()
+            + self.decided.capacity() * size_of::<Decided>()
     }
 }
 

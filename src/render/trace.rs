@@ -4,7 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::mem;
 
-use super::budget::Choice;
+use super::budget::Decided;
 use super::face::{Manner, Sink};
 use super::look::Looks;
 use super::one_pixel::{Bytes, OnePixel, bytes};
@@ -180,8 +180,8 @@ impl Renderer {
                 integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                let mut choices = self.states[object].choices().to_vec();
-                faces.draw(&mut choices, stats, &mut sink);
+                let mut decided = self.states[object].decided().to_vec();
+                faces.draw(&mut decided, stats, &mut sink);
             }
         }
         self.integer = integer;
@@ -202,7 +202,7 @@ impl Renderer {
             faces.geometry.triangle_surfaces = &triangle_surfaces[i..=i];
             let mut same = Same { wanted: &met.vertices, found: false };
             // Which rung draws it changes no vertex's place.
-            faces.draw(&mut [Choice::default()], &mut ignored, &mut same);
+            faces.draw(&mut [Decided::default()], &mut ignored, &mut same);
             same.found
         })
     }

@@ -17,7 +17,7 @@
 //! 2²⁴·r below 2⁵¹: both are exact, and the quotients, off by at most |n| / A · 2⁻⁵², less than 1/(2A) off.
 
 use super::rows::{Floats, Gathered, Group, LANES, MAGIC, Place};
-use crate::span::list::{Depths, Listed};
+use crate::span::list::Depths;
 
 /// Depths of eight triangles, with 24 fraction bits, modulo 2⁶⁴.
 pub(super) struct Planes {
@@ -72,29 +72,52 @@ impl Planes {
         planes
     }
 
-    /// The depths of spans of triangle `i`, which hold the numbers of their rows.
+    /// Down the rows of triangle `i`, from the box's first.
     #[inline(always)]
-    pub(super) fn depths(
-        &self,
-        i: usize,
-        group: &Group,
-        place: Place,
-        width: u32,
-        spans: &[Listed],
-        depths: &mut [Depths],
-    ) {
-        let (at, per_column, per_row) = (self.at[i], self.per_column[i], self.per_row[i]);
-        // As in `Group::depths`: offsets of a frame's pixels are below 2²⁸, columns and rows below 4,096.
-        let (corner, pitch, width) = (group.at[i], place.pitch as i32, width as i32);
-        let first = (group.row[i] - place.first_row as i32) * width + group.column[i];
-        for (span, depths) in spans.iter().zip(depths) {
-            let row = depths.at as i32;
-            let column = span.at as i32 - corner - row * pitch;
-            let z = at
-                .wrapping_add(per_row.wrapping_mul(i64::from(row)))
-                .wrapping_add(per_column.wrapping_mul(i64::from(column)));
-            *depths = Depths { at: (first + row * width + column) as u32, z, dz: per_column };
+    pub(super) fn walk(&self, i: usize, group: &Group, place: Place, width: u32) -> Walk {
+        // Offsets of a frame's pixels are below 2²⁸, columns and rows below 4,096.
+        let width = width as i32;
+        Walk {
+            z: self.at[i],
+            pixel: group.at[i],
+            cell: (group.row[i] - place.first_row as i32) * width + group.column[i],
+            per_column: self.per_column[i],
+            per_row: self.per_row[i],
+            pitch: place.pitch as i32,
+            width,
         }
+    }
+}
+
+/// The depth at the box's first column in a row, and where that lies.
+pub(super) struct Walk {
+    z: i64,
+    pixel: i32,
+    cell: i32,
+    per_column: i64,
+    per_row: i64,
+    pitch: i32,
+    width: i32,
+}
+
+impl Walk {
+    /// The depths of a span of this row that starts at this offset in the frame.
+    #[inline(always)]
+    pub(super) fn at(&self, pixel: i32) -> Depths {
+        let column = pixel.wrapping_sub(self.pixel);
+        Depths {
+            at: self.cell.wrapping_add(column) as u32,
+            z: self.z.wrapping_add(self.per_column.wrapping_mul(i64::from(column))),
+            dz: self.per_column,
+        }
+    }
+
+    /// To the next row.
+    #[inline(always)]
+    pub(super) fn down(&mut self) {
+        self.z = self.z.wrapping_add(self.per_row);
+        self.pixel = self.pixel.wrapping_add(self.pitch);
+        self.cell = self.cell.wrapping_add(self.width);
     }
 }
 

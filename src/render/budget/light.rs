@@ -37,6 +37,18 @@ pub(super) fn narrow([x, y, z]: [f64; 3]) -> Vec3 {
     Vec3::new(x as f32, y as f32, z as f32)
 }
 
+/// What reaches a triangle of a lamp.
+struct Lamplight {
+    /// At the corners.
+    cosines: [f32; 3],
+    /// At the nearest point, and what its first and second derivatives along an edge are at most.
+    fall_off: f32,
+    first: f32,
+    second: f32,
+    /// What the direction to the lamp turns by.
+    turn: f32,
+}
+
 /// A triangle, on one of its sides, in the light of one source.
 pub(super) struct OneLight<'a> {
     pub(super) facet: &'a Facet,
@@ -52,19 +64,20 @@ pub(super) struct OneLight<'a> {
 }
 
 impl OneLight<'_> {
-    /// In the light of a sun. Where more than `limit` is found, the rest is left out.
-    pub(super) fn sun(&self, towards: Vec3, intensity: f32, limit: f32) -> f32 {
+    /// In the light of a sun, its highlight aside.
+    pub(super) fn body_of_sun(&self, towards: Vec3, intensity: f32) -> f32 {
+        let (most, least) = ends(self.normals.map(|normal| normal.dot(towards)));
+        // Below the horizon nothing of the face sees it: N·l is linear.
+        if most <= 0.0 { 0.0 } else { intensity * self.kd * self.matt(most, least) }
+    }
+
+    /// A sun's highlight. What is not more than `limit` is not looked at any closer.
+    pub(super) fn highlight_of_sun(&self, towards: Vec3, intensity: f32, limit: f32) -> f32 {
         let cosines = self.normals.map(|normal| normal.dot(towards));
-        let (most, least) = ends(cosines);
-        if most <= 0.0 {
-            // N·l is linear: nothing of the face sees it.
+        if ends(cosines).0 <= 0.0 {
             return 0.0;
         }
-        let body = intensity * self.kd * self.matt(most, least);
-        if self.ks == 0.0 || body > limit {
-            return body;
-        }
-        body + intensity * self.highlight([towards; 3], cosines, 0.0, (limit - body) / intensity)
+        intensity * self.highlight([towards; 3], cosines, 0.0, limit / intensity)
     }
 
     /// For light from one direction, of cosines up to these: what is lost as normals are not made unit, and at the clamp.
@@ -78,37 +91,58 @@ impl OneLight<'_> {
         unit.min(BEND * turn * turn) + clamp.min(turn / 4.0)
     }
 
-    /// The same of a lamp.
-    pub(super) fn lamp(&self, to_lamp: [Towards; 3], inverse_range: f32, intensity: f32, limit: f32) -> f32 {
-        let Facet { spread, edge, .. } = *self.facet;
-        let (farthest, nearest) = ends(to_lamp.map(|lamp| lamp.distance));
-        let nearest = nearest - APART * edge;
-        let part = nearest.max(0.0) * inverse_range;
-        if part >= 1.0 {
-            return 0.0;
-        }
-        let left = 1.0 - part * part;
-        let turn = self.part * if edge < nearest { edge / nearest } else { 4.0 };
-        let (spread, edge) = (self.part * spread, self.part * edge);
-        let towards = to_lamp.map(|lamp| lamp.direction);
-        let cosines = [0, 1, 2].map(|i| self.normals[i].dot(towards[i]));
-        // The fall-off (1 − u)², u = d² / R², and its derivatives along an edge: |u'| ≤ 2√u·e, u'' = 2e², e being the
-        // edge in units of the range.
-        let e = edge * inverse_range;
-        let d = (farthest * inverse_range).min(1.0);
-        let (fall_off, first, second) = (left * left, 4.0 * d * left * e, (8.0 * d * d + 4.0 * left) * e * e);
+    /// In the light of a lamp of some intensity, its highlight aside.
+    pub(super) fn body_of_lamp(&self, to_lamp: [Towards; 3], inverse_range: f32, intensity: f32) -> f32 {
+        let Some(lamp) = self.lamp(to_lamp, inverse_range) else { return 0.0 };
+        let Lamplight { cosines, fall_off, first, second, turn } = lamp;
+        let spread = self.part * self.facet.spread;
         // N · L of two sums of vectors, N of the normals, and L of the lamp's directions, as bright as it is: twice the
         // product of what they turn by, and L's own curvature. N is then made unit.
         let curvature = 2.0 * spread * (fall_off * turn + first) + fall_off * turn * turn + 2.0 * first * turn + second;
         let (most, least) = ends(cosines);
-        let body = intensity * self.kd * (CURVATURE * curvature + fall_off * self.matt(most, least));
-        if self.ks == 0.0 || body > limit {
-            return body;
-        }
+        intensity * self.kd * (CURVATURE * curvature + fall_off * self.matt(most, least))
+    }
+
+    /// A lamp's highlight. What is not more than `limit` is not looked at any closer.
+    pub(super) fn highlight_of_lamp(
+        &self,
+        to_lamp: [Towards; 3],
+        inverse_range: f32,
+        intensity: f32,
+        limit: f32,
+    ) -> f32 {
+        let Some(lamp) = self.lamp(to_lamp, inverse_range) else { return 0.0 };
+        let Lamplight { cosines, fall_off, first, second, turn } = lamp;
         // The highlight's own curvature, and the fall-off's on it.
-        let slope = libm::sqrtf(self.shininess) * (2.0 * spread + turn);
+        let slope = libm::sqrtf(self.shininess) * (2.0 * self.part * self.facet.spread + turn);
         let fading = self.ks * CURVATURE * (2.0 * first * slope + second);
-        body + intensity * (fading + fall_off * self.highlight(towards, cosines, turn, (limit - body) / intensity))
+        let towards = to_lamp.map(|lamp| lamp.direction);
+        intensity * (fading + fall_off * self.highlight(towards, cosines, turn, limit / intensity))
+    }
+
+    /// What reaches the triangle of a lamp; nothing where that is out of range.
+    fn lamp(&self, to_lamp: [Towards; 3], inverse_range: f32) -> Option<Lamplight> {
+        let edge = self.facet.edge;
+        let (farthest, nearest) = ends(to_lamp.map(|lamp| lamp.distance));
+        let nearest = nearest - APART * edge;
+        let near = nearest.max(0.0) * inverse_range;
+        if near >= 1.0 {
+            return None;
+        }
+        let turn = self.part * if edge < nearest { edge / nearest } else { 4.0 };
+        let cosines = [0, 1, 2].map(|i| self.normals[i].dot(to_lamp[i].direction));
+        // The fall-off (1 − u)², u = d² / R², and its derivatives along an edge: |u'| ≤ 2√u·e, u'' = 2e², e being the
+        // edge in units of the range.
+        let e = self.part * edge * inverse_range;
+        let far = (farthest * inverse_range).min(1.0);
+        let left = 1.0 - near * near;
+        Some(Lamplight {
+            cosines,
+            fall_off: left * left,
+            first: 4.0 * far * left * e,
+            second: (8.0 * far * far + 4.0 * left) * e * e,
+            turn,
+        })
     }
 
     /// How far linear highlights are off: by their curvature, or by no more than the brightest. What is not more than

@@ -33,14 +33,14 @@ use super::face::Faces;
 use super::lit::{LitVertex, LitVertices};
 use super::paint::Paint;
 use super::vertex::Geometry;
-use crate::light::Lights;
-use crate::mesh::{Bounds, Mesh};
+use crate::light::{Answer, Beam, LampBeam, Lights};
+use crate::mesh::Mesh;
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::Apart;
 use crate::scene::{Rung, Shared};
 use crate::span::lit::LANES;
-use crate::view::{ObjectView, Reach};
+use crate::view::ObjectView;
 
 /// What rounding adds to a linear shade that starts anew every 64 pixels: a half, and a quarter of drift.
 const LINEAR: f32 = 0.75;
@@ -55,7 +55,7 @@ const SUNS: usize = 8;
 const CURVATURE: f32 = 1.2 / 6.0;
 
 /// Pixels from which on it pays to light a face at some points before it is lit at all of them.
-const WORTH_SAMPLES: f32 = 12.0;
+const WORTH_SAMPLES: f32 = 5.0;
 
 /// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
 const WORTH_KNOTS: f32 = 16.0;
@@ -117,8 +117,22 @@ impl Choice {
     }
 }
 
+/// What is known of a triangle.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(super) struct Decided {
+    pub(super) choice: Choice,
+    /// How far linear shades of its two sides are from the model, highlights aside. Known as long as the object and its
+    /// lights are what they are, wherever the eye is.
+    body: [Option<f32>; 2],
+}
+
+impl Decided {
+    /// One of which all is known.
+    pub(super) const LINEAR: Self = Self { choice: Choice::Linear, body: [None; 2] };
+}
+
 /// How many triangles went to which rung, and why.
-pub(super) fn shares(choices: &[Choice]) -> String {
+pub(super) fn shares(decided: &[Decided]) -> String {
     let kinds = [
         (Choice::Flat, "one shade at their corners, or near enough"),
         (Choice::Linear, "light is linear enough on them"),
@@ -130,12 +144,12 @@ pub(super) fn shares(choices: &[Choice]) -> String {
     ];
     let mut text = String::new();
     for (choice, why) in kinds {
-        let count = choices.iter().filter(|of| **of == choice).count();
+        let count = decided.iter().filter(|of| of.choice == choice).count();
         if count > 0 {
             text += &format!("{count} {} ({why}), ", choice.rung());
         }
     }
-    let unseen = choices.iter().filter(|of| **of == Choice::Unknown).count();
+    let unseen = decided.iter().filter(|of| of.choice == Choice::Unknown).count();
     text + &format!("{unseen} not drawn")
 }
 
@@ -199,7 +213,8 @@ pub(super) struct Lit<'a> {
     /// Its mesh, if that is what is drawn.
     pub(super) whole: Option<&'a Shared<Mesh>>,
     pub(super) view: &'a ObjectView,
-    pub(super) bounds: Bounds,
+    /// How near it comes, along the view.
+    pub(super) nearest: f64,
     pub(super) lights: &'a Lights<'a>,
     pub(super) paints: &'a [Paint],
     pub(super) channels: bool,
@@ -228,6 +243,11 @@ pub(super) struct Budget {
     linear_unless_mixed: bool,
     /// And there, too.
     linear_throughout: bool,
+    /// What lights it, and what it answers: what bodies' errors are known for.
+    suns: Vec<Beam>,
+    known_lamps: Vec<LampBeam>,
+    answers: Vec<Answer>,
+    in_color: bool,
     /// What an edge of 1 turns the direction to the eye by, at most.
     eye_turn: f32,
     /// For each vertex the eye, if there are highlights.
@@ -240,9 +260,20 @@ pub(super) struct Budget {
 impl Budget {
     /// Takes on an object, or the same as it is now.
     #[inline(never)]
-    pub(super) fn renew(&mut self, allowed: f32, object: &Lit<'_>) {
-        let Lit { geometry, whole, view, bounds, lights, paints, channels } = *object;
-        self.allowed = allowed;
+    pub(super) fn renew(&mut self, allowed: f32, object: &Lit<'_>, decided: &mut Vec<Decided>) {
+        let Lit { geometry, whole, view, nearest, lights, paints, channels } = *object;
+        let mut same = self.allowed == allowed && self.in_color == channels;
+        (self.allowed, self.in_color) = (allowed, channels);
+        same &= self.suns == lights.suns && self.known_lamps == lights.lamps;
+        same &= self.answers.iter().eq(paints.iter().map(|paint| &paint.answer));
+        if !same {
+            self.suns.clear();
+            self.suns.extend_from_slice(lights.suns);
+            self.known_lamps.clear();
+            self.known_lamps.extend_from_slice(lights.lamps);
+            self.answers.clear();
+            self.answers.extend(paints.iter().map(|paint| paint.answer));
+        }
         let known = matches!((&self.mesh, whole), (Some(known), Some(whole)) if Shared::ptr_eq(known, whole));
         if !known {
             self.mesh = whole.map(Shared::clone);
@@ -254,7 +285,13 @@ impl Budget {
             (self.longest_edge, self.most_shortening) = (most(|facet| facet.edge), most(|facet| facet.shortening));
             self.most_spread = most(|facet| facet.spread);
         }
-        let Reach { nearest, .. } = view.reach(bounds);
+        same &= known;
+        if same {
+            decided.iter_mut().for_each(|of| of.choice = Choice::Unknown);
+        } else {
+            decided.clear();
+            decided.resize(geometry.triangles.len(), Decided::default());
+        }
         let nearest = nearest.max(f64::from(view.near()));
         self.bend = (f64::from(self.longest_edge) * view.scale() / nearest / 4.0) as f32;
         self.strengths.clear();
@@ -273,8 +310,20 @@ impl Budget {
             let dark = paint.constant().to_bits();
             Strength { body, dark, first, scale, last: first + ((entries - 1) << 8), curvature, highlights: ks * all }
         }));
+        let positions = geometry.positions.iter();
+        if !same {
+            self.lamps.clear();
+            self.lamps.extend(lights.lamps.iter().map(|lamp| {
+                let inverse_range = libm::sqrt(lamp.inverse_square) as f32;
+                (inverse_range, brightest(lamp.intensity, lamp.channels, channels))
+            }));
+            self.to_lamps.clear();
+            self.to_lamps.extend(lights.lamps.iter().flat_map(|lamp| {
+                let at = narrow(lamp.position);
+                positions.clone().map(move |position| Towards::new(at - *position))
+            }));
+        }
         self.to_eye.clear();
-        self.to_lamps.clear();
         self.many_suns = lights.suns.len() > SUNS;
         self.one_sun = lights.suns.len() == 1;
         self.simple = lights.lamps.is_empty()
@@ -285,16 +334,6 @@ impl Budget {
         if self.simple {
             return;
         }
-        self.lamps.clear();
-        self.lamps.extend(lights.lamps.iter().map(|lamp| {
-            let inverse_range = libm::sqrt(lamp.inverse_square) as f32;
-            (inverse_range, brightest(lamp.intensity, lamp.channels, channels))
-        }));
-        let positions = geometry.positions.iter();
-        self.to_lamps.extend(lights.lamps.iter().flat_map(|lamp| {
-            let at = narrow(lamp.position);
-            positions.clone().map(move |position| Towards::new(at - *position))
-        }));
         if self.strengths.iter().any(|of| of.curvature != 0.0) {
             let eye = narrow(lights.eye);
             self.to_eye.extend(positions.map(|position| Towards::new(eye - *position)));
@@ -355,6 +394,9 @@ impl Budget {
             + (self.to_eye.capacity() + self.to_lamps.capacity()) * size_of::<Towards>()
             + self.lamps.capacity() * size_of::<(f32, f32)>()
             + self.strengths.capacity() * size_of::<Strength>()
+            + self.suns.capacity() * size_of::<Beam>()
+            + self.known_lamps.capacity() * size_of::<LampBeam>()
+            + self.answers.capacity() * size_of::<Answer>()
     }
 }
 
@@ -466,7 +508,7 @@ impl Question<'_> {
 
 impl Faces<'_> {
     /// The cheapest rung that keeps within the budget.
-    pub(super) fn cheapest_within(&self, budget: &Budget, question: &Question<'_>) -> Choice {
+    pub(super) fn cheapest_within(&self, budget: &Budget, question: &Question<'_>, decided: &mut Decided) -> Choice {
         let facet = &budget.facets[question.triangle];
         let strength = &budget.strengths[usize::from(question.surface)];
         let [a, b, c] = question.shades;
@@ -492,8 +534,11 @@ impl Faces<'_> {
         let lamps = !self.lights.lamps.is_empty();
         let near = model <= spare;
         if !hopeless && (lamps || ((some || clamped) && near) || (strength.curvature > 0.0 && !near)) {
-            let light = self.one_light(budget, question, 1.0);
-            model = self.model_error(budget, question, &light, spare);
+            let body = &mut decided.body[usize::from(question.turned)];
+            let known = *body.get_or_insert_with(|| {
+                self.body_error(budget, question, &self.one_light(budget, question, 1.0), spare)
+            });
+            model = self.model_error(budget, question, 1.0, spare, Some(known));
             if clamped {
                 // What lies above the clamp is lost at some corners, by which the others are too dark at most.
                 model += range;
@@ -553,7 +598,7 @@ impl Faces<'_> {
         let cut = if clamped || highlights { part * differ / 4.0 } else { 0.0 };
         let bend = (ratio - 1.0) / 4.0 * part * part * differ;
         let spare = budget.allowed - EXACT - cut - bend;
-        spare > 0.0 && self.model_error(budget, question, &self.one_light(budget, question, part), spare) <= spare
+        spare > 0.0 && self.model_error(budget, question, part, spare, None) <= spare
     }
 
     /// What light from one source needs to know.
@@ -574,23 +619,49 @@ impl Faces<'_> {
         }
     }
 
-    /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it.
+    /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it. `body`
+    /// is what they are off by without highlights, if that is known.
     #[inline(never)]
-    fn model_error(&self, budget: &Budget, question: &Question<'_>, light: &OneLight<'_>, limit: f32) -> f32 {
+    fn model_error(&self, budget: &Budget, question: &Question<'_>, part: f32, limit: f32, body: Option<f32>) -> f32 {
+        let light = self.one_light(budget, question, part);
         let corners = question.indices.map(|i| i as usize);
-        let mut sum = 0.0;
+        let mut sum = body.unwrap_or_else(|| self.body_error(budget, question, &light, limit));
+        if light.ks == 0.0 || sum > limit {
+            return sum;
+        }
         for sun in self.lights.suns {
             let intensity = brightest(sun.intensity, sun.channels, self.channels);
-            sum += light.sun(sun.towards, intensity, limit - sum);
+            sum += light.highlight_of_sun(sun.towards, intensity, limit - sum);
             if sum > limit {
-                return f32::INFINITY;
+                return sum;
             }
         }
         let vertices = self.geometry.positions.len();
         for (&(inverse_range, intensity), to_lamp) in budget.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
-            sum += light.lamp(corners.map(|i| to_lamp[i]), inverse_range, intensity, limit - sum);
+            sum += light.highlight_of_lamp(corners.map(|i| to_lamp[i]), inverse_range, intensity, limit - sum);
             if sum > limit {
-                return f32::INFINITY;
+                return sum;
+            }
+        }
+        sum
+    }
+
+    /// The same without highlights: where the eye is makes no difference.
+    #[inline(never)]
+    fn body_error(&self, budget: &Budget, question: &Question<'_>, light: &OneLight<'_>, limit: f32) -> f32 {
+        let corners = question.indices.map(|i| i as usize);
+        let mut sum = 0.0;
+        for sun in self.lights.suns {
+            sum += light.body_of_sun(sun.towards, brightest(sun.intensity, sun.channels, self.channels));
+            if sum > limit {
+                return sum;
+            }
+        }
+        let vertices = self.geometry.positions.len();
+        for (&(inverse_range, intensity), to_lamp) in budget.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
+            sum += light.body_of_lamp(corners.map(|i| to_lamp[i]), inverse_range, intensity);
+            if sum > limit {
+                return sum;
             }
         }
         sum
@@ -600,8 +671,7 @@ impl Faces<'_> {
     /// function is no farther from linear than a part of a fourth of the size may be.
     #[inline(never)]
     fn error_between_samples(&self, budget: &Budget, question: &Question<'_>, limit: f32) -> f32 {
-        let light = self.one_light(budget, question, 0.25);
-        let between = self.model_error(budget, question, &light, limit);
+        let between = self.model_error(budget, question, 0.25, limit, None);
         // A bound that is 16 times as much is seldom wrong by half.
         if between > limit / 3.0 {
             return f32::INFINITY;

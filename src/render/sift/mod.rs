@@ -37,31 +37,32 @@ impl Sieve {
     /// One for those that want to know all faces: what it says of pixel centres says nothing.
     pub(super) const EVERYTHING: Self = Self { clip: Rect { x0: 0, y0: 0, x1: 0, y1: 0 }, kernel: Kernel::PORTABLE };
 
-    /// Sifts up to 64 faces of these corners.
+    /// Sifts up to 64 faces of these corners. Whether pixels are covered is said of those that have an area, and if it
+    /// `culls`, only of those that are turned towards the eye.
     #[inline]
-    pub(super) fn sift(&self, places: &[Place], triangles: &[[u32; 3]]) -> Sifted {
+    pub(super) fn sift(&self, places: &[Place], triangles: &[[u32; 3]], culls: bool) -> Sifted {
         // Inside a frame, at most 4,096.
         let sides = [self.clip.x0, self.clip.y0, self.clip.x1, self.clip.y1].map(|side| side as i32);
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if self.kernel.has_avx2() {
-            return x86::sift(places, triangles, sides);
+            return x86::sift(places, triangles, sides, culls);
         }
-        sift(places, triangles, sides)
+        sift(places, triangles, sides, culls)
     }
 }
 
 /// The definition: face by face.
-fn sift(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4]) -> Sifted {
+fn sift(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4], culls: bool) -> Sifted {
     let mut sifted = Sifted::default();
     for (at, triangle) in triangles.iter().enumerate().take(MOST) {
-        sifted.add(at, triangle.map(|i| places[i as usize]), sides);
+        sifted.add(at, triangle.map(|i| places[i as usize]), sides, culls);
     }
     sifted
 }
 
 impl Sifted {
     #[inline]
-    fn add(&mut self, at: usize, corners: [Place; 3], [left, top, right, bottom]: [i32; 4]) {
+    fn add(&mut self, at: usize, corners: [Place; 3], [left, top, right, bottom]: [i32; 4], culls: bool) {
         if corners.iter().any(|corner| corner.needs_clipping()) {
             self.clipped |= 1 << at;
             return;
@@ -72,6 +73,9 @@ impl Sifted {
         let area = product(b.0 - a.0, c.1 - a.1) - product(c.0 - a.0, b.1 - a.1);
         self.front |= u64::from(area < 0) << at;
         self.back |= u64::from(area > 0) << at;
+        if area == 0 || (culls && area > 0) {
+            return;
+        }
         // `I24F8::first_centre`.
         let centres = |a: i32, b: i32, c: i32| ((a.min(b).min(c) + 127) >> 8, (a.max(b).max(c) + 127) >> 8);
         let ((column, end_column), (row, end_row)) = (centres(a.0, b.0, c.0), centres(a.1, b.1, c.1));
@@ -140,6 +144,7 @@ mod tests {
         /// draws a pixel of.
         #[test]
         fn what_is_left_out_covers_nothing(
+            culls: bool,
             places in prop::collection::vec(place(), 1..60),
             corners in prop::collection::vec((any::<u32>(), any::<u32>(), any::<u32>()), 0..=MOST),
             clip in prop_oneof![Just((0, 0, 32, 32)), (0_u32..20, 0_u32..20, 12_u32..=32, 12_u32..=32)],
@@ -151,7 +156,7 @@ mod tests {
             let frame = Frame::new(&mut pixels, 32, 32, 32).expect("a legal frame");
             let mut raster = Raster::new(frame).with_clip(clip);
             let clip = raster.clip();
-            let all = kernels().into_iter().map(|kernel| Sieve { clip, kernel }.sift(&places, &triangles));
+            let all = kernels().into_iter().map(|kernel| Sieve { clip, kernel }.sift(&places, &triangles, culls));
             let all: Vec<Sifted> = all.collect();
             for sifted in &all {
                 prop_assert_eq!(*sifted, all[0]);
@@ -171,6 +176,10 @@ mod tests {
                 let area = doubled_area(&vertices);
                 prop_assert_eq!((is(front), is(back)), (area < 0, area > 0));
                 let drawn = raster.triangle(&vertices, Shading::Flat(1));
+                if culls && area >= 0 {
+                    prop_assert!(!is(covers));
+                    continue;
+                }
                 if !is(covers) {
                     prop_assert_eq!(drawn, Default::default());
                 }

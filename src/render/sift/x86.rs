@@ -6,47 +6,63 @@ use super::{MOST, MOST_LOOKED_AT, Sifted};
 use crate::render::lit::Place;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
-pub(super) fn sift(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4]) -> Sifted {
+pub(super) fn sift(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4], culls: bool) -> Sifted {
     // SAFETY: such a kernel is given out only where AVX2 was found.
-    unsafe { avx2(places, triangles, sides) }
+    unsafe { avx2(places, triangles, sides, culls) }
 }
 
 #[target_feature(enable = "avx2")]
-fn avx2(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4]) -> Sifted {
+fn avx2(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4], culls: bool) -> Sifted {
     let mut sifted = Sifted::default();
-    let (eights, rest) = triangles[..triangles.len().min(MOST)].as_chunks::<8>();
+    let triangles = &triangles[..triangles.len().min(MOST)];
+    let (eights, rest) = triangles.as_chunks::<8>();
+    // Once for all.
+    let most = eights.as_flattened().as_flattened().iter().fold(0, |most, &i| if i > most { i } else { most });
+    let (eights, rest) = if (most as usize) < places.len() { (eights, rest) } else { (&[][..], triangles) };
     for (number, eight) in eights.iter().enumerate() {
-        let found = sift_eight(places, eight, sides);
-        for (all, bits) in
-            [&mut sifted.clipped, &mut sifted.front, &mut sifted.back, &mut sifted.covers].into_iter().zip(found)
-        {
+        // SAFETY: no number is above `most`, which is below that of places.
+        let found = unsafe { sift_eight(places, eight, sides, culls) };
+        let all = [&mut sifted.clipped, &mut sifted.front, &mut sifted.back, &mut sifted.covers];
+        for (all, bits) in all.into_iter().zip(found) {
             *all |= bits << (8 * number);
         }
     }
     for (i, triangle) in rest.iter().enumerate() {
-        sifted.add(8 * eights.len() + i, triangle.map(|i| places[i as usize]), sides);
+        sifted.add(8 * eights.len() + i, triangle.map(|i| places[i as usize]), sides, culls);
     }
     sifted
 }
 
-/// `Sifted::add` of eight faces.
+type Point = (__m256i, __m256i);
+
+/// x and y of one corner of eight faces.
+///
+/// # Safety
+/// The faces' numbers are below that of places.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn sift_eight(places: &[Place], triangles: &[[u32; 3]; 8], sides: [i32; 4]) -> [u64; 4] {
-    let mut corners = [(_mm256_setzero_si256(), _mm256_setzero_si256()); 3];
-    for (corner, place) in corners.iter_mut().enumerate() {
-        let at = |face: usize| places[triangles[face][corner] as usize].to_bits().cast_signed();
-        // So that the shuffles, which keep to the halves of a vector, leave the faces in order.
-        let low = _mm256_castsi256_ps(_mm256_set_epi64x(at(5), at(4), at(1), at(0)));
-        let high = _mm256_castsi256_ps(_mm256_set_epi64x(at(7), at(6), at(3), at(2)));
-        let x = _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0b10_00_10_00));
-        *place = (x, _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0b11_01_11_01)));
-    }
+unsafe fn corner(places: &[Place], triangles: &[[u32; 3]; 8], corner: usize) -> Point {
+    // SAFETY: by the caller's promise.
+    let at = |face: usize| unsafe { places.get_unchecked(triangles[face][corner] as usize) }.to_bits().cast_signed();
+    // So that the shuffles, which keep to the halves of a vector, leave the faces in order.
+    let low = _mm256_castsi256_ps(_mm256_set_epi64x(at(5), at(4), at(1), at(0)));
+    let high = _mm256_castsi256_ps(_mm256_set_epi64x(at(7), at(6), at(3), at(2)));
+    let x = _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0b10_00_10_00));
+    (x, _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0b11_01_11_01)))
+}
+
+/// `Sifted::add` of eight faces.
+///
+/// # Safety
+/// The faces' numbers are below that of places.
+#[inline]
+#[target_feature(enable = "avx2")]
+unsafe fn sift_eight(places: &[Place], triangles: &[[u32; 3]; 8], sides: [i32; 4], culls: bool) -> [u64; 4] {
+    // SAFETY: by the caller's promise.
+    let corners = unsafe { [corner(places, triangles, 0), corner(places, triangles, 1), corner(places, triangles, 2)] };
     let [(ax, ay), (bx, by), (cx, cy)] = corners;
     let (low_x, high_x) = ends(ax, bx, cx);
-    let (low_y, high_y) = ends(ay, by, cy);
-    // The mark is the least number there is.
-    // Of such a face the other numbers mean nothing.
+    // The mark is the least number there is. Of such a face the other numbers mean nothing.
     let clipped = mask(_mm256_cmpeq_epi32(low_x, _mm256_set1_epi32(Place::BEYOND)));
 
     // Exact in f64: differences are at most 2²¹, products 2⁴².
@@ -58,16 +74,21 @@ fn sift_eight(places: &[Place], triangles: &[[u32; 3]; 8], sides: [i32; 4]) -> [
     let high = area(high(dx1), high(dy1), high(dx2), high(dy2));
     let nought = _mm256_setzero_pd();
     let both = |low, high| bits(_mm256_movemask_pd(low) | _mm256_movemask_pd(high) << 4);
-    let front = both(_mm256_cmp_pd(low, nought, _CMP_LT_OQ), _mm256_cmp_pd(high, nought, _CMP_LT_OQ));
-    let back = both(_mm256_cmp_pd(low, nought, _CMP_GT_OQ), _mm256_cmp_pd(high, nought, _CMP_GT_OQ));
+    let front = both(_mm256_cmp_pd(low, nought, _CMP_LT_OQ), _mm256_cmp_pd(high, nought, _CMP_LT_OQ)) & !clipped;
+    let back = both(_mm256_cmp_pd(low, nought, _CMP_GT_OQ), _mm256_cmp_pd(high, nought, _CMP_GT_OQ)) & !clipped;
+    // Neighbours mostly turn the same way.
+    let seen = if culls { front } else { front | back };
+    if seen == 0 {
+        return [clipped, front, back, 0];
+    }
 
+    let (low_y, high_y) = ends(ay, by, cy);
     let [left, top, right, bottom] = sides.map(|side| _mm256_set1_epi32(side));
     let (column, end_column) = (first_centre(low_x), first_centre(high_x));
     let (row, end_row) = (first_centre(low_y), first_centre(high_y));
     let in_columns = overlap(column, end_column, left, right);
     let in_rows = overlap(row, end_row, top, bottom);
-    let box_covers = _mm256_and_si256(in_columns, in_rows);
-    let mut covers = mask(box_covers) & !clipped;
+    let mut covers = mask(_mm256_and_si256(in_columns, in_rows)) & seen;
     let three = _mm256_set1_epi32(MOST_LOOKED_AT + 1);
     let few_columns = _mm256_cmpgt_epi32(three, _mm256_sub_epi32(end_column, column));
     let few_rows = _mm256_cmpgt_epi32(three, _mm256_sub_epi32(end_row, row));
@@ -80,10 +101,8 @@ fn sift_eight(places: &[Place], triangles: &[[u32; 3]; 8], sides: [i32; 4]) -> [
         let none = covers_none_of_four(from_first(a), from_first(b), from_first(c));
         covers &= !(tiny & none);
     }
-    [clipped, front & !clipped, back & !clipped, covers]
+    [clipped, front, back, covers]
 }
-
-type Point = (__m256i, __m256i);
 
 /// Not `covers_one_of_four`.
 #[inline]
