@@ -9,7 +9,7 @@ const APART: f32 = 0.578;
 
 /// No point of a triangle is farther from the corner that has the most of it than this share of an edge: 2/3, of the
 /// chord that normals turn by, and a little for their angle.
-const FROM_ONE: f32 = 0.7;
+pub(super) const FROM_ONE: f32 = 0.7;
 
 /// A unit vector along a line turns with a second derivative of at most √2 times the square of what it turns by; a sixth
 /// of that, see `CURVATURE`.
@@ -22,7 +22,7 @@ const FAINT: f32 = 0.05;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Towards {
     /// Unit.
-    direction: Vec3,
+    pub(super) direction: Vec3,
     pub(super) distance: f32,
 }
 

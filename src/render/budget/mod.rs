@@ -204,6 +204,8 @@ struct Strength {
     curvature: f32,
     /// What all highlights at their brightest add, in shades.
     highlights: f32,
+    /// From so far on, as an angle, nothing is seen of them but a fourth of what is allowed.
+    faint_from: f32,
 }
 
 /// An object, projected and lit.
@@ -250,8 +252,12 @@ pub(super) struct Budget {
     in_color: bool,
     /// What an edge of 1 turns the direction to the eye by, at most.
     eye_turn: f32,
-    /// For each vertex the eye, if there are highlights.
+    /// For each vertex the eye, if there are highlights, and the chord between the eye and the mirrored light that is
+    /// nearest to it: no more than the angle.
     to_eye: Vec<Towards>,
+    chords: Vec<f32>,
+    /// What an edge of 1 turns the direction to any lamp by, at most.
+    lamp_turn: f32,
     /// For each lamp 1 / range and its intensity, that of its brightest channel; and for each vertex where it is.
     lamps: Vec<(f32, f32)>,
     to_lamps: Vec<Towards>,
@@ -308,7 +314,16 @@ impl Budget {
             let body = (paint.answer.diffuse.abs() * 255.0) as f32
                 * lights.suns.iter().map(|s| s.intensity.abs()).sum::<f32>();
             let dark = paint.constant().to_bits();
-            Strength { body, dark, first, scale, last: first + ((entries - 1) << 8), curvature, highlights: ks * all }
+            Strength {
+                body,
+                dark,
+                first,
+                scale,
+                last: first + ((entries - 1) << 8),
+                curvature,
+                highlights: ks * all,
+                faint_from: faint_from(ks * all, s, allowed / 4.0),
+            }
         }));
         let positions = geometry.positions.iter();
         if !same {
@@ -338,8 +353,45 @@ impl Budget {
             let eye = narrow(lights.eye);
             self.to_eye.extend(positions.map(|position| Towards::new(eye - *position)));
             // The eye is at least this far away.
-            self.eye_turn = 1.0 / self.to_eye.iter().map(|eye| eye.distance).fold(f32::INFINITY, f32::min);
+            let nearest = |of: &[Towards]| of.iter().map(|of| of.distance).fold(f32::INFINITY, f32::min);
+            self.eye_turn = 1.0 / nearest(&self.to_eye);
+            self.lamp_turn = 1.0 / nearest(&self.to_lamps);
+            self.find_chords(geometry, lights);
         }
+    }
+
+    /// Finds out how far highlights are from the vertices.
+    #[inline(never)]
+    fn find_chords(&mut self, geometry: &Geometry<'_>, lights: &Lights<'_>) {
+        self.chords.clear();
+        self.chords.resize(self.to_eye.len(), 2.0);
+        let vertices = geometry.normals.iter().zip(&self.to_eye);
+        let chord = |normal: &Vec3, eye: &Towards, light: Vec3| {
+            let along = 2.0 * normal.dot(light) * normal.dot(eye.direction) - light.dot(eye.direction);
+            libm::sqrtf((2.0 - 2.0 * along).max(0.0))
+        };
+        for sun in lights.suns {
+            for (least, (normal, eye)) in self.chords.iter_mut().zip(vertices.clone()) {
+                *least = least.min(chord(normal, eye, sun.towards));
+            }
+        }
+        for to_lamp in self.to_lamps.chunks_exact(self.to_eye.len().max(1)) {
+            for ((least, (normal, eye)), lamp) in self.chords.iter_mut().zip(vertices.clone()).zip(to_lamp) {
+                *least = least.min(chord(normal, eye, lamp.direction));
+            }
+        }
+    }
+
+    /// Whether nothing is seen of a highlight on a face but a fourth of what is allowed: it is that far from each corner,
+    /// and from there no point is farther than the share of an edge that is in `light`.
+    #[inline]
+    fn is_far_from_highlights(&self, question: &Question<'_>, facet: &Facet, strength: &Strength) -> bool {
+        let [a, b, c] = question.indices.map(|i| self.chords[i as usize]);
+        let turn = 2.0 * facet.spread + facet.edge * (self.eye_turn + self.lamp_turn);
+        // Where that is more it says nothing.
+        facet.edge * self.eye_turn.max(self.lamp_turn) < 0.5
+            && facet.spread < 1.5
+            && a.min(b).min(c) >= strength.faint_from + light::FROM_ONE * 1.2 * turn
     }
 
     /// Marks the object's vertices with the suns that they see, and finds out what holds for all of it.
@@ -391,6 +443,7 @@ impl Budget {
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
         self.facets.capacity() * size_of::<Facet>()
+            + self.chords.capacity() * size_of::<f32>()
             + (self.to_eye.capacity() + self.to_lamps.capacity()) * size_of::<Towards>()
             + self.lamps.capacity() * size_of::<(f32, f32)>()
             + self.strengths.capacity() * size_of::<Strength>()
@@ -403,6 +456,15 @@ impl Budget {
 /// The greatest second derivative of cosˢ by its angle. Below s = 1 there is none: it is steep where it ends.
 fn curve(shininess: f32) -> f32 {
     if shininess >= 1.0 { shininess } else { f32::INFINITY }
+}
+
+/// From which angle on `strength`·cosˢ is not more than `limit`: xˢ ≤ exp(−s(1 − x)).
+fn faint_from(strength: f32, shininess: f32, limit: f32) -> f32 {
+    if strength <= limit {
+        return 0.0;
+    }
+    let cosine = 1.0 - libm::logf(strength / limit) / shininess;
+    if cosine > -1.0 { libm::acosf(cosine) } else { f32::INFINITY }
 }
 
 /// A light's greatest channel, or its one.
@@ -533,12 +595,22 @@ impl Faces<'_> {
         let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
         let near = model <= spare;
-        if !hopeless && (lamps || ((some || clamped) && near) || (strength.curvature > 0.0 && !near)) {
+        let highlights = strength.curvature > 0.0;
+        let far = highlights && budget.is_far_from_highlights(question, facet, strength);
+        if far && !lamps && !some && !clamped {
+            model = model.min(top * facet.shortening + budget.allowed / 4.0);
+        }
+        let near = near || model <= spare;
+        if !hopeless && (lamps || ((some || clamped) && near) || (highlights && !near)) {
             let body = &mut decided.body[usize::from(question.turned)];
             let known = *body.get_or_insert_with(|| {
                 self.body_error(budget, question, &self.one_light(budget, question, 1.0), spare)
             });
-            model = self.model_error(budget, question, 1.0, spare, Some(known));
+            model = if far {
+                known + budget.allowed / 4.0
+            } else {
+                self.model_error(budget, question, 1.0, spare, Some(known))
+            };
             if clamped {
                 // What lies above the clamp is lost at some corners, by which the others are too dark at most.
                 model += range;
