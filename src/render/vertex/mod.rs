@@ -97,28 +97,34 @@ pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[Paint], lit: &mut Li
     }
 }
 
-/// Suns on matt surfaces.
+/// Suns on matt surfaces; on the side that the normals point away from, or on `both`: the other's shades are then 0.
 #[inline(never)]
 pub(super) fn light_suns(
     geometry: &Geometry<'_>,
     paints: &[Paint],
     lights: &Lights<'_>,
-    kernel: Kernel,
+    (both, kernel): (bool, Kernel),
     lit: &mut LitVertices,
 ) {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     if kernel.has_avx2() {
-        return x86::light_suns(geometry, paints, lights, lit);
+        return match both {
+            true => x86::light_suns::<true>(geometry, paints, lights, lit),
+            false => x86::light_suns::<false>(geometry, paints, lights, lit),
+        };
     }
     let _ = kernel;
-    lanes::light_suns(geometry, paints, lights, lit);
+    match both {
+        true => lanes::light_suns::<true>(geometry, paints, lights, lit),
+        false => lanes::light_suns::<false>(geometry, paints, lights, lit),
+    }
 }
 
 /// The shades of a vertex of this normal, front and back.
 #[inline]
-fn light_one(paint: &Paint, lights: &Lights<'_>, normal: Vec3) -> [U8F8; 2] {
+fn light_one<const BOTH: bool>(paint: &Paint, lights: &Lights<'_>, normal: Vec3) -> [U8F8; 2] {
     let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, normal);
-    [paint.shade(front), paint.shade(back)]
+    [paint.shade(front), if BOTH { paint.shade(back) } else { U8F8::default() }]
 }
 
 /// Suns, lamps and highlights.

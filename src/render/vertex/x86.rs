@@ -25,11 +25,16 @@ pub(super) fn project<const TESTED: bool>(
 }
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
-pub(super) fn light_suns(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, lit: &mut LitVertices) {
+pub(super) fn light_suns<const BOTH: bool>(
+    geometry: &Geometry<'_>,
+    paints: &[Paint],
+    lights: &Lights<'_>,
+    lit: &mut LitVertices,
+) {
     #[target_feature(enable = "avx2")]
-    fn avx2(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, lit: &mut LitVertices) {
-        lanes::light_suns(geometry, paints, lights, lit);
+    fn avx2<const BOTH: bool>(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, lit: &mut LitVertices) {
+        lanes::light_suns::<BOTH>(geometry, paints, lights, lit);
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
-    unsafe { avx2(geometry, paints, lights, lit) }
+    unsafe { avx2::<BOTH>(geometry, paints, lights, lit) }
 }
