@@ -24,11 +24,17 @@ pub(crate) fn both_sides_of_eight<const BOTH: bool>(
             // As glam has it.
             let cosine = (x[lane] * sun.towards.x + y[lane] * sun.towards.y) + z[lane] * sun.towards.z;
             let light = f64::from(sun.intensity) * f64::from(cosine);
-            front[lane] += if cosine > 0.0 { light } else { 0.0 };
+            front[lane] += only(cosine > 0.0, light);
             if BOTH {
-                back[lane] -= if cosine < 0.0 { light } else { 0.0 };
+                back[lane] -= only(cosine < 0.0, light);
             }
         }
     }
     [front, back].map(|side| side.map(|light| ambient + diffuse * light))
+}
+
+/// The light, or else nought. By a mask: of a choice the compiler makes a branch, and then no vectors.
+#[inline(always)]
+fn only(is_lit: bool, light: f64) -> f64 {
+    f64::from_bits(light.to_bits() & u64::from(is_lit).wrapping_neg())
 }

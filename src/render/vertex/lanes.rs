@@ -3,39 +3,62 @@
 use glam::Vec3;
 
 use super::Geometry;
-use super::light_one;
 use crate::fixed::U8F8;
-use crate::light::{Lights, both_sides_of_eight};
+use crate::light::{Lights, both_sides, both_sides_of_eight};
 use crate::render::lit::{LitVertices, Place};
 use crate::render::paint::Paint;
 use crate::view::ObjectView;
 use crate::view::lanes::{LANES, Narrow};
 
-/// [`project_inside`](super::project_inside), or [`project_tested`](super::project_tested).
+/// [`project_inside`](super::project_inside), or [`project_tested`](super::project_tested), by `eight`.
 #[inline(always)]
 pub(super) fn project<const TESTED: bool>(
     view: &ObjectView,
     narrow: &Narrow,
     positions: &[Vec3],
     lit: &mut LitVertices,
+    eight: impl Fn(&Narrow, &[Vec3; LANES], &mut [Place; LANES], &mut [u32; LANES]),
 ) {
     let (eights, rest) = positions.as_chunks::<LANES>();
     let (places, _) = lit.places.as_chunks_mut::<LANES>();
     let (depths, _) = lit.depths.as_chunks_mut::<LANES>();
     for ((points, places), depths) in eights.iter().zip(places).zip(depths) {
-        let eight = narrow.project(points);
-        for (i, place) in places.iter_mut().enumerate() {
-            let within = eight.within[i];
-            *place = Place::new((eight.x[i] & within) | (Place::BEYOND & !within), eight.y[i] & within);
-        }
-        for (i, depth) in depths.iter_mut().enumerate() {
-            *depth = (eight.depth[i] & eight.within[i]).cast_unsigned();
-        }
+        eight(narrow, points, places, depths);
     }
     // Those that are left; or, of an object that is said to lie inside and does not, all.
-    let strays = !TESTED && lit.places[..positions.len() - rest.len()].iter().any(|place| place.needs_clipping());
-    let first = if strays { 0 } else { positions.len() - rest.len() };
-    one_by_one::<TESTED>(view, positions, first, lit);
+    let whole = positions.len() - rest.len();
+    let strays = !TESTED && lit.places[..whole].iter().any(|place| place.needs_clipping());
+    one_by_one::<TESTED>(view, positions, if strays { 0 } else { whole }, lit);
+}
+
+/// Eight vertices, with a mark on those that need clipping.
+#[inline(always)]
+pub(super) fn project_eight(
+    narrow: &Narrow,
+    points: &[Vec3; LANES],
+    places: &mut [Place; LANES],
+    depths: &mut [u32; LANES],
+) {
+    let eight = narrow.project(points);
+    for (i, place) in places.iter_mut().enumerate() {
+        let within = eight.within[i];
+        *place = Place::new((eight.x[i] & within) | (Place::BEYOND & !within), eight.y[i] & within);
+    }
+    for (i, depth) in depths.iter_mut().enumerate() {
+        *depth = (eight.depth[i] & eight.within[i]).cast_unsigned();
+    }
+}
+
+/// As a function of its own: from loops over eights the compiler makes vectors of the same lane of eight eights, which takes
+/// twice as long.
+#[inline(never)]
+pub(super) fn project_eight_apart(
+    narrow: &Narrow,
+    points: &[Vec3; LANES],
+    places: &mut [Place; LANES],
+    depths: &mut [u32; LANES],
+) {
+    project_eight(narrow, points, places, depths);
 }
 
 /// The definition, of vertices from number `first` on.
@@ -51,36 +74,70 @@ pub(super) fn one_by_one<const TESTED: bool>(
     }
 }
 
-/// [`light_suns`](super::light_suns).
+/// [`light_suns`](super::light_suns), by `eight`.
 #[inline(always)]
 pub(super) fn light_suns<const BOTH: bool>(
     geometry: &Geometry<'_>,
     paints: &[Paint],
     lights: &Lights<'_>,
     lit: &mut LitVertices,
+    eight: impl Fn(&Paint, &Lights<'_>, &[Vec3; LANES], &mut [[U8F8; 2]; LANES]),
 ) {
     let (eights, rest) = geometry.normals.as_chunks::<LANES>();
     let (shades, rest_shades) = lit.shades.as_chunks_mut::<LANES>();
     let (surfaces, rest_surfaces) = geometry.vertex_surfaces.as_chunks::<LANES>();
     for ((normals, shades), surfaces) in eights.iter().zip(shades).zip(surfaces) {
-        let paint = &paints[usize::from(surfaces[0])];
-        if *surfaces != [surfaces[0]; LANES] {
-            for ((shades, normal), &surface) in shades.iter_mut().zip(normals).zip(surfaces) {
-                *shades = light_one::<BOTH>(&paints[usize::from(surface)], lights, *normal);
-            }
-            continue;
-        }
-        let (ambient, diffuse) = (paint.answer.ambient, paint.answer.diffuse);
-        let [front, back] = both_sides_of_eight::<BOTH>(ambient, diffuse, lights.suns, normals);
-        let front = paint.shade_of_eight(&front);
-        let back = if BOTH { paint.shade_of_eight(&back) } else { [U8F8::default(); LANES] };
-        for (lane, shades) in shades.iter_mut().enumerate() {
-            *shades = [front[lane], back[lane]];
+        if *surfaces == [surfaces[0]; LANES] {
+            eight(&paints[usize::from(surfaces[0])], lights, normals, shades);
+        } else {
+            light_one_by_one::<BOTH>(normals, surfaces, paints, lights, shades);
         }
     }
-    for ((shades, normal), &surface) in rest_shades.iter_mut().zip(rest).zip(rest_surfaces) {
-        *shades = light_one::<BOTH>(&paints[usize::from(surface)], lights, *normal);
+    light_one_by_one::<BOTH>(rest, rest_surfaces, paints, lights, rest_shades);
+}
+
+/// The definition.
+#[inline(never)]
+fn light_one_by_one<const BOTH: bool>(
+    normals: &[Vec3],
+    surfaces: &[u16],
+    paints: &[Paint],
+    lights: &Lights<'_>,
+    shades: &mut [[U8F8; 2]],
+) {
+    for ((shades, normal), &surface) in shades.iter_mut().zip(normals).zip(surfaces) {
+        let paint = &paints[usize::from(surface)];
+        let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, *normal);
+        *shades = [paint.shade(front), if BOTH { paint.shade(back) } else { U8F8::default() }];
     }
+}
+
+/// Eight vertices of one surface.
+#[inline(always)]
+pub(super) fn light_eight<const BOTH: bool>(
+    paint: &Paint,
+    lights: &Lights<'_>,
+    normals: &[Vec3; LANES],
+    shades: &mut [[U8F8; 2]; LANES],
+) {
+    let (ambient, diffuse) = (paint.answer.ambient, paint.answer.diffuse);
+    let [front, back] = both_sides_of_eight::<BOTH>(ambient, diffuse, lights.suns, normals);
+    let front = paint.shade_of_eight(&front);
+    let back = if BOTH { paint.shade_of_eight(&back) } else { [U8F8::default(); LANES] };
+    for (lane, shades) in shades.iter_mut().enumerate() {
+        *shades = [front[lane], back[lane]];
+    }
+}
+
+/// As `project_eight_apart`.
+#[inline(never)]
+pub(super) fn light_eight_apart<const BOTH: bool>(
+    paint: &Paint,
+    lights: &Lights<'_>,
+    normals: &[Vec3; LANES],
+    shades: &mut [[U8F8; 2]; LANES],
+) {
+    light_eight::<BOTH>(paint, lights, normals, shades);
 }
 
 #[cfg(test)]
@@ -92,7 +149,7 @@ mod tests {
     use super::super::{light_suns, project_inside, project_tested};
     use super::*;
     use crate::fixed::U8F8;
-    use crate::light::{Answer, Beam, Blend, both_sides};
+    use crate::light::{Answer, Beam, Blend};
     use crate::mesh::Mesh;
     use crate::palette::Ramp;
     use crate::scene::{Camera, Object};

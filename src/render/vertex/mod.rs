@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use super::lit::{LitVertices, Place};
 use super::paint::Paint;
 use crate::fixed::U8F8;
-use crate::light::{Lights, both_sides};
+use crate::light::Lights;
 use crate::palette::Ramp;
 use crate::raster::effects::Attributes;
 use crate::scene::Fog;
@@ -75,7 +75,7 @@ fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Ke
         return x86::project::<TESTED>(view, &narrow, positions, lit);
     }
     let _ = kernel;
-    lanes::project::<TESTED>(view, &narrow, positions, lit);
+    lanes::project::<TESTED>(view, &narrow, positions, lit, lanes::project_eight_apart);
 }
 
 /// Vertices that are rounded already rounded again, to fewer bits after the point, half up.
@@ -115,16 +115,9 @@ pub(super) fn light_suns(
     }
     let _ = kernel;
     match both {
-        true => lanes::light_suns::<true>(geometry, paints, lights, lit),
-        false => lanes::light_suns::<false>(geometry, paints, lights, lit),
+        true => lanes::light_suns::<true>(geometry, paints, lights, lit, lanes::light_eight_apart::<true>),
+        false => lanes::light_suns::<false>(geometry, paints, lights, lit, lanes::light_eight_apart::<false>),
     }
-}
-
-/// The shades of a vertex of this normal, front and back.
-#[inline]
-fn light_one<const BOTH: bool>(paint: &Paint, lights: &Lights<'_>, normal: Vec3) -> [U8F8; 2] {
-    let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, normal);
-    [paint.shade(front), if BOTH { paint.shade(back) } else { U8F8::default() }]
 }
 
 /// Suns, lamps and highlights.
