@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 
 use super::Batch;
-use super::avx512::{self, Tall};
+use super::avx512::{self, tall::Tall};
 use super::rows::{
     Draw, Edges, Floats, Gathered, Group, Ints, LANES, MAGIC, Place, Row, Spans, rows_by, set_up, tall_by,
 };
@@ -26,6 +26,9 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
 pub(super) fn sieve_512(batch: &Batch, clip: Rect, kept: &mut Kept) {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, clip: Rect, kept: &mut Kept) {
+        if batch.is_full() {
+            avx512::fetch(batch);
+        }
         // SAFETY: such a kernel is given out only where AVX-512 was found.
         sieve_by(batch, clip, kept, |eight, to| unsafe { avx512::pack(eight, to) });
     }
