@@ -16,7 +16,7 @@ use crate::raster::triangle::Drawn;
 pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, clip: Rect, kept: &mut Kept) {
-        sieve_by(batch, clip, kept, pack);
+        sieve_by(batch, clip, kept, |eight, to| pack(eight, to));
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
     unsafe { avx2(batch, clip, kept) }
@@ -40,7 +40,10 @@ pub(super) fn sieve_512(batch: &Batch, clip: Rect, kept: &mut Kept) {
 pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
-        rows_by(batch, kept, place, spans, set_up::<false>, |group, number, pitch, to| row(group, number, pitch, to))
+        // Closures, which are compiled for AVX2 as this is. (A function's name in their place is not: a quarter slower.)
+        let set_up = |gathered: &Gathered, place, group: &mut Group| set_up::<false>(gathered, place, group);
+        let row = |group: &Group, number, pitch, to: &mut Row| row(group, number, pitch, to);
+        rows_by(batch, kept, place, spans, set_up, row)
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
     unsafe { avx2(batch, kept, place, spans) }

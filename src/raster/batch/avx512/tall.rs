@@ -278,7 +278,7 @@ impl Tall {
                 ".p2align   5",
                 "5:",
                 "cmp        {length}, 64",
-                "ja         5f",
+                "ja         9f",
                 "4:",                                                   // its last 64 pixels or less
                 "bzhi       {mask}, {ones}, {length}",
                 "vpaddw     zmm23, zmm22, zmm28",                       // odd
@@ -292,7 +292,7 @@ impl Tall {
                 "ja         2b",
                 "jmp        8f",
 
-                "5:",                                                   // more than 64 pixels are left
+                "9:",                                                   // more than 64 pixels are left
                 "vmovsd     xmm24, qword ptr [{t} + 8*{j} + 256]",
                 "6:",
                 "vpaddw     zmm23, zmm22, zmm28",
