@@ -5,10 +5,10 @@ use glam::Vec3;
 use super::Beam;
 use crate::span::lit::{LANES, Lanes};
 
-/// [`both_sides`](super::both_sides) of eight normals: the same operations in the same order. Where it adds nothing,
+/// [`both_sides`](super::both_sides) of eight normals, or of the front alone, and anything of the back: the same operations in the same order. Where it adds nothing,
 /// nought is added, which changes no sum: none is −0, as each begins at +0.
 #[inline(always)]
-pub(crate) fn both_sides_of_eight(
+pub(crate) fn both_sides_of_eight<const BOTH: bool>(
     ambient: f64,
     diffuse: f64,
     suns: &[Beam],
@@ -24,9 +24,17 @@ pub(crate) fn both_sides_of_eight(
             // As glam has it.
             let cosine = (x[lane] * sun.towards.x + y[lane] * sun.towards.y) + z[lane] * sun.towards.z;
             let light = f64::from(sun.intensity) * f64::from(cosine);
-            front[lane] += if cosine > 0.0 { light } else { 0.0 };
-            back[lane] -= if cosine < 0.0 { light } else { 0.0 };
+            front[lane] += only(cosine > 0.0, light);
+            if BOTH {
+                back[lane] -= only(cosine < 0.0, light);
+            }
         }
     }
     [front, back].map(|side| side.map(|light| ambient + diffuse * light))
+}
+
+/// The light, or else nought. By a mask: of a choice the compiler makes a branch, and then no vectors.
+#[inline(always)]
+fn only(is_lit: bool, light: f64) -> f64 {
+    f64::from_bits(light.to_bits() & u64::from(is_lit).wrapping_neg())
 }

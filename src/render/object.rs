@@ -257,7 +257,9 @@ impl ObjectState {
             } else if full {
                 vertex::light_all(&geometry, &self.paints, &lights, both, &mut self.lit);
             } else {
-                vertex::light_suns(&geometry, &self.paints, &lights, kernel, &mut self.lit);
+                // Of a closed body nobody sees the back; but a budget may look at it.
+                let both = !plan.is_on(Effect::BackFaceCulling) || plan.max_error().is_some();
+                vertex::light_suns(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit);
             }
         } else {
             self.lit.leave_without_light();

@@ -6,15 +6,16 @@
 //! g = floor((2²⁴·n + (A >> 1)) / A)        n: the numerator, A: twice the area
 //! ```
 //!
-//! in two quotients of f64, by the rule at the head of `rows`:
+//! in two quotients of f64: for any whole q
 //!
 //! ```text
-//! q = floor(n / A)        r = n − q·A        g = 2²⁴·q + floor(2²⁴·r / A + ½) = 2²⁴·q + nearest((2²⁴·r + ½) / A)
+//! q = nearest(n / A), or beside it        r = n − q·A        g = 2²⁴·q + nearest(2²⁴·r / A), halves upward
 //! ```
 //!
-//! (A half of an odd A that is dropped changes no floor: 2²⁴·r / A + ½ is a multiple of 1/(2A), and never between a
-//! whole number and 1/(2A) more.) A small triangle's box is less than 65 × 17 pixels, so A is below 2²⁷, |n| below 2⁴⁸ and
-//! 2²⁴·r below 2⁵¹: both are exact, and the quotients, off by at most |n| / A · 2⁻⁵², less than 1/(2A) off.
+//! (Of an odd A there are no halves, and the half of it that is dropped changes no floor.) A small triangle's box is less
+//! than 65 × 17 pixels, so A is below 2²⁶·¹² and |n| below 2⁴⁸: n, q·A and r are exact, and |r| is at most 0.52·A. The last
+//! quotient is taken of 2²⁴·r + ¼, which is exact, too, so that what is rounded lies at least 1/(4A), more than 2⁻²⁸·¹², from
+//! the middle between two whole numbers. It is below 2²³·¹, and off by at most 2⁻⁵² of that: less than 2⁻²⁸·⁹.
 
 use super::rows::{Floats, Gathered, Group, LANES, MAGIC, Place};
 use crate::span::list::Depths;
@@ -126,11 +127,81 @@ impl Walk {
 fn gradients(numerators: &Floats, areas: &Floats, inverses: &Floats, gradients: &mut [i64; LANES]) {
     for i in 0..LANES {
         let (n, area, inverse) = (numerators[i], areas[i], inverses[i]);
-        let whole = (n + (0.5 - area * 0.5)) * inverse + MAGIC;
+        let whole = n * inverse + MAGIC;
         let rest = n - (whole - MAGIC) * area;
-        let part = (rest * 16_777_216.0 + 0.5) * inverse + MAGIC;
+        let part = (rest * 16_777_216.0 + 0.25) * inverse + MAGIC;
         let bits = |sum: f64| sum.to_bits().wrapping_sub(MAGIC.to_bits()).cast_signed();
         // The wrap is meant: see `raster::depth`.
         gradients[i] = (bits(whole) << 24).wrapping_add(bits(part));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::rows::{MOST_COLUMNS, MOST_ROWS, Spans, set_up};
+    use super::*;
+    use crate::raster::depth::DepthPlane;
+
+    fn depth() -> impl Strategy<Value = u32> {
+        let end = prop::sample::select(vec![0, 1, 1 << 30, u32::MAX - 1, u32::MAX]);
+        let near = (1_u32 << 29)..(1 << 29) + 5_000;
+        prop_oneof![3 => any::<u32>(), 6 => near, 2 => 1_u32..1 << 30, 1 => end]
+    }
+
+    /// A corner within a box of this many units.
+    fn corner(width: i32, height: i32) -> BoxedStrategy<(i32, i32, u32)> {
+        let at = |most: i32| prop_oneof![4 => 0..=most, 1 => Just(0), 1 => Just(most)];
+        (at(width), at(height), depth()).boxed()
+    }
+
+    fn triangle() -> BoxedStrategy<[(i32, i32, u32); 3]> {
+        let (width, height) = (MOST_COLUMNS * 256, MOST_ROWS * 256);
+        let sizes = prop_oneof![2 => Just((width, height)), 2 => Just((600, 600)), 2 => Just((40, 40)), 1 => Just((3, 3)),
+            1 => Just((width, 4)), 1 => Just((4, height))];
+        let corners = sizes.prop_flat_map(|(w, h)| [corner(w, h), corner(w, h), corner(w, h)]);
+        let place = (-(1_i32 << 20)..=(1 << 20) - width, -(1_i32 << 20)..=(1 << 20) - height);
+        let place = prop_oneof![3 => (0_i32..50_000, 0_i32..30_000), 1 => place];
+        (corners, place).prop_map(|(corners, (left, top))| corners.map(|(x, y, d)| (left + x, top + y, d))).boxed()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        /// Depths and steps are those of the plane that is worked out in integers, to the bit.
+        #[test]
+        fn eight_planes_are_each_its_own(triangles in prop::collection::vec(triangle(), LANES), width in 1_u32..=4_096) {
+            let mut gathered = Gathered { x: [[0; LANES]; 3], y: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3] };
+            for (lane, corners) in triangles.iter().enumerate() {
+                for (corner, &(x, y, d)) in corners.iter().enumerate() {
+                    (gathered.x[corner][lane], gathered.y[corner][lane], gathered.depth[corner][lane]) = (x, y, d);
+                }
+            }
+            let place = Place { first_row: 3, pitch: width + 5, depth_width: Some(width) };
+            let mut spans = Spans::new(&mut []);
+            set_up::<false>(&gathered, place, &mut spans.group);
+            let group = &spans.group;
+            let planes = Planes::of(&gathered, group);
+            for (lane, corners) in triangles.into_iter().enumerate() {
+                let [a, b, c] = corners.map(|(x, y, _)| (i64::from(x), i64::from(y)));
+                if (b.0 - a.0) * (c.1 - a.1) == (c.0 - a.0) * (b.1 - a.1) {
+                    continue;
+                }
+                let plane = DepthPlane::of_corners(corners);
+                let mut walk = planes.walk(lane, group, place, width);
+                let mut pixel = group.at[lane];
+                for row in 0..=MOST_ROWS {
+                    for column in [0, 1, 17, MOST_COLUMNS] {
+                        let depths = walk.at(pixel.wrapping_add(column));
+                        prop_assert_eq!(depths.z, plane.fixed_at(group.column[lane] + column, group.row[lane] + row));
+                        prop_assert_eq!(depths.dz, plane.step());
+                        let at = (group.row[lane] + row - 3) * width as i32 + group.column[lane] + column;
+                        prop_assert_eq!(depths.at, at as u32);
+                    }
+                    walk.down();
+                    pixel = pixel.wrapping_add(place.pitch as i32);
+                }
+            }
+        }
     }
 }

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use super::lit::{LitVertices, Place};
 use super::paint::Paint;
 use crate::fixed::U8F8;
-use crate::light::{Lights, both_sides};
+use crate::light::Lights;
 use crate::palette::Ramp;
 use crate::raster::effects::Attributes;
 use crate::scene::Fog;
@@ -78,7 +78,7 @@ fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Ke
         return x86::project::<TESTED>(view, &narrow, positions, lit);
     }
     let _ = kernel;
-    lanes::project::<TESTED>(view, &narrow, positions, lit);
+    lanes::project::<TESTED>(view, &narrow, positions, lit, lanes::project_eight_apart);
 }
 
 /// Vertices that are rounded already rounded again, to fewer bits after the point, half up.
@@ -100,28 +100,27 @@ pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[Paint], lit: &mut Li
     }
 }
 
-/// Suns on matt surfaces.
+/// Suns on matt surfaces; on the side that the normals point away from, or on `both`: the other's shades are then 0.
 #[inline(never)]
 pub(super) fn light_suns(
     geometry: &Geometry<'_>,
     paints: &[Paint],
     lights: &Lights<'_>,
-    kernel: Kernel,
+    (both, kernel): (bool, Kernel),
     lit: &mut LitVertices,
 ) {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     if kernel.has_avx2() {
-        return x86::light_suns(geometry, paints, lights, lit);
+        return match both {
+            true => x86::light_suns::<true>(geometry, paints, lights, lit),
+            false => x86::light_suns::<false>(geometry, paints, lights, lit),
+        };
     }
     let _ = kernel;
-    lanes::light_suns(geometry, paints, lights, lit);
-}
-
-/// The shades of a vertex of this normal, front and back.
-#[inline]
-fn light_one(paint: &Paint, lights: &Lights<'_>, normal: Vec3) -> [U8F8; 2] {
-    let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, normal);
-    [paint.shade(front), paint.shade(back)]
+    match both {
+        true => lanes::light_suns::<true>(geometry, paints, lights, lit, lanes::light_eight_apart::<true>),
+        false => lanes::light_suns::<false>(geometry, paints, lights, lit, lanes::light_eight_apart::<false>),
+    }
 }
 
 /// Suns, lamps and highlights; on the side that the normals point away from, or on `both`.
