@@ -137,7 +137,15 @@ impl Mesh {
     }
 
     /// Finite positions, unit normals, indices in range: a shape, or input that was checked.
-    pub(in crate::mesh) fn assemble(positions: Vec<Vec3>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
+    pub(in crate::mesh) fn assemble(
+        mut positions: Vec<Vec3>,
+        mut normals: Vec<Vec3>,
+        mut triangles: Vec<[u32; 3]>,
+    ) -> Self {
+        // Made by pushing, they hold up to twice as much; a mesh stays for long.
+        positions.shrink_to_fit();
+        normals.shrink_to_fit();
+        triangles.shrink_to_fit();
         debug_assert!(check(&positions, &triangles).is_ok() && normals.len() == positions.len());
         let points = topology::weld(&positions);
         let bounds = Bounds::of(&positions, &triangles);
