@@ -761,7 +761,8 @@ impl Renderer {
     /// All at once, each pixel once.
     fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
         let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
-        let scratch = self.lists.scratch(self.triangles.capacity());
+        self.lists.reserve(self.triangles.capacity());
+        let scratch = self.lists.scratch(self.triangles.len());
         let (places, kept) = (&self.kept_places, &self.kept);
         // There is room for all.
         stats.raster += raster
