@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn a_hash_welds_as_sorting_does() {
         // A grid, of which some points come twice and three times.
-        let keys = || (0..3_000_u32).map(|i| [i * 7 % 1_000 << 20, i % 5, i % 3 << 31]);
+        let keys = || (0..3_000_u32).map(|i| [(i * 7 % 1_000) << 20, i % 5, (i % 3) << 31]);
         let points = weld_by_hash(3_000, keys).expect("no collision beyond chance");
         assert_eq!(in_order(&points), in_order(&weld_by_sorting(keys())));
         assert_eq!(weld_by_hash(0, || [].into_iter()), Some(Vec::new()));
