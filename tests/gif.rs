@@ -12,7 +12,7 @@ use std::path::Path;
 use std::rc::Rc;
 
 use mode13h::export::{
-    ExportErrorKind, Film, FrameRate, GifError, GifFile, GifWriter, Picture, PictureError, PixelShape, Scale,
+    ExportErrorKind, Film, FrameRate, GifError, GifFile, GifFrame, GifWriter, Picture, PictureError, PixelShape, Scale,
 };
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::vga::Vga;
@@ -64,6 +64,37 @@ fn write(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<u8>, Film) {
     film.finish().expect("finished")
 }
 
+/// The same, each frame made ready before the ones that come before it.
+fn write_made_ready(frames: &[Given], scale: Scale, rate: FrameRate) -> Vec<u8> {
+    let ready = (0..frames.len()).rev().map(|i| {
+        let picture = frames[i].picture();
+        match i.checked_sub(1) {
+            None => GifFrame::first(&picture, scale),
+            Some(before) => GifFrame::after(&frames[before].picture(), &picture, scale, &frames[0].palette),
+        }
+    });
+    let ready: Vec<GifFrame> = ready.collect::<Result<_, _>>().expect("made ready");
+    let mut film = GifWriter::new(Vec::new(), scale, rate);
+    ready.into_iter().rev().for_each(|frame| film.add_frame(frame).expect("added"));
+    film.finish().expect("finished").0
+}
+
+#[test]
+fn a_frame_that_was_made_ready_for_another_place_is_still_a_frame() {
+    let mut random = Random::named("a_frame_that_was_made_ready_for_another_place_is_still_a_frame");
+    let frame = noise(&mut random, 9, 7, 9);
+    // It changes nothing beside itself, but as a film's first it is all that there is.
+    let alone = GifFrame::after(&frame.picture(), &frame.picture(), Scale::Double, &frame.palette).expect("made");
+    let mut film = GifWriter::new(Vec::new(), Scale::Double, FrameRate::default());
+    film.add_frame(alone).expect("added");
+    // Of another size it is refused, and the film goes on.
+    let other = GifFrame::first(&frame.picture(), Scale::One).expect("made");
+    let refused = film.add_frame(other).expect_err("refused");
+    assert!(matches!(refused, GifError::Picture(PictureError::OtherSize { .. })), "{refused}");
+    let (file, _) = film.finish().expect("finished");
+    assert!(file == write(&[frame], Scale::Double, FrameRate::default()).0);
+}
+
 /// What is seen, and for how long, in 1/100 s: what follows itself without a change is one.
 fn seen<'a>(shown: impl Iterator<Item = (&'a [Rgb], u64)>) -> Vec<(&'a [Rgb], u64)> {
     let mut seen: Vec<(&[Rgb], u64)> = Vec::new();
@@ -80,6 +111,7 @@ fn seen<'a>(shown: impl Iterator<Item = (&'a [Rgb], u64)>) -> Vec<(&'a [Rgb], u6
 /// holds all pixels that change; that an image has a palette only where it needs one. Returns the images.
 fn check(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<Image>, Film) {
     let (file, film) = write(frames, scale, rate);
+    assert!(write_made_ready(frames, scale, rate) == file, "frames that were made ready beforehand");
     let decoded = decode(&file);
     let (width, height) = scale.size(frames[0].width, frames[0].height);
     assert_eq!((decoded.width, decoded.height), (width, height));

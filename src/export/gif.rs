@@ -4,6 +4,8 @@
 //! A frame that changes nothing is not written: the one before it stays longer. (A frame of one pixel would keep the time
 //! as well, at 25 bytes and one more image for every reader.) How long a frame stays is therefore known only when the next
 //! change comes, so the last one is held back until then.
+//!
+//! Nearly all the time goes into [`GifFrame`], what is made of a frame beside the one before it: several can be made at a time.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -12,8 +14,8 @@ use std::io::{self, Write};
 
 use gif::{Encoder, EncodingError, Frame, Repeat};
 
-use super::scale::Scaled;
-use super::{FrameRate, Picture, PictureError, PixelShape, Scale};
+use super::gif_frame::{GifFrame, Image, table};
+use super::{FrameRate, Picture, PictureError, Scale};
 use crate::palette::Rgb;
 
 /// A film that goes round for ever, as a GIF, written to `W` while its frames are given.
@@ -40,6 +42,8 @@ pub struct GifWriter<W: Write> {
     scale: Scale,
     rate: FrameRate,
     out: Out<W>,
+    /// The colours of images without a palette of their own: the first frame's.
+    palette: Box<[Rgb; 256]>,
     held: Option<Held>,
     film: Film,
 }
@@ -73,7 +77,8 @@ impl Film {
 impl<W: Write> GifWriter<W> {
     /// A film of no frames yet. Nothing is written before the second frame or [`finish`](Self::finish).
     pub fn new(out: W, scale: Scale, rate: FrameRate) -> GifWriter<W> {
-        GifWriter { scale, rate, out: Out::Unopened(out), held: None, film: Film::default() }
+        let palette = Box::new([Rgb::BLACK; 256]);
+        GifWriter { scale, rate, out: Out::Unopened(out), palette, held: None, film: Film::default() }
     }
 
     /// Adds a frame. Its bytes and colours are what it shows: the shape of its pixels is not heeded.
@@ -84,26 +89,54 @@ impl<W: Write> GifWriter<W> {
     /// when enlarged: the film can then go on without it. [`GifError::Io`] if writing failed: the film cannot go on.
     pub fn add(&mut self, picture: &Picture<'_>) -> Result<(), GifError> {
         self.out.check()?;
-        let scaled = Scaled::new(picture, self.scale)?;
-        let delay = self.rate.delay(self.film.frames);
-        let area = match &mut self.held {
-            None => Area::whole(&scaled),
-            Some(held) => match (held.changed_by(&scaled)?, held.delay.checked_add(delay)) {
-                (Some(area), _) => area,
-                (None, Some(sum)) => {
-                    held.delay = sum;
-                    self.film.frames += 1;
-                    return Ok(());
-                }
-                // No image stays longer than 655.35 s: another begins, which draws one pixel as it was.
-                (None, None) => Area::FIRST_PIXEL,
-            },
+        let frame = match &self.held {
+            None => GifFrame::first(picture, self.scale)?,
+            Some(held) => GifFrame::after(&held.frame.picture(), picture, self.scale, &self.palette)?,
         };
-        let next = Held::new(&scaled, area, delay)?;
+        self.add_frame(frame)
+    }
+
+    /// Adds a frame that was made ready: the first by [`GifFrame::first`], each other by [`GifFrame::after`] beside the
+    /// frame that was added before it, in this film's scale and with the colours of its first frame. Beside another, it
+    /// shows what that other would have left.
+    ///
+    /// # Errors
+    ///
+    /// As [`add`](Self::add); [`GifError::Picture`] too where it was enlarged to another size than the first.
+    pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), GifError> {
+        self.out.check()?;
+        // Nothing stands before it.
+        let frame = match &self.held {
+            None if !frame.is_whole() => GifFrame::first(&frame.picture(), self.scale)?,
+            _ => frame,
+        };
+        let delay = self.rate.delay(self.film.frames);
+        let image = match &mut self.held {
+            None => {
+                *self.palette = *frame.palette();
+                (self.film.width, self.film.height) = frame.size();
+                None
+            }
+            Some(held) => {
+                let (first, now) = ((self.film.width, self.film.height), frame.size());
+                if first != now {
+                    let wide = |(width, height): (u16, u16)| (width.into(), height.into());
+                    return Err(PictureError::OtherSize { first: wide(first), now: wide(now) }.into());
+                }
+                match (frame.changes(), held.delay.checked_add(delay)) {
+                    (true, _) => None,
+                    (false, Some(sum)) => {
+                        held.delay = sum;
+                        self.film.frames += 1;
+                        return Ok(());
+                    }
+                    // No image stays longer than 655.35 s: another begins, which draws one pixel as it was.
+                    (false, None) => Some(frame.first_pixel(self.scale, &self.palette)?),
+                }
+            }
+        };
         self.write_held()?;
-        // All sides are at most MAX_SIDE, 16,384.
-        (self.film.width, self.film.height) = (scaled.width as u16, scaled.height as u16);
-        self.held = Some(next);
+        self.held = Some(Held { frame, image, delay });
         self.film.frames += 1;
         Ok(())
     }
@@ -117,7 +150,7 @@ impl<W: Write> GifWriter<W> {
         self.out.check()?;
         self.write_held()?;
         match self.out {
-            Out::Open(Open { encoder, .. }) => {
+            Out::Open(encoder) => {
                 let Counted { out, bytes } = encoder.into_inner().map_err(reason)?;
                 self.film.bytes = bytes;
                 Ok((out, self.film))
@@ -129,143 +162,41 @@ impl<W: Write> GifWriter<W> {
 
     /// Writes the frame that is held, if there is one.
     fn write_held(&mut self) -> Result<(), GifError> {
-        let Some(Held { palette, part, area, delay, .. }) = self.held.take() else { return Ok(()) };
+        let Some(Held { frame, image, delay }) = self.held.take() else { return Ok(()) };
+        let Some(Image { area, palette, data }) = image.or_else(|| frame.into_image()) else { return Ok(()) };
         self.film.images += 1;
         *self.film.delays.entry(delay).or_default() += 1;
-        self.out.write((self.film.width, self.film.height), &palette, |global| Frame {
+        let frame = Frame {
             delay,
             // Within the film, whose sides are at most 16,384.
             left: area.left as u16,
             top: area.top as u16,
             width: (area.right - area.left) as u16,
             height: (area.bottom - area.top) as u16,
-            palette: shows_otherwise(&part, &palette, global).then(|| table(&palette)),
-            buffer: part.into(),
+            palette,
+            buffer: data.into(),
             ..Frame::default()
-        })
-    }
-}
-
-/// Whether any of these pixels has another colour in one palette than in the other.
-fn shows_otherwise(pixels: &[u8], palette: &[Rgb; 256], other: &[Rgb; 256]) -> bool {
-    palette != other && pixels.iter().any(|&pixel| palette[usize::from(pixel)] != other[usize::from(pixel)])
-}
-
-/// A colour table of GIF: red, green and blue of each entry.
-fn table(palette: &[Rgb; 256]) -> Vec<u8> {
-    palette.iter().flat_map(|color| [color.r, color.g, color.b]).collect()
-}
-
-/// A rectangle of the film, in its pixels: from `left` and `top` to before `right` and `bottom`.
-#[derive(Clone, Copy)]
-struct Area {
-    left: usize,
-    top: usize,
-    right: usize,
-    bottom: usize,
-}
-
-impl Area {
-    const FIRST_PIXEL: Area = Area { left: 0, top: 0, right: 1, bottom: 1 };
-
-    fn whole(scaled: &Scaled<'_>) -> Area {
-        Area { left: 0, top: 0, right: scaled.width as usize, bottom: scaled.height as usize }
-    }
-
-    /// The least that holds this one, if there is one, and a row from `left` to before `right`.
-    fn with_row(area: Option<Area>, y: usize, left: usize, right: usize) -> Area {
-        match area {
-            Some(area) => {
-                Area { left: area.left.min(left), top: area.top, right: area.right.max(right), bottom: y + 1 }
-            }
-            None => Area { left, top: y, right, bottom: y + 1 },
-        }
+        };
+        self.out.write((self.film.width, self.film.height), &self.palette, &frame)
     }
 }
 
 /// The last frame that changed something. It is what the film shows.
 struct Held {
-    /// As they were given, without gaps between the rows.
-    pixels: Vec<u8>,
-    width: usize,
-    height: usize,
-    palette: [Rgb; 256],
-    /// What it changed, and what is to be seen there: palette indices, row by row.
-    area: Area,
-    part: Vec<u8>,
+    frame: GifFrame,
+    /// What is written of it, where that is not its own image.
+    image: Option<Image>,
     /// In 1/100 s, so far.
     delay: u16,
-}
-
-impl Held {
-    fn new(scaled: &Scaled<'_>, area: Area, delay: u16) -> Result<Held, PictureError> {
-        let (picture, ..) = scaled.sources();
-        let &Picture { width, height, palette, .. } = picture;
-        // The picture has been checked: so many are there.
-        let bytes = width * height;
-        let mut pixels = Vec::new();
-        pixels.try_reserve_exact(bytes).map_err(|_| PictureError::Memory { bytes })?;
-        (0..height).for_each(|y| pixels.extend_from_slice(picture.row(y)));
-        let part = scaled.part(area.left..area.right, area.top..area.bottom)?;
-        Ok(Held { pixels, width, height, palette: *palette, area, part, delay })
-    }
-
-    fn picture(&self) -> Picture<'_> {
-        let Held { pixels, width, height, palette, .. } = self;
-        Picture { pixels, width: *width, height: *height, pitch: *width, palette, shape: PixelShape::SQUARE }
-    }
-
-    /// What of the film the frame `now` changes: the least rectangle with all pixels that it shows in another colour,
-    /// whether the index or the palette is the reason; nothing if there is none. An index that stands for the same
-    /// colour as before changes nothing.
-    fn changed_by(&self, now: &Scaled<'_>) -> Result<Option<Area>, PictureError> {
-        let (picture, columns, rows) = now.sources();
-        let (first, size) = ((self.width, self.height), (picture.width, picture.height));
-        if first != size {
-            return Err(PictureError::OtherSize { first, now: size });
-        }
-        let before = self.picture();
-        let same_palette = before.palette == picture.palette;
-        let changed = |y: usize| {
-            let (old, new) = (before.row(y), picture.row(y));
-            if same_palette && old == new {
-                return None;
-            }
-            let differs = |&x: &usize| before.palette[usize::from(old[x])] != picture.palette[usize::from(new[x])];
-            let left = columns.iter().position(differs)?;
-            let right = columns.iter().rposition(differs)? + 1;
-            Some((left, right))
-        };
-        let mut area = None;
-        // Rows of the film that are one row of the frame are compared once.
-        let mut last = None;
-        for (y, &row) in rows.iter().enumerate() {
-            let ends = match last {
-                Some((of, ends)) if of == row => ends,
-                _ => changed(row),
-            };
-            last = Some((row, ends));
-            if let Some((left, right)) = ends {
-                area = Some(Area::with_row(area, y, left, right));
-            }
-        }
-        Ok(area)
-    }
 }
 
 /// What the film is written to.
 enum Out<W: Write> {
     /// Nothing is written yet: the first frame says how large the film is, and its colours are the film's.
     Unopened(W),
-    Open(Open<W>),
+    Open(Encoder<Counted<W>>),
     /// Writing failed so.
     Failed(io::ErrorKind),
-}
-
-struct Open<W: Write> {
-    encoder: Encoder<Counted<W>>,
-    /// The colours of images without a palette of their own.
-    palette: Box<[Rgb; 256]>,
 }
 
 impl<W: Write> Out<W> {
@@ -276,22 +207,17 @@ impl<W: Write> Out<W> {
         }
     }
 
-    /// Writes the image that is made for the film's palette; what stands before the first, too.
-    fn write<'a>(
-        &mut self,
-        (width, height): (u16, u16),
-        palette: &[Rgb; 256],
-        image: impl FnOnce(&[Rgb; 256]) -> Frame<'a>,
-    ) -> Result<(), GifError> {
+    /// Writes an image that is compressed; what stands before the first, too.
+    fn write(&mut self, size: (u16, u16), palette: &[Rgb; 256], image: &Frame<'_>) -> Result<(), GifError> {
         // Should this fail, the file ends amid an image, and nothing may follow.
         let out = std::mem::replace(self, Out::Failed(io::ErrorKind::Other));
-        let written = out.opened(width, height, palette).and_then(|mut open| {
-            open.encoder.write_frame(&image(&open.palette))?;
-            Ok(open)
+        let written = out.opened(size, palette).and_then(|mut encoder| {
+            encoder.write_lzw_pre_encoded_frame(image)?;
+            Ok(encoder)
         });
         match written.map_err(reason) {
-            Ok(open) => {
-                *self = Out::Open(open);
+            Ok(encoder) => {
+                *self = Out::Open(encoder);
                 Ok(())
             }
             Err(error) => {
@@ -301,14 +227,14 @@ impl<W: Write> Out<W> {
         }
     }
 
-    fn opened(self, width: u16, height: u16, palette: &[Rgb; 256]) -> Result<Open<W>, EncodingError> {
+    fn opened(self, (width, height): (u16, u16), palette: &[Rgb; 256]) -> Result<Encoder<Counted<W>>, EncodingError> {
         match self {
             Out::Unopened(out) => {
                 let mut encoder = Encoder::new(Counted { out, bytes: 0 }, width, height, &table(palette))?;
                 encoder.set_repeat(Repeat::Infinite)?;
-                Ok(Open { encoder, palette: Box::new(*palette) })
+                Ok(encoder)
             }
-            Out::Open(open) => Ok(open),
+            Out::Open(encoder) => Ok(encoder),
             Out::Failed(kind) => Err(io::Error::from(kind).into()),
         }
     }

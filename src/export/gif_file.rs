@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::atomic::AtomicFile;
-use super::{ExportError, ExportErrorKind, Film, FrameRate, GifError, GifWriter, Picture, Scale};
+use super::{ExportError, ExportErrorKind, Film, FrameRate, GifError, GifFrame, GifWriter, Picture, Scale};
 
 /// A film that goes round for ever, written to a file frame by frame as [`GifWriter`] does.
 ///
@@ -52,6 +52,15 @@ impl GifFile {
     /// writing failed and the film cannot go on.
     pub fn add(&mut self, picture: &Picture<'_>) -> Result<(), ExportError> {
         self.writer.add(picture).map_err(|error| failed(&self.path, error))
+    }
+
+    /// Adds a frame that was made ready, as [`GifWriter::add_frame`] does.
+    ///
+    /// # Errors
+    ///
+    /// As [`add`](Self::add).
+    pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), ExportError> {
+        self.writer.add_frame(frame).map_err(|error| failed(&self.path, error))
     }
 
     /// Ends the film, and gives the file its name.

@@ -10,6 +10,8 @@ mod frame_rate;
 mod gif;
 #[cfg(feature = "gif")]
 mod gif_file;
+#[cfg(feature = "gif")]
+mod gif_frame;
 #[cfg(feature = "png")]
 mod indexed;
 #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
@@ -26,6 +28,8 @@ pub use atomic::{ExportError, ExportErrorKind, write_atomically};
 pub use frame_rate::{FrameRate, FrameRateError};
 #[cfg(feature = "gif")]
 pub use gif_file::GifFile;
+#[cfg(feature = "gif")]
+pub use gif_frame::GifFrame;
 #[cfg(feature = "png")]
 pub use indexed::{encode_png, picture_png, png};
 #[cfg(any(feature = "png", feature = "gif", feature = "image"))]

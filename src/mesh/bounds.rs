@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::wide::{length, sub, widen};
+use super::wide::{dot, sub, widen};
 
 /// The box and the sphere around a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,11 +32,13 @@ impl Bounds {
         // In f64: min + max may exceed f32, and so may the radius.
         let middle = |a: f32, b: f32| ((f64::from(a) + f64::from(b)) / 2.0) as f32;
         let centre = Vec3::new(middle(min.x, max.x), middle(min.y, max.y), middle(min.z, max.z));
-        let mut radius = 0.0_f64;
+        let mut square = 0.0_f64;
         for p in used() {
-            radius = radius.max(length(sub(widen(p), widen(centre))));
+            let away = sub(widen(p), widen(centre));
+            square = square.max(dot(away, away));
         }
-        Self { min, max, centre, radius: round_up(radius) }
+        // Of the greatest square alone: a root keeps the order.
+        Self { min, max, centre, radius: round_up(libm::sqrt(square)) }
     }
 }
 

@@ -138,11 +138,26 @@ impl Mesh {
 
     /// Finite positions, unit normals, indices in range: a shape, or input that was checked.
     pub(in crate::mesh) fn assemble(positions: Vec<Vec3>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
-        debug_assert!(check(&positions, &triangles).is_ok() && normals.len() == positions.len());
         let points = topology::weld(&positions);
+        Self::assemble_welded(positions, normals, triangles, &points)
+    }
+
+    /// The same, where the points of the vertices are known.
+    fn assemble_welded(
+        mut positions: Vec<Vec3>,
+        mut normals: Vec<Vec3>,
+        mut triangles: Vec<[u32; 3]>,
+        points: &[u32],
+    ) -> Self {
+        // Made by pushing, they hold up to twice as much; a mesh stays for long.
+        positions.shrink_to_fit();
+        normals.shrink_to_fit();
+        triangles.shrink_to_fit();
+        debug_assert!(check(&positions, &triangles).is_ok() && normals.len() == positions.len());
         let bounds = Bounds::of(&positions, &triangles);
-        let closed = topology::is_closed(&triangles, &points);
-        let convex = closed && topology::is_convex(&positions, &triangles, &points);
+        let edges = topology::Edges::new(&triangles, points);
+        let closed = edges.are_closed();
+        let convex = closed && topology::is_convex(&positions, &triangles, points, &edges);
         Self {
             positions,
             normals,

@@ -115,8 +115,11 @@ impl Mesh {
     /// Gives every face its own normal at all its corners. Vertices are split where they must be.
     pub fn flat(&mut self) {
         let faces = self.faces();
-        let normals = faces.iter().flat_map(|face| [face.has_area().then(|| narrow(face.normal)); 3]).collect();
-        self.give(normals, vec![None; self.positions.len()]);
+        let normal = |corner: usize, _| {
+            let face = &faces[corner / 3];
+            face.has_area().then(|| narrow(face.normal))
+        };
+        self.give(normal, vec![None; self.positions.len()]);
     }
 
     fn faces(&self) -> Vec<Face> {
@@ -131,13 +134,15 @@ impl Mesh {
     /// numbered below the number of vertices), and `known` which of them keep the normal that it gives.
     pub(super) fn average(&mut self, points: &[u32], weight: Weight, crease: Option<f32>, known: Vec<Option<Vec3>>) {
         let faces = self.faces();
-        let classes = match crease {
-            None => self.triangles.iter().flatten().map(|&vertex| points[vertex as usize]).collect(),
-            Some(angle) => self.classes(points, &faces, angle),
-        };
         // One for each class, which is a point or, with a crease, a corner. (One for each corner always would be 48
         // bytes a corner: of ten million faces over a gigabyte.)
-        let count = classes.iter().max().map_or(0, |&greatest| greatest as usize + 1);
+        let classes = crease.map(|angle| self.classes(points, &faces, angle));
+        let class = |corner: usize, vertex: u32| match &classes {
+            None => points[vertex as usize] as usize,
+            Some(classes) => classes[corner] as usize,
+        };
+        let greatest = classes.as_deref().unwrap_or(points).iter().max();
+        let count = greatest.map_or(0, |&greatest| greatest as usize + 1);
         let mut sums = vec![([0.0; 3], 0.0); count];
         for (t, face) in faces.iter().enumerate().filter(|(_, face)| face.has_area()) {
             let weights = match weight {
@@ -146,7 +151,7 @@ impl Mesh {
                 Weight::Angle => angles(self.corners(self.triangles[t])),
             };
             for (corner, weight) in weights.into_iter().enumerate() {
-                let (sum, total) = &mut sums[classes[3 * t + corner] as usize];
+                let (sum, total) = &mut sums[class(3 * t + corner, self.triangles[t][corner])];
                 *sum = add(*sum, scale(face.normal, weight));
                 *total += weight;
             }
@@ -159,14 +164,14 @@ impl Mesh {
         };
         let means: Vec<Option<Vec3>> = sums.iter().map(mean).collect();
         drop(sums);
-        let normal = |corner: usize| {
+        // What is known was given; all that is found here for such a vertex is dropped.
+        let is_known: Vec<bool> = known.iter().map(Option::is_some).collect();
+        let normal = |corner: usize, vertex: u32| {
             let face = &faces[corner / 3];
-            let vertex = self.triangles[corner / 3][corner % 3];
-            (face.has_area() && known[vertex as usize].is_none())
-                .then(|| means[classes[corner] as usize].unwrap_or_else(|| narrow(face.normal)))
+            (face.has_area() && !is_known[vertex as usize])
+                .then(|| means[class(corner, vertex)].unwrap_or_else(|| narrow(face.normal)))
         };
-        let normals = (0..classes.len()).map(normal).collect();
-        self.give(normals, known);
+        self.give(normal, known);
     }
 
     /// For each corner the corner that stands for all that share a normal with it: two faces at a
@@ -205,13 +210,13 @@ impl Mesh {
         (0..parent.len() as u32).map(|corner| root(&mut parent, corner)).collect()
     }
 
-    /// A normal for each corner; `None`: any will do. Splits the vertices whose corners want more
+    /// A normal for each corner of a vertex; `None`: any will do. Splits the vertices whose corners want more
     /// than one. `given`: what vertices have already.
-    fn give(&mut self, normals: Vec<Option<Vec3>>, mut given: Vec<Option<Vec3>>) {
+    fn give(&mut self, normal: impl Fn(usize, u32) -> Option<Vec3>, mut given: Vec<Option<Vec3>>) {
         let bits = |n: Vec3| [n.x, n.y, n.z].map(f32::to_bits);
         let mut splits: Vec<(u32, [u32; 3], u32)> = Vec::new();
-        for (corner, (&vertex, &normal)) in self.triangles.as_flattened().iter().zip(&normals).enumerate() {
-            let Some(normal) = normal else { continue };
+        for (corner, &vertex) in self.triangles.as_flattened().iter().enumerate() {
+            let Some(normal) = normal(corner, vertex) else { continue };
             match given[vertex as usize] {
                 None => given[vertex as usize] = Some(normal),
                 Some(first) if bits(first) == bits(normal) => {}

@@ -13,6 +13,9 @@ impl Mesh {
     /// Whether no vertex is used by triangles of two surfaces.
     #[must_use]
     pub fn has_one_surface_a_vertex(&self) -> bool {
+        if self.surfaces.len() == 1 {
+            return true;
+        }
         let mut surface_of = vec![NONE; self.positions.len()];
         self.triangles.iter().zip(&self.triangle_surfaces).all(|(triangle, &surface)| {
             triangle.iter().all(|&i| {
@@ -70,6 +73,9 @@ impl Mesh {
     #[must_use]
     pub fn vertex_surfaces(&self) -> Vec<u16> {
         let mut surface_of = vec![0; self.positions.len()];
+        if self.surfaces.len() == 1 {
+            return surface_of;
+        }
         for (triangle, &surface) in self.triangles.iter().zip(&self.triangle_surfaces) {
             for &i in triangle {
                 surface_of[i as usize] = surface;

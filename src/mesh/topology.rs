@@ -5,6 +5,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
+use core::ops::Range;
 
 use glam::Vec3;
 
@@ -14,11 +15,52 @@ use super::wide::{add, cross, dot, length, scale, sub, widen};
 /// For each vertex the number of its point; vertices at the same position have the same. 0 and −0
 /// are the same position. Points are numbered from 0 in no particular order.
 pub(super) fn weld(positions: &[Vec3]) -> Vec<u32> {
-    let key = |p: &Vec3| [(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits(), (p.z + 0.0).to_bits()];
+    let keys = || positions.iter().map(|p| [(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits(), (p.z + 0.0).to_bits()]);
+    weld_by_hash(positions.len(), keys).unwrap_or_else(|| weld_by_sorting(keys()))
+}
+
+/// A table with open addressing, half full at most. `None` if far more places are looked at than chance would have it: of
+/// positions that were made to collide.
+fn weld_by_hash<K: Iterator<Item = [u32; 3]>>(count: usize, keys: impl Fn() -> K) -> Option<Vec<u32>> {
+    const FREE: u32 = u32::MAX;
+    let size = (2 * count).next_power_of_two();
+    // A key, and the number of its point, which is below 2³¹.
+    let mut table = vec![([0; 3], FREE); size];
+    let mut points = Vec::with_capacity(count);
+    // Half full, a search looks at 2.5 places at most on average (Knuth, The Art of Computer Programming, 6.4).
+    let (mut next, mut left) = (0, count.saturating_mul(16) + 64);
+    for key in keys() {
+        let mut place = hash(key) & (size - 1);
+        loop {
+            left = left.checked_sub(1)?;
+            let (known, point) = &mut table[place];
+            if *point == FREE {
+                (*known, *point) = (key, next);
+                next += 1;
+            } else if *known != key {
+                place = (place + 1) & (size - 1);
+                continue;
+            }
+            points.push(*point);
+            break;
+        }
+    }
+    Some(points)
+}
+
+/// 2⁶⁴ over the golden ratio multiplies each word into all 64 bits, of which the upper ones are mixed best.
+fn hash(key: [u32; 3]) -> usize {
+    const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+    let mix = |hash: u64, word: u32| (hash ^ u64::from(word)).wrapping_mul(GOLDEN).rotate_left(29);
+    // 32 bits are left.
+    (key.into_iter().fold(0, mix).wrapping_mul(GOLDEN) >> 32) as usize
+}
+
+fn weld_by_sorting(keys: impl Iterator<Item = [u32; 3]>) -> Vec<u32> {
     // `Mesh` holds fewer than 2³¹ vertices.
-    let mut order: Vec<([u32; 3], u32)> = positions.iter().zip(0..).map(|(p, i)| (key(p), i)).collect();
+    let mut order: Vec<([u32; 3], u32)> = keys.zip(0..).collect();
     order.sort_unstable();
-    let mut points = vec![0; positions.len()];
+    let mut points = vec![0; order.len()];
     let mut point = 0;
     for (i, &(key, vertex)) in order.iter().enumerate() {
         if i > 0 && order[i - 1].0 != key {
@@ -35,37 +77,76 @@ fn is_line(triangle: [u32; 3]) -> bool {
     triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]
 }
 
-/// Both ways of one edge have the same key but for the lowest bit.
-fn edge_key(from: u32, to: u32) -> u64 {
-    // Points are numbered below 2³¹, so the key has 31 + 32 + 1 bits.
-    let (low, high, backward) = if from < to { (from, to, 0) } else { (to, from, 1) };
-    u64::from(low) << 33 | u64::from(high) << 1 | backward
-}
-
-/// The edges of a triangle, each with the corner that is not on it.
-fn edges(t: [u32; 3]) -> [(u32, u32, u32); 3] {
-    [(t[0], t[1], t[2]), (t[1], t[2], t[0]), (t[2], t[0], t[1])]
+/// The edges of a triangle, from point to point.
+fn edges([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
+    [(a, b), (b, c), (c, a)]
 }
 
 fn welded(triangle: [u32; 3], points: &[u32]) -> [u32; 3] {
     triangle.map(|vertex| points[vertex as usize])
 }
 
-/// Is every edge, from point to point, run through exactly once in each direction?
-pub(super) fn is_closed(triangles: &[[u32; 3]], points: &[u32]) -> bool {
-    let mut keys = Vec::with_capacity(triangles.len() * 3);
-    for &triangle in triangles {
-        let corners = welded(triangle, points);
-        if !is_line(corners) {
-            keys.extend(edges(corners).map(|(from, to, _)| edge_key(from, to)));
+/// The edges of a mesh from point to point, gathered by the lower of their two points.
+pub(super) struct Edges {
+    /// Where each point's edges begin, and where the last one's end.
+    starts: Vec<u32>,
+    /// The edge's higher point, twice, and 1 more where it runs downward; and the corner that it comes from, counted
+    /// through all triangles. Of each point in order.
+    edges: Vec<(u32, u32)>,
+}
+
+impl Edges {
+    pub(super) fn new(triangles: &[[u32; 3]], points: &[u32]) -> Self {
+        let surface = || triangles.iter().map(|&t| welded(t, points)).enumerate().filter(|(_, t)| !is_line(*t));
+        // Points are numbered below the number of vertices. Counted two places further on, the sums are where each
+        // point's edges begin, one place further on; and when all stand there, where the next one's begin.
+        let mut starts = vec![0_u32; points.len() + 2];
+        for (_, corners) in surface() {
+            edges(corners).into_iter().for_each(|(from, to)| starts[from.min(to) as usize + 2] += 1);
         }
+        // Corners are counted in 32 bits, see `Mesh::MOST`.
+        let mut sum = 0;
+        starts.iter_mut().for_each(|start| {
+            sum += *start;
+            *start = sum;
+        });
+        let mut sorted = vec![(0, 0); sum as usize];
+        for (triangle, corners) in surface() {
+            for (i, (from, to)) in edges(corners).into_iter().enumerate() {
+                let place = &mut starts[from.min(to) as usize + 1];
+                // Points are below 2³¹.
+                sorted[*place as usize] = (from.max(to) << 1 | u32::from(from > to), (3 * triangle + i) as u32);
+                *place += 1;
+            }
+        }
+        let mut edges = Self { starts, edges: sorted };
+        for point in 0..points.len() {
+            let range = edges.of(point);
+            edges.edges[range].sort_unstable();
+        }
+        edges
     }
-    keys.sort_unstable();
-    // Sorted, a closed mesh reads: edge forward, edge backward, next edge forward … An edge with four
-    // faces reads forward, forward, backward, backward.
-    !keys.is_empty()
-        && keys.len() % 2 == 0
-        && keys.chunks_exact(2).all(|pair| pair[0] & 1 == 0 && pair[1] == pair[0] + 1)
+
+    /// Where those stand whose lower point this is.
+    fn of(&self, point: usize) -> Range<usize> {
+        self.starts[point] as usize..self.starts[point + 1] as usize
+    }
+
+    /// Is every edge run through exactly once in each direction?
+    pub(super) fn are_closed(&self) -> bool {
+        // In order, a closed mesh reads: edge upward, edge downward, next edge upward … An edge with four faces reads
+        // upward, upward, downward, downward.
+        let closed = |edges: &[(u32, u32)]| {
+            let (pairs, rest) = edges.as_chunks::<2>();
+            rest.is_empty() && pairs.iter().all(|[up, down]| up.0 & 1 == 0 && down.0 == up.0 + 1)
+        };
+        !self.edges.is_empty() && (0..self.starts.len() - 2).all(|point| closed(&self.edges[self.of(point)]))
+    }
+
+    /// Both corners that the two faces of each edge come to it from, of a closed mesh.
+    fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.edges.as_chunks::<2>().0.iter().map(|pair| pair.map(|(_, corner)| corner as usize))
+    }
 }
 
 /// Is a closed mesh convex, wound so that its faces look outward?
@@ -81,7 +162,7 @@ pub(super) fn is_closed(triangles: &[[u32; 3]], points: &[u32]) -> bool {
 /// (1) is tested in f64 with a margin, (3) exactly: a quad whose corners were rounded to f32 so that
 /// its diagonal lies 10⁻⁸ too deep makes the mesh not convex. A face of no area makes it not convex
 /// either.
-pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u32]) -> bool {
+pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u32], edges: &Edges) -> bool {
     let mut sum = [0.0; 3];
     let mut corners = 0.0;
     for &triangle in triangles {
@@ -92,39 +173,65 @@ pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u3
     }
     let inside = scale(sum, 1.0 / corners);
 
-    let mut solid_angle = 0.0;
-    for &triangle in triangles {
-        if is_line(welded(triangle, points)) {
-            continue;
-        }
-        let [a, b, c] = triangle.map(|vertex| sub(widen(positions[vertex as usize]), inside));
-        let volume = dot(a, cross(b, c));
-        let (la, lb, lc) = (length(a), length(b), length(c));
+    let surface = || triangles.iter().filter(|t| !is_line(welded(**t, points)));
+    let seen = |triangle: &[u32; 3]| triangle.map(|vertex| sub(widen(positions[vertex as usize]), inside));
+    let is_behind = |triangle: &[u32; 3]| {
+        let [a, b, c] = seen(triangle);
         // Rounding makes less than 2⁻⁴⁹ of the three lengths' product.
-        if volume <= la * lb * lc * (1.0 / 281_474_976_710_656.0) {
-            return false;
-        }
-        // A. van Oosterom, J. Strackee, "The Solid Angle of a Plane Triangle", 1983.
-        let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-        solid_angle += 2.0 * libm::atan2(volume, below);
-    }
-    // A whole number of spheres, so half a sphere is margin enough.
-    if solid_angle > 6.0 * core::f64::consts::PI {
+        dot(a, cross(b, c)) > length(a) * length(b) * length(c) * (1.0 / 281_474_976_710_656.0)
+    };
+    if !surface().all(is_behind) {
         return false;
     }
 
-    let mut keys: Vec<(u64, u32, u32)> = Vec::with_capacity(triangles.len() * 3);
-    for (&triangle, index) in triangles.iter().zip(0..) {
-        if !is_line(welded(triangle, points)) {
-            keys.extend(
-                edges(triangle)
-                    .map(|(from, to, far)| (edge_key(points[from as usize], points[to as usize]), index, far)),
-            );
-        }
+    // Before the solid angles, which take longer: few meshes are convex, and nearly all others have a dent at one of the
+    // first edges.
+    let far = |corner: usize| positions[triangles[corner / 3][(corner + 2) % 3] as usize];
+    let dented = edges.pairs().any(|[one, other]| {
+        let [a, b, c] = triangles[one / 3].map(|vertex| positions[vertex as usize]);
+        side(a, b, c, far(other)) == Ordering::Greater
+    });
+    if dented {
+        return false;
     }
-    keys.sort_unstable_by_key(|&(key, _, _)| key);
-    keys.chunks_exact(2).all(|pair| {
-        let [a, b, c] = triangles[pair[0].1 as usize].map(|vertex| positions[vertex as usize]);
-        side(a, b, c, positions[pair[1].2 as usize]) != Ordering::Greater
-    })
+
+    // A. van Oosterom, J. Strackee, "The Solid Angle of a Plane Triangle", 1983.
+    let solid_angle = surface().map(|triangle| {
+        let [a, b, c] = seen(triangle);
+        let (la, lb, lc) = (length(a), length(b), length(c));
+        let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        2.0 * libm::atan2(dot(a, cross(b, c)), below)
+    });
+    // A whole number of spheres, so half a sphere is margin enough.
+    solid_angle.sum::<f64>() <= 6.0 * core::f64::consts::PI
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use super::{hash, weld_by_hash, weld_by_sorting};
+
+    /// Numbers in the order in which they first come.
+    fn in_order(points: &[u32]) -> Vec<usize> {
+        let first = |point: &u32| points.iter().position(|other| other == point).expect("it is there");
+        points.iter().map(first).collect()
+    }
+
+    #[test]
+    fn a_hash_welds_as_sorting_does() {
+        // A grid, of which some points come twice and three times.
+        let keys = || (0..3_000_u32).map(|i| [(i * 7 % 1_000) << 20, i % 5, (i % 3) << 31]);
+        let points = weld_by_hash(3_000, keys).expect("no collision beyond chance");
+        assert_eq!(in_order(&points), in_order(&weld_by_sorting(keys())));
+        assert_eq!(weld_by_hash(0, || [].into_iter()), Some(Vec::new()));
+    }
+
+    #[test]
+    fn positions_made_to_collide_are_sorted() {
+        // A hundred that begin at the same place of a table of 256.
+        let all = (0..).map(|i| [i, 1, 2]).filter(|key| hash(*key) & 255 == 0).take(100);
+        let keys: Vec<[u32; 3]> = all.collect();
+        assert_eq!(weld_by_hash(100, || keys.iter().copied()), None);
+    }
 }

@@ -29,14 +29,19 @@ impl Table {
 
     /// From a byte for every row and column: `byte(high, low)`. For one, Phong's table of shades.
     #[must_use]
-    pub fn from_fn(mut byte: impl FnMut(u8, u8) -> u8) -> Self {
-        let mut table = Box::new([0; Self::BYTES]);
-        for (high, row) in (0..=255).zip(table.chunks_exact_mut(256)) {
+    pub fn from_fn(byte: impl FnMut(u8, u8) -> u8) -> Self {
+        let mut table = Self(Box::new([0; Self::BYTES]));
+        table.fill(byte);
+        table
+    }
+
+    /// Makes this one anew, as [`from_fn`](Self::from_fn) would.
+    pub(crate) fn fill(&mut self, mut byte: impl FnMut(u8, u8) -> u8) {
+        for (high, row) in (0..=255).zip(self.0.chunks_exact_mut(256)) {
             for (low, entry) in (0..=255).zip(row) {
                 *entry = byte(high, low);
             }
         }
-        Self(table)
     }
 
     /// Shaded texels. Row: a shade, of 255 the full light; column: a texel. The entry is the nearest to

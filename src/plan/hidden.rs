@@ -46,7 +46,7 @@ pub(super) fn choose(
         ([], _) => (HiddenSurfaces::BackFaces, Why::Empty),
         (_, Some(object)) => (HiddenSurfaces::DepthBuffer, Why::NotConvex { object }),
         ([_], None) => (HiddenSurfaces::BackFaces, Why::OneConvex),
-        _ if far_to_near(objects, views, order) => (HiddenSurfaces::PainterOrder, Why::ConvexApart),
+        _ if objects_far_to_near(objects, views, order) => (HiddenSurfaces::PainterOrder, Why::ConvexApart),
         _ => (HiddenSurfaces::DepthBuffer, Why::Overlap),
     }
 }
@@ -56,7 +56,7 @@ pub(super) fn choose(
 /// was and returns `false`.
 ///
 /// The depths are those of the objects' boxes: a few sums an object, whatever its number of vertices.
-fn far_to_near(objects: &[Object], views: &[ObjectView], order: &mut [usize]) -> bool {
+fn objects_far_to_near(objects: &[Object], views: &[ObjectView], order: &mut [usize]) -> bool {
     let depths = |i: usize| views[i].depths(objects[i].mesh().bounds());
     order.sort_unstable_by_key(|&i| (depths(i), i));
     let apart = order.windows(2).all(|pair| depths(pair[0]).1 < depths(pair[1]).0);
@@ -67,7 +67,10 @@ fn far_to_near(objects: &[Object], views: &[ObjectView], order: &mut [usize]) ->
 }
 
 /// Puts faces far to near by the sum of the depths of their three vertices, which orders as the mean
-/// does; of equal ones the first submitted is painted first.
-pub(crate) fn sort_by_depth<T>(faces: &mut [T], depth: impl FnMut(&T) -> u64) {
-    faces.sort_by_key(depth);
+/// does; of equal ones the first submitted is painted first. `order` then holds that sum and the place of each.
+pub(crate) fn far_to_near(depths: impl Iterator<Item = u64>, order: &mut Vec<(u64, usize)>) {
+    order.clear();
+    order.extend(depths.zip(0..));
+    // No two are equal, so nothing is lost by a sort that needs no memory.
+    order.sort_unstable();
 }

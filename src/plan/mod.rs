@@ -9,7 +9,8 @@
 //!
 //! A plan is made once a frame: some comparisons and a few products an object, nothing for a vertex.
 //! [`Plan::is_on`] is what the renderer goes by; [`Plan::rows`] is the same for people. An effect that
-//! is off costs nothing per vertex, triangle, span or pixel, and no memory.
+//! is off costs nothing per vertex, triangle, span or pixel, and no memory; that of one which was on is kept for when it is
+//! on again.
 
 mod decide;
 mod effect;
@@ -23,7 +24,7 @@ pub use effect::{Class, Effect, UnknownEffect};
 pub use why::Why;
 
 pub(crate) use decide::{Inputs, LEAST_TESSELLATION, Since, decide};
-pub(crate) use hidden::sort_by_depth;
+pub(crate) use hidden::far_to_near;
 pub(crate) use why::name_of;
 
 use crate::scene::{HiddenSurfaces, Rung, Scene};

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `object` | what is kept of an object: its vertices, and what they were made from |
 //! | `vertex`, `lit` | the stages of vertices: projected, lit, given what effects need; what they come to, in arrays |
-//! | `tessellate` | faces split along their edges |
+//! | `tessellate`, `edge_map` | faces split along their edges; a number for each edge |
 //! | `sift` | which faces are turned away, and which cover no pixel centre |
 //! | `face` | the stage of faces, with `clip`: near plane and guard band |
 //! | `bound` | how far linear shades may be from light at every pixel |
@@ -23,6 +23,7 @@ mod automatic;
 mod bound;
 mod budget;
 mod clip;
+mod edge_map;
 mod face;
 mod integer;
 mod lit;
@@ -51,7 +52,7 @@ use self::object::ObjectState;
 use self::sift::Sieve;
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
-use crate::plan::{self, Effect, Forced, Inputs, Plan, Since, decide, sort_by_depth};
+use crate::plan::{self, Effect, Forced, Inputs, ObjectPlan, Plan, Since, decide, far_to_near};
 use crate::raster::effects::Attributes;
 use crate::raster::scan_line::Lists;
 use crate::raster::{Batch, Drawn, Frame, Raster, Shading, Vertex};
@@ -177,6 +178,8 @@ pub struct Renderer {
     kept: Vec<Kept>,
     /// Faces that shine through.
     transparent: Vec<Kept>,
+    /// The sum of a face's depths, and its place: what is painted far to near.
+    far_to_near: Vec<(u64, usize)>,
     lists: Lists,
     drawing: Option<Drawing>,
     /// The machine's stamp after the last frame, and what it came to.
@@ -207,6 +210,7 @@ impl Renderer {
             kept_places: Vec::new(),
             kept: Vec::new(),
             transparent: Vec::new(),
+            far_to_near: Vec::new(),
             lists: Lists::default(),
             drawing: None,
             last: None,
@@ -518,7 +522,10 @@ impl Renderer {
         let mut changed = !same;
         if !same {
             let (screen, background, hidden_surfaces, mapping, wishes) = drawing;
-            let (order, palette) = (self.plan.order.clone(), palette.cloned());
+            // The list that is there is used again.
+            let mut order = self.drawing.take().map_or_else(Vec::new, |last| last.order);
+            order.clone_from(&self.plan.order);
+            let palette = palette.cloned();
             self.drawing = Some(Drawing { screen, background, hidden_surfaces, mapping, wishes, order, palette });
         }
 
@@ -615,6 +622,7 @@ impl Renderer {
     fn one_by_one(&mut self, scene: &Scene, stats: &mut Stats, mut raster: Raster<'_>) {
         let mut transparent = mem::take(&mut self.transparent);
         transparent.clear();
+        transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
         let mut integer = mem::take(&mut self.integer);
         let mut batch = Batch::new();
         for &object in &self.plan.order {
@@ -657,16 +665,17 @@ impl Renderer {
         if self.transparent.is_empty() {
             return;
         }
-        let mut transparent = mem::take(&mut self.transparent);
-        sort_by_depth(&mut transparent, Kept::depth);
+        self.far_to_near.clear();
+        self.far_to_near.reserve(self.transparent.capacity());
+        far_to_near(self.transparent.iter().map(Kept::depth), &mut self.far_to_near);
         let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
-        for face in &transparent {
+        for &(_, place) in &self.far_to_near {
+            let face = &self.transparent[place];
             stats.raster += looks.with((face.object, face.surface, face.manner), |look| {
                 raster.triangle_with_effects(&face.vertices, &face.attributes, look)
             });
         }
-        transparent.clear();
-        self.transparent = transparent;
+        self.transparent.clear();
     }
 
     /// Hands every face to `sink`.
@@ -692,6 +701,10 @@ impl Renderer {
         places.clear();
         kept.clear();
         transparent.clear();
+        triangles.reserve(self.most_faces(scene, |_, _| true));
+        places.reserve(triangles.capacity());
+        kept.reserve(self.most_faces(scene, |_, state| state.may_have_effects()));
+        transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
         for &object in &self.plan.order {
             let mut decided = self.states[object].take_decided();
             if self.vertex_path == VertexPath::Integer {
@@ -718,14 +731,23 @@ impl Renderer {
         (self.triangles, self.kept_places, self.kept, self.transparent) = (triangles, places, kept, transparent);
     }
 
+    /// Faces of the objects of which `counts` holds, whether they are seen in this frame or in one to come: room for
+    /// so many is enough until a plane cuts some in parts.
+    fn most_faces(&self, scene: &Scene, counts: impl Fn(&ObjectPlan, &ObjectState) -> bool) -> usize {
+        let objects = scene.objects().iter().zip(&self.states).zip(self.plan.objects());
+        let counted = objects.filter(|((_, state), plan)| counts(plan, state));
+        counted.map(|((object, state), _)| state.most_faces(object)).sum()
+    }
+
     /// Far to near, each over what is there.
     fn painter(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
         let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
-        let mut order: Vec<usize> = (0..self.triangles.len()).collect();
-        sort_by_depth(&mut order, |&i| depth_of(&self.triangles[i].0));
+        self.far_to_near.clear();
+        self.far_to_near.reserve(self.triangles.capacity());
+        far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
         let mut batch = Batch::new();
         let mut batched = Batched::<true> { raster, batch: &mut batch, drawn: &mut stats.raster };
-        for i in order {
+        for &(_, i) in &self.far_to_near {
             let (vertices, shading) = &self.triangles[i];
             let Some(place) = self.kept_places[i] else {
                 batched.triangle(vertices, *shading);
@@ -743,6 +765,7 @@ impl Renderer {
     /// All at once, each pixel once.
     fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
         let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        self.lists.reserve(self.triangles.capacity());
         let scratch = self.lists.scratch(self.triangles.len());
         let (places, kept) = (&self.kept_places, &self.kept);
         // There is room for all.
@@ -775,6 +798,7 @@ impl Renderer {
             + self.triangles.capacity() * size_of::<([Vertex; 3], Shading)>()
             + self.kept_places.capacity() * size_of::<Option<u32>>()
             + (self.kept.capacity() + self.transparent.capacity()) * size_of::<Kept>()
+            + self.far_to_near.capacity() * size_of::<(u64, usize)>()
             + self.lists.bytes()
     }
 }

@@ -9,7 +9,7 @@ use super::budget::{self, Budget, Decided, Lit};
 use super::face::Faces;
 use super::lit::LitVertices;
 use super::paint::Paint;
-use super::pixel_light::normal_table;
+use super::pixel_light::fill_normal_table;
 use super::tessellate::Tessellated;
 use super::vertex::{self, Extra, Geometry};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
@@ -117,13 +117,18 @@ pub(super) struct ObjectState {
     lamps: Vec<LampBeam>,
     lit: LitVertices,
     extras: Vec<Extra>,
-    tessellated: Option<Tessellated>,
+    tessellated: Tessellated,
+    /// Whether that is what is drawn. What is not stays for when it is again.
+    is_tessellated: bool,
     /// Of the mesh, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
     /// One for each surface, and what they were made from.
     normal_tables: Vec<(Vec<Beam>, Paint, Table)>,
+    /// What they would be made from now.
+    beams: Vec<Beam>,
     /// What a budget's decisions are made from, and those that were made, one for each triangle.
-    budget: Option<Budget>,
+    budget: Budget,
+    has_budget: bool,
     decided: Vec<Decided>,
 }
 
@@ -169,7 +174,6 @@ impl ObjectState {
 
     /// What is kept is of no use any more.
     pub(super) fn forget(&mut self) {
-        self.source = None;
         self.made_by = None;
     }
 
@@ -216,15 +220,12 @@ impl ObjectState {
                 other => &other.insert((Shared::clone(object.shared_mesh()), object.mesh().points())).1,
             };
             let tolerance = scene.wishes.tessellation.unwrap_or(LEAST_TESSELLATION);
-            let tessellated = self.tessellated.get_or_insert_default();
-            tessellated.split(&geometry, points, &lights, &self.paints, tolerance);
-            tessellated.geometry()
+            self.tessellated.split(&geometry, points, &lights, &self.paints, tolerance);
+            self.tessellated.geometry()
         } else {
-            if self.tessellated.is_some() {
-                self.tessellated = None;
-            }
             geometry
         };
+        self.is_tessellated = plan.is_on(Effect::Tessellation);
 
         let count = geometry.positions.len();
         stats.vertices += count as u64;
@@ -234,11 +235,9 @@ impl ObjectState {
         } else {
             vertex::project_inside(&source.view, &geometry, kernel, &mut self.lit);
         }
+        self.extras.clear();
         if self.paints.iter().any(|paint| paint.has_effects) {
-            self.extras.clear();
             self.extras.resize(count, Extra::default());
-        } else {
-            self.extras = Vec::new();
         }
         let channels = plan.is_on(Effect::RgbChannels);
         let full = plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular);
@@ -275,9 +274,9 @@ impl ObjectState {
         {
             vertex::fog_levels(&geometry, &source.view, fog, &mut self.extras);
         }
+        self.has_budget = plan.max_error().is_some();
         if let Some(max_error) = plan.max_error() {
             let whole = (!plan.is_on(Effect::Tessellation)).then(|| object.shared_mesh());
-            let budget = self.budget.get_or_insert_default();
             let lit = Lit {
                 geometry: &geometry,
                 whole,
@@ -291,14 +290,14 @@ impl ObjectState {
                 channels,
             };
             if changed {
-                budget.renew(max_error, &lit, &mut self.decided);
+                self.budget.renew(max_error, &lit, &mut self.decided);
             }
-            budget.mark(&lit, &mut self.lit);
-            if changed && budget.is_linear_throughout() {
+            self.budget.mark(&lit, &mut self.lit);
+            if changed && self.budget.is_linear_throughout() {
                 self.decided.fill(Decided::LINEAR);
             }
-        } else if self.budget.is_some() {
-            (self.budget, self.decided) = (None, Vec::new());
+        } else {
+            self.decided.clear();
         }
         if by_pixel {
             if source.rung.0 == Rung::PhongTable && !channels {
@@ -315,36 +314,38 @@ impl ObjectState {
 
     /// The tables of shades by normal, as the eye sees them: they stay while the object turns.
     fn tables_of_normals(&mut self, scene: &Scene, object: &Object, view: &View) {
-        let beams: Vec<Beam> = scene
-            .lights()
-            .iter()
-            .filter_map(|light| {
-                // A lamp counts as a sun where the object is: a table knows no places.
-                let (towards, share) = match *light {
-                    Light::Sun { direction, .. } => (direction, 1.0),
-                    Light::Lamp { position, range, .. } => {
-                        let away = position - object.position;
-                        let part = away.length_squared() / (range * range);
-                        if part >= 1.0 || part.is_nan() {
-                            return None;
-                        }
-                        (away, (1.0 - part) * (1.0 - part))
+        self.beams.clear();
+        self.beams.extend(scene.lights().iter().filter_map(|light| {
+            // A lamp counts as a sun where the object is: a table knows no places.
+            let (towards, share) = match *light {
+                Light::Sun { direction, .. } => (direction, 1.0),
+                Light::Lamp { position, range, .. } => {
+                    let away = position - object.position;
+                    let part = away.length_squared() / (range * range);
+                    if part >= 1.0 || part.is_nan() {
+                        return None;
                     }
-                };
-                let towards = view.direction_to_eye(towards)?;
-                Some(Beam { towards, intensity: light.brightness() * share, channels: [0.0; 3] })
-            })
-            .collect();
+                    (away, (1.0 - part) * (1.0 - part))
+                }
+            };
+            let towards = view.direction_to_eye(towards)?;
+            Some(Beam { towards, intensity: light.brightness() * share, channels: [0.0; 3] })
+        }));
         self.normal_tables.truncate(self.paints.len());
         for (i, paint) in self.paints.iter().enumerate() {
-            if self.normal_tables.get(i).is_some_and(|(of, by, _)| *of == beams && by == paint) {
-                continue;
-            }
-            let lights = Lights { suns: &beams, lamps: &[], eye: [0.0, 0.0, 1.0] };
-            let made = (beams.clone(), *paint, normal_table(&lights, paint));
+            let lights = Lights { suns: &self.beams, lamps: &[], eye: [0.0, 0.0, 1.0] };
             match self.normal_tables.get_mut(i) {
-                Some(place) => *place = made,
-                None => self.normal_tables.push(made),
+                Some((of, by, _)) if *of == self.beams && by == paint => {}
+                Some((of, by, table)) => {
+                    of.clone_from(&self.beams);
+                    *by = *paint;
+                    fill_normal_table(table, &lights, paint);
+                }
+                None => {
+                    let mut table = Table::from_fn(|_, _| 0);
+                    fill_normal_table(&mut table, &lights, paint);
+                    self.normal_tables.push((self.beams.clone(), *paint, table));
+                }
             }
         }
     }
@@ -371,10 +372,12 @@ impl ObjectState {
 
     /// Its faces, ready to be drawn.
     pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &ObjectPlan) -> Option<Faces<'a>> {
+        // Vertices that were not made, or are of no use, have none.
+        self.made_by?;
         let source = self.source.as_ref()?;
         Some(Faces {
             rung: plan.rung(),
-            geometry: self.tessellated.as_ref().map_or_else(|| mesh_geometry(object), Tessellated::geometry),
+            geometry: if self.is_tessellated { self.tessellated.geometry() } else { mesh_geometry(object) },
             view: &source.view,
             lights: self.lights(plan),
             paints: &self.paints,
@@ -389,8 +392,19 @@ impl ObjectState {
             affine: !plan.is_on(Effect::Perspective)
                 || plan.decision(Effect::Perspective).choice == Mapping::Affine.name(),
             lights_pixels: plan.is_on(Effect::Phong),
-            budget: self.budget.as_ref(),
+            budget: self.has_budget.then_some(&self.budget),
         })
+    }
+
+    /// Its faces, seen or not.
+    pub(super) fn most_faces(&self, object: &Object) -> usize {
+        let geometry = if self.is_tessellated { self.tessellated.geometry() } else { mesh_geometry(object) };
+        geometry.triangles.len()
+    }
+
+    /// Whether pixels of its faces may pass through stages. A budget lights some where it must.
+    pub(super) fn may_have_effects(&self) -> bool {
+        !self.extras.is_empty() || self.has_budget
     }
 
     /// The budget's decisions, to be completed while faces are drawn, and then put back.
@@ -400,7 +414,7 @@ impl ObjectState {
 
     /// How many triangles a budget's choices gave to each rung, and why, in words; `None` without a budget.
     pub(super) fn shares(&self) -> Option<String> {
-        self.budget.as_ref().map(|_| budget::shares(&self.decided))
+        self.has_budget.then(|| budget::shares(&self.decided))
     }
 
     /// The same, as they are.
@@ -418,10 +432,11 @@ impl ObjectState {
             + self.extras.capacity() * size_of::<Extra>()
             + self.paints.capacity() * size_of::<Paint>()
             + self.lamps.capacity() * size_of::<LampBeam>()
-            + self.tessellated.as_ref().map_or(0, Tessellated::bytes)
+            + self.tessellated.bytes()
             + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)
             + self.normal_tables.len() * Table::BYTES
-            + self.budget.as_ref().map_or(0, Budget::bytes)
+            + self.beams.capacity() * size_of::<Beam>()
+            + self.budget.bytes()
             + self.decided.capacity() * size_of::<Decided>()
     }
 }

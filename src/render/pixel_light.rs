@@ -36,14 +36,14 @@ impl Lighting for PixelLight<'_> {
     }
 }
 
-/// The shade for every normal that the eye may see: column and row are the normal's x and y, from −1 to
+/// Fills `table` with the shade for every normal that the eye may see: column and row are the normal's x and y, from −1 to
 /// 1; the rest of its length points towards the eye. Beyond the circle the normal on its rim counts.
 ///
 /// `lights` are in the eye's space, the eye far away on z.
 #[inline(never)]
-pub(super) fn normal_table(lights: &Lights<'_>, paint: &Paint) -> Table {
+pub(super) fn fill_normal_table(table: &mut Table, lights: &Lights<'_>, paint: &Paint) {
     let mut eight = [0; LANES];
-    Table::from_fn(|row, column| {
+    table.fill(|row, column| {
         let at = |step: u8| (f32::from(step) - 127.5) / 127.5;
         // By rows: the columns of one after the other, eight at a time.
         let lane = usize::from(column) % LANES;
@@ -57,5 +57,5 @@ pub(super) fn normal_table(lights: &Lights<'_>, paint: &Paint) -> Table {
             eight = intensities.map(|intensity| paint.shade(intensity).nearest());
         }
         eight[lane]
-    })
+    });
 }

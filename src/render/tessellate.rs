@@ -13,11 +13,12 @@
 //! - a highlight at the distance h from what it mirrors: cos^s, which bends by at most s/h²;
 //! - normals that turn along the edge, as on a round body: found by lighting the middle.
 
-use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
+use core::mem;
 
 use glam::{Vec2, Vec3};
 
+use super::edge_map::EdgeMap;
 use super::paint::Paint;
 use super::vertex::Geometry;
 use crate::light::Lights;
@@ -44,6 +45,10 @@ pub(super) struct Tessellated {
     settled: Vec<bool>,
     /// Of each vertex, its light, and how far what it mirrors is from each light.
     known: Known,
+    /// The edges that are split, by their points, and the number of the new point.
+    halved: EdgeMap,
+    /// Vertices half-way between two vertices: of a crease each side has its own.
+    middles: EdgeMap,
 }
 
 /// What the light at the vertices is found out to be, once for each.
@@ -118,6 +123,8 @@ impl Tessellated {
             + self.settled.capacity()
             + self.known.light.capacity() * size_of::<(f64, f64)>()
             + self.known.angles.capacity() * size_of::<f64>()
+            + self.halved.bytes()
+            + self.middles.bytes()
     }
 
     /// The edge between two vertices, whichever way it is run through, and whichever vertices at its two
@@ -130,8 +137,8 @@ impl Tessellated {
     /// Halves every edge that bends, once. Returns whether there was one.
     fn halve(&mut self, bend: &Bend<'_>) -> bool {
         self.light(bend);
-        // The edges that are split, by their points, and the number of the new point.
-        let mut halved: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        let mut halved = mem::take(&mut self.halved);
+        halved.clear();
         // Below 2³¹, as a mesh's vertices are, and splitting ends before there are twice as many.
         let mut points = self.points.iter().max().map_or(0, |last| last + 1);
         for (&[a, b, c], settled) in self.triangles.iter().zip(&self.settled) {
@@ -143,24 +150,35 @@ impl Tessellated {
                 let edge = self.edge(a, b);
                 // Two faces that meet at a crease have normals of their own there: it is enough that one
                 // of them needs the split.
-                if edge.0 != edge.1 && !halved.contains_key(&edge) && bend.is_too_great(self, a, b) {
+                if edge.0 != edge.1 && halved.get(edge).is_none() && bend.is_too_great(self, a, b) {
                     halved.insert(edge, points);
                     points += 1;
                 }
             }
         }
-        if halved.is_empty() {
-            return false;
+        let any = !halved.is_empty();
+        if any {
+            self.split_at(&halved);
         }
-        // Vertices half-way between two vertices: of a crease each side has its own.
-        let mut middles: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        self.halved = halved;
+        any
+    }
+
+    /// Splits every triangle at the edges of `halved`.
+    fn split_at(&mut self, halved: &EdgeMap) {
+        let mut middles = mem::take(&mut self.middles);
+        middles.clear();
         for i in 0..self.triangles.len() {
             let [a, b, c] = self.triangles[i];
             let surface = self.triangle_surfaces[i];
             let mut middle = |a: u32, b: u32| {
-                let point = *halved.get(&self.edge(a, b))?;
+                let point = halved.get(self.edge(a, b))?;
                 let (low, high) = if a < b { (a, b) } else { (b, a) };
-                Some(*middles.entry((low, high)).or_insert_with(|| self.add_middle(low, high, point)))
+                Some(middles.get((low, high)).unwrap_or_else(|| {
+                    let middle = self.add_middle(low, high, point);
+                    middles.insert((low, high), middle);
+                    middle
+                }))
             };
             let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
             let mut parts: [Option<[u32; 3]>; 4] = [None; 4];
@@ -190,7 +208,7 @@ impl Tessellated {
                 }
             }
         }
-        true
+        self.middles = middles;
     }
 
     /// Lights the vertices that are new.

@@ -9,7 +9,7 @@ use super::face::{Manner, Sink};
 use super::look::Looks;
 use super::one_pixel::{Bytes, OnePixel, bytes};
 use super::vertex::Geometry;
-use super::{Effect, HiddenSurfaces, RenderError, Renderer, Screen, Stats, VertexPath, depth_of, sort_by_depth};
+use super::{Effect, HiddenSurfaces, RenderError, Renderer, Screen, Stats, VertexPath, depth_of};
 use crate::palette::Ramp;
 use crate::raster::cover::Ordered;
 use crate::raster::depth::DepthPlane;
@@ -254,7 +254,8 @@ fn decide_fates(met: &mut Vec<Met>, way: HiddenSurfaces, chosen: bool) {
         };
     }
     let (mut opaque, mut through): (Vec<Met>, Vec<Met>) = met.drain(..).partition(|met| met.fate != Fate::SeenThrough);
-    sort_by_depth(&mut through, |met| depth_of(&met.vertices));
+    // Far to near, as the renderer draws them.
+    through.sort_by_key(|met| depth_of(&met.vertices));
     opaque.append(&mut through);
     *met = opaque;
 }

@@ -186,13 +186,14 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
         for (from, to) in [(a, b), (b, c), (c, a)] {
             // In range, as every mesh is.
             let (from, to) = (from as usize, to as usize);
-            edge = edge.max(mesh.positions()[from].distance(mesh.positions()[to]));
+            edge = edge.max(mesh.positions()[from].distance_squared(mesh.positions()[to]));
             if let Some(texcoords) = mesh.texcoords() {
-                texture_edge = texture_edge.max(texcoords[from].distance(texcoords[to]));
+                texture_edge = texture_edge.max(texcoords[from].distance_squared(texcoords[to]));
             }
         }
     }
-    (edge, texture_edge)
+    // Of the greatest square alone: a root keeps the order.
+    (libm::sqrtf(edge), libm::sqrtf(texture_edge))
 }
 
 /// Whether the three normals of every face are that of its plane, to some 10⁻⁵ of an angle: a 400th of a shade.

@@ -1,14 +1,15 @@
-//! A film: frames drawn side by side, several at a time, and written in their order.
+//! A film: frames drawn and compressed side by side, several at a time, and written in their order.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
-use mode13h::export::{self, FrameRate, GifFile, Picture, Scale};
+use mode13h::export::{self, FrameRate, GifFile, GifFrame, Picture, PictureError, Scale};
 use mode13h::palette::Palette;
 use mode13h::vga::Vga;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
+use crate::artists::Artists;
 use crate::failure::{Failure, on_one_line};
 use crate::output;
 
@@ -21,6 +22,10 @@ pub(crate) struct Frame {
 impl Frame {
     pub(crate) fn of(vga: &Vga) -> Frame {
         Frame { pixels: vga.pixels().to_vec(), palette: vga.palette() }
+    }
+
+    fn picture(&self) -> Picture<'_> {
+        Picture::mode_13h(&self.pixels, &self.palette)
     }
 }
 
@@ -64,49 +69,67 @@ impl Film {
     /// Draws the frames by `draw`, by as many artists at a time as there are threads in the pool it is called in, writes
     /// them, and prints a line about the file. A frame is drawn from its number alone, so that the film is the same with
     /// any number of threads.
-    pub(crate) fn write<Artist>(
+    pub(crate) fn write<Artist: Send>(
         &self,
         progress: &ProgressBar,
-        artist: impl Fn() -> Artist + Sync + Send,
+        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
         draw: impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send,
     ) -> Result<(), Failure> {
         let film = output::long_file(|| {
-            let film = self.write_file(progress, &artist, &draw);
+            let film = self.write_file(progress, artists, &draw);
             progress.finish_and_clear();
             film
         })?;
         output::print(&self.figures(&film))
     }
 
-    /// While some frames are written, the next are drawn: these are all that is in memory.
-    fn write_file<Artist>(
+    /// While some frames are compressed and written, the next are drawn: these are all that is in memory.
+    fn write_file<Artist: Send>(
         &self,
         progress: &ProgressBar,
-        artist: &(impl Fn() -> Artist + Sync + Send),
+        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
     ) -> Result<export::Film, Failure> {
         let mut file = GifFile::create(&self.out, self.scale, self.rate).map_err(Failure::work)?;
-        let draw = |artist: &mut Artist, number| go_on().and_then(|()| draw(artist, number));
-        let draw_all = |numbers: Range<u32>| -> Result<Vec<Frame>, Failure> {
-            numbers.into_par_iter().map_init(artist, draw).collect()
-        };
-        let mut write = |frame: &Frame| {
-            go_on()?;
-            file.add(&Picture::mode_13h(&frame.pixels, &frame.palette)).map_err(Failure::work)?;
-            progress.inc(1);
-            Ok(())
-        };
+        let draw = |number| go_on().and_then(|()| artists.work(|artist| draw(artist, number)));
+        let draw_all =
+            |numbers: Range<u32>| -> Result<Vec<Frame>, Failure> { numbers.into_par_iter().map(draw).collect() };
         // Some for each thread (of which there are at most 1,024): frames are not equally fast.
-        let batch = 4 * rayon::current_num_threads() as u32;
+        let threads = rayon::current_num_threads() as u32;
+        let batch = (16 * threads).min(256).max(threads);
         let batch_from = |first: u32| first.min(self.frames)..(first + batch).min(self.frames);
         let mut drawn = draw_all(batch_from(0))?;
+        let colors = drawn.first().map(|first| first.palette.clone()).unwrap_or_default();
+        let mut last: Option<Frame> = None;
         for first in (0..self.frames).step_by(batch as usize) {
-            let write_all = || drawn.iter().try_for_each(&mut write);
+            let compress = |(i, frame): (usize, &Frame)| {
+                go_on()?;
+                let before = i.checked_sub(1).map_or(last.as_ref(), |before| drawn.get(before));
+                self.compressed(before, frame, &colors)
+                    .map_err(|error| Failure::work(on_one_line(&format!("{}: {error}", self.out.to_string_lossy()))))
+            };
+            let write_all = || -> Result<(), Failure> {
+                let compressed: Vec<GifFrame> = drawn.par_iter().enumerate().map(compress).collect::<Result<_, _>>()?;
+                for frame in compressed {
+                    go_on()?;
+                    file.add_frame(frame).map_err(Failure::work)?;
+                    progress.inc(1);
+                }
+                Ok(())
+            };
             let (written, following) = rayon::join(write_all, || draw_all(batch_from(first + batch)));
             written?;
+            last = drawn.pop();
             drawn = following?;
         }
         file.finish().map_err(Failure::work)
+    }
+
+    fn compressed(&self, before: Option<&Frame>, frame: &Frame, film: &Palette) -> Result<GifFrame, PictureError> {
+        match before {
+            None => GifFrame::first(&frame.picture(), self.scale),
+            Some(before) => GifFrame::after(&before.picture(), &frame.picture(), self.scale, film.colors()),
+        }
     }
 
     /// A line about what was written.

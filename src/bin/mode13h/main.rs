@@ -1,5 +1,6 @@
 //! `mode13h`: a scene or a model in a window, or a picture of it.
 
+mod artists;
 mod chart;
 mod cost;
 mod demo;

@@ -12,6 +12,7 @@ use mode13h::vga::Vga;
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
+use crate::artists::Artists;
 use crate::failure::Failure;
 use crate::film::{self, Film};
 use crate::options::{Drawing, finite};
@@ -81,7 +82,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let kernel = options.drawing.kernel()?;
     let progress = progress(frames);
     let motion = Motion::new(options, &out);
-    let artist = || Artist { renderer: options.drawing.renderer(kernel), stage: stage.clone(), vga: Vga::new() };
+    let make = || Artist { renderer: options.drawing.renderer(kernel), stage: stage.clone(), vga: Vga::new() };
+    let artists = Artists::new(make);
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
         let stats = artist.draw(&motion, number)?;
         if let Some(records) = &records {
@@ -107,10 +109,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::work)
     };
     let result = match &out {
-        Out::Pictures(names, 1) => picture(names, &mut artist(), 0),
-        Out::Pictures(names, frames) => pool()?
-            .install(|| (0..*frames).into_par_iter().try_for_each_init(artist, |a, number| picture(names, a, number))),
-        Out::Film(film) => pool()?.install(|| film.write(&progress, artist, frame)),
+        Out::Pictures(names, 1) => artists.work(|artist| picture(names, artist, 0)),
+        Out::Pictures(names, frames) => pool()?.install(|| {
+            (0..*frames).into_par_iter().try_for_each(|n| artists.work(|artist| picture(names, artist, n)))
+        }),
+        Out::Film(film) => pool()?.install(|| film.write(&progress, &artists, frame)),
     };
     progress.finish_and_clear();
     result

@@ -28,14 +28,15 @@ pub(super) fn mesh(model: Model, surfaces: Vec<Surface>) -> Result<Mesh, (Option
     let complete = known.iter().all(Option::is_some);
 
     let given = known.iter().map(|normal| normal.unwrap_or(Vec3::Z)).collect();
-    let mut mesh = Mesh::assemble(triples.iter().map(place).collect(), given, triangles);
+    let positions: Vec<Vec3> = triples.iter().map(place).collect();
+    let points = topology::weld(&positions);
+    let mut mesh = Mesh::assemble_welded(positions, given, triangles, &points);
     if triples.iter().any(|triple| pair(triple).is_some()) {
         mesh.texcoords = Some(triples.iter().map(|triple| pair(triple).unwrap_or(Vec2::ZERO)).collect());
     }
     mesh.surfaces = surfaces;
     mesh.triangle_surfaces = triangle_surfaces;
     if !complete {
-        let points = topology::weld(&mesh.positions);
         mesh.average(&points, Weight::Angle, None, known);
     }
     Ok(mesh)

@@ -61,9 +61,8 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, ObjError> {
 }
 
 /// As [`load`], and tells `progress` how much of the OBJ file has been read, in bytes, and how long the file is: after
-/// every 64 KiB or so, and at the end. What remains then, making a mesh of it, takes two to three times as long (a million triangles:
-/// 0.35 s and 0.9 s). Of a pipe or
-/// a device the length is 0; a file that grows meanwhile may be read beyond the length that it had.
+/// every 64 KiB or so, and at the end. What remains then, making a mesh of it, takes about as long again. Of a pipe or a
+/// device the length is 0; a file that grows meanwhile may be read beyond the length that it had.
 ///
 /// # Errors
 /// As [`load`].

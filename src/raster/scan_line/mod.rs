@@ -77,6 +77,12 @@ impl Lists {
         self.list.capacity() * size_of::<u64>() + self.pairs.capacity() * size_of::<EdgePair>()
     }
 
+    /// Sees to it that memory for so many faces needs no allocation. What is not used yet is not touched either.
+    pub(crate) fn reserve(&mut self, faces: usize) {
+        self.list.reserve((faces * Scratch::LIST_EACH).saturating_sub(self.list.len()));
+        self.pairs.reserve(faces.saturating_sub(self.pairs.len()));
+    }
+
     /// Memory for so many faces.
     pub fn scratch(&mut self, faces: usize) -> Scratch<'_> {
         let least = |length: usize, needed: usize| length.max(needed);

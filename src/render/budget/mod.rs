@@ -291,7 +291,7 @@ impl Budget {
             (self.longest_edge, self.most_shortening) = (most(|facet| facet.edge), most(|facet| facet.shortening));
             self.most_spread = most(|facet| facet.spread);
         }
-        same &= known;
+        same &= known && decided.len() == geometry.triangles.len();
         if same {
             decided.iter_mut().for_each(|of| of.choice = Choice::Unknown);
         } else {

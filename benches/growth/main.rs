@@ -1,0 +1,121 @@
+//! How the time and the memory of a frame grow: with faces, with pixels a triangle, with lights.
+//!
+//! ```text
+//! cargo bench --bench growth
+//! cargo bench --bench growth -- --most 1000000        # faces; without it as many as there is memory for, up to 10⁷
+//! ```
+//!
+//! Every case is timed once in each round, all in one round, and a figure is the median over the rounds; ratios are of
+//! times of one round. The exponent of growth is the slope of the least squares line through the logarithms: 1 is time in
+//! proportion. With the feature `report` there is a chart too, `target/growth.svg`.
+
+mod case;
+#[cfg(feature = "report")]
+mod chart;
+mod series;
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use case::Case;
+use series::Series;
+
+/// What a bound says of ns a face at 10⁶ faces, divided by those at 10⁴.
+const MOST_GROWTH: f64 = 1.5;
+
+/// All spheres together take no more than this, in bytes for each face of the largest: see the table of memory.
+const BYTES: u64 = 200;
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    // Under `cargo test` it only has to run.
+    let is_bench = words.iter().any(|word| word == "--bench");
+    let most = match words.iter().position(|word| word == "--most") {
+        Some(at) => words.get(at + 1).and_then(|word| word.parse().ok()).expect("--most takes a number of faces"),
+        None if !is_bench => 3_000,
+        None => faces_that_fit(),
+    };
+    let rounds = if is_bench { 15 } else { 1 };
+
+    let spheres = case::spheres(most);
+    println!("memory, bytes a face");
+    println!("{:>10} {:>10} {:>14} {:>10} {:>10}", "faces", "mesh", "while built", "object", "renderer");
+    for sphere in &spheres {
+        let [mesh, peak, object, renderer] = sphere.bytes_a_face();
+        println!("{:>10} {mesh:>10.1} {peak:>14.1} {object:>10.1} {renderer:>10.1}", sphere.faces);
+    }
+
+    let mut all = vec![
+        Series::new("faces, 320 x 200 pixels", "faces", "face", case::faces(&spheres)),
+        Series::new("faces, 4 pixels to each drawn", "faces", "face", case::faces_of_equal_size(&spheres)),
+        Series::new("pixels a triangle", "pixels", "triangle", case::pixels()),
+        Series::new("suns", "suns", "frame", case::lights(case::sun)),
+        Series::new("lamps", "lamps", "frame", case::lights(case::lamp)),
+    ];
+    for round in 0..=rounds {
+        let count: usize = all.iter().map(|series| series.cases.len()).sum();
+        let mut cases: Vec<&mut Case> = all.iter_mut().flat_map(|series| &mut series.cases).collect();
+        for i in 0..count {
+            // In a new order each round: so no case always comes after the same one.
+            let case = &mut cases[(i * 7 + round) % count];
+            let started = thread_time();
+            for _ in 0..case.repeats {
+                black_box(case.draw());
+            }
+            let time = (thread_time() - started).as_secs_f64() * 1e9 / f64::from(case.repeats);
+            if round == 0 {
+                // The first frame, in which memory is taken, and one to see how many make 2 ms.
+                let started = thread_time();
+                case.draw();
+                let time = (thread_time() - started).as_secs_f64() * 1e9;
+                case.repeats = if is_bench { (2e6 / time.max(1.0)).clamp(1.0, 10_000.0) as u32 } else { 1 };
+            } else {
+                case.times.push(time);
+            }
+        }
+    }
+    println!("\nmedian of {rounds} rounds");
+    all.iter().for_each(Series::print);
+
+    println!();
+    for (series, both_ways) in [(&all[0], false), (&all[1], true)] {
+        let Some(growth) = series.growth(1e4, 1e6) else { continue };
+        let kept = growth <= MOST_GROWTH && (!both_ways || growth >= 1.0 / MOST_GROWTH);
+        let least = if both_ways { format!("{:.2} to ", 1.0 / MOST_GROWTH) } else { "at most ".to_string() };
+        println!(
+            "{}: ns a face at 10^6 are {growth:.2} x those at 10^4 ({least}{MOST_GROWTH}: {})",
+            series.title,
+            if kept { "kept" } else { "NOT KEPT" }
+        );
+    }
+    #[cfg(feature = "report")]
+    if is_bench {
+        let path = concat!(env!("CARGO_TARGET_TMPDIR"), "/../growth.svg");
+        match std::fs::write(path, chart::svg(&all)) {
+            Ok(()) => println!("chart: target/growth.svg"),
+            Err(error) => println!("chart: {path}: {error}"),
+        }
+    }
+}
+
+/// Time that this thread has run, where the system counts it: other programs do not add to that.
+fn thread_time() -> Duration {
+    #[cfg(all(unix, feature = "cli"))]
+    if let Ok(time) = nix::time::clock_gettime(nix::time::ClockId::CLOCK_THREAD_CPUTIME_ID) {
+        return time.into();
+    }
+    std::time::UNIX_EPOCH.elapsed().unwrap_or_default()
+}
+
+/// 10⁷, or fewer where the memory that is said to be free does not hold so many twice over.
+fn faces_that_fit() -> u64 {
+    let free = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| {
+        let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
+        line.split_whitespace().nth(1)?.parse::<u64>().ok()
+    });
+    let fit = free.map_or(1_000_000, |kilobytes| kilobytes * 1024 / (2 * BYTES));
+    if fit < 10_000_000 {
+        println!("memory for {fit} faces: no more than that (--most says how many)");
+    }
+    fit.min(10_000_000)
+}

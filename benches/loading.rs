@@ -1,0 +1,111 @@
+//! From a model's file to the first frame, beside `tobj`, which only reads the file.
+//!
+//! ```text
+//! cargo bench --bench loading
+//! cargo bench --bench loading -- model.obj another.obj
+//! ```
+//!
+//! Without a name two models of 10⁶ faces are made: a sphere with bumps, as a scan, and the same with a normal for each
+//! vertex. Every round loads each by all, in turn; a figure is the median over the rounds of times on the wall, and a ratio
+//! that of ratios within a round. `tobj` reads as it is asked to by those who draw (triangles, one index a vertex), and as it
+//! is fastest.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use mode13h::mesh::{obj, shapes};
+use mode13h::render::Renderer;
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+
+/// What loads.
+type Loader = (&'static str, fn(&Path));
+
+const LOADERS: [Loader; 4] = [
+    ("tobj, as it is fastest", |path| by_tobj(path, &tobj::LoadOptions::default())),
+    ("tobj, for drawing", |path| by_tobj(path, &tobj::GPU_LOAD_OPTIONS)),
+    ("obj::load", |path| drop(black_box(load(path)))),
+    ("obj::load and the first frame", |path| {
+        let scene = Scene::showing(load(path));
+        let mut vga = Vga::new();
+        Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
+        black_box(vga.pixels());
+    }),
+];
+
+fn by_tobj(path: &Path, options: &tobj::LoadOptions) {
+    black_box(tobj::load_obj(path, options).expect("it is read").0);
+}
+
+fn load(path: &Path) -> mode13h::mesh::Mesh {
+    obj::load(path).expect("it is read").mesh
+}
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    // Under `cargo test` it only has to run.
+    let is_bench = words.iter().any(|word| word == "--bench");
+    let (rounds, stacks) = if is_bench { (11, 500) } else { (1, 10) };
+    let mut paths: Vec<PathBuf> = words.iter().filter(|word| !word.starts_with('-')).map(PathBuf::from).collect();
+    if paths.is_empty() {
+        paths = [("scan", false), ("with-normals", true)].map(|(name, normals)| made(name, stacks, normals)).into();
+    }
+    for path in &paths {
+        let bytes = fs::metadata(path).expect("it is there").len();
+        println!("{}: {} faces, {bytes} bytes", path.display(), load(path).triangles().len());
+        let mut times = [const { Vec::new() }; LOADERS.len()];
+        for _ in 0..rounds {
+            for ((_, load), times) in LOADERS.iter().zip(&mut times) {
+                let started = Instant::now();
+                load(path);
+                times.push(started.elapsed().as_secs_f64() * 1e3);
+            }
+        }
+        println!("{:>32} {:>8} {:>22} {:>22}", "", "ms", LOADERS[0].0, LOADERS[1].0);
+        for ((name, _), own) in LOADERS.iter().zip(&times) {
+            let ratio = |other: &[f64]| median(own.iter().zip(other).map(|(own, other)| own / other).collect());
+            println!(
+                "{name:>32} {:>8.0} {:>20.2} x {:>20.2} x",
+                median(own.clone()),
+                ratio(&times[0]),
+                ratio(&times[1])
+            );
+        }
+    }
+}
+
+/// A sphere of 4·stacks² faces whose vertices lie a little too high or too low, written as OBJ.
+fn made(name: &str, stacks: u32, normals: bool) -> PathBuf {
+    let mesh = shapes::sphere(2 * stacks, stacks + 1);
+    let mut text = String::new();
+    let mut random = 1_u64;
+    for position in mesh.positions() {
+        // Knuth's generator for MMIX, and of it the upper bits: within half an edge.
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let [x, y, z] = (*position * (1.0 + (random >> 40) as f32 / 16_777_216.0 / stacks as f32)).to_array();
+        writeln!(text, "v {x:.6} {y:.6} {z:.6}").expect("written");
+    }
+    if normals {
+        for [x, y, z] in mesh.normals().iter().map(|normal| normal.to_array()) {
+            writeln!(text, "vn {x:.4} {y:.4} {z:.4}").expect("written");
+        }
+    }
+    for corners in mesh.triangles() {
+        let [a, b, c] = corners.map(|vertex| vertex + 1);
+        match normals {
+            true => writeln!(text, "f {a}//{a} {b}//{b} {c}//{c}").expect("written"),
+            false => writeln!(text, "f {a} {b} {c}").expect("written"),
+        }
+    }
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}.obj", mesh.triangles().len()));
+    fs::write(&path, text).expect("written");
+    path
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}

@@ -1,0 +1,105 @@
+//! A number for each of some edges: a table that keeps its memory from frame to frame.
+//!
+//! Open addressing: an edge stands at the first free place from where its hash points to, and the table is never
+//! more than half full. It is only asked for edges, never read in order, so no byte depends on the hash.
+
+use alloc::vec::Vec;
+
+/// No edge: both its ends would be one.
+const FREE: (u32, u32) = (u32::MAX, u32::MAX);
+
+/// From an edge, two different numbers, to a number.
+#[derive(Debug, Default)]
+pub(super) struct EdgeMap {
+    /// As many as a power of two, or none.
+    places: Vec<((u32, u32), u32)>,
+    count: usize,
+}
+
+impl EdgeMap {
+    /// Forgets all edges.
+    pub(super) fn clear(&mut self) {
+        self.places.fill((FREE, 0));
+        self.count = 0;
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The number of an edge that has one.
+    pub(super) fn get(&self, edge: (u32, u32)) -> Option<u32> {
+        let (known, number) = *self.places.get(self.place(edge)?)?;
+        (known == edge).then_some(number)
+    }
+
+    /// Gives an edge its number, in place of what it may have had.
+    pub(super) fn insert(&mut self, edge: (u32, u32), number: u32) {
+        if 2 * (self.count + 1) > self.places.len() {
+            self.grow();
+        }
+        if let Some(place) = self.place(edge) {
+            self.count += usize::from(self.places[place].0 == FREE);
+            self.places[place] = (edge, number);
+        }
+    }
+
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        self.places.capacity() * size_of::<((u32, u32), u32)>()
+    }
+
+    /// Where an edge stands, or would; nowhere in a table without places.
+    fn place(&self, (a, b): (u32, u32)) -> Option<usize> {
+        let last = self.places.len().checked_sub(1)?;
+        // Knuth's multiplicative hash (The Art of Computer Programming, 6.4), 2⁶⁴ over the golden ratio. Its upper
+        // half is the better one, and 32 bits fit a `usize`.
+        let hash = (u64::from(a) << 32 | u64::from(b)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
+        let mut place = hash as usize & last;
+        // Half of the places are free.
+        while self.places[place].0 != FREE && self.places[place].0 != (a, b) {
+            place = (place + 1) & last;
+        }
+        Some(place)
+    }
+
+    /// Twice as many places.
+    #[cold]
+    fn grow(&mut self) {
+        let places = (2 * self.places.len()).max(16);
+        let before = core::mem::replace(&mut self.places, alloc::vec![(FREE, 0); places]);
+        self.count = 0;
+        before.into_iter().filter(|(edge, _)| *edge != FREE).for_each(|(edge, number)| self.insert(edge, number));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::collections::BTreeMap;
+
+    use super::EdgeMap;
+
+    #[test]
+    fn it_is_a_map() {
+        let (mut map, mut naive) = (EdgeMap::default(), BTreeMap::new());
+        assert_eq!((map.get((0, 1)), map.is_empty()), (None, true));
+        let mut random = 1_u64;
+        for number in 0..20_000 {
+            // Knuth's generator for MMIX; edges come up more than once.
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let (a, b) = ((random >> 33) as u32 % 90, (random >> 45) as u32 % 90 + 90);
+            assert_eq!(map.get((a, b)), naive.get(&(a, b)).copied());
+            if number % 3 == 0 {
+                map.insert((a, b), number);
+                naive.insert((a, b), number);
+            }
+        }
+        assert_eq!((map.count, map.is_empty()), (naive.len(), false));
+        let bytes = map.bytes();
+        map.clear();
+        assert!(map.is_empty() && naive.keys().all(|edge| map.get(*edge).is_none()));
+        naive.iter().for_each(|(edge, number)| map.insert(*edge, *number));
+        assert!(naive.iter().all(|(edge, number)| map.get(*edge) == Some(*number)));
+        assert_eq!(map.bytes(), bytes, "its memory is used again");
+    }
+}
