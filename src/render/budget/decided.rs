@@ -1,0 +1,80 @@
+//! What a budget decides for a triangle, and how that is said.
+
+use alloc::format;
+use alloc::string::String;
+
+use crate::raster::effects::Apart;
+use crate::scene::Rung;
+
+/// What is decided for a triangle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(in crate::render) enum Choice {
+    /// Nobody has asked yet.
+    #[default]
+    Unknown,
+    Flat,
+    Linear,
+    Float,
+    /// Light at pixels of a row that lie apart, linear between.
+    PhongEvery(Apart),
+    Phong,
+}
+
+impl Choice {
+    pub(in crate::render) const fn rung(self) -> Rung {
+        match self {
+            Self::Flat => Rung::Flat,
+            Self::Float => Rung::Float,
+            Self::Phong | Self::PhongEvery(_) => Rung::Phong,
+            Self::Linear | Self::Unknown => Rung::Gouraud88Reseeded,
+        }
+    }
+}
+
+impl Choice {
+    /// Whether pixels are lit, all or some.
+    pub(in crate::render) fn lights_pixels(self) -> bool {
+        matches!(self, Self::Phong | Self::PhongEvery(_))
+    }
+
+    /// How far those are apart that are lit, if not all are.
+    pub(in crate::render) fn apart(self) -> Option<Apart> {
+        if let Self::PhongEvery(apart) = self { Some(apart) } else { None }
+    }
+}
+
+/// What is known of a triangle.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(in crate::render) struct Decided {
+    pub(in crate::render) choice: Choice,
+    /// How far linear shades of its two sides are from the model, highlights aside. Known as long as the object and its
+    /// lights are what they are, wherever the eye is.
+    pub(in crate::render) body: [Option<f32>; 2],
+}
+
+impl Decided {
+    /// One of which all is known.
+    pub(in crate::render) const LINEAR: Self = Self { choice: Choice::Linear, body: [None; 2] };
+}
+
+/// How many triangles went to which rung, and why.
+pub(in crate::render) fn shares(decided: &[Decided]) -> String {
+    let kinds = [
+        (Choice::Flat, "one shade at their corners, or near enough"),
+        (Choice::Linear, "light is linear enough on them"),
+        (Choice::Float, "so it is, but not on the screen"),
+        (Choice::PhongEvery(Apart::Sixteen), "at every 16th pixel of a row, and so it is between"),
+        (Choice::PhongEvery(Apart::Eight), "at every 8th"),
+        (Choice::PhongEvery(Apart::Four), "at every 4th"),
+        (Choice::Phong, "it is not known to be"),
+    ];
+    let mut text = String::new();
+    for (choice, why) in kinds {
+        let count = decided.iter().filter(|of| of.choice == choice).count();
+        if count > 0 {
+            text += &format!("{count} {} ({why}), ", choice.rung());
+        }
+    }
+    let unseen = decided.iter().filter(|of| of.choice == Choice::Unknown).count();
+    text + &format!("{unseen} not drawn")
+}

@@ -1,0 +1,362 @@
+//! The decision on one triangle.
+
+use glam::Vec3;
+
+use super::decided::{Choice, Decided};
+use super::light::{OneLight, Towards};
+use super::{Budget, EXACT, LINEAR, brightest, highlight};
+use crate::raster::Vertex;
+use crate::raster::clip::doubled_area;
+use crate::raster::effects::Apart;
+use crate::render::face::Faces;
+use crate::render::lit::LitVertices;
+use crate::span::lit::LANES;
+
+/// Pixels from which on it pays to light a face at some points before it is lit at all of them.
+const WORTH_SAMPLES: f32 = 5.0;
+
+/// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
+const WORTH_KNOTS: f32 = 16.0;
+
+/// Points of a triangle that divide each edge in four, by their weights; the corners first, and at the end one once more.
+const SAMPLES: [[f32; 3]; 16] = {
+    let mut points = [[1.0, 0.0, 0.0]; 16];
+    points[1] = [0.0, 1.0, 0.0];
+    points[2] = [0.0, 0.0, 1.0];
+    let (mut at, mut a) = (3, 0);
+    while a < 4 {
+        let mut b = 0;
+        while a + b <= 4 {
+            if b < 4 && a + b > 0 {
+                points[at] = [a as f32 / 4.0, b as f32 / 4.0, (4 - a - b) as f32 / 4.0];
+                at += 1;
+            }
+            b += 1;
+        }
+        a += 1;
+    }
+    points
+};
+
+/// A triangle that is to be decided on.
+pub(in crate::render) struct Question<'a> {
+    /// Its place.
+    pub(in crate::render) triangle: usize,
+    pub(in crate::render) indices: [u32; 3],
+    pub(in crate::render) surface: u16,
+    pub(in crate::render) turned: bool,
+    /// The corners' shades, or, of the channels, the three of each.
+    pub(in crate::render) shades: [[u16; 3]; 3],
+    /// Where it is on the screen; of what is clipped nowhere.
+    pub(in crate::render) vertices: Option<&'a [Vertex; 3]>,
+}
+
+impl Budget {
+    /// The cheapest rung of a face that suns light, all that it sees from each of its corners, and whose shades are
+    /// not clamped, where that is known at once. The corners are given on the side that is seen.
+    #[inline(always)]
+    pub(in crate::render) fn decide_at_once(
+        &self,
+        triangle: usize,
+        surface: u16,
+        lit: &LitVertices,
+        indices: [u32; 3],
+        turned: bool,
+    ) -> Choice {
+        if !self.simple {
+            return Choice::Unknown;
+        }
+        let corners = indices.map(|i| i as usize);
+        let shades = corners.map(|i| lit.shades[i]);
+        let [a, b, c] = if self.by_shades() {
+            shades.map(|[front, back]| u8::from(front > back))
+        } else {
+            corners.map(|i| lit.suns_seen[i])
+        };
+        let mixed = a != b || b != c;
+        let strength = &self.strengths[usize::from(surface)];
+        let [a, b, c] = shades.map(|sides| sides[usize::from(turned)].to_bits());
+        let most = a.max(b).max(c);
+        if most >= strength.last {
+            return Choice::Unknown;
+        }
+        if self.linear_unless_mixed && !mixed {
+            return Choice::Linear;
+        }
+        // n·l differs by no more than the normals do, which is P + S at most; and PS / (P + S) ≤ (P + S) / 4.
+        let facet = &self.facets[triangle];
+        let apart = strength.body * facet.spread;
+        let least = a.min(b).min(c);
+        let clamp = if !mixed {
+            0.0
+        } else if self.one_sun {
+            // P is what the brightest corner has of it.
+            let lit = f32::from(most.saturating_sub(strength.dark)) * strength.scale;
+            if lit < apart { lit * (apart - lit) / apart } else { 0.0 }
+        } else {
+            apart / 4.0
+        };
+        // A corner's shade lies in its ramp.
+        let model = clamp + f32::from(most - strength.first) * strength.scale * facet.shortening;
+        if least == most {
+            return if model + EXACT <= self.allowed { Choice::Flat } else { Choice::Unknown };
+        }
+        let range = f32::from(most - least) * strength.scale;
+        if model + range * self.bend + LINEAR <= self.allowed { Choice::Linear } else { Choice::Unknown }
+    }
+}
+
+impl Question<'_> {
+    /// The least and the greatest depth, which is in proportion to 1 / w; 0 if a corner has none.
+    fn depths(&self) -> (u32, u32) {
+        let [a, b, c] = self.vertices.map_or([0; 3], |vertices| vertices.each_ref().map(Vertex::depth));
+        (a.min(b).min(c), a.max(b).max(c))
+    }
+
+    /// Its area on the screen.
+    fn pixels(&self) -> f32 {
+        // In 1/256 pixel, and twice.
+        self.vertices.map_or(f32::MAX, |vertices| doubled_area(vertices).unsigned_abs() as f32 / 131_072.0)
+    }
+
+    /// The widest of its rows, in pixels; 0 where it is nowhere.
+    fn width(&self) -> f32 {
+        let Some(vertices) = self.vertices else { return 0.0 };
+        let [a, b, c] = vertices.each_ref().map(|vertex| vertex.y().to_bits());
+        let height = a.max(b).max(c) - a.min(b).min(c);
+        if height == 0 { 0.0 } else { 512.0 * self.pixels() / height as f32 }
+    }
+}
+
+impl Faces<'_> {
+    /// The cheapest rung that keeps within the budget.
+    pub(in crate::render) fn cheapest_within(
+        &self,
+        budget: &Budget,
+        question: &Question<'_>,
+        decided: &mut Decided,
+    ) -> Choice {
+        let facet = &budget.facets[question.triangle];
+        let strength = &budget.strengths[usize::from(question.surface)];
+        let [a, b, c] = question.shades;
+        let channels = if self.channels { 3 } else { 1 };
+        let (mut range, mut top, mut clamped) = (0, 0, false);
+        for channel in 0..channels {
+            let least = a[channel].min(b[channel]).min(c[channel]);
+            let most = a[channel].max(b[channel]).max(c[channel]);
+            range = range.max(most - least);
+            top = top.max(most - strength.first);
+            clamped |= most >= strength.last && least < strength.last;
+        }
+        let (range, top) = (f32::from(range) * strength.scale, f32::from(top) * strength.scale);
+
+        // For suns alone, all of them above the horizon or all below.
+        let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
+        let mut model = top * facet.shortening + strength.curvature * turned * turned;
+        let spare = budget.allowed - EXACT;
+        // What the body alone is off by, at least as it is known, whatever the light.
+        let hopeless = (top - strength.highlights) * facet.shortening > spare;
+        let seen = question.indices.map(|i| budget.suns_seen(&self.lit.get(i as usize)));
+        let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
+        let lamps = !self.lights.lamps.is_empty();
+        let near = model <= spare;
+        let highlights = strength.curvature > 0.0;
+        let far = highlights && budget.is_far_from_highlights(question, facet, strength);
+        if far && !lamps && !some && !clamped {
+            model = model.min(top * facet.shortening + budget.allowed / 4.0);
+        }
+        let near = near || model <= spare;
+        if !hopeless && (lamps || ((some || clamped) && near) || (highlights && !near)) {
+            let body = &mut decided.body[usize::from(question.turned)];
+            let known = *body.get_or_insert_with(|| {
+                self.body_error(budget, question, &self.one_light(budget, question, 1.0), spare)
+            });
+            model = if far {
+                known + budget.allowed / 4.0
+            } else {
+                self.model_error(budget, question, 1.0, spare, Some(known))
+            };
+            if clamped {
+                // What lies above the clamp is lost at some corners, by which the others are too dark at most.
+                model += range;
+            }
+            if model > spare && question.pixels() >= WORTH_SAMPLES {
+                model = self.error_between_samples(budget, question, spare);
+            }
+        }
+        let bound = budget.allowed;
+        // Depth is in proportion to 1 / w.
+        let (far, near) = question.depths();
+        let bend = (near - far) as f32 * range;
+        // A corner behind the near plane has no depth.
+        let linear = far > 0 && bend <= 4.0 * far as f32 * (bound - model - LINEAR);
+        // Linear shades cost no more than one shade where they differ at all: the same spans, by the same loop.
+        if model + range / 2.0 + EXACT <= bound && (range == 0.0 || !linear) {
+            Choice::Flat
+        } else if linear {
+            Choice::Linear
+        } else if model + EXACT <= bound || !self.lights_pixels {
+            Choice::Float
+        } else {
+            let linear = |apart: &Apart| self.is_linear_between(budget, question, clamped, *apart);
+            Apart::ALL.into_iter().rev().find(linear).map_or(Choice::Phong, Choice::PhongEvery)
+        }
+    }
+
+    /// Whether light is linear enough between two pixels of a row that are so far apart.
+    #[inline(never)]
+    fn is_linear_between(&self, budget: &Budget, question: &Question<'_>, clamped: bool, apart: Apart) -> bool {
+        // At most 16.
+        let ((far, near), width, apart) = (question.depths(), question.width(), apart.pixels() as f32);
+        if far == 0 || width < WORTH_KNOTS.max(1.5 * apart) {
+            return false;
+        }
+        // A pixel is a step on the face that is greater by the ratio of distances where it is farthest than where it is
+        // nearest.
+        let ratio = near as f32 / far as f32;
+        let part = apart * ratio / width;
+        if part > 0.75 {
+            return false;
+        }
+        let facet = &budget.facets[question.triangle];
+        let strength = &budget.strengths[usize::from(question.surface)];
+        let lamps = !self.lights.lamps.is_empty();
+        let highlights = strength.curvature > 0.0;
+        // What shades differ by over the face at most; cosˢ is nowhere steeper than √(s/e).
+        let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
+        let shininess = self.paints[usize::from(question.surface)].answer.shininess as f32;
+        let differ = if lamps {
+            255.0
+        } else {
+            let body = strength.body * facet.spread * (1.0 + facet.shortening);
+            (body + strength.highlights * 0.61 * libm::sqrtf(shininess) * turned).min(255.0)
+        };
+        // Shades that are cut off above 1 somewhere on the way: a fourth of what they differ by there.
+        let cut = if clamped || highlights { part * differ / 4.0 } else { 0.0 };
+        let bend = (ratio - 1.0) / 4.0 * part * part * differ;
+        let spare = budget.allowed - EXACT - cut - bend;
+        spare > 0.0 && self.model_error(budget, question, part, spare, None) <= spare
+    }
+
+    /// What light from one source needs to know.
+    fn one_light<'a>(&self, budget: &'a Budget, question: &Question<'_>, part: f32) -> OneLight<'a> {
+        let paint = &self.paints[usize::from(question.surface)];
+        let side = if question.turned { -1.0 } else { 1.0 };
+        let color = if self.channels { paint.answer.color.into_iter().fold(0.0, f64::max) } else { 1.0 };
+        let (ks, shininess) = highlight(paint, self.channels);
+        let corners = question.indices.map(|i| i as usize);
+        OneLight {
+            facet: &budget.facets[question.triangle],
+            normals: corners.map(|i| self.geometry.normals[i] * side),
+            to_eye: if ks == 0.0 { [Towards::default(); 3] } else { corners.map(|i| budget.to_eye[i]) },
+            kd: (paint.answer.diffuse * color).abs() as f32 * 255.0,
+            ks,
+            shininess,
+            part,
+        }
+    }
+
+    /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it. `body`
+    /// is what they are off by without highlights, if that is known.
+    #[inline(never)]
+    fn model_error(&self, budget: &Budget, question: &Question<'_>, part: f32, limit: f32, body: Option<f32>) -> f32 {
+        let light = self.one_light(budget, question, part);
+        let corners = question.indices.map(|i| i as usize);
+        let mut sum = body.unwrap_or_else(|| self.body_error(budget, question, &light, limit));
+        if light.ks == 0.0 || sum > limit {
+            return sum;
+        }
+        for sun in self.lights.suns {
+            let intensity = brightest(sun.intensity, sun.channels, self.channels);
+            sum += light.highlight_of_sun(sun.towards, intensity, limit - sum);
+            if sum > limit {
+                return sum;
+            }
+        }
+        let vertices = self.geometry.positions.len();
+        for (&(inverse_range, intensity), to_lamp) in budget.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
+            sum += light.highlight_of_lamp(corners.map(|i| to_lamp[i]), inverse_range, intensity, limit - sum);
+            if sum > limit {
+                return sum;
+            }
+        }
+        sum
+    }
+
+    /// The same without highlights: where the eye is makes no difference.
+    #[inline(never)]
+    fn body_error(&self, budget: &Budget, question: &Question<'_>, light: &OneLight<'_>, limit: f32) -> f32 {
+        let corners = question.indices.map(|i| i as usize);
+        let mut sum = 0.0;
+        for sun in self.lights.suns {
+            sum += light.body_of_sun(sun.towards, brightest(sun.intensity, sun.channels, self.channels));
+            if sum > limit {
+                return sum;
+            }
+        }
+        let vertices = self.geometry.positions.len();
+        for (&(inverse_range, intensity), to_lamp) in budget.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
+            sum += light.body_of_lamp(corners.map(|i| to_lamp[i]), inverse_range, intensity);
+            if sum > limit {
+                return sum;
+            }
+        }
+        sum
+    }
+
+    /// The same, found at twelve points between the corners, which divide each edge in four: between them the
+    /// function is no farther from linear than a part of a fourth of the size may be.
+    #[inline(never)]
+    fn error_between_samples(&self, budget: &Budget, question: &Question<'_>, limit: f32) -> f32 {
+        let between = self.model_error(budget, question, 0.25, limit, None);
+        // A bound that is 16 times as much is seldom wrong by half.
+        if between > limit / 3.0 {
+            return f32::INFINITY;
+        }
+        let corners = question.indices.map(|i| i as usize);
+        let normals =
+            corners.map(|i| if question.turned { -self.geometry.normals[i] } else { self.geometry.normals[i] });
+        let positions = corners.map(|i| self.geometry.positions[i]);
+        let answer = &self.paints[usize::from(question.surface)].answer;
+        // The corners are among the points.
+        let mut intensities = [[0.0_f32; 3]; SAMPLES.len()];
+        for (weights, intensities) in SAMPLES.chunks_exact(LANES).zip(intensities.chunks_exact_mut(LANES)) {
+            let mut points = [[0.0; LANES]; 6];
+            for (lane, [a, b, c]) in weights.iter().enumerate() {
+                let between = |of: &[Vec3; 3]| (of[0] * *a + of[1] * *b + of[2] * *c).to_array();
+                for (axis, (n, p)) in between(&normals).into_iter().zip(between(&positions)).enumerate() {
+                    (points[axis][lane], points[axis + 3][lane]) = (n, p);
+                }
+            }
+            // Shown, they are clamped.
+            let shown = |intensity: f64| intensity.clamp(0.0, 1.0) as f32;
+            if self.channels {
+                let channels = self.lights.front_of_three_channels(answer, &points);
+                for (lane, of) in intensities.iter_mut().enumerate() {
+                    *of = channels.each_ref().map(|channel| shown(channel[lane]));
+                }
+            } else {
+                let all = self.lights.front_of_one_channel(answer, &points);
+                for (of, intensity) in intensities.iter_mut().zip(all) {
+                    *of = [shown(intensity); 3];
+                }
+            }
+        }
+        let [a, b, c, ..] = intensities;
+        let (mut off, mut clamp) = (0.0_f32, 0.0_f32);
+        for channel in 0..3 {
+            let (a, b, c) = (a[channel], b[channel], c[channel]);
+            let (mut least, mut most) = (1.0_f32, 0.0_f32);
+            for (weights, intensities) in SAMPLES.iter().zip(&intensities) {
+                let at = intensities[channel];
+                off = off.max((a * weights[0] + b * weights[1] + c * weights[2] - at).abs());
+                (least, most) = (least.min(at), most.max(at));
+            }
+            if most >= 1.0 {
+                clamp = clamp.max(most - least);
+            }
+        }
+        // Of PS / (P + S), P what lies above the clamp, no more than a fourth of both.
+        between + 255.0 * (off + clamp / 4.0)
+    }
+}
