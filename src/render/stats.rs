@@ -28,7 +28,7 @@ pub struct Stats {
     pub allocated: u64,
     /// Vertices transformed.
     pub vertices: u64,
-    /// Vertices lit, or faces where shading is flat.
+    /// Vertices lit; or, where shading is flat, faces, less those that were found to cover no pixel before.
     pub lit: u64,
     /// Faces of all objects.
     pub faces: u64,

@@ -74,16 +74,16 @@ impl Narrow {
             let is_within = (w[i] >= *near) & (x[i].abs() <= LIMIT) & (y[i].abs() <= LIMIT);
             eight.within[i] = -i32::from(is_within);
         }
-        for i in 0..LANES {
-            eight.x[i] = units(x[i]);
+        for (units_of, x) in eight.x.iter_mut().zip(&x) {
+            *units_of = units(*x);
         }
-        for i in 0..LANES {
-            eight.y[i] = units(y[i]);
+        for (units_of, y) in eight.y.iter_mut().zip(&y) {
+            *units_of = units(*y);
         }
-        for i in 0..LANES {
+        for (to, w) in eight.depth.iter_mut().zip(&w) {
             // As `ObjectView::depth`; 1 to 2³⁰ of what is within.
-            let depth = whole_part(f64::from(*near) / f64::from(w[i]) * 1_073_741_824.0 + 0.5);
-            eight.depth[i] = if depth > 1 { depth } else { 1 };
+            let depth = whole_part(f64::from(*near) / f64::from(*w) * 1_073_741_824.0 + 0.5);
+            *to = if depth > 1 { depth } else { 1 };
         }
         eight
     }

@@ -47,6 +47,7 @@ impl Sieve {
         if self.kernel.has_avx2() {
             return x86::sift(places, triangles, sides, culls);
         }
+        let _ = self.kernel;
         sift(places, triangles, sides, culls)
     }
 }
