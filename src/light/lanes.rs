@@ -7,7 +7,12 @@
 
 use super::intensity::{Answer, Lights, Wide};
 use super::power::Shininess;
+use crate::span::Kernel;
 use crate::span::lit::{LANES, Lanes, Points};
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
+mod x86;
 
 type Wides = Lanes<f64>;
 
@@ -23,7 +28,7 @@ struct Front<const N: usize> {
 }
 
 impl<const N: usize> Front<N> {
-    #[inline]
+    #[inline(always)]
     fn add(&mut self, light: [f64; N], fall_off: Option<&Wides>, cosines: &Wides, highlights: Option<&Wides>) {
         for (channel, intensity) in light.into_iter().enumerate() {
             let mut lights = [intensity; LANES];
@@ -43,8 +48,14 @@ impl<const N: usize> Front<N> {
     }
 }
 
+/// The normals at the points, as they are or made unit.
+#[inline(always)]
+fn normals_of<const UNIT: bool>(points: &Points) -> [Lanes<f32>; 3] {
+    if UNIT { [points[0], points[1], points[2]] } else { unit_normals(points) }
+}
+
 /// The normals at the points, made unit and rounded to f32; 0 where there are none, as their ends cancel.
-#[inline]
+#[inline(always)]
 fn unit_normals(points: &Points) -> [Lanes<f32>; 3] {
     let wide = [0, 1, 2].map(|axis| widen(&points[axis]));
     let squares = dot(&wide, &wide);
@@ -66,19 +77,61 @@ fn unit_normals(points: &Points) -> [Lanes<f32>; 3] {
 impl Lights<'_> {
     /// The whole sum on one channel, not yet clamped, for the side that the points' normals, of any length, point
     /// away from.
-    pub(crate) fn front_of_one_channel(&self, answer: &Answer, points: &Points) -> Wides {
-        self.one_channel_of_eight(answer, &unit_normals(points), points)
+    pub(crate) fn front_of_one_channel(&self, answer: &Answer, points: &Points, kernel: Kernel) -> Wides {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if kernel.has_avx2() {
+            return x86::one_channel::<false>(self, answer, points);
+        }
+        let _ = kernel;
+        self.one_channel_apart::<false>(answer, points)
     }
 
     /// The same for normals that are unit already, which are taken as they are.
-    pub(crate) fn unit_front_of_one_channel(&self, answer: &Answer, points: &Points) -> Wides {
-        self.one_channel_of_eight(answer, &[points[0], points[1], points[2]], points)
+    pub(crate) fn unit_front_of_one_channel(&self, answer: &Answer, points: &Points, kernel: Kernel) -> Wides {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if kernel.has_avx2() {
+            return x86::one_channel::<true>(self, answer, points);
+        }
+        let _ = kernel;
+        self.one_channel_apart::<true>(answer, points)
     }
 
-    #[inline]
-    fn one_channel_of_eight(&self, answer: &Answer, normals: &[Lanes<f32>; 3], points: &Points) -> Wides {
+    /// The same as [`front_of_one_channel`](Self::front_of_one_channel) on three channels: red, green, blue.
+    pub(crate) fn front_of_three_channels(&self, answer: &Answer, points: &Points, kernel: Kernel) -> [Wides; 3] {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if kernel.has_avx2() {
+            return x86::three_channels::<false>(self, answer, points);
+        }
+        let _ = kernel;
+        self.three_channels_apart::<false>(answer, points)
+    }
+
+    /// The same for normals that are unit already, which are taken as they are.
+    pub(crate) fn unit_front_of_three_channels(&self, answer: &Answer, points: &Points, kernel: Kernel) -> [Wides; 3] {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if kernel.has_avx2() {
+            return x86::three_channels::<true>(self, answer, points);
+        }
+        let _ = kernel;
+        self.three_channels_apart::<true>(answer, points)
+    }
+
+    #[inline(never)]
+    fn one_channel_apart<const UNIT: bool>(&self, answer: &Answer, points: &Points) -> Wides {
+        self.one_channel_of_eight::<UNIT, true>(answer, points)
+    }
+
+    #[inline(never)]
+    fn three_channels_apart<const UNIT: bool>(&self, answer: &Answer, points: &Points) -> [Wides; 3] {
+        self.three_channels_of_eight::<UNIT, true>(answer, points)
+    }
+
+    /// Inlined where it is compiled for a processor, and all that it calls; but with highlights `APART`.
+    #[inline(always)]
+    fn one_channel_of_eight<const UNIT: bool, const APART: bool>(&self, answer: &Answer, points: &Points) -> Wides {
         let of_sun = |sun: &super::Beam| [f64::from(sun.intensity)];
-        let front = self.front(answer, normals, points, of_sun, |lamp| [f64::from(lamp.intensity)]);
+        let normals = normals_of::<UNIT>(points);
+        let front = self.front::<1, APART>(answer, &normals, points, of_sun, |lamp| [f64::from(lamp.intensity)]);
         let [mut body] = front.diffuse;
         for (body, highlight) in body.iter_mut().zip(&front.specular[0]) {
             *body = (answer.ambient + answer.diffuse * *body) + answer.specular * highlight;
@@ -86,20 +139,15 @@ impl Lights<'_> {
         body
     }
 
-    /// The same on three channels: red, green, blue.
-    pub(crate) fn front_of_three_channels(&self, answer: &Answer, points: &Points) -> [Wides; 3] {
-        self.three_channels_of_eight(answer, &unit_normals(points), points)
-    }
-
-    /// The same for normals that are unit already, which are taken as they are.
-    pub(crate) fn unit_front_of_three_channels(&self, answer: &Answer, points: &Points) -> [Wides; 3] {
-        self.three_channels_of_eight(answer, &[points[0], points[1], points[2]], points)
-    }
-
-    #[inline]
-    fn three_channels_of_eight(&self, answer: &Answer, normals: &[Lanes<f32>; 3], points: &Points) -> [Wides; 3] {
+    #[inline(always)]
+    fn three_channels_of_eight<const UNIT: bool, const APART: bool>(
+        &self,
+        answer: &Answer,
+        points: &Points,
+    ) -> [Wides; 3] {
         let of_sun = |sun: &super::Beam| sun.channels.map(f64::from);
-        let front = self.front(answer, normals, points, of_sun, |lamp| lamp.channels.map(f64::from));
+        let normals = normals_of::<UNIT>(points);
+        let front = self.front::<3, APART>(answer, &normals, points, of_sun, |lamp| lamp.channels.map(f64::from));
         let mut channels = front.diffuse;
         for (i, channel) in channels.iter_mut().enumerate() {
             for (body, highlight) in channel.iter_mut().zip(&front.specular[i]) {
@@ -110,8 +158,8 @@ impl Lights<'_> {
         channels
     }
 
-    #[inline]
-    fn front<const N: usize>(
+    #[inline(always)]
+    fn front<const N: usize, const APART: bool>(
         &self,
         answer: &Answer,
         narrow: &[Lanes<f32>; 3],
@@ -140,7 +188,7 @@ impl Lights<'_> {
             }
             let highlights = eye.as_ref().map(|eye| {
                 let towards = towards.map(|c| [f64::from(c); LANES]);
-                eye.highlights(&towards, &cosines, shininess)
+                eye.highlights_by::<APART>(&towards, &cosines, shininess)
             });
             front.add(of_sun(sun), None, &cosines, highlights.as_ref());
         }
@@ -159,7 +207,7 @@ impl Lights<'_> {
             if cosines == NOUGHT {
                 continue;
             }
-            let highlights = eye.as_ref().map(|eye| eye.highlights(&towards, &cosines, shininess));
+            let highlights = eye.as_ref().map(|eye| eye.highlights_by::<APART>(&towards, &cosines, shininess));
             front.add(of_lamp(lamp), Some(&fall_off), &cosines, highlights.as_ref());
         }
         front
@@ -175,14 +223,28 @@ struct Eye {
 }
 
 impl Eye {
-    #[inline]
+    #[inline(always)]
     fn new(towards: Vectors, normals: &Vectors) -> Self {
         Self { towards, cosines: dot(normals, &towards) }
     }
 
-    /// max(0, r·v)^s; 0 where the light's own cosine is.
+    #[inline(always)]
+    fn highlights_by<const APART: bool>(&self, towards: &Vectors, cosines: &Wides, shininess: Shininess) -> Wides {
+        if APART {
+            self.highlights_apart(towards, cosines, shininess)
+        } else {
+            self.highlights(towards, cosines, shininess)
+        }
+    }
+
     // A function of its own, so that `.ci/off_is_free` can see where it is entered.
     #[inline(never)]
+    fn highlights_apart(&self, towards: &Vectors, cosines: &Wides, shininess: Shininess) -> Wides {
+        self.highlights(towards, cosines, shininess)
+    }
+
+    /// max(0, r·v)^s; 0 where the light's own cosine is.
+    #[inline(always)]
     fn highlights(&self, towards: &Vectors, cosines: &Wides, shininess: Shininess) -> Wides {
         let mut along = dot(towards, &self.towards);
         for (along, (cosine, eye)) in along.iter_mut().zip(cosines.iter().zip(&self.cosines)) {
@@ -195,7 +257,7 @@ impl Eye {
 }
 
 /// What is above 0; nought for the rest, and for what is no number.
-#[inline]
+#[inline(always)]
 fn positive(values: &Wides) -> Wides {
     let mut positive = NOUGHT;
     for (positive, value) in positive.iter_mut().zip(values) {
@@ -204,7 +266,7 @@ fn positive(values: &Wides) -> Wides {
     positive
 }
 
-#[inline]
+#[inline(always)]
 fn widen(values: &Lanes<f32>) -> Wides {
     let mut wide = NOUGHT;
     for (wide, value) in wide.iter_mut().zip(values) {
@@ -214,7 +276,7 @@ fn widen(values: &Lanes<f32>) -> Wides {
 }
 
 /// From the points to `to`.
-#[inline]
+#[inline(always)]
 fn from(to: &Wide, points: &Vectors) -> Vectors {
     let mut vectors = *points;
     for (values, to) in vectors.iter_mut().zip(to) {
@@ -225,7 +287,7 @@ fn from(to: &Wide, points: &Vectors) -> Vectors {
     vectors
 }
 
-#[inline]
+#[inline(always)]
 fn dot(a: &Vectors, b: &Vectors) -> Wides {
     let mut sums = NOUGHT;
     for (lane, sum) in sums.iter_mut().enumerate() {
@@ -235,7 +297,7 @@ fn dot(a: &Vectors, b: &Vectors) -> Wides {
 }
 
 /// Not a number where there is no direction.
-#[inline]
+#[inline(always)]
 fn unit(vectors: &Vectors) -> Vectors {
     let squares = dot(vectors, vectors);
     let mut parts = NOUGHT;
@@ -252,7 +314,7 @@ fn unit(vectors: &Vectors) -> Vectors {
 }
 
 /// Both are the number nearest to the root, so they are one number. The compiler makes vectors of the first.
-#[inline]
+#[inline(always)]
 fn square_root(square: f64) -> f64 {
     #[cfg(feature = "std")]
     {
@@ -324,6 +386,7 @@ mod tests {
             lamps in prop::collection::vec(lamp(), 0..4),
             eye in vector(),
             answer in answer(),
+            kernel in prop::sample::select(Kernel::available().collect::<Vec<_>>()),
         ) {
             let lights = Lights { suns: &suns, lamps: &lamps, eye: eye.map(f64::from) };
             let mut points = [[0.0; LANES]; 6];
@@ -333,8 +396,8 @@ mod tests {
                     points[axis + 3][lane] = position[axis];
                 }
             }
-            let one = lights.front_of_one_channel(&answer, &points);
-            let three = lights.front_of_three_channels(&answer, &points);
+            let one = lights.front_of_one_channel(&answer, &points, kernel);
+            let three = lights.front_of_three_channels(&answer, &points, kernel);
             let mut unit_points = points;
             for (lane, (normal, _)) in ends.iter().enumerate() {
                 let unit = normals::unit((*normal).into()).unwrap_or(Vec3::ZERO).to_array();
@@ -343,8 +406,8 @@ mod tests {
             let mut turned = unit_points;
             turned[..3].iter_mut().flatten().for_each(|c| *c = -*c);
             let sides = [unit_points, turned].map(|points| {
-                let one = lights.unit_front_of_one_channel(&answer, &points);
-                (one, lights.unit_front_of_three_channels(&answer, &points))
+                let one = lights.unit_front_of_one_channel(&answer, &points, kernel);
+                (one, lights.unit_front_of_three_channels(&answer, &points, kernel))
             });
             for (lane, (normal, position)) in ends.into_iter().enumerate() {
                 let (normal, position) = (normals::unit(normal.into()).unwrap_or(Vec3::ZERO), Vec3::from(position));

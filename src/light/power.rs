@@ -37,7 +37,7 @@ impl Shininess {
     }
 
     /// The same of several.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of_lanes(self, bases: &Lanes<f64>) -> Lanes<f64> {
         let mut positive = [0.0; LANES];
         for (positive, base) in positive.iter_mut().zip(bases) {
@@ -51,7 +51,7 @@ impl Shininess {
         powers
     }
 
-    #[inline]
+    #[inline(always)]
     fn raise<const N: usize>(self, bases: [f64; N]) -> [f64; N] {
         let mut bits = match self {
             Self::Whole(exponent) => exponent,

@@ -32,7 +32,7 @@ use crate::fixed::U8F8;
 use crate::span::channels::{mix_cube, mix_nearest};
 use crate::span::depth::{copy_before, copy_nearer};
 use crate::span::hyperbolic::floor_quotient;
-use crate::span::lit::{LANES, Lanes, Points, interpolate, interpolate_at};
+use crate::span::lit::{LANES, Lanes, Points};
 use crate::span::texture::{Texels, fill_affine, fill_perspective};
 use crate::span::{Kernel, lookup};
 
@@ -297,21 +297,22 @@ impl LitPlane {
     }
 
     /// Hands points from pixel (`x`, `y`) on to `light`, with the pixels from there that they are of.
-    fn points(&self, x: i32, y: i32, pixels: usize, mut light: impl FnMut(Range<usize>, &Points)) {
+    fn points(&self, (x, y): (i32, i32), pixels: usize, kernel: Kernel, mut light: impl FnMut(Range<usize>, &Points)) {
         let (a, d) = Self::sum(&self.values, self.weights.at(x, y));
         let (da, dd) = &self.step;
         for first in (0..pixels).step_by(LANES) {
             // At most 64.
-            let points = interpolate(first as u16, &a, da, d, *dd);
+            let places = core::array::from_fn(|lane| (first + lane) as f64);
+            let points = kernel.interpolate_at(&places, &a, da, d, *dd);
             light(first..pixels.min(first + LANES), &points);
         }
     }
 
     /// The points at some pixels from pixel (`x`, `y`) on.
-    fn points_at(&self, x: i32, y: i32, places: &Lanes<f64>) -> Points {
+    fn points_at(&self, x: i32, y: i32, places: &Lanes<f64>, kernel: Kernel) -> Points {
         let (a, d) = Self::sum(&self.values, self.weights.at(x, y));
         let (da, dd) = &self.step;
-        interpolate_at(places, &a, da, d, *dd)
+        kernel.interpolate_at(places, &a, da, d, *dd)
     }
 }
 
@@ -339,13 +340,13 @@ impl Knots {
     }
 
     /// Lights them, eight at a time, and hands the eight on with the number of the first.
-    fn light(&self, plane: &LitPlane, (x, y): (i32, i32), mut light: impl FnMut(usize, &Points)) {
+    fn light(&self, plane: &LitPlane, (x, y): (i32, i32), kernel: Kernel, mut light: impl FnMut(usize, &Points)) {
         for (first, eight) in self.places[..self.count].chunks(LANES).enumerate() {
             let mut places = [0.0; LANES];
             for (to, place) in places.iter_mut().zip(eight) {
                 *to = f64::from(*place);
             }
-            light(first * LANES, &plane.points_at(x, y, &places));
+            light(first * LANES, &plane.points_at(x, y, &places, kernel));
         }
     }
 
@@ -545,17 +546,17 @@ impl<'a> EffectPaint<'a> {
             }
             Planes::Lit(plane) => {
                 if self.look.channels().is_some() {
-                    let channels = self.lit_channels(plane, row, seed, length);
+                    let channels = self.lit_channels(plane, (row, seed), length, kernel);
                     return self.mix(row, seed, channels, thresholds, piece);
                 }
                 match self.look.source {
-                    Source::Lit(lighting) => plane.points(seed, row.y, length, |pixels, points| {
+                    Source::Lit(lighting) => plane.points((seed, row.y), length, kernel, |pixels, points| {
                         let column = column + pixels.start;
                         to_bytes(&lighting.shades(points), thresholds, column, &mut piece[pixels]);
                     }),
                     Source::LitEvery(apart, lighting) => {
                         let (knots, mut lit) = (Knots::new(row, seed, length, apart), [0; KNOTS]);
-                        knots.light(plane, (seed, row.y), |first, points| {
+                        knots.light(plane, (seed, row.y), kernel, |first, points| {
                             lit[first..first + LANES].copy_from_slice(&lighting.shades(points));
                         });
                         knots.fill(&lit, thresholds, column, piece);
@@ -574,17 +575,17 @@ impl<'a> EffectPaint<'a> {
     }
 
     /// Red, green and blue of a piece that is lit.
-    fn lit_channels(&self, plane: &LitPlane, row: &Row, seed: i32, length: usize) -> [Piece; 3] {
+    fn lit_channels(&self, plane: &LitPlane, (row, seed): (&Row, i32), length: usize, kernel: Kernel) -> [Piece; 3] {
         let mut channels = [[0; PIECE]; 3];
         match self.look.source {
-            Source::Lit(lighting) => plane.points(seed, row.y, length, |pixels, points| {
+            Source::Lit(lighting) => plane.points((seed, row.y), length, kernel, |pixels, points| {
                 for (shades, channel) in lighting.channels(points).iter().zip(&mut channels) {
                     to_bytes(shades, &HALVES[0], 0, &mut channel[pixels.clone()]);
                 }
             }),
             Source::LitEvery(apart, lighting) => {
                 let (knots, mut lit) = (Knots::new(row, seed, length, apart), [[0; KNOTS]; 3]);
-                knots.light(plane, (seed, row.y), |first, points| {
+                knots.light(plane, (seed, row.y), kernel, |first, points| {
                     for (lit, shades) in lit.iter_mut().zip(lighting.channels(points)) {
                         lit[first..first + LANES].copy_from_slice(&shades);
                     }

@@ -11,6 +11,7 @@ use crate::plan::{Effect, ObjectPlan, Plan, Why};
 use crate::raster::Drawn;
 use crate::raster::effects::{Look, Source, TextureLook, TextureMapping};
 use crate::scene::{Mapping, Rung, Scene, Shared};
+use crate::span::Kernel;
 use crate::span::dither::BAYER;
 use crate::span::texture::Texels;
 use crate::texture::Texture;
@@ -81,6 +82,7 @@ pub(super) struct Looks<'a> {
     pub(super) plan: &'a Plan,
     pub(super) states: &'a [ObjectState],
     pub(super) tables: &'a Tables,
+    pub(super) kernel: Kernel,
 }
 
 impl Looks<'_> {
@@ -109,7 +111,7 @@ impl Looks<'_> {
         else {
             return Drawn::default();
         };
-        let light = PixelLight { lights: state.lights(plan), paint };
+        let light = PixelLight { lights: state.lights(plan), paint, kernel: self.kernel };
         let dither = plan.is_on(Effect::Dither);
         let channels = plan.is_on(Effect::RgbChannels).then(|| self.tables.mix(dither));
         let texture = image(material, paint);

@@ -629,7 +629,8 @@ impl Renderer {
             let plan = &self.plan.objects[object];
             let mut drawn = Drawn::default();
             let mut decided = self.states[object].take_decided();
-            let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+            let looks =
+                Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
             if self.vertex_path == VertexPath::Integer {
                 let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
                 let mut plain = |vertices: &[Vertex; 3], shading| batched.triangle(vertices, shading);
@@ -668,7 +669,7 @@ impl Renderer {
         self.far_to_near.clear();
         self.far_to_near.reserve(self.transparent.capacity());
         far_to_near(self.transparent.iter().map(Kept::depth), &mut self.far_to_near);
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         for &(_, place) in &self.far_to_near {
             let face = &self.transparent[place];
             stats.raster += looks.with((face.object, face.surface, face.manner), |look| {
@@ -715,7 +716,8 @@ impl Renderer {
                 self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+                let looks =
+                    Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
                 let mut sink = Gathered {
                     triangles: &mut triangles,
                     places: &mut places,
@@ -741,7 +743,7 @@ impl Renderer {
 
     /// Far to near, each over what is there.
     fn painter(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         self.far_to_near.clear();
         self.far_to_near.reserve(self.triangles.capacity());
         far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
@@ -764,7 +766,7 @@ impl Renderer {
 
     /// All at once, each pixel once.
     fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         self.lists.reserve(self.triangles.capacity());
         let scratch = self.lists.scratch(self.triangles.len());
         let (places, kept) = (&self.kept_places, &self.kept);

@@ -252,12 +252,10 @@ impl ObjectState {
             stats.lit += count as u64;
             if channels {
                 self.lit.leave_without_light();
-                vertex::light_channels(&geometry, &self.paints, &lights, both, &mut self.extras);
+                vertex::light_channels(&geometry, &self.paints, &lights, (both, kernel), &mut self.extras);
             } else if full {
-                vertex::light_all(&geometry, &self.paints, &lights, both, &mut self.lit);
+                vertex::light_all(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit);
             } else {
-                // Of a closed body nobody sees the back; but a budget may look at it.
-                let both = !plan.is_on(Effect::BackFaceCulling) || plan.max_error().is_some();
                 vertex::light_suns(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit);
             }
         } else {
@@ -288,6 +286,7 @@ impl ObjectState {
                 lights: &lights,
                 paints: &self.paints,
                 channels,
+                kernel,
             };
             if changed {
                 self.budget.renew(max_error, &lit, &mut self.decided);

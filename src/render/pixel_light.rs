@@ -4,6 +4,7 @@ use super::paint::Paint;
 use crate::light::Lights;
 use crate::palette::Table;
 use crate::raster::effects::Lighting;
+use crate::span::Kernel;
 use crate::span::lit::{LANES, Lanes, Points};
 
 /// One surface of an object, lit pixel by pixel in the object's own space.
@@ -13,18 +14,19 @@ use crate::span::lit::{LANES, Lanes, Points};
 pub(super) struct PixelLight<'a> {
     pub(super) lights: Lights<'a>,
     pub(super) paint: &'a Paint,
+    pub(super) kernel: Kernel,
 }
 
 impl Lighting for PixelLight<'_> {
     #[inline(never)]
     fn shades(&self, points: &Points) -> Lanes<u16> {
-        let intensities = self.lights.front_of_one_channel(&self.paint.answer, points);
+        let intensities = self.lights.front_of_one_channel(&self.paint.answer, points, self.kernel);
         intensities.map(|intensity| self.paint.shade(intensity).to_bits())
     }
 
     #[inline(never)]
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
-        let [red, green, blue] = self.lights.front_of_three_channels(&self.paint.answer, points);
+        let [red, green, blue] = self.lights.front_of_three_channels(&self.paint.answer, points, self.kernel);
         let mut channels = [[0; LANES]; 3];
         for lane in 0..LANES {
             let shades = Paint::channels([red[lane], green[lane], blue[lane]]);
@@ -53,7 +55,7 @@ pub(super) fn fill_normal_table(table: &mut Table, lights: &Lights<'_>, paint: &
             let y = at(row);
             let z = x.map(|x| libm::sqrtf((1.0 - x * x - y * y).max(0.0)));
             let points = [x, [y; LANES], z, [0.0; LANES], [0.0; LANES], [0.0; LANES]];
-            let intensities = lights.front_of_one_channel(&paint.answer, &points);
+            let intensities = lights.front_of_one_channel(&paint.answer, &points, Kernel::PORTABLE);
             eight = intensities.map(|intensity| paint.shade(intensity).nearest());
         }
         eight[lane]

@@ -149,7 +149,7 @@ impl Renderer {
         let hidden_surfaces = self.plan.hidden_surfaces();
         decide_fates(&mut met, hidden_surfaces, self.plan.is_chosen());
         let mut byte = scene.background;
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         // The one that hides what is behind it comes first, and those that shine through follow far to near.
         let seen = met.iter_mut().filter(|met| met.fate == Fate::Seen).count();
         debug_assert!(seen <= 1);
@@ -171,7 +171,7 @@ impl Renderer {
     fn meet(&mut self, scene: &Scene, stats: &mut Stats, pixel: &mut OnePixel) -> Vec<Met> {
         let exact = self.plan.hidden_surfaces() == HiddenSurfaces::ScanLine;
         let mut integer = mem::take(&mut self.integer);
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables };
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         let mut met = Vec::new();
         for &object in &self.plan.order {
             let mut sink = Meeting { pixel: &mut *pixel, looks, object, exact, met: &mut met };

@@ -1,5 +1,7 @@
 //! What light needs at every pixel: normal and position, perspective-correct. A pass that writes no pixel.
 
+use super::Kernel;
+
 /// Pixels that are lit at a time: two to eight vectors of a processor, and no more than short spans have.
 pub const LANES: usize = 8;
 
@@ -38,6 +40,11 @@ pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> 
 #[inline]
 #[must_use]
 pub fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+    interpolate_inlined(places, a, da, d, dd)
+}
+
+#[inline(always)]
+fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
     let mut reciprocals = [0.0; LANES];
     for (place, reciprocal) in places.iter().zip(&mut reciprocals) {
         *reciprocal = 1.0 / (d + *place * dd);
@@ -49,4 +56,33 @@ pub fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, 
         }
     }
     points
+}
+
+impl Kernel {
+    /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
+    #[inline]
+    #[must_use]
+    pub fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if self.has_avx2() {
+            return x86::interpolate_at(places, a, da, d, dd);
+        }
+        interpolate_at(places, a, da, d, dd)
+    }
+}
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
+mod x86 {
+    use super::{Lanes, Points, interpolate_inlined};
+
+    /// Only with a kernel for which `Kernel::has_avx2` is true.
+    pub(super) fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+        #[target_feature(enable = "avx2")]
+        fn avx2(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+            interpolate_inlined(places, a, da, d, dd)
+        }
+        // SAFETY: such a kernel is given out only where AVX2 was found.
+        unsafe { avx2(places, a, da, d, dd) }
+    }
 }

@@ -55,6 +55,7 @@ use super::vertex::Geometry;
 use crate::light::{Answer, Beam, LampBeam, Lights};
 use crate::mesh::Mesh;
 use crate::scene::Shared;
+use crate::span::Kernel;
 use crate::view::ObjectView;
 
 /// What rounding adds to a linear shade that starts anew every 64 pixels: a half, and a quarter of drift.
@@ -81,6 +82,7 @@ pub(super) struct Lit<'a> {
     pub(super) lights: &'a Lights<'a>,
     pub(super) paints: &'a [Paint],
     pub(super) channels: bool,
+    pub(super) kernel: Kernel,
 }
 
 /// What is kept for an object's decisions.
@@ -91,6 +93,8 @@ pub(super) struct Budget {
     facets: Vec<Facet>,
     /// One for each surface.
     strengths: Vec<Strength>,
+    /// Of the frame that is drawn.
+    kernel: Option<Kernel>,
     allowed: f32,
     longest_edge: f32,
     most_shortening: f32,
@@ -128,7 +132,8 @@ impl Budget {
     /// Takes on an object, or the same as it is now.
     #[inline(never)]
     pub(super) fn renew(&mut self, allowed: f32, object: &Lit<'_>, decided: &mut Vec<Decided>) {
-        let Lit { geometry, whole, view, nearest, lights, paints, channels } = *object;
+        let Lit { geometry, whole, view, nearest, lights, paints, channels, kernel } = *object;
+        self.kernel = Some(kernel);
         let mut same = self.allowed == allowed && self.in_color == channels;
         (self.allowed, self.in_color) = (allowed, channels);
         same &= self.suns == lights.suns && self.known_lamps == lights.lamps;
@@ -297,8 +302,8 @@ impl Budget {
 
     /// The suns that a vertex sees, a bit for each.
     #[inline]
-    fn suns_seen(&self, lit: &LitVertex) -> u8 {
-        if self.by_shades() { u8::from(lit.vertex.shade() > lit.back) } else { lit.suns_seen }
+    fn suns_seen(&self, lit: &LitVertex, strength: &Strength) -> u8 {
+        if self.by_shades() { u8::from(lit.vertex.shade().to_bits() != strength.dark) } else { lit.suns_seen }
     }
 
     /// Bytes that it holds.

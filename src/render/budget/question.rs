@@ -10,6 +10,7 @@ use crate::raster::clip::doubled_area;
 use crate::raster::effects::Apart;
 use crate::render::face::Faces;
 use crate::render::lit::LitVertices;
+use crate::span::Kernel;
 use crate::span::lit::LANES;
 
 /// Pixels from which on it pays to light a face at some points before it is lit at all of them.
@@ -66,15 +67,15 @@ impl Budget {
         if !self.simple {
             return Choice::Unknown;
         }
+        let strength = &self.strengths[usize::from(surface)];
         let corners = indices.map(|i| i as usize);
         let shades = corners.map(|i| lit.shades[i]);
         let [a, b, c] = if self.by_shades() {
-            shades.map(|[front, back]| u8::from(front > back))
+            shades.map(|[front, _]| u8::from(front.to_bits() != strength.dark))
         } else {
             corners.map(|i| lit.suns_seen[i])
         };
         let mixed = a != b || b != c;
-        let strength = &self.strengths[usize::from(surface)];
         let [a, b, c] = shades.map(|sides| sides[usize::from(turned)].to_bits());
         let most = a.max(b).max(c);
         if most >= strength.last {
@@ -156,7 +157,7 @@ impl Faces<'_> {
         let spare = budget.allowed - EXACT;
         // What the body alone is off by, at least as it is known, whatever the light.
         let hopeless = (top - strength.highlights) * facet.shortening > spare;
-        let seen = question.indices.map(|i| budget.suns_seen(&self.lit.get(i as usize)));
+        let seen = question.indices.map(|i| budget.suns_seen(&self.lit.get(i as usize), strength));
         let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
         let near = model <= spare;
@@ -318,6 +319,7 @@ impl Faces<'_> {
             corners.map(|i| if question.turned { -self.geometry.normals[i] } else { self.geometry.normals[i] });
         let positions = corners.map(|i| self.geometry.positions[i]);
         let answer = &self.paints[usize::from(question.surface)].answer;
+        let kernel = budget.kernel.unwrap_or(Kernel::PORTABLE);
         // The corners are among the points.
         let mut intensities = [[0.0_f32; 3]; SAMPLES.len()];
         for (weights, intensities) in SAMPLES.chunks_exact(LANES).zip(intensities.chunks_exact_mut(LANES)) {
@@ -331,12 +333,12 @@ impl Faces<'_> {
             // Shown, they are clamped.
             let shown = |intensity: f64| intensity.clamp(0.0, 1.0) as f32;
             if self.channels {
-                let channels = self.lights.front_of_three_channels(answer, &points);
+                let channels = self.lights.front_of_three_channels(answer, &points, kernel);
                 for (lane, of) in intensities.iter_mut().enumerate() {
                     *of = channels.each_ref().map(|channel| shown(channel[lane]));
                 }
             } else {
-                let all = self.lights.front_of_one_channel(answer, &points);
+                let all = self.lights.front_of_one_channel(answer, &points, kernel);
                 for (of, intensity) in intensities.iter_mut().zip(all) {
                     *of = [shown(intensity); 3];
                 }

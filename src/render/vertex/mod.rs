@@ -129,18 +129,18 @@ pub(super) fn light_all(
     geometry: &Geometry<'_>,
     paints: &[Paint],
     lights: &Lights<'_>,
-    both: bool,
+    (both, kernel): (bool, Kernel),
     lit: &mut LitVertices,
 ) {
     each_eight(geometry, |vertices, surface, points| {
         let paint = &paints[surface];
         let lit = &mut lit.shades[vertices];
-        let fronts = lights.unit_front_of_one_channel(&paint.answer, points);
+        let fronts = lights.unit_front_of_one_channel(&paint.answer, points, kernel);
         for ([shade, _], front) in lit.iter_mut().zip(fronts) {
             *shade = paint.shade(front);
         }
         if both {
-            let backs = lights.unit_front_of_one_channel(&paint.answer, &from_behind(points));
+            let backs = lights.unit_front_of_one_channel(&paint.answer, &from_behind(points), kernel);
             for ([_, shade], back) in lit.iter_mut().zip(backs) {
                 *shade = paint.shade(back);
             }
@@ -154,18 +154,18 @@ pub(super) fn light_channels(
     geometry: &Geometry<'_>,
     paints: &[Paint],
     lights: &Lights<'_>,
-    both: bool,
+    (both, kernel): (bool, Kernel),
     extras: &mut [Extra],
 ) {
     each_eight(geometry, |vertices, surface, points| {
         let paint = &paints[surface];
         let extras = &mut extras[vertices];
-        let [red, green, blue] = lights.unit_front_of_three_channels(&paint.answer, points);
+        let [red, green, blue] = lights.unit_front_of_three_channels(&paint.answer, points, kernel);
         for (lane, extra) in extras.iter_mut().enumerate() {
             extra.front.channels = Paint::channels([red[lane], green[lane], blue[lane]]);
         }
         if both {
-            let [red, green, blue] = lights.unit_front_of_three_channels(&paint.answer, &from_behind(points));
+            let [red, green, blue] = lights.unit_front_of_three_channels(&paint.answer, &from_behind(points), kernel);
             for (lane, extra) in extras.iter_mut().enumerate() {
                 extra.back_channels = Paint::channels([red[lane], green[lane], blue[lane]]);
             }
