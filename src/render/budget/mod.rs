@@ -265,18 +265,22 @@ impl Budget {
     pub(super) fn mark(&mut self, object: &Lit<'_>, lit: &mut LitVertices) {
         let Lit { geometry, lights, .. } = *object;
         // How far linear shades are off at most, but where some corners see a sun and others not, or some are clamped.
-        let keeps_within = |of: &Strength, more: f32| {
+        let keeps_within = |of: &Strength, model: f32| {
             let top = f32::from(of.last - of.first) * of.scale;
             let range = (of.body * self.most_spread).min(top);
-            top * self.most_shortening + range * self.bend + more + LINEAR <= self.allowed
+            model + range * self.bend + LINEAR <= self.allowed
         };
-        self.linear_unless_mixed = self.simple && self.strengths.iter().all(|of| keeps_within(of, 0.0));
-        // And there too; see `decide_at_once`.
+        self.linear_unless_mixed = self.simple
+            && self.strengths.iter().all(|of| {
+                let top = f32::from(of.last - of.first) * of.scale;
+                keeps_within(of, top * self.most_shortening)
+            });
+        // And there too (see `decide_at_once`), where no corner lies farther in the light than normals differ.
         self.linear_throughout = self.linear_unless_mixed
             && self.strengths.iter().all(|of| {
                 let brightest = f32::from(of.dark - of.first) * of.scale + of.body;
                 let is_clamped = brightest >= f32::from(of.last - of.first) * of.scale;
-                !is_clamped && keeps_within(of, of.body * self.most_spread / 4.0)
+                !is_clamped && keeps_within(of, of.body * self.most_spread * (0.25 + self.most_shortening))
             });
         if !self.by_shades() && !self.linear_throughout {
             lit.suns_seen.resize(geometry.normals.len(), 0);
