@@ -9,6 +9,7 @@
 //! | `face` | the stage of faces, with `clip`: near plane and guard band |
 //! | `bound` | how far linear shades may be from light at every pixel |
 //! | `budget` | the error budget: which rung for which triangle |
+//! | `sinks`, `visible` | what becomes of faces: drawn as they come, or kept; the ways to visible surfaces |
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `stats` | what a frame came to |
@@ -24,6 +25,7 @@ mod bound;
 mod budget;
 mod clip;
 mod edge_map;
+mod error;
 mod face;
 mod integer;
 mod lit;
@@ -33,29 +35,27 @@ pub(crate) mod one_pixel;
 mod paint;
 mod pixel_light;
 mod sift;
+mod sinks;
 mod stats;
 mod tables;
 mod tessellate;
 pub(crate) mod trace;
 mod vertex;
 mod vertex_path;
+mod visible;
 
 use alloc::format;
 use alloc::vec::Vec;
-use core::fmt;
 use core::mem;
 
-use self::face::{Manner, Sink};
 use self::integer::IntegerPath;
-use self::look::Looks;
 use self::object::ObjectState;
-use self::sift::Sieve;
+use self::sinks::{Bare, Kept};
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
-use crate::plan::{self, Effect, Forced, Inputs, ObjectPlan, Plan, Since, decide, far_to_near};
-use crate::raster::effects::Attributes;
+use crate::plan::{self, Effect, Forced, Inputs, Plan, Since, decide};
 use crate::raster::scan_line::Lists;
-use crate::raster::{Batch, Drawn, Frame, Raster, Shading, Vertex};
+use crate::raster::{Frame, Shading, Vertex};
 pub use crate::scene::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung};
 use crate::scene::{Scene, Wishes};
 use crate::span::Kernel;
@@ -63,77 +63,12 @@ use crate::vga::Vga;
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use automatic::{AutomaticPalette, Seen, automatic, seen};
+pub use error::RenderError;
+use error::check;
 pub use one_pixel::ShadedBy;
 pub use stats::{Shares, Stats};
 pub use trace::Fate;
 pub use vertex_path::{UnknownVertexPath, VertexPath};
-
-/// Why a scene could not be drawn.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub enum RenderError {
-    /// The camera.
-    Camera(&'static str),
-    /// An object, by its place in the scene.
-    Object {
-        /// Its place, from 0.
-        index: usize,
-        /// What is wrong.
-        what: &'static str,
-    },
-    /// A light, by its place in the scene.
-    Light {
-        /// Its place, from 0.
-        index: usize,
-        /// What is wrong.
-        what: &'static str,
-    },
-    /// The scene's ambient light is not finite.
-    Ambient,
-    /// The fog.
-    Fog(&'static str),
-    /// The palette's animation.
-    PaletteAnimation(&'static str),
-    /// What is asked for.
-    Wishes(&'static str),
-}
-
-impl fmt::Display for RenderError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Camera(what) => write!(f, "camera: {what}"),
-            Self::Object { index, what } => write!(f, "object {index}: {what}"),
-            Self::Light { index, what } => write!(f, "light {index}: {what}"),
-            Self::Ambient => f.write_str("the ambient light must be finite"),
-            Self::Fog(what) => write!(f, "fog: {what}"),
-            Self::PaletteAnimation(what) => write!(f, "palette animation: {what}"),
-            Self::Wishes(what) => write!(f, "wishes: {what}"),
-        }
-    }
-}
-
-impl core::error::Error for RenderError {}
-
-/// A face with effects that is drawn when all are known.
-#[derive(Clone, Copy, Debug)]
-struct Kept {
-    vertices: [Vertex; 3],
-    attributes: [Attributes; 3],
-    object: usize,
-    surface: u16,
-    manner: Manner,
-}
-
-impl Kept {
-    fn depth(&self) -> u64 {
-        depth_of(&self.vertices)
-    }
-}
-
-/// The sum of a face's depths.
-fn depth_of(vertices: &[Vertex; 3]) -> u64 {
-    vertices.iter().map(|v| u64::from(v.depth())).sum()
-}
 
 /// What the frame that was drawn last depends on, beside its objects.
 #[derive(Clone, PartialEq, Debug)]
@@ -593,204 +528,6 @@ impl Renderer {
         rung
     }
 
-    fn fill(&mut self, scene: &Scene, stats: &mut Stats, mut frame: Frame<'_>) {
-        frame.clear(scene.background);
-        let mut raster = Raster::new(frame).with_kernel(self.kernel);
-        let mut depths = mem::take(&mut self.depths);
-        match self.plan.hidden_surfaces() {
-            HiddenSurfaces::BackFaces => self.one_by_one(scene, stats, raster),
-            // Chosen, the objects lie far to near, and in a convex one no face hides another.
-            HiddenSurfaces::PainterOrder if self.plan.is_chosen() => self.one_by_one(scene, stats, raster),
-            HiddenSurfaces::DepthBuffer => self.one_by_one(scene, stats, raster.with_cleared_depth(&mut depths)),
-            HiddenSurfaces::PainterOrder => {
-                self.gather(scene, stats);
-                self.painter(scene, stats, &mut raster);
-                self.draw_transparent(scene, stats, &mut raster);
-            }
-            HiddenSurfaces::ScanLine => {
-                self.gather(scene, stats);
-                self.scan_line(scene, stats, &mut raster);
-                self.draw_transparent(scene, stats, &mut raster);
-            }
-        }
-        self.depths = depths;
-        // Those of the 16.16 path are not counted one by one.
-        stats.shares.complete(stats.rung, stats.drawn);
-    }
-
-    /// Draws each face as it comes, then those that shine through.
-    fn one_by_one(&mut self, scene: &Scene, stats: &mut Stats, mut raster: Raster<'_>) {
-        let mut transparent = mem::take(&mut self.transparent);
-        transparent.clear();
-        transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
-        let mut integer = mem::take(&mut self.integer);
-        let mut batch = Batch::new();
-        for &object in &self.plan.order {
-            let plan = &self.plan.objects[object];
-            let mut drawn = Drawn::default();
-            let mut decided = self.states[object].take_decided();
-            let looks =
-                Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
-            if self.vertex_path == VertexPath::Integer {
-                let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
-                let mut plain = |vertices: &[Vertex; 3], shading| batched.triangle(vertices, shading);
-                integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
-                batched.draw();
-            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], plan) {
-                let (raster, batch, drawn) = (&mut raster, &mut batch, &mut drawn);
-                let (looks, transparent) = (&looks, &mut transparent);
-                if plan.is_on(Effect::ScreenClipping) {
-                    let batched = Batched::<true> { raster, batch, drawn };
-                    let mut sink = Direct { batched, looks, object, transparent };
-                    faces.draw(&mut decided, stats, &mut sink);
-                    sink.batched.draw();
-                } else {
-                    let batched = Batched::<false> { raster, batch, drawn };
-                    let mut sink = Direct { batched, looks, object, transparent };
-                    faces.draw(&mut decided, stats, &mut sink);
-                    sink.batched.draw();
-                }
-            }
-            self.states[object].put_decided(decided);
-            stats.raster += drawn;
-        }
-        self.integer = integer;
-        self.transparent = transparent;
-        if self.plan.is_on_anywhere(Effect::Transparency) {
-            self.draw_transparent(scene, stats, &mut raster);
-        }
-    }
-
-    /// Faces that shine through, far to near, over all others.
-    fn draw_transparent(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        if self.transparent.is_empty() {
-            return;
-        }
-        self.far_to_near.clear();
-        self.far_to_near.reserve(self.transparent.capacity());
-        far_to_near(self.transparent.iter().map(Kept::depth), &mut self.far_to_near);
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
-        for &(_, place) in &self.far_to_near {
-            let face = &self.transparent[place];
-            stats.raster += looks.with((face.object, face.surface, face.manner), |look| {
-                raster.triangle_with_effects(&face.vertices, &face.attributes, look)
-            });
-        }
-        self.transparent.clear();
-    }
-
-    /// Hands every face to `sink`.
-    fn faces(&mut self, scene: &Scene, stats: &mut Stats, sink: &mut Bare<impl FnMut(&[Vertex; 3], Shading)>) {
-        for &object in &self.plan.order {
-            let mut decided = self.states[object].take_decided();
-            if self.vertex_path == VertexPath::Integer {
-                self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut sink.0);
-            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
-            {
-                faces.draw(&mut decided, stats, sink);
-            }
-            self.states[object].put_decided(decided);
-        }
-    }
-
-    /// Keeps every face for when all are known.
-    fn gather(&mut self, scene: &Scene, stats: &mut Stats) {
-        let mut triangles = mem::take(&mut self.triangles);
-        let (mut places, mut kept) = (mem::take(&mut self.kept_places), mem::take(&mut self.kept));
-        let mut transparent = mem::take(&mut self.transparent);
-        triangles.clear();
-        places.clear();
-        kept.clear();
-        transparent.clear();
-        triangles.reserve(self.most_faces(scene, |_, _| true));
-        places.reserve(triangles.capacity());
-        kept.reserve(self.most_faces(scene, |_, state| state.may_have_effects()));
-        transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
-        for &object in &self.plan.order {
-            let mut decided = self.states[object].take_decided();
-            if self.vertex_path == VertexPath::Integer {
-                let mut plain = |vertices: &[Vertex; 3], shading| {
-                    triangles.push((*vertices, shading));
-                    places.push(None);
-                };
-                self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
-            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
-            {
-                let looks =
-                    Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
-                let mut sink = Gathered {
-                    triangles: &mut triangles,
-                    places: &mut places,
-                    kept: &mut kept,
-                    transparent: &mut transparent,
-                    looks: &looks,
-                    object,
-                };
-                faces.draw(&mut decided, stats, &mut sink);
-            }
-            self.states[object].put_decided(decided);
-        }
-        (self.triangles, self.kept_places, self.kept, self.transparent) = (triangles, places, kept, transparent);
-    }
-
-    /// Faces of the objects of which `counts` holds, whether they are seen in this frame or in one to come: room for
-    /// so many is enough until a plane cuts some in parts.
-    fn most_faces(&self, scene: &Scene, counts: impl Fn(&ObjectPlan, &ObjectState) -> bool) -> usize {
-        let objects = scene.objects().iter().zip(&self.states).zip(self.plan.objects());
-        let counted = objects.filter(|((_, state), plan)| counts(plan, state));
-        counted.map(|((object, state), _)| state.most_faces(object)).sum()
-    }
-
-    /// Far to near, each over what is there.
-    fn painter(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
-        self.far_to_near.clear();
-        self.far_to_near.reserve(self.triangles.capacity());
-        far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
-        let mut batch = Batch::new();
-        let mut batched = Batched::<true> { raster, batch: &mut batch, drawn: &mut stats.raster };
-        for &(_, i) in &self.far_to_near {
-            let (vertices, shading) = &self.triangles[i];
-            let Some(place) = self.kept_places[i] else {
-                batched.triangle(vertices, *shading);
-                continue;
-            };
-            batched.draw();
-            let face = &self.kept[place as usize];
-            *batched.drawn += looks.with((face.object, face.surface, face.manner), |look| {
-                batched.raster.triangle_with_effects(vertices, &face.attributes, look)
-            });
-        }
-        batched.draw();
-    }
-
-    /// All at once, each pixel once.
-    fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
-        self.lists.reserve(self.triangles.capacity());
-        let scratch = self.lists.scratch(self.triangles.len());
-        let (places, kept) = (&self.kept_places, &self.kept);
-        // There is room for all.
-        stats.raster += raster
-            .scan_line_with(&self.triangles, scratch, |i, row, pixels, kernel, drawn| {
-                let Some(face) = places[i].and_then(|place| kept.get(place as usize)) else { return false };
-                looks.with((face.object, face.surface, face.manner), |look| {
-                    crate::raster::effects::paint_row(
-                        &face.vertices,
-                        &face.attributes,
-                        look,
-                        row,
-                        pixels,
-                        kernel,
-                        drawn,
-                    );
-                    Drawn::default()
-                });
-                true
-            })
-            .unwrap_or_default();
-    }
-
     /// Bytes that the renderer holds.
     fn bytes(&self) -> usize {
         self.views.capacity() * size_of::<ObjectView>()
@@ -808,142 +545,5 @@ impl Renderer {
 impl Default for Renderer {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-/// What is wrong with a scene, if anything.
-fn check(scene: &Scene) -> Result<(), RenderError> {
-    if !scene.ambient.is_finite() {
-        return Err(RenderError::Ambient);
-    }
-    for (index, light) in scene.lights().iter().enumerate() {
-        light.check().map_err(|what| RenderError::Light { index, what })?;
-    }
-    for (index, object) in scene.objects().iter().enumerate() {
-        object.check().map_err(|what| RenderError::Object { index, what })?;
-    }
-    if let Some(fog) = &scene.fog {
-        fog.check().map_err(RenderError::Fog)?;
-    }
-    if let Some(animation) = &scene.palette_animation {
-        animation.check().map_err(RenderError::PaletteAnimation)?;
-    }
-    scene.wishes.check().map_err(RenderError::Wishes)
-}
-
-/// Faces without what effects need.
-struct Bare<F>(F);
-
-impl<F: FnMut(&[Vertex; 3], Shading)> Sink for Bare<F> {
-    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        (self.0)(vertices, shading);
-    }
-
-    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: Manner) {
-        (self.0)(vertices, Shading::default());
-    }
-}
-
-/// Draws faces as they come; keeps those that shine through.
-struct Direct<'a, 'b, const CLIPS: bool> {
-    batched: Batched<'a, 'b, CLIPS>,
-    looks: &'a Looks<'a>,
-    object: usize,
-    transparent: &'a mut Vec<Kept>,
-}
-
-impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
-    fn sieve(&self) -> Option<Sieve> {
-        let raster = &self.batched.raster;
-        Some(Sieve { clip: raster.clip(), kernel: raster.kernel() })
-    }
-
-    #[inline]
-    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        self.batched.triangle(vertices, shading);
-    }
-
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner) {
-        if self.looks.is_transparent(self.object, surface) {
-            let (vertices, attributes) = (*vertices, *attributes);
-            self.transparent.push(Kept { vertices, attributes, object: self.object, surface, manner });
-            return;
-        }
-        // In the order in which they came: of equal depths the first stays.
-        self.batched.draw();
-        let Batched { raster, drawn, .. } = &mut self.batched;
-        **drawn += self.looks.with((self.object, surface, manner), |look| {
-            if CLIPS {
-                raster.triangle_with_effects(vertices, attributes, look)
-            } else {
-                raster.triangle_with_effects_inside(vertices, attributes, look)
-            }
-        });
-    }
-}
-
-/// Draws faces without effects, many at a time.
-struct Batched<'a, 'b, const CLIPS: bool> {
-    raster: &'a mut Raster<'b>,
-    batch: &'a mut Batch,
-    drawn: &'a mut Drawn,
-}
-
-impl<const CLIPS: bool> Batched<'_, '_, CLIPS> {
-    #[inline]
-    fn triangle(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        if !self.batch.push(vertices, shading) {
-            self.past_the_batch(vertices, shading);
-        }
-    }
-
-    /// A triangle that a full batch has no room for, or that is for no batch.
-    #[inline(never)]
-    fn past_the_batch(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        self.draw();
-        if !self.batch.push(vertices, shading) {
-            *self.drawn += if CLIPS {
-                self.raster.triangle(vertices, shading)
-            } else {
-                self.raster.triangle_inside(vertices, shading)
-            };
-        }
-    }
-
-    /// Draws those that are waiting.
-    fn draw(&mut self) {
-        if !self.batch.is_empty() {
-            *self.drawn += if CLIPS { self.raster.batch(self.batch) } else { self.raster.batch_inside(self.batch) };
-            self.batch.clear();
-        }
-    }
-}
-
-/// Keeps faces for when all are known.
-struct Gathered<'a> {
-    triangles: &'a mut Vec<([Vertex; 3], Shading)>,
-    places: &'a mut Vec<Option<u32>>,
-    kept: &'a mut Vec<Kept>,
-    transparent: &'a mut Vec<Kept>,
-    looks: &'a Looks<'a>,
-    object: usize,
-}
-
-impl Sink for Gathered<'_> {
-    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        self.triangles.push((*vertices, shading));
-        self.places.push(None);
-    }
-
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner) {
-        let face = Kept { vertices: *vertices, attributes: *attributes, object: self.object, surface, manner };
-        if self.looks.is_transparent(self.object, surface) {
-            self.transparent.push(face);
-            return;
-        }
-        self.triangles.push((*vertices, Shading::default()));
-        // Fewer than 2³² faces.
-        self.places.push(Some(self.kept.len() as u32));
-        self.kept.push(face);
     }
 }

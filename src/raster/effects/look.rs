@@ -1,0 +1,184 @@
+//! What is done to the pixels of a triangle: where shades come from, and the stages that they pass.
+
+use crate::fixed::U8F8;
+use crate::raster::shading::Shading;
+use crate::span::lit::{Lanes, Points};
+use crate::span::texture::Texels;
+
+/// The values of a corner beyond its position, shade and depth. What a look does not use may be
+/// anything.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Attributes {
+    /// Texture coordinates, across and down, in texels with 16 fraction bits.
+    pub texture: [i32; 2],
+    /// How thick the fog is, 0 to 0xFF00.
+    pub fog: U8F8,
+    /// Red, green and blue, each 0 to 0xFF00.
+    pub channels: [U8F8; 3],
+    /// The column and the row in the table of [`Source::NormalTable`], each 0 to 0xFF00.
+    pub slope: [U8F8; 2],
+    /// What [`Lighting`] is handed: a normal and a position.
+    pub lit: [f32; 6],
+}
+
+/// Light at every pixel.
+pub trait Lighting: core::fmt::Debug {
+    /// The shade at each point (normal and position, perspective-correct, the normal of any length), in
+    /// 8.8, 0 to 0xFF00. Points beyond the end of a row may be anything, and what is made of them is not used.
+    fn shades(&self, points: &Points) -> Lanes<u16>;
+
+    /// The same for red, green and blue.
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3];
+}
+
+/// Where a pixel's shade comes from.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum Source<'a> {
+    /// The corners' shades, or their channels, each for itself, as this shading has them. Of
+    /// [`GouraudPeriod`](Shading::GouraudPeriod) the shades alone: which pixels is decided by exact cover,
+    /// where the values of all stages are in range.
+    Shaded(Shading),
+    /// [`Attributes::slope`], linear on the screen, looked up: row and column give the shade.
+    NormalTable(&'a [u8; 65_536]),
+    /// [`Attributes::lit`], linear on the face, lit.
+    Lit(&'a dyn Lighting),
+    /// The same lit at the row's first pixel inside the frame, at some from there and at its last; shades are linear
+    /// between.
+    LitEvery(Apart, &'a dyn Lighting),
+}
+
+/// How far two pixels of a row that are lit lie apart.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Apart {
+    /// 4 pixels.
+    Four,
+    /// 8 pixels.
+    Eight,
+    /// 16 pixels.
+    Sixteen,
+}
+
+impl Apart {
+    /// All of them, the nearest first.
+    pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
+
+    /// In pixels.
+    #[must_use]
+    pub const fn pixels(self) -> usize {
+        match self {
+            Self::Four => 4,
+            Self::Eight => 8,
+            Self::Sixteen => 16,
+        }
+    }
+}
+
+/// How texture coordinates run along a row.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum TextureMapping {
+    /// Linear on the screen.
+    Affine,
+    /// Exact at every sixteenth pixel, linear between.
+    Every16,
+    /// Exact at every pixel.
+    Perspective,
+}
+
+/// What three channels are mixed to.
+#[derive(Clone, Copy, Debug)]
+pub enum Mix<'a> {
+    /// The 6 × 6 × 6 colours of [`palette::cube`](crate::palette::cube).
+    Cube,
+    /// The entry that a table of 32 × 32 × 32 names.
+    Nearest {
+        /// Indices by red, green and blue, five bits each.
+        map: &'a [u8; 32_768],
+        /// How far dither moves a channel, from end to end.
+        spread: u8,
+    },
+    /// Nothing: one channel's shades as they are, 0 red, 1 green, 2 blue, for those who measure them.
+    Only(usize),
+}
+
+/// An image on a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct TextureLook<'a> {
+    /// The image.
+    pub texels: Texels<'a>,
+    /// How its coordinates run.
+    pub mapping: TextureMapping,
+    /// The byte for a shade (row) and a texel (column); of channels, one table each.
+    pub tables: [&'a [u8; 65_536]; 3],
+}
+
+/// What is done to the pixels of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Look<'a> {
+    /// Where shades come from.
+    pub source: Source<'a>,
+    /// Red, green and blue instead of one shade, and what they are mixed to.
+    pub channels: Option<Mix<'a>>,
+    /// Thresholds of 8 × 8 pixels instead of the half that is else added to a shade.
+    pub dither: Option<&'a [[u8; 8]; 8]>,
+    /// An image.
+    pub texture: Option<TextureLook<'a>>,
+    /// The index for a level (row) and an index (column).
+    pub fog: Option<&'a [u8; 65_536]>,
+    /// The index for the triangle's own (row) and the frame's (column).
+    pub blend: Option<&'a [u8; 65_536]>,
+    /// Whether it hides what is drawn later behind it: whether the depth buffer keeps its depth.
+    pub keeps_depth: bool,
+}
+
+/// The stages. One that a build leaves out (`plan::Effect::is_left_out`) is not there, and the compiler knows.
+impl<'a> Look<'a> {
+    /// Whether its shades are linear and nothing is made of them but what fog and blending do.
+    #[inline]
+    pub(super) fn is_plain(&self) -> bool {
+        matches!(self.source, Source::Shaded(_))
+            && self.channels().is_none()
+            && self.dither().is_none()
+            && self.texture().is_none()
+    }
+
+    #[inline]
+    pub(super) fn channels(&self) -> Option<Mix<'a>> {
+        self.channels.filter(|_| !cfg!(mode13h_leave_out = "rgb-channels"))
+    }
+
+    #[inline]
+    pub(super) fn dither(&self) -> Option<&'a [[u8; 8]; 8]> {
+        self.dither.filter(|_| !cfg!(mode13h_leave_out = "dither"))
+    }
+
+    #[inline]
+    pub(super) fn texture(&self) -> Option<&TextureLook<'a>> {
+        self.texture
+            .as_ref()
+            .filter(|_| !cfg!(all(mode13h_leave_out = "texture", mode13h_leave_out = "environment-map")))
+    }
+
+    #[inline]
+    pub(super) fn fog(&self) -> Option<&'a [u8; 65_536]> {
+        self.fog.filter(|_| !cfg!(mode13h_leave_out = "fog"))
+    }
+
+    #[inline]
+    pub(super) fn blend(&self) -> Option<&'a [u8; 65_536]> {
+        self.blend.filter(|_| !cfg!(mode13h_leave_out = "transparency"))
+    }
+}
+
+impl Look<'_> {
+    /// Linear shades and nothing else.
+    pub const PLAIN: Self = Self {
+        source: Source::Shaded(Shading::GouraudReseeded),
+        channels: None,
+        dither: None,
+        texture: None,
+        fog: None,
+        blend: None,
+        keeps_depth: true,
+    };
+}

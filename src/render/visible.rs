@@ -1,0 +1,216 @@
+//! The ways to visible surfaces: the faces of a frame drawn as they come, far to near, or row by row.
+
+use core::mem;
+
+use super::look::Looks;
+use super::object::ObjectState;
+use super::sinks::{Bare, Batched, Direct, Gathered, Kept, depth_of};
+use super::{HiddenSurfaces, Renderer, Stats, VertexPath};
+use crate::plan::{Effect, ObjectPlan, far_to_near};
+use crate::raster::{Batch, Drawn, Frame, Raster, Shading, Vertex};
+use crate::scene::Scene;
+
+impl Renderer {
+    pub(super) fn fill(&mut self, scene: &Scene, stats: &mut Stats, mut frame: Frame<'_>) {
+        frame.clear(scene.background);
+        let mut raster = Raster::new(frame).with_kernel(self.kernel);
+        let mut depths = mem::take(&mut self.depths);
+        match self.plan.hidden_surfaces() {
+            HiddenSurfaces::BackFaces => self.one_by_one(scene, stats, raster),
+            // Chosen, the objects lie far to near, and in a convex one no face hides another.
+            HiddenSurfaces::PainterOrder if self.plan.is_chosen() => self.one_by_one(scene, stats, raster),
+            HiddenSurfaces::DepthBuffer => self.one_by_one(scene, stats, raster.with_cleared_depth(&mut depths)),
+            HiddenSurfaces::PainterOrder => {
+                self.gather(scene, stats);
+                self.painter(scene, stats, &mut raster);
+                self.draw_transparent(scene, stats, &mut raster);
+            }
+            HiddenSurfaces::ScanLine => {
+                self.gather(scene, stats);
+                self.scan_line(scene, stats, &mut raster);
+                self.draw_transparent(scene, stats, &mut raster);
+            }
+        }
+        self.depths = depths;
+        // Those of the 16.16 path are not counted one by one.
+        stats.shares.complete(stats.rung, stats.drawn);
+    }
+
+    /// Draws each face as it comes, then those that shine through.
+    fn one_by_one(&mut self, scene: &Scene, stats: &mut Stats, mut raster: Raster<'_>) {
+        let mut transparent = mem::take(&mut self.transparent);
+        transparent.clear();
+        transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
+        let mut integer = mem::take(&mut self.integer);
+        let mut batch = Batch::new();
+        for &object in &self.plan.order {
+            let plan = &self.plan.objects[object];
+            let mut drawn = Drawn::default();
+            let mut decided = self.states[object].take_decided();
+            let looks =
+                Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+            if self.vertex_path == VertexPath::Integer {
+                let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
+                let mut plain = |vertices: &[Vertex; 3], shading| batched.triangle(vertices, shading);
+                integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
+                batched.draw();
+            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], plan) {
+                let (raster, batch, drawn) = (&mut raster, &mut batch, &mut drawn);
+                let (looks, transparent) = (&looks, &mut transparent);
+                if plan.is_on(Effect::ScreenClipping) {
+                    let batched = Batched::<true> { raster, batch, drawn };
+                    let mut sink = Direct { batched, looks, object, transparent };
+                    faces.draw(&mut decided, stats, &mut sink);
+                    sink.batched.draw();
+                } else {
+                    let batched = Batched::<false> { raster, batch, drawn };
+                    let mut sink = Direct { batched, looks, object, transparent };
+                    faces.draw(&mut decided, stats, &mut sink);
+                    sink.batched.draw();
+                }
+            }
+            self.states[object].put_decided(decided);
+            stats.raster += drawn;
+        }
+        self.integer = integer;
+        self.transparent = transparent;
+        if self.plan.is_on_anywhere(Effect::Transparency) {
+            self.draw_transparent(scene, stats, &mut raster);
+        }
+    }
+
+    /// Faces that shine through, far to near, over all others.
+    fn draw_transparent(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
+        if self.transparent.is_empty() {
+            return;
+        }
+        self.far_to_near.clear();
+        self.far_to_near.reserve(self.transparent.capacity());
+        far_to_near(self.transparent.iter().map(Kept::depth), &mut self.far_to_near);
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        for &(_, place) in &self.far_to_near {
+            let face = &self.transparent[place];
+            stats.raster += looks.with((face.object, face.surface, face.manner), |look| {
+                raster.triangle_with_effects(&face.vertices, &face.attributes, look)
+            });
+        }
+        self.transparent.clear();
+    }
+
+    /// Hands every face to `sink`.
+    pub(super) fn faces(
+        &mut self,
+        scene: &Scene,
+        stats: &mut Stats,
+        sink: &mut Bare<impl FnMut(&[Vertex; 3], Shading)>,
+    ) {
+        for &object in &self.plan.order {
+            let mut decided = self.states[object].take_decided();
+            if self.vertex_path == VertexPath::Integer {
+                self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut sink.0);
+            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
+            {
+                faces.draw(&mut decided, stats, sink);
+            }
+            self.states[object].put_decided(decided);
+        }
+    }
+
+    /// Keeps every face for when all are known.
+    fn gather(&mut self, scene: &Scene, stats: &mut Stats) {
+        let mut triangles = mem::take(&mut self.triangles);
+        let (mut places, mut kept) = (mem::take(&mut self.kept_places), mem::take(&mut self.kept));
+        let mut transparent = mem::take(&mut self.transparent);
+        triangles.clear();
+        places.clear();
+        kept.clear();
+        transparent.clear();
+        triangles.reserve(self.most_faces(scene, |_, _| true));
+        places.reserve(triangles.capacity());
+        kept.reserve(self.most_faces(scene, |_, state| state.may_have_effects()));
+        transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
+        for &object in &self.plan.order {
+            let mut decided = self.states[object].take_decided();
+            if self.vertex_path == VertexPath::Integer {
+                let mut plain = |vertices: &[Vertex; 3], shading| {
+                    triangles.push((*vertices, shading));
+                    places.push(None);
+                };
+                self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
+            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
+            {
+                let looks =
+                    Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+                let mut sink = Gathered {
+                    triangles: &mut triangles,
+                    places: &mut places,
+                    kept: &mut kept,
+                    transparent: &mut transparent,
+                    looks: &looks,
+                    object,
+                };
+                faces.draw(&mut decided, stats, &mut sink);
+            }
+            self.states[object].put_decided(decided);
+        }
+        (self.triangles, self.kept_places, self.kept, self.transparent) = (triangles, places, kept, transparent);
+    }
+
+    /// Faces of the objects of which `counts` holds, whether they are seen in this frame or in one to come: room for
+    /// so many is enough until a plane cuts some in parts.
+    fn most_faces(&self, scene: &Scene, counts: impl Fn(&ObjectPlan, &ObjectState) -> bool) -> usize {
+        let objects = scene.objects().iter().zip(&self.states).zip(self.plan.objects());
+        let counted = objects.filter(|((_, state), plan)| counts(plan, state));
+        counted.map(|((object, state), _)| state.most_faces(object)).sum()
+    }
+
+    /// Far to near, each over what is there.
+    fn painter(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        self.far_to_near.clear();
+        self.far_to_near.reserve(self.triangles.capacity());
+        far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
+        let mut batch = Batch::new();
+        let mut batched = Batched::<true> { raster, batch: &mut batch, drawn: &mut stats.raster };
+        for &(_, i) in &self.far_to_near {
+            let (vertices, shading) = &self.triangles[i];
+            let Some(place) = self.kept_places[i] else {
+                batched.triangle(vertices, *shading);
+                continue;
+            };
+            batched.draw();
+            let face = &self.kept[place as usize];
+            *batched.drawn += looks.with((face.object, face.surface, face.manner), |look| {
+                batched.raster.triangle_with_effects(vertices, &face.attributes, look)
+            });
+        }
+        batched.draw();
+    }
+
+    /// All at once, each pixel once.
+    fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
+        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        self.lists.reserve(self.triangles.capacity());
+        let scratch = self.lists.scratch(self.triangles.len());
+        let (places, kept) = (&self.kept_places, &self.kept);
+        // There is room for all.
+        stats.raster += raster
+            .scan_line_with(&self.triangles, scratch, |i, row, pixels, kernel, drawn| {
+                let Some(face) = places[i].and_then(|place| kept.get(place as usize)) else { return false };
+                looks.with((face.object, face.surface, face.manner), |look| {
+                    crate::raster::effects::paint_row(
+                        &face.vertices,
+                        &face.attributes,
+                        look,
+                        row,
+                        pixels,
+                        kernel,
+                        drawn,
+                    );
+                    Drawn::default()
+                });
+                true
+            })
+            .unwrap_or_default();
+    }
+}
