@@ -33,7 +33,7 @@ pub(super) trait Sink {
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading);
     /// A face whose pixels pass through stages, the number of its surface, and what shades it.
     fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner);
-    /// What faces without effects may be left out by, if any: those that cover no pixel centre.
+    /// What faces may be left out by, if any: those that cover no pixel centre.
     fn sieve(&self) -> Option<Sieve> {
         None
     }
@@ -94,11 +94,13 @@ impl Faces<'_> {
     }
 
     /// Which of up to 64 faces are to be drawn, those that need clipping among them. A face that covers no pixel centre is
-    /// left out where it would draw nothing, though it counts as drawn.
+    /// left out where it would draw nothing (a shading with a cover of its own draws beside them), though it counts as
+    /// drawn.
     #[inline]
     fn sift<const CULLS: bool>(
         &self,
         sieve: Option<&Sieve>,
+        exact_cover: bool,
         triangles: &[[u32; 3]],
         stats: &mut Stats,
     ) -> (Sifted, u64) {
@@ -108,17 +110,16 @@ impl Faces<'_> {
         stats.drawn += drawn_here;
         stats.clipped += clipped;
         stats.culled += triangles.len() as u64 - drawn_here - clipped;
-        let covers = if sieve.is_some() { sifted.covers } else { !0 };
+        let covers = if sieve.is_some() && exact_cover { sifted.covers } else { !0 };
         (sifted, (drawn & covers) | sifted.clipped)
     }
 
     #[inline(never)]
     fn each<const CULLS: bool, const EFFECTS: bool>(&self, stats: &mut Stats, sink: &mut impl Sink) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
-        // Without effects, a shading with a cover of its own draws beside pixel centres.
-        let sieve = if self.rung.shading().has_exact_cover() { sink.sieve() } else { None };
+        let (sieve, exact_cover) = (sink.sieve(), self.rung.shading().has_exact_cover());
         for (triangles, surfaces) in triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST)) {
-            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), triangles, stats);
+            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), exact_cover, triangles, stats);
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
@@ -157,7 +158,7 @@ impl Faces<'_> {
         for (chunk, triangles) in triangles.chunks(sift::MOST).enumerate() {
             let first = chunk * sift::MOST;
             let (surfaces, decided) = (&triangle_surfaces[first..], &mut decided[first..]);
-            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), triangles, stats);
+            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), true, triangles, stats);
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;

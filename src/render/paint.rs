@@ -68,6 +68,12 @@ impl Paint {
         U8F8::from_eight_intensities(&intensities.map(|i| i as f32), self.ramp.first(), self.ramp.entries())
     }
 
+    /// One channel of eight.
+    #[inline(always)]
+    pub(super) fn channel_of_eight(intensities: &[f64; 8]) -> [U8F8; 8] {
+        U8F8::from_eight_intensities(&intensities.map(|i| i as f32), 0, Ramp::WHOLE.entries())
+    }
+
     /// The shade without any light but the ambient.
     pub(super) fn constant(&self) -> U8F8 {
         self.shade(self.answer.ambient)

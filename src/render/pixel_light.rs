@@ -1,6 +1,7 @@
 //! Light at every pixel: S1's Phong, and the table that stood in for it in 1994.
 
 use super::paint::Paint;
+use crate::fixed::U8F8;
 use crate::light::Lights;
 use crate::palette::Table;
 use crate::raster::effects::Lighting;
@@ -21,20 +22,13 @@ impl Lighting for PixelLight<'_> {
     #[inline(never)]
     fn shades(&self, points: &Points) -> Lanes<u16> {
         let intensities = self.lights.front_of_one_channel(&self.paint.answer, points, self.kernel);
-        intensities.map(|intensity| self.paint.shade(intensity).to_bits())
+        self.paint.shade_of_eight(&intensities).map(U8F8::to_bits)
     }
 
     #[inline(never)]
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
-        let [red, green, blue] = self.lights.front_of_three_channels(&self.paint.answer, points, self.kernel);
-        let mut channels = [[0; LANES]; 3];
-        for lane in 0..LANES {
-            let shades = Paint::channels([red[lane], green[lane], blue[lane]]);
-            for (channel, shade) in channels.iter_mut().zip(shades) {
-                channel[lane] = shade.to_bits();
-            }
-        }
-        channels
+        let channels = self.lights.front_of_three_channels(&self.paint.answer, points, self.kernel);
+        channels.map(|channel| Paint::channel_of_eight(&channel).map(U8F8::to_bits))
     }
 }
 

@@ -126,9 +126,14 @@ pub(super) struct Gathered<'a> {
     pub(super) transparent: &'a mut Vec<Kept>,
     pub(super) looks: &'a Looks<'a>,
     pub(super) object: usize,
+    pub(super) sieve: Sieve,
 }
 
 impl Sink for Gathered<'_> {
+    fn sieve(&self) -> Option<Sieve> {
+        Some(self.sieve)
+    }
+
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
         self.triangles.push((*vertices, shading));
         self.places.push(None);

@@ -4,6 +4,7 @@ use core::mem;
 
 use super::look::Looks;
 use super::object::ObjectState;
+use super::sift::Sieve;
 use super::sinks::{Bare, Batched, Direct, Gathered, Kept, depth_of};
 use super::{HiddenSurfaces, Renderer, Stats, VertexPath};
 use crate::plan::{Effect, ObjectPlan, far_to_near};
@@ -15,18 +16,19 @@ impl Renderer {
         frame.clear(scene.background);
         let mut raster = Raster::new(frame).with_kernel(self.kernel);
         let mut depths = mem::take(&mut self.depths);
+        let sieve = Sieve { clip: raster.clip(), kernel: self.kernel };
         match self.plan.hidden_surfaces() {
             HiddenSurfaces::BackFaces => self.one_by_one(scene, stats, raster),
             // Chosen, the objects lie far to near, and in a convex one no face hides another.
             HiddenSurfaces::PainterOrder if self.plan.is_chosen() => self.one_by_one(scene, stats, raster),
             HiddenSurfaces::DepthBuffer => self.one_by_one(scene, stats, raster.with_cleared_depth(&mut depths)),
             HiddenSurfaces::PainterOrder => {
-                self.gather(scene, stats);
+                self.gather(scene, stats, sieve);
                 self.painter(scene, stats, &mut raster);
                 self.draw_transparent(scene, stats, &mut raster);
             }
             HiddenSurfaces::ScanLine => {
-                self.gather(scene, stats);
+                self.gather(scene, stats, sieve);
                 self.scan_line(scene, stats, &mut raster);
                 self.draw_transparent(scene, stats, &mut raster);
             }
@@ -117,7 +119,7 @@ impl Renderer {
     }
 
     /// Keeps every face for when all are known.
-    fn gather(&mut self, scene: &Scene, stats: &mut Stats) {
+    fn gather(&mut self, scene: &Scene, stats: &mut Stats, sieve: Sieve) {
         let mut triangles = mem::take(&mut self.triangles);
         let (mut places, mut kept) = (mem::take(&mut self.kept_places), mem::take(&mut self.kept));
         let mut transparent = mem::take(&mut self.transparent);
@@ -148,6 +150,7 @@ impl Renderer {
                     transparent: &mut transparent,
                     looks: &looks,
                     object,
+                    sieve,
                 };
                 faces.draw(&mut decided, stats, &mut sink);
             }

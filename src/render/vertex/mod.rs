@@ -136,13 +136,13 @@ pub(super) fn light_all(
         let paint = &paints[surface];
         let lit = &mut lit.shades[vertices];
         let fronts = lights.unit_front_of_one_channel(&paint.answer, points, kernel);
-        for ([shade, _], front) in lit.iter_mut().zip(fronts) {
-            *shade = paint.shade(front);
+        for ([shade, _], front) in lit.iter_mut().zip(paint.shade_of_eight(&fronts)) {
+            *shade = front;
         }
         if both {
             let backs = lights.unit_front_of_one_channel(&paint.answer, &from_behind(points), kernel);
-            for ([_, shade], back) in lit.iter_mut().zip(backs) {
-                *shade = paint.shade(back);
+            for ([_, shade], back) in lit.iter_mut().zip(paint.shade_of_eight(&backs)) {
+                *shade = back;
             }
         }
     });
@@ -160,14 +160,16 @@ pub(super) fn light_channels(
     each_eight(geometry, |vertices, surface, points| {
         let paint = &paints[surface];
         let extras = &mut extras[vertices];
-        let [red, green, blue] = lights.unit_front_of_three_channels(&paint.answer, points, kernel);
+        let fronts = lights.unit_front_of_three_channels(&paint.answer, points, kernel);
+        let fronts = fronts.each_ref().map(Paint::channel_of_eight);
         for (lane, extra) in extras.iter_mut().enumerate() {
-            extra.front.channels = Paint::channels([red[lane], green[lane], blue[lane]]);
+            extra.front.channels = fronts.each_ref().map(|channel| channel[lane]);
         }
         if both {
-            let [red, green, blue] = lights.unit_front_of_three_channels(&paint.answer, &from_behind(points), kernel);
+            let backs = lights.unit_front_of_three_channels(&paint.answer, &from_behind(points), kernel);
+            let backs = backs.each_ref().map(Paint::channel_of_eight);
             for (lane, extra) in extras.iter_mut().enumerate() {
-                extra.back_channels = Paint::channels([red[lane], green[lane], blue[lane]]);
+                extra.back_channels = backs.each_ref().map(|channel| channel[lane]);
             }
         }
     });
