@@ -113,7 +113,17 @@ fn everything_is_measured_and_written() {
     options.iter().for_each(assert_time);
     options.iter().for_each(|row| assert_errors(&row["error_gouraud_unrounded"]));
     let aspects: BTreeSet<&str> = options.iter().filter_map(|row| row["aspect"].as_str()).collect();
-    assert!(aspects.iter().eq(["dither", "hidden surfaces", "kernel", "vertex path", "vertex rounding"].iter()));
+    assert!(
+        aspects.iter().eq([
+            "dither",
+            "hidden surfaces",
+            "kernel",
+            "rung, portable kernel",
+            "vertex path",
+            "vertex rounding"
+        ]
+        .iter())
+    );
     let option = |name: &str| options.iter().find(|row| row["name"] == name).expect("a choice");
     let rms = |name: &str, of: &str| number(&option(name)["error_gouraud_unrounded"][of]);
     assert!(rms("whole pixels", "rms") > rms("1/256 pixel", "rms"));

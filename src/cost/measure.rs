@@ -159,7 +159,7 @@ pub fn measure(
     let spent = |share: f64| Spent { clock: *clock, seconds: share * seconds, seed: *seed };
     let mut ways = Way::rungs_and_budgets(rungs);
     if *with_choices {
-        ways.extend(choices(frames, renderer)?);
+        ways.extend(choices(frames, renderer, rungs)?);
     }
     let court = Court { ways: &ways, base: renderer, frames, steps };
     let findings = court.judge(&|share| progress(Step::Errors, share))?;
@@ -193,9 +193,9 @@ pub fn measure(
 }
 
 /// The choices that this scene can be drawn by.
-fn choices(frames: &[Scene], base: &dyn Fn() -> Renderer) -> Result<Vec<Way<'static>>, CostError> {
+fn choices(frames: &[Scene], base: &dyn Fn() -> Renderer, rungs: &[Rung]) -> Result<Vec<Way<'static>>, CostError> {
     let mut ways = Vec::new();
-    for way in Way::choices() {
+    for way in Way::choices(rungs) {
         let mut renderer = way.apply(base());
         let mut drawable = true;
         for scene in frames {

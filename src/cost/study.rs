@@ -165,6 +165,8 @@ pub enum Aspect {
     Dither,
     /// The way to visible surfaces.
     HiddenSurfaces,
+    /// Each rung by the portable kernel.
+    PortableRung,
 }
 
 impl Aspect {
@@ -177,6 +179,7 @@ impl Aspect {
             Self::Kernel => "kernel",
             Self::Dither => "dither",
             Self::HiddenSurfaces => "hidden surfaces",
+            Self::PortableRung => "rung, portable kernel",
         }
     }
 }

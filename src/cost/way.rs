@@ -87,11 +87,12 @@ impl<'a> Way<'a> {
         self
     }
 
-    /// What else may be chosen, aspect by aspect, the default first; all with the default rung.
+    /// What else may be chosen, aspect by aspect, the default first; all with the default rung, and at the end each of
+    /// these rungs, and the reference first, by the portable kernel.
     ///
     /// Vertices are rounded to fewer bits after they have been to 8: what that takes is no gain of time that a machine
     /// with fewer bits would have, and no loss either.
-    pub(super) fn choices() -> Vec<Self> {
+    pub(super) fn choices(rungs: &[Rung]) -> Vec<Self> {
         let with_rung = |aspect, name: &dyn fmt::Display, set: Box<dyn Fn(&mut Renderer) + Sync>| {
             Self::new(Kind::Choice(aspect), name, move |renderer| {
                 renderer.set_rung(Rung::default());
@@ -116,6 +117,13 @@ impl<'a> Way<'a> {
         let called_for = core::iter::once((None, "as called for"));
         for (way, name) in called_for.chain(HiddenSurfaces::ALL.into_iter().map(|way| (Some(way), way.name()))) {
             ways.push(with_rung(Aspect::HiddenSurfaces, &name, Box::new(move |r| r.set_hidden_surfaces(way))));
+        }
+        let others = Rung::ALL.into_iter().filter(|rung| *rung != REFERENCE && rungs.contains(rung));
+        for rung in core::iter::once(REFERENCE).chain(others) {
+            ways.push(Self::new(Kind::Choice(Aspect::PortableRung), rung, move |renderer| {
+                renderer.set_rung(rung);
+                renderer.set_kernel(Kernel::PORTABLE);
+            }));
         }
         ways
     }
