@@ -145,7 +145,7 @@ mod tests {
     use crate::raster::depth::DepthPlane;
 
     fn depth() -> impl Strategy<Value = u32> {
-        let end = prop::sample::select(vec![0, 1, 1 << 30, u32::MAX - 1, u32::MAX]);
+        let end = prop::sample::select(&[0, 1, 1 << 30, u32::MAX - 1, u32::MAX][..]);
         let near = (1_u32 << 29)..(1 << 29) + 5_000;
         prop_oneof![3 => any::<u32>(), 6 => near, 2 => 1_u32..1 << 30, 1 => end]
     }
