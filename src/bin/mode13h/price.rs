@@ -71,10 +71,8 @@ impl<Make: Fn() -> Renderer> Meter<'_, Make> {
     /// as the plan has it, for otherwise it is switched on. Hidden surfaces and palette animation are those of all
     /// objects. `None` where it cannot be switched.
     ///
-    /// The frame as it is and the frame with the effect switched are drawn in turn; the price is the median of the
-    /// differences. If there were none, each difference would be above 0 or below by chance, n of them above 0 half
-    /// of the times with a standard deviation of √n/2. Where no more are above 0 than half of them and three times that,
-    /// the price is noise, and counts as 0; so does one below 0.
+    /// The frame as it is and the frame with the effect switched are drawn in turn; the price is what [`above_noise`]
+    /// makes of the differences.
     pub(crate) fn price(&self, object: usize, effect: Effect, on: bool) -> Result<Option<u64>, Failure> {
         let mut usual = Artist::new((self.renderer)());
         let mut switched = Artist::new((self.renderer)());
@@ -100,11 +98,7 @@ impl<Make: Fn() -> Renderer> Meter<'_, Make> {
         if switched.renderer.plan().is_on(object, effect) == on {
             return Ok(None);
         }
-        let count = differences.len() as f64;
-        let longer = differences.iter().filter(|difference| **difference > 0.0).count() as f64;
-        let is_noise = longer <= count / 2.0 + 3.0 * count.sqrt() / 2.0;
-        // More than half of them are above 0, so the median is; it is far below 2⁵³.
-        Ok(Some(if is_noise { 0 } else { median(differences).round() as u64 }))
+        Ok(Some(above_noise(differences)))
     }
 
     /// What `measure` gives for the two frames in turn, over and over, as long as there is time. The first four
@@ -123,6 +117,19 @@ impl<Make: Fn() -> Renderer> Meter<'_, Make> {
     }
 }
 
+/// The median of differences, in whole nanoseconds, if they are more than noise; else 0.
+///
+/// If two ways took the same time, each of n differences would be above 0 or below by chance, and half of them would be
+/// above, with a standard deviation of √n/2. Where no more are above 0 than half of them and three times that, the
+/// median is noise; so it is below 0.
+fn above_noise(differences: Vec<f64>) -> u64 {
+    let count = differences.len() as f64;
+    let above = differences.iter().filter(|difference| **difference > 0.0).count() as f64;
+    let is_noise = above <= count / 2.0 + 3.0 * count.sqrt() / 2.0;
+    // More than half of them are above 0, so the median is; it is far below 2⁵³.
+    if is_noise { 0 } else { median(differences).round() as u64 }
+}
+
 fn nanoseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e9
 }
@@ -131,4 +138,26 @@ fn nanoseconds(time: Duration) -> f64 {
 fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     numbers.get(numbers.len() / 2).copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_longer_by_chance_has_no_price() {
+        // 100 differences: half of them and three standard deviations of 5 are 65.
+        let differences = |above: usize| (0..100).map(|i| if i < above { 1_000.4 } else { -3.0 }).collect::<Vec<f64>>();
+        assert_eq!([0, 50, 65].map(|above| above_noise(differences(above))), [0, 0, 0]);
+        assert_eq!([66, 100].map(|above| above_noise(differences(above))), [1_000, 1_000]);
+        // A few that were disturbed change nothing.
+        let mut disturbed = differences(97);
+        disturbed[0] = 1e9;
+        disturbed[99] = -1e9;
+        assert_eq!(above_noise(disturbed), 1_000);
+        // Of 15, the fewest that are ever measured, 14 must be above.
+        let few = |above: usize| (0..15).map(|i| if i < above { 7.0 } else { -7.0 }).collect::<Vec<f64>>();
+        assert_eq!([13, 14].map(|above| above_noise(few(above))), [0, 7]);
+        assert_eq!(above_noise(Vec::new()), 0);
+    }
 }
