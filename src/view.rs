@@ -316,6 +316,17 @@ impl ObjectView {
         self.near
     }
 
+    /// How near a box comes at least, along the view: its corners with the least coordinates and with the greatest.
+    pub(crate) fn nearest(&self, min: Vec3, max: Vec3) -> f64 {
+        let ([.., row], [.., offset]) = &self.exact;
+        let (min, max) = (widen(min), widen(max));
+        let least: Row = core::array::from_fn(|i| (row[i] * min[i]).min(row[i] * max[i]));
+        let most: Row = core::array::from_fn(|i| (row[i] * min[i]).abs().max((row[i] * max[i]).abs()));
+        // As in `reach`.
+        let slack = (most.iter().sum::<f64>() + offset.abs()) / 4096.0;
+        least.iter().sum::<f64>() + offset - slack
+    }
+
     /// A vertex before its division. The same numbers whoever asks, so that triangles that share
     /// the vertex agree on where it is.
     #[inline]

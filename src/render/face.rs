@@ -5,7 +5,7 @@
 //! test for it.
 
 use super::Stats;
-use super::budget::{Budget, Choice, Decided, Question};
+use super::budget::{Budget, Choice, Decided, Linear, Question};
 use super::clip::{Carried, Corner, WithEffects, clip};
 use super::lit::{LitVertex, LitVertices};
 use super::paint::Paint;
@@ -14,6 +14,7 @@ use super::vertex::{Extra, Geometry};
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
+use crate::raster::clip::doubled_area;
 use crate::raster::effects::{Apart, Attributes};
 use crate::raster::{Shading, Vertex};
 use crate::scene::Rung;
@@ -38,6 +39,35 @@ pub(super) trait Sink {
         None
     }
 }
+
+/// Whether it is in vain to decide on the faces of a cluster one by one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Vain {
+    asked: u32,
+    /// Of those.
+    lit: u32,
+}
+
+impl Vain {
+    fn is_it(self) -> bool {
+        self.asked == ASKED && self.lit == ASKED
+    }
+
+    fn asked(&mut self, choice: Choice) -> Choice {
+        if self.asked < ASKED {
+            self.asked += 1;
+            self.lit += u32::from(choice == Choice::Phong);
+        }
+        choice
+    }
+}
+
+/// So many faces of a cluster are decided on first. Where every one of them has to be lit at each pixel, so are the others
+/// that are small: as light bends there, most answers would be the same, and each costs some 100 ns.
+const ASKED: u32 = 8;
+
+/// In pixels.
+const SMALL: u64 = 64;
 
 /// One object in one frame.
 pub(super) struct Faces<'a> {
@@ -71,7 +101,7 @@ pub(super) struct Faces<'a> {
 
 impl Faces<'_> {
     /// Hands the faces that are to be drawn to `sink`. `decided` is what a budget led to, for each face.
-    pub(super) fn draw(&self, decided: &mut [Decided], stats: &mut Stats, sink: &mut impl Sink) {
+    pub(super) fn draw(&self, decided: &mut Decided, stats: &mut Stats, sink: &mut impl Sink) {
         stats.faces += self.geometry.triangles.len() as u64;
         let effects = !self.extras.is_empty();
         if let Some(budget) = self.budget {
@@ -148,7 +178,7 @@ impl Faces<'_> {
     #[inline(never)]
     fn each_within<const CULLS: bool, const EFFECTS: bool>(
         &self,
-        (budget, decided): (&Budget, &mut [Decided]),
+        (budget, decided): (&Budget, &mut Decided),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
@@ -157,50 +187,94 @@ impl Faces<'_> {
         let mut linear = 0;
         for (chunk, triangles) in triangles.chunks(sift::MOST).enumerate() {
             let first = chunk * sift::MOST;
-            let (surfaces, decided) = (&triangle_surfaces[first..], &mut decided[first..]);
+            let (surfaces, choices) = (&triangle_surfaces[first..], &mut decided.choices[first..]);
             let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), true, triangles, stats);
+            let settled = self.settled(budget.of_cluster(chunk), budget, triangles, choices, left & !sifted.clipped);
+            linear += u64::from(settled.count_ones());
+            let mut vain = Vain::default();
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
-                let (indices, surface, decided) = (triangles[at], surfaces[at], &mut decided[at]);
+                let (indices, surface) = (triangles[at], surfaces[at]);
                 let is = |bits: u64| bits >> at & 1 == 1;
-                if is(sifted.clipped) {
-                    let corners = indices.map(|i| self.lit.get(i as usize));
-                    let face = (first + at, indices, surface);
-                    self.clipped_within::<CULLS, EFFECTS>(face, &corners, (budget, decided), stats, sink);
+                let turned = !CULLS && is(sifted.back);
+                if is(settled) {
+                    let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
+                    if EFFECTS && self.paints[usize::from(surface)].has_effects {
+                        let attributes = indices.map(|i| self.extras[i as usize].side(turned));
+                        let manner = Manner { rung: Rung::Gouraud88Reseeded, apart: None };
+                        sink.with_effects(&vertices, &attributes, surface, manner);
+                    } else {
+                        sink.plain(&vertices, Rung::Gouraud88Reseeded.shading());
+                    }
                     continue;
                 }
-                let turned = !CULLS && is(sifted.back);
-                if decided.choice == Choice::Unknown {
-                    decided.choice = budget.decide_at_once(first + at, surface, self.lit, indices, turned);
-                }
-                let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
-                if decided.choice == Choice::Unknown {
-                    let shades = vertices.map(|vertex| vertex.shade());
-                    let face = (first + at, indices, surface, turned);
-                    self.decide::<EFFECTS>((budget, decided), face, (shades, Some(&vertices)));
-                }
-                if decided.choice == Choice::Linear && !(EFFECTS && self.paints[usize::from(surface)].has_effects) {
-                    linear += 1;
-                    sink.plain(&vertices, Rung::Gouraud88Reseeded.shading());
+                let face = (first + at, indices, surface, turned);
+                let (choice, known) = (&mut choices[at], &mut decided.bodies[first + at]);
+                if is(sifted.clipped) {
+                    self.clipped_within::<CULLS, EFFECTS>(face, (budget, choice, known), stats, sink);
                 } else {
-                    self.of_another_kind::<EFFECTS>((indices, surface, turned), vertices, decided.choice, stats, sink);
+                    self.one_within::<EFFECTS>(face, (budget, choice, known), &mut vain, stats, sink);
                 }
             }
         }
         stats.shares.add(Rung::Gouraud88Reseeded, linear);
     }
 
-    /// Hands on a face that is not linear, or has effects.
-    #[inline(never)]
-    fn of_another_kind<const EFFECTS: bool>(
+    /// Those of a cluster's faces that are known to be linear, a bit for each, among those in `left`: from before, or from
+    /// what is known of the cluster.
+    #[inline]
+    fn settled(
         &self,
-        (indices, surface, turned): ([u32; 3], u16, bool),
-        vertices: [Vertex; 3],
-        choice: Choice,
+        linear: Linear,
+        budget: &Budget,
+        triangles: &[[u32; 3]],
+        choices: &mut [Choice],
+        left: u64,
+    ) -> u64 {
+        let (mut settled, mut bits) = (0, left);
+        while bits != 0 {
+            let at = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let choice = &mut choices[at];
+            let is_linear = match &linear {
+                _ if *choice != Choice::Unknown => *choice == Choice::Linear,
+                Linear::All => true,
+                Linear::Where(these) => budget.is_one_of(these, triangles[at], self.lit),
+                Linear::Unknown => false,
+            };
+            if is_linear {
+                *choice = Choice::Linear;
+                settled |= 1 << at;
+            }
+        }
+        settled
+    }
+
+    /// A face that its cluster says nothing of.
+    #[inline(never)]
+    fn one_within<const EFFECTS: bool>(
+        &self,
+        (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
+        (budget, choice, known): (&Budget, &mut Choice, &mut [Option<f32>; 2]),
+        vain: &mut Vain,
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
+        if *choice == Choice::Unknown {
+            *choice = budget.decide_at_once(triangle, surface, self.lit, indices, turned);
+        }
+        let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
+        if *choice == Choice::Unknown {
+            *choice = if vain.is_it() && is_small(&vertices) {
+                Choice::Phong
+            } else {
+                let shades = vertices.map(|vertex| vertex.shade());
+                let face = (triangle, indices, surface, turned);
+                vain.asked(self.decide::<EFFECTS>((budget, known), face, (shades, Some(&vertices))))
+            };
+        }
+        let choice = *choice;
         stats.shares.add(choice.rung(), 1);
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.lights_pixels() {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
@@ -214,17 +288,17 @@ impl Faces<'_> {
     #[inline(never)]
     fn decide<const EFFECTS: bool>(
         &self,
-        (budget, decided): (&Budget, &mut Decided),
+        (budget, known): (&Budget, &mut [Option<f32>; 2]),
         (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
         (shades, vertices): ([U8F8; 3], Option<&[Vertex; 3]>),
-    ) {
+    ) -> Choice {
         let shades = if EFFECTS && self.channels {
             indices.map(|i| self.extras[i as usize].side(turned).channels.map(U8F8::to_bits))
         } else {
             shades.map(|shade| [shade.to_bits(); 3])
         };
         let question = Question { triangle, indices, surface, turned, shades, vertices };
-        decided.choice = self.cheapest_within(budget, &question, decided);
+        self.cheapest_within(budget, &question, known)
     }
 
     /// What the corners of a face carry that is shaded by choice.
@@ -246,19 +320,19 @@ impl Faces<'_> {
     #[inline(never)]
     fn clipped_within<const CULLS: bool, const EFFECTS: bool>(
         &self,
-        (triangle, indices, surface): (usize, [u32; 3], u16),
-        corners: &[LitVertex; 3],
-        (budget, decided): (&Budget, &mut Decided),
+        (triangle, indices, surface, _): (usize, [u32; 3], u16, bool),
+        (budget, choice, known): (&Budget, &mut Choice, &mut [Option<f32>; 2]),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
+        let corners = &indices.map(|i| self.lit.get(i as usize));
         let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
         let turned = !CULLS && is_turned_away(&at);
-        if decided.choice == Choice::Unknown {
+        if *choice == Choice::Unknown {
             let shades = corners.map(|corner| if turned { corner.back } else { corner.vertex.shade() });
-            self.decide::<EFFECTS>((budget, decided), (triangle, indices, surface, turned), (shades, None));
+            *choice = self.decide::<EFFECTS>((budget, known), (triangle, indices, surface, turned), (shades, None));
         }
-        let (choice, before) = (decided.choice, stats.drawn);
+        let (choice, before) = (*choice, stats.drawn);
         let shading = choice.rung().shading();
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.lights_pixels() {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
@@ -391,6 +465,12 @@ impl Faces<'_> {
         // Each third by itself: the sum of three might overflow.
         (a / 3.0 + b / 3.0 + c / 3.0, normal)
     }
+}
+
+/// Whether lighting each pixel of a triangle costs no more than a few questions about it.
+fn is_small(vertices: &[Vertex; 3]) -> bool {
+    // Twice, in 1/256 pixel.
+    doubled_area(vertices).unsigned_abs() < SMALL * 131_072
 }
 
 /// Hands on a face with effects that is shaded by choice. Of a flat one every corner gets the shade in the middle.

@@ -14,8 +14,6 @@ pub(super) struct LitVertex {
     pub(super) vertex: Vertex,
     pub(super) back: U8F8,
     pub(super) needs_clipping: bool,
-    /// Where a budget asks: a bit for each of the first eight suns, whether it sees it.
-    pub(super) suns_seen: u8,
 }
 
 /// Where a vertex is on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping. In one number,
@@ -66,8 +64,9 @@ pub(super) struct LitVertices {
     pub(super) depths: Vec<u32>,
     /// Front and back.
     pub(super) shades: Vec<[U8F8; 2]>,
-    /// None, or as many.
-    pub(super) suns_seen: Vec<u8>,
+    /// Where a budget asks, as many: a bit for each of the first seven lights, suns first, whether the front sees it; and the
+    /// highest, whether a shade is clamped.
+    pub(super) flags: Vec<u8>,
 }
 
 impl LitVertices {
@@ -76,7 +75,7 @@ impl LitVertices {
         self.places.resize(count, Place::NEEDS_CLIPPING);
         self.depths.resize(count, 0);
         self.shades.resize(count, [U8F8::default(); 2]);
-        self.suns_seen.clear();
+        self.flags.clear();
     }
 
     /// Where faces or pixels are lit: no vertex has a shade.
@@ -100,12 +99,7 @@ impl LitVertices {
         let place = self.places[i];
         let needs_clipping = place.needs_clipping();
         let place = if needs_clipping { Place::new(0, 0) } else { place };
-        LitVertex {
-            vertex: vertex(place, front, self.depths[i]),
-            back,
-            needs_clipping,
-            suns_seen: self.suns_seen.get(i).copied().unwrap_or(0),
-        }
+        LitVertex { vertex: vertex(place, front, self.depths[i]), back, needs_clipping }
     }
 
     /// Vertex number `i`, which there is and needs no clipping, with the shade of the front or the back.
@@ -119,7 +113,7 @@ impl LitVertices {
         self.places.capacity() * size_of::<Place>()
             + self.depths.capacity() * size_of::<u32>()
             + self.shades.capacity() * size_of::<[U8F8; 2]>()
-            + self.suns_seen.capacity()
+            + self.flags.capacity()
     }
 }
 

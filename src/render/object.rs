@@ -129,7 +129,7 @@ pub(super) struct ObjectState {
     /// What a budget's decisions are made from, and those that were made, one for each triangle.
     budget: Budget,
     has_budget: bool,
-    decided: Vec<Decided>,
+    decided: Decided,
 }
 
 impl ObjectState {
@@ -291,10 +291,7 @@ impl ObjectState {
             if changed {
                 self.budget.renew(max_error, &lit, &mut self.decided);
             }
-            self.budget.mark(&lit, &mut self.lit);
-            if changed && self.budget.is_linear_throughout() {
-                self.decided.fill(Decided::LINEAR);
-            }
+            self.budget.mark(&lit, &mut self.lit, &self.extras);
         } else {
             self.decided.clear();
         }
@@ -407,7 +404,7 @@ impl ObjectState {
     }
 
     /// The budget's decisions, to be completed while faces are drawn, and then put back.
-    pub(super) fn take_decided(&mut self) -> Vec<Decided> {
+    pub(super) fn take_decided(&mut self) -> Decided {
         core::mem::take(&mut self.decided)
     }
 
@@ -417,11 +414,11 @@ impl ObjectState {
     }
 
     /// The same, as they are.
-    pub(super) fn decided(&self) -> &[Decided] {
+    pub(super) fn decided(&self) -> &Decided {
         &self.decided
     }
 
-    pub(super) fn put_decided(&mut self, decided: Vec<Decided>) {
+    pub(super) fn put_decided(&mut self, decided: Decided) {
         self.decided = decided;
     }
 
@@ -436,7 +433,7 @@ impl ObjectState {
             + self.normal_tables.len() * Table::BYTES
             + self.beams.capacity() * size_of::<Beam>()
             + self.budget.bytes()
-            + self.decided.capacity() * size_of::<Decided>()
+            + self.decided.bytes()
     }
 }
 

@@ -181,7 +181,7 @@ impl Renderer {
                 integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                let mut decided = self.states[object].decided().to_vec();
+                let mut decided = self.states[object].decided().clone();
                 faces.draw(&mut decided, stats, &mut sink);
             }
         }
@@ -203,7 +203,9 @@ impl Renderer {
             faces.geometry.triangle_surfaces = &triangle_surfaces[i..=i];
             let mut same = Same { wanted: &met.vertices, found: false };
             // Which rung draws it changes no vertex's place.
-            faces.draw(&mut [Decided::default()], &mut ignored, &mut same);
+            let mut undecided = Decided::default();
+            undecided.nothing_of(1);
+            faces.draw(&mut undecided, &mut ignored, &mut same);
             same.found
         })
     }

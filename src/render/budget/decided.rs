@@ -2,6 +2,7 @@
 
 use alloc::format;
 use alloc::string::String;
+use alloc::vec::Vec;
 
 use crate::raster::effects::Apart;
 use crate::scene::Rung;
@@ -43,22 +44,36 @@ impl Choice {
     }
 }
 
-/// What is known of a triangle.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
+/// What is known of an object's triangles.
+#[derive(Clone, Debug, Default)]
 pub(in crate::render) struct Decided {
-    pub(in crate::render) choice: Choice,
-    /// How far linear shades of its two sides are from the model, highlights aside. Known as long as the object and its
-    /// lights are what they are, wherever the eye is.
-    pub(in crate::render) body: [Option<f32>; 2],
+    pub(in crate::render) choices: Vec<Choice>,
+    /// For each how far linear shades of its two sides are from the model, highlights aside, if that is known. It stays as
+    /// long as the object and its lights are what they are, wherever the eye is.
+    pub(in crate::render) bodies: Vec<[Option<f32>; 2]>,
 }
 
 impl Decided {
-    /// One of which all is known.
-    pub(in crate::render) const LINEAR: Self = Self { choice: Choice::Linear, body: [None; 2] };
+    /// So many of which nothing is known.
+    pub(in crate::render) fn nothing_of(&mut self, triangles: usize) {
+        self.choices.clear();
+        self.choices.resize(triangles, Choice::Unknown);
+        self.bodies.clear();
+        self.bodies.resize(triangles, [None; 2]);
+    }
+
+    pub(in crate::render) fn clear(&mut self) {
+        self.nothing_of(0);
+    }
+
+    /// Bytes that it holds.
+    pub(in crate::render) fn bytes(&self) -> usize {
+        self.choices.capacity() * size_of::<Choice>() + self.bodies.capacity() * size_of::<[Option<f32>; 2]>()
+    }
 }
 
 /// How many triangles went to which rung, and why.
-pub(in crate::render) fn shares(decided: &[Decided]) -> String {
+pub(in crate::render) fn shares(decided: &Decided) -> String {
     let kinds = [
         (Choice::Flat, "one shade at their corners, or near enough"),
         (Choice::Linear, "light is linear enough on them"),
@@ -70,11 +85,11 @@ pub(in crate::render) fn shares(decided: &[Decided]) -> String {
     ];
     let mut text = String::new();
     for (choice, why) in kinds {
-        let count = decided.iter().filter(|of| of.choice == choice).count();
+        let count = decided.choices.iter().filter(|of| **of == choice).count();
         if count > 0 {
             text += &format!("{count} {} ({why}), ", choice.rung());
         }
     }
-    let unseen = decided.iter().filter(|of| of.choice == Choice::Unknown).count();
+    let unseen = decided.choices.iter().filter(|of| **of == Choice::Unknown).count();
     text + &format!("{unseen} not drawn")
 }

@@ -53,6 +53,6 @@ pub(super) struct Strength {
     pub(super) curvature: f32,
     /// What all highlights at their brightest add, in shades.
     pub(super) highlights: f32,
-    /// From so far on, as an angle, nothing is seen of them but a fourth of what is allowed.
-    pub(super) faint_from: f32,
+    /// From so far on, as an angle, nothing is seen of them but one, two or three quarters of what is allowed.
+    pub(super) faint_from: [f32; 3],
 }

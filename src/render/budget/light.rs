@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::{CURVATURE, Facet, curve};
 
 /// No point of a triangle is farther from its nearest corner than this share of the longest edge, 1/√3.
-const APART: f32 = 0.578;
+pub(super) const APART: f32 = 0.578;
 
 /// No point of a triangle is farther from the corner that has the most of it than this share of an edge: 2/3, of the
 /// chord that normals turn by, and a little for their angle.
@@ -168,15 +168,13 @@ impl OneLight<'_> {
         let (along, turn) = (along.fold(-1.0, f32::max).min(1.0), FROM_ONE * whole);
         let more = if along < 0.0 { 0.5 * turn * turn } else { 0.0 };
         let along = (along + turn * libm::sqrtf(1.0 - along * along) + more).clamp(0.0, 1.0);
-        // xˢ ≤ exp(−y), y = s(1 − x).
-        let y = self.shininess * (1.0 - along);
-        let bright = if along == 0.0 { 0.0 } else { 1.0 / (1.0 + y * (1.0 + y * (0.5 + y / 6.0))) };
+        let bright = brightest(along, self.shininess);
         let least = curved.min(bright);
         if self.ks * least <= limit {
             return self.ks * least;
         }
         let eye_turn = eye_turn / self.part;
-        self.ks * least.min(libm::powf(self.along(towards, light_turn + eye_turn), self.shininess))
+        self.ks * least.min(brightest(self.along(towards, light_turn + eye_turn), self.shininess))
     }
 
     /// The greatest r·v of any point: with the half-way vector h between the directions to light and eye, and θ
@@ -195,6 +193,12 @@ impl OneLight<'_> {
         let square = (long * long / 4.0 - turn / 2.0).max(0.0);
         (1.0 - 2.0 * square * (1.0 - nearest * nearest)).max(0.0)
     }
+}
+
+/// No less than xˢ: that is at most exp(−y), y = s(1 − x), which is less than one over the first terms of exp y.
+fn brightest(x: f32, shininess: f32) -> f32 {
+    let y = shininess * (1.0 - x);
+    if x <= 0.0 { 0.0 } else { 1.0 / (1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y / 120.0))))) }
 }
 
 /// The greatest n·h of any unit n between three normals.

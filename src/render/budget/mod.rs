@@ -32,10 +32,12 @@
 //! | file | what |
 //! |---|---|
 //! | `facet` | what is known of every triangle and surface |
+//! | `cluster` | the decision on 64 triangles at once |
 //! | `light` | how far linear shades are off in the light of one source |
 //! | `question` | the decision on one triangle |
 //! | `decided` | what is decided, and how that is said |
 
+mod cluster;
 mod decided;
 mod facet;
 mod light;
@@ -45,13 +47,17 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
+use self::cluster::Cluster;
+pub(super) use self::cluster::{Linear, Where};
 pub(super) use self::decided::{Choice, Decided, shares};
 use self::facet::{Facet, Strength};
 use self::light::{Towards, narrow};
 pub(super) use self::question::Question;
-use super::lit::{LitVertex, LitVertices};
+use super::lit::LitVertices;
 use super::paint::Paint;
-use super::vertex::Geometry;
+use super::sift;
+use super::vertex::{Extra, Geometry};
+use crate::fixed::U8F8;
 use crate::light::{Answer, Beam, LampBeam, Lights};
 use crate::mesh::Mesh;
 use crate::scene::Shared;
@@ -64,8 +70,11 @@ const LINEAR: f32 = 0.75;
 /// What rounding adds to a shade that is exact before it: a half, and what f32 may be off.
 const EXACT: f32 = 0.51;
 
-/// Suns that a vertex has a bit for.
-const SUNS: usize = 8;
+/// Of what is allowed, the shares that highlights may take where they are faint.
+const QUARTERS: [f32; 3] = [1.0, 2.0, 3.0];
+
+/// Lights that a vertex has a bit for. The one above says whether a shade of it is clamped.
+const LIGHTS: usize = 7;
 
 /// Curvature is taken a fifth too great, for angles that are taken for their chords.
 const CURVATURE: f32 = 1.2 / 6.0;
@@ -91,6 +100,10 @@ pub(super) struct Budget {
     /// Whose facets these are; of a mesh that was split, none.
     mesh: Option<Shared<Mesh>>,
     facets: Vec<Facet>,
+    /// One for as many faces as are sifted at a time.
+    clusters: Vec<Cluster>,
+    /// As many.
+    linear: Vec<Linear>,
     /// One for each surface.
     strengths: Vec<Strength>,
     /// Of the frame that is drawn.
@@ -131,7 +144,7 @@ pub(super) struct Budget {
 impl Budget {
     /// Takes on an object, or the same as it is now.
     #[inline(never)]
-    pub(super) fn renew(&mut self, allowed: f32, object: &Lit<'_>, decided: &mut Vec<Decided>) {
+    pub(super) fn renew(&mut self, allowed: f32, object: &Lit<'_>, decided: &mut Decided) {
         let Lit { geometry, whole, view, nearest, lights, paints, channels, kernel } = *object;
         self.kernel = Some(kernel);
         let mut same = self.allowed == allowed && self.in_color == channels;
@@ -156,13 +169,18 @@ impl Budget {
             let most = |of: fn(&Facet) -> f32| self.facets.iter().map(of).fold(0.0, f32::max);
             (self.longest_edge, self.most_shortening) = (most(|facet| facet.edge), most(|facet| facet.shortening));
             self.most_spread = most(|facet| facet.spread);
+            self.clusters.clear();
+            let chunks = self.facets.chunks(sift::MOST).zip(geometry.triangles.chunks(sift::MOST));
+            let chunks = chunks.zip(geometry.triangle_surfaces.chunks(sift::MOST));
+            self.clusters.extend(chunks.map(|((facets, triangles), surfaces)| {
+                Cluster::new(facets, triangles, surfaces, geometry.positions, geometry.normals)
+            }));
         }
-        same &= known && decided.len() == geometry.triangles.len();
+        same &= known && decided.choices.len() == geometry.triangles.len();
         if same {
-            decided.iter_mut().for_each(|of| of.choice = Choice::Unknown);
+            decided.choices.fill(Choice::Unknown);
         } else {
-            decided.clear();
-            decided.resize(geometry.triangles.len(), Decided::default());
+            decided.nothing_of(geometry.triangles.len());
         }
         let nearest = nearest.max(f64::from(view.near()));
         self.bend = (f64::from(self.longest_edge) * view.scale() / nearest / 4.0) as f32;
@@ -188,9 +206,39 @@ impl Budget {
                 last: first + ((entries - 1) << 8),
                 curvature,
                 highlights: ks * all,
-                faint_from: faint_from(ks * all, s, allowed / 4.0),
+                faint_from: QUARTERS.map(|quarters| faint_from(ks * all, s, quarters * allowed / 4.0)),
             }
         }));
+        self.many_suns = lights.suns.len() > LIGHTS;
+        self.one_sun = lights.suns.len() == 1;
+        self.simple = lights.lamps.is_empty()
+            && !channels
+            && !self.many_suns
+            && self.strengths.iter().all(|of| of.curvature == 0.0);
+        // How far linear shades are off at most, but where some corners see a sun and others not, or some are clamped.
+        let keeps_within = |of: &Strength, model: f32| {
+            let top = f32::from(of.last - of.first) * of.scale;
+            let range = (of.body * self.most_spread).min(top);
+            model + range * self.bend + LINEAR <= self.allowed
+        };
+        self.linear_unless_mixed = self.simple
+            && self.strengths.iter().all(|of| {
+                let top = f32::from(of.last - of.first) * of.scale;
+                keeps_within(of, top * self.most_shortening)
+            });
+        // And there too (see `decide_at_once`), where no corner lies farther in the light than normals differ.
+        self.linear_throughout = self.linear_unless_mixed
+            && self.strengths.iter().all(|of| {
+                let brightest = f32::from(of.dark - of.first) * of.scale + of.body;
+                let is_clamped = brightest >= f32::from(of.last - of.first) * of.scale;
+                !is_clamped && keeps_within(of, of.body * self.most_spread * (0.25 + self.most_shortening))
+            });
+        self.linear.clear();
+        if !self.linear_unless_mixed {
+            self.linear.extend(self.clusters.iter().map(|of| of.linear(object, &self.strengths, allowed)));
+        }
+        // Where any face has to be looked at, what its corners see has to be known.
+        let looks = self.linear.iter().any(|linear| *linear != Linear::All);
         let positions = geometry.positions.iter();
         if !same {
             self.lamps.clear();
@@ -199,18 +247,14 @@ impl Budget {
                 (inverse_range, brightest(lamp.intensity, lamp.channels, channels))
             }));
             self.to_lamps.clear();
+        }
+        if looks && self.to_lamps.is_empty() {
             self.to_lamps.extend(lights.lamps.iter().flat_map(|lamp| {
                 let at = narrow(lamp.position);
                 positions.clone().map(move |position| Towards::new(at - *position))
             }));
         }
         self.to_eye.clear();
-        self.many_suns = lights.suns.len() > SUNS;
-        self.one_sun = lights.suns.len() == 1;
-        self.simple = lights.lamps.is_empty()
-            && !channels
-            && !self.many_suns
-            && self.strengths.iter().all(|of| of.curvature == 0.0);
         self.eye_turn = 0.0;
         if self.simple {
             return;
@@ -248,53 +292,87 @@ impl Budget {
         }
     }
 
-    /// Whether nothing is seen of a highlight on a face but a fourth of what is allowed: it is that far from each corner,
-    /// and from there no point is farther than the share of an edge that is in `light`.
+    /// What is seen of a highlight on a face at most, if that is no more than three quarters of what is allowed: it is so
+    /// far from each corner, and from there no point is farther than the share of an edge that is in `light`.
     #[inline]
-    fn is_far_from_highlights(&self, question: &Question<'_>, facet: &Facet, strength: &Strength) -> bool {
+    fn faint_highlight(&self, question: &Question<'_>, facet: &Facet, strength: &Strength) -> Option<f32> {
         let [a, b, c] = question.indices.map(|i| self.chords[i as usize]);
         let turn = 2.0 * facet.spread + facet.edge * (self.eye_turn + self.lamp_turn);
         // Where that is more it says nothing.
-        facet.edge * self.eye_turn.max(self.lamp_turn) < 0.5
-            && facet.spread < 1.5
-            && a.min(b).min(c) >= strength.faint_from + light::FROM_ONE * 1.2 * turn
+        if facet.edge * self.eye_turn.max(self.lamp_turn) >= 0.5 || facet.spread >= 1.5 {
+            return None;
+        }
+        let nearest = a.min(b).min(c) - light::FROM_ONE * 1.2 * turn;
+        let faint = strength.faint_from.iter().zip(QUARTERS).find(|(from, _)| nearest >= **from);
+        faint.map(|(_, quarters)| quarters * self.allowed / 4.0)
     }
 
-    /// Marks the object's vertices with the suns that they see, and finds out what holds for all of it.
+    /// Marks the object's vertices with the lights that they see, and whether their shades are clamped on either side: what
+    /// clusters ask of them. Of three channels, `extras` has the shades.
     #[inline(never)]
-    pub(super) fn mark(&mut self, object: &Lit<'_>, lit: &mut LitVertices) {
+    pub(super) fn mark(&self, object: &Lit<'_>, lit: &mut LitVertices, extras: &[Extra]) {
         let Lit { geometry, lights, .. } = *object;
-        // How far linear shades are off at most, but where some corners see a sun and others not, or some are clamped.
-        let keeps_within = |of: &Strength, model: f32| {
-            let top = f32::from(of.last - of.first) * of.scale;
-            let range = (of.body * self.most_spread).min(top);
-            model + range * self.bend + LINEAR <= self.allowed
-        };
-        self.linear_unless_mixed = self.simple
-            && self.strengths.iter().all(|of| {
-                let top = f32::from(of.last - of.first) * of.scale;
-                keeps_within(of, top * self.most_shortening)
-            });
-        // And there too (see `decide_at_once`), where no corner lies farther in the light than normals differ.
-        self.linear_throughout = self.linear_unless_mixed
-            && self.strengths.iter().all(|of| {
-                let brightest = f32::from(of.dark - of.first) * of.scale + of.body;
-                let is_clamped = brightest >= f32::from(of.last - of.first) * of.scale;
-                !is_clamped && keeps_within(of, of.body * self.most_spread * (0.25 + self.most_shortening))
-            });
-        if !self.by_shades() && !self.linear_throughout {
-            lit.suns_seen.resize(geometry.normals.len(), 0);
-            for (i, sun) in (0..SUNS).zip(lights.suns) {
-                for (seen, normal) in lit.suns_seen.iter_mut().zip(geometry.normals) {
-                    *seen |= u8::from(normal.dot(sun.towards) > 0.0) << i;
+        if self.linear_throughout {
+            return;
+        }
+        lit.flags.resize(geometry.normals.len(), 0);
+        match self.strengths.as_slice() {
+            [one] if self.by_shades() => {
+                for (flags, [front, back]) in lit.flags.iter_mut().zip(&lit.shades) {
+                    let clamped = front.max(back).to_bits() >= one.last;
+                    *flags = u8::from(front.to_bits() != one.dark) | u8::from(clamped) << LIGHTS;
                 }
+                return;
+            }
+            of_all => {
+                for (i, (flags, surface)) in lit.flags.iter_mut().zip(geometry.vertex_surfaces).enumerate() {
+                    let [front, back] = lit.shades[i];
+                    let mut most = front.max(back);
+                    if self.in_color
+                        && let Some(extra) = extras.get(i)
+                    {
+                        let sides = [extra.side(false).channels, extra.side(true).channels];
+                        most = sides.into_iter().flatten().fold(most, U8F8::max);
+                    }
+                    *flags = u8::from(most.to_bits() >= of_all[usize::from(*surface)].last) << LIGHTS;
+                }
+            }
+        }
+        for (i, sun) in (0..LIGHTS).zip(lights.suns) {
+            for (flags, normal) in lit.flags.iter_mut().zip(geometry.normals) {
+                *flags |= u8::from(normal.dot(sun.towards) > 0.0) << i;
+            }
+        }
+        for (i, lamp) in (lights.suns.len()..LIGHTS).zip(lights.lamps) {
+            let at = narrow(lamp.position);
+            for (flags, (normal, position)) in lit.flags.iter_mut().zip(geometry.normals.iter().zip(geometry.positions))
+            {
+                *flags |= u8::from(normal.dot(at - *position) > 0.0) << i;
             }
         }
     }
 
-    /// Whether linear shades keep within on all of the object.
-    pub(super) fn is_linear_throughout(&self) -> bool {
-        self.linear_throughout
+    /// Which faces of a cluster are known to be linear.
+    #[inline]
+    pub(super) fn of_cluster(&self, cluster: usize) -> Linear {
+        if self.linear_throughout {
+            Linear::All
+        } else if self.linear_unless_mixed {
+            Linear::Where(Where { unmixed: true, from: 0.0 })
+        } else {
+            self.linear.get(cluster).copied().unwrap_or(Linear::Unknown)
+        }
+    }
+
+    /// Whether a face of a cluster is one of these.
+    #[inline]
+    pub(super) fn is_one_of(&self, these: &Where, indices: [u32; 3], lit: &LitVertices) -> bool {
+        let Where { unmixed, from } = *these;
+        let corners = indices.map(|i| i as usize);
+        let [a, b, c] = corners.map(|i| lit.flags[i]);
+        let same = !unmixed || (a == b && b == c);
+        let clamped = (a | b | c) >> LIGHTS != 0;
+        same && !clamped && (from == 0.0 || corners.into_iter().all(|i| self.chords[i] >= from))
     }
 
     /// Whether a vertex says by its shades which sun it sees: there is one, and no other light. Only what it sees by
@@ -304,15 +382,17 @@ impl Budget {
         self.simple && self.one_sun
     }
 
-    /// The suns that a vertex sees, a bit for each.
+    /// The lights that a vertex sees, a bit for each, suns first.
     #[inline]
-    fn suns_seen(&self, lit: &LitVertex, strength: &Strength) -> u8 {
-        if self.by_shades() { u8::from(lit.vertex.shade().to_bits() != strength.dark) } else { lit.suns_seen }
+    fn lights_seen(lit: &LitVertices, vertex: u32) -> u8 {
+        lit.flags.get(vertex as usize).copied().unwrap_or(0) & !(1 << LIGHTS)
     }
 
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
         self.facets.capacity() * size_of::<Facet>()
+            + self.clusters.capacity() * size_of::<Cluster>()
+            + self.linear.capacity() * size_of::<Linear>()
             + self.chords.capacity() * size_of::<f32>()
             + (self.to_eye.capacity() + self.to_lamps.capacity()) * size_of::<Towards>()
             + self.lamps.capacity() * size_of::<(f32, f32)>()

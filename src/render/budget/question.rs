@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::decided::{Choice, Decided};
+use super::decided::Choice;
 use super::light::{OneLight, Towards};
 use super::{Budget, EXACT, LINEAR, brightest, highlight};
 use crate::raster::Vertex;
@@ -70,11 +70,7 @@ impl Budget {
         let strength = &self.strengths[usize::from(surface)];
         let corners = indices.map(|i| i as usize);
         let shades = corners.map(|i| lit.shades[i]);
-        let [a, b, c] = if self.by_shades() {
-            shades.map(|[front, _]| u8::from(front.to_bits() != strength.dark))
-        } else {
-            corners.map(|i| lit.suns_seen[i])
-        };
+        let [a, b, c] = indices.map(|i| Self::lights_seen(lit, i));
         let mixed = a != b || b != c;
         let [a, b, c] = shades.map(|sides| sides[usize::from(turned)].to_bits());
         let most = a.max(b).max(c);
@@ -135,7 +131,7 @@ impl Faces<'_> {
         &self,
         budget: &Budget,
         question: &Question<'_>,
-        decided: &mut Decided,
+        known: &mut [Option<f32>; 2],
     ) -> Choice {
         let facet = &budget.facets[question.triangle];
         let strength = &budget.strengths[usize::from(question.surface)];
@@ -157,30 +153,32 @@ impl Faces<'_> {
         let spare = budget.allowed - EXACT;
         // What the body alone is off by, at least as it is known, whatever the light.
         let hopeless = (top - strength.highlights) * facet.shortening > spare;
-        let seen = question.indices.map(|i| budget.suns_seen(&self.lit.get(i as usize), strength));
+        let seen = question.indices.map(|i| Budget::lights_seen(self.lit, i));
         let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
         let near = model <= spare;
         let highlights = strength.curvature > 0.0;
-        let far = highlights && budget.is_far_from_highlights(question, facet, strength);
-        if far && !lamps && !some && !clamped {
-            model = model.min(top * facet.shortening + budget.allowed / 4.0);
+        let faint = if highlights { budget.faint_highlight(question, facet, strength) } else { None };
+        if let Some(faint) = faint
+            && !lamps
+            && !some
+            && !clamped
+        {
+            model = model.min(top * facet.shortening + faint);
         }
         let near = near || model <= spare;
         if !hopeless && (lamps || ((some || clamped) && near) || (highlights && !near)) {
-            let body = &mut decided.body[usize::from(question.turned)];
+            let body = &mut known[usize::from(question.turned)];
             let known = *body.get_or_insert_with(|| {
                 self.body_error(budget, question, &self.one_light(budget, question, 1.0), spare)
             });
-            model = if far {
-                known + budget.allowed / 4.0
-            } else {
-                self.model_error(budget, question, 1.0, spare, Some(known))
+            // What lies above the clamp is lost at some corners, by which the others are too dark at most.
+            let lost = if clamped { range } else { 0.0 };
+            model = match faint {
+                Some(faint) if known + faint + lost <= spare => known + faint + lost,
+                _ if known + lost > spare => known + lost,
+                _ => self.model_error(budget, question, 1.0, spare, Some(known)) + lost,
             };
-            if clamped {
-                // What lies above the clamp is lost at some corners, by which the others are too dark at most.
-                model += range;
-            }
             if model > spare && question.pixels() >= WORTH_SAMPLES {
                 model = self.error_between_samples(budget, question, spare);
             }

@@ -1,0 +1,257 @@
+//! Decisions on 64 neighbouring faces at once, by what none of them exceeds: most of a body is far from the highlights,
+//! and not large in the light of its lamps. Only what is not known to be linear so is looked at face by face.
+
+use glam::Vec3;
+
+use super::facet::{Facet, Strength};
+use super::light::{APART, FROM_ONE, narrow};
+use super::{CURVATURE, LIGHTS, LINEAR, Lit, QUARTERS, highlight};
+use crate::light::{Answer, Beam, LampBeam};
+
+/// Cosines and sines of f32 are off by less.
+const ROUNDING: f32 = 1e-3;
+
+/// What faces that follow each other do not exceed, wherever light comes from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cluster {
+    /// See [`Facet`].
+    shortening: f32,
+    spread: f32,
+    edge: f32,
+    /// A box that all corners lie in, its middle and half of its sides.
+    min: Vec3,
+    max: Vec3,
+    centre: Vec3,
+    half: Vec3,
+    /// A cone that all normals lie in: its axis, and the cosine and the sine of half its angle; the sine is 1 where that
+    /// is a right angle or more.
+    axis: Vec3,
+    cosine: f32,
+    sine: f32,
+    /// The surface of all of them, if it is the same.
+    surface: Option<u16>,
+}
+
+/// Light on a cluster.
+struct Falling {
+    /// 1 at its brightest; and what its first and second derivatives along an edge are at most.
+    brightness: f32,
+    first: f32,
+    second: f32,
+    /// What the direction turns by along an edge.
+    turn: f32,
+    /// The greatest n·l.
+    most: f32,
+    /// Whether all faces lie in the light or all in the dark.
+    unmixed: bool,
+}
+
+/// What linear shades are off by where all corners of a face see the light or none, and anywhere; what shades differ by
+/// over a face, and what they are at most: in shares of a light's strength.
+#[derive(Clone, Copy)]
+struct Share {
+    unmixed: f32,
+    off: f32,
+    range: f32,
+    brightest: f32,
+}
+
+/// Which faces of a cluster are known to be linear.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(in crate::render) enum Linear {
+    All,
+    Where(Where),
+    /// Each has to be looked at.
+    Unknown,
+}
+
+/// Those of which no corner's shade is clamped, and
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(in crate::render) struct Where {
+    /// whose corners all see the same lights, if that matters, and
+    pub(super) unmixed: bool,
+    /// at whose corners eye and mirrored light are so far apart, as a chord.
+    pub(super) from: f32,
+}
+
+impl Cluster {
+    /// Of the faces with these facets, corners and surfaces; there is one at least.
+    pub(super) fn new(
+        facets: &[Facet],
+        triangles: &[[u32; 3]],
+        surfaces: &[u16],
+        positions: &[Vec3],
+        normals: &[Vec3],
+    ) -> Self {
+        let most = |of: fn(&Facet) -> f32| facets.iter().map(of).fold(0.0, f32::max);
+        let corners = || triangles.iter().flatten().map(|&i| i as usize);
+        let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let mut sum = Vec3::ZERO;
+        for i in corners() {
+            (min, max) = (min.min(positions[i]), max.max(positions[i]));
+            sum += normals[i];
+        }
+        let axis = sum.normalize_or_zero();
+        let cosine = corners().map(|i| normals[i].dot(axis)).fold(1.0, f32::min) - ROUNDING;
+        let sine = if cosine > 0.0 { libm::sqrtf(1.0 - cosine * cosine) + ROUNDING } else { 1.0 };
+        let surface = surfaces.first().copied().filter(|first| surfaces.iter().all(|surface| surface == first));
+        Self {
+            shortening: most(|facet| facet.shortening),
+            spread: most(|facet| facet.spread),
+            edge: most(|facet| facet.edge),
+            min,
+            max,
+            // Half of each, as their sum might overflow.
+            centre: min * 0.5 + max * 0.5,
+            half: (max * 0.5 - min * 0.5) * (1.0 + ROUNDING),
+            axis,
+            cosine: cosine.max(0.0),
+            sine: sine.min(1.0),
+            surface,
+        }
+    }
+
+    /// Which of its faces linear shades keep within `allowed` on.
+    pub(super) fn linear(&self, object: &Lit<'_>, strengths: &[Strength], allowed: f32) -> Linear {
+        let Lit { view, lights, paints, channels, .. } = *object;
+        let Some(surface) = self.surface.map(usize::from) else { return Linear::Unknown };
+        let (answer, strength) = (&paints[surface].answer, &strengths[surface]);
+        let kd = answer.diffuse.abs() as f32 * 255.0;
+        let (mut unmixed, mut off, mut range) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        let mut brightest = [answer.ambient.abs() as f32 * 255.0; 3];
+        let mut add = |light: Share, intensity: f32, of_channels: [f32; 3]| {
+            let of = strengths_of(answer, intensity, of_channels, channels);
+            for (channel, of) in of.into_iter().enumerate() {
+                unmixed[channel] += kd * of * light.unmixed;
+                off[channel] += kd * of * light.off;
+                range[channel] += kd * of * light.range;
+                brightest[channel] += kd * of * light.brightest;
+            }
+        };
+        for Beam { towards, intensity, channels } in lights.suns {
+            add(self.in_light(&self.sun(*towards)), *intensity, *channels);
+        }
+        for lamp in lights.lamps {
+            match self.lamp(lamp) {
+                Some(Some(light)) => add(self.in_light(&light), lamp.intensity, lamp.channels),
+                Some(None) => {}
+                None => return Linear::Unknown,
+            }
+        }
+        let greatest = |of: [f32; 3]| of.into_iter().fold(0.0, f32::max);
+        let range = greatest(range).min(255.0);
+        // A quarter of ρ − 1, ρ being the ratio of two corners' distances along the view.
+        let nearest = view.nearest(self.min, self.max);
+        if nearest <= f64::from(view.near()) {
+            return Linear::Unknown;
+        }
+        let bend = (f64::from(self.edge) * view.scale() / nearest / 4.0) as f32;
+        // What is left for highlights, of which so much may be seen, and as much bent.
+        let left = |off: [f32; 3]| (allowed - LINEAR - greatest(off) - range * bend) / (1.0 + bend);
+        let has_highlights = highlight(&paints[surface], channels).0 != 0.0;
+        let needed = if has_highlights { QUARTERS[0] * allowed / 4.0 } else { 0.0 };
+        let has_bits = lights.suns.len() + lights.lamps.len() <= LIGHTS;
+        let (unmixed, left) = match (left(off), left(unmixed)) {
+            (left, _) if left >= needed => (false, left),
+            (_, left) if left >= needed && has_bits => (true, left),
+            _ => return Linear::Unknown,
+        };
+        if !has_highlights {
+            let is_all = !unmixed && greatest(brightest) * (1.0 + ROUNDING) < 255.0;
+            return if is_all { Linear::All } else { Linear::Where(Where { unmixed, from: 0.0 }) };
+        }
+        // As `faint_highlight`.
+        let eye = self.turn_towards(narrow(lights.eye));
+        let lamps = lights.lamps.iter().map(|lamp| self.turn_towards(narrow(lamp.position)));
+        let lamp = lamps.fold(0.0, f32::max);
+        if eye.max(lamp) >= 0.5 || self.spread >= 1.5 {
+            return Linear::Unknown;
+        }
+        let faint = strength.faint_from.iter().zip(QUARTERS).filter(|(_, quarters)| quarters * allowed / 4.0 <= left);
+        let from = faint.map(|(from, _)| *from).fold(f32::INFINITY, f32::min);
+        Linear::Where(Where { unmixed, from: from + FROM_ONE * 1.2 * (2.0 * self.spread + eye + lamp) })
+    }
+
+    /// How far away a point is from the box, and from what is farthest in it.
+    fn distances(&self, point: Vec3) -> (f32, f32) {
+        let away = (point - self.centre).abs();
+        ((away - self.half).max(Vec3::ZERO).length(), (away + self.half).length())
+    }
+
+    /// What the direction to a point turns by at most along an edge of one of its faces.
+    fn turn_towards(&self, point: Vec3) -> f32 {
+        let (nearest, _) = self.distances(point);
+        if nearest > 0.0 { self.edge / nearest } else { f32::INFINITY }
+    }
+
+    /// The light of a sun.
+    fn sun(&self, towards: Vec3) -> Falling {
+        let (along, Self { cosine, sine, .. }) = (self.axis.dot(towards).abs(), *self);
+        let most = if along >= cosine {
+            1.0
+        } else {
+            (along * cosine + libm::sqrtf((1.0 - along * along).max(0.0)) * sine + ROUNDING).min(1.0)
+        };
+        Falling { brightness: 1.0, first: 0.0, second: 0.0, turn: 0.0, most, unmixed: along > sine }
+    }
+
+    /// The light of a lamp; nothing where that is out of range, and `None` where it is too near to say.
+    fn lamp(&self, lamp: &LampBeam) -> Option<Option<Falling>> {
+        let position = narrow(lamp.position);
+        let (nearest, farthest) = self.distances(position);
+        let inner = nearest - APART * self.edge;
+        if inner <= self.edge {
+            return None;
+        }
+        let inverse_range = libm::sqrt(lamp.inverse_square) as f32;
+        let near = inner * inverse_range;
+        if near >= 1.0 {
+            return Some(None);
+        }
+        // As `OneLight::lamp`.
+        let e = self.edge * inverse_range;
+        let far = (farthest * inverse_range).min(1.0);
+        let left = 1.0 - near * near;
+        // The part of the way to it that goes along the axis, from wherever in the box.
+        let along = self.axis.dot(position - self.centre).abs() - self.axis.abs().dot(self.half);
+        Some(Some(Falling {
+            brightness: left * left,
+            first: 4.0 * far * left * e,
+            second: (8.0 * far * far + 4.0 * left) * e * e,
+            turn: self.edge / inner,
+            most: 1.0,
+            unmixed: along * self.cosine > (self.sine + ROUNDING) * farthest,
+        }))
+    }
+
+    /// As `OneLight::body_of_lamp`, whichever face it is.
+    ///
+    /// Of a face that lies partly in the dark the cosines at the corners, P of the light and S of the dark, differ by no
+    /// more than d, what normals and light turn by: P ≤ d, and what is off at the clamp, PS / (P + S), is no more than d/4.
+    fn in_light(&self, light: &Falling) -> Share {
+        let Falling { brightness, first, second, turn, most, unmixed } = *light;
+        let differ = self.spread + turn;
+        let lit = most * self.shortening;
+        let matt = if unmixed { lit } else { lit.max(differ * (self.shortening + 0.25)) };
+        let curvature =
+            2.0 * self.spread * (brightness * turn + first) + brightness * turn * turn + 2.0 * first * turn + second;
+        Share {
+            unmixed: CURVATURE * curvature + brightness * lit,
+            off: CURVATURE * curvature + brightness * matt,
+            range: brightness * differ + first,
+            brightest: brightness * most,
+        }
+    }
+}
+
+/// A light's intensity on each channel, as much of it as a body gives back; of one channel the first.
+fn strengths_of(answer: &Answer, intensity: f32, channels: [f32; 3], in_color: bool) -> [f32; 3] {
+    if !in_color {
+        return [intensity.abs(), 0.0, 0.0];
+    }
+    let mut of = [0.0; 3];
+    for ((of, channel), color) in of.iter_mut().zip(channels).zip(answer.color) {
+        *of = channel.abs() * color.abs() as f32;
+    }
+    of
+}
