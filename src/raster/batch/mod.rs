@@ -7,12 +7,12 @@
 //! | stage | lanes | what |
 //! |---|---|---|
 //! | `sieve` | triangles | which have a pixel centre in their box, and if that is tiny in themselves; which of these are small |
-//! | `rows` | triangles, or rows of one | of eight small ones at a time edges, shade plane and rows, as a list of spans; of one up to 256 pixels a side eight rows at a time |
+//! | `rows` | triangles, or rows of one | of eight small ones at a time edges, shade plane and rows, as a list of spans; of a larger one eight rows at a time |
 //! | [`Kernel::fill_list`](crate::span::Kernel::fill_list) | pixels | the bytes |
 //!
 //! With AVX-512 and without a depth buffer larger ones need no list: their rows go to the pixels eight at a time.
 //!
-//! What is larger still, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
+//! What is larger than 2¹⁸ pixels, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
 //! when its turn comes. The bytes are those of a call of it for each triangle in turn.
 
 use super::Shading;

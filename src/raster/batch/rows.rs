@@ -10,9 +10,11 @@
 //!
 //! where what is rounded lies at least 1/(2d) from the middle between two whole numbers. The reciprocal and the
 //! product are each off by at most one part in 2⁵³: for a shade, below 2¹⁶, by 2⁻³⁶ together. A box of at most
-//! 256 × 256 pixels is 2¹⁶ units a side, so twice the area is at most 2³², and the margin at least 2⁻³³. A column is
-//! below 2⁹, its divisor at most 2²⁴. (n + ½ − d/2 is exact: a multiple of ½ whose terms are below 2⁵⁰.) A step has any
-//! size, but below 2⁴¹ / d, so it is off by less than 2⁻¹¹ / d. The whole number is found by adding 1.5 · 2⁵², which
+//! 2¹⁸ pixels has 2³⁴ square units, and twice the area is no more, so the margin is at least 2⁻³⁵. A column is below 2¹⁰,
+//! its divisor at most 2²⁸: margin 2⁻²⁹, off by 2⁻⁴². (n + ½ − d/2 is exact: a multiple of ½ below 2⁵². A gradient's
+//! numerator is below 2¹⁶ times the box's height or width, so each of the terms of n, and n at any pixel of the
+//! triangle, is below 2⁵⁰; and no more than three are ever in a sum.) A step has any size, but below 2⁴⁴ / d, so it is
+//! off by less than 2⁻⁸ / d. The whole number is found by adding 1.5 · 2⁵², which
 //! leaves it in the low bits. So there is no correction, no branch, and the same result on every processor.
 //!
 //! Left and right are the lesser and the greater of two edges: where the long edge and a short one meet a row, one
@@ -31,10 +33,13 @@ use crate::span::list::{Depths, Listed};
 pub(super) const MOST_COLUMNS: i32 = 64;
 /// The highest.
 pub(super) const MOST_ROWS: i32 = 16;
-/// The longest side of a tall triangle's box, in 1/256 pixel.
-pub(super) const MOST_UNITS: i32 = 256 * 256;
+/// The widest that a tall triangle's box is, in 1/256 pixel, and the highest.
+pub(super) const MOST_ACROSS: i32 = 1_024 * 256;
+pub(super) const MOST_DOWN: i32 = 4_096 * 256;
+/// The most squares of four pixels a side that the box has, sides rounded up: 2³⁴ units.
+pub(super) const MOST_SQUARES: i32 = 1 << 14;
 /// Pieces of a row, each of which starts anew.
-pub(super) const MOST_PIECES: usize = MOST_UNITS as usize / 256 / RESEED as usize;
+pub(super) const MOST_PIECES: usize = MOST_ACROSS as usize / 256 / RESEED as usize;
 /// Triangles at a time, or rows of one.
 pub(super) const LANES: usize = 8;
 /// 1.5 · 2⁵².
@@ -42,7 +47,8 @@ pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
 
 /// Room for the spans of a group, and for eight rows of a tall triangle. All is cleared for every batch: more room costs
 /// more than it saves.
-const ROOM: usize = LANES * MOST_ROWS as usize + LANES * MOST_PIECES;
+const ROOM: usize = LANES * MOST_ROWS as usize + 32;
+const _: () = assert!(LANES * MOST_PIECES <= ROOM);
 
 /// Room for the depths of as many spans.
 pub(super) const DEPTHS: [Depths; ROOM + 1] = [Depths { at: 0, z: 0, dz: 0 }; ROOM + 1];
@@ -298,7 +304,7 @@ pub(super) fn set_up<const TALL: bool>(gathered: &Gathered, place: Place, group:
         (left_columns[i], top_rows[i]) = (column, row);
         columns[i] = ((high_x + 127) >> 8) - column;
         at[i] = (row - first_row) * pitch + column;
-        // From the first pixel's centre, within ±2¹⁷.
+        // From the first pixel's centre, within ±2²⁰.
         let (left, top) = (column * 256 + 128, row * 256 + 128);
         let (ax, ay) = (x[0][i] - left, y[0][i] - top);
         let (bx, by) = (x[1][i] - left, y[1][i] - top);
@@ -512,14 +518,18 @@ pub(super) fn tall_by(
             let mut plane = None;
             // A row that does not start anew is one piece, however long.
             let (pieces, longest) = match batch.shading[number] {
-                // At most 256 pixels.
+                // At most 1,024 pixels.
                 Shading::GouraudReseeded => {
                     ((spans.group.columns[i] - 1) as usize / RESEED as usize + 1, RESEED as u32)
                 }
-                _ => (1, MOST_UNITS as u32),
+                _ => (1, MOST_ACROSS as u32),
             };
             let pieces = pieces.clamp(1, MOST_PIECES);
             for first in (0..spans.group.rows[i]).step_by(LANES) {
+                if spans.count + LANES * pieces > ROOM {
+                    draw(spans);
+                    spans.clear();
+                }
                 let Spans { spans: list, depths, count, covered, group, .. } = &mut *spans;
                 lines(
                     group,
@@ -532,7 +542,7 @@ pub(super) fn tall_by(
                 );
                 let (before, mut end) = (*count, *count);
                 for j in 0..LANES.min((group.rows[i] - first) as usize) {
-                    // All are non-negative, and a length is at most 256.
+                    // All are non-negative, and a length is at most 1,024.
                     let (mut at, mut left) = (found.at[j] as u32, found.length[j] as u32);
                     *covered += left;
                     for paint in &found.paint {
@@ -552,10 +562,6 @@ pub(super) fn tall_by(
                 if let Some(width) = place.depth_width.filter(|_| end > before) {
                     let plane = plane.get_or_insert_with(|| batch.depth_plane(number));
                     group.depths(i, plane, place, width, &list[before..end], &mut depths[before..end]);
-                }
-                if end + LANES * MOST_PIECES > ROOM {
-                    draw(spans);
-                    spans.clear();
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The sieve: which triangles of a batch may cover a pixel.
 
 use super::Batch;
-use super::rows::{Ints, LANES, MOST_COLUMNS, MOST_ROWS, MOST_UNITS};
+use super::rows::{Ints, LANES, MOST_ACROSS, MOST_COLUMNS, MOST_DOWN, MOST_ROWS, MOST_SQUARES};
 use crate::raster::frame::Rect;
 
 /// What becomes of a triangle that has a pixel centre in its box.
@@ -112,7 +112,10 @@ pub(super) fn sieve_by(
             let covers = (column.max(left) < end_column.min(right)) & (row.max(top) < end_row.min(bottom));
             let inside = (column >= left) & (end_column <= right) & (row >= top) & (end_row <= bottom);
             let few = (end_column - column <= MOST_COLUMNS) & (end_row - row <= MOST_ROWS);
-            let more = (high_x - low_x <= MOST_UNITS) & (high_y - low_y <= MOST_UNITS);
+            // Differences are at most 2²¹.
+            let (across, down) = (high_x - low_x, high_y - low_y);
+            let squares = ((across + 1_023) >> 10).wrapping_mul((down + 1_023) >> 10);
+            let more = (across <= MOST_ACROSS) & (down <= MOST_DOWN) & (squares <= MOST_SQUARES);
             let tiny = (end_column - column <= MOST_LOOKED_AT) & (end_row - row <= MOST_LOOKED_AT);
             let number = first + i as i32; // below 128
             let kind = 3 - i32::from(inside & more) - i32::from(inside & few);
