@@ -32,7 +32,8 @@ mod sieve;
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86;
 
-use rows::{DEPTHS, Draw, Group, Place, Spans};
+use crate::raster::shade::RESEED;
+use rows::{DEPTHS, Draw, MOST_PIECES, Place, Spans};
 use sieve::{Chosen, Kept, Kind};
 
 /// Triangles to be drawn one after the other, in arrays.
@@ -126,6 +127,17 @@ impl Batch {
         DepthPlane::of_corners([0, 1, 2].map(|corner| (self.x[corner][at], self.y[corner][at], self.depth[corner][at])))
     }
 
+    /// The most pieces that start anew in a row of a tall triangle.
+    fn pieces(&self, at: usize) -> usize {
+        if self.shading[at] != Shading::GouraudReseeded {
+            return 1;
+        }
+        let [a, b, c] = self.x.each_ref().map(|x| x[at]);
+        // As in `sieve`; at most 1,024 pixels.
+        let columns = ((a.max(b).max(c) + 127) >> 8) - ((a.min(b).min(c) + 127) >> 8);
+        ((columns - 1) as usize / RESEED as usize + 1).clamp(1, MOST_PIECES)
+    }
+
     /// A triangle as it was put in, but that the vertices of a flat one have its shade.
     fn triangle(&self, at: usize) -> ([Vertex; 3], Shading) {
         let vertex = |corner: usize| {
@@ -174,11 +186,37 @@ impl<D: Cell> Raster<'_, D> {
         (stages.sieve)(batch, self.clip, &mut kept);
         let depth_width = self.depth.is_some().then_some(width);
         let place = Place { first_row: rows.start, pitch: pitch as u32, depth_width };
+        if let Some(at_once) = stages.at_once
+            && self.depth.as_mut().is_none_or(|depth| D::as_u32(depth.values_mut()).is_some())
+        {
+            return self.draw_at_once::<CLIPS>(batch, at_once, &kept, place);
+        }
         if depth_width.is_some() {
             self.draw_kept::<CLIPS>(batch, &stages, &kept, place, Spans::new(&mut { DEPTHS }))
         } else {
             self.draw_kept::<CLIPS>(batch, &stages, &kept, place, Spans::new(&mut []))
         }
+    }
+
+    /// Draws what the sieve has kept, small and tall triangles together.
+    fn draw_at_once<const CLIPS: bool>(&mut self, batch: &Batch, at_once: AtOnce, kept: &Kept, place: Place) -> Drawn {
+        let mut drawn = Drawn::default();
+        let mut left = kept.triangles();
+        while let Some(first) = left.first() {
+            let together = Chosen::in_batch(left);
+            if together == 0 {
+                drawn += self.one_of::<CLIPS>(batch, first.number());
+                left = &left[1..];
+                continue;
+            }
+            let (pixels, _) = self.frame.pixels_mut();
+            // As in `fill`.
+            let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+            let cells = depth.and_then(|depth| D::as_u32(depth.values_mut()));
+            drawn += at_once(batch, &left[..together], place, pixels, cells);
+            left = &left[together..];
+        }
+        drawn
     }
 
     /// Draws what the sieve has kept.
@@ -200,13 +238,6 @@ impl<D: Cell> Raster<'_, D> {
                 continue;
             }
             let alike = Chosen::alike(left);
-            if kind == Kind::Tall
-                && let (None, Some(tall)) = (&self.depth, stages.tall_at_once)
-            {
-                drawn += tall(batch, &left[..alike], place, &mut spans.group, self.frame.pixels_mut().0);
-                left = &left[alike..];
-                continue;
-            }
             if kind == Kind::Tall {
                 (stages.tall)(batch, &left[..alike], place, &mut spans, &mut |spans| self.fill(spans, &mut drawn));
                 left = &left[alike..];
@@ -253,25 +284,24 @@ struct Stages {
     sieve: fn(&Batch, super::frame::Rect, &mut Kept),
     rows: fn(&Batch, &[Chosen], Place, &mut Spans<'_>) -> usize,
     tall: fn(&Batch, &[Chosen], Place, &mut Spans<'_>, Draw<'_>),
-    /// The same without a depth buffer.
-    tall_at_once: Option<TallAtOnce>,
+    /// In place of both, with cells of 32 bits if there is a depth buffer.
+    at_once: Option<AtOnce>,
 }
 
-/// Draws tall triangles into pixels.
-type TallAtOnce = fn(&Batch, &[Chosen], Place, &mut Group, &mut [u8]) -> Drawn;
+/// Draws small and tall triangles into pixels, and where they are nearer than cells, if there are any.
+type AtOnce = fn(&Batch, &[Chosen], Place, &mut [u8], Option<&mut [u32]>) -> Drawn;
 
 impl Stages {
     fn of(kernel: Kernel) -> Self {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
-            let stages = Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, tall_at_once: None };
+            let stages = Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, at_once: None };
             if kernel.has_avx512() {
-                let tall_at_once = Some(x86::tall_at_once as TallAtOnce);
-                return Self { sieve: x86::sieve_512, rows: x86::rows_512, tall_at_once, ..stages };
+                return Self { sieve: x86::sieve_512, at_once: Some(x86::at_once), ..stages };
             }
             return stages;
         }
         let _ = kernel;
-        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall, tall_at_once: None }
+        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall, at_once: None }
     }
 }

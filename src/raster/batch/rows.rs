@@ -72,22 +72,7 @@ impl<'a> Spans<'a> {
             count: 0,
             covered: 0,
             depths,
-            group: Group {
-                column: [0; LANES],
-                row: [0; LANES],
-                at: [0; LANES],
-                rows: [0; LANES],
-                columns: [0; LANES],
-                long: NO_EDGES,
-                upper: NO_EDGES,
-                lower: NO_EDGES,
-                split: [0; LANES],
-                n: [0.0; LANES],
-                per_row: [0.0; LANES],
-                per_column: [0.0; LANES],
-                inverse: [0.0; LANES],
-                step: [0; LANES],
-            },
+            group: Group::NONE,
             table: [const { Row { at: [0; LANES], length: [0; LANES], paint: [0; LANES] } }; MOST_ROWS as usize],
         }
     }
@@ -142,8 +127,6 @@ pub(super) struct Group {
     pub(super) row: Ints,
     pub(super) at: Ints,
     pub(super) rows: Ints,
-    /// Of the box.
-    pub(super) columns: Ints,
     pub(super) long: Edges,
     pub(super) upper: Edges,
     pub(super) lower: Edges,
@@ -159,6 +142,22 @@ pub(super) struct Group {
 }
 
 impl Group {
+    pub(super) const NONE: Self = Self {
+        column: [0; LANES],
+        row: [0; LANES],
+        at: [0; LANES],
+        rows: [0; LANES],
+        long: NO_EDGES,
+        upper: NO_EDGES,
+        lower: NO_EDGES,
+        split: [0; LANES],
+        n: [0.0; LANES],
+        per_row: [0.0; LANES],
+        per_column: [0.0; LANES],
+        inverse: [0.0; LANES],
+        step: [0; LANES],
+    };
+
     /// The depths of spans of a triangle, which hold the numbers of their rows.
     #[inline(always)]
     fn depths(
@@ -282,7 +281,6 @@ pub(super) fn set_up<const TALL: bool>(gathered: &Gathered, place: Place, group:
     let Group {
         column: left_columns,
         row: top_rows,
-        columns,
         at,
         rows,
         long,
@@ -299,10 +297,9 @@ pub(super) fn set_up<const TALL: bool>(gathered: &Gathered, place: Place, group:
     let (pitch, first_row) = (place.pitch as i32, place.first_row as i32);
     for i in 0..LANES {
         let (low_x, low_y) = (x[0][i].min(x[1][i]).min(x[2][i]), y[0][i].min(y[1][i]).min(y[2][i]));
-        let (high_x, high_y) = (x[0][i].max(x[1][i]).max(x[2][i]), y[0][i].max(y[1][i]).max(y[2][i]));
+        let high_y = y[0][i].max(y[1][i]).max(y[2][i]);
         let (column, row) = ((low_x + 127) >> 8, (low_y + 127) >> 8);
         (left_columns[i], top_rows[i]) = (column, row);
-        columns[i] = ((high_x + 127) >> 8) - column;
         at[i] = (row - first_row) * pitch + column;
         // From the first pixel's centre, within ±2²⁰.
         let (left, top) = (column * 256 + 128, row * 256 + 128);
@@ -517,14 +514,11 @@ pub(super) fn tall_by(
             // Of a triangle without area, which has no spans, there is none.
             let mut plane = None;
             // A row that does not start anew is one piece, however long.
-            let (pieces, longest) = match batch.shading[number] {
-                // At most 1,024 pixels.
-                Shading::GouraudReseeded => {
-                    ((spans.group.columns[i] - 1) as usize / RESEED as usize + 1, RESEED as u32)
-                }
-                _ => (1, MOST_ACROSS as u32),
+            let longest = match batch.shading[number] {
+                Shading::GouraudReseeded => RESEED as u32,
+                _ => MOST_ACROSS as u32,
             };
-            let pieces = pieces.clamp(1, MOST_PIECES);
+            let pieces = batch.pieces(number);
             for first in (0..spans.group.rows[i]).step_by(LANES) {
                 if spans.count + LANES * pieces > ROOM {
                     draw(spans);
@@ -545,7 +539,7 @@ pub(super) fn tall_by(
                     // All are non-negative, and a length is at most 1,024.
                     let (mut at, mut left) = (found.at[j] as u32, found.length[j] as u32);
                     *covered += left;
-                    for paint in &found.paint {
+                    for paint in &found.paint[..pieces] {
                         if left == 0 {
                             break;
                         }

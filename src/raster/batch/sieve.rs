@@ -35,6 +35,16 @@ impl Chosen {
         }
     }
 
+    /// How many of those kept, from the first on, are small or tall.
+    #[inline(always)]
+    pub(super) fn in_batch(kept: &[Self]) -> usize {
+        // Eight at a time, as in `alike`. Only another's two lowest bits above the number are both set.
+        let is_other = |chosen: &Self| chosen.0 & chosen.0 >> 1 & 1 << 8;
+        let none = |eight: &&[Self; LANES]| eight.iter().fold(0, |any, chosen| any | is_other(chosen)) == 0;
+        let whole = kept.as_chunks::<LANES>().0.iter().take_while(none).count() * LANES;
+        whole + kept[whole..].iter().take_while(|chosen| is_other(chosen) == 0).count()
+    }
+
     /// How many of those kept, from the first on, become the same.
     #[inline(always)]
     pub(super) fn alike(kept: &[Self]) -> usize {

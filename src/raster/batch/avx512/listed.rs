@@ -1,0 +1,475 @@
+//! The rows of triangles as a list in arrays, eight rows at a time, and the list to pixels.
+//!
+//! What `rows::list` does row by row is done here for eight rows of a triangle at once, and what is no row is squeezed
+//! out of the vectors: no branch asks how many rows there are but one for every eight. The loop over the list draws sixteen
+//! pixels a turn and reads nothing but the list.
+
+use core::arch::asm;
+use core::mem::{MaybeUninit, offset_of};
+
+use super::super::depths::Planes;
+use super::super::rows::{Edges, Group, LANES, MAGIC, MOST_ACROSS, Place};
+use crate::raster::shade::RESEED;
+
+/// Spans at most.
+const ROOM: usize = 128;
+
+/// What the assembly reads and writes.
+#[repr(C, align(64))]
+pub(in super::super) struct Spans {
+    // Of each span; eight are written at a time, and those that are none are written over.
+    at: MaybeUninit<[u32; ROOM + LANES]>,
+    cell: MaybeUninit<[u32; ROOM + LANES]>,
+    length: MaybeUninit<[u32; ROOM + LANES]>,
+    /// Shade, and above it the step.
+    paint: MaybeUninit<[u32; ROOM + LANES]>,
+    z: MaybeUninit<[i64; ROOM + LANES]>,
+    dz: MaybeUninit<[i64; ROOM + LANES]>,
+    /// Pixels of all spans there have been, in eight parts.
+    covered: [u32; LANES],
+    count: usize,
+    /// Spans that have been drawn.
+    drawn: u32,
+    /// Pixels that were nearer.
+    nearer: u32,
+    /// How many pixels and cells there are.
+    pixels: u32,
+    cells: u32,
+    pitch: u32,
+    width: u32,
+    /// Pixels to the left of what is listed, in each row, ...
+    skipped: f64,
+    /// ... and the most that a span has.
+    longest: u32,
+    first_row: u32,
+}
+
+#[repr(C, align(64))]
+struct Constants {
+    /// 0: the number of each even pixel of 64.
+    even: [u16; 32],
+    /// 64: numbers.
+    numbers: [u64; LANES],
+    /// 128: the numbers of the lower halves of sixteen lanes of two vectors.
+    lower: [u32; 16],
+    /// 192
+    rows: [u32; LANES],
+    /// 224
+    magic: f64,
+    /// 232: the odd bytes of two lanes.
+    odd_bytes: u32,
+}
+
+static CONSTANTS: Constants = Constants {
+    even: {
+        let mut even = [0; 32];
+        let mut j = 0;
+        while j < 32 {
+            even[j as usize] = 2 * j;
+            j += 1;
+        }
+        even
+    },
+    numbers: [0, 1, 2, 3, 4, 5, 6, 7],
+    lower: [0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30],
+    rows: [0, 1, 2, 3, 4, 5, 6, 7],
+    magic: MAGIC,
+    odd_bytes: 0xFF00_FF00,
+};
+
+impl Spans {
+    #[inline(always)]
+    pub(in super::super) fn new(place: Place) -> Self {
+        Self {
+            at: MaybeUninit::uninit(),
+            cell: MaybeUninit::uninit(),
+            length: MaybeUninit::uninit(),
+            paint: MaybeUninit::uninit(),
+            z: MaybeUninit::uninit(),
+            dz: MaybeUninit::uninit(),
+            covered: [0; LANES],
+            count: 0,
+            drawn: 0,
+            nearer: 0,
+            pixels: 0,
+            cells: 0,
+            pitch: place.pitch,
+            width: place.depth_width.unwrap_or(0),
+            skipped: 0.0,
+            longest: 0,
+            first_row: place.first_row,
+        }
+    }
+
+    /// Spans, pixels that they cover, and those that were nearer, of all that was drawn.
+    pub(in super::super) fn counts(&self) -> (u32, u32, u32) {
+        (self.drawn, self.covered.iter().sum(), self.nearer)
+    }
+
+    /// Lists all rows of triangle `i` of a group, and draws whenever there is no room left. Where a row may have more than
+    /// one of the pieces that start anew, a span is one of these. `pixels` and `cells` are always the same. Without
+    /// `planes` there is no depth test, and no row of more than 64 pixels.
+    ///
+    /// # Safety
+    /// Only for a processor for which `span::simd::avx512::found` is true.
+    #[inline(always)]
+    pub(in super::super) unsafe fn add(
+        &mut self,
+        group: &Group,
+        i: usize,
+        pieces: usize,
+        planes: Option<&Planes>,
+        (pixels, cells): (&mut [u8], &mut [u32]),
+    ) {
+        // Offsets beyond are never those of a frame.
+        let most = |length: usize| length.min(1 << 31) as u32;
+        (self.pixels, self.cells) = (most(pixels.len()), most(cells.len()));
+        // A column and a row are below 4,096.
+        let cell = (group.row[i] - self.first_row as i32) * self.width as i32 + group.column[i];
+        self.longest = if pieces > 1 || planes.is_none() { RESEED as u32 } else { MOST_ACROSS as u32 / 256 };
+        let mut first = 0;
+        while first < group.rows[i] {
+            for piece in 0..pieces {
+                if self.count + LANES > ROOM {
+                    // SAFETY: by the caller's promise.
+                    unsafe { self.draw(planes.is_some(), pixels, cells) };
+                }
+                // At most 16 pieces.
+                self.skipped = f64::from(piece as u32 * RESEED as u32);
+                // SAFETY: by the caller's promise; there is room for eight.
+                unsafe { self.list(group, i, first, cell, planes) };
+            }
+            first += LANES as i32;
+        }
+    }
+
+    /// Lists up to eight rows from number `first` on, of each up to `longest` pixels after the first `skipped`.
+    ///
+    /// # Safety
+    /// Only for a processor for which `span::simd::avx512::found` is true; `i` is below 8, and there is room for eight.
+    #[inline(always)]
+    unsafe fn list(&mut self, group: &Group, i: usize, first: i32, cell: i32, planes: Option<&Planes>) {
+        // As for a pointer that is not read.
+        let planes = planes.map_or(core::ptr::null(), |planes| (&raw const *planes).cast::<u8>());
+        // SAFETY: the caller has AVX-512 F, DQ and VL and POPCNT found. Read are `group`, `planes` and `CONSTANTS` at the
+        // offsets of their fields, of those that hold eight numbers number `i`, which is below 8. Written are eight numbers
+        // from number `count` on, and so below `ROOM + LANES`. Without `planes` nothing is read of them. The stack is not
+        // used; flags and all registers written are given up.
+        unsafe {
+            asm!(
+                "vpbroadcastd ymm26, {first:e}",
+                "vpaddd     ymm26, ymm26, [{c} + 192]",                     // rows
+                "vbroadcastsd zmm31, qword ptr [{c} + 224]",                // magic
+                "vcvtdq2pd  zmm16, ymm26",                                  // j
+                "vbroadcastsd zmm17, qword ptr [{g8} + {LONG} + {PER_ROW}]",
+                "vbroadcastsd zmm18, qword ptr [{g8} + {UPPER} + {PER_ROW}]",
+                "vbroadcastsd zmm19, qword ptr [{g8} + {LOWER} + {PER_ROW}]",
+                "vbroadcastsd zmm20, qword ptr [{g8} + {SHADE_PER_ROW}]",
+                "vpcmpd     k1, ymm26, dword ptr [{g4} + {SPLIT}]{{1to8}}, 5", // not less
+                "vfmadd213pd zmm17, zmm16, qword ptr [{g8} + {LONG} + {N}]{{1to8}}",
+                "vfmadd213pd zmm18, zmm16, qword ptr [{g8} + {UPPER} + {N}]{{1to8}}",
+                "vfmadd213pd zmm19, zmm16, qword ptr [{g8} + {LOWER} + {N}]{{1to8}}",
+                "vfmadd213pd zmm20, zmm16, qword ptr [{g8} + {SHADE_N}]{{1to8}}",
+                "vpcmpd     k2, ymm26, dword ptr [{g4} + {ROWS}]{{1to8}}, 1", // less
+                "vfmadd132pd zmm17, zmm31, qword ptr [{g8} + {LONG} + {INVERSE}]{{1to8}}",
+                "vfmadd132pd zmm18, zmm31, qword ptr [{g8} + {UPPER} + {INVERSE}]{{1to8}}",
+                "vfmadd132pd zmm19, zmm31, qword ptr [{g8} + {LOWER} + {INVERSE}]{{1to8}}",
+                "vpmulld    ymm22, ymm26, dword ptr [{l} + {PITCH}]{{1to8}}",
+                "vmovapd    zmm18{{k1}}, zmm19",                            // short
+                "vminpd     zmm19, zmm17, zmm18",                           // left
+                "vmaxpd     zmm17, zmm17, zmm18",                           // right
+                "vaddpd     zmm19, zmm19, qword ptr [{l} + {SKIPPED}]{{1to8}}",
+                "vpaddd     ymm22, ymm22, dword ptr [{g4} + {AT}]{{1to8}}",
+                "vpsubq     zmm17, zmm17, zmm19",
+                "vsubpd     zmm18, zmm19, zmm31",                           // column
+                "vpsubq     zmm21, zmm19, zmm31",                           // the same as a whole number
+                "vpmovqd    ymm17, zmm17",
+                "vpmovqd    ymm19, zmm21",
+                "vpxord     ymm23, ymm23, ymm23",
+                "vpminsd    ymm17, ymm17, dword ptr [{l} + {LONGEST}]{{1to8}}", // length
+                "vfmadd132pd zmm18, zmm20, qword ptr [{g8} + {PER_COLUMN}]{{1to8}}",
+                "vpaddd     ymm22, ymm22, ymm19",                           // at
+                "vpcmpd     k2{{k2}}, ymm17, ymm23, 6",                     // greater
+                "vpbroadcastd ymm23, dword ptr [{l} + {PIXELS}]",
+                "vpcmpud    k2{{k2}}, ymm17, ymm23, 2",                     // not greater
+                "vpsubd     ymm23, ymm23, ymm17",
+                "vpcmpud    k2{{k2}}, ymm22, ymm23, 2",
+                "vfmadd132pd zmm18, zmm31, qword ptr [{g8} + {SHADE_INVERSE}]{{1to8}}",
+                "vpmovqw    xmm18, zmm18",
+                "vpmovzxwd  ymm18, xmm18",
+                "vpord      ymm18, ymm18, dword ptr [{g4} + {STEP}]{{1to8}}",
+                "test       {p8}, {p8}",
+                "jz         2f",
+                // Depths.
+                "vpmulld    ymm24, ymm26, dword ptr [{l} + {WIDTH}]{{1to8}}",
+                "vpbroadcastd ymm25, {cell:e}",
+                "vpaddd     ymm19, ymm19, ymm25",
+                "vpaddd     ymm24, ymm24, ymm19",                           // cell
+                "vpbroadcastd ymm23, dword ptr [{l} + {CELLS}]",
+                "vpcmpud    k2{{k2}}, ymm17, ymm23, 2",
+                "vpsubd     ymm23, ymm23, ymm17",
+                "vpcmpud    k2{{k2}}, ymm24, ymm23, 2",
+                "vpmovsxdq  zmm26, ymm26",
+                "vpbroadcastq zmm25, qword ptr [{p8} + {DEPTH_PER_COLUMN}]",
+                "vpmullq    zmm26, zmm26, qword ptr [{p8} + {DEPTH_PER_ROW}]{{1to8}}",
+                "vpmullq    zmm21, zmm21, zmm25",
+                "vpaddq     zmm26, zmm26, qword ptr [{p8} + {DEPTH}]{{1to8}}",
+                "vpaddq     zmm21, zmm21, zmm26",
+                "vpcompressd ymm24{{k2}}{{z}}, ymm24",
+                "vpcompressq zmm21{{k2}}{{z}}, zmm21",
+                "vmovdqu32  [{l} + 4*{count} + {CELL}], ymm24",
+                "vmovdqu64  [{l} + 8*{count} + {Z}], zmm21",
+                "vmovdqu64  [{l} + 8*{count} + {DZ}], zmm25",
+                "2:",
+                "vpcompressd ymm22{{k2}}{{z}}, ymm22",
+                "vpcompressd ymm17{{k2}}{{z}}, ymm17",
+                "vpcompressd ymm18{{k2}}{{z}}, ymm18",
+                "vmovdqu32  [{l} + 4*{count} + {LIST_AT}], ymm22",
+                "vmovdqu32  [{l} + 4*{count} + {LENGTH}], ymm17",
+                "vmovdqu32  [{l} + 4*{count} + {PAINT}], ymm18",
+                "vpaddd     ymm17, ymm17, [{l} + {COVERED}]",
+                "vmovdqu32  [{l} + {COVERED}], ymm17",
+                "kmovb      {cell:e}, k2",
+                "popcnt     {cell:e}, {cell:e}",
+                "add        {count}, {cell}",
+                g8 = in(reg) (&raw const *group).cast::<u8>().wrapping_add(8 * i),
+                g4 = in(reg) (&raw const *group).cast::<u8>().wrapping_add(4 * i),
+                p8 = in(reg) if planes.is_null() { planes } else { planes.wrapping_add(8 * i) },
+                l = in(reg) &raw mut *self,
+                c = in(reg) &raw const CONSTANTS,
+                first = in(reg) first,
+                cell = inout(reg) i64::from(cell) => _,
+                count = inout(reg) self.count,
+                LONG = const offset_of!(Group, long),
+                UPPER = const offset_of!(Group, upper),
+                LOWER = const offset_of!(Group, lower),
+                N = const offset_of!(Edges, n),
+                PER_ROW = const offset_of!(Edges, per_row),
+                INVERSE = const offset_of!(Edges, inverse),
+                SHADE_N = const offset_of!(Group, n),
+                SHADE_PER_ROW = const offset_of!(Group, per_row),
+                SHADE_INVERSE = const offset_of!(Group, inverse),
+                PER_COLUMN = const offset_of!(Group, per_column),
+                SPLIT = const offset_of!(Group, split),
+                ROWS = const offset_of!(Group, rows),
+                AT = const offset_of!(Group, at),
+                STEP = const offset_of!(Group, step),
+                DEPTH = const offset_of!(Planes, at),
+                DEPTH_PER_COLUMN = const offset_of!(Planes, per_column),
+                DEPTH_PER_ROW = const offset_of!(Planes, per_row),
+                LIST_AT = const offset_of!(Self, at),
+                CELL = const offset_of!(Self, cell),
+                LENGTH = const offset_of!(Self, length),
+                PAINT = const offset_of!(Self, paint),
+                Z = const offset_of!(Self, z),
+                DZ = const offset_of!(Self, dz),
+                COVERED = const offset_of!(Self, covered),
+                PIXELS = const offset_of!(Self, pixels),
+                CELLS = const offset_of!(Self, cells),
+                PITCH = const offset_of!(Self, pitch),
+                WIDTH = const offset_of!(Self, width),
+                SKIPPED = const offset_of!(Self, skipped),
+                LONGEST = const offset_of!(Self, longest),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
+                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm31") _,
+                out("k1") _, out("k2") _,
+                options(nostack),
+            );
+        }
+    }
+
+    /// Draws what is listed, and empties the list.
+    ///
+    /// # Safety
+    /// As for `add`; `pixels` and `cells` are those of which it was told.
+    #[inline(always)]
+    pub(in super::super) unsafe fn draw(&mut self, with_depths: bool, pixels: &mut [u8], cells: &mut [u32]) {
+        debug_assert!(self.pixels as usize <= pixels.len() && self.cells as usize <= cells.len());
+        if self.count == 0 {
+            return;
+        }
+        // SAFETY: by the caller's promise; there is a span.
+        unsafe {
+            if with_depths {
+                self.draw_nearer(pixels.as_mut_ptr(), cells.as_mut_ptr());
+            } else {
+                self.draw_all(pixels.as_mut_ptr());
+            }
+        }
+        // At most 2⁷ at a time; the sum is meant modulo 2³², as `Drawn`.
+        self.drawn = self.drawn.wrapping_add(self.count as u32);
+        self.count = 0;
+    }
+
+    /// # Safety
+    /// As for `draw`; there is a span, and of each at most 64 pixels.
+    #[inline(always)]
+    unsafe fn draw_all(&self, pixels: *mut u8) {
+        // SAFETY: the caller has AVX-512 F, BW, DQ, VL and BMI2 found. Read are the first `count` numbers of the list, which
+        // `list` has written, and `CONSTANTS`. Written are, by masks, of each span `length` pixels from number `at` on,
+        // all of which lie inside the pixels: `list` keeps no others. The stack is not used; flags and all registers
+        // written are given up.
+        unsafe {
+            asm!(
+                "vmovdqa64  zmm22, [{c}]",                                  // even
+                ".p2align   5",
+                "2:",
+                "mov        {at:e}, [{l} + 4*{k} + {AT}]",
+                "mov        {length:e}, [{l} + 4*{k} + {LENGTH}]",
+                "add        {at}, {pixels}",
+                "cmp        {length:e}, 16",
+                "ja         3f",
+                "vpbroadcastw xmm16, word ptr [{l} + 4*{k} + {PAINT} + 2]", // step
+                "vpbroadcastw xmm17, word ptr [{l} + 4*{k} + {PAINT}]",
+                "bzhi       {length:e}, {ones:e}, {length:e}",
+                "vpmullw    xmm18, xmm16, xmm22",
+                "vpaddw     xmm18, xmm18, xmm17",                           // even
+                "kmovd      k1, {length:e}",
+                "vpaddw     xmm19, xmm18, xmm16",                           // odd
+                "vpsrlw     xmm18, xmm18, 8",
+                "vpternlogd xmm18, xmm19, dword ptr [{c} + 232]{{1to4}}, 0xF8", // even >> 8 | odd & 0xFF00
+                "vmovdqu8   [{at}]{{k1}}, xmm18",
+                "inc        {k}",
+                "cmp        {k}, {count}",
+                "jb         2b",
+                "jmp        4f",
+                "3:",
+                "vpbroadcastw zmm16, word ptr [{l} + 4*{k} + {PAINT} + 2]",
+                "vpbroadcastw zmm17, word ptr [{l} + 4*{k} + {PAINT}]",
+                "bzhi       {length}, {ones}, {length}",
+                "vpmullw    zmm18, zmm16, zmm22",
+                "vpaddw     zmm18, zmm18, zmm17",
+                "kmovq      k1, {length}",
+                "vpaddw     zmm19, zmm18, zmm16",
+                "vpsrlw     zmm18, zmm18, 8",
+                "vpternlogd zmm18, zmm19, dword ptr [{c} + 232]{{1to16}}, 0xF8",
+                "vmovdqu8   [{at}]{{k1}}, zmm18",
+                "inc        {k}",
+                "cmp        {k}, {count}",
+                "jb         2b",
+                "4:",
+                l = in(reg) self,
+                c = in(reg) &raw const CONSTANTS,
+                pixels = in(reg) pixels,
+                count = in(reg) self.count,
+                k = inout(reg) 0_u64 => _,
+                ones = in(reg) u64::MAX,
+                at = out(reg) _,
+                length = out(reg) _,
+                AT = const offset_of!(Self, at),
+                LENGTH = const offset_of!(Self, length),
+                PAINT = const offset_of!(Self, paint),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm22") _, out("k1") _,
+                options(nostack),
+            );
+        }
+    }
+
+    /// # Safety
+    /// As for `draw`; there is a span.
+    #[inline(always)]
+    unsafe fn draw_nearer(&mut self, pixels: *mut u8, cells: *mut u32) {
+        let nearer: u64;
+        // SAFETY: the caller has AVX-512 F, BW, DQ, VL, BMI2 and POPCNT found. Read are the first `count` numbers of the list,
+        // which `list` has written, and `CONSTANTS`. Written are, in sixteens and by masks, of each span `length` pixels from
+        // number `at` on, and as many cells from number `cell` on, which are read before; all of these lie inside the
+        // pixels and cells: `list` keeps no others. The stack is not used; flags and all registers written are given up.
+        unsafe {
+            asm!(
+                "vmovdqa64  zmm29, [{c} + 64]",                             // numbers
+                "vmovdqa64  zmm30, [{c} + 128]",                            // lower
+                "vmovdqa64  xmm28, [{c}]",                                  // even
+                "vpbroadcastd xmm31, dword ptr [{c} + 232]",                // odd_bytes
+                ".p2align   5",
+                "2:",
+                "mov        {at:e}, [{l} + 4*{k} + {AT}]",
+                "mov        {cell:e}, [{l} + 4*{k} + {CELL}]",
+                "mov        {length:e}, [{l} + 4*{k} + {LENGTH}]",
+                "vpbroadcastq zmm16, qword ptr [{l} + 8*{k} + {DZ}]",
+                "vpbroadcastw xmm19, word ptr [{l} + 4*{k} + {PAINT}]",
+                "vpbroadcastw xmm20, word ptr [{l} + 4*{k} + {PAINT} + 2]", // step
+                "add        {at}, {pixels}",
+                "lea        {cell}, [{cells} + 4*{cell}]",
+                "vpmullq    zmm17, zmm16, zmm29",
+                "vpmullw    xmm21, xmm20, xmm28",
+                "vpsllq     zmm18, zmm16, 3",
+                "vpaddq     zmm17, zmm17, qword ptr [{l} + 8*{k} + {Z}]{{1to8}}",
+                "vpaddw     xmm21, xmm21, xmm19",                           // even
+                "vpaddw     xmm22, xmm21, xmm20",                           // odd
+                "vpaddq     zmm18, zmm18, zmm17",
+                "cmp        {length:e}, 16",
+                "ja         4f",
+                "3:",                                                       // the last 1 to 16
+                "bzhi       {length:e}, {ones:e}, {length:e}",
+                "kmovd      k1, {length:e}",
+                "vmovdqu32  zmm23{{k1}}{{z}}, [{cell}]",
+                "vpsrlq     zmm24, zmm17, 24",
+                "vpsrlq     zmm25, zmm18, 24",
+                "vpermt2d   zmm24, zmm30, zmm25",
+                "vpsrlw     xmm21, xmm21, 8",
+                "vpternlogd xmm21, xmm22, xmm31, 0xF8",                     // even >> 8 | odd & 0xFF00
+                "vpcmpud    k1{{k1}}, zmm24, zmm23, 6",                     // greater
+                "vmovdqu32  [{cell}]{{k1}}, zmm24",
+                "vmovdqu8   [{at}]{{k1}}, xmm21",
+                "kmovd      {length:e}, k1",
+                "popcnt     {length:e}, {length:e}",
+                "add        {nearer}, {length}",
+                "inc        {k}",
+                "cmp        {k}, {count}",
+                "jb         2b",
+                "jmp        6f",
+                "4:",
+                "vpsllq     zmm16, zmm16, 4",
+                "vpsllw     xmm20, xmm20, 4",
+                ".p2align   5",
+                "5:",                                                       // more than 16 are left
+                "vpsrlq     zmm24, zmm17, 24",
+                "vpsrlq     zmm25, zmm18, 24",
+                "vpermt2d   zmm24, zmm30, zmm25",
+                "vpsrlw     xmm26, xmm21, 8",
+                "vpternlogd xmm26, xmm22, xmm31, 0xF8",
+                "vpcmpud    k1, zmm24, [{cell}], 6",
+                "vmovdqu32  [{cell}]{{k1}}, zmm24",
+                "vmovdqu8   [{at}]{{k1}}, xmm26",
+                "vpaddq     zmm17, zmm17, zmm16",
+                "vpaddq     zmm18, zmm18, zmm16",
+                "vpaddw     xmm21, xmm21, xmm20",
+                "vpaddw     xmm22, xmm22, xmm20",
+                "kmovd      {mask:e}, k1",
+                "popcnt     {mask:e}, {mask:e}",
+                "add        {nearer}, {mask}",
+                "add        {at}, 16",
+                "add        {cell}, 64",
+                "sub        {length:e}, 16",
+                "cmp        {length:e}, 16",
+                "ja         5b",
+                "jmp        3b",
+                "6:",
+                l = in(reg) &raw const *self,
+                c = in(reg) &raw const CONSTANTS,
+                pixels = in(reg) pixels,
+                cells = in(reg) cells,
+                count = in(reg) self.count,
+                k = inout(reg) 0_u64 => _,
+                ones = in(reg) u64::MAX,
+                nearer = inout(reg) 0_u64 => nearer,
+                at = out(reg) _,
+                cell = out(reg) _,
+                length = out(reg) _,
+                mask = out(reg) _,
+                AT = const offset_of!(Self, at),
+                CELL = const offset_of!(Self, cell),
+                LENGTH = const offset_of!(Self, length),
+                PAINT = const offset_of!(Self, paint),
+                Z = const offset_of!(Self, z),
+                DZ = const offset_of!(Self, dz),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
+                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm28") _,
+                out("zmm29") _, out("zmm30") _, out("zmm31") _, out("k1") _,
+                options(nostack),
+            );
+        }
+        // At most 2⁷ spans of 1,024 pixels.
+        self.nearer = self.nearer.wrapping_add(nearer as u32);
+    }
+}
