@@ -21,7 +21,10 @@ impl Renderer {
             HiddenSurfaces::BackFaces => self.one_by_one(scene, stats, raster),
             // Chosen, the objects lie far to near, and in a convex one no face hides another.
             HiddenSurfaces::PainterOrder if self.plan.is_chosen() => self.one_by_one(scene, stats, raster),
-            HiddenSurfaces::DepthBuffer => self.one_by_one(scene, stats, raster.with_cleared_depth(&mut depths)),
+            HiddenSurfaces::DepthBuffer => {
+                let raster = raster.with_depth_cleared_within(&mut depths, self.plan.seen);
+                self.one_by_one(scene, stats, raster);
+            }
             HiddenSurfaces::PainterOrder => {
                 self.gather(scene, stats, sieve);
                 self.painter(scene, stats, &mut raster);

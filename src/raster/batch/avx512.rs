@@ -11,6 +11,7 @@ use super::rows::{Edges, Gathered, Group, Ints, LANES, MAGIC, Place};
 use super::sieve::Chosen;
 
 pub(super) mod listed;
+mod planes;
 pub(super) mod tall;
 
 /// What set-up adds and multiplies by.

@@ -45,6 +45,13 @@ impl Chosen {
         whole + kept[whole..].iter().take_while(|chosen| is_other(chosen) == 0).count()
     }
 
+    /// Whether none of these is tall.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[inline(always)]
+    pub(super) fn are_small(kept: &[Self]) -> bool {
+        kept.iter().fold(0, |any, chosen| any | chosen.0) & 2 << 8 == 0
+    }
+
     /// How many of those kept, from the first on, become the same.
     #[inline(always)]
     pub(super) fn alike(kept: &[Self]) -> usize {

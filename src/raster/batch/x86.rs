@@ -78,17 +78,25 @@ pub(super) fn at_once(
     #[target_feature(enable = "avx2")]
     fn with_depths(batch: &Batch, kept: &[Chosen], place: Place, pixels: &mut [u8], cells: &mut [u32]) -> Drawn {
         let mut listed = listed::Spans::new(place);
-        let mut group = Group::NONE;
+        let (mut group, mut planes) = (Group::NONE, Planes::NONE);
         let mut gathered = Gathered::of(batch, kept, place);
         for (number, eight) in kept.chunks(LANES).enumerate() {
             // SAFETY: such a kernel is given out only where AVX-512 was found.
-            unsafe { avx512::set_up(&gathered, place, &mut group) };
-            let mut planes = planes(&gathered, &group);
+            unsafe {
+                avx512::set_up(&gathered, place, &mut group);
+                planes.renew(&gathered, &group);
+            }
             // As in `rows_by`.
             gathered.gather(batch, &kept[kept.len().min((number + 1) * LANES)..], place);
+            if let Some(most) = few_rows(&group, eight) {
+                // SAFETY: as above.
+                unsafe { listed.add_all(&group, eight.len(), most, Some(&planes), (pixels, cells)) };
+                continue;
+            }
             for (i, triangle) in eight.iter().enumerate() {
                 let mut pieces = 1;
-                if triangle.kind() == Kind::Tall {
+                // One without area has no rows, and no plane.
+                if triangle.kind() == Kind::Tall && group.rows[i] > 0 {
                     planes.put(i, &group, &batch.depth_plane(triangle.number()));
                     pieces = batch.pieces(triangle.number());
                 }
@@ -110,6 +118,11 @@ pub(super) fn at_once(
             // SAFETY: such a kernel is given out only where AVX-512 was found.
             unsafe { avx512::set_up(&gathered, place, &mut group) };
             gathered.gather(batch, &kept[kept.len().min((number + 1) * LANES)..], place);
+            if let Some(most) = few_rows(&group, eight) {
+                // SAFETY: as above.
+                unsafe { listed.add_all(&group, eight.len(), most, None, (pixels, &mut [])) };
+                continue;
+            }
             for (i, triangle) in eight.iter().enumerate() {
                 if triangle.kind() == Kind::Tall {
                     let shading = batch.shading[triangle.number()];
@@ -137,6 +150,14 @@ pub(super) fn at_once(
             None => without(batch, kept, place, pixels),
         }
     }
+}
+
+/// The most rows that a group's triangles have, if they are small and these are few.
+#[inline(always)]
+fn few_rows(group: &Group, triangles: &[Chosen]) -> Option<i32> {
+    let rows = &group.rows[..triangles.len().min(LANES)];
+    let most = rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
+    (most <= listed::FEW_ROWS && Chosen::are_small(triangles)).then_some(most)
 }
 
 /// Apart, as the compiler would else keep eight triangles in registers that it has not.

@@ -13,20 +13,30 @@ use crate::raster::shade::RESEED;
 
 /// Spans at most.
 const ROOM: usize = 128;
+const SIXTEEN: usize = 2 * LANES;
+/// Groups of at most so many rows are listed together.
+pub(in super::super) const FEW_ROWS: i32 = 4;
 
 /// What the assembly reads and writes.
 #[repr(C, align(64))]
 pub(in super::super) struct Spans {
-    // Of each span; eight are written at a time, and those that are none are written over.
-    at: MaybeUninit<[u32; ROOM + LANES]>,
-    cell: MaybeUninit<[u32; ROOM + LANES]>,
-    length: MaybeUninit<[u32; ROOM + LANES]>,
+    // Of each span; up to sixteen are written at a time, and those that are none are written over.
+    at: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    cell: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    length: MaybeUninit<[u32; ROOM + SIXTEEN]>,
     /// Shade, and above it the step.
-    paint: MaybeUninit<[u32; ROOM + LANES]>,
-    z: MaybeUninit<[i64; ROOM + LANES]>,
-    dz: MaybeUninit<[i64; ROOM + LANES]>,
-    /// Pixels of all spans there have been, in eight parts.
-    covered: [u32; LANES],
+    paint: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    z: MaybeUninit<[i64; ROOM + SIXTEEN]>,
+    dz: MaybeUninit<[i64; ROOM + SIXTEEN]>,
+    /// Of each row of eight triangles, up to four: the first pixel, pixels, paint, and the column of the box.
+    row_at: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
+    row_length: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
+    row_paint: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
+    row_column: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
+    /// The cells of eight boxes' first pixels.
+    first_cell: [u32; SIXTEEN],
+    /// Pixels of all spans there have been, in sixteen parts.
+    covered: [u32; SIXTEEN],
     count: usize,
     /// Spans that have been drawn.
     drawn: u32,
@@ -77,6 +87,35 @@ static CONSTANTS: Constants = Constants {
     odd_bytes: 0xFF00_FF00,
 };
 
+/// The order in which sixteen rows out of four times eight are listed: triangle by triangle.
+#[repr(C, align(64))]
+struct Order {
+    /// 0: which row of a triangle's eight: those of the first row are numbers 0 to 7, those of the second 8 to 15.
+    from: [u32; SIXTEEN],
+    /// 64: of which triangle, ...
+    triangle: [u32; SIXTEEN],
+    /// 128: ... and which of its rows.
+    row: [u32; SIXTEEN],
+}
+
+impl Order {
+    /// Of so many rows of each triangle, from triangle `first` on.
+    const fn of(rows: u32, first: u32) -> Self {
+        let mut order = Self { from: [0; SIXTEEN], triangle: [0; SIXTEEN], row: [0; SIXTEEN] };
+        let mut i = 0;
+        while i < SIXTEEN as u32 {
+            let (triangle, row) = (first + i / rows, i % rows);
+            order.from[i as usize] = row * LANES as u32 + triangle;
+            (order.triangle[i as usize], order.row[i as usize]) = (triangle, row);
+            i += 1;
+        }
+        order
+    }
+}
+
+static OF_TWO: [Order; 1] = [Order::of(2, 0)];
+static OF_FOUR: [Order; 2] = [Order::of(4, 0), Order::of(4, 4)];
+
 impl Spans {
     #[inline(always)]
     pub(in super::super) fn new(place: Place) -> Self {
@@ -87,7 +126,12 @@ impl Spans {
             paint: MaybeUninit::uninit(),
             z: MaybeUninit::uninit(),
             dz: MaybeUninit::uninit(),
-            covered: [0; LANES],
+            row_at: MaybeUninit::uninit(),
+            row_length: MaybeUninit::uninit(),
+            row_paint: MaybeUninit::uninit(),
+            row_column: MaybeUninit::uninit(),
+            first_cell: [0; SIXTEEN],
+            covered: [0; SIXTEEN],
             count: 0,
             drawn: 0,
             nearer: 0,
@@ -121,9 +165,7 @@ impl Spans {
         planes: Option<&Planes>,
         (pixels, cells): (&mut [u8], &mut [u32]),
     ) {
-        // Offsets beyond are never those of a frame.
-        let most = |length: usize| length.min(1 << 31) as u32;
-        (self.pixels, self.cells) = (most(pixels.len()), most(cells.len()));
+        self.of(pixels, cells);
         // A column and a row are below 4,096.
         let cell = (group.row[i] - self.first_row as i32) * self.width as i32 + group.column[i];
         self.longest = if pieces > 1 || planes.is_none() { RESEED as u32 } else { MOST_ACROSS as u32 / 256 };
@@ -140,6 +182,247 @@ impl Spans {
                 unsafe { self.list(group, i, first, cell, planes) };
             }
             first += LANES as i32;
+        }
+    }
+
+    fn of(&mut self, pixels: &[u8], cells: &[u32]) {
+        // Offsets beyond are never those of a frame.
+        let most = |length: usize| length.min(1 << 31) as u32;
+        (self.pixels, self.cells) = (most(pixels.len()), most(cells.len()));
+    }
+
+    /// As [`add`](Self::add), for all the small triangles of a group, which are so many, and have at most [`FEW_ROWS`] rows:
+    /// eight triangles at a time, and then put into their order.
+    ///
+    /// # Safety
+    /// As for `add`.
+    #[inline(always)]
+    pub(in super::super) unsafe fn add_all(
+        &mut self,
+        group: &Group,
+        triangles: usize,
+        most_rows: i32,
+        planes: Option<&Planes>,
+        (pixels, cells): (&mut [u8], &mut [u32]),
+    ) {
+        self.of(pixels, cells);
+        let (rows, orders) = if most_rows <= 2 { (2, &OF_TWO[..]) } else { (4, &OF_FOUR[..]) };
+        if self.count + SIXTEEN * orders.len() > ROOM {
+            // SAFETY: by the caller's promise.
+            unsafe { self.draw(planes.is_some(), pixels, cells) };
+        }
+        for i in 0..LANES {
+            // As in `add`. Of a triangle that is none anything may come out.
+            let row = group.row[i].wrapping_sub(self.first_row as i32);
+            self.first_cell[i] = row.wrapping_mul(self.width as i32).wrapping_add(group.column[i]) as u32;
+        }
+        for row in 0..rows {
+            // SAFETY: by the caller's promise; there is room for four rows.
+            unsafe { self.row(group, triangles, row) };
+        }
+        for order in orders {
+            // SAFETY: by the caller's promise; the rows are there that it names, and there is room for sixteen.
+            unsafe { self.list_sixteen(order, planes) };
+        }
+    }
+
+    /// Row number `row` of a group's triangles, which are so many.
+    ///
+    /// # Safety
+    /// Only for a processor for which `span::simd::avx512::found` is true; `row` is below `FEW_ROWS`.
+    #[inline(always)]
+    unsafe fn row(&mut self, group: &Group, triangles: usize, row: u32) {
+        // SAFETY: the caller has AVX-512 F, BW, DQ and VL found. Read are `group` and `CONSTANTS` at the offsets of their
+        // fields; written are eight numbers each of the fields that begin with `row`, from number 8·`row` on. The stack is
+        // not used; flags and all registers written are given up.
+        unsafe {
+            asm!(
+                "vpbroadcastd ymm26, {row:e}",
+                "kmovd      k2, {mask:e}",
+                "vcvtdq2pd  zmm16, ymm26",                                  // j
+                "vbroadcastsd zmm31, qword ptr [{c} + 224]",                // magic
+                "vmovupd    zmm17, [{g} + {LONG} + {PER_ROW}]",
+                "vmovupd    zmm18, [{g} + {UPPER} + {PER_ROW}]",
+                "vmovupd    zmm19, [{g} + {LOWER} + {PER_ROW}]",
+                "vmovupd    zmm20, [{g} + {SHADE_PER_ROW}]",
+                "vpcmpd     k1, ymm26, [{g} + {SPLIT}], 5",                 // not less
+                "vfmadd213pd zmm17, zmm16, [{g} + {LONG} + {N}]",
+                "vfmadd213pd zmm18, zmm16, [{g} + {UPPER} + {N}]",
+                "vfmadd213pd zmm19, zmm16, [{g} + {LOWER} + {N}]",
+                "vfmadd213pd zmm20, zmm16, [{g} + {SHADE_N}]",
+                "vpcmpd     k2{{k2}}, ymm26, [{g} + {ROWS}], 1",            // less
+                "vfmadd132pd zmm17, zmm31, [{g} + {LONG} + {INVERSE}]",
+                "vfmadd132pd zmm18, zmm31, [{g} + {UPPER} + {INVERSE}]",
+                "vfmadd132pd zmm19, zmm31, [{g} + {LOWER} + {INVERSE}]",
+                "vpbroadcastd ymm27, {down:e}",
+                "vmovapd    zmm18{{k1}}, zmm19",                            // short
+                "vpaddd     ymm27, ymm27, [{g} + {AT}]",
+                "vminpd     zmm19, zmm17, zmm18",                           // left
+                "vmaxpd     zmm17, zmm17, zmm18",                           // right
+                "vsubpd     zmm18, zmm19, zmm31",                           // column
+                "vpsubq     zmm17, zmm17, zmm19",
+                "vpmovqd    ymm19, zmm19",
+                "vpmovqd    ymm17{{k2}}{{z}}, zmm17",
+                "vfmadd132pd zmm18, zmm20, [{g} + {PER_COLUMN}]",
+                "vpaddd     ymm27, ymm27, ymm19",
+                "vmovdqu32  [{to} + {ROW_LENGTH}], ymm17",
+                "vmovdqu32  [{to} + {ROW_COLUMN}], ymm19",
+                "vfmadd132pd zmm18, zmm31, [{g} + {SHADE_INVERSE}]",
+                "vmovdqu32  [{to} + {ROW_AT}], ymm27",
+                "vpmovqw    xmm18, zmm18",
+                "vpmovzxwd  ymm18, xmm18",
+                "vpord      ymm18, ymm18, [{g} + {STEP}]",
+                "vmovdqu32  [{to} + {ROW_PAINT}], ymm18",
+                g = in(reg) group,
+                to = in(reg) (&raw mut *self).cast::<u32>().wrapping_add(LANES * row as usize),
+                c = in(reg) &raw const CONSTANTS,
+                row = in(reg) row,
+                mask = in(reg) (1_u32 << triangles.min(LANES)) - 1,
+                down = in(reg) row.wrapping_mul(self.pitch),
+                LONG = const offset_of!(Group, long),
+                UPPER = const offset_of!(Group, upper),
+                LOWER = const offset_of!(Group, lower),
+                N = const offset_of!(Edges, n),
+                PER_ROW = const offset_of!(Edges, per_row),
+                INVERSE = const offset_of!(Edges, inverse),
+                SHADE_N = const offset_of!(Group, n),
+                SHADE_PER_ROW = const offset_of!(Group, per_row),
+                SHADE_INVERSE = const offset_of!(Group, inverse),
+                PER_COLUMN = const offset_of!(Group, per_column),
+                SPLIT = const offset_of!(Group, split),
+                ROWS = const offset_of!(Group, rows),
+                AT = const offset_of!(Group, at),
+                STEP = const offset_of!(Group, step),
+                ROW_AT = const offset_of!(Self, row_at),
+                ROW_LENGTH = const offset_of!(Self, row_length),
+                ROW_PAINT = const offset_of!(Self, row_paint),
+                ROW_COLUMN = const offset_of!(Self, row_column),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm26") _,
+                out("zmm27") _, out("zmm31") _, out("k1") _, out("k2") _,
+                options(nostack),
+            );
+        }
+    }
+
+    /// Lists sixteen rows in this order.
+    ///
+    /// # Safety
+    /// Only for a processor for which `span::simd::avx512::found` is true; the rows have been written, and there is room for
+    /// sixteen.
+    #[inline(always)]
+    unsafe fn list_sixteen(&mut self, order: &Order, planes: Option<&Planes>) {
+        let planes = planes.map_or(core::ptr::null(), |planes| &raw const *planes);
+        // SAFETY: the caller has AVX-512 F, BW, DQ and VL and POPCNT found. Read are `order`, `planes` and `self` at the offsets
+        // of their fields; written are sixteen numbers from number `count` on, and so below `ROOM + SIXTEEN`, of z and dz
+        // eight and eight more from where the first end. Without `planes` nothing is read of them. The stack is not used;
+        // flags and all registers written are given up.
+        unsafe {
+            asm!(
+                "vmovdqa64  zmm16, [{o}]",
+                "vmovdqa64  zmm17, [{l} + {ROW_AT}]",
+                "vmovdqa64  zmm18, [{l} + {ROW_LENGTH}]",
+                "vmovdqa64  zmm19, [{l} + {ROW_PAINT}]",
+                "vpermt2d   zmm18, zmm16, [{l} + {ROW_LENGTH} + 64]",
+                "vpermt2d   zmm17, zmm16, [{l} + {ROW_AT} + 64]",
+                "vpermt2d   zmm19, zmm16, [{l} + {ROW_PAINT} + 64]",
+                "vpxord     zmm22, zmm22, zmm22",
+                "vpbroadcastd zmm21, dword ptr [{l} + {PIXELS}]",
+                "vpcmpd     k1, zmm18, zmm22, 6",                           // greater
+                "vpsubd     zmm22, zmm21, zmm18",
+                "vpcmpud    k1{{k1}}, zmm18, zmm21, 2",                     // not greater
+                "vpcmpud    k1{{k1}}, zmm17, zmm22, 2",
+                "test       {p}, {p}",
+                "jz         2f",
+                // Depths.
+                "vmovdqa64  zmm20, [{l} + {ROW_COLUMN}]",
+                "vmovdqa64  zmm23, [{o} + 64]",                             // triangle
+                "vmovdqa64  zmm24, [{o} + 128]",                            // row
+                "vpermt2d   zmm20, zmm16, [{l} + {ROW_COLUMN} + 64]",
+                "vpmulld    zmm21, zmm24, dword ptr [{l} + {WIDTH}]{{1to16}}",
+                "vpermd     zmm22, zmm23, [{l} + {FIRST_CELL}]",
+                "vpaddd     zmm21, zmm21, zmm20",
+                "vpaddd     zmm21, zmm21, zmm22",                           // cell
+                "vpbroadcastd zmm25, dword ptr [{l} + {CELLS}]",
+                "vpsubd     zmm22, zmm25, zmm18",
+                "vpcmpud    k1{{k1}}, zmm18, zmm25, 2",
+                "vpcmpud    k1{{k1}}, zmm21, zmm22, 2",
+                "vpmovzxdq  zmm25, ymm23",
+                "vpmovzxdq  zmm26, ymm24",
+                "vpmovzxdq  zmm27, ymm20",
+                "vpermq     zmm28, zmm25, [{p} + {DEPTH_PER_COLUMN}]",
+                "vpermq     zmm29, zmm25, [{p} + {DEPTH_PER_ROW}]",
+                "vpermq     zmm30, zmm25, [{p} + {DEPTH}]",
+                "vpmullq    zmm27, zmm27, zmm28",
+                "vpmullq    zmm26, zmm26, zmm29",
+                "vpaddq     zmm30, zmm30, zmm27",
+                "vpaddq     zmm30, zmm30, zmm26",
+                "vpcompressq zmm28{{k1}}{{z}}, zmm28",
+                "vpcompressq zmm30{{k1}}{{z}}, zmm30",
+                "vmovdqu64  [{l} + 8*{count} + {DZ}], zmm28",
+                "vmovdqu64  [{l} + 8*{count} + {Z}], zmm30",
+                "kmovb      {more:e}, k1",
+                "popcnt     {more:e}, {more:e}",
+                "add        {more}, {count}",
+                "kshiftrw   k2, k1, 8",
+                "vextracti64x4 ymm23, zmm23, 1",
+                "vextracti64x4 ymm24, zmm24, 1",
+                "vextracti64x4 ymm20, zmm20, 1",
+                "vpmovzxdq  zmm25, ymm23",
+                "vpmovzxdq  zmm26, ymm24",
+                "vpmovzxdq  zmm27, ymm20",
+                "vpermq     zmm28, zmm25, [{p} + {DEPTH_PER_COLUMN}]",
+                "vpermq     zmm29, zmm25, [{p} + {DEPTH_PER_ROW}]",
+                "vpermq     zmm30, zmm25, [{p} + {DEPTH}]",
+                "vpmullq    zmm27, zmm27, zmm28",
+                "vpmullq    zmm26, zmm26, zmm29",
+                "vpaddq     zmm30, zmm30, zmm27",
+                "vpaddq     zmm30, zmm30, zmm26",
+                "vpcompressq zmm28{{k2}}{{z}}, zmm28",
+                "vpcompressq zmm30{{k2}}{{z}}, zmm30",
+                "vmovdqu64  [{l} + 8*{more} + {DZ}], zmm28",
+                "vmovdqu64  [{l} + 8*{more} + {Z}], zmm30",
+                "vpcompressd zmm21{{k1}}{{z}}, zmm21",
+                "vmovdqu32  [{l} + 4*{count} + {CELL}], zmm21",
+                "2:",
+                "vpcompressd zmm17{{k1}}{{z}}, zmm17",
+                "vpcompressd zmm18{{k1}}{{z}}, zmm18",
+                "vpcompressd zmm19{{k1}}{{z}}, zmm19",
+                "vmovdqu32  [{l} + 4*{count} + {LIST_AT}], zmm17",
+                "vmovdqu32  [{l} + 4*{count} + {LENGTH}], zmm18",
+                "vmovdqu32  [{l} + 4*{count} + {PAINT}], zmm19",
+                "vpaddd     zmm18, zmm18, [{l} + {COVERED}]",
+                "vmovdqa64  [{l} + {COVERED}], zmm18",
+                "kmovw      {more:e}, k1",
+                "popcnt     {more:e}, {more:e}",
+                "add        {count}, {more}",
+                o = in(reg) order,
+                p = in(reg) planes,
+                l = in(reg) &raw mut *self,
+                more = out(reg) _,
+                count = inout(reg) self.count,
+                DEPTH = const offset_of!(Planes, at),
+                DEPTH_PER_COLUMN = const offset_of!(Planes, per_column),
+                DEPTH_PER_ROW = const offset_of!(Planes, per_row),
+                ROW_AT = const offset_of!(Self, row_at),
+                ROW_LENGTH = const offset_of!(Self, row_length),
+                ROW_PAINT = const offset_of!(Self, row_paint),
+                ROW_COLUMN = const offset_of!(Self, row_column),
+                FIRST_CELL = const offset_of!(Self, first_cell),
+                LIST_AT = const offset_of!(Self, at),
+                CELL = const offset_of!(Self, cell),
+                LENGTH = const offset_of!(Self, length),
+                PAINT = const offset_of!(Self, paint),
+                Z = const offset_of!(Self, z),
+                DZ = const offset_of!(Self, dz),
+                COVERED = const offset_of!(Self, covered),
+                PIXELS = const offset_of!(Self, pixels),
+                CELLS = const offset_of!(Self, cells),
+                WIDTH = const offset_of!(Self, width),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
+                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm27") _,
+                out("zmm28") _, out("zmm29") _, out("zmm30") _, out("k1") _, out("k2") _,
+                options(nostack),
+            );
         }
     }
 
