@@ -246,6 +246,24 @@ impl Gathered {
     /// The first eight. Where there are less the last place's are others.
     #[inline(always)]
     pub(super) fn gather(&mut self, batch: &Batch, triangles: &[Chosen], place: Place) {
+        // Faces that were sifted before are mostly all kept.
+        if let Some([first, .., last]) = triangles.first_chunk::<LANES>()
+            && last.number() == first.number() + LANES - 1
+        {
+            let first = first.number().min(Batch::CAPACITY - LANES);
+            let eight = first..first + LANES;
+            for corner in 0..3 {
+                self.x[corner].copy_from_slice(&batch.x[corner][eight.clone()]);
+                self.y[corner].copy_from_slice(&batch.y[corner][eight.clone()]);
+                for (to, &shade) in self.shade[corner].iter_mut().zip(&batch.shade[corner][eight.clone()]) {
+                    *to = i32::from(shade);
+                }
+                if place.depth_width.is_some() {
+                    self.depth[corner].copy_from_slice(&batch.depth[corner][eight.clone()]);
+                }
+            }
+            return;
+        }
         for (lane, triangle) in triangles.iter().take(LANES).enumerate() {
             let at = triangle.number();
             for corner in 0..3 {
