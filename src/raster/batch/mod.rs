@@ -40,6 +40,8 @@ use sieve::{Chosen, Kept, Kind};
 #[derive(Clone, Debug)]
 pub struct Batch {
     count: usize,
+    /// Whether triangles of no pixel have mostly been left out already: to look for more does not pay.
+    is_sifted: bool,
     /// Of each corner, of all triangles: x and y in 1/256 pixel, shade in 1/256.
     x: [[i32; Self::CAPACITY]; 3],
     y: [[i32; Self::CAPACITY]; 3],
@@ -57,12 +59,19 @@ impl Batch {
     pub const fn new() -> Self {
         Self {
             count: 0,
+            is_sifted: false,
             x: [[0; Self::CAPACITY]; 3],
             y: [[0; Self::CAPACITY]; 3],
             shade: [[0; Self::CAPACITY]; 3],
             depth: [[0; Self::CAPACITY]; 3],
             shading: [Shading::Flat(0); Self::CAPACITY],
         }
+    }
+
+    /// One for triangles of which those that cover no pixel have mostly been left out.
+    #[cfg(feature = "alloc")]
+    pub(crate) const fn of_sifted() -> Self {
+        Self { is_sifted: true, ..Self::new() }
     }
 
     /// Whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.

@@ -140,7 +140,7 @@ pub(super) fn sieve_by(
             are_tiny[i] = i32::from(covers & inside & tiny);
             (columns[i], rows[i]) = (column, row);
         }
-        if are_tiny != [0; LANES] {
+        if !batch.is_sifted && are_tiny != [0; LANES] {
             for i in 0..LANES {
                 let (left, top) = (columns[i] * 256 + 128, rows[i] * 256 + 128);
                 let corner = |k: usize| (x[k][i] - left, y[k][i] - top);
