@@ -17,6 +17,7 @@
 
 use super::Shading;
 use super::depth::{Cell, DepthPlane};
+use super::frame::Rect;
 use super::triangle::{Drawn, Raster};
 use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, I24F8, U8F8};
@@ -207,7 +208,7 @@ impl<D: Cell> Raster<'_, D> {
         }
     }
 
-    /// Draws what the sieve has kept, small and tall triangles together.
+    /// Draws what the sieve has kept, all but others together.
     fn draw_at_once<const CLIPS: bool>(&mut self, batch: &Batch, at_once: AtOnce, kept: &Kept, place: Place) -> Drawn {
         let mut drawn = Drawn::default();
         let mut left = kept.triangles();
@@ -222,7 +223,7 @@ impl<D: Cell> Raster<'_, D> {
             // As in `fill`.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             let cells = depth.and_then(|depth| D::as_u32(depth.values_mut()));
-            drawn += at_once(batch, &left[..together], place, pixels, cells);
+            drawn += at_once(batch, &left[..together], (place, self.clip), pixels, cells);
             left = &left[together..];
         }
         drawn
@@ -241,7 +242,7 @@ impl<D: Cell> Raster<'_, D> {
         let mut left = kept.triangles();
         while let Some(first) = left.first() {
             let kind = first.kind();
-            if kind == Kind::Other {
+            if matches!(kind, Kind::Other | Kind::Clipped) {
                 drawn += self.one_of::<CLIPS>(batch, first.number());
                 left = &left[1..];
                 continue;
@@ -290,15 +291,15 @@ impl<D: Cell> Raster<'_, D> {
 
 /// The stages as the kernel's processor runs them best.
 struct Stages {
-    sieve: fn(&Batch, super::frame::Rect, &mut Kept),
+    sieve: fn(&Batch, Rect, &mut Kept),
     rows: fn(&Batch, &[Chosen], Place, &mut Spans<'_>) -> usize,
     tall: fn(&Batch, &[Chosen], Place, &mut Spans<'_>, Draw<'_>),
     /// In place of both, with cells of 32 bits if there is a depth buffer.
     at_once: Option<AtOnce>,
 }
 
-/// Draws small and tall triangles into pixels, and where they are nearer than cells, if there are any.
-type AtOnce = fn(&Batch, &[Chosen], Place, &mut [u8], Option<&mut [u32]>) -> Drawn;
+/// Draws small, tall and clipped triangles into pixels, and where they are nearer than cells, if there are any.
+type AtOnce = fn(&Batch, &[Chosen], (Place, Rect), &mut [u8], Option<&mut [u32]>) -> Drawn;
 
 impl Stages {
     fn of(kernel: Kernel) -> Self {

@@ -66,17 +66,23 @@ pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     unsafe { avx2(batch, kept, place, spans, draw) }
 }
 
-/// Draws small and tall triangles in turn, without a list of more than a few spans. Only with a kernel for which
+/// Draws small, tall and clipped triangles in turn, without a list of more than a few spans. Only with a kernel for which
 /// `Kernel::has_avx512` is true.
 pub(super) fn at_once(
     batch: &Batch,
     kept: &[Chosen],
-    place: Place,
+    place: (Place, Rect),
     pixels: &mut [u8],
     cells: Option<&mut [u32]>,
 ) -> Drawn {
     #[target_feature(enable = "avx2")]
-    fn with_depths(batch: &Batch, kept: &[Chosen], place: Place, pixels: &mut [u8], cells: &mut [u32]) -> Drawn {
+    fn with_depths(
+        batch: &Batch,
+        kept: &[Chosen],
+        (place, clip): (Place, Rect),
+        pixels: &mut [u8],
+        cells: &mut [u32],
+    ) -> Drawn {
         let mut listed = listed::Spans::new(place);
         let (mut group, mut planes) = (Group::NONE, Planes::NONE);
         let mut gathered = Gathered::of(batch, kept, place);
@@ -94,14 +100,15 @@ pub(super) fn at_once(
                 continue;
             }
             for (i, triangle) in eight.iter().enumerate() {
-                let mut pieces = 1;
+                let (kind, mut pieces) = (triangle.kind(), 1);
                 // One without area has no rows, and no plane.
-                if triangle.kind() == Kind::Tall && group.rows[i] > 0 {
+                if kind != Kind::Small && group.rows[i] > 0 {
                     planes.put(i, &group, &batch.depth_plane(triangle.number()));
                     pieces = batch.pieces(triangle.number());
                 }
+                let clip = (kind == Kind::Clipped).then_some(clip);
                 // SAFETY: as above.
-                unsafe { listed.add(&group, i, pieces, Some(&planes), (pixels, cells)) };
+                unsafe { listed.add(&group, i, (pieces, clip), Some(&planes), (pixels, cells)) };
             }
         }
         // SAFETY: as above; the same pixels and cells.
@@ -110,7 +117,7 @@ pub(super) fn at_once(
         Drawn { spans, covered, pixels: nearer, tested: covered, ..Drawn::default() }
     }
     #[target_feature(enable = "avx2")]
-    fn without(batch: &Batch, kept: &[Chosen], place: Place, pixels: &mut [u8]) -> Drawn {
+    fn without(batch: &Batch, kept: &[Chosen], (place, clip): (Place, Rect), pixels: &mut [u8]) -> Drawn {
         let (mut tall, mut listed) = (Tall::new(), listed::Spans::new(place));
         let mut group = Group::NONE;
         let mut gathered = Gathered::of(batch, kept, place);
@@ -124,16 +131,22 @@ pub(super) fn at_once(
                 continue;
             }
             for (i, triangle) in eight.iter().enumerate() {
-                if triangle.kind() == Kind::Tall {
-                    let shading = batch.shading[triangle.number()];
-                    // SAFETY: as above; always the same pixels.
-                    unsafe {
-                        listed.draw(false, pixels, &mut []);
-                        tall.draw(&group, i, shading, place, pixels);
+                match triangle.kind() {
+                    Kind::Tall => {
+                        let shading = batch.shading[triangle.number()];
+                        // SAFETY: as above; always the same pixels.
+                        unsafe {
+                            listed.draw(false, pixels, &mut []);
+                            tall.draw(&group, i, shading, place, pixels);
+                        }
                     }
-                } else {
+                    Kind::Clipped => {
+                        let pieces = batch.pieces(triangle.number());
+                        // SAFETY: as above.
+                        unsafe { listed.add(&group, i, (pieces, Some(clip)), None, (pixels, &mut [])) };
+                    }
                     // SAFETY: as above.
-                    unsafe { listed.add(&group, i, 1, None, (pixels, &mut [])) };
+                    _ => unsafe { listed.add(&group, i, (1, None), None, (pixels, &mut [])) },
                 }
             }
         }

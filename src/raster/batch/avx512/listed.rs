@@ -9,6 +9,7 @@ use core::mem::{MaybeUninit, offset_of};
 
 use super::super::depths::Planes;
 use super::super::rows::{Edges, Group, LANES, MAGIC, MOST_ACROSS, Place};
+use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
 
 /// Spans at most.
@@ -50,7 +51,17 @@ pub(in super::super) struct Spans {
     /// Pixels to the left of what is listed, in each row, ...
     skipped: f64,
     /// ... and the most that a span has.
-    longest: u32,
+    longest: f64,
+    /// The frame's left side, from the box's first pixel on, as a sum with `MAGIC`: there starts what begins left of it.
+    origin: f64,
+    /// The same of the clip rectangle's left and right sides, ...
+    left: f64,
+    right: f64,
+    /// ... and top and bottom, from the box's first row on.
+    top: i32,
+    bottom: i32,
+    /// Not 0 if it counts.
+    clips: u32,
     first_row: u32,
 }
 
@@ -140,7 +151,13 @@ impl Spans {
             pitch: place.pitch,
             width: place.depth_width.unwrap_or(0),
             skipped: 0.0,
-            longest: 0,
+            longest: 0.0,
+            origin: 0.0,
+            left: 0.0,
+            right: 0.0,
+            top: 0,
+            bottom: 0,
+            clips: 0,
             first_row: place.first_row,
         }
     }
@@ -151,8 +168,8 @@ impl Spans {
     }
 
     /// Lists all rows of triangle `i` of a group, and draws whenever there is no room left. Where a row may have more than
-    /// one of the pieces that start anew, a span is one of these. `pixels` and `cells` are always the same. Without
-    /// `planes` there is no depth test, and no row of more than 64 pixels.
+    /// one of the pieces that start anew, a span is one of these. What lies outside of `clip`, if there is one, is left out.
+    /// `pixels` and `cells` are always the same. Without `planes` there is no depth test.
     ///
     /// # Safety
     /// Only for a processor for which `span::simd::avx512::found` is true.
@@ -161,16 +178,26 @@ impl Spans {
         &mut self,
         group: &Group,
         i: usize,
-        pieces: usize,
+        (pieces, clip): (usize, Option<Rect>),
         planes: Option<&Planes>,
         (pixels, cells): (&mut [u8], &mut [u32]),
     ) {
         self.of(pixels, cells);
         // A column and a row are below 4,096.
         let cell = (group.row[i] - self.first_row as i32) * self.width as i32 + group.column[i];
-        self.longest = if pieces > 1 || planes.is_none() { RESEED as u32 } else { MOST_ACROSS as u32 / 256 };
-        let mut first = 0;
-        while first < group.rows[i] {
+        self.longest = if pieces > 1 { RESEED.into() } else { f64::from(MOST_ACROSS / 256) };
+        let (mut first, mut end) = (0, group.rows[i]);
+        self.origin = MAGIC - f64::from(group.column[i]);
+        self.clips = clip.is_some().into();
+        if let Some(clip) = clip {
+            // All inside a frame, at most 4,096.
+            let from_box = |side: u32, of_box: i32| side as i32 - of_box;
+            self.left = MAGIC + f64::from(from_box(clip.x0, group.column[i]));
+            self.right = MAGIC + f64::from(from_box(clip.x1, group.column[i]));
+            (self.top, self.bottom) = (from_box(clip.y0, group.row[i]), from_box(clip.y1, group.row[i]));
+            (first, end) = (self.top.max(0), end.min(self.bottom));
+        }
+        while first < end {
             for piece in 0..pieces {
                 if self.count + LANES > ROOM {
                     // SAFETY: by the caller's promise.
@@ -461,26 +488,42 @@ impl Spans {
                 "vmovapd    zmm18{{k1}}, zmm19",                            // short
                 "vminpd     zmm19, zmm17, zmm18",                           // left
                 "vmaxpd     zmm17, zmm17, zmm18",                           // right
+                "vmaxpd     zmm19, zmm19, qword ptr [{l} + {ORIGIN}]{{1to8}}",
                 "vaddpd     zmm19, zmm19, qword ptr [{l} + {SKIPPED}]{{1to8}}",
                 "vpaddd     ymm22, ymm22, dword ptr [{g4} + {AT}]{{1to8}}",
-                "vpsubq     zmm17, zmm17, zmm19",
+                "vaddpd     zmm21, zmm19, qword ptr [{l} + {LONGEST}]{{1to8}}",
                 "vsubpd     zmm18, zmm19, zmm31",                           // column
-                "vpsubq     zmm21, zmm19, zmm31",                           // the same as a whole number
-                "vpmovqd    ymm17, zmm17",
+                "vminpd     zmm17, zmm17, zmm21",
+                "vfmadd132pd zmm18, zmm20, qword ptr [{g8} + {PER_COLUMN}]{{1to8}}",
+                "vfmadd132pd zmm18, zmm31, qword ptr [{g8} + {SHADE_INVERSE}]{{1to8}}",
+                "vpmovqw    xmm18, zmm18",
+                "vpmovzxwd  ymm18, xmm18",
+                "vpord      ymm18, ymm18, dword ptr [{g4} + {STEP}]{{1to8}}",
+                "cmp        dword ptr [{l} + {CLIPS}], 0",
+                "je         3f",
+                // A row that begins left of the rectangle goes on from its start.
+                "vmaxpd     zmm21, zmm19, qword ptr [{l} + {LEFT}]{{1to8}}",
+                "vminpd     zmm17, zmm17, qword ptr [{l} + {RIGHT}]{{1to8}}",
+                "vpsubq     zmm19, zmm21, zmm19",
+                "vpmovqd    ymm19, zmm19",
+                "vpsrld     ymm23, ymm18, 16",
+                "vpmullw    ymm19, ymm19, ymm23",
+                "vpaddw     ymm18, ymm18, ymm19",
+                "vmovapd    zmm19, zmm21",
+                "vpcmpd     k2{{k2}}, ymm26, dword ptr [{l} + {TOP}]{{1to8}}, 5", // not less
+                "vpcmpd     k2{{k2}}, ymm26, dword ptr [{l} + {BOTTOM}]{{1to8}}, 1", // less
+                "3:",
+                "vpsubq     zmm17, zmm17, zmm19",
+                "vpsubq     zmm21, zmm19, zmm31",                           // the column as a whole number
+                "vpmovqd    ymm17, zmm17",                                  // length
                 "vpmovqd    ymm19, zmm21",
                 "vpxord     ymm23, ymm23, ymm23",
-                "vpminsd    ymm17, ymm17, dword ptr [{l} + {LONGEST}]{{1to8}}", // length
-                "vfmadd132pd zmm18, zmm20, qword ptr [{g8} + {PER_COLUMN}]{{1to8}}",
                 "vpaddd     ymm22, ymm22, ymm19",                           // at
                 "vpcmpd     k2{{k2}}, ymm17, ymm23, 6",                     // greater
                 "vpbroadcastd ymm23, dword ptr [{l} + {PIXELS}]",
                 "vpcmpud    k2{{k2}}, ymm17, ymm23, 2",                     // not greater
                 "vpsubd     ymm23, ymm23, ymm17",
                 "vpcmpud    k2{{k2}}, ymm22, ymm23, 2",
-                "vfmadd132pd zmm18, zmm31, qword ptr [{g8} + {SHADE_INVERSE}]{{1to8}}",
-                "vpmovqw    xmm18, zmm18",
-                "vpmovzxwd  ymm18, xmm18",
-                "vpord      ymm18, ymm18, dword ptr [{g4} + {STEP}]{{1to8}}",
                 "test       {p8}, {p8}",
                 "jz         2f",
                 // Depths.
@@ -553,6 +596,12 @@ impl Spans {
                 WIDTH = const offset_of!(Self, width),
                 SKIPPED = const offset_of!(Self, skipped),
                 LONGEST = const offset_of!(Self, longest),
+                ORIGIN = const offset_of!(Self, origin),
+                LEFT = const offset_of!(Self, left),
+                RIGHT = const offset_of!(Self, right),
+                TOP = const offset_of!(Self, top),
+                BOTTOM = const offset_of!(Self, bottom),
+                CLIPS = const offset_of!(Self, clips),
                 out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
                 out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm31") _,
                 out("k1") _, out("k2") _,
@@ -585,7 +634,7 @@ impl Spans {
     }
 
     /// # Safety
-    /// As for `draw`; there is a span, and of each at most 64 pixels.
+    /// As for `draw`; there is a span.
     #[inline(always)]
     unsafe fn draw_all(&self, pixels: *mut u8) {
         // SAFETY: the caller has AVX-512 F, BW, DQ, VL and BMI2 found. Read are the first `count` numbers of the list, which
@@ -619,9 +668,23 @@ impl Spans {
                 "3:",
                 "vpbroadcastw zmm16, word ptr [{l} + 4*{k} + {PAINT} + 2]",
                 "vpbroadcastw zmm17, word ptr [{l} + 4*{k} + {PAINT}]",
-                "bzhi       {length}, {ones}, {length}",
                 "vpmullw    zmm18, zmm16, zmm22",
                 "vpaddw     zmm18, zmm18, zmm17",
+                "cmp        {length:e}, 64",
+                "jbe        6f",
+                "vpsllw     zmm20, zmm16, 6",
+                "5:",                                                       // more than 64 are left
+                "vpaddw     zmm19, zmm18, zmm16",
+                "vpsrlw     zmm17, zmm18, 8",
+                "vpternlogd zmm17, zmm19, dword ptr [{c} + 232]{{1to16}}, 0xF8",
+                "vmovdqu64  [{at}], zmm17",
+                "vpaddw     zmm18, zmm18, zmm20",
+                "add        {at}, 64",
+                "sub        {length:e}, 64",
+                "cmp        {length:e}, 64",
+                "ja         5b",
+                "6:",
+                "bzhi       {length}, {ones}, {length}",
                 "kmovq      k1, {length}",
                 "vpaddw     zmm19, zmm18, zmm16",
                 "vpsrlw     zmm18, zmm18, 8",
@@ -642,7 +705,8 @@ impl Spans {
                 AT = const offset_of!(Self, at),
                 LENGTH = const offset_of!(Self, length),
                 PAINT = const offset_of!(Self, paint),
-                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm22") _, out("k1") _,
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _,
+                out("zmm22") _, out("k1") _,
                 options(nostack),
             );
         }
