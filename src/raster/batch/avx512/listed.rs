@@ -841,3 +841,62 @@ impl Spans {
         self.nearer = self.nearer.wrapping_add(nearer as u32);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::rows::{Gathered, MOST_PIECES};
+    use super::super::set_up;
+    use super::*;
+    use crate::span::Kernel;
+
+    /// Spans that do not lie wholly inside the pixels, and the cells, are left out, whatever the triangles.
+    #[test]
+    fn nothing_outside_the_pixels_and_cells_is_written() {
+        if Kernel::by_name("simd-avx512").is_err() {
+            return;
+        }
+        let mut state = 1_u64;
+        let mut random = |most: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % (most + 1)
+        };
+        let (mut written, mut left_out) = (0, 0);
+        for round in 0..20_000 {
+            let few = round % 2 == 0;
+            let (width, height) = if few { (16_384, 900) } else { (65_536, 40_000) };
+            let mut corners = |most| [0; 3].map(|_| [0; LANES].map(|_: i32| random(most) as i32));
+            let (x, y, shade) = (corners(width), corners(height), corners(0xFF00));
+            let depth = [0; 3].map(|_| [0; LANES].map(|_: i32| random(1 << 30) as u32));
+            let gathered = Gathered { x, y, shade, depth };
+            let (first_row, pitch, cells_across) = (random(20) as u32, random(300) as u32, random(300) as u32);
+            let place = Place { first_row, pitch, depth_width: Some(cells_across) };
+            let (before, length) = (random(300) as usize, random(20_000) as usize);
+            let mut bytes = vec![7_u8; before + length + 300];
+            let mut cells = vec![1_u32; before + length + 300];
+            let (mut group, mut planes, mut spans) = (Group::NONE, Planes::NONE, Spans::new(place));
+            let end = before + length;
+            let with_depths = random(2) > 0;
+            let clip = (random(1) == 0).then_some(Rect { x0: random(99) as u32, y0: 0, x1: 200, y1: 90 });
+            let pieces = random(MOST_PIECES as u64) as usize;
+            // SAFETY: the kernel above is there.
+            unsafe {
+                set_up(&gathered, place, &mut group);
+                planes.renew(&gathered, &group);
+                let planes = with_depths.then_some(&planes);
+                let to = (&mut bytes[before..end], &mut cells[before..end]);
+                if few {
+                    spans.add_all(&group, LANES, FEW_ROWS, planes, to);
+                } else {
+                    spans.add(&group, 3, (pieces, clip), planes, to);
+                }
+                spans.draw(with_depths, &mut bytes[before..end], &mut cells[before..end]);
+            }
+            assert!(bytes[..before].iter().chain(&bytes[end..]).all(|&byte| byte == 7));
+            assert!(cells[..before].iter().chain(&cells[end..]).all(|&cell| cell == 1));
+            let inside = bytes.iter().filter(|&&byte| byte != 7).count();
+            written += inside;
+            left_out += usize::from(inside == 0);
+        }
+        assert!(written > 1_000_000 && left_out > 100, "{written}, {left_out}");
+    }
+}

@@ -157,3 +157,46 @@ impl Planes {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::rows::Place;
+    use super::super::set_up;
+    use super::*;
+    use crate::span::Kernel;
+
+    #[test]
+    fn planes_in_assembly_are_the_others() {
+        if Kernel::by_name("simd-avx512").is_err() {
+            return;
+        }
+        let mut state = 1_u64;
+        let mut random = |most: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 31) % (most + 1)
+        };
+        let mut compared = 0;
+        for round in 0..50_000 {
+            // Small ones, up to 64 x 16 pixels, and some whose corners lie at the same height.
+            let (width, height) = [(16_384, 4_096), (600, 600), (40, 40), (16_384, 3), (3, 4_096)][round % 5];
+            let mut corners = |most: u64| [0; 3].map(|_| [0; LANES].map(|_: i32| 9_000 + random(most) as i32));
+            let (x, y) = (corners(width), corners(height));
+            let depth = [0; 3].map(|_| [0; LANES].map(|_: i32| random(u64::from(u32::MAX)) as u32));
+            let gathered = Gathered { x, y, shade: [[0; LANES]; 3], depth };
+            let place = Place { first_row: 0, pitch: 320, depth_width: Some(320) };
+            let (mut group, mut planes) = (Group::NONE, Planes::NONE);
+            // SAFETY: the kernel above is there.
+            unsafe {
+                set_up(&gathered, place, &mut group);
+                planes.renew(&gathered, &group);
+            }
+            let expected = Planes::of(&gathered, &group);
+            for i in (0..LANES).filter(|&i| group.rows[i] > 0) {
+                let of = |planes: &Planes| (planes.at[i], planes.per_column[i], planes.per_row[i]);
+                assert_eq!(of(&planes), of(&expected), "{:?}", (x, y, depth, i));
+                compared += 1;
+            }
+        }
+        assert!(compared > 200_000, "{compared}");
+    }
+}
