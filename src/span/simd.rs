@@ -448,6 +448,6 @@ pub(super) mod avx512 {
 
     /// Every span of a list, only for such a processor.
     pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
-        each(pixels, spans, |row, shade, step| fill(row, shade, step));
+        each(pixels, spans, fill);
     }
 }
