@@ -283,7 +283,7 @@ impl ObjectView {
         // On the screen, at most 4,096; of what is no number the screen's end.
         let pixels = |i: usize| {
             let (from, to) = if crosses_near { (0.0, size[i]) } else { ends(i) };
-            (from.floor().max(0.0) as u32, to.ceil().max(0.0).min(size[i]) as u32)
+            (from.max(0.0) as u32, libm::ceil(to).min(size[i]).max(0.0) as u32)
         };
         let ((x0, x1), (y0, y1)) = (pixels(0), pixels(1));
         Reach {
