@@ -14,7 +14,7 @@ use glam::{Mat3, Vec3};
 
 use crate::fixed::{I24F8, U8F8};
 use crate::mesh::Bounds;
-use crate::raster::Vertex;
+use crate::raster::{Rect, Vertex};
 use crate::scene::{Camera, Object, matrix_product};
 
 pub(crate) mod lanes;
@@ -165,6 +165,8 @@ pub(crate) struct Reach {
     pub(crate) crosses_near: bool,
     /// Whether some of it may be projected beyond the screen's edges.
     pub(crate) leaves_screen: bool,
+    /// The part of the screen where it may be.
+    pub(crate) seen: Rect,
 }
 
 /// A vertex before its division: X, Y in pixels times W, W along the view.
@@ -273,11 +275,24 @@ impl ObjectView {
         // A box in front of the eye is projected into the convex hull of its corners. What x = X/W is
         // off by is what X is, and |x| times what W is, over W; a pixel for rounding.
         let (centre, size) = ([f64::from(self.centre.0), f64::from(self.centre.1)], [self.size.0, self.size.1]);
-        let inside = |i: usize| {
+        let ends = |i: usize| {
             let off = (slack[i] + low[i].abs().max(high[i].abs()) * slack[2]) / nearest + 1.0;
-            centre[i] + low[i] - off >= 0.0 && centre[i] + high[i] + off <= size[i]
+            (centre[i] + low[i] - off, centre[i] + high[i] + off)
         };
-        Reach { nearest, farthest, crosses_near, leaves_screen: crosses_near || !(inside(0) && inside(1)) }
+        let inside = |i: usize| ends(i).0 >= 0.0 && ends(i).1 <= size[i];
+        // On the screen, at most 4,096; of what is no number the screen's end.
+        let pixels = |i: usize| {
+            let (from, to) = if crosses_near { (0.0, size[i]) } else { ends(i) };
+            (from.max(0.0) as u32, libm::ceil(to).min(size[i]).max(0.0) as u32)
+        };
+        let ((x0, x1), (y0, y1)) = (pixels(0), pixels(1));
+        Reach {
+            nearest,
+            farthest,
+            crosses_near,
+            leaves_screen: crosses_near || !(inside(0) && inside(1)),
+            seen: Rect { x0, y0, x1, y1 },
+        }
     }
 
     /// The vertex on the screen, of an object that neither crosses the near plane nor leaves the

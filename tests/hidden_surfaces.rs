@@ -423,3 +423,38 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
     }
     assert!(ties > 1000, "{ties}");
 }
+
+/// Depths are cleared only where objects may be seen: what other frames have left must never count.
+#[test]
+fn depths_of_earlier_frames_do_not_count() {
+    use mode13h::glam::Vec3;
+    use mode13h::mesh::shapes;
+    use mode13h::render::{HiddenSurfaces, Renderer, Rung};
+    use mode13h::scene::{Object, Scene};
+    use mode13h::vga::Vga;
+
+    let mut random = Random::named("depths of earlier frames");
+    let mut scene = Scene::showing(shapes::torus(24, 12));
+    let second = scene.add(Object::new(shapes::by_name("cube").expect("listed")));
+    let (mut again, mut machine) = (Renderer::new(), Vga::new());
+    again.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+    let mut drawn = 0;
+    for round in 0..300 {
+        let mut number = |most: f64| (random.unit() * 2.0 - 1.0) * most;
+        for object in 0..=1 {
+            scene.objects_mut()[object].set_angles([number(3.0), number(3.0), number(3.0)]);
+        }
+        // Beyond the screen's edges and through the near plane, too.
+        let far = number(3.0);
+        scene[second].position = Vec3::new(number(4.0) as f32, number(3.0) as f32, far as f32);
+        scene.camera.eye = Vec3::new(number(1.0) as f32, number(1.0) as f32, 3.0 + number(1.5) as f32);
+        again.set_rung(random.one_of(&Rung::ALL));
+        let mut fresh = again.set_alike();
+        let mut other = Vga::new();
+        let stats = again.draw(&scene, &mut machine).expect("a legal scene");
+        fresh.draw(&scene, &mut other).expect("a legal scene");
+        assert!(machine.pixels() == other.pixels(), "round {round}, {}", again.rung());
+        drawn += stats.raster.pixels;
+    }
+    assert!(drawn > 1_000_000, "{drawn}");
+}

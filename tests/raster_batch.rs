@@ -22,11 +22,13 @@ fn shading(random: &mut Random) -> Shading {
 fn small(random: &mut Random, width: i64, height: i64, reach: i64) -> [Vertex; 3] {
     let (cx, cy) = (random.within(-300, width * 256 + 300), random.within(-300, height * 256 + 300));
     let snap = random.one_of(&[1, 1, 1, 128]);
+    // Of equal depths the first has to stay.
+    let level = random.one_of(&[None, None, Some(9), Some(10)]);
     let mut place = || {
         let shade = random.one_of(&[0, 0xFF00, -1, -1, -1]);
         let shade = if shade < 0 { random.within(0, 0xFF00) } else { shade };
         let (x, y) = (cx + random.within(-reach, reach), cy + random.within(-reach, reach));
-        vertex(x / snap * snap, y / snap * snap, shade, random.log_uniform(30) as i64)
+        vertex(x / snap * snap, y / snap * snap, shade, level.unwrap_or(random.log_uniform(30) as i64))
     };
     [place(), place(), place()]
 }
@@ -150,6 +152,57 @@ fn batches_draw_what_single_triangles_do() {
         total += expected.2;
     }
     assert!(total.pixels > 100_000, "{total:?}");
+}
+
+/// A corner anywhere in a frame, one in three coordinates at an end, with a depth if there is one.
+fn corner(random: &mut Random, width: i64, height: i64, level: Option<i64>) -> Vertex {
+    let mut along = |side: i64| {
+        let at = random.within(0, side * 256);
+        random.one_of(&[at, at, at, at, 0, side * 256])
+    };
+    let (x, y) = (along(width), along(height));
+    let shade = random.within(0, 0xFF00);
+    vertex(x, y, random.one_of(&[0, 0xFF00, shade, shade]), level.unwrap_or(random.log_uniform(30) as i64))
+}
+
+#[test]
+fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
+    let mut random = Random::named("batches of large triangles");
+    // The largest that batches draw themselves, and a little more, in each direction.
+    let frames = [(320, 200), (640, 400), (512, 512), (520, 515), (1_024, 256), (1_030, 200), (63, 4_096), (65, 4_096)];
+    let mut total = Drawn::default();
+    for round in 0..160 {
+        let (width, height) = frames[round % frames.len()];
+        let place = Place {
+            width: width as u32,
+            height: height as u32,
+            pitch: width as usize + random.one_of(&[0, 5]),
+            clip: None,
+            band: 0..height as u32,
+            depth: round / frames.len() % 2 == 0,
+        };
+        let mut batch = Batch::new();
+        let mut triangles = Vec::new();
+        for _ in 0..random.within(1, 12) {
+            let level = random.one_of(&[None, None, Some(9), Some(10)]);
+            let vertices = [0; 3].map(|_| corner(&mut random, width, height, level));
+            let shading = shading(&mut random);
+            assert!(batch.push(&vertices, shading));
+            triangles.push((vertices, shading));
+        }
+        let one_by_one = |raster: &mut Raster<'_>| {
+            let mut sum = Drawn::default();
+            triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
+            sum
+        };
+        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
+        for kernel in Kernel::available() {
+            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
+            assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
+        }
+        total += expected.2;
+    }
+    assert!(total.pixels > 10_000_000 && total.tested > 10_000_000, "{total:?}");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::hidden;
 use super::why::Why;
 use super::{Decision, Effect, Forced, ObjectPlan, Plan};
 use crate::light::{LampBeam, Light, Material, lamp_reaches};
+use crate::raster::Rect;
 use crate::scene::{HiddenSurfaces, Mapping, Object, Rung, Scene};
 use crate::view::{ObjectView, Reach};
 
@@ -50,6 +51,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     plan.hidden_surfaces = way;
     plan.chosen = why != Why::Asked;
     plan.objects.clear();
+    plan.seen = Rect::NOWHERE;
     for (place, object) in inputs.scene.objects().iter().enumerate() {
         let rules = Rules {
             scene: inputs.scene,
@@ -61,8 +63,13 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             inputs,
             way: (way, why),
         };
+        plan.seen = plan.seen.hull(rules.reach.seen);
         let in_range = lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count();
         plan.objects.push(rules.all(in_range));
+    }
+    // That of the sources draws beyond a triangle's edges, and 16.16 clips in its own way.
+    if inputs.rung == Rung::GouraudPeriod || inputs.integer {
+        plan.seen = Rect::EVERYWHERE;
     }
 }
 

@@ -27,6 +27,7 @@ pub(crate) use decide::{Inputs, LEAST_TESSELLATION, Since, decide};
 pub(crate) use hidden::far_to_near;
 pub(crate) use why::name_of;
 
+use crate::raster::Rect;
 use crate::scene::{HiddenSurfaces, Rung, Scene};
 
 /// One decision.
@@ -140,11 +141,19 @@ pub struct Plan {
     pub(crate) objects: Vec<ObjectPlan>,
     /// The objects as they are drawn.
     pub(crate) order: Vec<usize>,
+    /// The part of the screen where any of them may be.
+    pub(crate) seen: Rect,
 }
 
 impl Plan {
     pub(crate) const fn new() -> Self {
-        Self { hidden_surfaces: HiddenSurfaces::BackFaces, chosen: true, objects: Vec::new(), order: Vec::new() }
+        Self {
+            hidden_surfaces: HiddenSurfaces::BackFaces,
+            chosen: true,
+            objects: Vec::new(),
+            order: Vec::new(),
+            seen: Rect::NOWHERE,
+        }
     }
 
     /// How hidden surfaces are left out.

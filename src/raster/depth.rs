@@ -21,6 +21,8 @@ use core::fmt;
 
 use super::cover::Ordered;
 use super::frame::Frame;
+#[cfg(feature = "alloc")]
+use super::frame::Rect;
 use super::quotient::Divisor;
 pub use crate::span::depth::Cell;
 
@@ -163,6 +165,21 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
     /// Everything as far away as can be.
     pub fn clear(&mut self) {
         self.values.fill(D::default());
+    }
+
+    /// The same of a rectangle that it holds.
+    #[cfg(feature = "alloc")]
+    pub(super) fn clear_within(&mut self, Rect { x0, y0, x1, y1 }: Rect) {
+        // Whole rows are one piece.
+        if x1 - x0 == self.width {
+            let (first, end) = ((y0 - self.first_row) * self.width, (y1 - self.first_row) * self.width);
+            return self.values[first as usize..end as usize].fill(D::default());
+        }
+        for y in y0..y1 {
+            if let Some(row) = self.row_mut(y) {
+                row[x0 as usize..x1 as usize].fill(D::default());
+            }
+        }
     }
 
     /// Whether it was laid over a frame of this width that holds these rows.

@@ -19,6 +19,13 @@ pub struct Rect {
 }
 
 impl Rect {
+    /// Without a pixel; its hull with another is the other.
+    #[cfg(feature = "alloc")]
+    pub(crate) const NOWHERE: Self = Self { x0: u32::MAX, y0: u32::MAX, x1: 0, y1: 0 };
+    /// Of any frame all.
+    #[cfg(feature = "alloc")]
+    pub(crate) const EVERYWHERE: Self = Self { x0: 0, y0: 0, x1: u32::MAX, y1: u32::MAX };
+
     /// The part that both rectangles hold.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
@@ -27,6 +34,17 @@ impl Rect {
             y0: self.y0.max(other.y0),
             x1: self.x1.min(other.x1),
             y1: self.y1.min(other.y1),
+        }
+    }
+
+    /// The least rectangle that holds both. Of an empty one the corners count, too.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn hull(self, other: Self) -> Self {
+        Self {
+            x0: self.x0.min(other.x0),
+            y0: self.y0.min(other.y0),
+            x1: self.x1.max(other.x1),
+            y1: self.y1.max(other.y1),
         }
     }
 

@@ -81,6 +81,24 @@ impl<'a> Raster<'a> {
         Raster { frame, clip, depth, kernel }
     }
 
+    /// The same where nothing is drawn but in `within`: elsewhere `values` stay as they are.
+    #[cfg(feature = "alloc")]
+    #[must_use]
+    pub(crate) fn with_depth_cleared_within(self, values: &'a mut alloc::vec::Vec<u32>, within: Rect) -> Raster<'a> {
+        let (width, rows) = (self.frame.width() as usize, self.frame.rows());
+        values.resize(width * (rows.end - rows.start) as usize, 0);
+        let within = within.intersection(self.frame.bounds());
+        let Self { frame, clip, depth: _, kernel } = self;
+        // Long enough, by the line above.
+        let mut depth = DepthBuffer::new(values, &frame).ok();
+        if let Some(depth) = &mut depth
+            && !within.is_empty()
+        {
+            depth.clear_within(within);
+        }
+        Raster { frame, clip, depth, kernel }
+    }
+
     /// Draws only what is nearer than `depth` holds. It is laid over this frame's rows
     /// ([`DepthBuffer::new`]); rows that it lacks are not drawn.
     #[must_use]

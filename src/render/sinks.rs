@@ -92,19 +92,20 @@ impl<const CLIPS: bool> Batched<'_, '_, CLIPS> {
     #[inline]
     pub(super) fn triangle(&mut self, vertices: &[Vertex; 3], shading: Shading) {
         if !self.batch.push(vertices, shading) {
-            self.past_the_batch(vertices, shading);
+            // By value, so that only here they have to be in memory.
+            self.past_the_batch(*vertices, shading);
         }
     }
 
     /// A triangle that a full batch has no room for, or that is for no batch.
     #[inline(never)]
-    fn past_the_batch(&mut self, vertices: &[Vertex; 3], shading: Shading) {
+    fn past_the_batch(&mut self, vertices: [Vertex; 3], shading: Shading) {
         self.draw();
-        if !self.batch.push(vertices, shading) {
+        if !self.batch.push(&vertices, shading) {
             *self.drawn += if CLIPS {
-                self.raster.triangle(vertices, shading)
+                self.raster.triangle(&vertices, shading)
             } else {
-                self.raster.triangle_inside(vertices, shading)
+                self.raster.triangle_inside(&vertices, shading)
             };
         }
     }

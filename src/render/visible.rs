@@ -21,7 +21,10 @@ impl Renderer {
             HiddenSurfaces::BackFaces => self.one_by_one(scene, stats, raster),
             // Chosen, the objects lie far to near, and in a convex one no face hides another.
             HiddenSurfaces::PainterOrder if self.plan.is_chosen() => self.one_by_one(scene, stats, raster),
-            HiddenSurfaces::DepthBuffer => self.one_by_one(scene, stats, raster.with_cleared_depth(&mut depths)),
+            HiddenSurfaces::DepthBuffer => {
+                let raster = raster.with_depth_cleared_within(&mut depths, self.plan.seen);
+                self.one_by_one(scene, stats, raster);
+            }
             HiddenSurfaces::PainterOrder => {
                 self.gather(scene, stats, sieve);
                 self.painter(scene, stats, &mut raster);
@@ -44,7 +47,7 @@ impl Renderer {
         transparent.clear();
         transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
         let mut integer = mem::take(&mut self.integer);
-        let mut batch = Batch::new();
+        let mut batch = Batch::of_sifted();
         for &object in &self.plan.order {
             let plan = &self.plan.objects[object];
             let mut drawn = Drawn::default();
@@ -173,7 +176,7 @@ impl Renderer {
         self.far_to_near.clear();
         self.far_to_near.reserve(self.triangles.capacity());
         far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
-        let mut batch = Batch::new();
+        let mut batch = Batch::of_sifted();
         let mut batched = Batched::<true> { raster, batch: &mut batch, drawn: &mut stats.raster };
         for &(_, i) in &self.far_to_near {
             let (vertices, shading) = &self.triangles[i];

@@ -249,12 +249,6 @@ impl Kernel {
         spans: &[list::Listed],
         depths: &[list::Depths],
     ) -> u32 {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.level == "avx512"
-            && let Some(cells) = D::as_u32(cells)
-        {
-            return simd::avx512::fill_list_nearer(pixels, cells, spans, depths);
-        }
         list::each_nearer(pixels, cells, spans, depths)
     }
 

@@ -330,7 +330,7 @@ pub(super) mod avx2 {
 /// AVX-512 in assembly: its intrinsics came with Rust 1.89, and this crate builds with 1.88.
 #[cfg(target_arch = "x86_64")]
 pub(super) mod avx512 {
-    use super::super::list::{Depths, Listed};
+    use super::super::list::{Listed, each};
 
     /// What the vectors start from, read by the assembly at the offsets beside it.
     #[repr(C, align(64))]
@@ -343,12 +343,7 @@ pub(super) mod avx512 {
         even_bytes: u64,
         /// 88: the odd bytes of two lanes.
         odd_bytes: u32,
-        /// 128: the numbers of eight pixels.
-        numbers: Numbers,
     }
-
-    #[repr(C, align(64))]
-    struct Numbers([u64; 8]);
 
     static CONSTANTS: Constants = Constants {
         even: {
@@ -363,7 +358,6 @@ pub(super) mod avx512 {
         upper: [1, 1, 3, 3, 5, 5, 7, 7, 9, 9, 11, 11, 13, 13, 15, 15],
         even_bytes: 0x5555_5555_5555_5555,
         odd_bytes: 0xFF00_FF00,
-        numbers: Numbers([0, 1, 2, 3, 4, 5, 6, 7]),
     };
 
     /// Whether this processor has what [`fill`] needs.
@@ -452,152 +446,8 @@ pub(super) mod avx512 {
         }
     }
 
-    /// Every span of a list, only for such a processor: those of at most 16 pixels, which are nearly all, by one
-    /// masked store each, with even and odd pixels as in `fill`. Longer ones go to `fill`.
+    /// Every span of a list, only for such a processor.
     pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
-        for span in spans {
-            let at = span.at as usize;
-            let Some(row) = pixels.get_mut(at..at.saturating_add(span.length as usize)) else { continue };
-            if row.len() > 16 {
-                if row.len() > 64 {
-                    fill(row, span.shade, span.step);
-                } else {
-                    // SAFETY: `found`, as for `fill`; at most 64 pixels.
-                    unsafe { fill_64(row, span) };
-                }
-                continue;
-            }
-            // SAFETY: as in `fill`. Written are the first `row.len()` bytes of `row`, at most 16, by the mask. Read are
-            // `CONSTANTS` and the two last fields of `span`, at the offsets of `repr(C)`.
-            unsafe {
-                core::arch::asm!(
-                    "vpbroadcastw xmm16, word ptr [{span} + 10]",       // step
-                    "vpbroadcastw xmm17, word ptr [{span} + 8]",        // shade
-                    "bzhi       {mask:e}, {mask:e}, {length:e}",
-                    "vpmullw    xmm18, xmm16, [{constants}]",
-                    "vpaddw     xmm18, xmm18, xmm17",                   // even
-                    "kmovd      k1, {mask:e}",
-                    "vpaddw     xmm19, xmm18, xmm16",                   // odd
-                    "vpsrlw     xmm18, xmm18, 8",
-                    "vpternlogd xmm18, xmm19, [{constants} + 88]{{1to4}}, 0xF8", // even >> 8 | odd & 0xFF00
-                    "vmovdqu8   [{row}]{{k1}}, xmm18",
-                    span = in(reg) span,
-                    row = in(reg) row.as_mut_ptr(),
-                    length = in(reg) row.len() as u32, // at most 16
-                    mask = inout(reg) u32::MAX => _,
-                    constants = in(reg) &raw const CONSTANTS,
-                    out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _,
-                    out("k1") _,
-                    options(nostack),
-                );
-            }
-        }
-    }
-
-    /// A span of at most 64 pixels: the end of `fill`.
-    ///
-    /// # Safety
-    /// Only for a processor for which [`found`] is true; `row` is at most 64 pixels long.
-    #[inline(always)]
-    unsafe fn fill_64(row: &mut [u8], span: &Listed) {
-        // SAFETY: as in `fill_list`, with 64 for 16.
-        unsafe {
-            core::arch::asm!(
-                "vpbroadcastw zmm16, word ptr [{span} + 10]",       // step
-                "vpbroadcastw zmm17, word ptr [{span} + 8]",        // shade
-                "bzhi       {mask}, {mask}, {length}",
-                "vpmullw    zmm18, zmm16, [{constants}]",
-                "vpaddw     zmm18, zmm18, zmm17",                   // even
-                "kmovq      k1, {mask}",
-                "vpaddw     zmm19, zmm18, zmm16",                   // odd
-                "vpsrlw     zmm18, zmm18, 8",
-                "vpternlogd zmm18, zmm19, [{constants} + 88]{{1to16}}, 0xF8", // even >> 8 | odd & 0xFF00
-                "vmovdqu8   [{row}]{{k1}}, zmm18",
-                span = in(reg) span,
-                row = in(reg) row.as_mut_ptr(),
-                length = in(reg) row.len(),
-                mask = inout(reg) u64::MAX => _,
-                constants = in(reg) &raw const CONSTANTS,
-                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _,
-                out("k1") _,
-                options(nostack),
-            );
-        }
-    }
-
-    /// Every span of a list where it is nearer, only for such a processor: by masked stores of 16 pixels, first
-    /// eight depths and then, of longer ones, eight more.
-    pub(crate) fn fill_list_nearer(pixels: &mut [u8], cells: &mut [u32], spans: &[Listed], depths: &[Depths]) -> u32 {
-        let mut written = 0;
-        for (span, depth) in spans.iter().zip(depths) {
-            let (at, cell, length) = (span.at as usize, depth.at as usize, span.length as usize);
-            let Some(row) = pixels.get_mut(at..at.saturating_add(length)) else { continue };
-            let Some(cells) = cells.get_mut(cell..cell.saturating_add(length)) else { continue };
-            let (mut span, mut depth) = (*span, *depth);
-            for (row, cells) in row.chunks_mut(16).zip(cells.chunks_mut(16)) {
-                // SAFETY: this function is only for such a processor.
-                written += unsafe { fill_16_nearer(row, cells, &span, &depth) };
-                span.shade = span.shade.wrapping_add(span.step.wrapping_mul(16));
-                depth.z = depth.z.wrapping_add(depth.dz.wrapping_mul(16));
-            }
-        }
-        written
-    }
-
-    /// At most 16 pixels of a span. `cells` are as many as `row`.
-    ///
-    /// # Safety
-    /// Only for a processor for which [`found`] is true.
-    #[inline(always)]
-    unsafe fn fill_16_nearer(row: &mut [u8], cells: &mut [u32], span: &Listed, depth: &Depths) -> u32 {
-        let length = row.len().min(cells.len()).min(16);
-        let nearer: u32;
-        // SAFETY: as in `fill_list`. Written are, by masks, at most the first `length` bytes of `row` and as many of
-        // `cells`, of which those that the masks leave are read; masked loads and stores touch no other memory.
-        // Read are `CONSTANTS`, the last fields of `span` and the first two of `depth`, at the offsets of `repr(C)`.
-        unsafe {
-            core::arch::asm!(
-                "bzhi       {mask:e}, {mask:e}, {length:e}",
-                "vpbroadcastq zmm20, qword ptr [{depth} + 8]",      // dz
-                "kmovd      k1, {mask:e}",
-                "vpmullq    zmm21, zmm20, [{constants} + 128]",
-                "vpaddq     zmm21, zmm21, qword ptr [{depth}]{{1to8}}", // z
-                "vmovdqu32  zmm23{{k1}}{{z}}, [{cells}]",
-                "vpsrlq     zmm22, zmm21, 24",
-                "vpmovqd    ymm22, zmm22",
-                "cmp        {length:e}, 8",
-                "jbe        3f",
-                "vpsllq     zmm20, zmm20, 3",
-                "vpaddq     zmm21, zmm21, zmm20",
-                "vpsrlq     zmm21, zmm21, 24",
-                "vpmovqd    ymm21, zmm21",
-                "vinserti64x4 zmm22, zmm22, ymm21, 1",
-                "3:",
-                "vpcmpud    k1{{k1}}, zmm22, zmm23, 6",             // greater
-                "vmovdqu32  [{cells}]{{k1}}, zmm22",
-                "vpbroadcastw xmm16, word ptr [{span} + 10]",       // step
-                "vpbroadcastw xmm17, word ptr [{span} + 8]",        // shade
-                "vpmullw    xmm18, xmm16, [{constants}]",
-                "vpaddw     xmm18, xmm18, xmm17",                   // even
-                "vpaddw     xmm19, xmm18, xmm16",                   // odd
-                "vpsrlw     xmm18, xmm18, 8",
-                "vpternlogd xmm18, xmm19, [{constants} + 88]{{1to4}}, 0xF8", // even >> 8 | odd & 0xFF00
-                "vmovdqu8   [{row}]{{k1}}, xmm18",
-                "kmovd      {mask:e}, k1",
-                "popcnt     {mask:e}, {mask:e}",
-                span = in(reg) span,
-                depth = in(reg) depth,
-                row = in(reg) row.as_mut_ptr(),
-                cells = in(reg) cells.as_mut_ptr(),
-                length = in(reg) length as u32, // at most 16
-                mask = inout(reg) u32::MAX => nearer,
-                constants = in(reg) &raw const CONSTANTS,
-                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
-                out("zmm22") _, out("zmm23") _,
-                out("k1") _,
-                options(nostack),
-            );
-        }
-        nearer
+        each(pixels, spans, fill);
     }
 }

@@ -38,6 +38,12 @@ void peers_mesa_mesh(const float *of_positions, const float *of_normals, const u
     glNormalPointer(GL_FLOAT, 0, normals);
 }
 
+/* Whether both sides of faces are drawn, each lit, or those that are turned away are left out. */
+void peers_mesa_sides(int both) {
+    if (both) glDisable(GL_CULL_FACE); else glEnable(GL_CULL_FACE);
+    glLightModeli(GL_LIGHT_MODEL_TWO_SIDE, both);
+}
+
 /* Clear, transform, light, cull, draw; the pixels are there when it returns. */
 void peers_mesa_frame(const float *modelview) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

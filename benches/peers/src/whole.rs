@@ -5,7 +5,8 @@ use std::ffi::{CStr, c_char, c_int};
 use std::time::Instant;
 
 use mode13h::mesh::Mesh;
-use mode13h::render::Renderer;
+use mode13h::plan::Effect;
+use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{HiddenSurfaces, Scene};
 use mode13h::vga::Vga;
 
@@ -16,6 +17,7 @@ unsafe extern "C" {
     fn peers_mesa_start(width: c_int, height: c_int, projection: *const f32, light: *const f32) -> c_int;
     fn peers_mesa_renderer() -> *const c_char;
     fn peers_mesa_mesh(positions: *const f32, normals: *const f32, indices: *const u32, count: c_int);
+    fn peers_mesa_sides(both: c_int);
     fn peers_mesa_frame(modelview: *const f32);
     fn peers_mesa_lit(of_pixels: c_int) -> c_int;
 }
@@ -70,6 +72,10 @@ pub fn measure(mesh: &Mesh) -> Result<Whole, Box<dyn Error>> {
     let scale = Scene::default().camera.eye.z / eye.z;
     let mut renderers = [Renderer::new(), Renderer::new()];
     renderers[0].set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+    // An open mesh shows its other side, too.
+    let both = !renderers[0].make_plan(&scene, Screen::MODE_13H)?.is_on(0, Effect::BackFaceCulling);
+    // SAFETY: Mesa has been started.
+    unsafe { peers_mesa_sides(both.into()) };
     let mut machines = [Vga::new(), Vga::new()];
     let mut times = [const { Times::new() }; 3];
     let mut pixels = [0; 2];

@@ -7,9 +7,11 @@ use core::arch::asm;
 use core::mem::offset_of;
 
 use super::Batch;
-use super::rows::{Edges, Gathered, Group, Ints, LANES, MAGIC, Place, Row};
+use super::rows::{Edges, Gathered, Group, Ints, LANES, MAGIC, Place};
 use super::sieve::Chosen;
 
+pub(super) mod listed;
+mod planes;
 pub(super) mod tall;
 
 /// What set-up adds and multiplies by.
@@ -299,80 +301,6 @@ pub(super) unsafe fn set_up(gathered: &Gathered, place: Place, group: &mut Group
             out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
             out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm27") _,
             out("zmm28") _, out("zmm29") _, out("zmm30") _, out("zmm31") _, out("k1") _, out("k2") _,
-            options(nostack),
-        );
-    }
-}
-
-/// `rows::row`: row number `row` of eight triangles.
-///
-/// # Safety
-/// Only for a processor for which `span::simd::avx512::found` is true.
-#[inline]
-pub(super) unsafe fn row(group: &Group, row: i32, pitch: i32, to: &mut Row) {
-    // SAFETY: the caller has AVX-512 F, DQ and VL found. Read are `group` and `CONSTANTS`, written is `to`, eight numbers each at the
-    // offsets of their fields. The stack is not used; flags and all registers written are given up.
-    unsafe {
-        asm!(
-            "vpbroadcastd ymm26, {row:e}",
-            "vpbroadcastd ymm27, {down:e}",
-            "vcvtdq2pd  zmm16, ymm26",                                  // j
-            "vbroadcastsd zmm31, qword ptr [{c} + {MAGIC}]",                // magic
-            "vmovupd    zmm17, [{g} + {LONG} + {PER_ROW}]",
-            "vmovupd    zmm18, [{g} + {UPPER} + {PER_ROW}]",
-            "vmovupd    zmm19, [{g} + {LOWER} + {PER_ROW}]",
-            "vmovupd    zmm20, [{g} + {SHADE_PER_ROW}]",
-            "vpcmpd     k1, ymm26, [{g} + {SPLIT}], 5",                 // not less
-            "vfmadd213pd zmm17, zmm16, [{g} + {LONG} + {N}]",
-            "vfmadd213pd zmm18, zmm16, [{g} + {UPPER} + {N}]",
-            "vfmadd213pd zmm19, zmm16, [{g} + {LOWER} + {N}]",
-            "vfmadd213pd zmm20, zmm16, [{g} + {SHADE_N}]",
-            "vpcmpd     k2, ymm26, [{g} + {ROWS}], 1",                  // less
-            "vfmadd132pd zmm17, zmm31, [{g} + {LONG} + {INVERSE}]",
-            "vfmadd132pd zmm18, zmm31, [{g} + {UPPER} + {INVERSE}]",
-            "vfmadd132pd zmm19, zmm31, [{g} + {LOWER} + {INVERSE}]",
-            "vpaddd     ymm27, ymm27, [{g} + {AT}]",
-            "vmovapd    zmm18{{k1}}, zmm19",                            // short
-            "vminpd     zmm19, zmm17, zmm18",                           // left
-            "vmaxpd     zmm17, zmm17, zmm18",                           // right
-            "vsubpd     zmm18, zmm19, zmm31",                           // left's column
-            "vpsubq     zmm17, zmm17, zmm19",
-            "vpmovqd    ymm19, zmm19",
-            "vpmovqd    ymm17{{k2}}{{z}}, zmm17",
-            "vfmadd132pd zmm18, zmm20, [{g} + {PER_COLUMN}]",
-            "vpaddd     ymm27, ymm27, ymm19",
-            "vmovdqu32  [{to} + {TO_LENGTH}], ymm17",
-            "vfmadd132pd zmm18, zmm31, [{g} + {SHADE_INVERSE}]",
-            "vmovdqu32  [{to} + {TO_AT}], ymm27",
-            "vpmovqw    xmm18, zmm18",
-            "vpmovzxwd  ymm18, xmm18",
-            "vpord      ymm18, ymm18, [{g} + {STEP}]",
-            "vmovdqu32  [{to} + {TO_PAINT}], ymm18",
-            g = in(reg) group,
-            to = in(reg) to,
-            c = in(reg) &raw const CONSTANTS,
-            row = in(reg) row,
-            MAGIC = const offset_of!(Constants, magic),
-            down = in(reg) row.wrapping_mul(pitch),
-            LONG = const offset_of!(Group, long),
-            UPPER = const offset_of!(Group, upper),
-            LOWER = const offset_of!(Group, lower),
-            N = const offset_of!(Edges, n),
-            PER_ROW = const offset_of!(Edges, per_row),
-            INVERSE = const offset_of!(Edges, inverse),
-            SHADE_N = const offset_of!(Group, n),
-            SHADE_PER_ROW = const offset_of!(Group, per_row),
-            SHADE_INVERSE = const offset_of!(Group, inverse),
-            PER_COLUMN = const offset_of!(Group, per_column),
-            SPLIT = const offset_of!(Group, split),
-            ROWS = const offset_of!(Group, rows),
-            AT = const offset_of!(Group, at),
-            STEP = const offset_of!(Group, step),
-            TO_AT = const offset_of!(Row, at),
-            TO_LENGTH = const offset_of!(Row, length),
-            TO_PAINT = const offset_of!(Row, paint),
-            out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm26") _,
-            out("zmm27") _, out("zmm31") _, out("k1") _, out("k2") _,
             options(nostack),
         );
     }

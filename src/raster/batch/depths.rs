@@ -18,17 +18,28 @@
 //! the middle between two whole numbers. It is below 2²³·¹, and off by at most 2⁻⁵² of that: less than 2⁻²⁸·⁹.
 
 use super::rows::{Floats, Gathered, Group, LANES, MAGIC, Place};
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+use crate::raster::depth::DepthPlane;
 use crate::span::list::Depths;
 
 /// Depths of eight triangles, with 24 fraction bits, modulo 2⁶⁴.
 pub(super) struct Planes {
     /// At the first pixel of the box, the half included.
-    at: [i64; LANES],
-    per_column: [i64; LANES],
-    per_row: [i64; LANES],
+    pub(super) at: [i64; LANES],
+    pub(super) per_column: [i64; LANES],
+    pub(super) per_row: [i64; LANES],
 }
 
 impl Planes {
+    /// Puts that of triangle `i` of a group, which is worked out alone, in its place.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    pub(super) fn put(&mut self, i: usize, group: &Group, plane: &DepthPlane) {
+        let (column, row) = (group.column[i], group.row[i]);
+        self.at[i] = plane.fixed_at(column, row);
+        self.per_column[i] = plane.step();
+        self.per_row[i] = plane.fixed_at(column, row + 1).wrapping_sub(self.at[i]);
+    }
+
     /// Of the small triangles of a group that is set up.
     #[inline(always)]
     pub(super) fn of(gathered: &Gathered, group: &Group) -> Self {

@@ -7,16 +7,17 @@
 //! | stage | lanes | what |
 //! |---|---|---|
 //! | `sieve` | triangles | which have a pixel centre in their box, and if that is tiny in themselves; which of these are small |
-//! | `rows` | triangles, or rows of one | of eight small ones at a time edges, shade plane and rows, as a list of spans; of one up to 256 pixels a side eight rows at a time |
+//! | `rows` | triangles, or rows of one | of eight small ones at a time edges, shade plane and rows, as a list of spans; of a larger one eight rows at a time |
 //! | [`Kernel::fill_list`](crate::span::Kernel::fill_list) | pixels | the bytes |
 //!
 //! With AVX-512 and without a depth buffer larger ones need no list: their rows go to the pixels eight at a time.
 //!
-//! What is larger still, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
+//! What is larger than 2¹⁸ pixels, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
 //! when its turn comes. The bytes are those of a call of it for each triangle in turn.
 
 use super::Shading;
 use super::depth::{Cell, DepthPlane};
+use super::frame::Rect;
 use super::triangle::{Drawn, Raster};
 use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, I24F8, U8F8};
@@ -32,13 +33,16 @@ mod sieve;
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86;
 
-use rows::{DEPTHS, Draw, Group, Place, Spans};
+use crate::raster::shade::RESEED;
+use rows::{DEPTHS, Draw, MOST_PIECES, Place, Spans};
 use sieve::{Chosen, Kept, Kind};
 
 /// Triangles to be drawn one after the other, in arrays.
 #[derive(Clone, Debug)]
 pub struct Batch {
     count: usize,
+    /// Whether triangles of no pixel have mostly been left out already: to look for more does not pay.
+    is_sifted: bool,
     /// Of each corner, of all triangles: x and y in 1/256 pixel, shade in 1/256.
     x: [[i32; Self::CAPACITY]; 3],
     y: [[i32; Self::CAPACITY]; 3],
@@ -56,12 +60,19 @@ impl Batch {
     pub const fn new() -> Self {
         Self {
             count: 0,
+            is_sifted: false,
             x: [[0; Self::CAPACITY]; 3],
             y: [[0; Self::CAPACITY]; 3],
             shade: [[0; Self::CAPACITY]; 3],
             depth: [[0; Self::CAPACITY]; 3],
             shading: [Shading::Flat(0); Self::CAPACITY],
         }
+    }
+
+    /// One for triangles of which those that cover no pixel have mostly been left out.
+    #[cfg(feature = "alloc")]
+    pub(crate) const fn of_sifted() -> Self {
+        Self { is_sifted: true, ..Self::new() }
     }
 
     /// Whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
@@ -126,6 +137,17 @@ impl Batch {
         DepthPlane::of_corners([0, 1, 2].map(|corner| (self.x[corner][at], self.y[corner][at], self.depth[corner][at])))
     }
 
+    /// The most pieces that start anew in a row of a tall triangle.
+    fn pieces(&self, at: usize) -> usize {
+        if self.shading[at] != Shading::GouraudReseeded {
+            return 1;
+        }
+        let [a, b, c] = self.x.each_ref().map(|x| x[at]);
+        // As in `sieve`; at most 1,024 pixels.
+        let columns = ((a.max(b).max(c) + 127) >> 8) - ((a.min(b).min(c) + 127) >> 8);
+        ((columns - 1) as usize / RESEED as usize + 1).clamp(1, MOST_PIECES)
+    }
+
     /// A triangle as it was put in, but that the vertices of a flat one have its shade.
     fn triangle(&self, at: usize) -> ([Vertex; 3], Shading) {
         let vertex = |corner: usize| {
@@ -174,11 +196,37 @@ impl<D: Cell> Raster<'_, D> {
         (stages.sieve)(batch, self.clip, &mut kept);
         let depth_width = self.depth.is_some().then_some(width);
         let place = Place { first_row: rows.start, pitch: pitch as u32, depth_width };
+        if let Some(at_once) = stages.at_once
+            && self.depth.as_mut().is_none_or(|depth| D::as_u32(depth.values_mut()).is_some())
+        {
+            return self.draw_at_once::<CLIPS>(batch, at_once, &kept, place);
+        }
         if depth_width.is_some() {
             self.draw_kept::<CLIPS>(batch, &stages, &kept, place, Spans::new(&mut { DEPTHS }))
         } else {
             self.draw_kept::<CLIPS>(batch, &stages, &kept, place, Spans::new(&mut []))
         }
+    }
+
+    /// Draws what the sieve has kept, all but others together.
+    fn draw_at_once<const CLIPS: bool>(&mut self, batch: &Batch, at_once: AtOnce, kept: &Kept, place: Place) -> Drawn {
+        let mut drawn = Drawn::default();
+        let mut left = kept.triangles();
+        while let Some(first) = left.first() {
+            let together = Chosen::in_batch(left);
+            if together == 0 {
+                drawn += self.one_of::<CLIPS>(batch, first.number());
+                left = &left[1..];
+                continue;
+            }
+            let (pixels, _) = self.frame.pixels_mut();
+            // As in `fill`.
+            let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+            let cells = depth.and_then(|depth| D::as_u32(depth.values_mut()));
+            drawn += at_once(batch, &left[..together], (place, self.clip), pixels, cells);
+            left = &left[together..];
+        }
+        drawn
     }
 
     /// Draws what the sieve has kept.
@@ -194,19 +242,12 @@ impl<D: Cell> Raster<'_, D> {
         let mut left = kept.triangles();
         while let Some(first) = left.first() {
             let kind = first.kind();
-            if kind == Kind::Other {
+            if matches!(kind, Kind::Other | Kind::Clipped) {
                 drawn += self.one_of::<CLIPS>(batch, first.number());
                 left = &left[1..];
                 continue;
             }
             let alike = Chosen::alike(left);
-            if kind == Kind::Tall
-                && let (None, Some(tall)) = (&self.depth, stages.tall_at_once)
-            {
-                drawn += tall(batch, &left[..alike], place, &mut spans.group, self.frame.pixels_mut().0);
-                left = &left[alike..];
-                continue;
-            }
             if kind == Kind::Tall {
                 (stages.tall)(batch, &left[..alike], place, &mut spans, &mut |spans| self.fill(spans, &mut drawn));
                 left = &left[alike..];
@@ -250,28 +291,27 @@ impl<D: Cell> Raster<'_, D> {
 
 /// The stages as the kernel's processor runs them best.
 struct Stages {
-    sieve: fn(&Batch, super::frame::Rect, &mut Kept),
+    sieve: fn(&Batch, Rect, &mut Kept),
     rows: fn(&Batch, &[Chosen], Place, &mut Spans<'_>) -> usize,
     tall: fn(&Batch, &[Chosen], Place, &mut Spans<'_>, Draw<'_>),
-    /// The same without a depth buffer.
-    tall_at_once: Option<TallAtOnce>,
+    /// In place of both, with cells of 32 bits if there is a depth buffer.
+    at_once: Option<AtOnce>,
 }
 
-/// Draws tall triangles into pixels.
-type TallAtOnce = fn(&Batch, &[Chosen], Place, &mut Group, &mut [u8]) -> Drawn;
+/// Draws small, tall and clipped triangles into pixels, and where they are nearer than cells, if there are any.
+type AtOnce = fn(&Batch, &[Chosen], (Place, Rect), &mut [u8], Option<&mut [u32]>) -> Drawn;
 
 impl Stages {
     fn of(kernel: Kernel) -> Self {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
-            let stages = Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, tall_at_once: None };
+            let stages = Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, at_once: None };
             if kernel.has_avx512() {
-                let tall_at_once = Some(x86::tall_at_once as TallAtOnce);
-                return Self { sieve: x86::sieve_512, rows: x86::rows_512, tall_at_once, ..stages };
+                return Self { sieve: x86::sieve_512, at_once: Some(x86::at_once), ..stages };
             }
             return stages;
         }
         let _ = kernel;
-        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall, tall_at_once: None }
+        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall, at_once: None }
     }
 }

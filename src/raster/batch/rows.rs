@@ -10,9 +10,11 @@
 //!
 //! where what is rounded lies at least 1/(2d) from the middle between two whole numbers. The reciprocal and the
 //! product are each off by at most one part in 2⁵³: for a shade, below 2¹⁶, by 2⁻³⁶ together. A box of at most
-//! 256 × 256 pixels is 2¹⁶ units a side, so twice the area is at most 2³², and the margin at least 2⁻³³. A column is
-//! below 2⁹, its divisor at most 2²⁴. (n + ½ − d/2 is exact: a multiple of ½ whose terms are below 2⁵⁰.) A step has any
-//! size, but below 2⁴¹ / d, so it is off by less than 2⁻¹¹ / d. The whole number is found by adding 1.5 · 2⁵², which
+//! 2¹⁸ pixels has 2³⁴ square units, and twice the area is no more, so the margin is at least 2⁻³⁵. A column is below 2¹⁰,
+//! its divisor at most 2²⁸: margin 2⁻²⁹, off by 2⁻⁴². (n + ½ − d/2 is exact: a multiple of ½ below 2⁵². A gradient's
+//! numerator is below 2¹⁶ times the box's height or width, so each of the terms of n, and n at any pixel of the
+//! triangle, is below 2⁵⁰; and no more than three are ever in a sum.) A step has any size, but below 2⁴⁴ / d, so it is
+//! off by less than 2⁻⁸ / d. The whole number is found by adding 1.5 · 2⁵², which
 //! leaves it in the low bits. So there is no correction, no branch, and the same result on every processor.
 //!
 //! Left and right are the lesser and the greater of two edges: where the long edge and a short one meet a row, one
@@ -31,10 +33,13 @@ use crate::span::list::{Depths, Listed};
 pub(super) const MOST_COLUMNS: i32 = 64;
 /// The highest.
 pub(super) const MOST_ROWS: i32 = 16;
-/// The longest side of a tall triangle's box, in 1/256 pixel.
-pub(super) const MOST_UNITS: i32 = 256 * 256;
+/// The widest that a tall triangle's box is, in 1/256 pixel, and the highest.
+pub(super) const MOST_ACROSS: i32 = 1_024 * 256;
+pub(super) const MOST_DOWN: i32 = 4_096 * 256;
+/// The most squares of four pixels a side that the box has, sides rounded up: 2³⁴ units.
+pub(super) const MOST_SQUARES: i32 = 1 << 14;
 /// Pieces of a row, each of which starts anew.
-pub(super) const MOST_PIECES: usize = MOST_UNITS as usize / 256 / RESEED as usize;
+pub(super) const MOST_PIECES: usize = MOST_ACROSS as usize / 256 / RESEED as usize;
 /// Triangles at a time, or rows of one.
 pub(super) const LANES: usize = 8;
 /// 1.5 · 2⁵².
@@ -42,7 +47,8 @@ pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
 
 /// Room for the spans of a group, and for eight rows of a tall triangle. All is cleared for every batch: more room costs
 /// more than it saves.
-const ROOM: usize = LANES * MOST_ROWS as usize + LANES * MOST_PIECES;
+const ROOM: usize = LANES * MOST_ROWS as usize + 32;
+const _: () = assert!(LANES * MOST_PIECES <= ROOM);
 
 /// Room for the depths of as many spans.
 pub(super) const DEPTHS: [Depths; ROOM + 1] = [Depths { at: 0, z: 0, dz: 0 }; ROOM + 1];
@@ -66,22 +72,7 @@ impl<'a> Spans<'a> {
             count: 0,
             covered: 0,
             depths,
-            group: Group {
-                column: [0; LANES],
-                row: [0; LANES],
-                at: [0; LANES],
-                rows: [0; LANES],
-                columns: [0; LANES],
-                long: NO_EDGES,
-                upper: NO_EDGES,
-                lower: NO_EDGES,
-                split: [0; LANES],
-                n: [0.0; LANES],
-                per_row: [0.0; LANES],
-                per_column: [0.0; LANES],
-                inverse: [0.0; LANES],
-                step: [0; LANES],
-            },
+            group: Group::NONE,
             table: [const { Row { at: [0; LANES], length: [0; LANES], paint: [0; LANES] } }; MOST_ROWS as usize],
         }
     }
@@ -136,8 +127,6 @@ pub(super) struct Group {
     pub(super) row: Ints,
     pub(super) at: Ints,
     pub(super) rows: Ints,
-    /// Of the box.
-    pub(super) columns: Ints,
     pub(super) long: Edges,
     pub(super) upper: Edges,
     pub(super) lower: Edges,
@@ -153,6 +142,22 @@ pub(super) struct Group {
 }
 
 impl Group {
+    pub(super) const NONE: Self = Self {
+        column: [0; LANES],
+        row: [0; LANES],
+        at: [0; LANES],
+        rows: [0; LANES],
+        long: NO_EDGES,
+        upper: NO_EDGES,
+        lower: NO_EDGES,
+        split: [0; LANES],
+        n: [0.0; LANES],
+        per_row: [0.0; LANES],
+        per_column: [0.0; LANES],
+        inverse: [0.0; LANES],
+        step: [0; LANES],
+    };
+
     /// The depths of spans of a triangle, which hold the numbers of their rows.
     #[inline(always)]
     fn depths(
@@ -241,6 +246,24 @@ impl Gathered {
     /// The first eight. Where there are less the last place's are others.
     #[inline(always)]
     pub(super) fn gather(&mut self, batch: &Batch, triangles: &[Chosen], place: Place) {
+        // Faces that were sifted before are mostly all kept.
+        if let Some([first, .., last]) = triangles.first_chunk::<LANES>()
+            && last.number() == first.number() + LANES - 1
+        {
+            let first = first.number().min(Batch::CAPACITY - LANES);
+            let eight = first..first + LANES;
+            for corner in 0..3 {
+                self.x[corner].copy_from_slice(&batch.x[corner][eight.clone()]);
+                self.y[corner].copy_from_slice(&batch.y[corner][eight.clone()]);
+                for (to, &shade) in self.shade[corner].iter_mut().zip(&batch.shade[corner][eight.clone()]) {
+                    *to = i32::from(shade);
+                }
+                if place.depth_width.is_some() {
+                    self.depth[corner].copy_from_slice(&batch.depth[corner][eight.clone()]);
+                }
+            }
+            return;
+        }
         for (lane, triangle) in triangles.iter().take(LANES).enumerate() {
             let at = triangle.number();
             for corner in 0..3 {
@@ -276,7 +299,6 @@ pub(super) fn set_up<const TALL: bool>(gathered: &Gathered, place: Place, group:
     let Group {
         column: left_columns,
         row: top_rows,
-        columns,
         at,
         rows,
         long,
@@ -293,12 +315,11 @@ pub(super) fn set_up<const TALL: bool>(gathered: &Gathered, place: Place, group:
     let (pitch, first_row) = (place.pitch as i32, place.first_row as i32);
     for i in 0..LANES {
         let (low_x, low_y) = (x[0][i].min(x[1][i]).min(x[2][i]), y[0][i].min(y[1][i]).min(y[2][i]));
-        let (high_x, high_y) = (x[0][i].max(x[1][i]).max(x[2][i]), y[0][i].max(y[1][i]).max(y[2][i]));
+        let high_y = y[0][i].max(y[1][i]).max(y[2][i]);
         let (column, row) = ((low_x + 127) >> 8, (low_y + 127) >> 8);
         (left_columns[i], top_rows[i]) = (column, row);
-        columns[i] = ((high_x + 127) >> 8) - column;
         at[i] = (row - first_row) * pitch + column;
-        // From the first pixel's centre, within ±2¹⁷.
+        // From the first pixel's centre, within ±2²⁰.
         let (left, top) = (column * 256 + 128, row * 256 + 128);
         let (ax, ay) = (x[0][i] - left, y[0][i] - top);
         let (bx, by) = (x[1][i] - left, y[1][i] - top);
@@ -511,15 +532,16 @@ pub(super) fn tall_by(
             // Of a triangle without area, which has no spans, there is none.
             let mut plane = None;
             // A row that does not start anew is one piece, however long.
-            let (pieces, longest) = match batch.shading[number] {
-                // At most 256 pixels.
-                Shading::GouraudReseeded => {
-                    ((spans.group.columns[i] - 1) as usize / RESEED as usize + 1, RESEED as u32)
-                }
-                _ => (1, MOST_UNITS as u32),
+            let longest = match batch.shading[number] {
+                Shading::GouraudReseeded => RESEED as u32,
+                _ => MOST_ACROSS as u32,
             };
-            let pieces = pieces.clamp(1, MOST_PIECES);
+            let pieces = batch.pieces(number);
             for first in (0..spans.group.rows[i]).step_by(LANES) {
+                if spans.count + LANES * pieces > ROOM {
+                    draw(spans);
+                    spans.clear();
+                }
                 let Spans { spans: list, depths, count, covered, group, .. } = &mut *spans;
                 lines(
                     group,
@@ -532,10 +554,10 @@ pub(super) fn tall_by(
                 );
                 let (before, mut end) = (*count, *count);
                 for j in 0..LANES.min((group.rows[i] - first) as usize) {
-                    // All are non-negative, and a length is at most 256.
+                    // All are non-negative, and a length is at most 1,024.
                     let (mut at, mut left) = (found.at[j] as u32, found.length[j] as u32);
                     *covered += left;
-                    for paint in &found.paint {
+                    for paint in &found.paint[..pieces] {
                         if left == 0 {
                             break;
                         }
@@ -552,10 +574,6 @@ pub(super) fn tall_by(
                 if let Some(width) = place.depth_width.filter(|_| end > before) {
                     let plane = plane.get_or_insert_with(|| batch.depth_plane(number));
                     group.depths(i, plane, place, width, &list[before..end], &mut depths[before..end]);
-                }
-                if end + LANES * MOST_PIECES > ROOM {
-                    draw(spans);
-                    spans.clear();
                 }
             }
         }

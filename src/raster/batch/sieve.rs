@@ -1,7 +1,7 @@
 //! The sieve: which triangles of a batch may cover a pixel.
 
 use super::Batch;
-use super::rows::{Ints, LANES, MOST_COLUMNS, MOST_ROWS, MOST_UNITS};
+use super::rows::{Ints, LANES, MOST_ACROSS, MOST_COLUMNS, MOST_DOWN, MOST_ROWS, MOST_SQUARES};
 use crate::raster::frame::Rect;
 
 /// What becomes of a triangle that has a pixel centre in its box.
@@ -11,10 +11,12 @@ pub(super) enum Kind {
     Small,
     /// It lies inside the clip rectangle and is small enough for `tall`.
     Tall,
+    /// It reaches over the clip rectangle's edge, and is no larger than a tall one.
+    Clipped,
     Other,
 }
 
-/// A triangle's number, and above it what becomes of it: 1 small, 2 tall, 3 another.
+/// A triangle's number, and above it what becomes of it: 1 small, 2 tall, 3 another, 4 clipped.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(super) struct Chosen(u16);
@@ -31,8 +33,26 @@ impl Chosen {
         match self.0 >> 8 {
             1 => Kind::Small,
             2 => Kind::Tall,
+            4 => Kind::Clipped,
             _ => Kind::Other,
         }
+    }
+
+    /// How many of those kept, from the first on, are small, tall or clipped.
+    #[inline(always)]
+    pub(super) fn in_batch(kept: &[Self]) -> usize {
+        // Eight at a time, as in `alike`. Only of another both of the lowest bits above the number are set.
+        let is_other = |chosen: &Self| chosen.0 & chosen.0 >> 1 & 1 << 8;
+        let none = |eight: &&[Self; LANES]| eight.iter().fold(0, |any, chosen| any | is_other(chosen)) == 0;
+        let whole = kept.as_chunks::<LANES>().0.iter().take_while(none).count() * LANES;
+        whole + kept[whole..].iter().take_while(|chosen| is_other(chosen) == 0).count()
+    }
+
+    /// Whether all of these, of which none is another, are small.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[inline(always)]
+    pub(super) fn are_small(kept: &[Self]) -> bool {
+        kept.iter().fold(0, |any, chosen| any | chosen.0) & 6 << 8 == 0
     }
 
     /// How many of those kept, from the first on, become the same.
@@ -69,7 +89,7 @@ impl Kept {
 pub(super) fn pack(eight: &Ints, to: &mut [Chosen; LANES]) -> usize {
     let mut count = 0;
     for &chosen in eight {
-        // Below 1,024; fewer than eight come before it.
+        // Below 2,048; fewer than eight come before it.
         to[count % LANES] = Chosen(chosen as u16);
         count += usize::from(chosen != 0);
     }
@@ -112,15 +132,18 @@ pub(super) fn sieve_by(
             let covers = (column.max(left) < end_column.min(right)) & (row.max(top) < end_row.min(bottom));
             let inside = (column >= left) & (end_column <= right) & (row >= top) & (end_row <= bottom);
             let few = (end_column - column <= MOST_COLUMNS) & (end_row - row <= MOST_ROWS);
-            let more = (high_x - low_x <= MOST_UNITS) & (high_y - low_y <= MOST_UNITS);
+            // Differences are at most 2²¹.
+            let (across, down) = (high_x - low_x, high_y - low_y);
+            let squares = ((across + 1_023) >> 10).wrapping_mul((down + 1_023) >> 10);
+            let more = (across <= MOST_ACROSS) & (down <= MOST_DOWN) & (squares <= MOST_SQUARES);
             let tiny = (end_column - column <= MOST_LOOKED_AT) & (end_row - row <= MOST_LOOKED_AT);
             let number = first + i as i32; // below 128
-            let kind = 3 - i32::from(inside & more) - i32::from(inside & few);
+            let kind = 3 - i32::from(inside & more) - i32::from(inside & few) + i32::from(!inside & more);
             chosen[i] = if covers & (number < most) { kind << 8 | number } else { 0 };
             are_tiny[i] = i32::from(covers & inside & tiny);
             (columns[i], rows[i]) = (column, row);
         }
-        if are_tiny != [0; LANES] {
+        if !batch.is_sifted && are_tiny != [0; LANES] {
             for i in 0..LANES {
                 let (left, top) = (columns[i] * 256 + 128, rows[i] * 256 + 128);
                 let corner = |k: usize| (x[k][i] - left, y[k][i] - top);

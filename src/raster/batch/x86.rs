@@ -3,12 +3,12 @@
 use core::arch::x86_64::*;
 
 use super::Batch;
-use super::avx512::{self, tall::Tall};
+use super::avx512::{self, listed, tall::Tall};
 use super::depths::Planes;
 use super::rows::{
     Draw, Edges, Floats, Gathered, Group, Ints, LANES, MAGIC, Place, Row, Spans, rows_by, set_up, tall_by,
 };
-use super::sieve::{Chosen, Kept, pack, sieve_by};
+use super::sieve::{Chosen, Kept, Kind, pack, sieve_by};
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
 use crate::raster::triangle::Drawn;
@@ -54,20 +54,6 @@ pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     unsafe { avx2(batch, kept, place, spans) }
 }
 
-/// Only with a kernel for which `Kernel::has_avx512` is true.
-pub(super) fn rows_512(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
-    #[target_feature(enable = "avx2")]
-    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
-        // SAFETY: such a kernel is given out only where AVX-512 was found.
-        let set_up = |gathered: &Gathered, place, group: &mut Group| unsafe { avx512::set_up(gathered, place, group) };
-        // SAFETY: the same.
-        let row = |group: &Group, number, pitch, to: &mut Row| unsafe { avx512::row(group, number, pitch, to) };
-        rows_by(batch, kept, place, spans, set_up, row, |gathered, group| planes(gathered, group))
-    }
-    // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
-    unsafe { avx2(batch, kept, place, spans) }
-}
-
 /// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
     #[target_feature(enable = "avx2")]
@@ -80,32 +66,111 @@ pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     unsafe { avx2(batch, kept, place, spans, draw) }
 }
 
-/// Draws tall triangles where there is no depth buffer, without a list. Only with a kernel for which
+/// Draws small, tall and clipped triangles in turn, without a list of more than a few spans. Only with a kernel for which
 /// `Kernel::has_avx512` is true.
-pub(super) fn tall_at_once(
+pub(super) fn at_once(
     batch: &Batch,
     kept: &[Chosen],
-    place: Place,
-    group: &mut Group,
+    place: (Place, Rect),
     pixels: &mut [u8],
+    cells: Option<&mut [u32]>,
 ) -> Drawn {
     #[target_feature(enable = "avx2")]
-    fn avx2(batch: &Batch, kept: &[Chosen], place: Place, group: &mut Group, pixels: &mut [u8]) -> (u32, u32) {
-        let mut tall = Tall::new();
-        for eight in kept.chunks(LANES) {
+    fn with_depths(
+        batch: &Batch,
+        kept: &[Chosen],
+        (place, clip): (Place, Rect),
+        pixels: &mut [u8],
+        cells: &mut [u32],
+    ) -> Drawn {
+        let mut listed = listed::Spans::new(place);
+        let (mut group, mut planes) = (Group::NONE, Planes::NONE);
+        let mut gathered = Gathered::of(batch, kept, place);
+        for (number, eight) in kept.chunks(LANES).enumerate() {
             // SAFETY: such a kernel is given out only where AVX-512 was found.
-            unsafe { avx512::set_up(&Gathered::of(batch, eight, place), place, group) };
+            unsafe {
+                avx512::set_up(&gathered, place, &mut group);
+                planes.renew(&gathered, &group);
+            }
+            // As in `rows_by`.
+            gathered.gather(batch, &kept[kept.len().min((number + 1) * LANES)..], place);
+            if let Some(most) = few_rows(&group, eight) {
+                // SAFETY: as above.
+                unsafe { listed.add_all(&group, eight.len(), most, Some(&planes), (pixels, cells)) };
+                continue;
+            }
             for (i, triangle) in eight.iter().enumerate() {
-                let shading = batch.shading[triangle.number()];
-                // SAFETY: such a kernel is given out only where AVX-512 was found.
-                unsafe { tall.draw(group, i, shading, place, pixels) };
+                let (kind, mut pieces) = (triangle.kind(), 1);
+                // One without area has no rows, and no plane.
+                if kind != Kind::Small && group.rows[i] > 0 {
+                    planes.put(i, &group, &batch.depth_plane(triangle.number()));
+                    pieces = batch.pieces(triangle.number());
+                }
+                let clip = (kind == Kind::Clipped).then_some(clip);
+                // SAFETY: as above.
+                unsafe { listed.add(&group, i, (pieces, clip), Some(&planes), (pixels, cells)) };
             }
         }
-        tall.drawn()
+        // SAFETY: as above; the same pixels and cells.
+        unsafe { listed.draw(true, pixels, cells) };
+        let (spans, covered, nearer) = listed.counts();
+        Drawn { spans, covered, pixels: nearer, tested: covered, ..Drawn::default() }
+    }
+    #[target_feature(enable = "avx2")]
+    fn without(batch: &Batch, kept: &[Chosen], (place, clip): (Place, Rect), pixels: &mut [u8]) -> Drawn {
+        let (mut tall, mut listed) = (Tall::new(), listed::Spans::new(place));
+        let mut group = Group::NONE;
+        let mut gathered = Gathered::of(batch, kept, place);
+        for (number, eight) in kept.chunks(LANES).enumerate() {
+            // SAFETY: such a kernel is given out only where AVX-512 was found.
+            unsafe { avx512::set_up(&gathered, place, &mut group) };
+            gathered.gather(batch, &kept[kept.len().min((number + 1) * LANES)..], place);
+            if let Some(most) = few_rows(&group, eight) {
+                // SAFETY: as above.
+                unsafe { listed.add_all(&group, eight.len(), most, None, (pixels, &mut [])) };
+                continue;
+            }
+            for (i, triangle) in eight.iter().enumerate() {
+                match triangle.kind() {
+                    Kind::Tall => {
+                        let shading = batch.shading[triangle.number()];
+                        // SAFETY: as above; always the same pixels.
+                        unsafe {
+                            listed.draw(false, pixels, &mut []);
+                            tall.draw(&group, i, shading, place, pixels);
+                        }
+                    }
+                    Kind::Clipped => {
+                        let pieces = batch.pieces(triangle.number());
+                        // SAFETY: as above.
+                        unsafe { listed.add(&group, i, (pieces, Some(clip)), None, (pixels, &mut [])) };
+                    }
+                    // SAFETY: as above.
+                    _ => unsafe { listed.add(&group, i, (1, None), None, (pixels, &mut [])) },
+                }
+            }
+        }
+        // SAFETY: as above; the same pixels.
+        unsafe { listed.draw(false, pixels, &mut []) };
+        let ((spans, covered, _), (more_spans, more)) = (listed.counts(), tall.drawn());
+        let covered = covered + more;
+        Drawn { spans: spans + more_spans, covered, pixels: covered, ..Drawn::default() }
     }
     // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
-    let (spans, covered) = unsafe { avx2(batch, kept, place, group, pixels) };
-    Drawn { spans, covered, pixels: covered, ..Drawn::default() }
+    unsafe {
+        match cells {
+            Some(cells) => with_depths(batch, kept, place, pixels, cells),
+            None => without(batch, kept, place, pixels),
+        }
+    }
+}
+
+/// The most rows that a group's triangles have, if they are small and these are few.
+#[inline(always)]
+fn few_rows(group: &Group, triangles: &[Chosen]) -> Option<i32> {
+    let rows = &group.rows[..triangles.len().min(LANES)];
+    let most = rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
+    (most <= listed::FEW_ROWS && Chosen::are_small(triangles)).then_some(most)
 }
 
 /// Apart, as the compiler would else keep eight triangles in registers that it has not.

@@ -142,7 +142,7 @@ impl Tall {
 
     /// Spans, pieces of reseeded ones counted each, and pixels of all triangles that it has drawn.
     pub(in super::super) fn drawn(&self) -> (u32, u32) {
-        // Of at most 128 triangles of 256 × 256 pixels.
+        // Of at most 128 triangles of 2¹⁸ pixels.
         (self.spans.iter().sum::<u64>() as u32, self.covered.iter().sum::<u64>() as u32)
     }
 
@@ -159,7 +159,7 @@ impl Tall {
         place: Place,
         pixels: &mut [u8],
     ) {
-        // Rows of a triangle are at most 256.
+        // Rows of a triangle are at most 4,096.
         let Ok(rows @ 1..) = u64::try_from(group.rows[i]) else { return };
         let pixels = pixels.as_mut_ptr_range();
         (self.begin, self.end) = (pixels.start.addr() as u64, pixels.end.addr() as u64);
@@ -175,9 +175,9 @@ impl Tall {
         self.offset = self.begin.wrapping_add(i64::from(group.at[i]) as u64).wrapping_sub(MAGIC.to_bits());
         self.per_eight = LANES as u64 * u64::from(place.pitch);
         (self.rows, self.split) = (rows, i64::from(group.split[i]) as u64);
-        // Of at most 256 pixels a row.
+        // Of at most 1,024 pixels a row.
         let reseeds = shading == Shading::GouraudReseeded;
-        (self.round, self.shift) = if reseeds { (RESEED as u64 - 1, RESEED.ilog2().into()) } else { (255, 8) };
+        (self.round, self.shift) = if reseeds { (RESEED as u64 - 1, RESEED.ilog2().into()) } else { (1_023, 10) };
         self.reseeds = reseeds.into();
         // Its upper half is the step.
         let step = (group.step[i] as u32) >> 16;

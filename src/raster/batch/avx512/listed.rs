@@ -1,0 +1,902 @@
+//! The rows of triangles as a list in arrays, eight rows at a time, and the list to pixels.
+//!
+//! What `rows::list` does row by row is done here for eight rows of a triangle at once, and what is no row is squeezed
+//! out of the vectors: no branch asks how many rows there are but one for every eight. The loop over the list draws sixteen
+//! pixels a turn and reads nothing but the list.
+
+use core::arch::asm;
+use core::mem::{MaybeUninit, offset_of};
+
+use super::super::depths::Planes;
+use super::super::rows::{Edges, Group, LANES, MAGIC, MOST_ACROSS, Place};
+use crate::raster::frame::Rect;
+use crate::raster::shade::RESEED;
+
+/// Spans at most.
+const ROOM: usize = 128;
+const SIXTEEN: usize = 2 * LANES;
+/// Groups of at most so many rows are listed together.
+pub(in super::super) const FEW_ROWS: i32 = 4;
+
+/// What the assembly reads and writes.
+#[repr(C, align(64))]
+pub(in super::super) struct Spans {
+    // Of each span; up to sixteen are written at a time, and those that are none are written over.
+    at: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    cell: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    length: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    /// Shade, and above it the step.
+    paint: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    z: MaybeUninit<[i64; ROOM + SIXTEEN]>,
+    dz: MaybeUninit<[i64; ROOM + SIXTEEN]>,
+    /// Of each row of eight triangles, up to four: the first pixel, pixels, paint, and the column of the box.
+    row_at: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
+    row_length: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
+    row_paint: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
+    row_column: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
+    /// The cells of eight boxes' first pixels.
+    first_cell: [u32; SIXTEEN],
+    /// Pixels of all spans there have been, in sixteen parts.
+    covered: [u32; SIXTEEN],
+    count: usize,
+    /// Spans that have been drawn.
+    drawn: u32,
+    /// Pixels that were nearer.
+    nearer: u32,
+    /// How many pixels and cells there are.
+    pixels: u32,
+    cells: u32,
+    pitch: u32,
+    width: u32,
+    /// Pixels to the left of what is listed, in each row, ...
+    skipped: f64,
+    /// ... and the most that a span has.
+    longest: f64,
+    /// The frame's left side, from the box's first pixel on, as a sum with `MAGIC`: there starts what begins left of it.
+    origin: f64,
+    /// The same of the clip rectangle's left and right sides, ...
+    left: f64,
+    right: f64,
+    /// ... and top and bottom, from the box's first row on.
+    top: i32,
+    bottom: i32,
+    /// Not 0 if it counts.
+    clips: u32,
+    first_row: u32,
+}
+
+#[repr(C, align(64))]
+struct Constants {
+    /// 0: the number of each even pixel of 64.
+    even: [u16; 32],
+    /// 64: numbers.
+    numbers: [u64; LANES],
+    /// 128: the numbers of the lower halves of sixteen lanes of two vectors.
+    lower: [u32; 16],
+    /// 192
+    rows: [u32; LANES],
+    /// 224
+    magic: f64,
+    /// 232: the odd bytes of two lanes.
+    odd_bytes: u32,
+}
+
+static CONSTANTS: Constants = Constants {
+    even: {
+        let mut even = [0; 32];
+        let mut j = 0;
+        while j < 32 {
+            even[j as usize] = 2 * j;
+            j += 1;
+        }
+        even
+    },
+    numbers: [0, 1, 2, 3, 4, 5, 6, 7],
+    lower: [0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30],
+    rows: [0, 1, 2, 3, 4, 5, 6, 7],
+    magic: MAGIC,
+    odd_bytes: 0xFF00_FF00,
+};
+
+/// The order in which sixteen rows out of four times eight are listed: triangle by triangle.
+#[repr(C, align(64))]
+struct Order {
+    /// 0: which row of a triangle's eight: those of the first row are numbers 0 to 7, those of the second 8 to 15.
+    from: [u32; SIXTEEN],
+    /// 64: of which triangle, ...
+    triangle: [u32; SIXTEEN],
+    /// 128: ... and which of its rows.
+    row: [u32; SIXTEEN],
+}
+
+impl Order {
+    /// Of so many rows of each triangle, from triangle `first` on.
+    const fn of(rows: u32, first: u32) -> Self {
+        let mut order = Self { from: [0; SIXTEEN], triangle: [0; SIXTEEN], row: [0; SIXTEEN] };
+        let mut i = 0;
+        while i < SIXTEEN as u32 {
+            let (triangle, row) = (first + i / rows, i % rows);
+            order.from[i as usize] = row * LANES as u32 + triangle;
+            (order.triangle[i as usize], order.row[i as usize]) = (triangle, row);
+            i += 1;
+        }
+        order
+    }
+}
+
+static OF_TWO: [Order; 1] = [Order::of(2, 0)];
+static OF_FOUR: [Order; 2] = [Order::of(4, 0), Order::of(4, 4)];
+
+impl Spans {
+    #[inline(always)]
+    pub(in super::super) fn new(place: Place) -> Self {
+        Self {
+            at: MaybeUninit::uninit(),
+            cell: MaybeUninit::uninit(),
+            length: MaybeUninit::uninit(),
+            paint: MaybeUninit::uninit(),
+            z: MaybeUninit::uninit(),
+            dz: MaybeUninit::uninit(),
+            row_at: MaybeUninit::uninit(),
+            row_length: MaybeUninit::uninit(),
+            row_paint: MaybeUninit::uninit(),
+            row_column: MaybeUninit::uninit(),
+            first_cell: [0; SIXTEEN],
+            covered: [0; SIXTEEN],
+            count: 0,
+            drawn: 0,
+            nearer: 0,
+            pixels: 0,
+            cells: 0,
+            pitch: place.pitch,
+            width: place.depth_width.unwrap_or(0),
+            skipped: 0.0,
+            longest: 0.0,
+            origin: 0.0,
+            left: 0.0,
+            right: 0.0,
+            top: 0,
+            bottom: 0,
+            clips: 0,
+            first_row: place.first_row,
+        }
+    }
+
+    /// Spans, pixels that they cover, and those that were nearer, of all that was drawn.
+    pub(in super::super) fn counts(&self) -> (u32, u32, u32) {
+        (self.drawn, self.covered.iter().sum(), self.nearer)
+    }
+
+    /// Lists all rows of triangle `i` of a group, and draws whenever there is no room left. Where a row may have more than
+    /// one of the pieces that start anew, a span is one of these. What lies outside of `clip`, if there is one, is left out.
+    /// `pixels` and `cells` are always the same. Without `planes` there is no depth test.
+    ///
+    /// # Safety
+    /// Only for a processor for which `span::simd::avx512::found` is true.
+    #[inline(always)]
+    pub(in super::super) unsafe fn add(
+        &mut self,
+        group: &Group,
+        i: usize,
+        (pieces, clip): (usize, Option<Rect>),
+        planes: Option<&Planes>,
+        (pixels, cells): (&mut [u8], &mut [u32]),
+    ) {
+        self.of(pixels, cells);
+        // A column and a row are below 4,096.
+        let cell = (group.row[i] - self.first_row as i32) * self.width as i32 + group.column[i];
+        self.longest = if pieces > 1 { RESEED.into() } else { f64::from(MOST_ACROSS / 256) };
+        let (mut first, mut end) = (0, group.rows[i]);
+        self.origin = MAGIC - f64::from(group.column[i]);
+        self.clips = clip.is_some().into();
+        if let Some(clip) = clip {
+            // All inside a frame, at most 4,096.
+            let from_box = |side: u32, of_box: i32| side as i32 - of_box;
+            self.left = MAGIC + f64::from(from_box(clip.x0, group.column[i]));
+            self.right = MAGIC + f64::from(from_box(clip.x1, group.column[i]));
+            (self.top, self.bottom) = (from_box(clip.y0, group.row[i]), from_box(clip.y1, group.row[i]));
+            (first, end) = (self.top.max(0), end.min(self.bottom));
+        }
+        while first < end {
+            for piece in 0..pieces {
+                if self.count + LANES > ROOM {
+                    // SAFETY: by the caller's promise.
+                    unsafe { self.draw(planes.is_some(), pixels, cells) };
+                }
+                // At most 16 pieces.
+                self.skipped = f64::from(piece as u32 * RESEED as u32);
+                // SAFETY: by the caller's promise; there is room for eight.
+                unsafe { self.list(group, i, first, cell, planes) };
+            }
+            first += LANES as i32;
+        }
+    }
+
+    fn of(&mut self, pixels: &[u8], cells: &[u32]) {
+        // Offsets beyond are never those of a frame.
+        let most = |length: usize| length.min(1 << 31) as u32;
+        (self.pixels, self.cells) = (most(pixels.len()), most(cells.len()));
+    }
+
+    /// As [`add`](Self::add), for all the small triangles of a group, which are so many, and have at most [`FEW_ROWS`] rows:
+    /// eight triangles at a time, and then put into their order.
+    ///
+    /// # Safety
+    /// As for `add`.
+    #[inline(always)]
+    pub(in super::super) unsafe fn add_all(
+        &mut self,
+        group: &Group,
+        triangles: usize,
+        most_rows: i32,
+        planes: Option<&Planes>,
+        (pixels, cells): (&mut [u8], &mut [u32]),
+    ) {
+        self.of(pixels, cells);
+        let (rows, orders) = if most_rows <= 2 { (2, &OF_TWO[..]) } else { (4, &OF_FOUR[..]) };
+        if self.count + SIXTEEN * orders.len() > ROOM {
+            // SAFETY: by the caller's promise.
+            unsafe { self.draw(planes.is_some(), pixels, cells) };
+        }
+        for i in 0..LANES {
+            // As in `add`. Of a triangle that is none anything may come out.
+            let row = group.row[i].wrapping_sub(self.first_row as i32);
+            self.first_cell[i] = row.wrapping_mul(self.width as i32).wrapping_add(group.column[i]) as u32;
+        }
+        for row in 0..rows {
+            // SAFETY: by the caller's promise; there is room for four rows.
+            unsafe { self.row(group, triangles, row) };
+        }
+        for order in orders {
+            // SAFETY: by the caller's promise; the rows are there that it names, and there is room for sixteen.
+            unsafe { self.list_sixteen(order, planes) };
+        }
+    }
+
+    /// Row number `row` of a group's triangles, which are so many.
+    ///
+    /// # Safety
+    /// Only for a processor for which `span::simd::avx512::found` is true; `row` is below `FEW_ROWS`.
+    #[inline(always)]
+    unsafe fn row(&mut self, group: &Group, triangles: usize, row: u32) {
+        // SAFETY: the caller has AVX-512 F, BW, DQ and VL found. Read are `group` and `CONSTANTS` at the offsets of their
+        // fields; written are eight numbers each of the fields that begin with `row`, from number 8·`row` on. The stack is
+        // not used; flags and all registers written are given up.
+        unsafe {
+            asm!(
+                "vpbroadcastd ymm26, {row:e}",
+                "kmovd      k2, {mask:e}",
+                "vcvtdq2pd  zmm16, ymm26",                                  // j
+                "vbroadcastsd zmm31, qword ptr [{c} + 224]",                // magic
+                "vmovupd    zmm17, [{g} + {LONG} + {PER_ROW}]",
+                "vmovupd    zmm18, [{g} + {UPPER} + {PER_ROW}]",
+                "vmovupd    zmm19, [{g} + {LOWER} + {PER_ROW}]",
+                "vmovupd    zmm20, [{g} + {SHADE_PER_ROW}]",
+                "vpcmpd     k1, ymm26, [{g} + {SPLIT}], 5",                 // not less
+                "vfmadd213pd zmm17, zmm16, [{g} + {LONG} + {N}]",
+                "vfmadd213pd zmm18, zmm16, [{g} + {UPPER} + {N}]",
+                "vfmadd213pd zmm19, zmm16, [{g} + {LOWER} + {N}]",
+                "vfmadd213pd zmm20, zmm16, [{g} + {SHADE_N}]",
+                "vpcmpd     k2{{k2}}, ymm26, [{g} + {ROWS}], 1",            // less
+                "vfmadd132pd zmm17, zmm31, [{g} + {LONG} + {INVERSE}]",
+                "vfmadd132pd zmm18, zmm31, [{g} + {UPPER} + {INVERSE}]",
+                "vfmadd132pd zmm19, zmm31, [{g} + {LOWER} + {INVERSE}]",
+                "vpbroadcastd ymm27, {down:e}",
+                "vmovapd    zmm18{{k1}}, zmm19",                            // short
+                "vpaddd     ymm27, ymm27, [{g} + {AT}]",
+                "vminpd     zmm19, zmm17, zmm18",                           // left
+                "vmaxpd     zmm17, zmm17, zmm18",                           // right
+                "vsubpd     zmm18, zmm19, zmm31",                           // column
+                "vpsubq     zmm17, zmm17, zmm19",
+                "vpmovqd    ymm19, zmm19",
+                "vpmovqd    ymm17{{k2}}{{z}}, zmm17",
+                "vfmadd132pd zmm18, zmm20, [{g} + {PER_COLUMN}]",
+                "vpaddd     ymm27, ymm27, ymm19",
+                "vmovdqu32  [{to} + {ROW_LENGTH}], ymm17",
+                "vmovdqu32  [{to} + {ROW_COLUMN}], ymm19",
+                "vfmadd132pd zmm18, zmm31, [{g} + {SHADE_INVERSE}]",
+                "vmovdqu32  [{to} + {ROW_AT}], ymm27",
+                "vpmovqw    xmm18, zmm18",
+                "vpmovzxwd  ymm18, xmm18",
+                "vpord      ymm18, ymm18, [{g} + {STEP}]",
+                "vmovdqu32  [{to} + {ROW_PAINT}], ymm18",
+                g = in(reg) group,
+                to = in(reg) (&raw mut *self).cast::<u32>().wrapping_add(LANES * row as usize),
+                c = in(reg) &raw const CONSTANTS,
+                row = in(reg) row,
+                mask = in(reg) (1_u32 << triangles.min(LANES)) - 1,
+                down = in(reg) row.wrapping_mul(self.pitch),
+                LONG = const offset_of!(Group, long),
+                UPPER = const offset_of!(Group, upper),
+                LOWER = const offset_of!(Group, lower),
+                N = const offset_of!(Edges, n),
+                PER_ROW = const offset_of!(Edges, per_row),
+                INVERSE = const offset_of!(Edges, inverse),
+                SHADE_N = const offset_of!(Group, n),
+                SHADE_PER_ROW = const offset_of!(Group, per_row),
+                SHADE_INVERSE = const offset_of!(Group, inverse),
+                PER_COLUMN = const offset_of!(Group, per_column),
+                SPLIT = const offset_of!(Group, split),
+                ROWS = const offset_of!(Group, rows),
+                AT = const offset_of!(Group, at),
+                STEP = const offset_of!(Group, step),
+                ROW_AT = const offset_of!(Self, row_at),
+                ROW_LENGTH = const offset_of!(Self, row_length),
+                ROW_PAINT = const offset_of!(Self, row_paint),
+                ROW_COLUMN = const offset_of!(Self, row_column),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm26") _,
+                out("zmm27") _, out("zmm31") _, out("k1") _, out("k2") _,
+                options(nostack),
+            );
+        }
+    }
+
+    /// Lists sixteen rows in this order.
+    ///
+    /// # Safety
+    /// Only for a processor for which `span::simd::avx512::found` is true; the rows have been written, and there is room for
+    /// sixteen.
+    #[inline(always)]
+    unsafe fn list_sixteen(&mut self, order: &Order, planes: Option<&Planes>) {
+        let planes = planes.map_or(core::ptr::null(), |planes| &raw const *planes);
+        // SAFETY: the caller has AVX-512 F, BW, DQ and VL and POPCNT found. Read are `order`, `planes` and `self` at the offsets
+        // of their fields; written are sixteen numbers from number `count` on, and so below `ROOM + SIXTEEN`, of z and dz
+        // eight and eight more from where the first end. Without `planes` nothing is read of them. The stack is not used;
+        // flags and all registers written are given up.
+        unsafe {
+            asm!(
+                "vmovdqa64  zmm16, [{o}]",
+                "vmovdqa64  zmm17, [{l} + {ROW_AT}]",
+                "vmovdqa64  zmm18, [{l} + {ROW_LENGTH}]",
+                "vmovdqa64  zmm19, [{l} + {ROW_PAINT}]",
+                "vpermt2d   zmm18, zmm16, [{l} + {ROW_LENGTH} + 64]",
+                "vpermt2d   zmm17, zmm16, [{l} + {ROW_AT} + 64]",
+                "vpermt2d   zmm19, zmm16, [{l} + {ROW_PAINT} + 64]",
+                "vpxord     zmm22, zmm22, zmm22",
+                "vpbroadcastd zmm21, dword ptr [{l} + {PIXELS}]",
+                "vpcmpd     k1, zmm18, zmm22, 6",                           // greater
+                "vpsubd     zmm22, zmm21, zmm18",
+                "vpcmpud    k1{{k1}}, zmm18, zmm21, 2",                     // not greater
+                "vpcmpud    k1{{k1}}, zmm17, zmm22, 2",
+                "test       {p}, {p}",
+                "jz         2f",
+                // Depths.
+                "vmovdqa64  zmm20, [{l} + {ROW_COLUMN}]",
+                "vmovdqa64  zmm23, [{o} + 64]",                             // triangle
+                "vmovdqa64  zmm24, [{o} + 128]",                            // row
+                "vpermt2d   zmm20, zmm16, [{l} + {ROW_COLUMN} + 64]",
+                "vpmulld    zmm21, zmm24, dword ptr [{l} + {WIDTH}]{{1to16}}",
+                "vpermd     zmm22, zmm23, [{l} + {FIRST_CELL}]",
+                "vpaddd     zmm21, zmm21, zmm20",
+                "vpaddd     zmm21, zmm21, zmm22",                           // cell
+                "vpbroadcastd zmm25, dword ptr [{l} + {CELLS}]",
+                "vpsubd     zmm22, zmm25, zmm18",
+                "vpcmpud    k1{{k1}}, zmm18, zmm25, 2",
+                "vpcmpud    k1{{k1}}, zmm21, zmm22, 2",
+                "vpmovzxdq  zmm25, ymm23",
+                "vpmovzxdq  zmm26, ymm24",
+                "vpmovzxdq  zmm27, ymm20",
+                "vpermq     zmm28, zmm25, [{p} + {DEPTH_PER_COLUMN}]",
+                "vpermq     zmm29, zmm25, [{p} + {DEPTH_PER_ROW}]",
+                "vpermq     zmm30, zmm25, [{p} + {DEPTH}]",
+                "vpmullq    zmm27, zmm27, zmm28",
+                "vpmullq    zmm26, zmm26, zmm29",
+                "vpaddq     zmm30, zmm30, zmm27",
+                "vpaddq     zmm30, zmm30, zmm26",
+                "vpcompressq zmm28{{k1}}{{z}}, zmm28",
+                "vpcompressq zmm30{{k1}}{{z}}, zmm30",
+                "vmovdqu64  [{l} + 8*{count} + {DZ}], zmm28",
+                "vmovdqu64  [{l} + 8*{count} + {Z}], zmm30",
+                "kmovb      {more:e}, k1",
+                "popcnt     {more:e}, {more:e}",
+                "add        {more}, {count}",
+                "kshiftrw   k2, k1, 8",
+                "vextracti64x4 ymm23, zmm23, 1",
+                "vextracti64x4 ymm24, zmm24, 1",
+                "vextracti64x4 ymm20, zmm20, 1",
+                "vpmovzxdq  zmm25, ymm23",
+                "vpmovzxdq  zmm26, ymm24",
+                "vpmovzxdq  zmm27, ymm20",
+                "vpermq     zmm28, zmm25, [{p} + {DEPTH_PER_COLUMN}]",
+                "vpermq     zmm29, zmm25, [{p} + {DEPTH_PER_ROW}]",
+                "vpermq     zmm30, zmm25, [{p} + {DEPTH}]",
+                "vpmullq    zmm27, zmm27, zmm28",
+                "vpmullq    zmm26, zmm26, zmm29",
+                "vpaddq     zmm30, zmm30, zmm27",
+                "vpaddq     zmm30, zmm30, zmm26",
+                "vpcompressq zmm28{{k2}}{{z}}, zmm28",
+                "vpcompressq zmm30{{k2}}{{z}}, zmm30",
+                "vmovdqu64  [{l} + 8*{more} + {DZ}], zmm28",
+                "vmovdqu64  [{l} + 8*{more} + {Z}], zmm30",
+                "vpcompressd zmm21{{k1}}{{z}}, zmm21",
+                "vmovdqu32  [{l} + 4*{count} + {CELL}], zmm21",
+                "2:",
+                "vpcompressd zmm17{{k1}}{{z}}, zmm17",
+                "vpcompressd zmm18{{k1}}{{z}}, zmm18",
+                "vpcompressd zmm19{{k1}}{{z}}, zmm19",
+                "vmovdqu32  [{l} + 4*{count} + {LIST_AT}], zmm17",
+                "vmovdqu32  [{l} + 4*{count} + {LENGTH}], zmm18",
+                "vmovdqu32  [{l} + 4*{count} + {PAINT}], zmm19",
+                "vpaddd     zmm18, zmm18, [{l} + {COVERED}]",
+                "vmovdqa64  [{l} + {COVERED}], zmm18",
+                "kmovw      {more:e}, k1",
+                "popcnt     {more:e}, {more:e}",
+                "add        {count}, {more}",
+                o = in(reg) order,
+                p = in(reg) planes,
+                l = in(reg) &raw mut *self,
+                more = out(reg) _,
+                count = inout(reg) self.count,
+                DEPTH = const offset_of!(Planes, at),
+                DEPTH_PER_COLUMN = const offset_of!(Planes, per_column),
+                DEPTH_PER_ROW = const offset_of!(Planes, per_row),
+                ROW_AT = const offset_of!(Self, row_at),
+                ROW_LENGTH = const offset_of!(Self, row_length),
+                ROW_PAINT = const offset_of!(Self, row_paint),
+                ROW_COLUMN = const offset_of!(Self, row_column),
+                FIRST_CELL = const offset_of!(Self, first_cell),
+                LIST_AT = const offset_of!(Self, at),
+                CELL = const offset_of!(Self, cell),
+                LENGTH = const offset_of!(Self, length),
+                PAINT = const offset_of!(Self, paint),
+                Z = const offset_of!(Self, z),
+                DZ = const offset_of!(Self, dz),
+                COVERED = const offset_of!(Self, covered),
+                PIXELS = const offset_of!(Self, pixels),
+                CELLS = const offset_of!(Self, cells),
+                WIDTH = const offset_of!(Self, width),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
+                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm27") _,
+                out("zmm28") _, out("zmm29") _, out("zmm30") _, out("k1") _, out("k2") _,
+                options(nostack),
+            );
+        }
+    }
+
+    /// Lists up to eight rows from number `first` on, of each up to `longest` pixels after the first `skipped`.
+    ///
+    /// # Safety
+    /// Only for a processor for which `span::simd::avx512::found` is true; `i` is below 8, and there is room for eight.
+    #[inline(always)]
+    unsafe fn list(&mut self, group: &Group, i: usize, first: i32, cell: i32, planes: Option<&Planes>) {
+        // As for a pointer that is not read.
+        let planes = planes.map_or(core::ptr::null(), |planes| (&raw const *planes).cast::<u8>());
+        // SAFETY: the caller has AVX-512 F, DQ and VL and POPCNT found. Read are `group`, `planes` and `CONSTANTS` at the
+        // offsets of their fields, of those that hold eight numbers number `i`, which is below 8. Written are eight numbers
+        // from number `count` on, and so below `ROOM + LANES`. Without `planes` nothing is read of them. The stack is not
+        // used; flags and all registers written are given up.
+        unsafe {
+            asm!(
+                "vpbroadcastd ymm26, {first:e}",
+                "vpaddd     ymm26, ymm26, [{c} + 192]",                     // rows
+                "vbroadcastsd zmm31, qword ptr [{c} + 224]",                // magic
+                "vcvtdq2pd  zmm16, ymm26",                                  // j
+                "vbroadcastsd zmm17, qword ptr [{g8} + {LONG} + {PER_ROW}]",
+                "vbroadcastsd zmm18, qword ptr [{g8} + {UPPER} + {PER_ROW}]",
+                "vbroadcastsd zmm19, qword ptr [{g8} + {LOWER} + {PER_ROW}]",
+                "vbroadcastsd zmm20, qword ptr [{g8} + {SHADE_PER_ROW}]",
+                "vpcmpd     k1, ymm26, dword ptr [{g4} + {SPLIT}]{{1to8}}, 5", // not less
+                "vfmadd213pd zmm17, zmm16, qword ptr [{g8} + {LONG} + {N}]{{1to8}}",
+                "vfmadd213pd zmm18, zmm16, qword ptr [{g8} + {UPPER} + {N}]{{1to8}}",
+                "vfmadd213pd zmm19, zmm16, qword ptr [{g8} + {LOWER} + {N}]{{1to8}}",
+                "vfmadd213pd zmm20, zmm16, qword ptr [{g8} + {SHADE_N}]{{1to8}}",
+                "vpcmpd     k2, ymm26, dword ptr [{g4} + {ROWS}]{{1to8}}, 1", // less
+                "vfmadd132pd zmm17, zmm31, qword ptr [{g8} + {LONG} + {INVERSE}]{{1to8}}",
+                "vfmadd132pd zmm18, zmm31, qword ptr [{g8} + {UPPER} + {INVERSE}]{{1to8}}",
+                "vfmadd132pd zmm19, zmm31, qword ptr [{g8} + {LOWER} + {INVERSE}]{{1to8}}",
+                "vpmulld    ymm22, ymm26, dword ptr [{l} + {PITCH}]{{1to8}}",
+                "vmovapd    zmm18{{k1}}, zmm19",                            // short
+                "vminpd     zmm19, zmm17, zmm18",                           // left
+                "vmaxpd     zmm17, zmm17, zmm18",                           // right
+                "vmaxpd     zmm19, zmm19, qword ptr [{l} + {ORIGIN}]{{1to8}}",
+                "vaddpd     zmm19, zmm19, qword ptr [{l} + {SKIPPED}]{{1to8}}",
+                "vpaddd     ymm22, ymm22, dword ptr [{g4} + {AT}]{{1to8}}",
+                "vaddpd     zmm21, zmm19, qword ptr [{l} + {LONGEST}]{{1to8}}",
+                "vsubpd     zmm18, zmm19, zmm31",                           // column
+                "vminpd     zmm17, zmm17, zmm21",
+                "vfmadd132pd zmm18, zmm20, qword ptr [{g8} + {PER_COLUMN}]{{1to8}}",
+                "vfmadd132pd zmm18, zmm31, qword ptr [{g8} + {SHADE_INVERSE}]{{1to8}}",
+                "vpmovqw    xmm18, zmm18",
+                "vpmovzxwd  ymm18, xmm18",
+                "vpord      ymm18, ymm18, dword ptr [{g4} + {STEP}]{{1to8}}",
+                "cmp        dword ptr [{l} + {CLIPS}], 0",
+                "je         3f",
+                // A row that begins left of the rectangle goes on from its start.
+                "vmaxpd     zmm21, zmm19, qword ptr [{l} + {LEFT}]{{1to8}}",
+                "vminpd     zmm17, zmm17, qword ptr [{l} + {RIGHT}]{{1to8}}",
+                "vpsubq     zmm19, zmm21, zmm19",
+                "vpmovqd    ymm19, zmm19",
+                "vpsrld     ymm23, ymm18, 16",
+                "vpmullw    ymm19, ymm19, ymm23",
+                "vpaddw     ymm18, ymm18, ymm19",
+                "vmovapd    zmm19, zmm21",
+                "vpcmpd     k2{{k2}}, ymm26, dword ptr [{l} + {TOP}]{{1to8}}, 5", // not less
+                "vpcmpd     k2{{k2}}, ymm26, dword ptr [{l} + {BOTTOM}]{{1to8}}, 1", // less
+                "3:",
+                "vpsubq     zmm17, zmm17, zmm19",
+                "vpsubq     zmm21, zmm19, zmm31",                           // the column as a whole number
+                "vpmovqd    ymm17, zmm17",                                  // length
+                "vpmovqd    ymm19, zmm21",
+                "vpxord     ymm23, ymm23, ymm23",
+                "vpaddd     ymm22, ymm22, ymm19",                           // at
+                "vpcmpd     k2{{k2}}, ymm17, ymm23, 6",                     // greater
+                "vpbroadcastd ymm23, dword ptr [{l} + {PIXELS}]",
+                "vpcmpud    k2{{k2}}, ymm17, ymm23, 2",                     // not greater
+                "vpsubd     ymm23, ymm23, ymm17",
+                "vpcmpud    k2{{k2}}, ymm22, ymm23, 2",
+                "test       {p8}, {p8}",
+                "jz         2f",
+                // Depths.
+                "vpmulld    ymm24, ymm26, dword ptr [{l} + {WIDTH}]{{1to8}}",
+                "vpbroadcastd ymm25, {cell:e}",
+                "vpaddd     ymm19, ymm19, ymm25",
+                "vpaddd     ymm24, ymm24, ymm19",                           // cell
+                "vpbroadcastd ymm23, dword ptr [{l} + {CELLS}]",
+                "vpcmpud    k2{{k2}}, ymm17, ymm23, 2",
+                "vpsubd     ymm23, ymm23, ymm17",
+                "vpcmpud    k2{{k2}}, ymm24, ymm23, 2",
+                "vpmovsxdq  zmm26, ymm26",
+                "vpbroadcastq zmm25, qword ptr [{p8} + {DEPTH_PER_COLUMN}]",
+                "vpmullq    zmm26, zmm26, qword ptr [{p8} + {DEPTH_PER_ROW}]{{1to8}}",
+                "vpmullq    zmm21, zmm21, zmm25",
+                "vpaddq     zmm26, zmm26, qword ptr [{p8} + {DEPTH}]{{1to8}}",
+                "vpaddq     zmm21, zmm21, zmm26",
+                "vpcompressd ymm24{{k2}}{{z}}, ymm24",
+                "vpcompressq zmm21{{k2}}{{z}}, zmm21",
+                "vmovdqu32  [{l} + 4*{count} + {CELL}], ymm24",
+                "vmovdqu64  [{l} + 8*{count} + {Z}], zmm21",
+                "vmovdqu64  [{l} + 8*{count} + {DZ}], zmm25",
+                "2:",
+                "vpcompressd ymm22{{k2}}{{z}}, ymm22",
+                "vpcompressd ymm17{{k2}}{{z}}, ymm17",
+                "vpcompressd ymm18{{k2}}{{z}}, ymm18",
+                "vmovdqu32  [{l} + 4*{count} + {LIST_AT}], ymm22",
+                "vmovdqu32  [{l} + 4*{count} + {LENGTH}], ymm17",
+                "vmovdqu32  [{l} + 4*{count} + {PAINT}], ymm18",
+                "vpaddd     ymm17, ymm17, [{l} + {COVERED}]",
+                "vmovdqu32  [{l} + {COVERED}], ymm17",
+                "kmovb      {cell:e}, k2",
+                "popcnt     {cell:e}, {cell:e}",
+                "add        {count}, {cell}",
+                g8 = in(reg) (&raw const *group).cast::<u8>().wrapping_add(8 * i),
+                g4 = in(reg) (&raw const *group).cast::<u8>().wrapping_add(4 * i),
+                p8 = in(reg) if planes.is_null() { planes } else { planes.wrapping_add(8 * i) },
+                l = in(reg) &raw mut *self,
+                c = in(reg) &raw const CONSTANTS,
+                first = in(reg) first,
+                cell = inout(reg) i64::from(cell) => _,
+                count = inout(reg) self.count,
+                LONG = const offset_of!(Group, long),
+                UPPER = const offset_of!(Group, upper),
+                LOWER = const offset_of!(Group, lower),
+                N = const offset_of!(Edges, n),
+                PER_ROW = const offset_of!(Edges, per_row),
+                INVERSE = const offset_of!(Edges, inverse),
+                SHADE_N = const offset_of!(Group, n),
+                SHADE_PER_ROW = const offset_of!(Group, per_row),
+                SHADE_INVERSE = const offset_of!(Group, inverse),
+                PER_COLUMN = const offset_of!(Group, per_column),
+                SPLIT = const offset_of!(Group, split),
+                ROWS = const offset_of!(Group, rows),
+                AT = const offset_of!(Group, at),
+                STEP = const offset_of!(Group, step),
+                DEPTH = const offset_of!(Planes, at),
+                DEPTH_PER_COLUMN = const offset_of!(Planes, per_column),
+                DEPTH_PER_ROW = const offset_of!(Planes, per_row),
+                LIST_AT = const offset_of!(Self, at),
+                CELL = const offset_of!(Self, cell),
+                LENGTH = const offset_of!(Self, length),
+                PAINT = const offset_of!(Self, paint),
+                Z = const offset_of!(Self, z),
+                DZ = const offset_of!(Self, dz),
+                COVERED = const offset_of!(Self, covered),
+                PIXELS = const offset_of!(Self, pixels),
+                CELLS = const offset_of!(Self, cells),
+                PITCH = const offset_of!(Self, pitch),
+                WIDTH = const offset_of!(Self, width),
+                SKIPPED = const offset_of!(Self, skipped),
+                LONGEST = const offset_of!(Self, longest),
+                ORIGIN = const offset_of!(Self, origin),
+                LEFT = const offset_of!(Self, left),
+                RIGHT = const offset_of!(Self, right),
+                TOP = const offset_of!(Self, top),
+                BOTTOM = const offset_of!(Self, bottom),
+                CLIPS = const offset_of!(Self, clips),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
+                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm31") _,
+                out("k1") _, out("k2") _,
+                options(nostack),
+            );
+        }
+    }
+
+    /// Draws what is listed, and empties the list.
+    ///
+    /// # Safety
+    /// As for `add`; `pixels` and `cells` are those of which it was told.
+    #[inline(always)]
+    pub(in super::super) unsafe fn draw(&mut self, with_depths: bool, pixels: &mut [u8], cells: &mut [u32]) {
+        debug_assert!(self.pixels as usize <= pixels.len() && self.cells as usize <= cells.len());
+        if self.count == 0 {
+            return;
+        }
+        // SAFETY: by the caller's promise; there is a span.
+        unsafe {
+            if with_depths {
+                self.draw_nearer(pixels.as_mut_ptr(), cells.as_mut_ptr());
+            } else {
+                self.draw_all(pixels.as_mut_ptr());
+            }
+        }
+        // At most 2⁷ at a time; the sum is meant modulo 2³², as `Drawn`.
+        self.drawn = self.drawn.wrapping_add(self.count as u32);
+        self.count = 0;
+    }
+
+    /// # Safety
+    /// As for `draw`; there is a span.
+    #[inline(always)]
+    unsafe fn draw_all(&self, pixels: *mut u8) {
+        // SAFETY: the caller has AVX-512 F, BW, DQ, VL and BMI2 found. Read are the first `count` numbers of the list, which
+        // `list` has written, and `CONSTANTS`. Written are, by masks, of each span `length` pixels from number `at` on,
+        // all of which lie inside the pixels: `list` keeps no others. The stack is not used; flags and all registers
+        // written are given up.
+        unsafe {
+            asm!(
+                "vmovdqa64  zmm22, [{c}]",                                  // even
+                ".p2align   5",
+                "2:",
+                "mov        {at:e}, [{l} + 4*{k} + {AT}]",
+                "mov        {length:e}, [{l} + 4*{k} + {LENGTH}]",
+                "add        {at}, {pixels}",
+                "cmp        {length:e}, 16",
+                "ja         3f",
+                "vpbroadcastw xmm16, word ptr [{l} + 4*{k} + {PAINT} + 2]", // step
+                "vpbroadcastw xmm17, word ptr [{l} + 4*{k} + {PAINT}]",
+                "bzhi       {length:e}, {ones:e}, {length:e}",
+                "vpmullw    xmm18, xmm16, xmm22",
+                "vpaddw     xmm18, xmm18, xmm17",                           // even
+                "kmovd      k1, {length:e}",
+                "vpaddw     xmm19, xmm18, xmm16",                           // odd
+                "vpsrlw     xmm18, xmm18, 8",
+                "vpternlogd xmm18, xmm19, dword ptr [{c} + 232]{{1to4}}, 0xF8", // even >> 8 | odd & 0xFF00
+                "vmovdqu8   [{at}]{{k1}}, xmm18",
+                "inc        {k}",
+                "cmp        {k}, {count}",
+                "jb         2b",
+                "jmp        4f",
+                "3:",
+                "vpbroadcastw zmm16, word ptr [{l} + 4*{k} + {PAINT} + 2]",
+                "vpbroadcastw zmm17, word ptr [{l} + 4*{k} + {PAINT}]",
+                "vpmullw    zmm18, zmm16, zmm22",
+                "vpaddw     zmm18, zmm18, zmm17",
+                "cmp        {length:e}, 64",
+                "jbe        6f",
+                "vpsllw     zmm20, zmm16, 6",
+                "5:",                                                       // more than 64 are left
+                "vpaddw     zmm19, zmm18, zmm16",
+                "vpsrlw     zmm17, zmm18, 8",
+                "vpternlogd zmm17, zmm19, dword ptr [{c} + 232]{{1to16}}, 0xF8",
+                "vmovdqu64  [{at}], zmm17",
+                "vpaddw     zmm18, zmm18, zmm20",
+                "add        {at}, 64",
+                "sub        {length:e}, 64",
+                "cmp        {length:e}, 64",
+                "ja         5b",
+                "6:",
+                "bzhi       {length}, {ones}, {length}",
+                "kmovq      k1, {length}",
+                "vpaddw     zmm19, zmm18, zmm16",
+                "vpsrlw     zmm18, zmm18, 8",
+                "vpternlogd zmm18, zmm19, dword ptr [{c} + 232]{{1to16}}, 0xF8",
+                "vmovdqu8   [{at}]{{k1}}, zmm18",
+                "inc        {k}",
+                "cmp        {k}, {count}",
+                "jb         2b",
+                "4:",
+                l = in(reg) self,
+                c = in(reg) &raw const CONSTANTS,
+                pixels = in(reg) pixels,
+                count = in(reg) self.count,
+                k = inout(reg) 0_u64 => _,
+                ones = in(reg) u64::MAX,
+                at = out(reg) _,
+                length = out(reg) _,
+                AT = const offset_of!(Self, at),
+                LENGTH = const offset_of!(Self, length),
+                PAINT = const offset_of!(Self, paint),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _,
+                out("zmm22") _, out("k1") _,
+                options(nostack),
+            );
+        }
+    }
+
+    /// # Safety
+    /// As for `draw`; there is a span.
+    #[inline(always)]
+    unsafe fn draw_nearer(&mut self, pixels: *mut u8, cells: *mut u32) {
+        let nearer: u64;
+        // SAFETY: the caller has AVX-512 F, BW, DQ, VL, BMI2 and POPCNT found. Read are the first `count` numbers of the list,
+        // which `list` has written, and `CONSTANTS`. Written are, in sixteens and by masks, of each span `length` pixels from
+        // number `at` on, and as many cells from number `cell` on, which are read before; all of these lie inside the
+        // pixels and cells: `list` keeps no others. The stack is not used; flags and all registers written are given up.
+        unsafe {
+            asm!(
+                "vmovdqa64  zmm29, [{c} + 64]",                             // numbers
+                "vmovdqa64  zmm30, [{c} + 128]",                            // lower
+                "vmovdqa64  xmm28, [{c}]",                                  // even
+                "vpbroadcastd xmm31, dword ptr [{c} + 232]",                // odd_bytes
+                ".p2align   5",
+                "2:",
+                "mov        {at:e}, [{l} + 4*{k} + {AT}]",
+                "mov        {cell:e}, [{l} + 4*{k} + {CELL}]",
+                "mov        {length:e}, [{l} + 4*{k} + {LENGTH}]",
+                "vpbroadcastq zmm16, qword ptr [{l} + 8*{k} + {DZ}]",
+                "vpbroadcastw xmm19, word ptr [{l} + 4*{k} + {PAINT}]",
+                "vpbroadcastw xmm20, word ptr [{l} + 4*{k} + {PAINT} + 2]", // step
+                "add        {at}, {pixels}",
+                "lea        {cell}, [{cells} + 4*{cell}]",
+                "vpmullq    zmm17, zmm16, zmm29",
+                "vpmullw    xmm21, xmm20, xmm28",
+                "vpaddq     zmm17, zmm17, qword ptr [{l} + 8*{k} + {Z}]{{1to8}}",
+                "vpaddw     xmm21, xmm21, xmm19",                           // even
+                "vpaddw     xmm22, xmm21, xmm20",                           // odd
+                "cmp        {length:e}, 8",
+                "ja         7f",
+                // Eight cells: with sixteen nearly every access is one to two lines of the cache.
+                "bzhi       {length:e}, {ones:e}, {length:e}",
+                "vpsrlq     zmm24, zmm17, 24",
+                "kmovd      k1, {length:e}",
+                "vpmovqd    ymm24, zmm24",
+                "vmovdqu32  ymm23{{k1}}{{z}}, [{cell}]",
+                "vpsrlw     xmm21, xmm21, 8",
+                "vpternlogd xmm21, xmm22, xmm31, 0xF8",
+                "vpcmpud    k1{{k1}}, ymm24, ymm23, 6",
+                "vmovdqu32  [{cell}]{{k1}}, ymm24",
+                "vmovdqu8   [{at}]{{k1}}, xmm21",
+                "kmovd      {length:e}, k1",
+                "popcnt     {length:e}, {length:e}",
+                "add        {nearer}, {length}",
+                "inc        {k}",
+                "cmp        {k}, {count}",
+                "jb         2b",
+                "jmp        6f",
+                "7:",
+                "vpsllq     zmm18, zmm16, 3",
+                "vpaddq     zmm18, zmm18, zmm17",
+                "cmp        {length:e}, 16",
+                "ja         4f",
+                "3:",                                                       // the last 1 to 16
+                "bzhi       {length:e}, {ones:e}, {length:e}",
+                "kmovd      k1, {length:e}",
+                "vmovdqu32  zmm23{{k1}}{{z}}, [{cell}]",
+                "vpsrlq     zmm24, zmm17, 24",
+                "vpsrlq     zmm25, zmm18, 24",
+                "vpermt2d   zmm24, zmm30, zmm25",
+                "vpsrlw     xmm21, xmm21, 8",
+                "vpternlogd xmm21, xmm22, xmm31, 0xF8",                     // even >> 8 | odd & 0xFF00
+                "vpcmpud    k1{{k1}}, zmm24, zmm23, 6",                     // greater
+                "vmovdqu32  [{cell}]{{k1}}, zmm24",
+                "vmovdqu8   [{at}]{{k1}}, xmm21",
+                "kmovd      {length:e}, k1",
+                "popcnt     {length:e}, {length:e}",
+                "add        {nearer}, {length}",
+                "inc        {k}",
+                "cmp        {k}, {count}",
+                "jb         2b",
+                "jmp        6f",
+                "4:",
+                "vpsllq     zmm16, zmm16, 4",
+                "vpsllw     xmm20, xmm20, 4",
+                ".p2align   5",
+                "5:",                                                       // more than 16 are left
+                "vpsrlq     zmm24, zmm17, 24",
+                "vpsrlq     zmm25, zmm18, 24",
+                "vpermt2d   zmm24, zmm30, zmm25",
+                "vpsrlw     xmm26, xmm21, 8",
+                "vpternlogd xmm26, xmm22, xmm31, 0xF8",
+                "vpcmpud    k1, zmm24, [{cell}], 6",
+                "vmovdqu32  [{cell}]{{k1}}, zmm24",
+                "vmovdqu8   [{at}]{{k1}}, xmm26",
+                "vpaddq     zmm17, zmm17, zmm16",
+                "vpaddq     zmm18, zmm18, zmm16",
+                "vpaddw     xmm21, xmm21, xmm20",
+                "vpaddw     xmm22, xmm22, xmm20",
+                "kmovd      {mask:e}, k1",
+                "popcnt     {mask:e}, {mask:e}",
+                "add        {nearer}, {mask}",
+                "add        {at}, 16",
+                "add        {cell}, 64",
+                "sub        {length:e}, 16",
+                "cmp        {length:e}, 16",
+                "ja         5b",
+                "jmp        3b",
+                "6:",
+                l = in(reg) &raw const *self,
+                c = in(reg) &raw const CONSTANTS,
+                pixels = in(reg) pixels,
+                cells = in(reg) cells,
+                count = in(reg) self.count,
+                k = inout(reg) 0_u64 => _,
+                ones = in(reg) u64::MAX,
+                nearer = inout(reg) 0_u64 => nearer,
+                at = out(reg) _,
+                cell = out(reg) _,
+                length = out(reg) _,
+                mask = out(reg) _,
+                AT = const offset_of!(Self, at),
+                CELL = const offset_of!(Self, cell),
+                LENGTH = const offset_of!(Self, length),
+                PAINT = const offset_of!(Self, paint),
+                Z = const offset_of!(Self, z),
+                DZ = const offset_of!(Self, dz),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
+                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm28") _,
+                out("zmm29") _, out("zmm30") _, out("zmm31") _, out("k1") _,
+                options(nostack),
+            );
+        }
+        // At most 2⁷ spans of 1,024 pixels.
+        self.nearer = self.nearer.wrapping_add(nearer as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::rows::{Gathered, MOST_PIECES};
+    use super::super::set_up;
+    use super::*;
+    use crate::span::Kernel;
+
+    /// Spans that do not lie wholly inside the pixels, and the cells, are left out, whatever the triangles.
+    #[test]
+    fn nothing_outside_the_pixels_and_cells_is_written() {
+        if Kernel::by_name("simd-avx512").is_err() {
+            return;
+        }
+        let mut state = 1_u64;
+        let mut random = |most: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % (most + 1)
+        };
+        let (mut written, mut left_out) = (0, 0);
+        for round in 0..20_000 {
+            let few = round % 2 == 0;
+            let (width, height) = if few { (16_384, 900) } else { (65_536, 40_000) };
+            let mut corners = |most| [0; 3].map(|_| [0; LANES].map(|_: i32| random(most) as i32));
+            let (x, y, shade) = (corners(width), corners(height), corners(0xFF00));
+            let depth = [0; 3].map(|_| [0; LANES].map(|_: i32| random(1 << 30) as u32));
+            let gathered = Gathered { x, y, shade, depth };
+            let (first_row, pitch, cells_across) = (random(20) as u32, random(300) as u32, random(300) as u32);
+            let place = Place { first_row, pitch, depth_width: Some(cells_across) };
+            let (before, length) = (random(300) as usize, random(20_000) as usize);
+            let mut bytes = vec![7_u8; before + length + 300];
+            let mut cells = vec![1_u32; before + length + 300];
+            let (mut group, mut planes, mut spans) = (Group::NONE, Planes::NONE, Spans::new(place));
+            let end = before + length;
+            let with_depths = random(2) > 0;
+            let clip = (random(1) == 0).then_some(Rect { x0: random(99) as u32, y0: 0, x1: 200, y1: 90 });
+            let pieces = random(MOST_PIECES as u64) as usize;
+            // SAFETY: the kernel above is there.
+            unsafe {
+                set_up(&gathered, place, &mut group);
+                planes.renew(&gathered, &group);
+                let planes = with_depths.then_some(&planes);
+                let to = (&mut bytes[before..end], &mut cells[before..end]);
+                if few {
+                    spans.add_all(&group, LANES, FEW_ROWS, planes, to);
+                } else {
+                    spans.add(&group, 3, (pieces, clip), planes, to);
+                }
+                spans.draw(with_depths, &mut bytes[before..end], &mut cells[before..end]);
+            }
+            assert!(bytes[..before].iter().chain(&bytes[end..]).all(|&byte| byte == 7));
+            assert!(cells[..before].iter().chain(&cells[end..]).all(|&cell| cell == 1));
+            let inside = bytes.iter().filter(|&&byte| byte != 7).count();
+            written += inside;
+            left_out += usize::from(inside == 0);
+        }
+        assert!(written > 1_000_000 && left_out > 100, "{written}, {left_out}");
+    }
+}
