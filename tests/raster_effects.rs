@@ -6,7 +6,7 @@
 mod support;
 
 use mode13h::fixed::U8F8;
-use mode13h::raster::effects::{Apart, Attributes, Lighting, Look, Mix, Source, TextureLook, TextureMapping};
+use mode13h::raster::effects::{Apart, Attributes, Lighting, Limits, Look, Mix, Source, TextureLook, TextureMapping};
 use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
@@ -74,12 +74,20 @@ fn attributes(random: &mut Random) -> [Attributes; 3] {
     })
 }
 
+/// Any two, seldom so that the least is above the greatest; shades beyond 255, too, which count as that.
+fn limits(random: &mut Random) -> Limits {
+    let [a, b] = [0, 1].map(|_| random.within(0, 0xFFFF) as u16);
+    let (least, most) = if random.within(0, 9) == 0 { (a, b) } else { (a.min(b) / 4, a.max(b)) };
+    Limits { least: U8F8::from_bits(least), most: U8F8::from_bits(most) }
+}
+
 fn look<'a>(random: &mut Random, stock: &'a Stock) -> Look<'a> {
     let mut maybe = |n: i64| random.within(0, n) == 0;
     let (channels, dither, texture, fog, blend) = (maybe(3), maybe(2), maybe(1), maybe(2), maybe(3));
     let (ubits, vbits) = (random.within(0, 8) as u32, random.within(0, 8) as u32);
     Look {
-        source: match random.within(0, 9) {
+        source: match random.within(0, 10) {
+            10 => Source::Curved([0, 1, 2].map(|_| limits(random))),
             0 => Source::NormalTable(&stock.tables[0]),
             1 => Source::Lit(&Sum),
             2 => Source::LitEvery(random.one_of(&Apart::ALL), &Sum),
@@ -148,6 +156,30 @@ impl<'a> Naive<'a> {
         }
     }
 
+    /// A shade that is quadratic on the screen, as it is defined: by the basis of six functions, each 1 at one of the points
+    /// and 0 at the others. All are whole numbers over the square of the area.
+    fn quadratic(&self, channel: usize, x: i32, y: i32) -> Ratio {
+        let weight = |corner: usize| {
+            let one = [0, 1, 2].map(|i| i128::from(i == corner));
+            oracle::interpolate(self.corners, one, oracle::centre(x, y))
+        };
+        let [a, b, c] = [weight(0), weight(1), weight(2)];
+        let area = a.d;
+        let at = |corner: usize, value: usize| self.attributes[corner].lit[value] as i128;
+        let own = |corner: usize, weight: Ratio| at(corner, channel) * weight.n * (2 * weight.n - area);
+        let between = |opposite: usize, from: Ratio, to: Ratio| 4 * at(opposite, channel + 3) * from.n * to.n;
+        let sum = own(0, a) + own(1, b) + own(2, c) + between(0, b, c) + between(1, c, a) + between(2, a, b);
+        Ratio { n: sum, d: area * area }
+    }
+
+    /// The byte of it within its limits. One that is half-way between two counts as the even one.
+    fn quadratic_byte(&self, limits: Limits, channel: usize, x: i32, y: i32, threshold: u8) -> u8 {
+        let exact = self.quadratic(channel, x, y);
+        let nearest = Ratio { n: 2 * exact.n + exact.d, d: 2 * exact.d }.floor();
+        let [least, most] = [limits.least, limits.most].map(|limit| i128::from(limit.to_bits().min(0xFF00)));
+        ((nearest.max(least).min(most) + i128::from(threshold)) >> 8) as u8
+    }
+
     fn texel(&self, texture: &TextureLook<'_>, seed: i32, last: i32, x: i32, y: i32) -> u8 {
         let [u, v] = [0, 1].map(|i| {
             let values = self.attributes.each_ref().map(|a| i128::from(a.texture[i]));
@@ -208,6 +240,7 @@ impl<'a> Naive<'a> {
         let mut byte = if let Some(mix) = &self.look.channels {
             let mut channels = match self.look.source {
                 Source::Lit(_) | Source::LitEvery(..) => [0, 1, 2].map(|i| byte_of(lit(i), 128)),
+                Source::Curved(limits) => [0, 1, 2].map(|i| self.quadratic_byte(limits[i], i, x, y, 128)),
                 _ => [0, 1, 2].map(|i| self.shades[i].byte((first, last), x, y, None)),
             };
             if let Some((texture, texel)) = textured {
@@ -226,6 +259,7 @@ impl<'a> Naive<'a> {
                 Source::Shaded(_) => self.shades[0].byte((first, last), x, y, self.look.dither.map(|_| threshold)),
                 Source::NormalTable(table) => lookup(table, linear(|a| a.slope[1], 128), linear(|a| a.slope[0], 128)),
                 Source::Lit(_) | Source::LitEvery(..) => byte_of(lit(0), threshold),
+                Source::Curved(limits) => self.quadratic_byte(limits[0], 0, x, y, threshold),
                 _ => unreachable!("all sources are tried"),
             };
             match textured {
@@ -278,7 +312,7 @@ fn draw(
 }
 
 fn sum_is_exact(look: &Look<'_>) -> bool {
-    !matches!(look.source, Source::Lit(_) | Source::LitEvery(..))
+    !matches!(look.source, Source::Lit(_) | Source::LitEvery(..) | Source::Curved(_))
 }
 
 #[test]
@@ -364,5 +398,101 @@ fn effects_keep_to_the_depth_buffer() {
             }
         }
         assert_eq!((drawn.pixels, drawn.tested), (written, drawn.covered));
+    }
+}
+
+/// Shades of either sign, more than can be shown among them, on triangles of every kind: each byte is that of the exact
+/// number or of one that is off by no more than f32 is, and all kernels agree.
+#[test]
+fn quadratic_shades_are_the_definition() {
+    let mut tried = Tried::new("quadratic_shades_are_the_definition", 3_000);
+    let mut random = Random::named("quadratic shades");
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let (mut pixels, mut held) = (0_u64, 0_u64);
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let reach = 1 << random.within(4, 17);
+        let mut attributes = attributes(&mut random);
+        for corner in &mut attributes {
+            corner.lit = core::array::from_fn(|_| random.within(-reach, reach) as f32);
+        }
+        let (channel, limits) = (random.within(0, 2) as usize, [0, 1, 2].map(|_| limits(&mut random)));
+        let channels = (random.within(0, 1) == 0).then_some(Mix::Only(channel));
+        let channel = if channels.is_some() { channel } else { 0 };
+        let look = Look { source: Source::Curved(limits), channels, ..Look::PLAIN };
+        let naive = Naive::new(&vertices, &attributes, &look);
+        let bytes = draw(&vertices, &attributes, &look, None, kernels[0]);
+        for kernel in &kernels[1..] {
+            assert_eq!(
+                draw(&vertices, &attributes, &look, None, *kernel),
+                bytes,
+                "{kernel}: {vertices:?} {attributes:?}"
+            );
+        }
+        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+            continue;
+        }
+        // Terms of up to 8 · 5/3 of the greatest shade, each off by 2^-24 of it, six of them; rounding to whole numbers by a
+        // half, which is what the exact byte has, too.
+        let off = (f64::from(1_i32 << 17) * 8.0 * 5.0 / 3.0 * 6.0 / f64::from(1 << 24)).max(0.01);
+        let [least, most] = [limits[channel].least, limits[channel].most].map(|of| f64::from(of.to_bits().min(0xFF00)));
+        for (place, byte) in bytes.iter().enumerate() {
+            let (x, y) = (place as i32 % WIDTH, place as i32 / WIDTH);
+            if !oracle::covers(naive.corners, oracle::centre(x, y)) {
+                assert_eq!(*byte, BEFORE);
+                continue;
+            }
+            let exact = naive.quadratic(channel, x, y);
+            let exact = exact.n as f64 / exact.d as f64;
+            let end = |value: f64| (((value.max(least).min(most)).round() as i64 + 128) >> 8) as u8;
+            let (low, high) = (end(exact - off), end(exact + off));
+            assert!(
+                (low..=high).contains(byte),
+                "({x}, {y}): {byte}, not {low} to {high} for {exact}: {vertices:?}, {attributes:?}, {look:?}"
+            );
+            pixels += 1;
+            held += u64::from(exact < least || exact > most);
+        }
+    }
+    assert!(pixels > 300_000 && held > 30_000, "{pixels} pixels, {held} held");
+}
+
+/// What is no number, too large or too small to be worked with: bytes stay within the limits, and every kernel has the same.
+#[test]
+fn quadratic_shades_of_any_numbers_stay_within() {
+    let mut tried = Tried::new("quadratic_shades_of_any_numbers_stay_within", 1_000);
+    let mut random = Random::named("quadratic shades of anything");
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let odd = [f32::MAX, f32::MIN, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 1e-40, -0.0, 65_280.0, -1.0, 1e10];
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let mut attributes = attributes(&mut random);
+        attributes.iter_mut().flat_map(|corner| &mut corner.lit).for_each(|lit| {
+            if random.within(0, 2) > 0 {
+                *lit = random.one_of(&odd);
+            }
+        });
+        let limits = limits(&mut random);
+        let look = Look { source: Source::Curved([limits; 3]), ..Look::PLAIN };
+        let bytes = draw(&vertices, &attributes, &look, None, kernels[0]);
+        for kernel in &kernels[1..] {
+            assert_eq!(
+                draw(&vertices, &attributes, &look, None, *kernel),
+                bytes,
+                "{kernel}: {vertices:?} {attributes:?}"
+            );
+        }
+        let corners = vertices.each_ref().map(oracle::point);
+        let [least, most] =
+            [limits.least, limits.most].map(|of| ((u32::from(of.to_bits().min(0xFF00)) + 128) >> 8) as u8);
+        for (place, byte) in bytes.iter().enumerate() {
+            let at = oracle::centre(place as i32 % WIDTH, place as i32 / WIDTH);
+            if oracle::covers(corners, at) {
+                assert!(
+                    (least.min(most)..=most).contains(byte),
+                    "{byte} in {least} to {most}: {vertices:?}, {attributes:?}"
+                );
+            }
+        }
     }
 }

@@ -7,13 +7,14 @@ mod support;
 use mode13h::palette::Rgb;
 use mode13h::palette::cube;
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
+use mode13h::span::curve::curve;
 use mode13h::span::depth::{Cell, copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
 use mode13h::span::float::fill_float;
 use mode13h::span::lit::{LANES, Points, interpolate};
-use mode13h::span::lookup;
 use mode13h::span::texture::{Texels, TexelsError, fill_affine, fill_perspective, fill_perspective_portable};
 use mode13h::span::wide::fill_16_16;
+use mode13h::span::{Kernel, lookup};
 use std::fmt::Debug;
 use support::random::Random;
 use support::tried::Tried;
@@ -925,5 +926,108 @@ mod lit {
             points
         };
         assert_caught("the last point", check(last));
+    }
+}
+
+/// Shades on a parabola: a pass that writes none.
+mod curved {
+    use super::*;
+
+    type Curve = fn(&mut [u16], [f32; 3], u16, u16);
+
+    /// The definition, of one shade.
+    fn shade(k: u16, [a, b, c]: [f32; 3], least: u16, most: u16) -> u16 {
+        let k = f32::from(k);
+        let product = k * c;
+        let sum = b + product;
+        let product = k * sum;
+        let value = a + product;
+        let held = if value.is_nan() { f32::from(least) } else { value.max(f32::from(least)) };
+        // Below 2^16.
+        f64::from(held.min(f32::from(most))).round_ties_even() as u16
+    }
+
+    fn check(curve: Curve) -> Result<u64, String> {
+        let mut random = Random::named("curves");
+        let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -0.0, 1e-40, 0.5, 1.5, 65_280.0];
+        let mut cases = 0;
+        for length in (0..=100).chain([128, 320, 321, 4_096]) {
+            for case in 0..60 {
+                let mut any = |most: f64| ((random.unit() * 2.0 - 1.0) * most) as f32;
+                // From a shade in range to another, whole and half ones among them, and now and then what is none.
+                let span = f64::from(length.max(2));
+                let mut parabola = [any(70_000.0), any(200_000.0 / span), any(200_000.0 / span / span)];
+                match case % 6 {
+                    0 => parabola = parabola.map(|value| (value * 2.0).round() / 2.0),
+                    1 => parabola = [parabola[0].round() + 0.5, 0.0, 0.0],
+                    2 => parabola[random.within(0, 2) as usize] = random.one_of(&odd),
+                    _ => {}
+                }
+                let mut ends = [0, 1].map(|_| random.within(0, 0xFF00) as u16);
+                if case % 10 != 0 {
+                    ends.sort_unstable();
+                }
+                let [least, most] = ends;
+                let mut shades = vec![0xABCD_u16; usize::from(length) + 8];
+                curve(&mut shades[..usize::from(length)], parabola, least, most);
+                for (k, is) in (0..length).zip(&shades) {
+                    let should = shade(k, parabola, least, most);
+                    if *is != should {
+                        return Err(format!("{parabola:?} from {least} to {most}: shade {k} is {is}, not {should}"));
+                    }
+                }
+                if shades[usize::from(length)..].iter().any(|beyond| *beyond != 0xABCD) {
+                    return Err(format!("{length} shades: something was written beyond"));
+                }
+                cases += 1;
+            }
+        }
+        Ok(cases)
+    }
+
+    #[test]
+    fn curves_are_the_definition() {
+        assert_right("curves", 105 * 60, check(curve));
+        for kernel in Kernel::available() {
+            // One after the other, as a function has no kernel of its own.
+            let mut random = Random::named("curves by kernels");
+            for case in 0..4_000 {
+                let length = random.log_uniform(9);
+                let mut any = |most: f64| ((random.unit() * 2.0 - 1.0) * most) as f32;
+                let parabola = [any(80_000.0), any(4_000.0), any(60.0)];
+                let (mut expected, mut shades) = (vec![1; length], vec![2; length]);
+                curve(&mut expected, parabola, 0x0123, 0xFE00);
+                kernel.curve(&mut shades, parabola, 0x0123, 0xFE00);
+                assert_eq!(shades, expected, "{kernel}, case {case}: {parabola:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn wrong_curves_are_caught() {
+        let accumulated: Curve = |shades, [a, b, c], least, most| {
+            let (mut at, mut step) = (a, b + c);
+            for shade in shades {
+                *shade = at.max(f32::from(least)).min(f32::from(most)).round_ties_even() as u16;
+                at += step;
+                step += 2.0 * c;
+            }
+        };
+        assert_caught("sums that run on", check(accumulated));
+        let truncated: Curve = |shades, [a, b, c], least, most| {
+            for (k, shade) in (0_u16..).map(f32::from).zip(shades) {
+                *shade = (a + k * (b + k * c)).max(f32::from(least)).min(f32::from(most)) as u16;
+            }
+        };
+        assert_caught("shades that are cut off", check(truncated));
+        let unheld: Curve = |shades, parabola, _, most| curve(shades, parabola, 0, most);
+        assert_caught("no least", check(unheld));
+        let fused: Curve = |shades, [a, b, c], least, most| {
+            for (k, shade) in (0_u16..).map(f32::from).zip(shades) {
+                let value = k.mul_add(k.mul_add(c, b), a);
+                *shade = value.max(f32::from(least)).min(f32::from(most)).round_ties_even() as u16;
+            }
+        };
+        assert_caught("products that are not rounded", check(fused));
     }
 }

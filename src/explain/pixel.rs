@@ -297,7 +297,7 @@ impl Inputs<'_> {
         };
         let account = |values, shading| Account::new(&triangle, values, shading, &row, x);
         Some(match bytes.shaded_by {
-            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } => Vec::new(),
+            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_) => Vec::new(),
             ShadedBy::NormalTable => [0, 1]
                 .iter()
                 .filter_map(|&i| Some(account(values(&|a| a.slope[i].to_bits())?, Shading::default())))

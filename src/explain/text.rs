@@ -133,7 +133,7 @@ impl Pixel {
         };
         match seen.shaded_by {
             ShadedBy::NormalTable => Rung::PhongTable,
-            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } => Rung::Phong,
+            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_) => Rung::Phong,
             ShadedBy::Corners if face.is_part && by_shading == Rung::Gouraud88Reseeded => Rung::GouraudTessellated,
             ShadedBy::Corners if self.rung == Rung::Flat => Rung::Flat,
             ShadedBy::Corners => by_shading,
@@ -170,6 +170,16 @@ impl Pixel {
                     "linear between two pixels of its row, at most 16 apart, that are lit by the whole model: {} and {}",
                     in_shades(seen, before),
                     in_shades(seen, after),
+                );
+                text.say("light", &words);
+            }
+            (ShadedBy::BetweenSix(corners), _) => {
+                let shades = |first: usize| corners.map(|of| format!("{:.2}", of[first] / 256.0)).join(", ");
+                let words = format!(
+                    "quadratic on the screen through light at six points: {} at the corners, {} at the middles of the \
+                     edges opposite to them, where light above 1 or below the horizon goes on and is cut off here",
+                    shades(0),
+                    shades(3),
                 );
                 text.say("light", &words);
             }

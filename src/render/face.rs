@@ -24,8 +24,19 @@ use crate::view::{Homogeneous, ObjectView};
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct Manner {
     pub(super) rung: Rung,
-    /// Where pixels are lit: how far apart they are, if not all are.
-    pub(super) apart: Option<Apart>,
+    /// Of a rung that lights pixels.
+    pub(super) lit_at: LitAt,
+}
+
+/// Where a face takes light whose pixels need some.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) enum LitAt {
+    #[default]
+    Pixels,
+    /// At pixels of a row that lie apart, linear between.
+    Every(Apart),
+    /// At its corners and the middles of its edges, quadratic between.
+    SixPoints,
 }
 
 /// Takes faces as they are to be drawn.
@@ -202,7 +213,7 @@ impl Faces<'_> {
                     let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
                     if EFFECTS && self.paints[usize::from(surface)].has_effects {
                         let attributes = indices.map(|i| self.extras[i as usize].side(turned));
-                        let manner = Manner { rung: Rung::Gouraud88Reseeded, apart: None };
+                        let manner = Manner { rung: Rung::Gouraud88Reseeded, lit_at: LitAt::Pixels };
                         sink.with_effects(&vertices, &attributes, surface, manner);
                     } else {
                         sink.plain(&vertices, Rung::Gouraud88Reseeded.shading());
@@ -276,8 +287,11 @@ impl Faces<'_> {
         }
         let choice = *choice;
         stats.shares.add(choice.rung(), 1);
-        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.lights_pixels() {
-            let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
+        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.needs_light() {
+            let mut attributes = self.attributes::<EFFECTS>(indices, turned, choice);
+            if choice == Choice::Curved {
+                self.put_curve(&mut attributes, (indices, surface, turned), &vertices);
+            }
             hand_on_within(vertices, attributes, surface, choice, sink);
         } else {
             sink.plain(&vertices, choice.shading(&vertices));
@@ -306,7 +320,7 @@ impl Faces<'_> {
     fn attributes<const EFFECTS: bool>(&self, indices: [u32; 3], turned: bool, choice: Choice) -> [Attributes; 3] {
         indices.map(|i| {
             let mut attributes = if EFFECTS { self.extras[i as usize].side(turned) } else { Attributes::default() };
-            if choice.lights_pixels() {
+            if choice.needs_light() {
                 let (normal, position) = (self.geometry.normals[i as usize], self.geometry.positions[i as usize]);
                 let normal = if turned { -normal } else { normal };
                 attributes.lit = [normal.x, normal.y, normal.z, position.x, position.y, position.z];
@@ -334,7 +348,7 @@ impl Faces<'_> {
         }
         let (choice, before) = (*choice, stats.drawn);
         let shading = choice.rung().shading();
-        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.lights_pixels() {
+        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.needs_light() {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
             self.parts::<CULLS, _>(at, corners, carried, (shading, turned), stats, |vertices, carried, _| {
@@ -428,7 +442,7 @@ impl Faces<'_> {
                 vertices = vertices.map(|vertex| vertex.with_shade(shade));
             }
         }
-        sink.with_effects(&vertices, &attributes, surface, Manner { rung: self.rung, apart: None });
+        sink.with_effects(&vertices, &attributes, surface, Manner { rung: self.rung, lit_at: LitAt::Pixels });
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
@@ -490,7 +504,7 @@ fn hand_on_within(
         attributes.iter_mut().for_each(|corner| corner.channels = channels);
         rung = Rung::Gouraud88Reseeded;
     }
-    sink.with_effects(&vertices, &attributes, surface, Manner { rung, apart: choice.apart() });
+    sink.with_effects(&vertices, &attributes, surface, Manner { rung, lit_at: choice.lit_at() });
 }
 
 /// Half-way between the least and the greatest.

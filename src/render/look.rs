@@ -1,6 +1,7 @@
 //! What is done to the pixels of a surface: the plan, the material and the tables, put together.
 
-use super::face::Manner;
+use super::budget::limits;
+use super::face::{LitAt, Manner};
 use super::object::ObjectState;
 use super::paint::Paint;
 use super::pixel_light::PixelLight;
@@ -158,7 +159,7 @@ impl Looks<'_> {
 
 fn source<'a>(
     plan: &ObjectPlan,
-    Manner { rung, apart }: Manner,
+    Manner { rung, lit_at }: Manner,
     channels: bool,
     table: Option<&'a [u8; 65_536]>,
     light: &'a PixelLight<'a>,
@@ -166,7 +167,11 @@ fn source<'a>(
     if plan.is_on(Effect::Phong) && rung.lights_pixels() {
         return match table {
             Some(table) if rung == Rung::PhongTable && !channels => Source::NormalTable(table),
-            _ => apart.map_or(Source::Lit(light), |apart| Source::LitEvery(apart, light)),
+            _ => match lit_at {
+                LitAt::Pixels => Source::Lit(light),
+                LitAt::Every(apart) => Source::LitEvery(apart, light),
+                LitAt::SixPoints => Source::Curved(limits(light.paint, channels)),
+            },
         };
     }
     Source::Shaded(rung.shading())

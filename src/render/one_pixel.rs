@@ -38,6 +38,9 @@ pub enum ShadedBy {
         /// Those of the next.
         after: [u16; 3],
     },
+    /// Quadratic on the screen between six points that are lit. For each corner the shades in 8.8 there, of three
+    /// channels or the first, and then those at the middle of the edge opposite to it; beyond what can be shown, too.
+    BetweenSix([[f32; 6]; 3]),
 }
 
 /// What the stages of a face make of a pixel.
@@ -237,6 +240,7 @@ fn stages(
     }
     match look.source {
         Source::Shaded(_) => {}
+        Source::Curved(_) => made.shaded_by = ShadedBy::BetweenSix(met.1.map(|corner| corner.lit)),
         Source::NormalTable(_) => made.shaded_by = ShadedBy::NormalTable,
         Source::Lit(light) => {
             let noted = Noted { light, last: Cell::new(None) };

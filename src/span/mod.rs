@@ -40,10 +40,12 @@
 //! | [`depth::fill_nearer`], [`depth::copy_nearer`], [`depth::copy_before`] | with a depth test |
 //! | [`Kernel::fill_list`], [`Kernel::fill_list_nearer`] | a list of short spans in one call |
 //! | [`lit::interpolate`] | writes no pixels: normals and positions for Phong's shading |
+//! | [`curve::curve`] | writes no pixels: shades on a parabola |
 
 use core::fmt;
 
 pub mod channels;
+pub mod curve;
 pub mod depth;
 pub mod dither;
 pub mod float;

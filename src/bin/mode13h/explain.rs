@@ -156,6 +156,7 @@ fn seen_json(seen: &Seen) -> Value {
             json!({ "normal": normal, "position": position, "shades_256": shades })
         }
         ShadedBy::BetweenLit { before, after } => json!({ "before_256": before, "after_256": after }),
+        ShadedBy::BetweenSix(corners) => json!({ "corners_and_middles_256": corners }),
         _ => Value::Null,
     };
     let shaded_by = match seen.shaded_by {
@@ -163,6 +164,7 @@ fn seen_json(seen: &Seen) -> Value {
         ShadedBy::NormalTable => "normal-table",
         ShadedBy::Light { .. } => "light",
         ShadedBy::BetweenLit { .. } => "between-lit",
+        ShadedBy::BetweenSix(_) => "between-six",
     };
     let against = seen.against.iter().map(
         |against| json!({ "standard": against.standard.name(), "shades": against.shades, "error": against.error }),

@@ -17,7 +17,9 @@ pub struct Attributes {
     pub channels: [U8F8; 3],
     /// The column and the row in the table of [`Source::NormalTable`], each 0 to 0xFF00.
     pub slope: [U8F8; 2],
-    /// What [`Lighting`] is handed: a normal and a position.
+    /// What [`Lighting`] is handed: a normal and a position. Of [`Source::Curved`] the shade at the corner, or its three
+    /// channels, and then those at the middle (on the screen) of the edge opposite to it; in 8.8, and beyond what can be
+    /// shown, too, where the limits cut them off.
     pub lit: [f32; 6],
 }
 
@@ -46,6 +48,18 @@ pub enum Source<'a> {
     /// The same lit at the row's first pixel inside the frame, at some from there and at its last; shades are linear
     /// between.
     LitEvery(Apart, &'a dyn Lighting),
+    /// Quadratic on the screen, through the six shades of [`Attributes::lit`]: those at the corners and at the middles of
+    /// the edges. Held within these limits, one for each channel; of one shade the first counts.
+    Curved([Limits; 3]),
+}
+
+/// The least and the greatest of a shade.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Limits {
+    /// The least.
+    pub least: U8F8,
+    /// The greatest; where it is below the least, it counts.
+    pub most: U8F8,
 }
 
 /// How far two pixels of a row that are lit lie apart.

@@ -17,12 +17,14 @@
 //! range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a byte
 //! lies in [min >> 8, ⌈max⌉].
 
+mod curve;
 mod look;
 mod planes;
 
 use core::ops::Range;
 
-pub use self::look::{Apart, Attributes, Lighting, Look, Mix, Source, TextureLook, TextureMapping};
+use self::curve::CurvePlane;
+pub use self::look::{Apart, Attributes, Lighting, Limits, Look, Mix, Source, TextureLook, TextureMapping};
 use self::planes::{KNOTS, Knots, LitPlane, TexturePlane};
 use super::cover::{Ordered, Row};
 use super::depth::{Cell, DepthPlane};
@@ -55,6 +57,7 @@ enum Planes {
     Channels([Paint; 3]),
     Slope([ShadePlane; 2]),
     Lit(LitPlane),
+    Curved(CurvePlane),
 }
 
 /// A triangle and its look, ready to be painted row by row.
@@ -113,6 +116,9 @@ impl<'a> EffectPaint<'a> {
         };
         let planes = match (look.source, look.channels()) {
             (Source::Lit(_) | Source::LitEvery(..), _) => Planes::Lit(LitPlane::new(triangle, corners)),
+            (Source::Curved(limits), channels) => {
+                Planes::Curved(CurvePlane::new(triangle, corners, limits, if channels.is_some() { 3 } else { 1 }))
+            }
             (Source::Shaded(shading), None) => Planes::Shade(Paint::new(triangle, shading)),
             (Source::Shaded(shading), Some(_)) => channels(shading),
             (Source::NormalTable(_), Some(_)) => channels(Shading::default()),
@@ -240,6 +246,19 @@ impl<'a> EffectPaint<'a> {
                     }
                     _ => {}
                 }
+            }
+            Planes::Curved(plane) => {
+                let mut shades = [0; PIECE];
+                if self.look.channels().is_some() {
+                    let mut channels = [[0; PIECE]; 3];
+                    for (i, channel) in channels.iter_mut().enumerate() {
+                        plane.fill((seed, row.y), i, &mut shades[..length], kernel);
+                        to_bytes(&shades[..length], &HALVES[0], 0, &mut channel[..length]);
+                    }
+                    return self.mix(row, seed, channels, thresholds, piece);
+                }
+                plane.fill((seed, row.y), 0, &mut shades[..length], kernel);
+                to_bytes(&shades[..length], thresholds, column, piece);
             }
         }
         if let Some(texture) = self.look.texture() {

@@ -5,6 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use crate::raster::effects::Apart;
+use crate::render::face::LitAt;
 use crate::scene::Rung;
 
 /// What is decided for a triangle.
@@ -16,6 +17,8 @@ pub(in crate::render) enum Choice {
     Flat,
     Linear,
     Float,
+    /// Quadratic on the screen, through light at six points.
+    Curved,
     /// Light at pixels of a row that lie apart, linear between.
     PhongEvery(Apart),
     Phong,
@@ -26,21 +29,25 @@ impl Choice {
         match self {
             Self::Flat => Rung::Flat,
             Self::Float => Rung::Float,
-            Self::Phong | Self::PhongEvery(_) => Rung::Phong,
+            Self::Phong | Self::PhongEvery(_) | Self::Curved => Rung::Phong,
             Self::Linear | Self::Unknown => Rung::Gouraud88Reseeded,
         }
     }
 }
 
 impl Choice {
-    /// Whether pixels are lit, all or some.
-    pub(in crate::render) fn lights_pixels(self) -> bool {
-        matches!(self, Self::Phong | Self::PhongEvery(_))
+    /// Whether its pixels need light beyond that of the corners.
+    pub(in crate::render) fn needs_light(self) -> bool {
+        matches!(self, Self::Phong | Self::PhongEvery(_) | Self::Curved)
     }
 
-    /// How far those are apart that are lit, if not all are.
-    pub(in crate::render) fn apart(self) -> Option<Apart> {
-        if let Self::PhongEvery(apart) = self { Some(apart) } else { None }
+    /// Where it takes light.
+    pub(in crate::render) fn lit_at(self) -> LitAt {
+        match self {
+            Self::PhongEvery(apart) => LitAt::Every(apart),
+            Self::Curved => LitAt::SixPoints,
+            _ => LitAt::Pixels,
+        }
     }
 }
 
@@ -78,6 +85,7 @@ pub(in crate::render) fn shares(decided: &Decided) -> String {
         (Choice::Flat, "one shade at their corners, or near enough"),
         (Choice::Linear, "light is linear enough on them"),
         (Choice::Float, "so it is, but not on the screen"),
+        (Choice::Curved, "it is quadratic on the screen"),
         (Choice::PhongEvery(Apart::Sixteen), "at every 16th pixel of a row, and so it is between"),
         (Choice::PhongEvery(Apart::Eight), "at every 8th"),
         (Choice::PhongEvery(Apart::Four), "at every 4th"),

@@ -61,6 +61,8 @@ pub(super) struct OneLight<'a> {
     pub(super) shininess: f32,
     /// The edges of the parts that the triangle is looked at in, in edges of its own: 1 for the whole.
     pub(super) part: f32,
+    /// Whether light is meant as it goes on below the horizon, less than none.
+    pub(super) below: bool,
 }
 
 impl OneLight<'_> {
@@ -68,7 +70,7 @@ impl OneLight<'_> {
     pub(super) fn body_of_sun(&self, towards: Vec3, intensity: f32) -> f32 {
         let (most, least) = ends(self.normals.map(|normal| normal.dot(towards)));
         // Below the horizon nothing of the face sees it: N·l is linear.
-        if most <= 0.0 { 0.0 } else { intensity * self.kd * self.matt(most, least) }
+        if most <= 0.0 && !self.below { 0.0 } else { intensity * self.kd * self.matt(most, least) }
     }
 
     /// A sun's highlight. What is not more than `limit` is not looked at any closer.
@@ -82,7 +84,11 @@ impl OneLight<'_> {
 
     /// For light from one direction, of cosines up to these: what is lost as normals are not made unit, and at the clamp.
     fn matt(&self, most: f32, least: f32) -> f32 {
-        let (unit, clamp) = (most.max(0.0) * self.facet.shortening, clamp_error(most, least));
+        let (unit, clamp) = if self.below {
+            (most.abs().max(least.abs()) * self.facet.shortening, 0.0)
+        } else {
+            (most.max(0.0) * self.facet.shortening, clamp_error(most, least))
+        };
         if self.part == 1.0 {
             return unit + clamp;
         }

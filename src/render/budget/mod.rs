@@ -18,11 +18,12 @@
 //! - **The screen.** What is linear on the screen and not on the face moves shades along by a share of at most
 //!   (√ρ − 1) / (√ρ + 1) ≤ (ρ − 1) / 4 of their range, ρ being the ratio of the corners' distances.
 //!
-//! The bounds of the parts are added. Where that is too much, two ways are left before every pixel is lit:
+//! The bounds of the parts are added. Where that is too much, three ways are left before every pixel is lit:
 //!
 //! - **Points between the corners** (`error_between_samples`). Twelve are lit, which divide each edge in four. A function
 //!   is no farther from the linear one than at the worst of these points, and what a bound for a part of a fourth of the
 //!   size says: a sixteenth of the curvature, a fourth of what a clamp or a horizon does.
+//! - **A quadratic function of the screen** through light at six points of the face (`curve`).
 //! - **Pixels of a row that lie apart** (`is_linear_between`). 16, 8 or 4 of them are so small a part of the face that
 //!   light is linear between.
 //!
@@ -35,9 +36,11 @@
 //! | `cluster` | the decision on 64 triangles at once |
 //! | `light` | how far linear shades are off in the light of one source |
 //! | `question` | the decision on one triangle |
+//! | `curve` | whether quadratic shades do |
 //! | `decided` | what is decided, and how that is said |
 
 mod cluster;
+mod curve;
 mod decided;
 mod facet;
 mod light;
@@ -49,6 +52,7 @@ use glam::Vec3;
 
 use self::cluster::Cluster;
 pub(super) use self::cluster::{Linear, Where};
+pub(super) use self::curve::limits;
 pub(super) use self::decided::{Choice, Decided, shares};
 use self::facet::{Facet, Strength};
 use self::light::{Towards, narrow};
@@ -128,6 +132,8 @@ pub(super) struct Budget {
     known_lamps: Vec<LampBeam>,
     answers: Vec<Answer>,
     in_color: bool,
+    /// Whether no light and no material takes light away.
+    adds: bool,
     /// What an edge of 1 turns the direction to the eye by, at most.
     eye_turn: f32,
     /// For each vertex the eye, if there are highlights, and the chord between the eye and the mirrored light that is
@@ -182,6 +188,7 @@ impl Budget {
         } else {
             decided.nothing_of(geometry.triangles.len());
         }
+        self.adds = adds(lights, paints);
         let nearest = nearest.max(f64::from(view.near()));
         self.bend = (f64::from(self.longest_edge) * view.scale() / nearest / 4.0) as f32;
         self.strengths.clear();
@@ -415,6 +422,17 @@ fn faint_from(strength: f32, shininess: f32, limit: f32) -> f32 {
     }
     let cosine = 1.0 - libm::logf(strength / limit) / shininess;
     if cosine > -1.0 { libm::acosf(cosine) } else { f32::INFINITY }
+}
+
+/// Whether none takes light away.
+fn adds(lights: &Lights<'_>, paints: &[Paint]) -> bool {
+    let is_light = |intensity: f32, channels: [f32; 3]| intensity >= 0.0 && channels.iter().all(|c| *c >= 0.0);
+    lights.suns.iter().all(|sun| is_light(sun.intensity, sun.channels))
+        && lights.lamps.iter().all(|lamp| is_light(lamp.intensity, lamp.channels))
+        && paints.iter().all(|Paint { answer: of, .. }| {
+            let shares = [of.diffuse, of.specular].into_iter().chain(of.color).chain(of.highlight);
+            shares.into_iter().all(|share| share >= 0.0)
+        })
 }
 
 /// A light's greatest channel, or its one.

@@ -105,13 +105,13 @@ impl Budget {
 
 impl Question<'_> {
     /// The least and the greatest depth, which is in proportion to 1 / w; 0 if a corner has none.
-    fn depths(&self) -> (u32, u32) {
+    pub(super) fn depths(&self) -> (u32, u32) {
         let [a, b, c] = self.vertices.map_or([0; 3], |vertices| vertices.each_ref().map(Vertex::depth));
         (a.min(b).min(c), a.max(b).max(c))
     }
 
     /// Its area on the screen.
-    fn pixels(&self) -> f32 {
+    pub(super) fn pixels(&self) -> f32 {
         // In 1/256 pixel, and twice.
         self.vertices.map_or(f32::MAX, |vertices| doubled_area(vertices).unsigned_abs() as f32 / 131_072.0)
     }
@@ -196,6 +196,8 @@ impl Faces<'_> {
             Choice::Linear
         } else if model + EXACT <= bound || !self.lights_pixels {
             Choice::Float
+        } else if self.is_quadratic(budget, question) {
+            Choice::Curved
         } else {
             let linear = |apart: &Apart| self.is_linear_between(budget, question, clamped, *apart);
             Apart::ALL.into_iter().rev().find(linear).map_or(Choice::Phong, Choice::PhongEvery)
@@ -238,7 +240,7 @@ impl Faces<'_> {
     }
 
     /// What light from one source needs to know.
-    fn one_light<'a>(&self, budget: &'a Budget, question: &Question<'_>, part: f32) -> OneLight<'a> {
+    pub(super) fn one_light<'a>(&self, budget: &'a Budget, question: &Question<'_>, part: f32) -> OneLight<'a> {
         let paint = &self.paints[usize::from(question.surface)];
         let side = if question.turned { -1.0 } else { 1.0 };
         let color = if self.channels { paint.answer.color.into_iter().fold(0.0, f64::max) } else { 1.0 };
@@ -252,6 +254,7 @@ impl Faces<'_> {
             ks,
             shininess,
             part,
+            below: false,
         }
     }
 
@@ -259,9 +262,21 @@ impl Faces<'_> {
     /// is what they are off by without highlights, if that is known.
     #[inline(never)]
     fn model_error(&self, budget: &Budget, question: &Question<'_>, part: f32, limit: f32, body: Option<f32>) -> f32 {
-        let light = self.one_light(budget, question, part);
+        self.model_error_in(budget, question, &self.one_light(budget, question, part), limit, body)
+    }
+
+    /// The same in this light.
+    #[inline]
+    pub(super) fn model_error_in(
+        &self,
+        budget: &Budget,
+        question: &Question<'_>,
+        light: &OneLight<'_>,
+        limit: f32,
+        body: Option<f32>,
+    ) -> f32 {
         let corners = question.indices.map(|i| i as usize);
-        let mut sum = body.unwrap_or_else(|| self.body_error(budget, question, &light, limit));
+        let mut sum = body.unwrap_or_else(|| self.body_error(budget, question, light, limit));
         if light.ks == 0.0 || sum > limit {
             return sum;
         }

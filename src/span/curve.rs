@@ -1,0 +1,63 @@
+//! Shades that are quadratic along a row. A pass that writes no pixel.
+
+use super::Kernel;
+
+/// Shades in 8.8 on a parabola, held between two, which are at most 0xFF00:
+///
+/// ```text
+/// shades[k] = nearest(min(max(a + k·(b + k·c), least), most))
+/// ```
+///
+/// in f32, products and sums each rounded once and in this order; a half goes to the even one, and what is no number
+/// is `least`. k is at most 4,095.
+///
+/// So is a quadratic function over a triangle along a row (G. Bishop and D. Weimer, *Fast Phong shading*, 1986, who
+/// take two additions a pixel for it; from its own k every pixel is as near as the first).
+#[inline]
+pub fn curve(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
+    curve_inlined(shades, parabola, least, most);
+}
+
+#[inline(always)]
+fn curve_inlined(shades: &mut [u16], [a, b, c]: [f32; 3], least: u16, most: u16) {
+    // With 2²³ added the last bit of an f32 is worth 1, and so the sum is rounded to the nearest whole number.
+    const WHOLE: f32 = 8_388_608.0;
+    let (least, most) = (f32::from(least), f32::from(most));
+    for (k, shade) in (0_i32..).zip(shades) {
+        let k = k as f32;
+        let value = a + k * (b + k * c);
+        // In this form not a number is `least`, and each is one instruction.
+        let value = if value > least { value } else { least };
+        let value = if value < most { value } else { most };
+        // The lower half of the bits: the number itself.
+        *shade = (value + WHOLE).to_bits() as u16;
+    }
+}
+
+impl Kernel {
+    /// [`curve`] as the kernel's processor does it best: the same numbers.
+    #[inline]
+    pub fn curve(self, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if self.has_avx2() {
+            return x86::curve(shades, parabola, least, most);
+        }
+        curve(shades, parabola, least, most);
+    }
+}
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
+mod x86 {
+    use super::curve_inlined;
+
+    /// Only with a kernel for which `Kernel::has_avx2` is true.
+    pub(super) fn curve(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
+        #[target_feature(enable = "avx2")]
+        fn avx2(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
+            curve_inlined(shades, parabola, least, most);
+        }
+        // SAFETY: such a kernel is given out only where AVX2 was found.
+        unsafe { avx2(shades, parabola, least, most) }
+    }
+}
