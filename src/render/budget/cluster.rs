@@ -5,8 +5,8 @@ use glam::Vec3;
 
 use super::facet::{Facet, Strength};
 use super::light::{APART, FROM_ONE, narrow};
-use super::{CURVATURE, LIGHTS, LINEAR, Lit, QUARTERS, highlight};
-use crate::light::{Answer, Beam, LampBeam};
+use super::{CURVATURE, LIGHTS, LINEAR, Lit, QUARTERS, highlight, parts};
+use crate::light::{Beam, LampBeam};
 
 /// Cosines and sines of f32 are off by less.
 const ROUNDING: f32 = 1e-3;
@@ -120,7 +120,7 @@ impl Cluster {
         let (mut unmixed, mut off, mut range) = ([0.0; 3], [0.0; 3], [0.0; 3]);
         let mut brightest = [answer.ambient.abs() as f32 * 255.0; 3];
         let mut add = |light: Share, intensity: f32, of_channels: [f32; 3]| {
-            let of = strengths_of(answer, intensity, of_channels, channels);
+            let of = parts(answer, intensity, of_channels, channels);
             for (channel, of) in of.into_iter().enumerate() {
                 unmixed[channel] += kd * of * light.unmixed;
                 off[channel] += kd * of * light.off;
@@ -242,16 +242,4 @@ impl Cluster {
             brightest: brightness * most,
         }
     }
-}
-
-/// A light's intensity on each channel, as much of it as a body gives back; of one channel the first.
-fn strengths_of(answer: &Answer, intensity: f32, channels: [f32; 3], in_color: bool) -> [f32; 3] {
-    if !in_color {
-        return [intensity.abs(), 0.0, 0.0];
-    }
-    let mut of = [0.0; 3];
-    for ((of, channel), color) in of.iter_mut().zip(channels).zip(answer.color) {
-        *of = channel.abs() * color.abs() as f32;
-    }
-    of
 }

@@ -66,11 +66,11 @@ pub(super) struct OneLight<'a> {
 }
 
 impl OneLight<'_> {
-    /// In the light of a sun, its highlight aside.
-    pub(super) fn body_of_sun(&self, towards: Vec3, intensity: f32) -> f32 {
+    /// In the light of a sun of intensity 1, its highlight aside.
+    pub(super) fn body_of_sun(&self, towards: Vec3) -> f32 {
         let (most, least) = ends(self.normals.map(|normal| normal.dot(towards)));
         // Below the horizon nothing of the face sees it: N·l is linear.
-        if most <= 0.0 && !self.below { 0.0 } else { intensity * self.kd * self.matt(most, least) }
+        if most <= 0.0 && !self.below { 0.0 } else { self.kd * self.matt(most, least) }
     }
 
     /// A sun's highlight. What is not more than `limit` is not looked at any closer.
@@ -97,8 +97,8 @@ impl OneLight<'_> {
         unit.min(BEND * turn * turn) + clamp.min(turn / 4.0)
     }
 
-    /// In the light of a lamp of some intensity, its highlight aside.
-    pub(super) fn body_of_lamp(&self, to_lamp: [Towards; 3], inverse_range: f32, intensity: f32) -> f32 {
+    /// In the light of a lamp of intensity 1, its highlight aside.
+    pub(super) fn body_of_lamp(&self, to_lamp: [Towards; 3], inverse_range: f32) -> f32 {
         let Some(lamp) = self.lamp(to_lamp, inverse_range) else { return 0.0 };
         let Lamplight { cosines, fall_off, first, second, turn } = lamp;
         let spread = self.part * self.facet.spread;
@@ -106,7 +106,7 @@ impl OneLight<'_> {
         // product of what they turn by, and L's own curvature. N is then made unit.
         let curvature = 2.0 * spread * (fall_off * turn + first) + fall_off * turn * turn + 2.0 * first * turn + second;
         let (most, least) = ends(cosines);
-        intensity * self.kd * (CURVATURE * curvature + fall_off * self.matt(most, least))
+        self.kd * (CURVATURE * curvature + fall_off * self.matt(most, least))
     }
 
     /// A lamp's highlight. What is not more than `limit` is not looked at any closer.

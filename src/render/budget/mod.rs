@@ -440,6 +440,18 @@ fn brightest(intensity: f32, channels: [f32; 3], in_color: bool) -> f32 {
     if in_color { channels.into_iter().fold(0.0, |most, c| most.max(c.abs())) } else { intensity.abs() }
 }
 
+/// A light's intensity on each channel, as much of it as a body gives back; of one channel the first.
+fn parts(answer: &Answer, intensity: f32, channels: [f32; 3], in_color: bool) -> [f32; 3] {
+    if !in_color {
+        return [intensity.abs(), 0.0, 0.0];
+    }
+    let mut parts = [0.0; 3];
+    for ((part, channel), color) in parts.iter_mut().zip(channels).zip(answer.color) {
+        *part = channel.abs() * color.abs() as f32;
+    }
+    parts
+}
+
 /// The highlight's strength in shades, and its exponent.
 fn highlight(paint: &Paint, in_color: bool) -> (f32, f32) {
     let color = if in_color { paint.answer.highlight.into_iter().fold(0.0, f64::max) } else { 1.0 };

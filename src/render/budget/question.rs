@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::decided::Choice;
 use super::light::{OneLight, Towards};
-use super::{Budget, EXACT, LINEAR, brightest, highlight};
+use super::{Budget, EXACT, LINEAR, brightest, highlight, parts};
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::Apart;
@@ -243,14 +243,13 @@ impl Faces<'_> {
     pub(super) fn one_light<'a>(&self, budget: &'a Budget, question: &Question<'_>, part: f32) -> OneLight<'a> {
         let paint = &self.paints[usize::from(question.surface)];
         let side = if question.turned { -1.0 } else { 1.0 };
-        let color = if self.channels { paint.answer.color.into_iter().fold(0.0, f64::max) } else { 1.0 };
         let (ks, shininess) = highlight(paint, self.channels);
         let corners = question.indices.map(|i| i as usize);
         OneLight {
             facet: &budget.facets[question.triangle],
             normals: corners.map(|i| self.geometry.normals[i] * side),
             to_eye: if ks == 0.0 { [Towards::default(); 3] } else { corners.map(|i| budget.to_eye[i]) },
-            kd: (paint.answer.diffuse * color).abs() as f32 * 255.0,
+            kd: paint.answer.diffuse.abs() as f32 * 255.0,
             ks,
             shininess,
             part,
@@ -301,21 +300,31 @@ impl Faces<'_> {
     #[inline(never)]
     fn body_error(&self, budget: &Budget, question: &Question<'_>, light: &OneLight<'_>, limit: f32) -> f32 {
         let corners = question.indices.map(|i| i as usize);
-        let mut sum = 0.0;
+        let answer = &self.paints[usize::from(question.surface)].answer;
+        // Each channel for itself: what is red adds nothing to what is off on green.
+        let mut sums = [0.0_f32; 3];
+        let mut add = |off: f32, intensity: f32, channels: [f32; 3]| {
+            for (sum, part) in sums.iter_mut().zip(parts(answer, intensity, channels, self.channels)) {
+                *sum += part * off;
+            }
+            sums.into_iter().fold(0.0, f32::max)
+        };
+        let mut most = 0.0;
         for sun in self.lights.suns {
-            sum += light.body_of_sun(sun.towards, brightest(sun.intensity, sun.channels, self.channels));
-            if sum > limit {
-                return sum;
+            most = add(light.body_of_sun(sun.towards), sun.intensity, sun.channels);
+            if most > limit {
+                return most;
             }
         }
         let vertices = self.geometry.positions.len();
-        for (&(inverse_range, intensity), to_lamp) in budget.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
-            sum += light.body_of_lamp(corners.map(|i| to_lamp[i]), inverse_range, intensity);
-            if sum > limit {
-                return sum;
+        let lamps = self.lights.lamps.iter().zip(&budget.lamps);
+        for ((lamp, &(inverse_range, _)), to_lamp) in lamps.zip(budget.to_lamps.chunks_exact(vertices)) {
+            most = add(light.body_of_lamp(corners.map(|i| to_lamp[i]), inverse_range), lamp.intensity, lamp.channels);
+            if most > limit {
+                return most;
             }
         }
-        sum
+        most
     }
 
     /// The same, found at twelve points between the corners, which divide each edge in four: between them the
