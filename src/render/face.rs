@@ -51,31 +51,33 @@ pub(super) trait Sink {
     }
 }
 
-/// Whether it is in vain to decide on the faces of a cluster one by one.
+/// Whether it is in vain to decide on faces one by one: as long as the last [`ENOUGH`] that were decided on have to be lit at
+/// each pixel, small ones are, and only every eighth is decided on. Light bends alike on neighbours, and each answer costs
+/// some 100 ns. (`still` within 1 shade 1.19 to 1.03 of the time of `phong`.)
 #[derive(Clone, Copy, Debug, Default)]
 struct Vain {
-    asked: u32,
-    /// Of those.
-    lit: u32,
+    in_a_row: u32,
+    left_out: u32,
 }
 
 impl Vain {
-    fn is_it(self) -> bool {
-        self.asked == ASKED && self.lit == ASKED
+    /// Whether the next small one is left out.
+    fn is_it(&mut self) -> bool {
+        if self.in_a_row < ENOUGH || self.left_out == 7 {
+            self.left_out = 0;
+            return false;
+        }
+        self.left_out += 1;
+        true
     }
 
-    fn asked(&mut self, choice: Choice) -> Choice {
-        if self.asked < ASKED {
-            self.asked += 1;
-            self.lit += u32::from(choice == Choice::Phong);
-        }
+    fn decided(&mut self, choice: Choice) -> Choice {
+        self.in_a_row = if choice == Choice::Phong { self.in_a_row + 1 } else { 0 };
         choice
     }
 }
 
-/// So many faces of a cluster are decided on first. Where every one of them has to be lit at each pixel, so are the others
-/// that are small: as light bends there, most answers would be the same, and each costs some 100 ns.
-const ASKED: u32 = 8;
+const ENOUGH: u32 = 8;
 
 /// In pixels.
 const SMALL: u64 = 64;
@@ -195,14 +197,13 @@ impl Faces<'_> {
     ) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         let sieve = sink.sieve();
-        let mut linear = 0;
+        let (mut linear, mut vain) = (0, Vain::default());
         for (chunk, triangles) in triangles.chunks(sift::MOST).enumerate() {
             let first = chunk * sift::MOST;
             let (surfaces, choices) = (&triangle_surfaces[first..], &mut decided.choices[first..]);
             let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), true, triangles, stats);
             let settled = self.settled(budget.of_cluster(chunk), budget, triangles, choices, left & !sifted.clipped);
             linear += u64::from(settled.count_ones());
-            let mut vain = Vain::default();
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
@@ -277,12 +278,12 @@ impl Faces<'_> {
         }
         let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
         if *choice == Choice::Unknown {
-            *choice = if vain.is_it() && is_small(&vertices) {
+            *choice = if is_small(&vertices) && vain.is_it() {
                 Choice::Phong
             } else {
                 let shades = vertices.map(|vertex| vertex.shade());
                 let face = (triangle, indices, surface, turned);
-                vain.asked(self.decide::<EFFECTS>((budget, known), face, (shades, Some(&vertices))))
+                vain.decided(self.decide::<EFFECTS>((budget, known), face, (shades, Some(&vertices))))
             };
         }
         let choice = *choice;
