@@ -585,6 +585,7 @@ pub(super) fn tall_by(
 /// Eight rows of triangle `i` of a group, from number `first` on.
 #[inline(always)]
 fn lines(group: &Group, i: usize, first: i32, pitch: i32, to_at: &mut Ints, length: &mut Ints, paints: &mut [Ints]) {
+    let mut starts = [0.0; LANES];
     for lane in 0..LANES {
         // Below 8.
         let row = first + lane as i32;
@@ -597,10 +598,12 @@ fn lines(group: &Group, i: usize, first: i32, pitch: i32, to_at: &mut Ints, leng
         // Beyond the last row anything may come out.
         to_at[lane] = (group.at[i] + row * pitch).wrapping_add(first);
         length[lane] = end.wrapping_sub(first);
-        let n = group.n[i] + group.per_row[i] * j + group.per_column[i] * (left - MAGIC);
-        for (piece, paint) in (0_i32..).zip(&mut *paints) {
-            let n = n + group.per_column[i] * f64::from(piece * RESEED);
-            paint[lane] = (whole(n * group.inverse[i] + MAGIC) & 0xFFFF) | group.step[i];
+        starts[lane] = group.n[i] + group.per_row[i] * j + group.per_column[i] * (left - MAGIC);
+    }
+    for (piece, paint) in (0_i32..).zip(paints) {
+        let along = group.per_column[i] * f64::from(piece * RESEED);
+        for (paint, start) in paint.iter_mut().zip(&starts) {
+            *paint = (whole((start + along) * group.inverse[i] + MAGIC) & 0xFFFF) | group.step[i];
         }
     }
 }
