@@ -228,6 +228,24 @@ fn phong_is_lit_at_every_pixel_on_every_scene() {
     }
 }
 
+/// A body gives back its own colour, its highlight has another: white, where nothing is said.
+#[test]
+fn phong_is_lit_at_every_pixel_where_body_and_highlight_differ_in_color() {
+    let mut tried = Tried::new("phong_is_lit_at_every_pixel_where_body_and_highlight_differ_in_color", 20_000);
+    for highlight in [[1.0; 3], [0.2, 0.6, 1.0]] {
+        let mut scene = Scene::new();
+        let mut object = Object::new(shapes::sphere(24, 12));
+        let (ambient, diffuse) = (0.1, 0.7);
+        let (color, specular, shininess) = ([0.8, 0.4, 0.2], 0.4, 8.0);
+        object.materials[0] =
+            Material { ambient, diffuse, specular, shininess, color, highlight, ..Material::default() };
+        scene.add(object);
+        scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+        scene.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
+        check_lit(&mut tried, &format!("highlight {highlight:?}"), &scene);
+    }
+}
+
 #[test]
 fn phong_is_lit_at_every_pixel_on_random_scenes() {
     let mut tried = Tried::new("phong_is_lit_at_every_pixel_on_random_scenes", 100_000);

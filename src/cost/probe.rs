@@ -241,7 +241,8 @@ impl Numbered {
             for (digit, material) in digits.iter_mut().enumerate() {
                 // The base is at most 256.
                 material.ramp = RampChoice::Entries(Ramp::single(digit as u8));
-                material.color = [1.0; 3];
+                // A coloured highlight takes three channels, too.
+                (material.color, material.highlight) = ([1.0; 3], [1.0; 3]);
             }
             digits
         };

@@ -4,7 +4,7 @@
 //! I = ka·Ia + Σ over lights of (kd·max(0, n·l) + ks·max(0, r·v)^s) · Id · fall-off
 //! ```
 //!
-//! r = 2·(n·l)·n − l. A light that n points away from adds nothing. A lamp at the distance d falls off as
+//! Of three channels the first two terms take on the body's colour, the last one the highlight's. r = 2·(n·l)·n − l. A light that n points away from adds nothing. A lamp at the distance d falls off as
 //! (1 − d²/R²)² within its range R.
 
 use super::vector::{Vector, dot, sub, times, unit, wide};
@@ -22,32 +22,31 @@ pub(super) fn intensity(
     eye: Vector,
 ) -> [f64; 3] {
     let to_eye = unit(sub(eye, at));
-    let mut sum = [f64::from(material.ambient) * f64::from(scene.ambient); 3];
+    let mut body = [f64::from(material.ambient) * f64::from(scene.ambient); 3];
+    let mut mirrored = [0.0; 3];
     for light in scene.lights() {
         let Some((l, fall_off)) = reaching(light, at) else { continue };
         let cosine = dot(normal, l);
         if cosine <= 0.0 {
             continue;
         }
-        let mut answer = f64::from(material.diffuse) * cosine;
+        let mut highlight = 0.0;
         if let Some(v) = to_eye.filter(|_| material.is_specular()) {
             let r = sub(times(normal, 2.0 * cosine), l);
             let along = dot(r, v);
             if along > 0.0 {
                 // A power below 0 counts as 0.
-                answer += f64::from(material.specular) * libm::pow(along, f64::from(material.shininess).max(0.0));
+                highlight = f64::from(material.specular) * libm::pow(along, f64::from(material.shininess).max(0.0));
             }
         }
-        for (sum, id) in sum.iter_mut().zip(strength(light, in_color)) {
-            *sum += answer * id * fall_off;
+        for (channel, id) in strength(light, in_color).into_iter().enumerate() {
+            body[channel] += f64::from(material.diffuse) * cosine * id * fall_off;
+            mirrored[channel] += highlight * id * fall_off;
         }
     }
-    if in_color {
-        for (sum, own) in sum.iter_mut().zip(material.color) {
-            *sum *= f64::from(own);
-        }
-    }
-    sum.map(|channel| channel.clamp(0.0, 1.0))
+    // Each has its own colour.
+    let (own, of_highlight) = if in_color { (material.color, material.highlight) } else { ([1.0; 3], [1.0; 3]) };
+    [0, 1, 2].map(|i| (body[i] * f64::from(own[i]) + mirrored[i] * f64::from(of_highlight[i])).clamp(0.0, 1.0))
 }
 
 /// The direction to a light, and how much of it is left at a point; `None` if nothing is. A lamp at the
