@@ -11,6 +11,8 @@ use super::rows::{Edges, Gathered, Group, Ints, LANES, MAGIC, Place};
 use super::sieve::Chosen;
 
 pub(super) mod listed;
+#[cfg(feature = "alloc")]
+pub(super) mod numbered;
 mod planes;
 pub(super) mod tall;
 
