@@ -101,11 +101,11 @@ pub(super) fn at_once(
                     continue;
                 },
                 // SAFETY: as above.
-                Some(..=listed::SOME_ROWS) => unsafe {
-                    listed.add_each(&group, eight.len(), &planes, (pixels, cells));
+                Some(most) => unsafe {
+                    listed.add_each(&group, eight.len(), most, &planes, (pixels, cells));
                     continue;
                 },
-                _ => {}
+                None => {}
             }
             for (i, triangle) in eight.iter().enumerate() {
                 let (kind, mut pieces) = (triangle.kind(), 1);

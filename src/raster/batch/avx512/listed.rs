@@ -17,8 +17,6 @@ const ROOM: usize = 128;
 const SIXTEEN: usize = 2 * LANES;
 /// Groups of at most so many rows are listed together.
 pub(in super::super) const FEW_ROWS: i32 = 4;
-/// And of at most so many one after the other, without a branch.
-pub(in super::super) const SOME_ROWS: i32 = 8;
 
 /// What the assembly reads and writes.
 #[repr(C, align(64))]
@@ -254,8 +252,7 @@ impl Spans {
         }
     }
 
-    /// As [`add`](Self::add), for all the small triangles of a group, which are so many, and have at most [`SOME_ROWS`]
-    /// rows: triangle by triangle, all rows of each at once.
+    /// As [`add`](Self::add), for all the small triangles of a group, which are so many.
     ///
     /// # Safety
     /// As for `add`.
@@ -264,17 +261,31 @@ impl Spans {
         &mut self,
         group: &Group,
         triangles: usize,
+        most_rows: i32,
         planes: &Planes,
         (pixels, cells): (&mut [u8], &mut [u32]),
     ) {
         self.of(pixels, cells);
-        if self.count + LANES * SOME_ROWS as usize > ROOM {
+        if self.count + LANES * LANES > ROOM {
             // SAFETY: by the caller's promise.
             unsafe { self.draw(true, pixels, cells) };
         }
         self.put_first_cells(group);
-        // SAFETY: by the caller's promise; there is room for eight times eight.
-        unsafe { self.list_each(group, triangles.clamp(1, LANES), planes) };
+        let triangles = triangles.min(LANES);
+        if most_rows <= LANES as i32 {
+            // SAFETY: by the caller's promise; there is room for eight times eight.
+            return unsafe { self.list_each(group, (0, triangles), 0, planes) };
+        }
+        for i in 0..triangles {
+            for first in (0..group.rows[i]).step_by(LANES) {
+                if self.count + LANES > ROOM {
+                    // SAFETY: by the caller's promise.
+                    unsafe { self.draw(true, pixels, cells) };
+                }
+                // SAFETY: by the caller's promise; there is room for eight.
+                unsafe { self.list_each(group, (i, i + 1), first, planes) };
+            }
+        }
     }
 
     /// The cells of the boxes' first pixels. Of a triangle that is none anything may come out.
@@ -287,20 +298,23 @@ impl Spans {
         }
     }
 
-    /// Lists up to eight rows of each of the first triangles of a group: as `list`, but that nothing is left out.
+    /// Lists up to eight rows from number `first` on of each of these triangles of a group: as `list`, but that nothing is left
+    /// out.
     ///
     /// # Safety
-    /// Only for a processor for which `span::simd::avx512::found` is true; there are 1 to 8 triangles, and there is room for eight
-    /// times as many.
+    /// Only for a processor for which `span::simd::avx512::found` is true; the triangles are some of the eight, and there is room for
+    /// eight times as many.
     #[inline(always)]
-    unsafe fn list_each(&mut self, group: &Group, triangles: usize, planes: &Planes) {
+    unsafe fn list_each(&mut self, group: &Group, (begin, end): (usize, usize), first: i32, planes: &Planes) {
+        debug_assert!(begin < LANES && end <= LANES);
         // SAFETY: the caller has AVX-512 F, DQ and VL and POPCNT found. Read are `CONSTANTS`, and `group`, `planes` and `self` at
-        // the offsets of their fields, of those that hold eight numbers the first `triangles`. Written are, for each triangle,
+        // the offsets of their fields, of those that hold eight numbers those from `begin` to `end`, or that at `begin`. Written are, for each triangle,
         // eight numbers from number `count` on, which is at most eight more with each, and so below `ROOM + LANES`. The stack is
         // not used; flags and all registers written are given up.
         unsafe {
             asm!(
-                "vmovdqu32  ymm26, [{c} + 192]",                            // rows
+                "vpbroadcastd ymm26, {first:e}",
+                "vpaddd     ymm26, ymm26, [{c} + 192]",                     // rows
                 "vbroadcastsd zmm31, qword ptr [{c} + 224]",                // magic
                 "vcvtdq2pd  zmm16, ymm26",                                  // j
                 "vpmovsxdq  zmm30, ymm26",
@@ -371,14 +385,15 @@ impl Spans {
                 "popcnt     {more:e}, {more:e}",
                 "add        {count}, {more}",
                 "inc        {i}",
-                "cmp        {i}, {triangles}",
+                "cmp        {i}, {end}",
                 "jb         2b",
                 g = in(reg) group,
                 p = in(reg) planes,
                 l = in(reg) &raw mut *self,
                 c = in(reg) &raw const CONSTANTS,
-                i = inout(reg) 0_u64 => _,
-                triangles = in(reg) triangles,
+                i = inout(reg) begin => _,
+                end = in(reg) end,
+                first = in(reg) first,
                 more = out(reg) _,
                 count = inout(reg) self.count,
                 LONG = const offset_of!(Group, long),
@@ -1053,7 +1068,7 @@ mod tests {
                 if few && !each {
                     spans.add_all(&group, LANES, FEW_ROWS, planes, to);
                 } else if each {
-                    spans.add_each(&group, LANES, planes.unwrap_or(&Planes::NONE), to);
+                    spans.add_each(&group, LANES, 16 - 8 * (round % 2) as i32, planes.unwrap_or(&Planes::NONE), to);
                 } else {
                     spans.add(&group, 3, (pieces, clip), planes, to);
                 }
