@@ -27,6 +27,7 @@ pub(in super::super) struct Spans {
     length: MaybeUninit<[u32; ROOM + SIXTEEN]>,
     /// Shade, and above it the step.
     paint: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    /// Depths, the whole parts in the upper halves.
     z: MaybeUninit<[i64; ROOM + SIXTEEN]>,
     dz: MaybeUninit<[i64; ROOM + SIXTEEN]>,
     /// Of each row of eight triangles, up to four: the first pixel, pixels, paint, and the column of the box.
@@ -71,8 +72,8 @@ struct Constants {
     even: [u16; 32],
     /// 64: numbers.
     numbers: [u64; LANES],
-    /// 128: the numbers of the lower halves of sixteen lanes of two vectors.
-    lower: [u32; 16],
+    /// 128: the numbers of the upper halves of sixteen lanes of two vectors.
+    upper: [u32; 16],
     /// 192
     rows: [u32; LANES],
     /// 224
@@ -81,6 +82,9 @@ struct Constants {
     odd_bytes: u32,
     /// 236: a shade's bits.
     shade: u32,
+    unused: [u32; 4],
+    /// 256: 1, and above it the pixel's number.
+    numbered: [u32; LANES],
 }
 
 static CONSTANTS: Constants = Constants {
@@ -94,11 +98,13 @@ static CONSTANTS: Constants = Constants {
         even
     },
     numbers: [0, 1, 2, 3, 4, 5, 6, 7],
-    lower: [0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30],
+    upper: [1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31],
     rows: [0, 1, 2, 3, 4, 5, 6, 7],
     magic: MAGIC,
     odd_bytes: 0xFF00_FF00,
     shade: 0xFFFF,
+    unused: [0; 4],
+    numbered: [1, 0x1_0001, 0x2_0001, 0x3_0001, 0x4_0001, 0x5_0001, 0x6_0001, 0x7_0001],
 };
 
 /// The order in which sixteen rows out of four times eight are listed: triangle by triangle.
@@ -368,6 +374,8 @@ impl Spans {
                 "vpmullq    zmm21, zmm21, zmm20",
                 "vpaddq     zmm19, zmm19, qword ptr [{p} + 8*{i} + {DEPTH}]{{1to8}}",
                 "vpaddq     zmm21, zmm21, zmm19",
+                "vpsllq     zmm20, zmm20, 8",
+                "vpsllq     zmm21, zmm21, 8",
                 "vpcompressd ymm22{{k2}}{{z}}, ymm22",
                 "vpcompressd ymm24{{k2}}{{z}}, ymm24",
                 "vpcompressd ymm17{{k2}}{{z}}, ymm17",
@@ -563,6 +571,8 @@ impl Spans {
                 "vpmullq    zmm26, zmm26, zmm29",
                 "vpaddq     zmm30, zmm30, zmm27",
                 "vpaddq     zmm30, zmm30, zmm26",
+                "vpsllq     zmm28, zmm28, 8",
+                "vpsllq     zmm30, zmm30, 8",
                 "vpcompressq zmm28{{k1}}{{z}}, zmm28",
                 "vpcompressq zmm30{{k1}}{{z}}, zmm30",
                 "vmovdqu64  [{l} + 8*{count} + {DZ}], zmm28",
@@ -584,6 +594,8 @@ impl Spans {
                 "vpmullq    zmm26, zmm26, zmm29",
                 "vpaddq     zmm30, zmm30, zmm27",
                 "vpaddq     zmm30, zmm30, zmm26",
+                "vpsllq     zmm28, zmm28, 8",
+                "vpsllq     zmm30, zmm30, 8",
                 "vpcompressq zmm28{{k2}}{{z}}, zmm28",
                 "vpcompressq zmm30{{k2}}{{z}}, zmm30",
                 "vmovdqu64  [{l} + 8*{more} + {DZ}], zmm28",
@@ -721,6 +733,8 @@ impl Spans {
                 "vpmullq    zmm21, zmm21, zmm25",
                 "vpaddq     zmm26, zmm26, qword ptr [{p8} + {DEPTH}]{{1to8}}",
                 "vpaddq     zmm21, zmm21, zmm26",
+                "vpsllq     zmm25, zmm25, 8",
+                "vpsllq     zmm21, zmm21, 8",
                 "vpcompressd ymm24{{k2}}{{z}}, ymm24",
                 "vpcompressq zmm21{{k2}}{{z}}, zmm21",
                 "vmovdqu32  [{l} + 4*{count} + {CELL}], ymm24",
@@ -904,37 +918,33 @@ impl Spans {
         unsafe {
             asm!(
                 "vmovdqa64  zmm29, [{c} + 64]",                             // numbers
-                "vmovdqa64  zmm30, [{c} + 128]",                            // lower
+                "vmovdqa64  zmm30, [{c} + 128]",                            // upper
                 "vmovdqa64  xmm28, [{c}]",                                  // even
                 "vpbroadcastd xmm31, dword ptr [{c} + 232]",                // odd_bytes
+                "vmovdqa64  ymm27, [{c} + 256]",                            // numbered
                 ".p2align   5",
                 "2:",
                 "mov        {at:e}, [{l} + 4*{k} + {AT}]",
                 "mov        {cell:e}, [{l} + 4*{k} + {CELL}]",
                 "mov        {length:e}, [{l} + 4*{k} + {LENGTH}]",
                 "vpbroadcastq zmm16, qword ptr [{l} + 8*{k} + {DZ}]",
-                "vpbroadcastw xmm19, word ptr [{l} + 4*{k} + {PAINT}]",
-                "vpbroadcastw xmm20, word ptr [{l} + 4*{k} + {PAINT} + 2]", // step
                 "add        {at}, {pixels}",
                 "lea        {cell}, [{cells} + 4*{cell}]",
                 "vpmullq    zmm17, zmm16, zmm29",
-                "vpmullw    xmm21, xmm20, xmm28",
                 "vpaddq     zmm17, zmm17, qword ptr [{l} + 8*{k} + {Z}]{{1to8}}",
-                "vpaddw     xmm21, xmm21, xmm19",                           // even
-                "vpaddw     xmm22, xmm21, xmm20",                           // odd
                 "cmp        {length:e}, 8",
                 "ja         7f",
                 // Eight cells: with sixteen nearly every access is one to two lines of the cache.
                 "bzhi       {length:e}, {ones:e}, {length:e}",
-                "vpsrlq     zmm24, zmm17, 24",
+                "vpermd     zmm24, zmm30, zmm17",
                 "kmovd      k1, {length:e}",
-                "vpmovqd    ymm24, zmm24",
                 "vmovdqu32  ymm23{{k1}}{{z}}, [{cell}]",
-                "vpsrlw     xmm21, xmm21, 8",
-                "vpternlogd xmm21, xmm22, xmm31, 0xF8",
+                "vpbroadcastd ymm21, dword ptr [{l} + 4*{k} + {PAINT}]",
+                "vpmaddwd   ymm21, ymm21, ymm27",                           // shade + j·step
                 "vpcmpud    k1{{k1}}, ymm24, ymm23, 6",
+                "vpsrld     ymm21, ymm21, 8",
                 "vmovdqu32  [{cell}]{{k1}}, ymm24",
-                "vmovdqu8   [{at}]{{k1}}, xmm21",
+                "vpmovdb    [{at}]{{k1}}, ymm21",
                 "kmovd      {length:e}, k1",
                 "popcnt     {length:e}, {length:e}",
                 "add        {nearer}, {length}",
@@ -943,7 +953,12 @@ impl Spans {
                 "jb         2b",
                 "jmp        6f",
                 "7:",
+                "vpbroadcastw xmm19, word ptr [{l} + 4*{k} + {PAINT}]",
+                "vpbroadcastw xmm20, word ptr [{l} + 4*{k} + {PAINT} + 2]", // step
                 "vpsllq     zmm18, zmm16, 3",
+                "vpmullw    xmm21, xmm20, xmm28",
+                "vpaddw     xmm21, xmm21, xmm19",                           // even
+                "vpaddw     xmm22, xmm21, xmm20",                           // odd
                 "vpaddq     zmm18, zmm18, zmm17",
                 "cmp        {length:e}, 16",
                 "ja         4f",
@@ -951,9 +966,8 @@ impl Spans {
                 "bzhi       {length:e}, {ones:e}, {length:e}",
                 "kmovd      k1, {length:e}",
                 "vmovdqu32  zmm23{{k1}}{{z}}, [{cell}]",
-                "vpsrlq     zmm24, zmm17, 24",
-                "vpsrlq     zmm25, zmm18, 24",
-                "vpermt2d   zmm24, zmm30, zmm25",
+                "vmovdqa64  zmm24, zmm17",
+                "vpermt2d   zmm24, zmm30, zmm18",
                 "vpsrlw     xmm21, xmm21, 8",
                 "vpternlogd xmm21, xmm22, xmm31, 0xF8",                     // even >> 8 | odd & 0xFF00
                 "vpcmpud    k1{{k1}}, zmm24, zmm23, 6",                     // greater
@@ -971,9 +985,8 @@ impl Spans {
                 "vpsllw     xmm20, xmm20, 4",
                 ".p2align   5",
                 "5:",                                                       // more than 16 are left
-                "vpsrlq     zmm24, zmm17, 24",
-                "vpsrlq     zmm25, zmm18, 24",
-                "vpermt2d   zmm24, zmm30, zmm25",
+                "vmovdqa64  zmm24, zmm17",
+                "vpermt2d   zmm24, zmm30, zmm18",
                 "vpsrlw     xmm26, xmm21, 8",
                 "vpternlogd xmm26, xmm22, xmm31, 0xF8",
                 "vpcmpud    k1, zmm24, [{cell}], 6",
@@ -1012,7 +1025,7 @@ impl Spans {
                 Z = const offset_of!(Self, z),
                 DZ = const offset_of!(Self, dz),
                 out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
-                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm28") _,
+                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm27") _, out("zmm28") _,
                 out("zmm29") _, out("zmm30") _, out("zmm31") _, out("k1") _,
                 options(nostack),
             );
