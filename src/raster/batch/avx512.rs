@@ -14,6 +14,7 @@ pub(super) mod listed;
 #[cfg(feature = "alloc")]
 pub(super) mod numbered;
 mod planes;
+pub(super) mod sieve;
 pub(super) mod tall;
 
 /// What set-up adds and multiplies by.

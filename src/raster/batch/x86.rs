@@ -31,6 +31,10 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
 pub(super) fn sieve_512(batch: &Batch, clip: Rect, kept: &mut Kept) {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, clip: Rect, kept: &mut Kept) {
+        if batch.is_sifted {
+            // SAFETY: such a kernel is given out only where AVX-512 was found.
+            return unsafe { avx512::sieve::sieve(batch, clip, kept) };
+        }
         if batch.is_full() {
             avx512::fetch(batch);
         }

@@ -55,9 +55,8 @@ fn apart(vectors: &[Vec3; LANES]) -> [__m256; 3] {
     let from: *const f32 = vectors.as_ptr().cast();
     // SAFETY: 24 f32, as `Vec3` is three in this order, without anything between; four each are loaded from numbers 0, 4, 8, 12, 16
     // and 20 on, and the loads ask for no alignment.
-    let [a, b, c] = unsafe {
-        [0, 4, 8].map(|at| _mm256_set_m128(_mm_loadu_ps(from.add(at + 12)), _mm_loadu_ps(from.add(at))))
-    };
+    let [a, b, c] =
+        unsafe { [0, 4, 8].map(|at| _mm256_set_m128(_mm_loadu_ps(from.add(at + 12)), _mm_loadu_ps(from.add(at)))) };
     // x y z x | y z x y | z x y z, of the first four vectors and of the last.
     let xy = _mm256_shuffle_ps(b, c, 0b10_01_11_10);
     let yz = _mm256_shuffle_ps(a, b, 0b01_00_10_01);
@@ -99,7 +98,8 @@ fn project_eight(narrow: &Narrow, points: &[Vec3; LANES], places: &mut [Place; L
     let inverse = _mm256_div_ps(all(1.0), w);
     let x = _mm256_add_ps(all(narrow.centre.0), _mm256_mul_ps(row(0), inverse));
     let y = _mm256_add_ps(all(narrow.centre.1), _mm256_mul_ps(row(1), inverse));
-    let near_limit = |x| _mm256_cmp_ps(_mm256_andnot_ps(_mm256_set1_ps(-0.0), x), _mm256_set1_ps(Narrow::LIMIT), _CMP_LE_OQ);
+    let near_limit =
+        |x| _mm256_cmp_ps(_mm256_andnot_ps(_mm256_set1_ps(-0.0), x), _mm256_set1_ps(Narrow::LIMIT), _CMP_LE_OQ);
     let in_front = _mm256_cmp_ps(w, all(narrow.near), _CMP_GE_OQ);
     let within = _mm256_castps_si256(_mm256_and_ps(in_front, _mm256_and_ps(near_limit(x), near_limit(y))));
     let x = _mm256_blendv_epi8(_mm256_set1_epi32(Place::BEYOND), units(x), within);
@@ -152,7 +152,8 @@ fn light_eight<const BOTH: bool>(
         let sum = _mm256_add_ps(_mm256_mul_ps(nx, x), _mm256_mul_ps(ny, y));
         let cosine = _mm256_add_ps(sum, _mm256_mul_ps(nz, z));
         // What is left out adds nought; of no number nothing is more or less.
-        let (front_of, back_of) = (_mm256_max_ps(cosine, _mm256_setzero_ps()), _mm256_min_ps(cosine, _mm256_setzero_ps()));
+        let (front_of, back_of) =
+            (_mm256_max_ps(cosine, _mm256_setzero_ps()), _mm256_min_ps(cosine, _mm256_setzero_ps()));
         let intensity = _mm256_set1_pd(sun.intensity.into());
         front = add::<false>(front, front_of, intensity);
         if BOTH {
