@@ -262,6 +262,23 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "alloc")]
+    #[test]
+    fn the_whole_part_is_what_a_cast_truncates_to() {
+        let mut tried = 0;
+        let halves = (0..=4096_u32).map(|n| f64::from(n) / 2.0);
+        let powers = (0..31).flat_map(|n| [f64::from(1_u32 << n), f64::from(1_u32 << n) + 0.5]);
+        for x in halves.chain(powers).chain([f64::from(i32::MAX)]) {
+            for x in [x.next_down(), x, x.next_up()] {
+                if (0.0..2_147_483_648.0).contains(&x) {
+                    assert_eq!(whole_part(x), x as i32, "{x:e}");
+                    tried += 1;
+                }
+            }
+        }
+        assert!(tried > 12_000, "{tried}");
+    }
+
     #[test]
     fn what_does_not_fit_is_refused() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 8_388_608.0, -8_388_609.0] {
