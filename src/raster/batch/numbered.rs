@@ -119,7 +119,7 @@ mod tests {
             let shades: Vec<[U8F8; 2]> = vertices.iter().map(|v| v.3.map(U8F8::from_bits)).collect();
             let triangles: Vec<[u32; 3]> = corners.iter().map(|c| c.map(|i| i % vertices.len() as u32)).collect();
             let from = Numbered { places: &places, depths: &depths, shades: &shades, triangles: &triangles };
-            let number = |&(n, turned): &(u32, bool)| n % triangles.len() as u32 | if turned { TURNED } else { 0 };
+            let number = |&(n, turned): &(u32, bool)| (n % triangles.len() as u32) | if turned { TURNED } else { 0 };
             let numbers: Vec<u32> = numbers.iter().map(number).collect();
             let most = numbers.len().min(Batch::CAPACITY);
             let mut expected = Batch::new();

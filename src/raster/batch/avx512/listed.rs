@@ -1081,7 +1081,7 @@ mod tests {
                 if few && !each {
                     spans.add_all(&group, LANES, FEW_ROWS, planes, to);
                 } else if each {
-                    spans.add_each(&group, LANES, 16 - 8 * (round % 2) as i32, planes.unwrap_or(&Planes::NONE), to);
+                    spans.add_each(&group, LANES, 16 - 8 * (round % 2), planes.unwrap_or(&Planes::NONE), to);
                 } else {
                     spans.add(&group, 3, (pieces, clip), planes, to);
                 }

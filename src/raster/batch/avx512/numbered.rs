@@ -7,7 +7,7 @@ use super::super::numbered::{Numbered, TURNED};
 
 /// Triangles at a time.
 const LANES: usize = 16;
-const _: () = assert!(Batch::CAPACITY % LANES == 0);
+const _: () = assert!(Batch::CAPACITY / LANES * LANES == Batch::CAPACITY);
 
 /// Numbers of the lower and the upper halves of pairs.
 #[repr(C, align(64))]

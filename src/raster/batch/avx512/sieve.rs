@@ -9,7 +9,7 @@ use crate::raster::frame::Rect;
 
 /// Triangles at a time.
 pub(in super::super) const LANES: usize = 16;
-const _: () = assert!(Batch::CAPACITY % LANES == 0);
+const _: () = assert!(Batch::CAPACITY / LANES * LANES == Batch::CAPACITY);
 
 /// Keeps the triangles that have a pixel centre in their box and inside `clip`.
 ///
