@@ -134,6 +134,7 @@ impl I24F8 {
 /// A shade, 0 to 255 + 255/256, in 1/256 shade: 8 bits before the point, 8 behind it. AX of the
 /// 1994 loop: AH is the byte that is written, AL the fraction.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
+#[repr(transparent)]
 pub struct U8F8(u16);
 
 impl U8F8 {

@@ -9,11 +9,13 @@ use super::budget::{Budget, Choice, Decided, Linear, Question};
 use super::clip::{Carried, Corner, WithEffects, clip};
 use super::lit::{LitVertex, LitVertices};
 use super::paint::Paint;
+use super::sift::listed::Listed;
 use super::sift::{self, Sieve, Sifted};
 use super::vertex::{Extra, Geometry};
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
+use crate::raster::batch::numbered::{Numbered, TURNED};
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::{Apart, Attributes};
 use crate::raster::{Shading, Vertex};
@@ -49,6 +51,12 @@ pub(super) trait Sink {
     fn sieve(&self) -> Option<Sieve> {
         None
     }
+    /// Whether it takes faces without effects by their numbers, too.
+    fn takes_numbers(&self, _: Shading) -> bool {
+        false
+    }
+    /// Faces without effects, none of which needs clipping, by their numbers and sides.
+    fn numbered(&mut self, _: &Numbered<'_>, _: &[u32], _: Shading) {}
 }
 
 /// Whether it is in vain to decide on faces one by one: as long as the last [`ENOUGH`] that were decided on have to be lit at
@@ -161,8 +169,25 @@ impl Faces<'_> {
     fn each<const CULLS: bool, const EFFECTS: bool>(&self, stats: &mut Stats, sink: &mut impl Sink) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         let (sieve, exact_cover) = (sink.sieve(), self.rung.shading().has_exact_cover());
-        for (triangles, surfaces) in triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST)) {
+        let mut listed = self.listed::<EFFECTS>(sink, exact_cover);
+        let chunks = triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST));
+        for (chunk, (triangles, surfaces)) in chunks.enumerate() {
             let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), exact_cover, triangles, stats);
+            if let (Some((listed, numbered)), Some(sieve)) = (&mut listed, &sieve) {
+                if sifted.clipped == 0 {
+                    // Fewer than 2³¹ faces.
+                    let (first, turned) = ((chunk * sift::MOST) as u32, if CULLS { 0 } else { sifted.back });
+                    listed.add(first, left, turned, sieve.kernel);
+                    if let Some(whole) = listed.whole() {
+                        sink.numbered(numbered, whole, self.rung.shading());
+                        listed.take_whole();
+                    }
+                    continue;
+                }
+                // In the order of their numbers.
+                sink.numbered(numbered, listed.all(), self.rung.shading());
+                listed.clear();
+            }
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
@@ -184,6 +209,19 @@ impl Faces<'_> {
                 }
             }
         }
+        if let Some((listed, numbered)) = &listed {
+            sink.numbered(numbered, listed.all(), self.rung.shading());
+        }
+    }
+
+    /// A list for the numbers of faces, if that is how they are handed on: those without effects, of one shading.
+    fn listed<const EFFECTS: bool>(&self, sink: &impl Sink, exact_cover: bool) -> Option<(Listed, Numbered<'_>)> {
+        let LitVertices { places, depths, shades, .. } = self.lit;
+        let triangles = self.geometry.triangles;
+        let one_shading = self.runs && !(self.flat && self.is_lit);
+        let takes = !EFFECTS && one_shading && exact_cover && sink.takes_numbers(self.rung.shading());
+        let fits = triangles.len() < TURNED as usize;
+        (takes && fits).then_some((Listed::new(), Numbered { places, depths, shades, triangles }))
     }
 
     /// The same, with effects or without, each by the rung that is decided for it. (Every rung that there is a choice of

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use crate::fixed::{I24F8, U8F8};
 use crate::raster::Vertex;
+pub(super) use crate::raster::batch::numbered::Place;
 
 /// A vertex of the object at hand, lit and projected.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -14,46 +15,6 @@ pub(super) struct LitVertex {
     pub(super) vertex: Vertex,
     pub(super) back: U8F8,
     pub(super) needs_clipping: bool,
-}
-
-/// Where a vertex is on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping. In one number,
-/// so that it is read at once.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Place(u64);
-
-impl Place {
-    /// The x of those that need clipping: far outside of the guard band.
-    pub(super) const BEYOND: i32 = i32::MIN;
-    pub(super) const NEEDS_CLIPPING: Self = Self::new(Self::BEYOND, 0);
-
-    #[inline(always)]
-    pub(super) const fn new(x: i32, y: i32) -> Self {
-        Self(x.cast_unsigned() as u64 | (y.cast_unsigned() as u64) << 32)
-    }
-
-    #[inline(always)]
-    pub(super) const fn x(self) -> i32 {
-        // The lower half.
-        self.0 as i32
-    }
-
-    #[inline(always)]
-    pub(super) const fn y(self) -> i32 {
-        // The upper half.
-        (self.0 >> 32) as i32
-    }
-
-    /// x in the lower half, y in the upper.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    #[inline(always)]
-    pub(super) const fn to_bits(self) -> u64 {
-        self.0
-    }
-
-    #[inline]
-    pub(super) const fn needs_clipping(self) -> bool {
-        self.x() == Self::BEYOND
-    }
 }
 
 /// All vertices of an object.

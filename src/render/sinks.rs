@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use super::face::{Manner, Sink};
 use super::look::Looks;
 use super::sift::Sieve;
+use crate::raster::batch::numbered::Numbered;
 use crate::raster::effects::Attributes;
 use crate::raster::{Batch, Drawn, Raster, Shading, Vertex};
 
@@ -60,6 +61,20 @@ impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
     #[inline]
     fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
         self.batched.triangle(vertices, shading);
+    }
+
+    fn takes_numbers(&self, shading: Shading) -> bool {
+        Batch::takes(shading)
+    }
+
+    fn numbered(&mut self, from: &Numbered<'_>, numbers: &[u32], shading: Shading) {
+        // Those that came before, if any.
+        self.batched.draw();
+        let kernel = self.batched.raster.kernel();
+        for numbers in numbers.chunks(Batch::CAPACITY) {
+            self.batched.batch.refill(from, numbers, shading, kernel);
+            self.batched.draw();
+        }
     }
 
     fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner) {

@@ -23,10 +23,10 @@ pub(crate) use crate::span::lit::LANES;
 /// An object's way to the screen in f32.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Narrow {
-    matrix: Mat3,
-    offset: Vec3,
-    centre: (f32, f32),
-    near: f32,
+    pub(crate) matrix: Mat3,
+    pub(crate) offset: Vec3,
+    pub(crate) centre: (f32, f32),
+    pub(crate) near: f32,
 }
 
 /// Eight vertices on the screen.
@@ -49,11 +49,13 @@ impl ObjectView {
 }
 
 impl Narrow {
+    /// The most that a coordinate is, in pixels.
+    pub(crate) const LIMIT: f32 = ObjectView::LIMIT as f32 + 0.5;
+
     /// Eight vertices, for all of which [`ObjectView::project`] gives what is within, and nothing for what is not.
     #[inline(always)]
     pub(crate) fn project(&self, points: &[Vec3; LANES]) -> Eight {
-        const LIMIT: f32 = ObjectView::LIMIT as f32 + 0.5;
-        const { assert!(Vertex::GUARD_BAND as f32 >= LIMIT * 256.0) };
+        const { assert!(Vertex::GUARD_BAND as f32 >= Self::LIMIT * 256.0) };
         let Self { matrix, offset, centre, near } = self;
         let (mut x, mut y, mut w) = ([0.0_f32; LANES], [0.0_f32; LANES], [0.0_f32; LANES]);
         for i in 0..LANES {
@@ -71,7 +73,7 @@ impl Narrow {
         let mut eight = Eight { within: [0; LANES], x: [0; LANES], y: [0; LANES], depth: [0; LANES] };
         for i in 0..LANES {
             // What is no number fails it.
-            let is_within = (w[i] >= *near) & (x[i].abs() <= LIMIT) & (y[i].abs() <= LIMIT);
+            let is_within = (w[i] >= *near) & (x[i].abs() <= Self::LIMIT) & (y[i].abs() <= Self::LIMIT);
             eight.within[i] = -i32::from(is_within);
         }
         for (units_of, x) in eight.x.iter_mut().zip(&x) {

@@ -11,7 +11,10 @@ use super::rows::{Edges, Gathered, Group, Ints, LANES, MAGIC, Place};
 use super::sieve::Chosen;
 
 pub(super) mod listed;
+#[cfg(feature = "alloc")]
+pub(super) mod numbered;
 mod planes;
+pub(super) mod sieve;
 pub(super) mod tall;
 
 /// What set-up adds and multiplies by.

@@ -27,6 +27,8 @@ use crate::span::Kernel;
 #[expect(unsafe_code, reason = "assembly for processors found only when the program runs")]
 mod avx512;
 mod depths;
+#[cfg(feature = "alloc")]
+pub(crate) mod numbered;
 mod rows;
 mod sieve;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]

@@ -69,14 +69,14 @@ impl Chosen {
 
 /// Those of numbers in order that are kept, packed.
 pub(super) struct Kept {
-    // Eight places more than triangles: eight are written at a time, and those that are not kept are written over.
-    triangles: [Chosen; Batch::CAPACITY + LANES],
-    count: usize,
+    // Sixteen places more than triangles: up to so many are written at a time, and those that are not kept are written over.
+    pub(super) triangles: [Chosen; Batch::CAPACITY + 2 * LANES],
+    pub(super) count: usize,
 }
 
 impl Kept {
     pub(super) fn new() -> Self {
-        Self { triangles: [Chosen(0); Batch::CAPACITY + LANES], count: 0 }
+        Self { triangles: [Chosen(0); Batch::CAPACITY + 2 * LANES], count: 0 }
     }
 
     pub(super) fn triangles(&self) -> &[Chosen] {

@@ -31,6 +31,10 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
 pub(super) fn sieve_512(batch: &Batch, clip: Rect, kept: &mut Kept) {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, clip: Rect, kept: &mut Kept) {
+        if batch.is_sifted {
+            // SAFETY: such a kernel is given out only where AVX-512 was found.
+            return unsafe { avx512::sieve::sieve(batch, clip, kept) };
+        }
         if batch.is_full() {
             avx512::fetch(batch);
         }
@@ -94,10 +98,18 @@ pub(super) fn at_once(
             }
             // As in `rows_by`.
             gathered.gather(batch, &kept[kept.len().min((number + 1) * LANES)..], place);
-            if let Some(most) = few_rows(&group, eight) {
+            match small_rows(&group, eight) {
                 // SAFETY: as above.
-                unsafe { listed.add_all(&group, eight.len(), most, Some(&planes), (pixels, cells)) };
-                continue;
+                Some(most @ ..=listed::FEW_ROWS) => unsafe {
+                    listed.add_all(&group, eight.len(), most, Some(&planes), (pixels, cells));
+                    continue;
+                },
+                // SAFETY: as above.
+                Some(most) => unsafe {
+                    listed.add_each(&group, eight.len(), most, &planes, (pixels, cells));
+                    continue;
+                },
+                None => {}
             }
             for (i, triangle) in eight.iter().enumerate() {
                 let (kind, mut pieces) = (triangle.kind(), 1);
@@ -125,7 +137,7 @@ pub(super) fn at_once(
             // SAFETY: such a kernel is given out only where AVX-512 was found.
             unsafe { avx512::set_up(&gathered, place, &mut group) };
             gathered.gather(batch, &kept[kept.len().min((number + 1) * LANES)..], place);
-            if let Some(most) = few_rows(&group, eight) {
+            if let Some(most @ ..=listed::FEW_ROWS) = small_rows(&group, eight) {
                 // SAFETY: as above.
                 unsafe { listed.add_all(&group, eight.len(), most, None, (pixels, &mut [])) };
                 continue;
@@ -165,12 +177,12 @@ pub(super) fn at_once(
     }
 }
 
-/// The most rows that a group's triangles have, if they are small and these are few.
+/// The most rows that a group's triangles have, if they are all small.
 #[inline(always)]
-fn few_rows(group: &Group, triangles: &[Chosen]) -> Option<i32> {
+fn small_rows(group: &Group, triangles: &[Chosen]) -> Option<i32> {
     let rows = &group.rows[..triangles.len().min(LANES)];
     let most = rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
-    (most <= listed::FEW_ROWS && Chosen::are_small(triangles)).then_some(most)
+    Chosen::are_small(triangles).then_some(most)
 }
 
 /// Apart, as the compiler would else keep eight triangles in registers that it has not.

@@ -6,6 +6,10 @@ use crate::raster::Rect;
 use crate::span::Kernel;
 
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[expect(unsafe_code, reason = "assembly for processors found only when the program runs")]
+mod avx512;
+pub(super) mod listed;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86;
 
@@ -43,6 +47,10 @@ impl Sieve {
     pub(super) fn sift(&self, places: &[Place], triangles: &[[u32; 3]], culls: bool) -> Sifted {
         // Inside a frame, at most 4,096.
         let sides = [self.clip.x0, self.clip.y0, self.clip.x1, self.clip.y1].map(|side| side as i32);
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if self.kernel.has_avx512() {
+            return avx512::sift(places, triangles, sides, culls);
+        }
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if self.kernel.has_avx2() {
             return x86::sift(places, triangles, sides, culls);

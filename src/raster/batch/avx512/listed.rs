@@ -27,6 +27,7 @@ pub(in super::super) struct Spans {
     length: MaybeUninit<[u32; ROOM + SIXTEEN]>,
     /// Shade, and above it the step.
     paint: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    /// Depths, the whole parts in the upper halves.
     z: MaybeUninit<[i64; ROOM + SIXTEEN]>,
     dz: MaybeUninit<[i64; ROOM + SIXTEEN]>,
     /// Of each row of eight triangles, up to four: the first pixel, pixels, paint, and the column of the box.
@@ -71,14 +72,19 @@ struct Constants {
     even: [u16; 32],
     /// 64: numbers.
     numbers: [u64; LANES],
-    /// 128: the numbers of the lower halves of sixteen lanes of two vectors.
-    lower: [u32; 16],
+    /// 128: the numbers of the upper halves of sixteen lanes of two vectors.
+    upper: [u32; 16],
     /// 192
     rows: [u32; LANES],
     /// 224
     magic: f64,
     /// 232: the odd bytes of two lanes.
     odd_bytes: u32,
+    /// 236: a shade's bits.
+    shade: u32,
+    unused: [u32; 4],
+    /// 256: 1, and above it the pixel's number.
+    numbered: [u32; LANES],
 }
 
 static CONSTANTS: Constants = Constants {
@@ -92,10 +98,13 @@ static CONSTANTS: Constants = Constants {
         even
     },
     numbers: [0, 1, 2, 3, 4, 5, 6, 7],
-    lower: [0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30],
+    upper: [1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31],
     rows: [0, 1, 2, 3, 4, 5, 6, 7],
     magic: MAGIC,
     odd_bytes: 0xFF00_FF00,
+    shade: 0xFFFF,
+    unused: [0; 4],
+    numbered: [1, 0x1_0001, 0x2_0001, 0x3_0001, 0x4_0001, 0x5_0001, 0x6_0001, 0x7_0001],
 };
 
 /// The order in which sixteen rows out of four times eight are listed: triangle by triangle.
@@ -238,11 +247,7 @@ impl Spans {
             // SAFETY: by the caller's promise.
             unsafe { self.draw(planes.is_some(), pixels, cells) };
         }
-        for i in 0..LANES {
-            // As in `add`. Of a triangle that is none anything may come out.
-            let row = group.row[i].wrapping_sub(self.first_row as i32);
-            self.first_cell[i] = row.wrapping_mul(self.width as i32).wrapping_add(group.column[i]) as u32;
-        }
+        self.put_first_cells(group);
         for row in 0..rows {
             // SAFETY: by the caller's promise; there is room for four rows.
             unsafe { self.row(group, triangles, row) };
@@ -250,6 +255,189 @@ impl Spans {
         for order in orders {
             // SAFETY: by the caller's promise; the rows are there that it names, and there is room for sixteen.
             unsafe { self.list_sixteen(order, planes) };
+        }
+    }
+
+    /// As [`add`](Self::add), for all the small triangles of a group, which are so many.
+    ///
+    /// # Safety
+    /// As for `add`.
+    #[inline(always)]
+    pub(in super::super) unsafe fn add_each(
+        &mut self,
+        group: &Group,
+        triangles: usize,
+        most_rows: i32,
+        planes: &Planes,
+        (pixels, cells): (&mut [u8], &mut [u32]),
+    ) {
+        self.of(pixels, cells);
+        if self.count + LANES * LANES > ROOM {
+            // SAFETY: by the caller's promise.
+            unsafe { self.draw(true, pixels, cells) };
+        }
+        self.put_first_cells(group);
+        let triangles = triangles.min(LANES);
+        if most_rows <= LANES as i32 {
+            // SAFETY: by the caller's promise; there is room for eight times eight.
+            return unsafe { self.list_each(group, (0, triangles), 0, planes) };
+        }
+        for i in 0..triangles {
+            for first in (0..group.rows[i]).step_by(LANES) {
+                if self.count + LANES > ROOM {
+                    // SAFETY: by the caller's promise.
+                    unsafe { self.draw(true, pixels, cells) };
+                }
+                // SAFETY: by the caller's promise; there is room for eight.
+                unsafe { self.list_each(group, (i, i + 1), first, planes) };
+            }
+        }
+    }
+
+    /// The cells of the boxes' first pixels. Of a triangle that is none anything may come out.
+    #[inline(always)]
+    fn put_first_cells(&mut self, group: &Group) {
+        for i in 0..LANES {
+            // As in `add`.
+            let row = group.row[i].wrapping_sub(self.first_row as i32);
+            self.first_cell[i] = row.wrapping_mul(self.width as i32).wrapping_add(group.column[i]) as u32;
+        }
+    }
+
+    /// Lists up to eight rows from number `first` on of each of these triangles of a group: as `list`, but that nothing is left
+    /// out.
+    ///
+    /// # Safety
+    /// Only for a processor for which `span::simd::avx512::found` is true; the triangles are some of the eight, and there is room for
+    /// eight times as many.
+    #[inline(always)]
+    unsafe fn list_each(&mut self, group: &Group, (begin, end): (usize, usize), first: i32, planes: &Planes) {
+        debug_assert!(begin < LANES && end <= LANES);
+        // SAFETY: the caller has AVX-512 F, DQ and VL and POPCNT found. Read are `CONSTANTS`, and `group`, `planes` and `self` at
+        // the offsets of their fields, of those that hold eight numbers those from `begin` to `end`, or that at `begin`. Written are, for each triangle,
+        // eight numbers from number `count` on, which is at most eight more with each, and so below `ROOM + LANES`. The stack is
+        // not used; flags and all registers written are given up.
+        unsafe {
+            asm!(
+                "vpbroadcastd ymm26, {first:e}",
+                "vpaddd     ymm26, ymm26, [{c} + 192]",                     // rows
+                "vbroadcastsd zmm31, qword ptr [{c} + 224]",                // magic
+                "vcvtdq2pd  zmm16, ymm26",                                  // j
+                "vpmovsxdq  zmm30, ymm26",
+                "vpmulld    ymm28, ymm26, dword ptr [{l} + {PITCH}]{{1to8}}",
+                "vpmulld    ymm29, ymm26, dword ptr [{l} + {WIDTH}]{{1to8}}",
+                "vpbroadcastd ymm27, dword ptr [{l} + {PIXELS}]",
+                "vpbroadcastd ymm25, dword ptr [{l} + {CELLS}]",
+                "vpbroadcastd ymm23, dword ptr [{c} + 236]",                // shade
+                ".p2align   5",
+                "2:",
+                "vbroadcastsd zmm17, qword ptr [{g} + 8*{i} + {LONG} + {N}]",
+                "vbroadcastsd zmm18, qword ptr [{g} + 8*{i} + {UPPER} + {N}]",
+                "vbroadcastsd zmm19, qword ptr [{g} + 8*{i} + {LOWER} + {N}]",
+                "vbroadcastsd zmm20, qword ptr [{g} + 8*{i} + {SHADE_N}]",
+                "vpcmpd     k1, ymm26, dword ptr [{g} + 4*{i} + {SPLIT}]{{1to8}}, 5", // not less
+                "vfmadd231pd zmm17, zmm16, qword ptr [{g} + 8*{i} + {LONG} + {PER_ROW}]{{1to8}}",
+                "vfmadd231pd zmm18, zmm16, qword ptr [{g} + 8*{i} + {UPPER} + {PER_ROW}]{{1to8}}",
+                "vfmadd231pd zmm19, zmm16, qword ptr [{g} + 8*{i} + {LOWER} + {PER_ROW}]{{1to8}}",
+                "vfmadd231pd zmm20, zmm16, qword ptr [{g} + 8*{i} + {SHADE_PER_ROW}]{{1to8}}",
+                "vpcmpd     k2, ymm26, dword ptr [{g} + 4*{i} + {ROWS}]{{1to8}}, 1", // less
+                "vfmadd132pd zmm17, zmm31, qword ptr [{g} + 8*{i} + {LONG} + {INVERSE}]{{1to8}}",
+                "vfmadd132pd zmm18, zmm31, qword ptr [{g} + 8*{i} + {UPPER} + {INVERSE}]{{1to8}}",
+                "vfmadd132pd zmm19, zmm31, qword ptr [{g} + 8*{i} + {LOWER} + {INVERSE}]{{1to8}}",
+                "vmovapd    zmm18{{k1}}, zmm19",                            // short
+                "vminpd     zmm19, zmm17, zmm18",                           // left
+                "vmaxpd     zmm17, zmm17, zmm18",                           // right
+                "vsubpd     zmm18, zmm19, zmm31",                           // column
+                "vpsubq     zmm21, zmm19, zmm31",                           // as a whole number
+                "vpsubq     zmm17, zmm17, zmm19",
+                "vfmadd132pd zmm18, zmm20, qword ptr [{g} + 8*{i} + {PER_COLUMN}]{{1to8}}",
+                "vfmadd132pd zmm18, zmm31, qword ptr [{g} + 8*{i} + {SHADE_INVERSE}]{{1to8}}",
+                "vpmovqd    ymm19, zmm21",
+                "vpmovqd    ymm17, zmm17",                                  // length
+                "vpmovqd    ymm18, zmm18",
+                "vpaddd     ymm22, ymm28, dword ptr [{g} + 4*{i} + {AT}]{{1to8}}",
+                "vpaddd     ymm24, ymm29, dword ptr [{l} + 4*{i} + {FIRST_CELL}]{{1to8}}",
+                "vpternlogd ymm18, ymm23, dword ptr [{g} + 4*{i} + {STEP}]{{1to8}}, 0xEA", // shade | step
+                "vpaddd     ymm22, ymm22, ymm19",                           // at
+                "vpaddd     ymm24, ymm24, ymm19",                           // cell
+                "vpxord     ymm20, ymm20, ymm20",
+                "vpcmpd     k2{{k2}}, ymm17, ymm20, 6",                     // greater
+                "vpsubd     ymm19, ymm27, ymm17",
+                "vpsubd     ymm20, ymm25, ymm17",
+                "vpcmpud    k2{{k2}}, ymm17, ymm27, 2",                     // not greater
+                "vpcmpud    k2{{k2}}, ymm17, ymm25, 2",
+                "vpcmpud    k2{{k2}}, ymm22, ymm19, 2",
+                "vpcmpud    k2{{k2}}, ymm24, ymm20, 2",
+                // Depths.
+                "vpbroadcastq zmm20, qword ptr [{p} + 8*{i} + {DEPTH_PER_COLUMN}]",
+                "vpmullq    zmm19, zmm30, qword ptr [{p} + 8*{i} + {DEPTH_PER_ROW}]{{1to8}}",
+                "vpmullq    zmm21, zmm21, zmm20",
+                "vpaddq     zmm19, zmm19, qword ptr [{p} + 8*{i} + {DEPTH}]{{1to8}}",
+                "vpaddq     zmm21, zmm21, zmm19",
+                "vpsllq     zmm20, zmm20, 8",
+                "vpsllq     zmm21, zmm21, 8",
+                "vpcompressd ymm22{{k2}}{{z}}, ymm22",
+                "vpcompressd ymm24{{k2}}{{z}}, ymm24",
+                "vpcompressd ymm17{{k2}}{{z}}, ymm17",
+                "vpcompressd ymm18{{k2}}{{z}}, ymm18",
+                "vpcompressq zmm21{{k2}}{{z}}, zmm21",
+                "vmovdqu32  [{l} + 4*{count} + {LIST_AT}], ymm22",
+                "vmovdqu32  [{l} + 4*{count} + {CELL}], ymm24",
+                "vmovdqu32  [{l} + 4*{count} + {LENGTH}], ymm17",
+                "vmovdqu32  [{l} + 4*{count} + {PAINT}], ymm18",
+                "vmovdqu64  [{l} + 8*{count} + {Z}], zmm21",
+                "vmovdqu64  [{l} + 8*{count} + {DZ}], zmm20",
+                "vpaddd     ymm17, ymm17, [{l} + {COVERED}]",
+                "vmovdqu32  [{l} + {COVERED}], ymm17",
+                "kmovb      {more:e}, k2",
+                "popcnt     {more:e}, {more:e}",
+                "add        {count}, {more}",
+                "inc        {i}",
+                "cmp        {i}, {end}",
+                "jb         2b",
+                g = in(reg) group,
+                p = in(reg) planes,
+                l = in(reg) &raw mut *self,
+                c = in(reg) &raw const CONSTANTS,
+                i = inout(reg) begin => _,
+                end = in(reg) end,
+                first = in(reg) first,
+                more = out(reg) _,
+                count = inout(reg) self.count,
+                LONG = const offset_of!(Group, long),
+                UPPER = const offset_of!(Group, upper),
+                LOWER = const offset_of!(Group, lower),
+                N = const offset_of!(Edges, n),
+                PER_ROW = const offset_of!(Edges, per_row),
+                INVERSE = const offset_of!(Edges, inverse),
+                SHADE_N = const offset_of!(Group, n),
+                SHADE_PER_ROW = const offset_of!(Group, per_row),
+                SHADE_INVERSE = const offset_of!(Group, inverse),
+                PER_COLUMN = const offset_of!(Group, per_column),
+                SPLIT = const offset_of!(Group, split),
+                ROWS = const offset_of!(Group, rows),
+                AT = const offset_of!(Group, at),
+                STEP = const offset_of!(Group, step),
+                DEPTH = const offset_of!(Planes, at),
+                DEPTH_PER_COLUMN = const offset_of!(Planes, per_column),
+                DEPTH_PER_ROW = const offset_of!(Planes, per_row),
+                FIRST_CELL = const offset_of!(Self, first_cell),
+                LIST_AT = const offset_of!(Self, at),
+                CELL = const offset_of!(Self, cell),
+                LENGTH = const offset_of!(Self, length),
+                PAINT = const offset_of!(Self, paint),
+                Z = const offset_of!(Self, z),
+                DZ = const offset_of!(Self, dz),
+                COVERED = const offset_of!(Self, covered),
+                PIXELS = const offset_of!(Self, pixels),
+                CELLS = const offset_of!(Self, cells),
+                PITCH = const offset_of!(Self, pitch),
+                WIDTH = const offset_of!(Self, width),
+                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
+                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm27") _,
+                out("zmm28") _, out("zmm29") _, out("zmm30") _, out("zmm31") _, out("k1") _, out("k2") _,
+                options(nostack),
+            );
         }
     }
 
@@ -383,6 +571,8 @@ impl Spans {
                 "vpmullq    zmm26, zmm26, zmm29",
                 "vpaddq     zmm30, zmm30, zmm27",
                 "vpaddq     zmm30, zmm30, zmm26",
+                "vpsllq     zmm28, zmm28, 8",
+                "vpsllq     zmm30, zmm30, 8",
                 "vpcompressq zmm28{{k1}}{{z}}, zmm28",
                 "vpcompressq zmm30{{k1}}{{z}}, zmm30",
                 "vmovdqu64  [{l} + 8*{count} + {DZ}], zmm28",
@@ -404,6 +594,8 @@ impl Spans {
                 "vpmullq    zmm26, zmm26, zmm29",
                 "vpaddq     zmm30, zmm30, zmm27",
                 "vpaddq     zmm30, zmm30, zmm26",
+                "vpsllq     zmm28, zmm28, 8",
+                "vpsllq     zmm30, zmm30, 8",
                 "vpcompressq zmm28{{k2}}{{z}}, zmm28",
                 "vpcompressq zmm30{{k2}}{{z}}, zmm30",
                 "vmovdqu64  [{l} + 8*{more} + {DZ}], zmm28",
@@ -541,6 +733,8 @@ impl Spans {
                 "vpmullq    zmm21, zmm21, zmm25",
                 "vpaddq     zmm26, zmm26, qword ptr [{p8} + {DEPTH}]{{1to8}}",
                 "vpaddq     zmm21, zmm21, zmm26",
+                "vpsllq     zmm25, zmm25, 8",
+                "vpsllq     zmm21, zmm21, 8",
                 "vpcompressd ymm24{{k2}}{{z}}, ymm24",
                 "vpcompressq zmm21{{k2}}{{z}}, zmm21",
                 "vmovdqu32  [{l} + 4*{count} + {CELL}], ymm24",
@@ -724,37 +918,33 @@ impl Spans {
         unsafe {
             asm!(
                 "vmovdqa64  zmm29, [{c} + 64]",                             // numbers
-                "vmovdqa64  zmm30, [{c} + 128]",                            // lower
+                "vmovdqa64  zmm30, [{c} + 128]",                            // upper
                 "vmovdqa64  xmm28, [{c}]",                                  // even
                 "vpbroadcastd xmm31, dword ptr [{c} + 232]",                // odd_bytes
+                "vmovdqa64  ymm27, [{c} + 256]",                            // numbered
                 ".p2align   5",
                 "2:",
                 "mov        {at:e}, [{l} + 4*{k} + {AT}]",
                 "mov        {cell:e}, [{l} + 4*{k} + {CELL}]",
                 "mov        {length:e}, [{l} + 4*{k} + {LENGTH}]",
                 "vpbroadcastq zmm16, qword ptr [{l} + 8*{k} + {DZ}]",
-                "vpbroadcastw xmm19, word ptr [{l} + 4*{k} + {PAINT}]",
-                "vpbroadcastw xmm20, word ptr [{l} + 4*{k} + {PAINT} + 2]", // step
                 "add        {at}, {pixels}",
                 "lea        {cell}, [{cells} + 4*{cell}]",
                 "vpmullq    zmm17, zmm16, zmm29",
-                "vpmullw    xmm21, xmm20, xmm28",
                 "vpaddq     zmm17, zmm17, qword ptr [{l} + 8*{k} + {Z}]{{1to8}}",
-                "vpaddw     xmm21, xmm21, xmm19",                           // even
-                "vpaddw     xmm22, xmm21, xmm20",                           // odd
                 "cmp        {length:e}, 8",
                 "ja         7f",
                 // Eight cells: with sixteen nearly every access is one to two lines of the cache.
                 "bzhi       {length:e}, {ones:e}, {length:e}",
-                "vpsrlq     zmm24, zmm17, 24",
+                "vpermd     zmm24, zmm30, zmm17",
                 "kmovd      k1, {length:e}",
-                "vpmovqd    ymm24, zmm24",
                 "vmovdqu32  ymm23{{k1}}{{z}}, [{cell}]",
-                "vpsrlw     xmm21, xmm21, 8",
-                "vpternlogd xmm21, xmm22, xmm31, 0xF8",
+                "vpbroadcastd ymm21, dword ptr [{l} + 4*{k} + {PAINT}]",
+                "vpmaddwd   ymm21, ymm21, ymm27",                           // shade + j·step
                 "vpcmpud    k1{{k1}}, ymm24, ymm23, 6",
+                "vpsrld     ymm21, ymm21, 8",
                 "vmovdqu32  [{cell}]{{k1}}, ymm24",
-                "vmovdqu8   [{at}]{{k1}}, xmm21",
+                "vpmovdb    [{at}]{{k1}}, ymm21",
                 "kmovd      {length:e}, k1",
                 "popcnt     {length:e}, {length:e}",
                 "add        {nearer}, {length}",
@@ -763,7 +953,12 @@ impl Spans {
                 "jb         2b",
                 "jmp        6f",
                 "7:",
+                "vpbroadcastw xmm19, word ptr [{l} + 4*{k} + {PAINT}]",
+                "vpbroadcastw xmm20, word ptr [{l} + 4*{k} + {PAINT} + 2]", // step
                 "vpsllq     zmm18, zmm16, 3",
+                "vpmullw    xmm21, xmm20, xmm28",
+                "vpaddw     xmm21, xmm21, xmm19",                           // even
+                "vpaddw     xmm22, xmm21, xmm20",                           // odd
                 "vpaddq     zmm18, zmm18, zmm17",
                 "cmp        {length:e}, 16",
                 "ja         4f",
@@ -771,9 +966,8 @@ impl Spans {
                 "bzhi       {length:e}, {ones:e}, {length:e}",
                 "kmovd      k1, {length:e}",
                 "vmovdqu32  zmm23{{k1}}{{z}}, [{cell}]",
-                "vpsrlq     zmm24, zmm17, 24",
-                "vpsrlq     zmm25, zmm18, 24",
-                "vpermt2d   zmm24, zmm30, zmm25",
+                "vmovdqa64  zmm24, zmm17",
+                "vpermt2d   zmm24, zmm30, zmm18",
                 "vpsrlw     xmm21, xmm21, 8",
                 "vpternlogd xmm21, xmm22, xmm31, 0xF8",                     // even >> 8 | odd & 0xFF00
                 "vpcmpud    k1{{k1}}, zmm24, zmm23, 6",                     // greater
@@ -791,9 +985,8 @@ impl Spans {
                 "vpsllw     xmm20, xmm20, 4",
                 ".p2align   5",
                 "5:",                                                       // more than 16 are left
-                "vpsrlq     zmm24, zmm17, 24",
-                "vpsrlq     zmm25, zmm18, 24",
-                "vpermt2d   zmm24, zmm30, zmm25",
+                "vmovdqa64  zmm24, zmm17",
+                "vpermt2d   zmm24, zmm30, zmm18",
                 "vpsrlw     xmm26, xmm21, 8",
                 "vpternlogd xmm26, xmm22, xmm31, 0xF8",
                 "vpcmpud    k1, zmm24, [{cell}], 6",
@@ -832,7 +1025,7 @@ impl Spans {
                 Z = const offset_of!(Self, z),
                 DZ = const offset_of!(Self, dz),
                 out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
-                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm28") _,
+                out("zmm22") _, out("zmm23") _, out("zmm24") _, out("zmm25") _, out("zmm26") _, out("zmm27") _, out("zmm28") _,
                 out("zmm29") _, out("zmm30") _, out("zmm31") _, out("k1") _,
                 options(nostack),
             );
@@ -876,6 +1069,7 @@ mod tests {
             let (mut group, mut planes, mut spans) = (Group::NONE, Planes::NONE, Spans::new(place));
             let end = before + length;
             let with_depths = random(2) > 0;
+            let each = few && round % 4 > 0;
             let clip = (random(1) == 0).then_some(Rect { x0: random(99) as u32, y0: 0, x1: 200, y1: 90 });
             let pieces = random(MOST_PIECES as u64) as usize;
             // SAFETY: the kernel above is there.
@@ -884,12 +1078,14 @@ mod tests {
                 planes.renew(&gathered, &group);
                 let planes = with_depths.then_some(&planes);
                 let to = (&mut bytes[before..end], &mut cells[before..end]);
-                if few {
+                if few && !each {
                     spans.add_all(&group, LANES, FEW_ROWS, planes, to);
+                } else if each {
+                    spans.add_each(&group, LANES, 16 - 8 * (round % 2), planes.unwrap_or(&Planes::NONE), to);
                 } else {
                     spans.add(&group, 3, (pieces, clip), planes, to);
                 }
-                spans.draw(with_depths, &mut bytes[before..end], &mut cells[before..end]);
+                spans.draw(with_depths || each, &mut bytes[before..end], &mut cells[before..end]);
             }
             assert!(bytes[..before].iter().chain(&bytes[end..]).all(|&byte| byte == 7));
             assert!(cells[..before].iter().chain(&cells[end..]).all(|&cell| cell == 1));
