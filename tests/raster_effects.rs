@@ -5,7 +5,7 @@
 
 mod support;
 
-use mode13h::fixed::U8F8;
+use mode13h::fixed::{I24F8, U8F8};
 use mode13h::raster::effects::{Apart, Attributes, Lighting, Limits, Look, Mix, Source, TextureLook, TextureMapping};
 use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex};
 use mode13h::span::Kernel;
@@ -399,6 +399,62 @@ fn effects_keep_to_the_depth_buffer() {
         }
         assert_eq!((drawn.pixels, drawn.tested), (written, drawn.covered));
     }
+}
+
+/// Small triangles that are lit at every pixel take light for several rows at once: bytes, depths and counts are those of
+/// rows that are lit one by one, as they are where another stage follows, such as blending that leaves all as it is.
+#[test]
+fn small_triangles_that_are_lit_are_those_of_their_rows() {
+    let mut tried = Tried::new("small_triangles_that_are_lit_are_those_of_their_rows", 4000);
+    let mut random = Random::named("effects, small");
+    let own: Box<[u8; 65_536]> = (0..=255).flat_map(|own| [own; 256]).collect::<Vec<u8>>().try_into().expect("64 KiB");
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let before: Vec<u32> = (0..WIDTH * HEIGHT).map(|_| random.log_uniform(30) as u32).collect();
+    let (mut pixels, mut tall) = (0, 0);
+    while tried.more() {
+        // Up to 9 pixels across, some of them over the frame's edges, and some of many rows.
+        let high = random.one_of(&[3, 9, 40]);
+        let (left, top) = (random.within(-4, i64::from(WIDTH)), random.within(-4, i64::from(HEIGHT)));
+        let vertices = [0; 3].map(|_| {
+            let (x, y) = (left * 256 + random.within(0, 9 * 256), top * 256 + random.within(0, high * 256));
+            let shade = U8F8::from_bits(random.within(0, 0xFF00) as u16);
+            let (x, y) = (I24F8::from_bits(x as i32), I24F8::from_bits(y as i32));
+            Vertex::new(x, y, shade, random.log_uniform(30) as u32).expect("in range")
+        });
+        let attributes = attributes(&mut random);
+        let plain = Look {
+            source: Source::Lit(&Sum),
+            dither: (random.within(0, 1) == 0).then_some(&BAYER),
+            keeps_depth: random.within(0, 1) == 0,
+            ..Look::PLAIN
+        };
+        let (x, y) = (random.within(0, WIDTH.into()) as u32, random.within(0, HEIGHT.into()) as u32);
+        let clip = random.one_of(&[None, Some(Rect { x0: x / 2, y0: y / 2, x1: x, y1: y })]);
+        let (has_depth, kernel) = (random.within(0, 1) == 0, random.one_of(&kernels));
+        let draw = |look: &Look<'_>| {
+            let (mut depths, mut bytes) = (before.clone(), vec![BEFORE; (WIDTH * HEIGHT) as usize]);
+            let frame = Frame::new(&mut bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+            let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+            let mut raster = Raster::new(frame).with_kernel(kernel);
+            if let Some(clip) = clip {
+                raster = raster.with_clip(clip);
+            }
+            let drawn = if has_depth {
+                raster.with_depth(buffer).triangle_with_effects(&vertices, &attributes, look)
+            } else {
+                raster.triangle_with_effects(&vertices, &attributes, look)
+            };
+            (drawn, bytes, depths)
+        };
+        let (drawn, bytes, depths) = draw(&plain);
+        let (mut by_rows, expected, expected_depths) = draw(&Look { blend: Some(&own), ..plain });
+        assert_eq!(by_rows.blended, by_rows.covered);
+        by_rows.blended = 0;
+        assert!((drawn, &bytes, &depths) == (by_rows, &expected, &expected_depths), "{vertices:?}, {attributes:?}");
+        pixels += drawn.covered;
+        tall += u32::from(drawn.spans > 8);
+    }
+    assert!(pixels > 10_000 && tall > 200, "{pixels} pixels, {tall} of more rows than are lit together");
 }
 
 /// Shades of either sign, more than can be shown among them, on triangles of every kind: each byte is that of the exact

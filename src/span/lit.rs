@@ -58,7 +58,53 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
     points
 }
 
+/// The same at eight pixels of different rows: `a` and `d` are each one's own.
+#[inline]
+#[must_use]
+pub(crate) fn interpolate_each(
+    places: &Lanes<f64>,
+    a: &[Lanes<f64>; 6],
+    da: &[f64; 6],
+    d: &Lanes<f64>,
+    dd: f64,
+) -> Points {
+    each_inlined(places, a, da, d, dd)
+}
+
+#[inline(always)]
+fn each_inlined(places: &Lanes<f64>, a: &[Lanes<f64>; 6], da: &[f64; 6], d: &Lanes<f64>, dd: f64) -> Points {
+    let mut reciprocals = [0.0; LANES];
+    for (reciprocal, (place, d)) in reciprocals.iter_mut().zip(places.iter().zip(d)) {
+        *reciprocal = 1.0 / (d + *place * dd);
+    }
+    let mut points = [[0.0; LANES]; 6];
+    for (values, (a, da)) in points.iter_mut().zip(a.iter().zip(da)) {
+        for lane in 0..LANES {
+            values[lane] = ((a[lane] + places[lane] * da) * reciprocals[lane]) as f32;
+        }
+    }
+    points
+}
+
 impl Kernel {
+    /// [`interpolate_each`] as the kernel's processor does it best: the same numbers.
+    #[inline]
+    #[must_use]
+    pub(crate) fn interpolate_each(
+        self,
+        places: &Lanes<f64>,
+        a: &[Lanes<f64>; 6],
+        da: &[f64; 6],
+        d: &Lanes<f64>,
+        dd: f64,
+    ) -> Points {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if self.has_avx2() {
+            return x86::interpolate_each(places, a, da, d, dd);
+        }
+        interpolate_each(places, a, da, d, dd)
+    }
+
     /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
@@ -74,7 +120,23 @@ impl Kernel {
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86 {
-    use super::{Lanes, Points, interpolate_inlined};
+    use super::{Lanes, Points, each_inlined, interpolate_inlined};
+
+    /// Only with a kernel for which `Kernel::has_avx2` is true.
+    pub(super) fn interpolate_each(
+        places: &Lanes<f64>,
+        a: &[Lanes<f64>; 6],
+        da: &[f64; 6],
+        d: &Lanes<f64>,
+        dd: f64,
+    ) -> Points {
+        #[target_feature(enable = "avx2")]
+        fn avx2(places: &Lanes<f64>, a: &[Lanes<f64>; 6], da: &[f64; 6], d: &Lanes<f64>, dd: f64) -> Points {
+            each_inlined(places, a, da, d, dd)
+        }
+        // SAFETY: such a kernel is given out only where AVX2 was found.
+        unsafe { avx2(places, a, da, d, dd) }
+    }
 
     /// Only with a kernel for which `Kernel::has_avx2` is true.
     pub(super) fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {

@@ -20,6 +20,7 @@
 mod curve;
 mod look;
 mod planes;
+mod small;
 
 use core::ops::Range;
 
@@ -95,6 +96,15 @@ macro_rules! by_stages {
 /// Rows of 64 bytes.
 type Piece = [u8; PIECE];
 
+/// The attributes of a triangle's corners from top to bottom, of one that is not degenerate.
+fn corners<'a>(triangle: &Ordered, vertices: &[Vertex; 3], attributes: &'a [Attributes; 3]) -> [&'a Attributes; 3] {
+    // No two corners of a triangle that has area are in one place.
+    triangle.vertices.each_ref().map(|corner| {
+        let same = |v: &Vertex| v.x() == corner.x() && v.y() == corner.y();
+        &attributes[vertices.iter().position(same).unwrap_or(0)]
+    })
+}
+
 impl<'a> EffectPaint<'a> {
     /// Of a triangle that is not degenerate. `attributes` are in the order of `vertices`, from which
     /// `triangle` was made.
@@ -104,11 +114,7 @@ impl<'a> EffectPaint<'a> {
         attributes: &[Attributes; 3],
         look: &'a Look<'a>,
     ) -> Self {
-        // No two corners of a triangle that has area are in one place.
-        let corners = triangle.vertices.each_ref().map(|corner| {
-            let same = |v: &Vertex| v.x() == corner.x() && v.y() == corner.y();
-            &attributes[vertices.iter().position(same).unwrap_or(0)]
-        });
+        let corners = corners(triangle, vertices, attributes);
         let values = |value: &dyn Fn(&Attributes) -> U8F8| corners.map(|corner| i64::from(value(corner).to_bits()));
         let plane = |value: fn(&Attributes) -> U8F8| ShadePlane::of_values(triangle, values(&value));
         let channels = |shading| {
@@ -441,6 +447,14 @@ impl<D: Cell> Raster<'_, D> {
         look: &Look<'_>,
     ) -> Drawn {
         let triangle = Ordered::new(vertices);
+        if !PLAIN
+            && !FOG
+            && !BLENDS
+            && let Some(lighting) = look.lit_alone()
+            && small::is_narrow(vertices)
+        {
+            return self.draw_small_lit::<CLIPS>(&triangle, (vertices, attributes), (look, lighting));
+        }
         let mut drawn = Drawn::default();
         let (mut paint, mut plane) = (None, None);
         let (width, clip) = (self.frame.width(), self.clip);

@@ -85,6 +85,18 @@ impl LitPlane {
         (core::array::from_fn(value), value(6))
     }
 
+    /// Numerators and denominator of the values at pixel (`x`, `y`).
+    #[inline]
+    pub(super) fn at(&self, x: i32, y: i32) -> ([f64; 6], f64) {
+        Self::sum(&self.values, self.weights.at(x, y))
+    }
+
+    /// What they change by from one pixel to the next.
+    #[inline]
+    pub(super) fn step(&self) -> (&[f64; 6], f64) {
+        (&self.step.0, self.step.1)
+    }
+
     /// Hands points from pixel (`x`, `y`) on to `light`, with the pixels from there that they are of.
     pub(super) fn points(
         &self,
@@ -93,21 +105,21 @@ impl LitPlane {
         kernel: Kernel,
         mut light: impl FnMut(Range<usize>, &Points),
     ) {
-        let (a, d) = Self::sum(&self.values, self.weights.at(x, y));
-        let (da, dd) = &self.step;
+        let (a, d) = self.at(x, y);
+        let (da, dd) = self.step();
         for first in (0..pixels).step_by(LANES) {
             // At most 64.
             let places = core::array::from_fn(|lane| (first + lane) as f64);
-            let points = kernel.interpolate_at(&places, &a, da, d, *dd);
+            let points = kernel.interpolate_at(&places, &a, da, d, dd);
             light(first..pixels.min(first + LANES), &points);
         }
     }
 
     /// The points at some pixels from pixel (`x`, `y`) on.
     pub(super) fn points_at(&self, x: i32, y: i32, places: &Lanes<f64>, kernel: Kernel) -> Points {
-        let (a, d) = Self::sum(&self.values, self.weights.at(x, y));
-        let (da, dd) = &self.step;
-        kernel.interpolate_at(places, &a, da, d, *dd)
+        let (a, d) = self.at(x, y);
+        let (da, dd) = self.step();
+        kernel.interpolate_at(places, &a, da, d, dd)
     }
 }
 

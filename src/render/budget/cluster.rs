@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use super::facet::{Facet, Strength};
-use super::light::{APART, FROM_ONE, narrow};
+use super::light::{APART, APART_ANGLE, APART_TURN, narrow};
 use super::{CURVATURE, LIGHTS, LINEAR, Lit, QUARTERS, highlight, parts};
 use crate::light::{Beam, LampBeam};
 
@@ -169,7 +169,7 @@ impl Cluster {
         }
         let faint = strength.faint_from.iter().zip(QUARTERS).filter(|(_, quarters)| quarters * allowed / 4.0 <= left);
         let from = faint.map(|(from, _)| *from).fold(f32::INFINITY, f32::min);
-        Linear::Where(Where { unmixed, from: from + FROM_ONE * 1.2 * (2.0 * self.spread + eye + lamp) })
+        Linear::Where(Where { unmixed, from: from + 2.0 * APART_ANGLE * self.spread + APART_TURN * (eye + lamp) })
     }
 
     /// How far away a point is from the box, and from what is farthest in it.
@@ -232,7 +232,7 @@ impl Cluster {
         let Falling { brightness, first, second, turn, most, unmixed } = *light;
         let differ = self.spread + turn;
         let lit = most * self.shortening;
-        let matt = if unmixed { lit } else { lit.max(differ * (self.shortening + 0.25)) };
+        let matt = if unmixed { lit } else { lit.max(differ * self.shortening.max(0.25)) };
         let curvature =
             2.0 * self.spread * (brightness * turn + first) + brightness * turn * turn + 2.0 * first * turn + second;
         Share {

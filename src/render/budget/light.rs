@@ -15,6 +15,14 @@ pub(super) const FROM_ONE: f32 = 0.7;
 /// of that, see `CURVATURE`.
 const BEND: f32 = 0.236;
 
+/// No normal between three is farther from the nearest of them than this share of the greatest angle between two, if that
+/// is at most 1.5: of three that are as far from each other sin R = (2/√3)·sin(a/2).
+pub(super) const APART_ANGLE: f32 = 0.61;
+
+/// What directions to a point turn by from any corner on, in edges over the distance of the nearest vertex, if that is at least two
+/// edges away: no point of the triangle is nearer by more than 1/√3 of an edge. (The corner whose normal is nearest may be any.)
+pub(super) const APART_TURN: f32 = 1.0 / (1.0 - 0.578 / 2.0);
+
 /// Highlights of which not more than this is seen are not looked at any closer, in shades.
 const FAINT: f32 = 0.05;
 
@@ -90,7 +98,8 @@ impl OneLight<'_> {
             (most.max(0.0) * self.facet.shortening, clamp_error(most, least))
         };
         if self.part == 1.0 {
-            return unit + clamp;
+            // One makes linear shades too dark, the other too bright.
+            return unit.max(clamp);
         }
         // What a part's normals turn by, made unit.
         let turn = self.part * self.facet.spread * (1.0 + self.facet.shortening);
@@ -234,6 +243,6 @@ fn ends([a, b, c]: [f32; 3]) -> (f32, f32) {
 }
 
 /// How far Σ λᵢ max(0, cᵢ) and max(0, Σ λᵢ cᵢ) are apart at most.
-fn clamp_error(most: f32, least: f32) -> f32 {
+pub(super) fn clamp_error(most: f32, least: f32) -> f32 {
     if most > 0.0 && least < 0.0 { most * least / (least - most) } else { 0.0 }
 }

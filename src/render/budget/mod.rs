@@ -8,7 +8,8 @@
 //!   |N| is least at the point of the flat triangle n₁n₂n₃ that is nearest to the centre of the sphere.
 //! - **The clamp.** Of a light that reaches some vertices and others not, linear shades are those of Σ λᵢ max(0, nᵢ·l),
 //!   and should be max(0, Σ λᵢ nᵢ·l). With P the most that a vertex lies in the light and S the most that
-//!   one lies in the dark, these are no farther apart than PS / (P + S).
+//!   one lies in the dark, these are no farther apart than PS / (P + S). By that much linear shades are too bright, and for
+//!   want of length too dark: of the two the greater counts, not their sum.
 //! - **Curvature.** A function whose second derivative along any line is at most M is farther from the linear one
 //!   through the corners of a triangle, whose longest edge is L, by no more than ML²/6: ½M times the square of the
 //!   greatest distance to the nearest corner, L/√3. That bounds lamps, whose directions turn and whose light falls off,
@@ -35,13 +36,17 @@
 //! | `facet` | what is known of every triangle and surface |
 //! | `cluster` | the decision on 64 triangles at once |
 //! | `light` | how far linear shades are off in the light of one source |
+//! | `corners` | what is known of every vertex |
+//! | `eight` | which of eight triangles are linear |
 //! | `question` | the decision on one triangle |
 //! | `curve` | whether quadratic shades do |
 //! | `decided` | what is decided, and how that is said |
 
 mod cluster;
+mod corners;
 mod curve;
 mod decided;
+mod eight;
 mod facet;
 mod light;
 mod question;
@@ -54,6 +59,7 @@ use self::cluster::Cluster;
 pub(super) use self::cluster::{Linear, Where};
 pub(super) use self::curve::limits;
 pub(super) use self::decided::{Choice, Decided, shares};
+pub(super) use self::eight::Looked;
 use self::facet::{Facet, Strength};
 use self::light::{Towards, narrow};
 pub(super) use self::question::Question;
@@ -136,9 +142,8 @@ pub(super) struct Budget {
     adds: bool,
     /// What an edge of 1 turns the direction to the eye by, at most.
     eye_turn: f32,
-    /// For each vertex the eye, if there are highlights, and the chord between the eye and the mirrored light that is
-    /// nearest to it: no more than the angle.
-    to_eye: Vec<Towards>,
+    /// For each vertex, if there are highlights, the chord between the eye and the mirrored light that is nearest to it: no
+    /// more than the angle.
     chords: Vec<f32>,
     /// What an edge of 1 turns the direction to any lamp by, at most.
     lamp_turn: f32,
@@ -233,20 +238,24 @@ impl Budget {
                 let top = f32::from(of.last - of.first) * of.scale;
                 keeps_within(of, top * self.most_shortening)
             });
-        // And there too (see `decide_at_once`), where no corner lies farther in the light than normals differ.
+        // And there, too. Of a sun that not all corners see, normals put the brightest P in the light and another
+        // a − P in the dark at most; so linear shades are off by P(a − P)/a, and bent by that share of P: together no more
+        // than a(1 + bend)²/4. Of one that all see they are bent by that share of a, which is less. (What they lose for
+        // want of length makes them darker, and not more than above.)
+        let mixed = (1.0 + self.bend) * (1.0 + self.bend) / 4.0;
         self.linear_throughout = self.linear_unless_mixed
+            && self.adds
             && self.strengths.iter().all(|of| {
-                let brightest = f32::from(of.dark - of.first) * of.scale + of.body;
-                let is_clamped = brightest >= f32::from(of.last - of.first) * of.scale;
-                !is_clamped && keeps_within(of, of.body * self.most_spread * (0.25 + self.most_shortening))
+                // One step more, as the shade without light is rounded.
+                let brightest = f32::from(of.dark - of.first + 1) * of.scale + of.body;
+                let lost = (brightest - f32::from(of.last - of.first) * of.scale).max(0.0);
+                of.body * self.most_spread * mixed + lost + LINEAR <= self.allowed
+                    && keeps_within(of, f32::from(of.last - of.first) * of.scale * self.most_shortening + lost)
             });
         self.linear.clear();
         if !self.linear_unless_mixed {
             self.linear.extend(self.clusters.iter().map(|of| of.linear(object, &self.strengths, allowed)));
         }
-        // Where any face has to be looked at, what its corners see has to be known.
-        let looks = self.linear.iter().any(|linear| *linear != Linear::All);
-        let positions = geometry.positions.iter();
         if !same {
             self.lamps.clear();
             self.lamps.extend(lights.lamps.iter().map(|lamp| {
@@ -255,61 +264,31 @@ impl Budget {
             }));
             self.to_lamps.clear();
         }
-        if looks && self.to_lamps.is_empty() {
+        // Where any face has to be looked at, what its corners see has to be known.
+        if self.to_lamps.is_empty() && self.linear.iter().any(|linear| *linear != Linear::All) {
             self.to_lamps.extend(lights.lamps.iter().flat_map(|lamp| {
                 let at = narrow(lamp.position);
-                positions.clone().map(move |position| Towards::new(at - *position))
+                geometry.positions.iter().map(move |position| Towards::new(at - *position))
             }));
         }
-        self.to_eye.clear();
         self.eye_turn = 0.0;
-        if self.simple {
-            return;
-        }
         if self.strengths.iter().any(|of| of.curvature != 0.0) {
-            let eye = narrow(lights.eye);
-            self.to_eye.extend(positions.map(|position| Towards::new(eye - *position)));
-            // The eye is at least this far away.
-            let nearest = |of: &[Towards]| of.iter().map(|of| of.distance).fold(f32::INFINITY, f32::min);
-            self.eye_turn = 1.0 / nearest(&self.to_eye);
-            self.lamp_turn = 1.0 / nearest(&self.to_lamps);
-            self.find_chords(geometry, lights);
-        }
-    }
-
-    /// Finds out how far highlights are from the vertices.
-    #[inline(never)]
-    fn find_chords(&mut self, geometry: &Geometry<'_>, lights: &Lights<'_>) {
-        self.chords.clear();
-        self.chords.resize(self.to_eye.len(), 2.0);
-        let vertices = geometry.normals.iter().zip(&self.to_eye);
-        let chord = |normal: &Vec3, eye: &Towards, light: Vec3| {
-            let along = 2.0 * normal.dot(light) * normal.dot(eye.direction) - light.dot(eye.direction);
-            libm::sqrtf((2.0 - 2.0 * along).max(0.0))
-        };
-        for sun in lights.suns {
-            for (least, (normal, eye)) in self.chords.iter_mut().zip(vertices.clone()) {
-                *least = least.min(chord(normal, eye, sun.towards));
-            }
-        }
-        for to_lamp in self.to_lamps.chunks_exact(self.to_eye.len().max(1)) {
-            for ((least, (normal, eye)), lamp) in self.chords.iter_mut().zip(vertices.clone()).zip(to_lamp) {
-                *least = least.min(chord(normal, eye, lamp.direction));
-            }
+            self.find_chords(object);
         }
     }
 
     /// What is seen of a highlight on a face at most, if that is no more than three quarters of what is allowed: it is so
-    /// far from each corner, and from there no point is farther than the share of an edge that is in `light`.
+    /// far from each corner, and from the nearest no point is farther than the shares that are in `light`.
     #[inline]
-    fn faint_highlight(&self, question: &Question<'_>, facet: &Facet, strength: &Strength) -> Option<f32> {
-        let [a, b, c] = question.indices.map(|i| self.chords[i as usize]);
-        let turn = 2.0 * facet.spread + facet.edge * (self.eye_turn + self.lamp_turn);
+    fn faint_highlight(&self, indices: [u32; 3], facet: &Facet, strength: &Strength) -> Option<f32> {
+        let [a, b, c] = indices.map(|i| self.chords[i as usize]);
+        let turn =
+            2.0 * light::APART_ANGLE * facet.spread + light::APART_TURN * facet.edge * (self.eye_turn + self.lamp_turn);
         // Where that is more it says nothing.
         if facet.edge * self.eye_turn.max(self.lamp_turn) >= 0.5 || facet.spread >= 1.5 {
             return None;
         }
-        let nearest = a.min(b).min(c) - light::FROM_ONE * 1.2 * turn;
+        let nearest = a.min(b).min(c) - turn;
         let faint = strength.faint_from.iter().zip(QUARTERS).find(|(from, _)| nearest >= **from);
         faint.map(|(_, quarters)| quarters * self.allowed / 4.0)
     }
@@ -318,7 +297,7 @@ impl Budget {
     /// clusters ask of them. Of three channels, `extras` has the shades.
     #[inline(never)]
     pub(super) fn mark(&self, object: &Lit<'_>, lit: &mut LitVertices, extras: &[Extra]) {
-        let Lit { geometry, lights, .. } = *object;
+        let Lit { geometry, .. } = *object;
         if self.linear_throughout {
             return;
         }
@@ -345,18 +324,7 @@ impl Budget {
                 }
             }
         }
-        for (i, sun) in (0..LIGHTS).zip(lights.suns) {
-            for (flags, normal) in lit.flags.iter_mut().zip(geometry.normals) {
-                *flags |= u8::from(normal.dot(sun.towards) > 0.0) << i;
-            }
-        }
-        for (i, lamp) in (lights.suns.len()..LIGHTS).zip(lights.lamps) {
-            let at = narrow(lamp.position);
-            for (flags, (normal, position)) in lit.flags.iter_mut().zip(geometry.normals.iter().zip(geometry.positions))
-            {
-                *flags |= u8::from(normal.dot(at - *position) > 0.0) << i;
-            }
-        }
+        corners::mark(object, &mut lit.flags);
     }
 
     /// Which faces of a cluster are known to be linear.
@@ -382,6 +350,12 @@ impl Budget {
         same && !clamped && (from == 0.0 || corners.into_iter().all(|i| self.chords[i] >= from))
     }
 
+    /// Whether there are suns alone and no highlight, so that `decide_at_once` may say something.
+    #[inline]
+    pub(in crate::render) fn is_simple(&self) -> bool {
+        self.simple
+    }
+
     /// Whether a vertex says by its shades which sun it sees: there is one, and no other light. Only what it sees by
     /// less than a step of its shades goes unnoticed.
     #[inline]
@@ -401,8 +375,8 @@ impl Budget {
             + self.clusters.capacity() * size_of::<Cluster>()
             + self.linear.capacity() * size_of::<Linear>()
             + self.chords.capacity() * size_of::<f32>()
-            + (self.to_eye.capacity() + self.to_lamps.capacity()) * size_of::<Towards>()
             + self.lamps.capacity() * size_of::<(f32, f32)>()
+            + self.to_lamps.capacity() * size_of::<Towards>()
             + self.strengths.capacity() * size_of::<Strength>()
             + self.suns.capacity() * size_of::<Beam>()
             + self.known_lamps.capacity() * size_of::<LampBeam>()

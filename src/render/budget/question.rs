@@ -3,18 +3,15 @@
 use glam::Vec3;
 
 use super::decided::Choice;
-use super::light::{OneLight, Towards};
+use super::light::{OneLight, Towards, narrow};
 use super::{Budget, EXACT, LINEAR, brightest, highlight, parts};
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::Apart;
-use crate::render::face::Faces;
+use crate::render::face::{Faces, WORTH_SAMPLES};
 use crate::render::lit::LitVertices;
 use crate::span::Kernel;
 use crate::span::lit::LANES;
-
-/// Pixels from which on it pays to light a face at some points before it is lit at all of them.
-const WORTH_SAMPLES: f32 = 5.0;
 
 /// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
 const WORTH_KNOTS: f32 = 16.0;
@@ -101,7 +98,8 @@ impl Budget {
             apart / 4.0
         };
         // A corner's shade lies in its ramp.
-        let model = clamp + f32::from(most - strength.first) * strength.scale * facet.shortening;
+        let short = f32::from(most - strength.first) * strength.scale * facet.shortening;
+        let model = if self.adds { clamp.max(short) } else { clamp + short };
         if least == most {
             return if model + EXACT <= self.allowed { Choice::Flat } else { Choice::Unknown };
         }
@@ -165,7 +163,7 @@ impl Faces<'_> {
         let lamps = !self.lights.lamps.is_empty();
         let near = model <= spare;
         let highlights = strength.curvature > 0.0;
-        let faint = if highlights { budget.faint_highlight(question, facet, strength) } else { None };
+        let faint = if highlights { budget.faint_highlight(question.indices, facet, strength) } else { None };
         if let Some(faint) = faint
             && !lamps
             && !some
@@ -186,7 +184,7 @@ impl Faces<'_> {
                 _ if known + lost > spare => known + lost,
                 _ => self.model_error(budget, question, 1.0, spare, Some(known)) + lost,
             };
-            if model > spare && question.pixels() >= WORTH_SAMPLES {
+            if model > spare && question.pixels() >= WORTH_SAMPLES as f32 {
                 model = self.error_between_samples(budget, question, spare);
             }
         }
@@ -255,13 +253,19 @@ impl Faces<'_> {
         OneLight {
             facet: &budget.facets[question.triangle],
             normals: corners.map(|i| self.geometry.normals[i] * side),
-            to_eye: if ks == 0.0 { [Towards::default(); 3] } else { corners.map(|i| budget.to_eye[i]) },
+            to_eye: if ks == 0.0 { [Towards::default(); 3] } else { self.seen_from(question, self.lights.eye) },
             kd: paint.answer.diffuse.abs() as f32 * 255.0,
             ks,
             shininess,
             part,
             below: false,
         }
+    }
+
+    /// Where a point is, from the corners.
+    fn seen_from(&self, question: &Question<'_>, point: [f64; 3]) -> [Towards; 3] {
+        let point = narrow(point);
+        question.indices.map(|i| Towards::new(point - self.geometry.positions[i as usize]))
     }
 
     /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it. `body`
@@ -281,7 +285,6 @@ impl Faces<'_> {
         limit: f32,
         body: Option<f32>,
     ) -> f32 {
-        let corners = question.indices.map(|i| i as usize);
         let mut sum = body.unwrap_or_else(|| self.body_error(budget, question, light, limit));
         if light.ks == 0.0 || sum > limit {
             return sum;
@@ -293,9 +296,10 @@ impl Faces<'_> {
                 return sum;
             }
         }
-        let vertices = self.geometry.positions.len();
+        let (corners, vertices) = (question.indices.map(|i| i as usize), self.geometry.positions.len());
         for (&(inverse_range, intensity), to_lamp) in budget.lamps.iter().zip(budget.to_lamps.chunks_exact(vertices)) {
-            sum += light.highlight_of_lamp(corners.map(|i| to_lamp[i]), inverse_range, intensity, limit - sum);
+            let to_lamp = corners.map(|i| to_lamp[i]);
+            sum += light.highlight_of_lamp(to_lamp, inverse_range, intensity, limit - sum);
             if sum > limit {
                 return sum;
             }
@@ -306,7 +310,6 @@ impl Faces<'_> {
     /// The same without highlights: where the eye is makes no difference.
     #[inline(never)]
     fn body_error(&self, budget: &Budget, question: &Question<'_>, light: &OneLight<'_>, limit: f32) -> f32 {
-        let corners = question.indices.map(|i| i as usize);
         let answer = &self.paints[usize::from(question.surface)].answer;
         // Each channel for itself: what is red adds nothing to what is off on green.
         let mut sums = [0.0_f32; 3];
@@ -323,10 +326,11 @@ impl Faces<'_> {
                 return most;
             }
         }
-        let vertices = self.geometry.positions.len();
+        let (corners, vertices) = (question.indices.map(|i| i as usize), self.geometry.positions.len());
         let lamps = self.lights.lamps.iter().zip(&budget.lamps);
         for ((lamp, &(inverse_range, _)), to_lamp) in lamps.zip(budget.to_lamps.chunks_exact(vertices)) {
-            most = add(light.body_of_lamp(corners.map(|i| to_lamp[i]), inverse_range), lamp.intensity, lamp.channels);
+            let to_lamp = corners.map(|i| to_lamp[i]);
+            most = add(light.body_of_lamp(to_lamp, inverse_range), lamp.intensity, lamp.channels);
             if most > limit {
                 return most;
             }

@@ -23,8 +23,10 @@ impl Listed {
 
     /// Puts those of 64 faces behind the others whose bits are set, from number `first` on. Only if there is no whole batch.
     #[inline(always)]
-    pub(crate) fn add(&mut self, first: u32, chosen: u64, turned: u64, kernel: Kernel) {
+    pub(crate) fn add(&mut self, (first, turned): (usize, u64), chosen: u64, kernel: Kernel) {
         debug_assert!(self.count < Batch::CAPACITY);
+        // Below `TURNED`, or there is no list.
+        let first = first as u32;
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx512() {
             return super::avx512::list(self, first, chosen, turned);
@@ -89,7 +91,7 @@ mod tests {
                 for (chunk, &(bits, fewer, turned, all)) in (0_u32..).zip(&parts) {
                     let chosen = if all { !0 } else { bits & fewer };
                     let first = chunk * 64;
-                    listed.add(first, chosen, turned, kernel);
+                    listed.add((first as usize, turned), chosen, kernel);
                     let is = |bits: u64, at: u32| bits >> at & 1 == 1;
                     let number = |at: u32| (first + at) | if is(turned, at) { TURNED } else { 0 };
                     expected.extend((0..64).filter(|&at| is(chosen, at)).map(number));
