@@ -61,7 +61,7 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
 /// The same at eight pixels of different rows: `a` and `d` are each one's own.
 #[inline]
 #[must_use]
-pub(crate) fn interpolate_each(
+pub fn interpolate_each(
     places: &Lanes<f64>,
     a: &[Lanes<f64>; 6],
     da: &[f64; 6],
@@ -90,7 +90,7 @@ impl Kernel {
     /// [`interpolate_each`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
-    pub(crate) fn interpolate_each(
+    pub fn interpolate_each(
         self,
         places: &Lanes<f64>,
         a: &[Lanes<f64>; 6],
