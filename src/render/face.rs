@@ -356,10 +356,7 @@ impl Faces<'_> {
                 unknown |= 1 << at;
             }
         }
-        if unknown == 0 {
-            return (settled, 0);
-        }
-        if vain.is_chunk() {
+        if unknown == 0 || vain.is_chunk() {
             return (settled, 0);
         }
         let asked = unknown.count_ones();
