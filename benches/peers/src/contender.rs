@@ -30,14 +30,14 @@ pub enum Shade {
     Flat,
 }
 
-/// Everybody, with these triangles.
-pub fn all(triangles: &[[Vertex; 3]], shade: Shade) -> Vec<Box<dyn Contender>> {
+/// Everybody, with these triangles; ours with this kernel and the portable one.
+pub fn all(triangles: &[[Vertex; 3]], shade: Shade, kernel: Kernel) -> Vec<Box<dyn Contender>> {
     let mut all: Vec<Box<dyn Contender>> = vec![
         Box::new(Allegro::<Float>::new(triangles, shade)),
         Box::new(Allegro::<Fixed>::new(triangles, shade)),
         Box::new(Retrofire::new(triangles, shade)),
     ];
-    for kernel in [Kernel::PORTABLE, Kernel::fastest()] {
+    for kernel in [Kernel::PORTABLE, kernel] {
         all.push(Box::new(Ours::new(triangles, shade, kernel)));
         all.push(Box::new(Batches::new(triangles, shade, kernel)));
     }

@@ -1,7 +1,7 @@
 //! mode13h side by side with Allegro 4, retrofire and Mesa's llvmpipe, on the same triangles.
 //!
 //! ```text
-//! cargo run --release -- [--rabbit MODEL.obj] [--json FILE] [--no-frames] [--only TEXT] [MODEL.obj | TRIANGLES.tri] ...
+//! cargo run --release -- [--rabbit MODEL.obj] [--json FILE] [--no-frames] [--only TEXT] [--kernel NAME] [MODEL.obj | TRIANGLES.tri] ...
 //! ```
 //!
 //! Triangles: a cleared frame of 320 × 200, then all front faces, back to front, without a depth buffer;
@@ -20,6 +20,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use contender::{Contender, Shade};
+use mode13h::span::Kernel;
 use serde_json::{Value, json};
 use timing::{ROUNDS, Times};
 use workload::Workload;
@@ -35,11 +36,20 @@ struct Options {
     json: Option<PathBuf>,
     frames: bool,
     only: String,
+    /// Ours besides the portable one.
+    kernel: Kernel,
     files: Vec<String>,
 }
 
 fn options() -> Result<Options, String> {
-    let mut options = Options { rabbit: None, json: None, frames: true, only: String::new(), files: Vec::new() };
+    let mut options = Options {
+        rabbit: None,
+        json: None,
+        frames: true,
+        only: String::new(),
+        kernel: Kernel::fastest(),
+        files: Vec::new(),
+    };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut next = || words.next().ok_or(format!("{word} is followed by nothing"));
@@ -47,6 +57,7 @@ fn options() -> Result<Options, String> {
             "--rabbit" => options.rabbit = Some(next()?.into()),
             "--json" => options.json = Some(next()?.into()),
             "--only" => options.only = next()?,
+            "--kernel" => options.kernel = Kernel::by_name(&next()?).map_err(|error| error.to_string())?,
             "--no-frames" => options.frames = false,
             _ if word.starts_with('-') => return Err(format!("no such option: {word}")),
             _ => options.files.push(word),
@@ -76,7 +87,7 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
         let mut rows = Vec::new();
         println!("\nTriangles, {shade:?}: ns a triangle; holes, extra pixels and largest shade error of {COMPARED}");
         for workload in &workloads {
-            rows.push(triangles(workload, shade));
+            rows.push(triangles(workload, shade, options.kernel));
         }
         tables.push(json!({ "shade": format!("{shade:?}"), "workloads": rows }));
     }
@@ -89,7 +100,7 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
         );
         for workload in &workloads {
             if let Some(mesh) = &workload.mesh {
-                frames.push(frame(&workload.name, mesh)?);
+                frames.push(frame(&workload.name, mesh, options.kernel)?);
             }
         }
     }
@@ -109,8 +120,8 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
 }
 
 /// One row of the table of triangles.
-fn triangles(workload: &Workload, shade: Shade) -> Value {
-    let mut contenders = contender::all(&workload.triangles, shade);
+fn triangles(workload: &Workload, shade: Shade, kernel: Kernel) -> Value {
+    let mut contenders = contender::all(&workload.triangles, shade, kernel);
     let count = workload.triangles.len();
     let turns = contenders.iter_mut().map(|c| turns(c.as_mut())).collect::<Vec<_>>();
     let mut times = vec![Times::new(); contenders.len()];
@@ -141,7 +152,7 @@ fn triangles(workload: &Workload, shade: Shade) -> Value {
     );
     let mut rows = Vec::new();
     for (i, (contender, times)) in contenders.iter().zip(&times).enumerate() {
-        let errors = truth::errors(&compared, shade, i);
+        let errors = truth::errors(&compared, shade, kernel, i);
         println!(
             "  {:<24}{:>10.1} best{:>10.1} median{:>8.2} × best peer{:>7} holes{:>7} extra{:>8.2} shades",
             contender.name(),
@@ -189,8 +200,8 @@ fn turns(contender: &mut dyn Contender) -> u32 {
 }
 
 /// One row of the table of frames.
-fn frame(name: &str, mesh: &mode13h::mesh::Mesh) -> Result<Value, Box<dyn Error>> {
-    let whole = whole::measure(mesh)?;
+fn frame(name: &str, mesh: &mode13h::mesh::Mesh, kernel: Kernel) -> Result<Value, Box<dyn Error>> {
+    let whole = whole::measure(mesh, kernel)?;
     let faces = mesh.triangles().len();
     let each = |times: &Times| times.best() * 1e9 / faces as f64;
     let [depth, planned, mesa] = whole.times.each_ref().map(each);

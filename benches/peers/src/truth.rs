@@ -1,6 +1,7 @@
 //! What a triangle should have drawn: cover and shade in exact arithmetic, pixel by pixel.
 
 use mode13h::raster::Vertex;
+use mode13h::span::Kernel;
 
 use crate::contender::{Contender, Shade};
 use crate::{HEIGHT, WIDTH};
@@ -17,12 +18,12 @@ pub struct Errors {
 }
 
 /// Each triangle by itself, on black and on white: a pixel was drawn if it is the same on both.
-pub fn errors(triangles: &[[Vertex; 3]], shade: Shade, contender: usize) -> Errors {
+pub fn errors(triangles: &[[Vertex; 3]], shade: Shade, kernel: Kernel, contender: usize) -> Errors {
     let mut errors = Errors::default();
     let (mut black, mut white) = (vec![0; WIDTH * HEIGHT], vec![0; WIDTH * HEIGHT]);
     for vertices in triangles {
         let mut contender: Box<dyn Contender> =
-            crate::contender::all(std::slice::from_ref(vertices), shade).swap_remove(contender);
+            crate::contender::all(std::slice::from_ref(vertices), shade, kernel).swap_remove(contender);
         for (index, bytes) in [(0, &mut black), (255, &mut white)] {
             contender.clear(index);
             contender.draw();

@@ -8,6 +8,7 @@ use mode13h::mesh::Mesh;
 use mode13h::plan::Effect;
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{HiddenSurfaces, Scene};
+use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 
 use crate::timing::{ROUNDS, Times};
@@ -57,7 +58,7 @@ pub struct Whole {
     pub pixels: [usize; 2],
 }
 
-pub fn measure(mesh: &Mesh) -> Result<Whole, Box<dyn Error>> {
+pub fn measure(mesh: &Mesh, kernel: Kernel) -> Result<Whole, Box<dyn Error>> {
     let positions: Vec<[f32; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
     let normals: Vec<[f32; 3]> = mesh.normals().iter().map(|n| n.to_array()).collect();
     let indices: &[u32] = mesh.triangles().as_flattened();
@@ -71,6 +72,7 @@ pub fn measure(mesh: &Mesh) -> Result<Whole, Box<dyn Error>> {
     // Ours sees the mesh as large as it is from where it fills the frame; Mesa sees it at the unit's size.
     let scale = Scene::default().camera.eye.z / eye.z;
     let mut renderers = [Renderer::new(), Renderer::new()];
+    renderers.iter_mut().for_each(|renderer| renderer.set_kernel(kernel));
     renderers[0].set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
     // An open mesh shows its other side, too.
     let both = !renderers[0].make_plan(&scene, Screen::MODE_13H)?.is_on(0, Effect::BackFaceCulling);
