@@ -338,8 +338,7 @@ impl Budget {
                     if self.in_color
                         && let Some(extra) = extras.get(i)
                     {
-                        let sides = [extra.side(false).channels, extra.side(true).channels];
-                        for channel in sides.into_iter().flatten() {
+                        for channel in extra.front.channels.into_iter().chain(extra.back_channels) {
                             (least, most) = (least.min(channel), most.max(channel));
                         }
                     }
