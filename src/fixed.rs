@@ -279,6 +279,38 @@ mod tests {
         assert!(tried > 12_000, "{tried}");
     }
 
+    #[cfg(feature = "alloc")]
+    #[test]
+    fn eight_intensities_at_once_are_eight_intensities() {
+        let all: alloc::vec::Vec<f32> = (0..=4096_u16)
+            .map(|n| f32::from(n) / 4096.0)
+            .flat_map(|x| [x.next_down(), x, x.next_up()])
+            .chain([f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN_POSITIVE, -0.0, -1.0])
+            .collect();
+        // The last two do not fit, and saturate.
+        for (first, entries) in [(0, 256), (0, 1), (16, 64), (255, 1), (192, 63), (1, 256), (255, 256)] {
+            for eight in all.windows(8) {
+                let eight: &[f32; 8] = eight.try_into().expect("eight");
+                let expected = eight.map(|intensity| U8F8::from_intensity(intensity, first, entries));
+                assert_eq!(U8F8::from_eight_intensities(eight, first, entries), expected, "{eight:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn products_are_rounded_down_or_refused() {
+        const EDGES: [i32; 12] =
+            [i32::MIN, -0xB5_04F4, -65_537, -65_536, -1, 0, 1, 3, 65_535, 65_537, 0xB5_04F3, i32::MAX];
+        let mut fit = 0;
+        for (a, b) in EDGES.into_iter().flat_map(|a| EDGES.map(|b| (a, b))) {
+            let naive = (i128::from(a) * i128::from(b)).div_euclid(65_536);
+            let expected = i32::try_from(naive).ok().map(I16F16);
+            fit += usize::from(expected.is_some());
+            assert_eq!(I16F16(a).checked_mul_floor(I16F16(b)), expected, "{a} · {b}");
+        }
+        assert!((60..130).contains(&fit), "{fit} of 144");
+    }
+
     #[test]
     fn what_does_not_fit_is_refused() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 8_388_608.0, -8_388_609.0] {

@@ -3,7 +3,7 @@
 
 mod support;
 
-use mode13h::raster::{Batch, Drawn, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::raster::{Batch, DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex};
 use mode13h::span::Kernel;
 use support::oracle;
 use support::random::Random;
@@ -197,12 +197,54 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
         };
         let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
         for kernel in Kernel::available() {
-            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
+            // None reaches beyond the frame.
+            let clips = random.within(0, 1) == 0;
+            let draw = |raster: &mut Raster<'_>| if clips { raster.batch(&batch) } else { raster.batch_inside(&batch) };
+            let batched = drawn(&place, kernel, draw, draw);
             assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
         }
         total += expected.2;
     }
     assert!(total.pixels > 10_000_000 && total.tested > 10_000_000, "{total:?}");
+}
+
+/// A depth buffer laid over other rows than the frame's: those that it lacks are not drawn, as one by one.
+#[test]
+fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
+    const WIDTH: u32 = 32;
+    let mut random = Random::named("batches and other rows' depths");
+    let (mut missed, mut written) = (0, 0);
+    for (rows, held) in [(0..8, 8..16), (8..16, 0..8), (0..8, 3..11), (3..11, 0..8), (0..8, 0..5), (0..5, 0..8)] {
+        for _ in 0..50 {
+            let (mut batch, mut triangles) = (Batch::new(), Vec::new());
+            for _ in 0..50 {
+                let (vertices, shading) = (small(&mut random, WIDTH.into(), 16, 900), shading(&mut random));
+                assert!(batch.push(&vertices, shading));
+                triangles.push((vertices, shading));
+            }
+            let on = |kernel: Kernel, draw: &dyn Fn(&mut Raster<'_>) -> Drawn| {
+                let (mut bytes, mut depths) = ([99; 8 * WIDTH as usize], [5; 8 * WIDTH as usize]);
+                let mut other = bytes;
+                let other = Frame::band(&mut other, WIDTH, 16, WIDTH as usize, held.clone()).expect("legal");
+                let frame = Frame::band(&mut bytes, WIDTH, 16, WIDTH as usize, rows.clone()).expect("legal");
+                let depth = DepthBuffer::new(&mut depths, &other).expect("long enough");
+                let drawn = draw(&mut Raster::new(frame).with_kernel(kernel).with_depth(depth));
+                (bytes, depths, drawn)
+            };
+            let expected = on(Kernel::PORTABLE, &|raster| {
+                let mut sum = Drawn::default();
+                triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
+                sum
+            });
+            missed += expected.2.covered - expected.2.tested;
+            written += expected.2.pixels;
+            for kernel in Kernel::available() {
+                let batched = on(kernel, &|raster| raster.batch(&batch));
+                assert!(batched == expected, "{kernel}, {rows:?} and {held:?}: {:?}, {:?}", batched.2, expected.2);
+            }
+        }
+    }
+    assert!(missed > 5_000 && written > 5_000, "{missed} pixels missed, {written} written");
 }
 
 #[test]

@@ -321,7 +321,7 @@ fn triangles_with_effects_are_the_oracles() {
     let mut random = Random::named("effects");
     let stock = Stock::new(&mut random);
     let kernels: Vec<Kernel> = Kernel::available().collect();
-    let mut pixels = 0_u64;
+    let (mut pixels, mut inside) = (0_u64, 0);
     while tried.more() {
         let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
         let attributes = attributes(&mut random);
@@ -362,8 +362,18 @@ fn triangles_with_effects_are_the_oracles() {
             let inside = (clip.x0..clip.x1).contains(&x) && (clip.y0..clip.y1).contains(&y);
             assert_eq!(clipped[place], if inside { bytes[place] } else { BEFORE }, "({x}, {y}) in {clip:?}");
         }
+        // Wholly inside the frame it is the same without a look at the frame's edges.
+        let within = |bits: i32, side: i32| (0..=side * 256).contains(&bits);
+        if vertices.iter().all(|v| within(v.x().to_bits(), WIDTH) && within(v.y().to_bits(), HEIGHT)) {
+            let mut unclipped = vec![BEFORE; (WIDTH * HEIGHT) as usize];
+            let frame = Frame::new(&mut unclipped, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+            Raster::new(frame).triangle_with_effects_inside(&vertices, &attributes, &look);
+            assert_eq!(unclipped, bytes, "{vertices:?}");
+            inside += usize::from(bytes.iter().any(|byte| *byte != BEFORE));
+        }
     }
     assert!(pixels > 300_000, "{pixels} pixels were compared");
+    assert!(inside > 80, "{inside} drawn as lying inside the frame");
 }
 
 /// With a depth buffer a pixel is drawn where it is nearer, and the depth is kept if the look says so.

@@ -171,6 +171,26 @@ mod tests {
         (-20_000..100_000_i32, -20_000..20_000_i32, shade, depth)
     }
 
+    /// One shade all over, half a shade below a step: every exact quotient is a whole number. The row's last pixel is 1 unit
+    /// from the far edge, where the divisor is 2³⁰ times less than at its first and holds little but the first's rounding.
+    #[test]
+    fn where_the_divisor_falls_too_far_there_is_no_estimate() {
+        for (last, height) in (200..4_000).step_by(19).zip((20_000..1 << 20).step_by(997)) {
+            let right = last * 256 + 128;
+            // At the centre of row 0 the edge on the right is 1/height right of the last pixel's centre.
+            let corners = [(0, 127, u32::MAX), (right, 127, 1), (right + 1, 127 + height, 1)];
+            let vertices = corners.map(|(x, y, depth)| {
+                Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from_bits(0x4080), depth).expect("in range")
+            });
+            let triangle = Ordered::new(&vertices);
+            let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
+            let mut bytes = [0; 4096];
+            let length = last as usize + 1;
+            plane.fill(0, 0, &mut bytes[..length]);
+            assert!(bytes[..length].iter().all(|byte| *byte == 0x41), "{vertices:?}");
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
         /// Whole rows, and parts of them.

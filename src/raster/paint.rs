@@ -310,3 +310,38 @@ fn starts(row: &Row, shade: &ShadePlane, reseeded: bool, mut span: impl FnMut(Ra
         x = end;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::frame::Rect;
+    use super::super::vertex::Vertex;
+    use super::*;
+    use crate::fixed::{I24F8, U8F8};
+
+    /// Where nothing is nearer, every kind is painted as without depths.
+    #[test]
+    fn rows_where_nearer_are_rows() {
+        const WIDTH: u32 = 200;
+        let corners = [(-900, 300, 0x1280, 9), (40_000, -70, 0xFF00, 1 << 30), (51_300, 5_000, 0x40, 77)];
+        let vertices = corners.map(|(x, y, shade, depth)| {
+            Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from_bits(shade), depth).expect("in range")
+        });
+        let triangle = Ordered::new(&vertices);
+        let depths = DepthPlane::new(&triangle);
+        let ramp = Paint::Ramp(PeriodTriangle::new(&triangle, triangle.shades()).ramp(7));
+        let paints = Shading::INTERPOLATED.iter().map(|shading| Paint::new(&triangle, *shading));
+        for paint in paints.chain([Paint::Flat(9), ramp]) {
+            let mut rows = 0;
+            triangle.rows(WIDTH, Rect { x0: 0, y0: 0, x1: WIDTH, y1: 20 }, |row| {
+                let (mut bytes, mut nearer, mut cells) = ([3; 200], [3; 200], [0_u32; 200]);
+                let (mut drawn, mut tested) = (Drawn::default(), Drawn::default());
+                paint.row(&row, &mut bytes, Kernel::PORTABLE, &mut drawn);
+                paint.row_where_nearer(&row, &mut nearer, &mut cells, &depths, &mut tested);
+                assert_eq!(nearer, bytes, "{row:?} of {paint:?}");
+                assert_eq!((tested.pixels, drawn.pixels), (row.range().len() as u32, row.range().len() as u32));
+                rows += 1;
+            });
+            assert!(rows > 10, "{rows}");
+        }
+    }
+}

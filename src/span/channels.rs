@@ -30,7 +30,8 @@ static BETWEEN: [Between; 256] = {
     let mut table = [Between { level: 0, next_below: 0 }; 256];
     let (mut value, mut level) = (0, 0);
     while value < 256 {
-        if level < 5 && value == LEVELS[level + 1] as usize {
+        // The last level is the last value, so there is always a next.
+        if value == LEVELS[level + 1] as usize {
             level += 1;
         }
         if level < 5 {
