@@ -85,7 +85,8 @@ impl Cones {
         Self(cones)
     }
 
-    /// A bit for each face that is one of four which see a sun from all of their corners, or from none.
+    /// A bit for each face that is one of four which see a sun from all of their corners, or from none; bits beyond the last face
+    /// say nothing.
     #[inline]
     pub(super) fn unmixed(&self, towards: Vec3) -> u64 {
         let towards = towards.to_array().map(|axis| [axis; LANES]);
@@ -335,7 +336,8 @@ mod tests {
             }
             // Far from the horizon they do say it.
             if wide < 0.1 && towards.y.abs() > 0.3 {
-                prop_assert_eq!(unmixed.count_ones(), triangles.len().min(64) as u32);
+                // Of four that are not all there no more is said than of those that are.
+                prop_assert!((0..triangles.len()).all(|at| unmixed >> at & 1 == 1));
             }
         }
     }
