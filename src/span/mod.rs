@@ -251,6 +251,12 @@ impl Kernel {
         spans: &[list::Listed],
         depths: &[list::Depths],
     ) -> u32 {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if self.has_avx2()
+            && let Some(cells) = D::as_u32(cells)
+        {
+            return simd::nearer::fill_list(pixels, cells, spans, depths);
+        }
         list::each_nearer(pixels, cells, spans, depths)
     }
 

@@ -238,6 +238,9 @@ pub(super) mod sse2 {
 }
 
 #[cfg(target_arch = "x86_64")]
+pub(super) mod nearer;
+
+#[cfg(target_arch = "x86_64")]
 pub(super) mod avx2 {
     use super::super::list::{Listed, each};
     use super::sse2;

@@ -1,0 +1,136 @@
+//! The span with a depth test by AVX2: eight pixels a turn.
+//!
+//! Of the last turn of a span the pixels that it does not have are given depth 0, which is nearer than nothing, so that they
+//! are written as they were read: AVX2 has masked stores of 32 bits alone, and on some processors they are slow. So eight
+//! pixels and eight cells from the start of each turn on have to be there, of whichever row; a span at the very end of the
+//! frame that lacks them is drawn by [`fill_nearer`].
+
+use core::arch::x86_64::*;
+
+use super::super::depth::fill_nearer;
+use super::super::list::{Depths, Listed};
+
+/// Pixels a turn.
+const EIGHT: usize = 8;
+
+/// Every span of a list, only for a processor for which `avx2::found` is true. Returns the number of pixels written.
+pub(crate) fn fill_list(pixels: &mut [u8], cells: &mut [u32], spans: &[Listed], depths: &[Depths]) -> u32 {
+    // SAFETY: the kernel that calls this is given out only where AVX2 was found.
+    unsafe { list(pixels, cells, spans, depths) }
+}
+
+#[target_feature(enable = "avx2")]
+fn list(pixels: &mut [u8], cells: &mut [u32], spans: &[Listed], depths: &[Depths]) -> u32 {
+    // Of each lane, pixels that were not written, as a number below 0; and pixels of all turns.
+    let (mut stayed, mut turned) = (_mm256_setzero_si256(), 0);
+    let mut written = 0;
+    let mut stayed4 = _mm_setzero_si128();
+    for (span, depth) in spans.iter().zip(depths) {
+        let (at, cell, length) = (span.at as usize, depth.at as usize, span.length as usize);
+        if length <= 4 {
+            let row = pixels.get_mut(at..at + 4).and_then(|row| row.first_chunk_mut());
+            let near = cells.get_mut(cell..cell + 4).and_then(|cells| cells.first_chunk_mut());
+            if let (Some(row), Some(near)) = (row, near) {
+                stayed4 = _mm_add_epi32(stayed4, four(row, near, span, depth));
+                turned += 4;
+                continue;
+            }
+        }
+        let whole = length.next_multiple_of(EIGHT);
+        let row = pixels.get_mut(at..at + whole);
+        if let (Some(row), Some(near)) = (row, cells.get_mut(cell..cell + whole)) {
+            stayed = _mm256_add_epi32(stayed, turns(row, near, span, depth));
+            // At most 4,096 more.
+            turned += whole as u32;
+            continue;
+        }
+        let row = pixels.get_mut(at..at + length);
+        if let (Some(row), Some(near)) = (row, cells.get_mut(cell..cell + length)) {
+            written += fill_nearer(row, near, span.shade, span.step, depth.z, depth.dz);
+        }
+    }
+    stayed = _mm256_add_epi32(stayed, _mm256_zextsi128_si256(stayed4));
+    written + turned.wrapping_add_signed(sum(stayed))
+}
+
+/// One span, in turns of eight. Returns of each lane the pixels that were not written, as a number below 0.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn turns(row: &mut [u8], cells: &mut [u32], span: &Listed, depth: &Depths) -> __m256i {
+    let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    // The whole part of a depth in the upper half; the rest is meant modulo 2⁶⁴. So arranged that the upper halves of both
+    // are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
+    let dz = _mm256_set1_epi64x(depth.dz << 8);
+    let odd = _mm256_and_si256(dz, _mm256_setr_epi64x(0, -1, 0, -1));
+    let later = _mm256_and_si256(_mm256_slli_epi64(dz, 2), _mm256_setr_epi64x(0, 0, -1, -1));
+    let mut z0 = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(depth.z << 8), odd), later);
+    let mut z1 = _mm256_add_epi64(z0, _mm256_slli_epi64(dz, 1));
+    let next_z = _mm256_slli_epi64(dz, 3);
+    // shade + k·step, of which bits 8 to 15 count.
+    let paint = _mm256_set1_epi32(i32::from(span.shade) | i32::from(span.step) << 16);
+    let mut shades = _mm256_madd_epi16(paint, _mm256_or_si256(_mm256_slli_epi32(lanes, 16), _mm256_set1_epi32(1)));
+    let next_shade = _mm256_set1_epi32(i32::from(span.step) << 3);
+    // At most 4,096.
+    let mut left = span.length as i32;
+    let mut stayed = _mm256_setzero_si256();
+    for (pixels, cells) in row.as_chunks_mut::<EIGHT>().0.iter_mut().zip(cells.as_chunks_mut::<EIGHT>().0) {
+        let upper = _mm256_shuffle_ps(_mm256_castsi256_ps(z0), _mm256_castsi256_ps(z1), 0b11_01_11_01);
+        let are_there = _mm256_cmpgt_epi32(_mm256_set1_epi32(left), lanes);
+        let depths = _mm256_and_si256(_mm256_castps_si256(upper), are_there);
+        // SAFETY: eight u32; the load asks for no alignment.
+        let before = unsafe { _mm256_loadu_si256(cells.as_ptr().cast()) };
+        let after = _mm256_max_epu32(before, depths);
+        let stay = _mm256_cmpeq_epi32(before, after);
+        // SAFETY: eight u32; the store asks for no alignment.
+        unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), after) };
+        // SAFETY: eight bytes; the load asks for no alignment.
+        let bytes = _mm256_cvtepu8_epi32(unsafe { _mm_loadl_epi64(pixels.as_ptr().cast()) });
+        let bytes = _mm256_blendv_epi8(_mm256_srli_epi32(shades, 8), bytes, stay);
+        // The lowest byte of each.
+        let fours = _mm256_shuffle_epi8(bytes, _mm256_set1_epi32(0x0C08_0400));
+        let eight = _mm_unpacklo_epi32(_mm256_castsi256_si128(fours), _mm256_extracti128_si256(fours, 1));
+        // SAFETY: eight bytes; the store asks for no alignment.
+        unsafe { _mm_storel_epi64(pixels.as_mut_ptr().cast(), eight) };
+        stayed = _mm256_add_epi32(stayed, stay);
+        (z0, z1) = (_mm256_add_epi64(z0, next_z), _mm256_add_epi64(z1, next_z));
+        shades = _mm256_add_epi32(shades, next_shade);
+        left -= EIGHT as i32;
+    }
+    stayed
+}
+
+/// One span of up to four pixels.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn four(row: &mut [u8; 4], cells: &mut [u32; 4], span: &Listed, depth: &Depths) -> __m128i {
+    let lanes = _mm_setr_epi32(0, 1, 2, 3);
+    let dz = _mm_set1_epi64x(depth.dz << 8);
+    let z0 = _mm_add_epi64(_mm_set1_epi64x(depth.z << 8), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
+    let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
+    let paint = _mm_set1_epi32(i32::from(span.shade) | i32::from(span.step) << 16);
+    let shades = _mm_madd_epi16(paint, _mm_or_si128(_mm_slli_epi32(lanes, 16), _mm_set1_epi32(1)));
+    let upper = _mm_shuffle_ps(_mm_castsi128_ps(z0), _mm_castsi128_ps(z1), 0b11_01_11_01);
+    let are_there = _mm_cmpgt_epi32(_mm_set1_epi32(span.length as i32), lanes);
+    let depths = _mm_and_si128(_mm_castps_si128(upper), are_there);
+    // SAFETY: four u32; the load asks for no alignment.
+    let before = unsafe { _mm_loadu_si128(cells.as_ptr().cast()) };
+    let after = _mm_max_epu32(before, depths);
+    let stay = _mm_cmpeq_epi32(before, after);
+    // SAFETY: four u32; the store asks for no alignment.
+    unsafe { _mm_storeu_si128(cells.as_mut_ptr().cast(), after) };
+    let bytes = _mm_cvtepu8_epi32(_mm_cvtsi32_si128(i32::from_le_bytes(*row)));
+    let bytes = _mm_blendv_epi8(_mm_srli_epi32(shades, 8), bytes, stay);
+    // The lowest byte of each.
+    let bytes = _mm_shuffle_epi8(bytes, _mm_set1_epi32(0x0C08_0400));
+    *row = _mm_cvtsi128_si32(bytes).to_le_bytes();
+    stay
+}
+
+/// Of all eight lanes.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn sum(lanes: __m256i) -> i32 {
+    let four = _mm_add_epi32(_mm256_castsi256_si128(lanes), _mm256_extracti128_si256(lanes, 1));
+    let two = _mm_add_epi32(four, _mm_srli_si128(four, 8));
+    _mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4)))
+}
