@@ -238,10 +238,10 @@ pub(super) mod sse2 {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) mod nearer;
+pub(crate) mod nearer;
 
 #[cfg(target_arch = "x86_64")]
-pub(super) mod avx2 {
+pub(crate) mod avx2 {
     use super::super::list::{Listed, each};
     use super::sse2;
     use core::arch::x86_64::*;
@@ -268,6 +268,40 @@ pub(super) mod avx2 {
         }
         // SAFETY: the table gives this function out only where AVX2 was found.
         unsafe { list(pixels, spans) }
+    }
+
+    /// Fills a span at `at`, of which `paint` has the shade and above it the step: with up to sixteen pixels at once, so that
+    /// what lies behind them, of whichever row, is written as it was read. Of one that reaches beyond `pixels` nothing is drawn.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(crate) fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {
+        const MOST: usize = 16;
+        static MASK: [[u8; MOST]; 2] = [[0; MOST], [u8::MAX; MOST]];
+        let (shade, step) = (paint as u16, (paint >> 16) as u16);
+        // No overflow: both are below 2³², and usize has 64 bits.
+        let (at, n) = (at as usize, length as usize);
+        if n <= MOST
+            && let Some(row) = pixels.get_mut(at..at + MOST)
+        {
+            let bytes = sse2::Block::new(shade, step).bytes();
+            // SAFETY: sixteen of 32 bytes, from one that is at most the sixteenth on; the load asks for no alignment.
+            let stays = unsafe { _mm_loadu_si128(MASK.as_ptr().cast::<u8>().add(n).cast()) };
+            if n <= MOST / 2 {
+                // SAFETY: sixteen bytes, of which eight are read; the load asks for no alignment.
+                let before = unsafe { _mm_loadl_epi64(row.as_ptr().cast()) };
+                // SAFETY: sixteen bytes, of which eight are written; the store asks for no alignment.
+                unsafe { _mm_storel_epi64(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays)) };
+                return;
+            }
+            // SAFETY: sixteen bytes; the load asks for no alignment.
+            let before = unsafe { _mm_loadu_si128(row.as_ptr().cast()) };
+            // SAFETY: sixteen bytes; the store asks for no alignment.
+            unsafe { _mm_storeu_si128(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays)) };
+            return;
+        }
+        if let Some(row) = pixels.get_mut(at..at + n) {
+            vectors(row, shade, step);
+        }
     }
 
     #[derive(Clone, Copy)]
