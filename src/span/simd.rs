@@ -284,8 +284,8 @@ pub(crate) mod avx2 {
             && let Some(row) = pixels.get_mut(at..at + MOST)
         {
             let bytes = sse2::Block::new(shade, step).bytes();
-            // SAFETY: sixteen of 32 bytes, from one that is at most the sixteenth on; the load asks for no alignment.
-            let stays = unsafe { _mm_loadu_si128(MASK.as_ptr().cast::<u8>().add(n).cast()) };
+            // SAFETY: sixteen of 32 bytes, from number 16 or one before it on; the load asks for no alignment.
+            let stays = unsafe { _mm_loadu_si128(MASK.as_ptr().cast::<u8>().add(MOST - n).cast()) };
             if n <= MOST / 2 {
                 // SAFETY: sixteen bytes, of which eight are read; the load asks for no alignment.
                 let before = unsafe { _mm_loadl_epi64(row.as_ptr().cast()) };

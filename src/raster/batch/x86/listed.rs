@@ -117,10 +117,10 @@ struct Spans {
     z: Depths,
     dz: Depths,
     count: usize,
-    /// Spans and pixels that have been drawn, ...
+    /// Pixels of all that was listed, in four parts.
+    covered: __m128i,
+    /// Spans that have been drawn, and pixels that were nearer.
     spans: u32,
-    covered: u32,
-    /// ... and those that were nearer.
     nearer: u32,
 }
 
@@ -128,7 +128,8 @@ type Numbers = [MaybeUninit<u32>; ROOM + FOUR];
 type Depths = [MaybeUninit<i64>; ROOM + FOUR];
 
 impl Spans {
-    #[inline(always)]
+    #[inline]
+    #[target_feature(enable = "avx2")]
     fn new() -> Self {
         const NUMBERS: Numbers = [MaybeUninit::uninit(); ROOM + FOUR];
         const DEPTHS: Depths = [MaybeUninit::uninit(); ROOM + FOUR];
@@ -140,15 +141,20 @@ impl Spans {
             z: DEPTHS,
             dz: DEPTHS,
             count: 0,
+            covered: _mm_setzero_si128(),
             spans: 0,
-            covered: 0,
             nearer: 0,
         }
     }
 
+    #[inline]
+    #[target_feature(enable = "avx2")]
     fn drawn(&self, depths: bool) -> Drawn {
-        let (tested, pixels) = if depths { (self.covered, self.nearer) } else { (0, self.covered) };
-        Drawn { spans: self.spans, covered: self.covered, pixels, tested, ..Drawn::default() }
+        let two = _mm_add_epi32(self.covered, _mm_srli_si128(self.covered, 8));
+        // Small triangles of a batch have below 2¹⁷ pixels.
+        let covered = _mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4))).cast_unsigned();
+        let (tested, pixels) = if depths { (covered, self.nearer) } else { (0, covered) };
+        Drawn { spans: self.spans, covered, pixels, tested, ..Drawn::default() }
     }
 
     /// Lists all rows of a group's triangles, and draws first if there might be no room for them.
@@ -274,6 +280,7 @@ impl Spans {
             store_wide(&mut self.z, count, _mm256_permutevar8x32_epi32(four.z, wide));
             store_wide(&mut self.dz, count, _mm256_permutevar8x32_epi32(four.dz, wide));
         }
+        self.covered = _mm_add_epi32(self.covered, four.length);
         self.count = count + usize::from(COUNT[kept]);
     }
 
@@ -283,8 +290,6 @@ impl Spans {
         let count = self.count.min(ROOM);
         // SAFETY: of each array `put` has written the first `count` numbers.
         let (at, length, paint) = unsafe { (written(&self.at, count), written(&self.length, count), written(&self.paint, count)) };
-        // Small triangles of a batch have below 2¹⁷ pixels.
-        self.covered += length.iter().sum::<u32>();
         self.spans += count as u32;
         if DEPTHS {
             // SAFETY: as above; with depths of these as well.
