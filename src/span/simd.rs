@@ -246,12 +246,12 @@ pub(crate) mod avx2 {
     use super::sse2;
     use core::arch::x86_64::*;
 
-    /// Whether this processor has what [`fill`] needs.
+    /// Whether this processor has what [`fill`] and the batches of triangles need. (Nearly all that have AVX2 have FMA.)
     pub(crate) fn found() -> bool {
         #[cfg(feature = "std")]
-        return std::arch::is_x86_feature_detected!("avx2");
+        return std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma");
         #[cfg(not(feature = "std"))]
-        return cfg!(target_feature = "avx2");
+        return cfg!(all(target_feature = "avx2", target_feature = "fma"));
     }
 
     /// Only for a processor for which [`found`] is true.
@@ -404,7 +404,7 @@ pub(super) mod avx512 {
             && std::arch::is_x86_feature_detected!("avx512bw")
             && std::arch::is_x86_feature_detected!("avx512dq")
             && std::arch::is_x86_feature_detected!("avx512vl")
-            && std::arch::is_x86_feature_detected!("avx2")
+            && super::avx2::found()
             && std::arch::is_x86_feature_detected!("bmi2")
             && std::arch::is_x86_feature_detected!("popcnt");
         #[cfg(not(feature = "std"))]
@@ -414,6 +414,7 @@ pub(super) mod avx512 {
             target_feature = "avx512dq",
             target_feature = "avx512vl",
             target_feature = "avx2",
+            target_feature = "fma",
             target_feature = "bmi2",
             target_feature = "popcnt"
         ));

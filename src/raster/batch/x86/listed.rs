@@ -26,7 +26,7 @@ const MOST: usize = LANES * LANES;
 
 /// Draws small triangles, with `DEPTHS` where they are nearer than cells. Only for a processor for which `Kernel::has_avx2` is
 /// true.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 pub(super) fn draw<const DEPTHS: bool>(
     batch: &Batch,
     kept: &[Chosen],
@@ -105,6 +105,12 @@ struct Rows {
     z: [__m256i; 2],
 }
 
+/// A span out of the arrays. (A function by itself, since a closure would be compiled for FMA as well, and not become part of
+/// `nearer::fill`: 6 % of a frame.)
+fn tested((((((&at, &cell), &length), &paint), &z), &dz): (((((&u32, &u32), &u32), &u32), &i64), &i64)) -> Tested {
+    Tested { at, cell, length, paint, z, dz }
+}
+
 /// Spans in arrays.
 struct Spans {
     // Written before they are read: `put` counts what it has written.
@@ -129,7 +135,7 @@ type Depths = [MaybeUninit<i64>; ROOM + FOUR];
 
 impl Spans {
     #[inline]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn new() -> Self {
         const NUMBERS: Numbers = [MaybeUninit::uninit(); ROOM + FOUR];
         const DEPTHS: Depths = [MaybeUninit::uninit(); ROOM + FOUR];
@@ -148,7 +154,7 @@ impl Spans {
     }
 
     #[inline]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn drawn(&self, depths: bool) -> Drawn {
         let two = _mm_add_epi32(self.covered, _mm_srli_si128(self.covered, 8));
         // Small triangles of a batch have below 2¹⁷ pixels.
@@ -159,7 +165,7 @@ impl Spans {
 
     /// Lists all rows of a group's triangles, and draws first if there might be no room for them.
     #[inline]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn list<const DEPTHS: bool>(
         &mut self,
         group: &Group,
@@ -175,10 +181,11 @@ impl Spans {
         let most = group.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
         if most <= 4 {
             let columns = Columns::new::<DEPTHS>(group, planes, place);
-            return if most <= 2 {
-                self.of_eight::<DEPTHS, 2>(&columns, group, planes)
-            } else {
-                self.of_eight::<DEPTHS, 4>(&columns, group, planes)
+            return match most {
+                ..=0 => {}
+                1 => self.of_one_row::<DEPTHS>(columns, group),
+                2 => self.of_eight::<DEPTHS, 2>(columns, group, planes),
+                _ => self.of_eight::<DEPTHS, 4>(columns, group, planes),
             };
         }
         for i in 0..LANES {
@@ -191,28 +198,32 @@ impl Spans {
                 }
                 let rows = lines::<DEPTHS>(group, i, first, cell, planes, (pitch, width));
                 let dz = _mm256_set1_epi64x(planes.per_column[i] << 8);
-                let half = |eight: __m256i, half: usize| match half {
-                    0 => _mm256_castsi256_si128(eight),
-                    _ => _mm256_extracti128_si256(eight, 1),
-                };
-                for k in 0..2 {
-                    let (at, cell) = (half(rows.at, k), half(rows.cell, k));
-                    let (length, paint) = (half(rows.length, k), half(rows.paint, k));
-                    self.put::<DEPTHS>(&Four { at, cell, length, paint, z: rows.z[k], dz });
-                }
+                self.put_both::<DEPTHS>(&rows, [dz, dz]);
                 first += LANES as i32;
             }
         }
     }
 
+    /// Lists up to one row of each of eight triangles.
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    fn of_one_row<const DEPTHS: bool>(&mut self, mut columns: Columns, group: &Group) {
+        let row = columns.row::<DEPTHS>(group, 0);
+        self.put_both::<DEPTHS>(&row, columns.per_column);
+    }
+
     /// Lists up to two rows or four of each of eight triangles.
     #[inline]
-    #[target_feature(enable = "avx2")]
-    fn of_eight<const DEPTHS: bool, const ROWS: usize>(&mut self, columns: &Columns, group: &Group, planes: &Planes) {
+    #[target_feature(enable = "avx2,fma")]
+    fn of_eight<const DEPTHS: bool, const ROWS: usize>(
+        &mut self,
+        mut columns: Columns,
+        group: &Group,
+        planes: &Planes,
+    ) {
         let mut rows = [Rows::none(); ROWS];
-        let mut next = *columns;
         for (number, row) in (0..).zip(&mut rows) {
-            *row = next.row::<DEPTHS>(group, number);
+            *row = columns.row::<DEPTHS>(group, number);
         }
         // Triangle by triangle: 0 and 4, 1 and 5, 2 and 6, 3 and 7, or, of two rows, 0, 1, 4 and 5, and 2, 3, 6 and 7.
         // Without a third and a fourth row anything in their place.
@@ -260,9 +271,21 @@ impl Spans {
         }
     }
 
+    /// Puts those of eight rows that have a length behind the others, as they come. There has to be room for eight.
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    fn put_both<const DEPTHS: bool>(&mut self, rows: &Rows, dz: [__m256i; 2]) {
+        let low = |eight: __m256i| _mm256_castsi256_si128(eight);
+        let high = |eight: __m256i| _mm256_extracti128_si256(eight, 1);
+        let (at, cell, length, paint) = (low(rows.at), low(rows.cell), low(rows.length), low(rows.paint));
+        self.put::<DEPTHS>(&Four { at, cell, length, paint, z: rows.z[0], dz: dz[0] });
+        let (at, cell, length, paint) = (high(rows.at), high(rows.cell), high(rows.length), high(rows.paint));
+        self.put::<DEPTHS>(&Four { at, cell, length, paint, z: rows.z[1], dz: dz[1] });
+    }
+
     /// Puts those of four rows that have a length behind the others. There has to be room for four.
     #[inline]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn put<const DEPTHS: bool>(&mut self, four: &Four) {
         let are_rows = _mm_cmpgt_epi32(four.length, _mm_setzero_si128());
         // Four bits.
@@ -285,7 +308,7 @@ impl Spans {
     }
 
     /// Draws what is listed, and empties the list.
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn draw<const DEPTHS: bool>(&mut self, pixels: &mut [u8], cells: &mut [u32]) {
         let count = self.count.min(ROOM);
         // SAFETY: of each array `put` has written the first `count` numbers.
@@ -295,9 +318,6 @@ impl Spans {
             // SAFETY: as above; with depths of these as well.
             let (cell, z, dz) = unsafe { (written(&self.cell, count), written(&self.z, count), written(&self.dz, count)) };
             let spans = at.iter().zip(cell).zip(length).zip(paint).zip(z).zip(dz);
-            let tested = |(((((&at, &cell), &length), &paint), &z), &dz): (((((&u32, &u32), &u32), &u32), &i64), &i64)| {
-                Tested { at, cell, length, paint, z, dz }
-            };
             self.nearer += nearer::fill(pixels, cells, spans.map(tested));
         } else {
             for ((&at, &length), &paint) in at.iter().zip(length).zip(paint) {
@@ -309,7 +329,6 @@ impl Spans {
 }
 
 /// Where the next row of eight triangles begins.
-#[derive(Clone, Copy)]
 struct Columns {
     at: __m256i,
     cell: __m256i,
@@ -323,7 +342,7 @@ struct Columns {
 
 impl Columns {
     #[inline]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn new<const DEPTHS: bool>(group: &Group, planes: &Planes, place: Place) -> Self {
         // A column and a row are below 4,096.
         let all = |number: u32| _mm256_set1_epi32(number as i32);
@@ -341,13 +360,13 @@ impl Columns {
 
     /// Row `number`, and goes on to the next.
     #[inline]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn row<const DEPTHS: bool>(&mut self, group: &Group, number: i32) -> Rows {
         let all = |x: f64| Eight(_mm256_set1_pd(x), _mm256_set1_pd(x));
         let (j, magic) = (all(f64::from(number)), all(MAGIC));
         let at = |edges: &Edges| {
-            let n = Eight::load(&edges.per_row).times(j).plus(Eight::load(&edges.n));
-            n.times(Eight::load(&edges.inverse)).plus(magic)
+            let n = Eight::load(&edges.per_row).times_plus(j, Eight::load(&edges.n));
+            n.times_plus(Eight::load(&edges.inverse), magic)
         };
         let (long, upper, lower) = (at(&group.long), at(&group.upper), at(&group.lower));
         let number = _mm256_set1_epi32(number);
@@ -355,10 +374,9 @@ impl Columns {
         let left = long.with(short, |a, b| _mm256_min_pd(a, b));
         let right = long.with(short, |a, b| _mm256_max_pd(a, b));
         let column = left.with(magic, |a, b| _mm256_sub_pd(a, b));
-        let n = Eight::load(&group.n)
-            .plus(Eight::load(&group.per_row).times(j))
-            .plus(Eight::load(&group.per_column).times(column));
-        let shade = n.times(Eight::load(&group.inverse)).plus(magic).whole();
+        let n = Eight::load(&group.per_row).times_plus(j, Eight::load(&group.n));
+        let n = Eight::load(&group.per_column).times_plus(column, n);
+        let shade = n.times_plus(Eight::load(&group.inverse), magic).whole();
         let (first, end) = (left.whole(), right.whole());
         let are_rows = _mm256_cmpgt_epi32(ints(&group.rows), number);
         let row = Rows {
@@ -382,7 +400,7 @@ impl Columns {
 
 impl Rows {
     #[inline]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn none() -> Self {
         let none = _mm256_setzero_si256();
         Self { at: none, cell: none, length: none, paint: none, z: [none; 2] }
@@ -391,7 +409,7 @@ impl Rows {
 
 /// Eight rows of triangle `i` of a group, from number `first` on; its first cell is `cell`.
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn lines<const DEPTHS: bool>(
     group: &Group,
     i: usize,
@@ -408,8 +426,8 @@ fn lines<const DEPTHS: bool>(
         _mm256_cvtepi32_pd(_mm256_extracti128_si256(numbers, 1)),
     );
     let at = |edges: &Edges| {
-        let n = all(edges.per_row[i]).times(j).plus(all(edges.n[i]));
-        n.times(all(edges.inverse[i])).plus(magic)
+        let n = all(edges.per_row[i]).times_plus(j, all(edges.n[i]));
+        n.times_plus(all(edges.inverse[i]), magic)
     };
     let (long, upper, lower) = (at(&group.long), at(&group.upper), at(&group.lower));
     let above = _mm256_cmpgt_epi32(_mm256_set1_epi32(group.split[i]), numbers);
@@ -417,8 +435,8 @@ fn lines<const DEPTHS: bool>(
     let left = long.with(short, |a, b| _mm256_min_pd(a, b));
     let right = long.with(short, |a, b| _mm256_max_pd(a, b));
     let column = left.with(magic, |a, b| _mm256_sub_pd(a, b));
-    let n = all(group.n[i]).plus(all(group.per_row[i]).times(j)).plus(all(group.per_column[i]).times(column));
-    let shade = n.times(all(group.inverse[i])).plus(magic).whole();
+    let n = all(group.per_column[i]).times_plus(column, all(group.per_row[i]).times_plus(j, all(group.n[i])));
+    let shade = n.times_plus(all(group.inverse[i]), magic).whole();
     let (begin, end) = (left.whole(), right.whole());
     let are_rows = _mm256_cmpgt_epi32(_mm256_set1_epi32(group.rows[i]), numbers);
     let down = |first: i32, by: i32| {
@@ -446,7 +464,7 @@ fn lines<const DEPTHS: bool>(
 
 /// Four numbers of each of eight triangles, or two, triangle by triangle.
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn turned<const ROWS: usize>(a: __m256i, b: __m256i, c: __m256i, d: __m256i) -> [__m256i; FOUR] {
     let (t0, t1) = (_mm256_unpacklo_epi32(a, b), _mm256_unpackhi_epi32(a, b));
     if ROWS == 2 {
@@ -463,7 +481,7 @@ fn turned<const ROWS: usize>(a: __m256i, b: __m256i, c: __m256i, d: __m256i) -> 
 
 /// Whole numbers below 2³², in the low bits of sums with `MAGIC`, times others, modulo 2⁶⁴.
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn times(sums: __m256d, others: __m256i) -> __m256i {
     let numbers = _mm256_castpd_si256(sums);
     let upper = _mm256_mul_epu32(numbers, _mm256_srli_epi64(others, 32));
@@ -472,7 +490,7 @@ fn times(sums: __m256d, others: __m256i) -> __m256i {
 
 /// Depths, shifted as in `Spans`.
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn wide(from: &[i64; LANES]) -> [__m256i; 2] {
     // SAFETY: eight i64, four and four; the loads ask for no alignment.
     let (low, high) = unsafe { (_mm256_loadu_si256(from.as_ptr().cast()), _mm256_loadu_si256(from.as_ptr().add(4).cast())) };
@@ -490,7 +508,7 @@ unsafe fn written<T>(numbers: &[MaybeUninit<T>; ROOM + FOUR], count: usize) -> &
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn store_four(to: &mut Numbers, at: usize, four: __m128i) {
     debug_assert!(at <= ROOM);
     // SAFETY: `put`, which alone calls this, has `at` no greater than `ROOM`, so that there are four; the store asks for no
@@ -499,7 +517,7 @@ fn store_four(to: &mut Numbers, at: usize, four: __m128i) {
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn store_wide(to: &mut Depths, at: usize, four: __m256i) {
     debug_assert!(at <= ROOM);
     // SAFETY: as above.
