@@ -171,7 +171,8 @@ fn triangles_of_one_size_are_drawn_as_one_by_one() {
             depth: round % 3 > 0,
         };
         // Units across and down.
-        let (across, down) = random.one_of(&[(200, 200), (300, 200), (700, 260), (700, 700), (1_500, 1_500), (3_000, 3_500)]);
+        let (across, down) =
+            random.one_of(&[(200, 200), (300, 200), (700, 260), (700, 700), (1_500, 1_500), (3_000, 3_500)]);
         let (across, down) = (across.min(width * 256), down.min(height * 256));
         let level = random.one_of(&[None, None, Some(9)]);
         let some = random.within(1, Batch::CAPACITY as i64);

@@ -626,7 +626,10 @@ fn lists_are_filled_as_pixel_by_pixel() {
             assert_eq!(drawn, flat, "{kernel}, round {round}: {spans:?}");
             let (mut drawn, mut kept) = (bytes.clone(), cells.clone());
             let count = kernel.fill_list_nearer(&mut drawn, &mut kept, &spans, &depths);
-            assert!((&drawn, &kept, count) == (&deep, &nearest, nearer), "{kernel}, round {round}: {spans:?}, {depths:?}");
+            assert!(
+                (&drawn, &kept, count) == (&deep, &nearest, nearer),
+                "{kernel}, round {round}: {spans:?}, {depths:?}"
+            );
         }
     }
     assert!(written > 100_000 && hidden > 100_000 && beyond > 500, "{written}, {hidden}, {beyond}");

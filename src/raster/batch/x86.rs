@@ -2,6 +2,7 @@
 
 use core::arch::x86_64::*;
 
+mod eight_rows;
 mod listed;
 
 use super::Batch;
@@ -68,7 +69,7 @@ pub(super) fn small(
     pixels: &mut [u8],
     cells: Option<&mut [u32]>,
 ) -> Drawn {
-    // SAFETY: such a kernel is given out only where AVX2 was found.
+    // SAFETY: such a kernel is given out only where AVX2 and FMA were found.
     unsafe {
         match cells {
             Some(cells) => listed::draw::<true>(batch, kept, place, pixels, cells),
