@@ -86,6 +86,36 @@ fn what_is_cut_off_within_a_face_is_within_the_budget() {
     }
 }
 
+/// A sun that takes light away from what is lit evenly: where it begins shades bend as where one gives light, and below
+/// the first shade they are cut off.
+#[test]
+fn light_that_is_taken_away_is_within_the_budget() {
+    let mut tried = Tried::new("light_that_is_taken_away_is_within_the_budget", 3_000_000);
+    let taken = |light: Light| light.with_intensity(-1.0);
+    let sun = || Light::sun([1.0, 0.5, 0.3]);
+    let lights = [
+        vec![taken(sun())],
+        vec![taken(sun()), Light::sun([-0.5, 1.0, 1.0])],
+        vec![sun(), taken(Light::lamp([-1.0, 1.0, 2.0], 4.0))],
+    ];
+    for (number, lights) in lights.iter().enumerate() {
+        for (ambient, specular) in [(0.3, 0.0), (0.6, 0.0), (0.9, 0.0), (0.4, 0.4)] {
+            for (name, mesh) in [("sphere", shapes::sphere(24, 12)), ("torus", shapes::torus(32, 12))] {
+                let mut scene = Scene::new();
+                let mut object = Object::new(mesh);
+                let material = &mut object.materials[0];
+                (material.ambient, material.diffuse) = (ambient, 0.7);
+                (material.specular, material.shininess) = (specular, 20.0);
+                scene.add(object);
+                lights.iter().for_each(|light| {
+                    scene.add_light(light.clone());
+                });
+                check(&mut tried, &format!("{name}, {ambient}, {specular}, lights {number}"), &scene, &BUDGETS);
+            }
+        }
+    }
+}
+
 /// A body of few, large faces near the eye, in one light or two, some with highlights, some in colour: most lie partly in the dark or are
 /// seen at a slant.
 fn large_faces(random: &mut Random) -> Scene {

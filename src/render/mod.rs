@@ -43,6 +43,7 @@ pub(crate) mod trace;
 mod vertex;
 mod vertex_path;
 mod visible;
+mod within;
 
 use alloc::format;
 use alloc::vec::Vec;

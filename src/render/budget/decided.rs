@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 
 use crate::raster::effects::Apart;
 use crate::render::face::LitAt;
+use crate::render::sift;
 use crate::scene::Rung;
 
 /// What is decided for a triangle.
@@ -51,31 +52,103 @@ impl Choice {
     }
 }
 
-/// What is known of an object's triangles.
+/// What is known of an object's triangles. What is forgotten is overwritten when it is asked for: most chunks are linear at
+/// once, and nobody asks.
 #[derive(Clone, Debug, Default)]
 pub(in crate::render) struct Decided {
-    pub(in crate::render) choices: Vec<Choice>,
-    /// For each how far linear shades of its two sides are from the model, highlights aside, if that is known. It stays as
-    /// long as the object and its lights are what they are, wherever the eye is.
-    pub(in crate::render) bodies: Vec<[Option<f32>; 2]>,
+    triangles: usize,
+    /// One for as many triangles as are sifted at a time.
+    chunks: Vec<Chunk>,
+    choices: Vec<Choice>,
+    bodies: Vec<Bodies>,
+}
+
+/// For the two sides of a triangle, how far linear shades are from the model, highlights aside; where that is not known, not a
+/// number. It stays as long as the object and its lights are what they are, wherever the eye is.
+pub(in crate::render) type Bodies = [f32; 2];
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Chunk {
+    /// A bit for each triangle that is known to be linear.
+    linear: u64,
+    /// Whether what is kept of its choices, and of its bodies, is what was found, and not from before.
+    has_choices: bool,
+    has_bodies: bool,
 }
 
 impl Decided {
     /// So many of which nothing is known.
     pub(in crate::render) fn nothing_of(&mut self, triangles: usize) {
-        self.choices.clear();
+        self.triangles = triangles;
+        self.chunks.clear();
+        self.chunks.resize(triangles.div_ceil(sift::MOST), Chunk::default());
         self.choices.resize(triangles, Choice::Unknown);
-        self.bodies.clear();
-        self.bodies.resize(triangles, [None; 2]);
+        self.bodies.resize(triangles, [f32::NAN; 2]);
+    }
+
+    /// Forgets what was chosen, but not what bodies are off by.
+    pub(in crate::render) fn no_choices(&mut self) {
+        for chunk in &mut self.chunks {
+            (chunk.linear, chunk.has_choices) = (0, false);
+        }
     }
 
     pub(in crate::render) fn clear(&mut self) {
         self.nothing_of(0);
     }
 
+    /// Of how many.
+    pub(in crate::render) fn triangles(&self) -> usize {
+        self.triangles
+    }
+
+    /// Those of a chunk that are known to be linear.
+    #[inline]
+    pub(in crate::render) fn linear(&mut self, chunk: usize) -> &mut u64 {
+        &mut self.chunks[chunk].linear
+    }
+
+    /// The choices of a chunk's triangles that are not among these; nothing if none has been made.
+    #[inline]
+    pub(in crate::render) fn chosen(&self, chunk: usize) -> Option<&[Choice]> {
+        let first = chunk * sift::MOST;
+        self.chunks[chunk].has_choices.then(|| &self.choices[first..self.triangles.min(first + sift::MOST)])
+    }
+
+    /// The same, to be added to, and what bodies are off by.
+    #[inline]
+    pub(in crate::render) fn of_chunk(&mut self, chunk: usize) -> (&mut [Choice], &mut [Bodies]) {
+        let first = chunk * sift::MOST;
+        let all = first..self.triangles.min(first + sift::MOST);
+        let (choices, bodies) = (&mut self.choices[all.clone()], &mut self.bodies[all]);
+        let chunk = &mut self.chunks[chunk];
+        if !chunk.has_choices {
+            chunk.has_choices = true;
+            choices.fill(Choice::Unknown);
+        }
+        if !chunk.has_bodies {
+            chunk.has_bodies = true;
+            bodies.fill([f32::NAN; 2]);
+        }
+        (choices, bodies)
+    }
+
+    /// How many have been drawn by this choice.
+    fn count(&self, choice: Choice) -> usize {
+        let of_chunk = |chunk: usize| {
+            let linear = self.chunks[chunk].linear;
+            let others = self.chosen(chunk).unwrap_or_default().iter().enumerate();
+            let others = others.filter(|(at, of)| linear >> at & 1 == 0 && **of == choice).count();
+            others + if choice == Choice::Linear { linear.count_ones() as usize } else { 0 }
+        };
+        (0..self.chunks.len()).map(of_chunk).sum()
+    }
+
     /// Bytes that it holds.
     pub(in crate::render) fn bytes(&self) -> usize {
-        self.choices.capacity() * size_of::<Choice>() + self.bodies.capacity() * size_of::<[Option<f32>; 2]>()
+        self.chunks.capacity() * size_of::<Chunk>()
+            + self.choices.capacity() * size_of::<Choice>()
+            + self.bodies.capacity() * size_of::<Bodies>()
     }
 }
 
@@ -91,13 +164,13 @@ pub(in crate::render) fn shares(decided: &Decided) -> String {
         (Choice::PhongEvery(Apart::Four), "at every 4th"),
         (Choice::Phong, "it is not known to be"),
     ];
-    let mut text = String::new();
+    let (mut text, mut unseen) = (String::new(), decided.triangles());
     for (choice, why) in kinds {
-        let count = decided.choices.iter().filter(|of| **of == choice).count();
+        let count = decided.count(choice);
+        unseen -= count;
         if count > 0 {
             text += &format!("{count} {} ({why}), ", choice.rung());
         }
     }
-    let unseen = decided.choices.iter().filter(|of| **of == Choice::Unknown).count();
     text + &format!("{unseen} not drawn")
 }

@@ -16,6 +16,7 @@
 use glam::Vec3;
 
 use super::corners::ways;
+use super::decided::Bodies;
 use super::light::{APART, FROM_ONE, clamp_error, narrow};
 use super::{Budget, CURVATURE, EXACT, LINEAR, brightest, highlight, parts};
 use crate::light::{Answer, Lights};
@@ -324,7 +325,7 @@ impl Faces<'_> {
         budget: &Budget,
         first: usize,
         (asked, turned): (u64, u64),
-        bodies: &mut [[Option<f32>; 2]],
+        bodies: &mut [Bodies],
     ) -> Looked {
         let (triangles, surfaces) = (&self.geometry.triangles[first..], &self.geometry.triangle_surfaces[first..]);
         let surface = surfaces[asked.trailing_zeros() as usize];
@@ -378,7 +379,7 @@ impl Faces<'_> {
         let mut all = Looked { at: looked, ..Looked::default() };
         for (&at, (body, highlights)) in places[..count].iter().zip(body.into_iter().zip(highlights)) {
             let is_turned = turned >> at & 1 == 1;
-            bodies[at][usize::from(is_turned)] = Some(body);
+            bodies[at][usize::from(is_turned)] = body;
             let face = (first + at, surface, is_turned);
             let is_linear = |highlight: f32| self.is_linear_within(budget, face, body + highlight);
             if is_linear(highlights) {
@@ -403,14 +404,17 @@ impl Faces<'_> {
         budget: &Budget,
         first: usize,
         (asked, turned): (u64, u64),
-        bodies: &[[Option<f32>; 2]],
+        bodies: &[Bodies],
     ) -> u64 {
         let (mut linear, mut left) = (0_u64, asked);
         while left != 0 {
             let at = left.trailing_zeros() as usize;
             left &= left - 1;
             let is_turned = turned >> at & 1 == 1;
-            let Some(body) = bodies[at][usize::from(is_turned)] else { continue };
+            let body = bodies[at][usize::from(is_turned)];
+            if body.is_nan() {
+                continue;
+            }
             let surface = self.geometry.triangle_surfaces[first + at];
             let strength = &budget.strengths[usize::from(surface)];
             let highlight = if strength.curvature == 0.0 {
@@ -438,7 +442,7 @@ impl Faces<'_> {
         for [a, b, c] in &shades[..if self.channels { 3 } else { 1 }] {
             let (least, most) = (a.min(b).min(c), a.max(b).max(c));
             range = range.max(most - least);
-            clamped |= *most >= strength.last && *least < strength.last;
+            clamped |= strength.cuts(*least, *most, budget.adds);
         }
         let range = f32::from(range) * strength.scale;
         // What lies above the clamp is lost at some corners, by which the others are too dark at most.
@@ -476,13 +480,13 @@ fn falling(y: f32) -> f32 {
 
 /// In this form one instruction.
 #[inline(always)]
-fn greater(a: f32, b: f32) -> f32 {
+pub(super) fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// The greatest and the least.
 #[inline(always)]
-fn ends([a, b, c]: &[Lanes<f32>; 3]) -> (Lanes<f32>, Lanes<f32>) {
+pub(super) fn ends([a, b, c]: &[Lanes<f32>; 3]) -> (Lanes<f32>, Lanes<f32>) {
     let (mut most, mut least) = (*a, *a);
     for values in [b, c] {
         for lane in 0..LANES {

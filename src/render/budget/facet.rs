@@ -56,3 +56,19 @@ pub(super) struct Strength {
     /// From so far on, as an angle, nothing is seen of them but one, two or three quarters of what is allowed.
     pub(super) faint_from: [f32; 3],
 }
+
+impl Strength {
+    /// Whether some of the shades between these two are cut off, and not all: above, or, where light may be taken away, below.
+    #[inline]
+    pub(super) fn cuts(&self, least: u16, most: u16, adds: bool) -> bool {
+        (most >= self.last && least < self.last) | (!adds & (least <= self.first) & (most > self.first))
+    }
+
+    /// The most that suns add or take away, where the brightest shade is this. Where some add and others take away it says
+    /// nothing of that.
+    #[inline]
+    pub(super) fn top(&self, brightest: u16, adds: bool) -> f32 {
+        let top = f32::from(brightest - self.first) * self.scale;
+        if adds { top } else { top.max(self.body) }
+    }
+}

@@ -39,6 +39,7 @@
 //! | `corners` | what is known of every vertex |
 //! | `eight` | which of eight triangles are linear |
 //! | `question` | the decision on one triangle |
+//! | `settle` | which faces of a chunk are linear, before any is looked at by itself |
 //! | `curve` | whether quadratic shades do |
 //! | `decided` | what is decided, and how that is said |
 
@@ -50,24 +51,24 @@ mod eight;
 mod facet;
 mod light;
 mod question;
+mod settle;
 
 use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use self::cluster::Cluster;
-pub(super) use self::cluster::{Linear, Where};
+use self::cluster::{Cluster, Cones};
+use self::cluster::{Linear, Where};
 pub(super) use self::curve::limits;
-pub(super) use self::decided::{Choice, Decided, shares};
-pub(super) use self::eight::Looked;
+pub(super) use self::decided::{Bodies, Choice, Decided, shares};
 use self::facet::{Facet, Strength};
 use self::light::{Towards, narrow};
 pub(super) use self::question::Question;
+pub(super) use self::settle::Vain;
 use super::lit::LitVertices;
 use super::paint::Paint;
 use super::sift;
 use super::vertex::{Extra, Geometry};
-use crate::fixed::U8F8;
 use crate::light::{Answer, Beam, LampBeam, Lights};
 use crate::mesh::Mesh;
 use crate::scene::Shared;
@@ -113,6 +114,8 @@ pub(super) struct Budget {
     /// One for as many faces as are sifted at a time.
     clusters: Vec<Cluster>,
     /// As many.
+    cones: Vec<Cones>,
+    /// As many.
     linear: Vec<Linear>,
     /// One for each surface.
     strengths: Vec<Strength>,
@@ -131,8 +134,13 @@ pub(super) struct Budget {
     simple: bool,
     /// Then, whether linear shades keep within wherever all corners see the same suns and none is clamped.
     linear_unless_mixed: bool,
-    /// And there, too.
-    linear_throughout: bool,
+    /// And where they are clamped, too; and, of one sun, so that vertices need no marks.
+    linear_unless_mixed_or_clamped: bool,
+    by_cones: bool,
+    /// What is left for that.
+    left_for_clamp: f32,
+    /// And everywhere, of faces whose normals are no farther apart; below 0 of none.
+    harmless_spread: f32,
     /// What lights it, and what it answers: what bodies' errors are known for.
     suns: Vec<Beam>,
     known_lamps: Vec<LampBeam>,
@@ -180,6 +188,9 @@ impl Budget {
             let most = |of: fn(&Facet) -> f32| self.facets.iter().map(of).fold(0.0, f32::max);
             (self.longest_edge, self.most_shortening) = (most(|facet| facet.edge), most(|facet| facet.shortening));
             self.most_spread = most(|facet| facet.spread);
+            self.cones.clear();
+            let chunks = geometry.triangles.chunks(sift::MOST);
+            self.cones.extend(chunks.map(|triangles| Cones::new(triangles, geometry.normals)));
             self.clusters.clear();
             let chunks = self.facets.chunks(sift::MOST).zip(geometry.triangles.chunks(sift::MOST));
             let chunks = chunks.zip(geometry.triangle_surfaces.chunks(sift::MOST));
@@ -187,9 +198,9 @@ impl Budget {
                 Cluster::new(facets, triangles, surfaces, geometry.positions, geometry.normals)
             }));
         }
-        same &= known && decided.choices.len() == geometry.triangles.len();
+        same &= known && decided.triangles() == geometry.triangles.len();
         if same {
-            decided.choices.fill(Choice::Unknown);
+            decided.no_choices();
         } else {
             decided.nothing_of(geometry.triangles.len());
         }
@@ -234,27 +245,36 @@ impl Budget {
             model + range * self.bend + LINEAR <= self.allowed
         };
         self.linear_unless_mixed = self.simple
+            && self.strengths.iter().all(|of| keeps_within(of, of.top(of.last, self.adds) * self.most_shortening));
+        let lost = |of: &Strength| {
+            // One step more, as the shade without light is rounded.
+            let brightest = f32::from(of.dark - of.first + 1) * of.scale + of.body;
+            (brightest - f32::from(of.last - of.first) * of.scale).max(0.0)
+        };
+        self.linear_unless_mixed_or_clamped = self.linear_unless_mixed
+            && self.adds
             && self.strengths.iter().all(|of| {
                 let top = f32::from(of.last - of.first) * of.scale;
-                keeps_within(of, top * self.most_shortening)
+                keeps_within(of, top * self.most_shortening + lost(of))
             });
+        self.by_cones = self.linear_unless_mixed_or_clamped && self.by_shades();
         // And there, too. Of a sun that not all corners see, normals put the brightest P in the light and another
         // a − P in the dark at most; so linear shades are off by P(a − P)/a, and bent by that share of P: together no more
         // than a(1 + bend)²/4. Of one that all see they are bent by that share of a, which is less. (What they lose for
         // want of length makes them darker, and not more than above.)
+        let left = |of: &Strength| self.allowed - LINEAR - lost(of);
+        self.left_for_clamp = self.strengths.iter().map(left).fold(f32::INFINITY, f32::min);
         let mixed = (1.0 + self.bend) * (1.0 + self.bend) / 4.0;
-        self.linear_throughout = self.linear_unless_mixed
-            && self.adds
-            && self.strengths.iter().all(|of| {
-                // One step more, as the shade without light is rounded.
-                let brightest = f32::from(of.dark - of.first + 1) * of.scale + of.body;
-                let lost = (brightest - f32::from(of.last - of.first) * of.scale).max(0.0);
-                of.body * self.most_spread * mixed + lost + LINEAR <= self.allowed
-                    && keeps_within(of, f32::from(of.last - of.first) * of.scale * self.most_shortening + lost)
-            });
+        let body = self.strengths.iter().map(|of| of.body).fold(0.0, f32::max);
+        let harmless = match self.left_for_clamp {
+            left if left < 0.0 => -1.0,
+            _ if body == 0.0 => f32::INFINITY,
+            left => left / (body * mixed),
+        };
+        self.harmless_spread = if self.linear_unless_mixed_or_clamped { harmless } else { -1.0 };
         self.linear.clear();
         if !self.linear_unless_mixed {
-            self.linear.extend(self.clusters.iter().map(|of| of.linear(object, &self.strengths, allowed)));
+            self.linear.extend(self.clusters.iter().map(|of| of.linear(object, &self.strengths, (allowed, self.adds))));
         }
         if !same {
             self.lamps.clear();
@@ -298,14 +318,15 @@ impl Budget {
     #[inline(never)]
     pub(super) fn mark(&self, object: &Lit<'_>, lit: &mut LitVertices, extras: &[Extra]) {
         let Lit { geometry, .. } = *object;
-        if self.linear_throughout {
+        if self.is_linear_throughout() || self.by_cones {
             return;
         }
         lit.flags.resize(geometry.normals.len(), 0);
         match self.strengths.as_slice() {
             [one] if self.by_shades() => {
                 for (flags, [front, back]) in lit.flags.iter_mut().zip(&lit.shades) {
-                    let clamped = front.max(back).to_bits() >= one.last;
+                    let below = !self.adds && front.min(back).to_bits() <= one.first;
+                    let clamped = front.max(back).to_bits() >= one.last || below;
                     *flags = u8::from(front.to_bits() != one.dark) | u8::from(clamped) << LIGHTS;
                 }
                 return;
@@ -313,14 +334,18 @@ impl Budget {
             of_all => {
                 for (i, (flags, surface)) in lit.flags.iter_mut().zip(geometry.vertex_surfaces).enumerate() {
                     let [front, back] = lit.shades[i];
-                    let mut most = front.max(back);
+                    let (mut least, mut most) = (front.min(back), front.max(back));
                     if self.in_color
                         && let Some(extra) = extras.get(i)
                     {
                         let sides = [extra.side(false).channels, extra.side(true).channels];
-                        most = sides.into_iter().flatten().fold(most, U8F8::max);
+                        for channel in sides.into_iter().flatten() {
+                            (least, most) = (least.min(channel), most.max(channel));
+                        }
                     }
-                    *flags = u8::from(most.to_bits() >= of_all[usize::from(*surface)].last) << LIGHTS;
+                    let of = &of_all[usize::from(*surface)];
+                    let below = !self.adds && least.to_bits() <= of.first;
+                    *flags = u8::from(most.to_bits() >= of.last || below) << LIGHTS;
                 }
             }
         }
@@ -330,7 +355,7 @@ impl Budget {
     /// Which faces of a cluster are known to be linear.
     #[inline]
     pub(super) fn of_cluster(&self, cluster: usize) -> Linear {
-        if self.linear_throughout {
+        if self.is_linear_throughout() {
             Linear::All
         } else if self.linear_unless_mixed {
             Linear::Where(Where { unmixed: true, from: 0.0 })
@@ -339,9 +364,14 @@ impl Budget {
         }
     }
 
+    /// Whether all of its faces are linear.
+    fn is_linear_throughout(&self) -> bool {
+        self.most_spread <= self.harmless_spread
+    }
+
     /// Whether a face of a cluster is one of these.
     #[inline]
-    pub(super) fn is_one_of(&self, these: &Where, indices: [u32; 3], lit: &LitVertices) -> bool {
+    fn is_one_of(&self, these: &Where, indices: [u32; 3], lit: &LitVertices) -> bool {
         let Where { unmixed, from } = *these;
         let corners = indices.map(|i| i as usize);
         let [a, b, c] = corners.map(|i| lit.flags[i]);
@@ -360,12 +390,22 @@ impl Budget {
     /// less than a step of its shades goes unnoticed.
     #[inline]
     fn by_shades(&self) -> bool {
-        self.simple && self.one_sun
+        self.simple && self.one_sun && self.strengths.len() == 1
+    }
+
+    /// Which faces of a chunk see the sun from all of their corners, or from none, as far as their cones say.
+    #[inline]
+    fn unmixed_by_cones(&self, chunk: usize) -> u64 {
+        let all = self.suns.iter().map(|sun| self.cones[chunk].unmixed(sun.towards));
+        all.fold(!0, |all, of| all & of)
     }
 
     /// The lights that a vertex sees, a bit for each, suns first.
     #[inline]
-    fn lights_seen(lit: &LitVertices, vertex: u32) -> u8 {
+    fn lights_seen(&self, lit: &LitVertices, vertex: u32) -> u8 {
+        if let ([one], true) = (self.strengths.as_slice(), self.by_cones) {
+            return u8::from(lit.shades[vertex as usize][0].to_bits() != one.dark);
+        }
         lit.flags.get(vertex as usize).copied().unwrap_or(0) & !(1 << LIGHTS)
     }
 
@@ -373,6 +413,7 @@ impl Budget {
     pub(super) fn bytes(&self) -> usize {
         self.facets.capacity() * size_of::<Facet>()
             + self.clusters.capacity() * size_of::<Cluster>()
+            + self.cones.capacity() * size_of::<Cones>()
             + self.linear.capacity() * size_of::<Linear>()
             + self.chords.capacity() * size_of::<f32>()
             + self.lamps.capacity() * size_of::<(f32, f32)>()

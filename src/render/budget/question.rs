@@ -2,14 +2,15 @@
 
 use glam::Vec3;
 
-use super::decided::Choice;
+use super::decided::{Bodies, Choice};
 use super::light::{OneLight, Towards, narrow};
 use super::{Budget, EXACT, LINEAR, brightest, highlight, parts};
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::Apart;
-use crate::render::face::{Faces, WORTH_SAMPLES};
+use crate::render::face::Faces;
 use crate::render::lit::LitVertices;
+use crate::render::within::WORTH_SAMPLES;
 use crate::span::Kernel;
 use crate::span::lit::LANES;
 
@@ -62,11 +63,9 @@ impl Budget {
     #[inline(always)]
     pub(in crate::render) fn decide_at_once(
         &self,
-        triangle: usize,
-        surface: u16,
+        (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
         lit: &LitVertices,
-        indices: [u32; 3],
-        turned: bool,
+        normals: &[Vec3],
     ) -> Choice {
         if !self.simple {
             return Choice::Unknown;
@@ -74,31 +73,33 @@ impl Budget {
         let strength = &self.strengths[usize::from(surface)];
         let corners = indices.map(|i| i as usize);
         let shades = corners.map(|i| lit.shades[i]);
-        let [a, b, c] = indices.map(|i| Self::lights_seen(lit, i));
+        let [a, b, c] = indices.map(|i| self.lights_seen(lit, i));
         let mixed = a != b || b != c;
         let [a, b, c] = shades.map(|sides| sides[usize::from(turned)].to_bits());
         let most = a.max(b).max(c);
-        if most >= strength.last {
+        let least = a.min(b).min(c);
+        if most >= strength.last || (!self.adds && least <= strength.first) {
             return Choice::Unknown;
         }
         if self.linear_unless_mixed && !mixed {
             return Choice::Linear;
         }
-        // n·l differs by no more than the normals do, which is P + S at most; and PS / (P + S) ≤ (P + S) / 4.
         let facet = &self.facets[triangle];
-        let apart = strength.body * facet.spread;
-        let least = a.min(b).min(c);
-        let clamp = if !mixed {
-            0.0
-        } else if self.one_sun {
-            // P is what the brightest corner has of it.
-            let lit = f32::from(most.saturating_sub(strength.dark)) * strength.scale;
-            if lit < apart { lit * (apart - lit) / apart } else { 0.0 }
-        } else {
-            apart / 4.0
+        let clamp = match self.suns.as_slice() {
+            _ if !mixed => 0.0,
+            [sun] if self.adds => {
+                // P is what the brightest corner has of it, S what the darkest lacks.
+                let lit = f32::from(most.saturating_sub(strength.dark)) * strength.scale;
+                let [a, b, c] = corners.map(|i| normals[i].dot(sun.towards));
+                let lacks = if turned { a.max(b).max(c) } else { -a.min(b).min(c) };
+                let dark = strength.body * lacks.max(0.0);
+                if lit > 0.0 { lit * dark / (lit + dark) } else { 0.0 }
+            }
+            // n·l differs by no more than the normals do, which is P + S at most; and PS / (P + S) ≤ (P + S) / 4.
+            _ => strength.body * facet.spread / 4.0,
         };
         // A corner's shade lies in its ramp.
-        let short = f32::from(most - strength.first) * strength.scale * facet.shortening;
+        let short = strength.top(most, self.adds) * facet.shortening;
         let model = if self.adds { clamp.max(short) } else { clamp + short };
         if least == most {
             return if model + EXACT <= self.allowed { Choice::Flat } else { Choice::Unknown };
@@ -136,21 +137,21 @@ impl Faces<'_> {
         &self,
         budget: &Budget,
         question: &Question<'_>,
-        known: &mut [Option<f32>; 2],
+        known: &mut Bodies,
     ) -> Choice {
         let facet = &budget.facets[question.triangle];
         let strength = &budget.strengths[usize::from(question.surface)];
         let [a, b, c] = question.shades;
         let channels = if self.channels { 3 } else { 1 };
-        let (mut range, mut top, mut clamped) = (0, 0, false);
+        let (mut range, mut brightest, mut clamped) = (0, strength.first, false);
         for channel in 0..channels {
             let least = a[channel].min(b[channel]).min(c[channel]);
             let most = a[channel].max(b[channel]).max(c[channel]);
             range = range.max(most - least);
-            top = top.max(most - strength.first);
-            clamped |= most >= strength.last && least < strength.last;
+            brightest = brightest.max(most);
+            clamped |= strength.cuts(least, most, budget.adds);
         }
-        let (range, top) = (f32::from(range) * strength.scale, f32::from(top) * strength.scale);
+        let (range, top) = (f32::from(range) * strength.scale, strength.top(brightest, budget.adds));
 
         // For suns alone, all of them above the horizon or all below.
         let turned = 2.0 * facet.spread + facet.edge * budget.eye_turn;
@@ -158,7 +159,7 @@ impl Faces<'_> {
         let spare = budget.allowed - EXACT;
         // What the body alone is off by, at least as it is known, whatever the light.
         let hopeless = (top - strength.highlights) * facet.shortening > spare;
-        let seen = question.indices.map(|i| Budget::lights_seen(self.lit, i));
+        let seen = question.indices.map(|i| budget.lights_seen(self.lit, i));
         let some = budget.many_suns || (seen[0] | seen[1] | seen[2]) & !(seen[0] & seen[1] & seen[2]) != 0;
         let lamps = !self.lights.lamps.is_empty();
         let near = model <= spare;
@@ -174,9 +175,10 @@ impl Faces<'_> {
         let near = near || model <= spare;
         if !hopeless && (lamps || ((some || clamped) && near) || (highlights && !near)) {
             let body = &mut known[usize::from(question.turned)];
-            let known = *body.get_or_insert_with(|| {
-                self.body_error(budget, question, &self.one_light(budget, question, 1.0), spare)
-            });
+            if body.is_nan() {
+                *body = self.body_error(budget, question, &self.one_light(budget, question, 1.0), spare);
+            }
+            let known = *body;
             // What lies above the clamp is lost at some corners, by which the others are too dark at most.
             let lost = if clamped { range } else { 0.0 };
             model = match faint {
@@ -381,7 +383,7 @@ impl Faces<'_> {
                     *of = [shown(intensity); 3];
                 }
             }
-            error = bound + self.off_linear(&intensities[..end]);
+            error = bound + self.off_linear(&intensities[..end], budget.adds);
             // Enough; or too much, however small the parts.
             if error <= limit || error - bound > limit {
                 return error;
@@ -392,7 +394,7 @@ impl Faces<'_> {
 
     /// How far intensities at as many of the points are from linear at most, in shades.
     #[inline]
-    fn off_linear(&self, intensities: &[[f32; 3]]) -> f32 {
+    fn off_linear(&self, intensities: &[[f32; 3]], adds: bool) -> f32 {
         let (mut off, mut clamp) = (0.0_f32, 0.0_f32);
         for channel in 0..if self.channels { 3 } else { 1 } {
             let [a, b, c] = [0, 1, 2].map(|i| intensities[i][channel]);
@@ -402,7 +404,8 @@ impl Faces<'_> {
                 off = off.max((a * weights[0] + b * weights[1] + c * weights[2] - at).abs());
                 (least, most) = (least.min(at), most.max(at));
             }
-            if most >= 1.0 {
+            // What is cut off.
+            if most >= 1.0 || (least <= 0.0 && !adds) {
                 clamp = clamp.max(most - least);
             }
         }
