@@ -323,7 +323,8 @@ impl Stages {
     fn of(kernel: Kernel) -> Self {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
-            let stages = Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, small: Some(x86::small), at_once: None };
+            let stages =
+                Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, small: Some(x86::small), at_once: None };
             if kernel.has_avx512() {
                 return Self { sieve: x86::sieve_512, at_once: Some(x86::at_once), ..stages };
             }
