@@ -154,6 +154,60 @@ fn batches_draw_what_single_triangles_do() {
     assert!(total.pixels > 100_000, "{total:?}");
 }
 
+/// Triangles of about the same size lie in groups that go the same way: of one row each, of two, of four, of eight and of
+/// more. Many lie one upon another, and at the frame's edges, where no pixel is behind the last.
+#[test]
+fn triangles_of_one_size_are_drawn_as_one_by_one() {
+    let mut random = Random::named("batches of small triangles of one size");
+    let mut total = Drawn::default();
+    for round in 0..600 {
+        let (width, height) = random.one_of(&[(40, 30), (17, 9), (9, 40), (64, 64), (130, 5)]);
+        let place = Place {
+            width: width as u32,
+            height: height as u32,
+            pitch: width as usize + random.one_of(&[0, 0, 7]),
+            clip: None,
+            band: 0..height as u32,
+            depth: round % 3 > 0,
+        };
+        // Units across and down.
+        let (across, down) =
+            random.one_of(&[(200, 200), (300, 200), (700, 260), (700, 700), (1_500, 1_500), (3_000, 3_500)]);
+        let (across, down) = (across.min(width * 256), down.min(height * 256));
+        let level = random.one_of(&[None, None, Some(9)]);
+        let some = random.within(1, Batch::CAPACITY as i64);
+        let count = random.one_of(&[Batch::CAPACITY as i64, some]);
+        let mut batch = Batch::new();
+        let mut triangles = Vec::new();
+        for _ in 0..count {
+            let corner = |most: i64, random: &mut Random| {
+                let at = random.within(0, most);
+                random.one_of(&[at, at, at, 0, most])
+            };
+            let (left, top) = (corner(width * 256 - across, &mut random), corner(height * 256 - down, &mut random));
+            let vertices = [0; 3].map(|_| {
+                let (x, y) = (left + random.within(0, across), top + random.within(0, down));
+                vertex(x, y, random.within(0, 0xFF00), level.unwrap_or(random.log_uniform(30) as i64))
+            });
+            let shading = shading(&mut random);
+            assert!(batch.push(&vertices, shading));
+            triangles.push((vertices, shading));
+        }
+        let one_by_one = |raster: &mut Raster<'_>| {
+            let mut sum = Drawn::default();
+            triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
+            sum
+        };
+        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
+        for kernel in Kernel::available() {
+            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
+            assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
+        }
+        total += expected.2;
+    }
+    assert!(total.tested > 50_000 && total.pixels > 50_000, "{total:?}");
+}
+
 /// A corner anywhere in a frame, one in three coordinates at an end, with a depth if there is one.
 fn corner(random: &mut Random, width: i64, height: i64, level: Option<i64>) -> Vertex {
     let mut along = |side: i64| {

@@ -10,6 +10,7 @@ mod support;
 
 use mode13h::span::Kernel;
 use mode13h::span::hyperbolic::fill_quotients;
+use mode13h::span::list::{Depths, Listed};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::fmt;
@@ -560,4 +561,76 @@ mod long {
         println!("{} kernels, {:.0?}", kernels.len(), started.elapsed());
         tried.done();
     }
+}
+
+/// Lists of spans, with a depth test and without, by every kernel: the bytes, depths and counts are those of a loop over
+/// pixels, and whatever lies before, between and behind the spans stays, up to the last byte and cell there are. Of spans
+/// that reach beyond these nothing is drawn.
+#[test]
+fn lists_are_filled_as_pixel_by_pixel() {
+    const PIXELS: usize = 300;
+    let mut random = Random::named("lists of spans");
+    let (mut written, mut hidden, mut beyond) = (0, 0, 0);
+    for round in 0..20_000 {
+        let most = random.one_of(&[4, 9, 17, 90]);
+        let count = random.within(0, 12) as usize;
+        // Equal depths, too: then the first that was drawn stays.
+        let level = random.one_of(&[1_i64 << 30, 5, 1 << 32]);
+        let mut spans = Vec::new();
+        let mut depths = Vec::new();
+        for _ in 0..count {
+            let length = random.within(0, most);
+            // One in four at the very end, or beyond it.
+            let last = PIXELS as i64 - length;
+            let (anywhere, elsewhere) = (random.within(0, last + 3), random.within(0, last + 3));
+            let at = random.one_of(&[anywhere, anywhere, anywhere, last]);
+            let cell = random.one_of(&[at, at, at, elsewhere]);
+            let (shade, step) = (random.next_u64() as u16, random.next_u64() as u16);
+            spans.push(Listed { at: at as u32, length: length as u32, shade, step });
+            let slope = random.next_u64() as i64 >> random.within(0, 63);
+            let z = random.within(0, level - 1) << 24;
+            depths.push(match random.within(0, 3) {
+                0 => Depths { at: cell as u32, z: random.next_u64() as i64, dz: slope },
+                1 => Depths { at: cell as u32, z, dz: 0 },
+                _ => Depths { at: cell as u32, z, dz: slope >> 30 },
+            });
+        }
+        let bytes: Vec<u8> = (0..PIXELS).map(guard_byte).collect();
+        let cells: Vec<u32> = (0..PIXELS).map(|_| random.one_of(&[0, 3, 1 << 29, u32::MAX])).collect();
+        let (mut flat, mut deep, mut nearest) = (bytes.clone(), bytes.clone(), cells.clone());
+        let mut nearer = 0;
+        for (span, depth) in spans.iter().zip(&depths) {
+            let (at, cell, length) = (span.at as usize, depth.at as usize, span.length as usize);
+            let inside = at + length <= PIXELS;
+            beyond += usize::from(!inside);
+            for k in 0..length {
+                let byte = (span.shade.wrapping_add(span.step.wrapping_mul(k as u16)) >> 8) as u8;
+                if inside {
+                    flat[at + k] = byte;
+                }
+                if inside && cell + length <= PIXELS {
+                    let d = (depth.z.wrapping_add(depth.dz.wrapping_mul(k as i64)) >> 24) as u32;
+                    if d > nearest[cell + k] {
+                        (deep[at + k], nearest[cell + k]) = (byte, d);
+                        nearer += 1;
+                    } else {
+                        hidden += 1;
+                    }
+                }
+            }
+        }
+        written += nearer;
+        for kernel in Kernel::available() {
+            let mut drawn = bytes.clone();
+            kernel.fill_list(&mut drawn, &spans);
+            assert_eq!(drawn, flat, "{kernel}, round {round}: {spans:?}");
+            let (mut drawn, mut kept) = (bytes.clone(), cells.clone());
+            let count = kernel.fill_list_nearer(&mut drawn, &mut kept, &spans, &depths);
+            assert!(
+                (&drawn, &kept, count) == (&deep, &nearest, nearer),
+                "{kernel}, round {round}: {spans:?}, {depths:?}"
+            );
+        }
+    }
+    assert!(written > 100_000 && hidden > 100_000 && beyond > 500, "{written}, {hidden}, {beyond}");
 }

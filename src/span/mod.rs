@@ -60,6 +60,8 @@ mod portable;
     expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
 )]
 mod simd;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+pub(crate) use simd::{avx2, nearer};
 pub mod texture;
 pub mod wide;
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
@@ -251,6 +253,12 @@ impl Kernel {
         spans: &[list::Listed],
         depths: &[list::Depths],
     ) -> u32 {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if self.has_avx2()
+            && let Some(cells) = D::as_u32(cells)
+        {
+            return simd::nearer::fill_list(pixels, cells, spans, depths);
+        }
         list::each_nearer(pixels, cells, spans, depths)
     }
 

@@ -238,17 +238,20 @@ pub(super) mod sse2 {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) mod avx2 {
+pub(crate) mod nearer;
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod avx2 {
     use super::super::list::{Listed, each};
     use super::sse2;
     use core::arch::x86_64::*;
 
-    /// Whether this processor has what [`fill`] needs.
+    /// Whether this processor has what [`fill`] and the batches of triangles need. (Nearly all that have AVX2 have FMA.)
     pub(crate) fn found() -> bool {
         #[cfg(feature = "std")]
-        return std::arch::is_x86_feature_detected!("avx2");
+        return std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma");
         #[cfg(not(feature = "std"))]
-        return cfg!(target_feature = "avx2");
+        return cfg!(all(target_feature = "avx2", target_feature = "fma"));
     }
 
     /// Only for a processor for which [`found`] is true.
@@ -265,6 +268,40 @@ pub(super) mod avx2 {
         }
         // SAFETY: the table gives this function out only where AVX2 was found.
         unsafe { list(pixels, spans) }
+    }
+
+    /// Fills a span at `at`, of which `paint` has the shade and above it the step: with up to sixteen pixels at once, so that
+    /// what lies behind them, of whichever row, is written as it was read. Of one that reaches beyond `pixels` nothing is drawn.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(crate) fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {
+        const MOST: usize = 16;
+        static MASK: [[u8; MOST]; 2] = [[0; MOST], [u8::MAX; MOST]];
+        let (shade, step) = (paint as u16, (paint >> 16) as u16);
+        // No overflow: both are below 2³², and usize has 64 bits.
+        let (at, n) = (at as usize, length as usize);
+        if n <= MOST
+            && let Some(row) = pixels.get_mut(at..at + MOST)
+        {
+            let bytes = sse2::Block::new(shade, step).bytes();
+            // SAFETY: sixteen of 32 bytes, from number 16 or one before it on; the load asks for no alignment.
+            let stays = unsafe { _mm_loadu_si128(MASK.as_ptr().cast::<u8>().add(MOST - n).cast()) };
+            if n <= MOST / 2 {
+                // SAFETY: sixteen bytes, of which eight are read; the load asks for no alignment.
+                let before = unsafe { _mm_loadl_epi64(row.as_ptr().cast()) };
+                // SAFETY: sixteen bytes, of which eight are written; the store asks for no alignment.
+                unsafe { _mm_storel_epi64(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays)) };
+                return;
+            }
+            // SAFETY: sixteen bytes; the load asks for no alignment.
+            let before = unsafe { _mm_loadu_si128(row.as_ptr().cast()) };
+            // SAFETY: sixteen bytes; the store asks for no alignment.
+            unsafe { _mm_storeu_si128(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays)) };
+            return;
+        }
+        if let Some(row) = pixels.get_mut(at..at + n) {
+            vectors(row, shade, step);
+        }
     }
 
     #[derive(Clone, Copy)]
@@ -367,7 +404,7 @@ pub(super) mod avx512 {
             && std::arch::is_x86_feature_detected!("avx512bw")
             && std::arch::is_x86_feature_detected!("avx512dq")
             && std::arch::is_x86_feature_detected!("avx512vl")
-            && std::arch::is_x86_feature_detected!("avx2")
+            && super::avx2::found()
             && std::arch::is_x86_feature_detected!("bmi2")
             && std::arch::is_x86_feature_detected!("popcnt");
         #[cfg(not(feature = "std"))]
@@ -377,6 +414,7 @@ pub(super) mod avx512 {
             target_feature = "avx512dq",
             target_feature = "avx512vl",
             target_feature = "avx2",
+            target_feature = "fma",
             target_feature = "bmi2",
             target_feature = "popcnt"
         ));

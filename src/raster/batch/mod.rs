@@ -255,6 +255,17 @@ impl<D: Cell> Raster<'_, D> {
                 left = &left[alike..];
                 continue;
             }
+            if let Some(small) = stages.small
+                && self.depth.as_mut().is_none_or(|depth| D::as_u32(depth.values_mut()).is_some())
+            {
+                let (pixels, _) = self.frame.pixels_mut();
+                // As in `fill`.
+                let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+                let cells = depth.and_then(|depth| D::as_u32(depth.values_mut()));
+                drawn += small(batch, &left[..alike], place, pixels, cells);
+                left = &left[alike..];
+                continue;
+            }
             let listed = (stages.rows)(batch, &left[..alike], place, &mut spans);
             left = &left[listed..];
             self.fill(&spans, &mut drawn);
@@ -296,9 +307,14 @@ struct Stages {
     sieve: fn(&Batch, Rect, &mut Kept),
     rows: fn(&Batch, &[Chosen], Place, &mut Spans<'_>) -> usize,
     tall: fn(&Batch, &[Chosen], Place, &mut Spans<'_>, Draw<'_>),
-    /// In place of both, with cells of 32 bits if there is a depth buffer.
+    /// In place of `rows`, and of the loop over its list, with cells of 32 bits if there is a depth buffer.
+    small: Option<Small>,
+    /// In place of all three, with cells of 32 bits if there is a depth buffer.
     at_once: Option<AtOnce>,
 }
+
+/// Draws small triangles into pixels, and where they are nearer than cells, if there are any.
+type Small = fn(&Batch, &[Chosen], Place, &mut [u8], Option<&mut [u32]>) -> Drawn;
 
 /// Draws small, tall and clipped triangles into pixels, and where they are nearer than cells, if there are any.
 type AtOnce = fn(&Batch, &[Chosen], (Place, Rect), &mut [u8], Option<&mut [u32]>) -> Drawn;
@@ -307,13 +323,14 @@ impl Stages {
     fn of(kernel: Kernel) -> Self {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
-            let stages = Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, at_once: None };
+            let stages =
+                Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, small: Some(x86::small), at_once: None };
             if kernel.has_avx512() {
                 return Self { sieve: x86::sieve_512, at_once: Some(x86::at_once), ..stages };
             }
             return stages;
         }
         let _ = kernel;
-        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall, at_once: None }
+        Self { sieve: sieve::sieve, rows: rows::rows, tall: rows::tall, small: None, at_once: None }
     }
 }

@@ -75,15 +75,18 @@ impl Batch {
 
     /// The definition.
     fn refill_one_by_one(&mut self, from: &Numbered<'_>, numbers: &[u32]) {
+        // Cut to one length, so that a vertex's number is compared with it once.
+        let vertices = from.places.len().min(from.depths.len()).min(from.shades.len());
+        let (places, depths, shades) = (&from.places[..vertices], &from.depths[..vertices], &from.shades[..vertices]);
         for (at, &number) in numbers.iter().enumerate() {
             let side = usize::from(number & TURNED != 0);
             let triangle = from.triangles[(number & !TURNED) as usize];
             for (corner, vertex) in triangle.into_iter().enumerate() {
                 let vertex = vertex as usize;
-                let place = from.places[vertex];
+                let place = places[vertex];
                 (self.x[corner][at], self.y[corner][at]) = (place.x(), place.y());
-                self.shade[corner][at] = from.shades[vertex][side].to_bits();
-                self.depth[corner][at] = from.depths[vertex];
+                self.shade[corner][at] = shades[vertex][side].to_bits();
+                self.depth[corner][at] = depths[vertex];
             }
         }
     }

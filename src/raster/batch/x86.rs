@@ -2,8 +2,11 @@
 
 use core::arch::x86_64::*;
 
+mod eight_rows;
+mod listed;
+
 use super::Batch;
-use super::avx512::{self, listed, tall::Tall};
+use super::avx512::{self, listed as listed_512, tall::Tall};
 use super::depths::Planes;
 use super::rows::{
     Draw, Edges, Floats, Gathered, Group, Ints, LANES, MAGIC, Place, Row, Spans, rows_by, set_up, tall_by,
@@ -58,6 +61,23 @@ pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     unsafe { avx2(batch, kept, place, spans) }
 }
 
+/// Draws small triangles. Only with a kernel for which `Kernel::has_avx2` is true.
+pub(super) fn small(
+    batch: &Batch,
+    kept: &[Chosen],
+    place: Place,
+    pixels: &mut [u8],
+    cells: Option<&mut [u32]>,
+) -> Drawn {
+    // SAFETY: such a kernel is given out only where AVX2 and FMA were found.
+    unsafe {
+        match cells {
+            Some(cells) => listed::draw::<true>(batch, kept, place, pixels, cells),
+            None => listed::draw::<false>(batch, kept, place, pixels, &mut []),
+        }
+    }
+}
+
 /// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
     #[target_feature(enable = "avx2")]
@@ -87,7 +107,7 @@ pub(super) fn at_once(
         pixels: &mut [u8],
         cells: &mut [u32],
     ) -> Drawn {
-        let mut listed = listed::Spans::new(place);
+        let mut listed = listed_512::Spans::new(place);
         let (mut group, mut planes) = (Group::NONE, Planes::NONE);
         let mut gathered = Gathered::of(batch, kept, place);
         for (number, eight) in kept.chunks(LANES).enumerate() {
@@ -100,7 +120,7 @@ pub(super) fn at_once(
             gathered.gather(batch, &kept[kept.len().min((number + 1) * LANES)..], place);
             match small_rows(&group, eight) {
                 // SAFETY: as above.
-                Some(most @ ..=listed::FEW_ROWS) => unsafe {
+                Some(most @ ..=listed_512::FEW_ROWS) => unsafe {
                     listed.add_all(&group, eight.len(), most, Some(&planes), (pixels, cells));
                     continue;
                 },
@@ -130,14 +150,14 @@ pub(super) fn at_once(
     }
     #[target_feature(enable = "avx2")]
     fn without(batch: &Batch, kept: &[Chosen], (place, clip): (Place, Rect), pixels: &mut [u8]) -> Drawn {
-        let (mut tall, mut listed) = (Tall::new(), listed::Spans::new(place));
+        let (mut tall, mut listed) = (Tall::new(), listed_512::Spans::new(place));
         let mut group = Group::NONE;
         let mut gathered = Gathered::of(batch, kept, place);
         for (number, eight) in kept.chunks(LANES).enumerate() {
             // SAFETY: such a kernel is given out only where AVX-512 was found.
             unsafe { avx512::set_up(&gathered, place, &mut group) };
             gathered.gather(batch, &kept[kept.len().min((number + 1) * LANES)..], place);
-            if let Some(most @ ..=listed::FEW_ROWS) = small_rows(&group, eight) {
+            if let Some(most @ ..=listed_512::FEW_ROWS) = small_rows(&group, eight) {
                 // SAFETY: as above.
                 unsafe { listed.add_all(&group, eight.len(), most, None, (pixels, &mut [])) };
                 continue;
@@ -221,6 +241,13 @@ impl Eight {
     #[target_feature(enable = "avx2")]
     fn times(self, other: Self) -> Self {
         self.with(other, |a, b| _mm256_mul_pd(a, b))
+    }
+
+    /// These times others, plus others, rounded once: nearer than in two steps, of which the margin in `rows` is for.
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    fn times_plus(self, by: Self, plus: Self) -> Self {
+        Self(_mm256_fmadd_pd(self.0, by.0, plus.0), _mm256_fmadd_pd(self.1, by.1, plus.1))
     }
 
     /// These where a mask of eight i32 is set, else the others.

@@ -59,11 +59,11 @@ unsafe fn put(batch: &mut Batch, at: usize, from: &Numbered<'_>, numbers: &[u32;
     let vertices = from.places.len().min(from.depths.len()).min(from.shades.len()).min(1 << 31) as u32;
     let wanted = (1_u32 << lanes) - 1;
     let known: u32;
-    // SAFETY: the caller has AVX-512 F, BW, DQ and VL found. Read are `numbers`, `HALVES`, those triangles whose numbers are below
-    // their count, and places, depths and shades by those of their numbers that are below the least count of these: masks
-    // leave out the others. Written are sixteen numbers from number `at` on, each, of places, shades and depths of the batch,
-    // which there are by the caller's promise: the arrays of the three corners follow each other. The stack is not used; flags
-    // and all registers written are given up.
+    // Places, depths and shades are read by those numbers that are below the least count of these, triangles likewise: masks
+    // leave out the others. The arrays of the batch's three corners follow each other.
+    // SAFETY: the caller has AVX-512 F, BW, DQ and VL found. Read are `numbers`, `HALVES` and what is named above; written are
+    // sixteen numbers from number `at` on, each, of places, shades and depths of the batch, which there are by the caller's
+    // promise. The stack is not used; flags and all registers written are given up.
     unsafe {
         asm!(
             "vmovdqu32  zmm16, [{n}]",
