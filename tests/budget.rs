@@ -108,7 +108,7 @@ fn light_that_is_taken_away_is_within_the_budget() {
                 (material.specular, material.shininess) = (specular, 20.0);
                 scene.add(object);
                 lights.iter().for_each(|light| {
-                    scene.add_light(light.clone());
+                    scene.add_light(*light);
                 });
                 check(&mut tried, &format!("{name}, {ambient}, {specular}, lights {number}"), &scene, &BUDGETS);
             }
