@@ -44,6 +44,13 @@ fn any(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
     }
 }
 
+/// What batches are compared with.
+fn one_by_one(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Shading)]) -> Drawn {
+    let mut sum = Drawn::default();
+    triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
+    sum
+}
+
 #[test]
 fn small_triangles_are_the_oracles_with_every_kernel() {
     const SIDE: i32 = 24;
@@ -134,16 +141,8 @@ fn batches_draw_what_single_triangles_do() {
         let expected = drawn(
             &place,
             Kernel::PORTABLE,
-            |raster| {
-                let mut sum = Drawn::default();
-                triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
-                sum
-            },
-            |raster| {
-                let mut sum = Drawn::default();
-                triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
-                sum
-            },
+            |raster| one_by_one(raster, &triangles),
+            |raster| one_by_one(raster, &triangles),
         );
         for kernel in Kernel::available() {
             let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
@@ -193,11 +192,7 @@ fn triangles_of_one_size_are_drawn_as_one_by_one() {
             assert!(batch.push(&vertices, shading));
             triangles.push((vertices, shading));
         }
-        let one_by_one = |raster: &mut Raster<'_>| {
-            let mut sum = Drawn::default();
-            triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
-            sum
-        };
+        let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
         let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
         for kernel in Kernel::available() {
             let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
@@ -244,11 +239,7 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
             assert!(batch.push(&vertices, shading));
             triangles.push((vertices, shading));
         }
-        let one_by_one = |raster: &mut Raster<'_>| {
-            let mut sum = Drawn::default();
-            triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
-            sum
-        };
+        let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
         let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
         for kernel in Kernel::available() {
             // None reaches beyond the frame.
@@ -285,11 +276,7 @@ fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
                 let drawn = draw(&mut Raster::new(frame).with_kernel(kernel).with_depth(depth));
                 (bytes, depths, drawn)
             };
-            let expected = on(Kernel::PORTABLE, &|raster| {
-                let mut sum = Drawn::default();
-                triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
-                sum
-            });
+            let expected = on(Kernel::PORTABLE, &|raster| one_by_one(raster, &triangles));
             missed += expected.2.covered - expected.2.tested;
             written += expected.2.pixels;
             for kernel in Kernel::available() {
