@@ -172,6 +172,9 @@ impl Shades {
     /// `last`; with dither, of this threshold.
     pub fn byte(&self, (first, last): (i32, i32), x: i32, y: i32, threshold: Option<u8>) -> u8 {
         let half = i128::from(threshold.unwrap_or(128));
+        // Asked for by `Float` alone.
+        #[cfg(not(feature = "alloc"))]
+        let _ = last;
         let exact = self.exact(centre(x, y));
         let byte = match self.shading {
             Shading::Flat(byte) => byte.into(),

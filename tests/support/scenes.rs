@@ -67,14 +67,21 @@ pub fn random(random: &mut Random) -> Scene {
 
 /// Every scene under its name, those that are shipped too; together they call for every effect.
 pub fn all() -> Vec<(String, Scene)> {
-    let mut all: Vec<(String, Scene)> = small().into_iter().map(|(name, scene)| (name.to_string(), scene)).collect();
-    #[cfg(feature = "scene-files")]
-    for shipped in &mode13h::scene::shipped::ALL {
+    small().into_iter().map(|(name, scene)| (name.to_string(), scene)).chain(shipped()).collect()
+}
+
+#[cfg(feature = "scene-files")]
+fn shipped() -> impl Iterator<Item = (String, Scene)> {
+    mode13h::scene::shipped::ALL.iter().map(|shipped| {
         let mut scene = shipped.load().expect("a scene that loads").scene;
         scene.set_time(0.4 * scene.duration);
-        all.push((format!("scene {}", shipped.name), scene));
-    }
-    all
+        (format!("scene {}", shipped.name), scene)
+    })
+}
+
+#[cfg(not(feature = "scene-files"))]
+fn shipped() -> impl Iterator<Item = (String, Scene)> {
+    core::iter::empty()
 }
 
 fn small() -> Vec<(&'static str, Scene)> {
