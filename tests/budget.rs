@@ -86,6 +86,26 @@ fn what_is_cut_off_within_a_face_is_within_the_budget() {
     }
 }
 
+/// Matt bodies in one sun: what is said of faces that lie partly in the dark is a bound, too, and holds for every pixel.
+#[test]
+fn in_one_sun_no_pixel_is_beyond() {
+    let mut tried = Tried::new("in_one_sun_no_pixel_is_beyond", 1_000_000);
+    let mut random = Random::named("one sun");
+    for i in 0..60 {
+        let slices = random.within(6, 40) as u32;
+        let mut scene = Scene::new();
+        let mut object = Object::new(shapes::sphere(slices, slices / 2));
+        object.set_angles([0.0; 3].map(|_| 7.0 * random.unit()));
+        let material = &mut object.materials[0];
+        (material.ambient, material.diffuse) = (0.15 * random.unit() as f32, 0.6 + 0.4 * random.unit() as f32);
+        scene.add(object);
+        scene.add_light(Light::sun([0.0; 3].map(|_| 2.0 * random.unit() as f32 - 1.0)));
+        let name = format!("sphere {i} of {slices}");
+        let most = check(&mut tried, &name, &scene, &[24.0, 16.0, 8.0, 4.0]);
+        assert!(most <= 1.0, "{name}: {most} times what is allowed");
+    }
+}
+
 /// A sun that takes light away from what is lit evenly: where it begins shades bend as where one gives light, and below
 /// the first shade they are cut off.
 #[test]
