@@ -141,7 +141,7 @@ impl Demo {
     fn new(options: &Options) -> Result<Demo, Failure> {
         let Options { input, drawing } = options;
         let kernel = drawing.kernel()?;
-        let shown = input::input(input)?;
+        let shown = drawing.input(input)?;
         let name = shown.name().to_string();
         let stage = drawing.stage(shown)?;
         let rung = drawing.rung(stage.scene.wishes.rung);
