@@ -214,7 +214,8 @@ fn large_faces_that_are_monotone_are_split() {
                 check_split(&mesh, &face);
             }
             // As large together as the face: where triangles overlapped they would be larger.
-            let whole: f32 = (1..face.len() - 1).map(|i| (face[i] - face[0]).cross(face[i + 1] - face[0]).length()).sum();
+            let whole: f32 =
+                (1..face.len() - 1).map(|i| (face[i] - face[0]).cross(face[i + 1] - face[0]).length()).sum();
             let place = |i: u32| mesh.positions()[i as usize];
             let parts = mesh.triangles().iter().map(|t| t.map(place));
             let sum: f32 = parts.map(|[a, b, c]| (b - a).cross(c - a).length()).sum();
@@ -277,7 +278,8 @@ fn lines_of_all_kinds() {
 #[test]
 fn normals_that_are_missing_are_filled_in() {
     // Two faces of one group over an edge; the first has normals, of which one is zero.
-    let text = "s 1\n".to_owned() + "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1\nvn 0 0 5\nvn 0 0 0\nf 1//1 2//1 3//2\nf 1 3 4\n";
+    let text =
+        "s 1\n".to_owned() + "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1\nvn 0 0 5\nvn 0 0 0\nf 1//1 2//1 3//2\nf 1 3 4\n";
     let mesh = mesh(&text);
     let [first, second] = mesh.triangles() else { panic!() };
     let normal = |i: u32| mesh.normals()[i as usize];
@@ -380,7 +382,8 @@ fn smoothing_groups_are_honoured() {
         assert_eq!(edges(&text, Some(40.0), 5), [true, false, true, false], "{statements:?}");
     }
     // Between groups that meet at a point only as well.
-    let given = "vn 0 1 0\n".to_owned() + &groups(["s off\n", "", "", "", ""]).replace("f 1 2 3 4", "f 1//1 2//1 3//1 4//1");
+    let given =
+        "vn 0 1 0\n".to_owned() + &groups(["s off\n", "", "", "", ""]).replace("f 1 2 3 4", "f 1//1 2//1 3//1 4//1");
     let mesh = with_crease(&given, Some(180.0));
     assert!(mesh.triangles()[..2].iter().flatten().all(|&i| mesh.normals()[i as usize] == Vec3::Y));
 }
@@ -412,7 +415,9 @@ fn creases_are_what_the_naive_oracle_says() {
         for (t, triangle) in mesh.triangles().iter().enumerate().filter(|(t, _)| normals[*t].length() > 0.5) {
             for &corner in triangle {
                 let here: Vec<usize> = (0..normals.len())
-                    .filter(|&o| normals[o].length() > 0.5 && mesh.triangles()[o].iter().any(|&i| place(i) == place(corner)))
+                    .filter(|&o| {
+                        normals[o].length() > 0.5 && mesh.triangles()[o].iter().any(|&i| place(i) == place(corner))
+                    })
                     .collect();
                 let mut linked = vec![t];
                 let mut next = 0;
@@ -458,7 +463,11 @@ fn only_mistaken_twins_are_left_out() {
         // A fin on an edge, of two triangles; a leaf apart; a body beside it whose faces are all there both ways.
         ("v 5 5 0\nv 6 5 0\nf 2 3 5\nf 3 2 5\nf 2 5 6\nf 5 2 6\n", 8, 0),
         ("v 5 5 0\nv 6 5 0\nv 7 7 0\nf 5 6 7\nf 7 6 5\n", 6, 0),
-        ("v 9 0 0\nv 9 1 0\nv 9 0 1\nv 8 0 0\nf 5 6 7\nf 5 7 6\nf 5 6 8\nf 5 8 6\nf 6 7 8\nf 6 8 7\nf 5 7 8\nf 5 8 7\n", 12, 0),
+        (
+            "v 9 0 0\nv 9 1 0\nv 9 0 1\nv 8 0 0\nf 5 6 7\nf 5 7 6\nf 5 6 8\nf 5 8 6\nf 6 7 8\nf 6 8 7\nf 5 7 8\nf 5 8 7\n",
+            12,
+            0,
+        ),
         // A roof over one face: no rim, and the body goes on about it.
         ("v 3 3 3\nf 2 3 5\nf 3 2 5\nf 3 4 5\nf 4 3 5\nf 4 2 5\nf 2 4 5\n", 4, 3),
         ("usemtl a\nf 2 3 4\nusemtl b\nf 2 4 3\n", 6, 0),
@@ -484,7 +493,8 @@ fn only_mistaken_twins_are_left_out() {
 /// Turned round with what normals they have, if these look inward.
 #[test]
 fn bodies_inside_out_are_turned_round() {
-    const CORNERS: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nv 1 1 1\nv 2 1 1\nv 1 2 1\nv 1 1 2\nvn -1 -1 -1\nvn 1 1 1\n";
+    const CORNERS: &str =
+        "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nv 1 1 1\nv 2 1 1\nv 1 2 1\nv 1 1 2\nvn -1 -1 -1\nvn 1 1 1\n";
     let body = |corners: [usize; 4], normal: usize, turned: bool| {
         let mut text = String::new();
         for face in [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] {

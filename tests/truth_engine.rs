@@ -678,7 +678,9 @@ fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)
     let cavity = small(&mut random, 0.5, 0.0, 0.0, 0.0);
     let in_cavity = small(&mut random, 0.2, 0.05, 0.0, 0.0);
     let mut all_over = joined(&[apart[0].clone().turned(), apart[1].clone(), cavity.clone().turned()]);
-    [&twice as &dyn Fn(&mut Written), &stand, &fan, &filled, &without_area].iter().for_each(|change| change(&mut all_over));
+    [&twice as &dyn Fn(&mut Written), &stand, &fan, &filled, &without_area]
+        .iter()
+        .for_each(|change| change(&mut all_over));
     let mut everything_twice = body.clone();
     everything_twice.faces.extend(body.faces.iter().map(|&[a, b, c]| [b, a, c]));
     let mut with_hole = with(&[&stand, &fan, &twice]);

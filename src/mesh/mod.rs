@@ -15,9 +15,9 @@ pub mod obj;
 
 mod orientation;
 mod sets;
+pub mod shapes;
 #[cfg(feature = "obj")]
 mod shells;
-pub mod shapes;
 mod split;
 mod stretch;
 mod surface;

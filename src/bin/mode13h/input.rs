@@ -78,12 +78,7 @@ pub(crate) fn model(words: &OsStr, options: &obj::Options) -> Result<Model, Fail
 }
 
 /// A model; `kinds` says what files there are, `known` what names, where it is none of them.
-fn model_or(
-    words: &OsStr,
-    options: &obj::Options,
-    kinds: &str,
-    known: &dyn Fn() -> String,
-) -> Result<Model, Failure> {
+fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
     let path = Path::new(words);
     let (name, mesh) = if let Some(mut mesh) = words.to_str().and_then(shapes::by_name) {
         if let Some(degrees) = options.crease {

@@ -33,8 +33,7 @@ pub(super) fn mesh(
 ) -> Result<(Mesh, Mended), (Option<u64>, ObjErrorKind)> {
     let Split { triangles, mut triangle_surfaces, mut groups, surfaces } = split(&model, surfaces)?;
     let Model { positions, texcoords, normals, corners, .. } = model;
-    let (mut triples, mut triangles) =
-        vertices(&corners, triangles, positions.len()).map_err(|kind| (None, kind))?;
+    let (mut triples, mut triangles) = vertices(&corners, triangles, positions.len()).map_err(|kind| (None, kind))?;
     drop(corners);
 
     let place = |triple: &Corner| positions[triple.position as usize];

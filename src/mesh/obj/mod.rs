@@ -165,8 +165,11 @@ fn read(
     let mut warnings = Warnings::default();
     let model = statement::read(reader, path)?;
     let surfaces = material::surfaces(&model, path, library, &mut warnings)?;
-    let (mesh, mended) = gather::mesh(model, surfaces, options.crease)
-        .map_err(|(line, kind)| ObjError { path: path.to_owned(), line, kind })?;
+    let (mesh, mended) = gather::mesh(model, surfaces, options.crease).map_err(|(line, kind)| ObjError {
+        path: path.to_owned(),
+        line,
+        kind,
+    })?;
     let path = path.display();
     match mended.pairs {
         0 => {}

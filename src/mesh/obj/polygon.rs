@@ -27,7 +27,14 @@ pub(super) struct Splitter {
 
 impl Splitter {
     pub(super) fn new() -> Self {
-        Self { earcut: Earcut::new(), flat: Vec::new(), cut: Vec::new(), triangles: Vec::new(), edges: Vec::new(), stack: Vec::new() }
+        Self {
+            earcut: Earcut::new(),
+            flat: Vec::new(),
+            cut: Vec::new(),
+            triangles: Vec::new(),
+            edges: Vec::new(),
+            stack: Vec::new(),
+        }
     }
 
     /// n − 2 triangles for a face of n corners, as numbers of its corners, in the face's winding. Each
@@ -78,7 +85,11 @@ impl Splitter {
         for i in 0..count {
             let is_forth = back <= turn || (forth < turn && at(forth) <= at(back));
             let corner = if is_forth { forth } else { back };
-            if is_forth { forth += 1 } else { back -= 1 }
+            if is_forth {
+                forth += 1
+            } else {
+                back -= 1
+            }
             let new = corner % count;
             if i > 1 && (is_forth != was_forth || i == count - 1) {
                 // Sees all that are left: those of the other chain.

@@ -13,8 +13,8 @@ use toml::Spanned;
 
 use super::shape::Shape;
 use super::value::{
-    Angle, Background, Color, Crease, Entries, Entry, FieldOfView, FileName, List, Name, NotNegative, Number, OneOrThree,
-    Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
+    Angle, Background, Color, Crease, Entries, Entry, FieldOfView, FileName, List, Name, NotNegative, Number,
+    OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
 };
 use crate::light::Blend;
 use crate::scene::{HiddenSurfaces, Mapping, Rung, UpAxis};
