@@ -871,7 +871,7 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
             for (eye, target) in [
                 (Vec3::new(0.4, 0.3, 3.0 * side), Vec3::ZERO),
                 (Vec3::new(-0.3, 0.2, 0.4 * side), Vec3::new(1.0, 0.9, 0.0)),
-                (Vec3::new(0.4, 0.3, 2000.0 * side), Vec3::ZERO),
+                (Vec3::new(0.4, 0.3, 40.0 * side), Vec3::ZERO),
             ] {
                 let mut scene = Scene::new();
                 scene.add(Object::new(mesh.clone()));
@@ -879,8 +879,8 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
                 scene.add_light(Light::sun([0.3, 0.7, 1.0]));
                 let near = if eye.length() < 1.0 { 0.5 } else { 0.1 };
                 scene.camera = Camera { eye, target, near, ..Camera::default() };
-                if eye.length() > 100.0 {
-                    scene.camera.field_of_view = 0.002;
+                if eye.length() > 10.0 {
+                    scene.camera.field_of_view = 0.08;
                 }
                 let toward = look_toward(&mesh, eye);
                 for way in HiddenSurfaces::ALL {

@@ -141,11 +141,11 @@ impl<'a> Together<'a> {
         for ((a, b), here) in edges.each() {
             let triangle = |place: usize| here[place].1 as usize / 3;
             let is_inner = here.len() == 2 && [0, 1].iter().all(|&place| faces[triangle(place)].has_area());
-            for point in [a, b].map(|point| &mut sharp[point as usize]) {
+            for point in [a as usize, b as usize] {
                 if !is_inner {
-                    *point = RIM;
-                } else if *point < 2 && !self.are(faces, triangle(0), triangle(1)) {
-                    *point += 1;
+                    sharp[point] = RIM;
+                } else if sharp[point] < 2 && !self.are(faces, triangle(0), triangle(1)) {
+                    sharp[point] += 1;
                 }
             }
         }
