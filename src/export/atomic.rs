@@ -47,8 +47,16 @@ pub enum ExportErrorKind {
     #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
     Picture(super::PictureError),
     /// A film without a frame.
-    #[cfg(feature = "gif")]
+    #[cfg(any(feature = "gif", feature = "png"))]
     NoFrames,
+    /// A film of more or fewer frames than were promised.
+    #[cfg(feature = "png")]
+    FrameCount {
+        /// As many as the film's head says.
+        promised: u32,
+        /// As many as were added.
+        given: u32,
+    },
     /// Any other failure that the system reports.
     Io(io::Error),
 }
@@ -85,7 +93,11 @@ impl fmt::Display for ExportError {
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),
             #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
             ExportErrorKind::Picture(error) => write!(f, "{error}"),
-            #[cfg(feature = "gif")]
+            #[cfg(feature = "png")]
+            ExportErrorKind::FrameCount { promised, given } => {
+                write!(f, "a film of {promised} frames was given {given}")
+            }
+            #[cfg(any(feature = "gif", feature = "png"))]
             ExportErrorKind::NoFrames => f.write_str("a film without a frame"),
             ExportErrorKind::Io(error) => write!(f, "{error}"),
         }

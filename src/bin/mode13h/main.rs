@@ -8,6 +8,7 @@ mod explain;
 mod failure;
 mod film;
 mod input;
+mod names;
 mod options;
 mod output;
 mod overlay;

@@ -62,7 +62,10 @@ pub(crate) fn spare(out: &Path) -> Result<(), Failure> {
     let out_name = out.display();
     let reason = match path == out {
         true => format!("{out_name}: was read, and is not overwritten; give another name to write to"),
-        false => format!("{out_name}: is {}, which was read, and is not overwritten; give another name to write to", path.display()),
+        false => format!(
+            "{out_name}: is {}, which was read, and is not overwritten; give another name to write to",
+            path.display()
+        ),
     };
     Err(Failure::words(reason))
 }
