@@ -35,7 +35,7 @@ mod y4m;
 pub use self::apng::{ApngFile, ApngFrame, FilmColors};
 #[cfg(feature = "gif")]
 pub use self::gif::{Film, GifError, GifWriter};
-pub use atomic::{ExportError, ExportErrorKind, write_atomically};
+pub use atomic::{ExportError, ExportErrorKind, check_writable, write_atomically};
 #[cfg(any(feature = "gif", feature = "png"))]
 pub use frame_rate::{FrameRate, FrameRateError};
 #[cfg(feature = "gif")]
