@@ -165,7 +165,9 @@ impl<W: Write> GifWriter<W> {
     /// Writes the frame that is held, if there is one.
     fn write_held(&mut self) -> Result<(), GifError> {
         let Some(Held { frame, image, delay }) = self.held.take() else { return Ok(()) };
-        let Some(Image { area, palette, transparent, data }) = image.or_else(|| frame.into_image()) else { return Ok(()) };
+        let Some(Image { area, palette, transparent, data }) = image.or_else(|| frame.into_image()) else {
+            return Ok(());
+        };
         self.film.images += 1;
         *self.film.delays.entry(delay).or_default() += 1;
         let frame = Frame {
@@ -233,7 +235,8 @@ impl<W: Write> Out<W> {
     fn opened(self, (width, height): (u16, u16), palette: &[Rgb; 256]) -> Result<Encoder<Counted<W>>, EncodingError> {
         match self {
             Out::Unopened(out) => {
-                let mut encoder = Encoder::new(Counted { out, bytes: 0 }, width, height, &ColorTable::of_all(palette).bytes())?;
+                let mut encoder =
+                    Encoder::new(Counted { out, bytes: 0 }, width, height, &ColorTable::of_all(palette).bytes())?;
                 encoder.set_repeat(Repeat::Infinite)?;
                 Ok(encoder)
             }

@@ -44,10 +44,10 @@ impl Demo {
     /// The rows of the panel of figures.
     pub(super) fn figures(&self) -> Vec<Row> {
         let objects = self.stage.scene.objects().len();
-        let zoom = format!("zoom {:.2}", self.motion.pose.zoom);
         let mut rows = vec![
             Row::new("scene", &self.name),
-            Row::new("", format!("{}, {}, {zoom}", counted(objects, "object"), counted(self.triangles, "triangle"))),
+            Row::new("", format!("{}, {}", counted(objects, "object"), counted(self.triangles, "triangle"))),
+            Row::new("zoom", format!("{:.2}", self.motion.pose.zoom)),
             Row::new("shading", self.shading.to_string()),
             Row::new("time", self.drawn()),
             Row::new("plan", format!("{:.1} µs", self.planning.frame * 1e6)),
