@@ -24,7 +24,7 @@ mod timing;
 
 use std::ffi::OsString;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use mode13h::palette::{Palette, builtin};
@@ -74,6 +74,13 @@ const HINT_SECONDS: f64 = 3.0;
 const NOTICE: f64 = 1.0;
 const SAVED: f64 = 3.0;
 
+/// For how long nothing changes in what stands still.
+const STILL: Duration = Duration::from_millis(500);
+/// For how long at most nothing is done but wait for the user: where all stands still, and where something moves so slowly
+/// that now and then two frames are the same.
+const STILL_REST: Duration = Duration::from_millis(100);
+const SHORT_REST: Duration = Duration::from_millis(14);
+
 fn help_on_inputs() -> String {
     format!("{}. Of several the first is shown, and N goes to the next", input::help())
 }
@@ -91,6 +98,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Err(no_display) => return demo.save_each(&no_display),
     };
     let (mut title, mut shown) = (String::new(), Look::of(&Vga::new(), Sheet::new((0, 0))));
+    // When what is shown last changed.
+    let mut changed = 0.0;
     loop {
         let wish = demo.follow(window.input(), window.seconds())?;
         if let Some(loading) = loader.loaded() {
@@ -111,9 +120,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         let sheet = demo.sheet(window.size());
         let look = Look::of(demo.on_screen(), sheet);
         let flow = if look == shown {
-            window.rest()
+            let is_still = window.seconds() - changed > STILL.as_secs_f64();
+            window.rest(if is_still { STILL_REST } else { SHORT_REST })
         } else {
-            shown = look;
+            (shown, changed) = (look, window.seconds());
             window.show_over(demo.on_screen(), |canvas| shown.sheet.draw(canvas))
         };
         if flow.map_err(Failure::work)? == Flow::Close {
@@ -309,7 +319,8 @@ impl Demo {
             self.chose_palette = false;
             self.motion.begin_anew();
         }
-        (self.timing, self.planning, self.stats) = (Timing::default(), Timing::default(), None);
+        self.forget_times();
+        self.stats = None;
         Ok(())
     }
 
@@ -359,12 +370,12 @@ impl Demo {
         }
         if self.shading.follow(input) {
             self.chose_shading = true;
-            self.timing = Timing::default();
+            self.forget_times();
             self.say(self.shading.to_string());
         }
         if input.pressed(Key::K) {
             self.kernels.go_round();
-            self.timing = Timing::default();
+            self.forget_times();
             self.say(format!("kernel {}", self.kernels.chosen()));
         }
         if input.pressed(Key::P) {
@@ -375,13 +386,13 @@ impl Demo {
         }
         if input.pressed(Key::M) {
             self.mappings.go_round();
-            self.timing = Timing::default();
+            self.forget_times();
             self.say(self.mapping());
         }
         for (key, switch) in Switch::KEYS {
             if input.pressed(key) {
                 self.switched = Some((switch, switch.is_on(&self.renderer)));
-                self.timing = Timing::default();
+                self.forget_times();
                 switch.turn(&mut self.stage.scene, &mut self.renderer);
             }
         }
@@ -409,6 +420,11 @@ impl Demo {
         } else {
             Wish::Nothing
         })
+    }
+
+    /// Something has changed that changes how long frames take.
+    fn forget_times(&mut self) {
+        (self.timing, self.planning) = (Timing::default(), Timing::default());
     }
 
     /// Says something for a moment.
@@ -463,10 +479,10 @@ impl Demo {
         let is_alone = !(self.help.is_open && self.figures.is_open);
         if self.figures.is_open {
             let rows = self.figures();
-            self.figures.pages = sheet.panel(Side::Left, &rows, is_alone, self.figures.page, "I turns the page");
+            self.figures.pages = sheet.panel(Side::Left, &rows, is_alone, self.figures.page, "I");
         }
         if self.help.is_open {
-            self.help.pages = sheet.panel(Side::Right, &figures::help(), is_alone, self.help.page, "H turns the page");
+            self.help.pages = sheet.panel(Side::Right, &figures::help(), is_alone, self.help.page, "H");
         }
         sheet
     }
@@ -476,7 +492,8 @@ impl Demo {
         self.shading.set(&mut self.renderer);
         self.renderer.set_kernel(*self.kernels.chosen());
         self.renderer.set_mapping(*self.mappings.chosen());
-        if self.figures.is_open {
+        // Of a picture that stands still the time for its plan stays, too.
+        if self.figures.is_open && (self.is_redrawn || self.planning.frame == 0.0) {
             let start = Instant::now();
             self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
             self.planning.add(Some(start.elapsed().as_secs_f64()), self.seconds);
