@@ -70,6 +70,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut window = match Window::open(&demo.name) {
         Ok(window) => window,
         Err(no_display) => {
+            demo.motion.go_to(demo.stage.scene.picture);
             demo.draw()?;
             let path = output::numbered_picture(demo.on_screen()).map_err(Failure::work)?;
             eprintln!("mode13h: {no_display}; one frame is in {}", path.display());
@@ -208,7 +209,7 @@ impl Demo {
         }
         for (key, switch) in Switch::KEYS {
             if input.pressed(key) {
-                switch.turn(&mut self.stage.scene, &mut self.renderer);
+                switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::work)?;
             }
         }
         for (key, shown) in [(Key::H, &mut self.help), (Key::E, &mut self.maps), (Key::Z, &mut self.magnifies)] {

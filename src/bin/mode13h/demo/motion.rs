@@ -34,6 +34,12 @@ impl Motion {
         Motion { time: 0.0, since: Some(0.0), pose: Pose::FIRST, now: 0.0 }
     }
 
+    /// Puts the scene's time to `seconds`; it goes on from there.
+    pub(super) fn go_to(&mut self, seconds: f64) {
+        self.time = seconds;
+        self.since = self.since.map(|_| self.now);
+    }
+
     pub(super) fn follow(&mut self, input: &Input, seconds: f64) {
         let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);
         self.now = seconds;
