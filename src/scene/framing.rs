@@ -164,7 +164,8 @@ impl Viewpoint {
         let place = |depth: f64| [0, 1, 2].map(|i| right[i] * x + up[i] * y + towards[i] * depth);
         let target = self.target.map_or(place(z), widen);
         // So far that f32 tells the eye from what it looks at.
-        let least = target.iter().fold(f64::from(f32::MIN_POSITIVE), |most, c| most.max(c.abs() / 1_048_576.0));
+        let least =
+            target.iter().fold(1024.0 * f64::from(f32::MIN_POSITIVE), |most, c| most.max(c.abs() / 1_048_576.0));
         let distance = (depth - z).max(least);
         let is_within = |c: &f64| c.abs() <= f64::from(f32::MAX);
         if ![target, [front, back, 0.0]].iter().chain(&points).flatten().all(is_within) {
