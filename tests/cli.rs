@@ -141,7 +141,19 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.png", "--scale", "3"], "a scale is 1, 2, 5x6"),
         (vec!["render", "torus", "-o", "x.png", "--scale", "16385x1"], "a scale is 1, 2, 5x6"),
         (vec!["render", "torus", "-o", "x.png", "--turn", "NaN"], "--turn"),
-        (vec!["render", "torus", "-o", "x.png", "--at", "inf"], "--at"),
+        (vec!["render", "torus", "-o", "x.png", "--at", "inf"], "--time"),
+        (vec!["render", "torus", "-o", "x.png", "--time", "soon"], "--time"),
+        (vec!["render", "torus", "-o", "x.png", "--zoom", "0"], "not a number from 0.001 to 1000"),
+        (vec!["render", "torus", "-o", "x.png", "--zoom", "nan"], "not a number from 0.001 to 1000"),
+        (vec!["render", "torus", "-o", "x.png", "--camera", "1,2"], "\"1,2\" is no point: three numbers"),
+        (vec!["render", "torus", "-o", "x.png", "--camera", "1,2,3:inf,0,0"], "\"inf,0,0\" is no point"),
+        (vec!["render", "torus", "-o", "x.png", "--camera", "-1,2,3:-1,2,3"], "it looks at the point where it is"),
+        (
+            vec!["render", "torus", "-o", "x.png", "--background", "256"],
+            "neither a colour such as '#203040' nor an entry",
+        ),
+        (vec!["render", "torus", "-o", "x.png", "--background", "#12345"], "neither a colour"),
+        (vec!["render", "torus", "-o", "x.png", "--dither=maybe"], "neither on nor off"),
         (vec!["render", "torus", "-o", "x.png", "--fps", "0"], "--fps"),
         (vec!["render", "torus", "-o", "x.png", "--turn", "9", "--fps", "9"], "x.png: both --turn and --fps"),
         (vec!["render", "torus", "-o", "x.png", "--up", "x"], "--up"),
@@ -629,6 +641,11 @@ fn with_no_display_one_frame_is_saved() {
         assert_eq!(names_in(directory.path()).len(), number);
     }
     assert_eq!(read(&directory, "mode13h-0002.png"), read(&directory, "mode13h-0003.png"));
+    // Of a scene that begins in the dark, the moment that it names for a picture.
+    assert!(run(&directory, &["flash"]).status.success());
+    let (palette, pixels) = indexed(&read(&directory, "mode13h-0004.png"));
+    let bright = pixels.iter().filter(|pixel| palette[usize::from(**pixel)].brightness() > 60_000).count();
+    assert!(bright > 64_000 / 2, "{bright} pixels");
 }
 
 #[test]
@@ -942,6 +959,60 @@ fn words_have_the_last_word_over_a_scene() {
         assert!(stats(&["crate", "--at", "0.3", "--mapping", mapping]).1 != perspective, "{mapping}");
     }
     assert!(stats(&["crate", "--at", "0.3", "--mapping", "perspective"]).1 == perspective);
+}
+
+/// Enlarged, from another place, before another colour, with dither: what is asked for is seen.
+#[test]
+fn the_view_is_as_asked_for() {
+    let directory = directory();
+    let picture = |words: &[&str]| {
+        succeed(&directory, &[&["render"], words, &["-o", "x.png"]].concat());
+        indexed(&read(&directory, "x.png"))
+    };
+    let own = picture(&["sphere"]);
+    let covered = |(_, pixels): &(Vec<Rgb>, Vec<u8>)| pixels.iter().filter(|pixel| **pixel != pixels[0]).count();
+    assert!(picture(&["sphere", "--zoom", "1"]) == own);
+    // A view twice as narrow, or from twice as far away: four times the area, and a quarter but for perspective.
+    let (larger, smaller) = (picture(&["sphere", "--zoom", "1.05"]), picture(&["sphere", "--zoom", "0.5"]));
+    let part = |of| covered(of) as f64 / covered(&own) as f64;
+    assert!((part(&larger) - 1.05 * 1.05).abs() < 0.01, "{}", part(&larger));
+    assert!((0.2..0.25).contains(&part(&smaller)), "{}", part(&smaller));
+    // From the other side a torus under a sun before it is dark; beyond it there is nothing to be seen.
+    assert!(picture(&["torus", "--camera", "0,0,-3"]) != picture(&["torus", "--camera", "0,0,3"]));
+    assert!(picture(&["torus", "--camera", "0,0,3:0,0,0"]) == picture(&["torus", "--camera", "0,0,3"]));
+    assert_eq!(covered(&picture(&["torus", "--camera", "0,0,3:0,0,9"])), 0);
+    // A scene's own camera that moves stands still then.
+    let still = |time: &'static str| picture(&["interlock", "--camera", "0,0,4", "--time", time]);
+    assert!(still("0") == still("1"));
+    for (word, color) in [("#ff0000", Rgb::new(255, 0, 0)), ("00ff00", Rgb::new(0, 255, 0))] {
+        let (palette, pixels) = picture(&["cube", "--palette", "bios", "--background", word]);
+        assert!(palette[usize::from(pixels[0])].distance_squared(color) < 100, "{word}");
+    }
+    assert_eq!(picture(&["cube", "--background", "7"]).1[0], 7);
+    let [with, without] = ["--dither", "--dither=off"].map(|word| picture(&["still", word]));
+    assert!(with == picture(&["still"]) && with != without && without == picture(&["still", "--dither=off"]));
+    // With nothing said a picture is of the moment that the scene names; a film and a turn begin at 0.
+    assert!(picture(&["flash"]) == picture(&["flash", "--time", "1.11"]));
+    assert!(picture(&["flash", "--turn", "0"]) == picture(&["flash", "--at", "0"]));
+}
+
+/// What a scene shows in the ramps of its palette keeps its colours in one that is made for it.
+#[test]
+fn a_palette_made_for_a_scene_keeps_the_colors_of_its_ramps() {
+    let directory = directory();
+    let colors = |words: &[&str]| {
+        succeed(&directory, &[&["render"], words, &["-o", "x.png", "--dither=off"]].concat());
+        let (palette, pixels) = indexed(&read(&directory, "x.png"));
+        pixels.into_iter().map(move |pixel| palette[usize::from(pixel)]).collect::<Vec<Rgb>>()
+    };
+    for scene in ["still", "interlock", "teapot", "phong"] {
+        let (own, made) = (colors(&[scene]), colors(&[scene, "--palette", "auto"]));
+        let far = own.iter().zip(&made).map(|(a, b)| f64::from(a.distance_squared(*b)).sqrt());
+        let mean = far.sum::<f64>() / own.len() as f64;
+        // A made ramp is a line from black by the colour to the highlight; the palette's own ramps are bent. In greys they
+        // would be 50 and more apart.
+        assert!(mean < 12.0, "{scene}: {mean}");
+    }
 }
 
 /// A scene has a time; `--turn` takes one that moves further in its round, and leads the camera round another.

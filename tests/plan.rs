@@ -368,7 +368,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
     let mut random = support::random::Random::named("perspective");
     while tried.more() {
         let pieces = random.within(1, 24) as u32;
-        let mut scene = Scene::showing(mode13h::mesh::shapes::wall(pieces, pieces));
+        let mut scene = support::scenes::framed(mode13h::mesh::shapes::wall(pieces, pieces));
         let object = &mut scene.objects_mut()[0];
         object.set_angles([random.unit() - 0.5, 2.4 * random.unit() - 1.2, random.unit()]);
         let material = &mut object.materials[0];

@@ -32,6 +32,7 @@ pub(super) struct SceneLayout {
     pub(super) fog: Option<Spanned<FogLayout>>,
     pub(super) camera: Option<Spanned<CameraLayout>>,
     pub(super) wishes: Option<WishesLayout>,
+    pub(super) picture: Option<Angle>,
     #[serde(default)]
     pub(super) objects: Vec<Spanned<ObjectLayout>>,
     #[serde(default)]
