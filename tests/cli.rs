@@ -165,6 +165,10 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.gif", "--record", "r.txt"], "r.txt: a row of records needs"),
         (vec!["palette", "grey", "-o", "x.txt"], "x.txt: "),
         (vec!["render", "torus", "-o", "x.png", "--up", "z"], "--up is for models"),
+        (vec!["render", "torus", "-o", "x.png", "--crease", "30"], "--crease is for models"),
+        (vec!["plan", "sphere", "--crease", "181"], "--crease"),
+        (vec!["cost", "sphere", "--crease", "NaN"], "--crease"),
+        (vec!["explain", "sphere", "--row", "9", "--crease", "-1"], "--crease"),
         (vec!["render", "torus", "-o", "x.png", "--mapping", "best"], "there are affine, every-16, perspective"),
         (vec!["render", "torus", "-o", "x.png", "--vertex-path", "best"], "there are float, integer"),
         (vec!["demo", "torus", "--hidden", "best"], "there are back-faces, painter"),
@@ -719,6 +723,8 @@ fn palettes_are_made_for_models() {
     assert_fails(&run(&directory, &["palette"]), 2, "<FILE|NAME>");
     assert_fails(&run(&directory, &["palette", "grey", "--from", "torus"]), 2, "--from");
     assert_fails(&run(&directory, &["palette", "grey", "--up", "z"]), 2, "--up");
+    assert_fails(&run(&directory, &["palette", "grey", "--crease", "9"]), 2, "--crease");
+    assert_fails(&run(&directory, &["palette", "--from", "sphere", "--crease", "999"]), 2, "--crease");
     assert_fails(&run(&directory, &["palette", "--from", "none.obj"]), 1, "none.obj: No such file");
     assert_fails(&run(&directory, &["palette", "--from", "torus", "-o", "x.txt"]), 2, "x.txt: ");
 }
@@ -1113,4 +1119,19 @@ fn explain_refuses_what_is_not_there() {
         assert_fails(&run(&directory, &words), status, says);
     }
     assert!(names_in(directory.path()).is_empty());
+}
+
+/// Two squares that meet at 90°: with an edge between them, as flat ones have, or without.
+#[test]
+fn a_crease_angle_is_for_models() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let bent = "v 0 0 0\nv 0 0 2\nv 2 0 0\nv 2 0 2\nv 2 2 0\nv 2 2 2\nf 1 2 4 3\nf 3 4 6 5\n";
+    fs::write(directory.path().join("bent.obj"), bent).expect("written");
+    let picture = |name: &str, crease: &[&str]| {
+        succeed(&directory, &[&["render", "bent.obj", "-o", name], crease].concat());
+        fs::read(directory.path().join(name)).expect("a picture")
+    };
+    let usual = picture("usual.png", &[]);
+    assert!(usual == picture("40.png", &["--crease", "40"]) && usual == picture("0.png", &["--crease", "0"]));
+    assert!(usual != picture("180.png", &["--crease", "180"]));
 }

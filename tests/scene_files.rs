@@ -23,6 +23,7 @@ fn open(path: &FilePath) -> io::Result<Box<dyn BufRead>> {
         ("folder/triangle.obj", TRIANGLE.as_bytes()),
         ("folder/broken.obj", &b"v 0 0 0\nf 1 2 3\n"[..]),
         ("folder/with_texture.obj", b"mtllib it.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl tin\nf 1/1 2/1 3/1\n"),
+        ("folder/bent.obj", b"v 0 0 0\nv 0 0 2\nv 2 0 0\nv 2 0 2\nv 2 2 0\nv 2 2 2\nf 1 2 4 3\nf 3 4 6 5\n"),
         ("folder/two.mtl", b"newmtl tin\nnewmtl oak\n"),
         ("folder/it.mtl", b"newmtl tin\nmap_Kd none.png\n"),
         ("folder/broken.pal", b"JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n"),
@@ -213,6 +214,11 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (
             list("objects = [{ shape = 'toroid' }]"),
             "1:22: key `objects[0].shape`: \"toroid\": unknown shape; there are ",
+        ),
+        (object("crease = 9"), "3:10: key `objects[0].crease`: only a model has a crease angle"),
+        (
+            list("[[objects]]\nmodel = 'bent.obj'\ncrease = 181"),
+            "3:10: key `objects[0].crease`: expected a number of degrees from 0 to 180, found 181",
         ),
         (object("up-axis = 'x'"), "3:11: key `objects[0].up-axis`: \"x\": unknown axis; there are y, z"),
         (
@@ -714,4 +720,15 @@ fn textures_repeat_as_often_as_a_scene_says() {
     let scene = scene("objects = [{ shape = 'wall', subdivisions = [1, 1], repeat = [3, 0.5] }]");
     let texcoords = scene.objects()[0].mesh().texcoords().expect("a wall has them");
     assert_eq!(texcoords[3], mode13h::glam::Vec2::new(3.0, 0.5));
+}
+
+/// Each angle makes a mesh of its own of a model; the same one is shared.
+#[test]
+fn models_have_the_crease_angle_that_is_asked_for() {
+    let text = "objects = [{ model = 'bent.obj' }, { model = 'bent.obj', crease = 90 }, { model = 'bent.obj', crease = 89.9 }, \
+                { model = 'bent.obj', crease = 90 }]";
+    let scene = scene(text);
+    let vertices: Vec<usize> = scene.objects().iter().map(|object| object.mesh().positions().len()).collect();
+    assert_eq!(vertices, [8, 6, 8, 6]);
+    assert!(std::ptr::eq(scene.objects()[1].mesh(), scene.objects()[3].mesh()));
 }

@@ -60,7 +60,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let screen = Screen::MODE_13H;
     // Before anything is loaded.
     outside(*pixel, *row, screen).map_or(Ok(()), |error| Err(Failure::words(error)))?;
-    let input = input::input(input)?;
+    let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
     out.as_deref().map_or(Ok(()), read_files::spare)?;

@@ -1,10 +1,11 @@
 //! Options that several commands share, and what may stand behind them.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use mode13h::glam::Vec3;
+use mode13h::mesh::obj;
 use mode13h::palette::{Rgb, builtin};
 use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, VertexPath};
 use mode13h::scene::{Scene, UpAxis};
@@ -38,6 +39,10 @@ pub(crate) struct Drawing {
     /// The axis of a model that points up [default: y]
     #[arg(long, value_name = "AXIS", value_enum)]
     up: Option<Up>,
+    /// Show an edge where faces of a model without normals meet at more than this angle: 180 is smooth everywhere, 0 flat
+    /// [default: the model's smoothing groups, or else 40]
+    #[arg(long, value_name = "DEGREES", value_parser = crease)]
+    crease: Option<f32>,
     /// Show it so many times as large
     #[arg(long, value_name = "FACTOR", value_parser = factor)]
     zoom: Option<f64>,
@@ -105,6 +110,15 @@ impl Drawing {
             }
             _ => Ok(Kernel::fastest()),
         }
+    }
+
+    /// What INPUT says, read as was asked for.
+    pub(crate) fn input(&self, words: &OsStr) -> Result<Input, Failure> {
+        let input = input::input(words, &obj::Options { crease: self.crease })?;
+        if self.crease.is_some() && matches!(input, Input::Scene { .. }) {
+            return Err(Failure::words("--crease is for models: a scene says itself what each of its models has"));
+        }
+        Ok(input)
     }
 
     /// What INPUT shows, drawn as was asked for.
@@ -250,6 +264,14 @@ fn switch(words: &str) -> Result<bool, String> {
         "on" => Ok(true),
         "off" => Ok(false),
         _ => Err("neither on nor off".to_string()),
+    }
+}
+
+/// An angle between faces on the command line, in degrees.
+pub(crate) fn crease(words: &str) -> Result<f32, String> {
+    match words.parse::<f32>() {
+        Ok(degrees) if (0.0..=180.0).contains(&degrees) => Ok(degrees),
+        _ => Err("not a number of degrees from 0 to 180".to_string()),
     }
 }
 

@@ -73,7 +73,7 @@ fn rate(words: &str) -> Result<f64, String> {
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut out = Out::new(options)?;
-    let stage = options.drawing.stage(input::input(&options.input)?)?;
+    let stage = options.drawing.stage(options.drawing.input(&options.input)?)?;
     out.lasts(stage.seconds());
     let frames = out.frames();
     let records = options.record.as_deref().map(|record| Names::new(record, frames, "records")).transpose()?;

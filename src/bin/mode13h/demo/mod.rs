@@ -310,7 +310,7 @@ impl Demo {
             for &(switch, wanted) in &self.switches {
                 self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
                 if switch.is_on(&self.renderer) != wanted {
-                    switch.turn(&mut self.stage.scene, &mut self.renderer);
+                    switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::work)?;
                 }
             }
         } else {
