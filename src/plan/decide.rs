@@ -399,15 +399,13 @@ impl Rules<'_> {
 }
 
 /// How many texels of an object's images go to a pixel at most, counted along a side of the pixel, where a face is parallel
-/// to the screen and at most `farthest` away along the view.
-///
-/// Over a face u changes by at most |∇u| texels for a step of one unit, v by |∇v|, so both together by the root of the sum
-/// of their squares. A pixel's longer side is a step of so many units as the view has there.
+/// to the screen and at most `farthest` away along the view: so many as an image's longer side has, times what texture
+/// coordinates change by over a unit, times a pixel's longer side.
 fn texels_to_pixel(object: &Object, view: &ObjectView, farthest: f64) -> f64 {
     let images = object.materials.iter().zip(object.steepest_texcoords());
-    let steepest = images.filter_map(|(material, [u, v])| {
+    let steepest = images.filter_map(|(material, change)| {
         let texture = material.texture.as_ref()?;
-        Some(libm::hypot(u * f64::from(texture.width()), v * f64::from(texture.height())))
+        Some(change * f64::from(texture.width().max(texture.height())))
     });
     steepest.fold(0.0, f64::max) * view.longest_pixel(farthest.max(0.0))
 }

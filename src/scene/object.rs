@@ -31,7 +31,7 @@ pub struct Object {
     /// Of each vertex, its surface.
     vertex_surfaces: Vec<u16>,
     longest_edges: (f32, f32),
-    steepest_texcoords: Vec<[f64; 2]>,
+    steepest_texcoords: Vec<f64>,
     faceted: bool,
     /// One for each surface of the mesh.
     pub materials: Vec<Material>,
@@ -108,9 +108,8 @@ impl Object {
         self.longest_edges
     }
 
-    /// Of each surface of the mesh the greatest |∇u| and |∇v| of its faces: by how much texture coordinates change over a
-    /// unit of the mesh.
-    pub(crate) fn steepest_texcoords(&self) -> &[[f64; 2]] {
+    /// Of each surface of the mesh by how much its texture coordinates change at most over a unit of the mesh.
+    pub(crate) fn steepest_texcoords(&self) -> &[f64] {
         &self.steepest_texcoords
     }
 
@@ -205,10 +204,13 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
     (libm::sqrtf(edge), libm::sqrtf(texture_edge))
 }
 
-/// Of each surface the greatest |∇u| and |∇v| of its faces that have an area. With e and f two edges, and a and b the
-/// changes of a coordinate along them, |∇|² = (a²f·f − 2ab e·f + b²e·e) / (e·e f·f − (e·f)²).
-fn steepest_texcoords(mesh: &Mesh) -> Vec<[f64; 2]> {
-    let mut steepest = vec![[0.0_f64; 2]; mesh.surfaces().len()];
+/// Of each surface by how much texture coordinates change at most over a unit of its faces, those without area aside.
+///
+/// On a face with the edges e and f, a change g of a coordinate along e and h along f, and g' and h' of another,
+/// ∇·∇' = (gg'·f·f − (gh' + g'h)·e·f + hh'·e·e) / (e·e f·f − (e·f)²). A step of one unit changes both coordinates
+/// together by no more than the root of the greater eigenvalue of these products.
+fn steepest_texcoords(mesh: &Mesh) -> Vec<f64> {
+    let mut steepest = vec![0.0_f64; mesh.surfaces().len()];
     let Some(texcoords) = mesh.texcoords() else { return steepest };
     for (&corners, &surface) in mesh.triangles().iter().zip(mesh.triangle_surfaces()) {
         // In range, as every mesh is.
@@ -218,13 +220,16 @@ fn steepest_texcoords(mesh: &Mesh) -> Vec<[f64; 2]> {
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let (ee, ef, ff) = (dot(e, e), dot(e, f), dot(f, f));
         let area = ee * ff - ef * ef;
-        if area > 0.0 {
-            for (i, most) in steepest[usize::from(surface)].iter_mut().enumerate() {
-                let (a, b) = (t[i] - s[i], w[i] - s[i]);
-                let square = (a * a * ff - 2.0 * a * b * ef + b * b * ee) / area;
-                *most = most.max(libm::sqrt(square.max(0.0)));
-            }
+        if area <= 0.0 {
+            continue;
         }
+        let (g, h) = ([t[0] - s[0], t[1] - s[1]], [w[0] - s[0], w[1] - s[1]]);
+        let product =
+            |i: usize, j: usize| (g[i] * g[j] * ff - (g[i] * h[j] + g[j] * h[i]) * ef + h[i] * h[j] * ee) / area;
+        let (uu, uv, vv) = (product(0, 0), product(0, 1), product(1, 1));
+        let greater = (uu + vv + libm::hypot(uu - vv, 2.0 * uv)) / 2.0;
+        let most = &mut steepest[usize::from(surface)];
+        *most = most.max(libm::sqrt(greater));
     }
     steepest
 }

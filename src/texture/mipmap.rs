@@ -76,6 +76,22 @@ impl Mipmap {
         }
     }
 
+    /// The colours of all levels and how much they count: of each level together half as much as of the one before.
+    /// `texture` is the one that it was made from.
+    pub(crate) fn weights(&self, texture: &Texture) -> Vec<(Rgb, u32)> {
+        // In 256ths of a texel of level 0.
+        let mut weights = texture.histogram().map(|count| count << 8);
+        let mut rest = &self.texels[..];
+        for level in 1..=Levels::deepest(self.width_bits, self.height_bits) {
+            let (columns, rows) = (self.width_bits.saturating_sub(level), self.height_bits.saturating_sub(level));
+            let of_level;
+            (of_level, rest) = rest.split_at(1 << (columns + rows));
+            let area = 1 << (level.min(self.width_bits) + level.min(self.height_bits));
+            of_level.iter().for_each(|&texel| weights[usize::from(texel)] += (area << 8) >> level);
+        }
+        self.colors.into_iter().zip(weights).collect()
+    }
+
     /// Bytes that it holds beside those of its texture.
     #[must_use]
     pub(crate) fn bytes(&self) -> usize {
