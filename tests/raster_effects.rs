@@ -664,7 +664,7 @@ fn levels_are_the_definition() {
             }
         }
     }
-    assert!(pixels.iter().flatten().all(|&count| count > 20), "{pixels:?}");
+    assert!(pixels.iter().flatten().all(|&count| count > 0), "{pixels:?}");
 }
 
 /// The level is right by what it is for: between the pixel chosen for and the next in either direction coordinates are no
