@@ -232,12 +232,14 @@ fn stage_json(stage: &Stage) -> Value {
             put("threshold", threshold.into());
             "dither"
         }
-        Stage::Texture { texel, .. } => {
+        Stage::Texture { texel, level, .. } => {
             put("texel", texel.into());
+            put("mipmap_level", json!(level));
             "texture"
         }
-        Stage::TextureChannels { texel, channels } => {
+        Stage::TextureChannels { texel, level, channels } => {
             put("texel", texel.into());
+            put("mipmap_level", json!(level));
             put("channels", json!(channels));
             "texture"
         }

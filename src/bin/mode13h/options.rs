@@ -34,6 +34,9 @@ pub(crate) struct Drawing {
     hidden: Option<HiddenSurfaces>,
     #[arg(long, value_name = "WAY", help = help_on_mappings())]
     mapping: Option<Mapping>,
+    /// Smaller copies of textures where these are far away [default: as the scene calls for]
+    #[arg(long, value_name = "WHETHER", value_enum)]
+    mipmaps: Option<Switch>,
     #[arg(long, value_name = "PATH", help = help_on_vertex_paths())]
     vertex_path: Option<VertexPath>,
     /// The axis of a model that points up [default: y]
@@ -86,6 +89,13 @@ impl Moment {
 pub(crate) enum Up {
     Y,
     Z,
+}
+
+/// Whether something is done.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Switch {
+    On,
+    Off,
 }
 
 impl From<Up> for UpAxis {
@@ -203,6 +213,7 @@ impl Drawing {
         renderer.set_kernel(kernel);
         renderer.set_hidden_surfaces(self.hidden);
         renderer.set_mapping(self.mapping);
+        renderer.set_mipmaps(self.mipmaps.map(|mipmaps| mipmaps == Switch::On));
         renderer.set_vertex_path(self.vertex_path.unwrap_or_default());
         if let Some(rung) = self.rung {
             renderer.set_rung(rung);

@@ -210,6 +210,7 @@ fn wishes(layout: &WishesLayout) -> Wishes {
         rung: layout.rung.as_ref().map(|name| name.0),
         hidden_surfaces: layout.hidden_surfaces.as_ref().map(|name| name.0),
         mapping: layout.mapping.as_ref().map(|name| name.0),
+        mipmaps: layout.mipmaps,
         tessellation: layout.tessellation.map(|shades| shades.0),
         dither: layout.dither.unwrap_or_default(),
         max_error: layout.max_error.map(|shades| shades.0),

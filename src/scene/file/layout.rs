@@ -149,6 +149,7 @@ pub(super) struct WishesLayout {
     pub(super) rung: Option<Name<Rung>>,
     pub(super) hidden_surfaces: Option<Name<HiddenSurfaces>>,
     pub(super) mapping: Option<Name<Mapping>>,
+    pub(super) mipmaps: Option<bool>,
     pub(super) tessellation: Option<Positive>,
     pub(super) dither: Option<bool>,
     pub(super) max_error: Option<Positive>,
