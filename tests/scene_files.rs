@@ -689,6 +689,47 @@ fn every_key_is_documented() {
     assert!(tried > 50, "{tried} keys");
 }
 
+/// What the documents show as a line of a scene, in a sentence or in a block, is one.
+#[test]
+fn keys_in_documents_are_keys_of_scenes() {
+    let scenes = include_str!("../scenes/README.md");
+    // Its tables are those of the parser (see above).
+    let known: Vec<&str> = scenes.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
+    let mut tried = 0;
+    for document in [include_str!("../README.md"), scenes] {
+        let mut language = "";
+        for line in document.lines() {
+            if let Some(opened) = line.trim_start().strip_prefix("```") {
+                language = opened;
+                continue;
+            }
+            // In a block of a scene each line; elsewhere what stands between backquotes.
+            let quoted: Vec<&str> = match language {
+                "toml" => vec![line],
+                "" => line.split('`').skip(1).step_by(2).collect(),
+                _ => continue,
+            };
+            let assigned = quoted.into_iter().filter_map(|code| code.split_once(" = "));
+            for (key, _) in
+                assigned.filter(|(key, _)| key.chars().all(|c| c.is_ascii_alphabetic() || "-_.".contains(c)))
+            {
+                assert!(key.split('.').all(|key| known.contains(&key)), "{key} in: {line}");
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried >= 10, "{tried} keys");
+}
+
+/// The rungs that the document lists are those that there are.
+#[test]
+fn every_rung_is_documented() {
+    let row = include_str!("../scenes/README.md").lines().find(|line| line.starts_with("| `rung` |")).expect("a row");
+    let named = row.split('|').nth(2).expect("the values");
+    let all = mode13h::render::Rung::ALL.map(|rung| format!("`\"{rung}\"`"));
+    assert_eq!(named.trim(), all.join(", "));
+}
+
 #[test]
 fn a_texture_is_a_png_beside_the_scene() {
     let directory = tempfile::tempdir().expect("a directory");

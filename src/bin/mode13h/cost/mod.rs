@@ -107,7 +107,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Some(seconds) => format!("at most {seconds} s"),
         None => format!("{} to {} s", settings.seconds, 2.0 * settings.seconds),
     };
-    eprintln!("mode13h: {} frames are compared with the truth; then times are taken, for {times}", frames.len());
+    let compared = if frames.len() == 1 { "1 frame is".to_string() } else { format!("{} frames are", frames.len()) };
+    eprintln!("mode13h: {compared} compared with the truth; then times are taken, for {times}");
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
     progress.bar.finish_and_clear();
