@@ -444,6 +444,66 @@ fn creases_are_what_the_naive_oracle_says() {
     });
 }
 
+/// A grid of so many squares a side whose heights are random, within so much of a square's side.
+fn rough(side: u64, height: f64, corners: &str) -> String {
+    let (mut text, mut random) = (String::new(), 1_u64);
+    let next = |random: &mut u64| {
+        // Knuth's generator for MMIX, and of it the upper bits.
+        *random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*random >> 40) as f64 / 16_777_216.0
+    };
+    for i in 0..(side + 1) * (side + 1) {
+        writeln!(text, "v {} {} {}", i % (side + 1), i / (side + 1), height * next(&mut random)).unwrap();
+    }
+    text += corners;
+    for i in (0..(side + 1) * side).filter(|i| i % (side + 1) < side) {
+        let [a, b, c, d] = [i + 1, i + 2, i + side + 3, i + side + 2];
+        writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}").unwrap();
+    }
+    text
+}
+
+/// Noise bends faces by more than the crease angle here and there, which is no edge; an angle that is asked for counts.
+#[test]
+fn scans_are_smooth() {
+    let split = |text: &str, crease| with_crease(text, crease).positions().len();
+    let text = rough(40, 0.8, "");
+    assert_eq!(split(&text, None), 41 * 41);
+    assert!(split(&text, Some(40.0)) > 41 * 41 + 100, "{}", split(&text, Some(40.0)));
+    // Nor do groups keep other faces from being smooth, or are made smooth by them.
+    let half = rough(40, 0.8, "").replace("f 821 822 863\n", "s off\nf 821 822 863\n");
+    assert!(half.contains("s off") && split(&half, None) > 41 * 41 + 1_000);
+    // A box of 20 squares a side, made of six grids, keeps its edges.
+    let grid = rough(20, 0.0, "");
+    let mut cube = String::new();
+    let planes: [fn([i32; 2]) -> [i32; 3]; 6] = [
+        |[x, y]| [x, y, 20],
+        |[x, y]| [y, x, 0],
+        |[x, y]| [20, x, y],
+        |[x, y]| [0, y, x],
+        |[x, y]| [y, 20, x],
+        |[x, y]| [x, 0, y],
+    ];
+    for (side, plane) in planes.into_iter().enumerate() {
+        for line in grid.lines() {
+            let numbers: Vec<i32> = line.split(' ').skip(1).map(|word| word.parse().unwrap()).collect();
+            match line.as_bytes()[0] {
+                b'v' => {
+                    let [x, y, z] = plane([numbers[0], numbers[1]]);
+                    writeln!(cube, "v {x} {y} {z}").unwrap();
+                }
+                _ => {
+                    let [a, b, c] = [0, 1, 2].map(|i| numbers[i] + 441 * side as i32);
+                    writeln!(cube, "f {a} {b} {c}").unwrap();
+                }
+            }
+        }
+    }
+    let cube = mesh(&cube);
+    assert!(cube.is_closed() && cube.volume() == 8_000.0);
+    assert!(cube.normals().iter().all(|n| n.abs().max_element() == 1.0));
+}
+
 #[test]
 fn a_model_of_which_nothing_can_be_drawn_says_so() {
     for faces in ["f 1 1 1\n", "f 1 2 1\nf 3 3 2\n", "v 2 0 0\nf 1 2 4\n"] {

@@ -107,6 +107,8 @@ pub(super) struct Together<'a> {
     /// For each triangle the number of its smoothing group, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Empty
     /// if none has one.
     groups: &'a [u32],
+    /// Of a mesh that may be a scan.
+    edges: Option<&'a topology::Edges>,
 }
 
 impl<'a> Together<'a> {
@@ -119,7 +121,37 @@ impl<'a> Together<'a> {
     pub(super) fn new(crease: f64, groups: &'a [u32]) -> Self {
         // 2⁻⁴⁰ for rounding: faces at exactly the crease angle are smooth. No number at all leaves all faces flat.
         let least = libm::cos(crease.clamp(0.0, core::f64::consts::PI)) - 1.0 / 1_099_511_627_776.0;
-        Self { least, groups }
+        Self { least, groups, edges: None }
+    }
+
+    /// The same rule, but smooth everywhere on a scan: on a mesh of these edges whose sharp ones are [scattered].
+    ///
+    /// [scattered]: Self::is_scattered
+    #[cfg(feature = "obj")]
+    pub(super) fn unless_scattered(self, edges: &'a topology::Edges) -> Self {
+        Self { edges: Some(edges), ..self }
+    }
+
+    /// Whether sharp edges end anywhere, as noise makes them. Those of a model that was designed run on until they meet
+    /// others or the mesh's rim: nearly all of its points that have one sharp edge have two. On scans a third of these
+    /// points and more are ends; from an eighth on they count as scattered.
+    fn is_scattered(&self, edges: &topology::Edges, faces: &[Face], count: usize) -> bool {
+        const RIM: u8 = u8::MAX;
+        let mut sharp = vec![0_u8; count];
+        for ((a, b), here) in edges.each() {
+            let triangle = |place: usize| here[place].1 as usize / 3;
+            let is_inner = here.len() == 2 && [0, 1].iter().all(|&place| faces[triangle(place)].has_area());
+            for point in [a, b].map(|point| &mut sharp[point as usize]) {
+                if !is_inner {
+                    *point = RIM;
+                } else if *point < 2 && !self.are(faces, triangle(0), triangle(1)) {
+                    *point += 1;
+                }
+            }
+        }
+        let ends = sharp.iter().filter(|&&sharp| sharp == 1).count();
+        let others = sharp.iter().filter(|&&sharp| sharp == 2).count();
+        8 * ends > ends + others
     }
 
     fn group(&self, triangle: usize) -> u32 {
@@ -181,7 +213,16 @@ impl Mesh {
         let is_flat = |triangle: usize| together.is_some_and(|rule| rule.group(triangle) == Together::FLAT);
         // One for each class, which is a point, or a part of the faces there. (One for each corner always would be 48
         // bytes a corner: of ten million faces over a gigabyte.)
-        let classes = together.and_then(|rule| self.classes(points, &faces, rule));
+        let classes = together.and_then(|rule| {
+            let classes = self.classes(points, &faces, rule)?;
+            match rule.edges {
+                Some(edges) if rule.is_scattered(edges, &faces, points.len()) => {
+                    let smooth = Together::new(core::f64::consts::PI, rule.groups);
+                    self.classes(points, &faces, &smooth)
+                }
+                _ => Some(classes),
+            }
+        });
         let class = |corner: usize, vertex: u32| match &classes {
             None => points[vertex as usize] as usize,
             Some(classes) => classes[corner] as usize,

@@ -134,7 +134,7 @@ impl Edges {
 
     /// The faces at each edge, one edge after the other: its two points, the lower first, and for each face whether it
     /// runs downward, and the corner that it comes from.
-    fn each(&self) -> impl Iterator<Item = ((u32, u32), &[(u32, u32)])> {
+    pub(super) fn each(&self) -> impl Iterator<Item = ((u32, u32), &[(u32, u32)])> {
         (0..self.starts.len() - 2).flat_map(|point| {
             // Points are below 2³¹.
             let one_edge = self.edges[self.of(point)].chunk_by(|a, b| a.0 >> 1 == b.0 >> 1);

@@ -75,7 +75,6 @@ pub(super) fn mesh(
 
     let given = known.iter().map(|normal| normal.unwrap_or(Vec3::Z)).collect();
     let mut mesh = Mesh::assemble_welded(places, given, triangles, &points, &edges);
-    drop(edges);
     // `Corner::NONE` is out of range.
     let pair = |triple: &Corner| texcoords.get(triple.texcoord as usize).copied();
     if triples.iter().any(|triple| pair(triple).is_some()) {
@@ -86,7 +85,7 @@ pub(super) fn mesh(
     if !complete {
         let together = match crease {
             Some(degrees) => Together::new(f64::from(degrees).to_radians(), &[]),
-            None => Together::new(f64::from(CREASE).to_radians(), &groups),
+            None => Together::new(f64::from(CREASE).to_radians(), &groups).unless_scattered(&edges),
         };
         mesh.average(&points, Weight::Angle, Some(&together), known);
     }

@@ -70,7 +70,7 @@ const CREASE: f32 = 40.0;
 pub struct Options {
     /// The crease angle, in degrees, for corners without a normal: faces whose normals differ by more have an edge between
     /// them. 180 is smooth everywhere, 0 flat; what is beyond counts as these. With `None` the smoothing groups of the
-    /// file hold, and where it has none, 40.
+    /// file hold, and where it has none, 40; but a scan, whose sharp edges end anywhere, is smooth everywhere.
     pub crease: Option<f32>,
 }
 
