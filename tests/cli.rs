@@ -189,7 +189,6 @@ fn wrong_words_end_with_2() {
         (vec!["render", "--xml"], "(mode13h render --help shows"),
         (vec!["--xml"], "(mode13h --help shows"),
         (vec!["torus", "--xml"], "(mode13h --help shows"),
-        (vec!["torus", "cube"], "unexpected argument 'cube' found"),
         (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
         (vec!["plan"], "<INPUT>"),
         (vec!["plan", "torus", "--at", "inf"], "--at"),

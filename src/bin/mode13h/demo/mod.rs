@@ -51,13 +51,15 @@ use timing::Timing;
 
 /// What the help says below the options.
 pub(crate) const KEYS: &str = "\
-Keys in the window: Esc quits, Space stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through
-the rungs, 1 to 9 are the first nine, 0 is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2
-shades); E lays the error map over the picture: how far each pixel is from light worked out at every pixel, in shades; Z
-magnifies what is under the mouse 16 times, and the pixel there explains itself; K next kernel, P next palette, M next
-mapping of textures; L lights, O fog, T texture and D dither off and on; S saves a PNG in the current directory, H shows
-help, the plan, time, error and which rungs shade how many triangles.
-With no display one frame is saved as a PNG.";
+Keys in the window: Esc quits, H shows the keys, I the plan, time, error and which rungs shade how many triangles; Space
+stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through the rungs, 1 to 9 are the first nine, 0
+is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2 shades); E lays the error map over the
+picture: how far each pixel is from light worked out at every pixel, in shades; Z magnifies what is under the mouse 16
+times, and the pixel there explains itself; K next kernel, P next palette, M next mapping of textures; L lights, O fog, T
+texture and D dither off and on; N shows the next INPUT and Shift-N the one before; S saves the picture, without the text
+over it, as a PNG in the current directory.
+An INPUT is loaded again when one of its files changes; what is wrong with it is said in the window.
+With no display one frame of each INPUT is saved as a PNG.";
 
 #[derive(Args, Clone)]
 pub(crate) struct Options {
