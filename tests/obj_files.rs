@@ -42,7 +42,7 @@ const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 #[test]
 fn a_file_with_materials() {
-    let Loaded { mesh, warnings } = obj::load(data("chest.obj")).unwrap();
+    let Loaded { mesh, warnings, .. } = obj::load(data("chest.obj")).unwrap();
     assert_eq!(warnings, [""; 0]);
     assert_eq!(mesh.triangles().len(), 12);
     assert!(mesh.is_closed() && mesh.is_convex());
@@ -399,7 +399,8 @@ fn creases_are_what_the_naive_oracle_says() {
         corners.iter().for_each(|[x, y, z]| writeln!(text, "v {x} {y} {z}").unwrap());
         faces.iter().for_each(|[a, b, c]| writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1).unwrap());
         let options = obj::Options { crease: Some(crease) };
-        let Ok(Loaded { mesh, warnings }) = obj::parse_with(text.as_bytes(), "model.obj", no_library, &options) else {
+        let Ok(Loaded { mesh, warnings, .. }) = obj::parse_with(text.as_bytes(), "model.obj", no_library, &options)
+        else {
             return Ok(());
         };
         if !warnings.is_empty() {
@@ -532,7 +533,7 @@ fn only_mistaken_twins_are_left_out() {
         ("v 3 3 3\nf 2 3 5\nf 3 2 5\nf 3 4 5\nf 4 3 5\nf 4 2 5\nf 2 4 5\n", 4, 3),
         ("usemtl a\nf 2 3 4\nusemtl b\nf 2 4 3\n", 6, 0),
     ] {
-        let Loaded { mesh, warnings } = parse(BODY.to_owned() + more).unwrap();
+        let Loaded { mesh, warnings, .. } = parse(BODY.to_owned() + more).unwrap();
         assert_eq!(mesh.triangles().len(), triangles, "{more}");
         assert!(mesh.is_closed() && mesh.is_outward(), "{more}");
         let due = match pairs {
@@ -544,7 +545,7 @@ fn only_mistaken_twins_are_left_out() {
         assert_eq!(warnings, Vec::from_iter(due), "{more}");
     }
     // An open one keeps all, and knows them.
-    let Loaded { mesh, warnings } = parse(BODY.to_owned() + "f 2 3 4\nf 2 4 3\nv 9 9 9\nf 1 2 5\n").unwrap();
+    let Loaded { mesh, warnings, .. } = parse(BODY.to_owned() + "f 2 3 4\nf 2 4 3\nv 9 9 9\nf 1 2 5\n").unwrap();
     assert!(warnings.is_empty() && !mesh.is_closed());
     let twins: Vec<usize> = (0..mesh.triangles().len()).filter(|&t| mesh.has_twin(t)).collect();
     assert_eq!(twins, [3, 4, 5]);
@@ -575,7 +576,7 @@ fn bodies_inside_out_are_turned_round() {
         (body([5, 6, 7, 8], 0, false) + &body([1, 2, 3, 4], 0, false), None),
         (body([5, 6, 7, 8], 0, true) + &body([1, 2, 3, 4], 0, true), Some(one)),
     ] {
-        let Loaded { mesh, warnings } = parse(CORNERS.to_owned() + &text).unwrap();
+        let Loaded { mesh, warnings, .. } = parse(CORNERS.to_owned() + &text).unwrap();
         assert_eq!(warnings, Vec::from_iter(due.map(str::to_owned)), "{text}");
         assert!(mesh.is_outward() && mesh.volume() > 0.0, "{text}");
     }
@@ -600,12 +601,12 @@ fn faces_without_area_are_kept() {
 
 #[test]
 fn missing_files_are_one_warning() {
-    let Loaded { mesh, warnings } = obj::load(data("missing_library.obj")).unwrap();
+    let Loaded { mesh, warnings, .. } = obj::load(data("missing_library.obj")).unwrap();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].contains("missing_library.obj:1: cannot read nowhere.mtl"), "{warnings:?}");
     assert_eq!((mesh.surfaces()[0].name.as_str(), mesh.surfaces()[0].diffuse), ("gold", [1.0; 3]));
 
-    let Loaded { mesh, warnings } = obj::load(data("missing_texture.obj")).unwrap();
+    let Loaded { mesh, warnings, .. } = obj::load(data("missing_texture.obj")).unwrap();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].contains("nowhere.png: no such texture"), "{warnings:?}");
     assert_eq!(mesh.surfaces()[0].texture, None);
@@ -817,7 +818,7 @@ proptest! {
             text.push('\n');
         }
         let (ours, warnings) = match parse(&text) {
-            Ok(Loaded { mesh, warnings }) => (mesh, warnings),
+            Ok(Loaded { mesh, warnings, .. }) => (mesh, warnings),
             Err(ObjError { kind: ObjErrorKind::NoArea, .. }) => return Ok(()),
             Err(error) => return Err(TestCaseError::fail(error.to_string())),
         };

@@ -385,7 +385,7 @@ fn the_probe_shows_what_is_drawn() {
 /// Channels are mixed to the colour that is drawn.
 #[test]
 fn the_probe_shows_the_channels_that_are_mixed() {
-    let mut scene = Scene::showing(shapes::sphere(24, 12));
+    let mut scene = support::scenes::framed(shapes::sphere(24, 12));
     scene.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
     scene.add_light(Light::sun([-1.0, 0.5, 0.5]).with_color([1.0, 0.4, 0.2]));
     // A body without colour beside one that has one: both are on channels, as the light is coloured.
@@ -439,7 +439,7 @@ fn the_probe_numbers_any_triangle() {
     assert!(errors.cover_errors() * 100 < errors.figures().count as usize, "{}", errors.cover_errors());
     assert!(errors.figures().max <= 1.0, "{:?}", errors.figures());
 
-    let mut torus = Scene::showing(shapes::torus(48, 24));
+    let mut torus = support::scenes::framed(shapes::torus(48, 24));
     torus.objects_mut()[0].set_angles([0.3, 0.2, 0.0]);
     let mut probe = probe(Rung::Gouraud88Reseeded);
     probe.renderer().set_vertex_path(VertexPath::Integer);
@@ -451,7 +451,7 @@ fn the_probe_numbers_any_triangle() {
 
 #[test]
 fn the_probe_refuses_what_cannot_be_drawn() {
-    let scene = Scene::showing(shapes::cube());
+    let scene = support::scenes::framed(shapes::cube());
     let mut probe = Probe::new(Renderer::new());
     let too_wide = Screen { width: 5_000, ..SCREEN };
     assert!(matches!(probe.look(&scene, too_wide), Err(ProbeError::Screen(FrameError::Size { width: 5_000, .. }))));

@@ -133,6 +133,13 @@ pub enum Why {
     },
     /// There is nothing that follows the perspective.
     NoTexture,
+    /// No material has a texture.
+    NoImage,
+    /// How many texels go to a pixel at most, where a face is parallel to the screen.
+    TexelsToPixel {
+        /// Along a pixel's side.
+        texels: f64,
+    },
     /// A light is coloured.
     ColoredLight {
         /// Its place in the scene.
@@ -222,6 +229,11 @@ impl Why {
             }
             Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
             Self::NoTexture => "nothing follows the perspective".to_string(),
+            Self::NoImage => "no material has a texture".to_string(),
+            // A bound is rounded up.
+            Self::TexelsToPixel { texels } => {
+                format!("up to {:.2} texels to a pixel, seen straight on", libm::ceil(texels * 100.0) / 100.0)
+            }
             Self::ColoredLight { light } => format!("light {light} is coloured"),
             Self::ColoredMaterial { material: i } => format!("{} is drawn in its own colours", material(i)),
             Self::WholeShades => "the table of normals holds whole shades".to_string(),

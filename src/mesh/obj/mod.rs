@@ -40,7 +40,7 @@ mod warnings;
 
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::string::String;
 use std::vec::Vec;
 
@@ -57,6 +57,9 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// One line each, with the file and the line in it: the first hundred, and how many more there are.
     pub warnings: Vec<String>,
+    /// The files that were read or looked for: the model's own where it was loaded from one, MTL files, and textures
+    /// that the materials name. Some may not exist.
+    pub files: Vec<PathBuf>,
 }
 
 /// The crease angle of models that ask for none, in degrees.
@@ -99,14 +102,21 @@ pub fn load_with(
         return Err(ObjError::of_file(path, ObjErrorKind::Directory));
     }
     let file = Counted::new(file, metadata.len(), progress);
-    let (mut mesh, mut warnings) = read(BufReader::with_capacity(1 << 16, file), path, library_file, options)?;
+    let (mut mesh, mut warnings, libraries) =
+        read(BufReader::with_capacity(1 << 16, file), path, library_file, options)?;
+    let files = [path.to_owned()].into_iter().chain(libraries).chain(textures(&mesh)).collect();
     for surface in &mut mesh.surfaces {
         if let Some(texture) = surface.texture.take_if(|texture| !Path::new(texture).is_file()) {
             let name = &surface.name;
             warnings.push(|| format!("{texture}: no such texture; material {name} is drawn without it"));
         }
     }
-    Ok(Loaded { mesh, warnings: warnings.into_lines() })
+    Ok(Loaded { mesh, warnings: warnings.into_lines(), files })
+}
+
+/// The textures that a model's materials name.
+fn textures(mesh: &Mesh) -> impl Iterator<Item = PathBuf> {
+    mesh.surfaces().iter().filter_map(|surface| surface.texture.as_ref().map(PathBuf::from))
 }
 
 /// The bytes of an MTL file. What is no ordinary file is refused: a model may name a device that never ends.
@@ -152,17 +162,24 @@ pub fn parse_with(
     library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
     options: &Options,
 ) -> Result<Loaded, ObjError> {
-    let (mesh, warnings) = read(reader, path.as_ref(), library, options)?;
-    Ok(Loaded { mesh, warnings: warnings.into_lines() })
+    let (mesh, warnings, libraries) = read(reader, path.as_ref(), library, options)?;
+    let files = libraries.into_iter().chain(textures(&mesh)).collect();
+    Ok(Loaded { mesh, warnings: warnings.into_lines(), files })
 }
 
+/// The model, its warnings, and the paths that `library` was given.
 fn read(
     reader: impl BufRead,
     path: &Path,
-    library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    mut library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
     options: &Options,
-) -> Result<(Mesh, Warnings), ObjError> {
+) -> Result<(Mesh, Warnings, Vec<PathBuf>), ObjError> {
     let mut warnings = Warnings::default();
+    let mut libraries = Vec::new();
+    let library = |path: &Path| {
+        libraries.push(path.to_owned());
+        library(path)
+    };
     let model = statement::read(reader, path)?;
     let surfaces = material::surfaces(&model, path, library, &mut warnings)?;
     let (mesh, mended) = gather::mesh(model, surfaces, options.crease).map_err(|(line, kind)| ObjError {
@@ -181,5 +198,5 @@ fn read(
         1 => warnings.push(|| format!("{path}: turned round a body that was inside out")),
         turned => warnings.push(|| format!("{path}: turned round {turned} bodies that were inside out")),
     }
-    Ok((mesh, warnings))
+    Ok((mesh, warnings, libraries))
 }

@@ -32,6 +32,7 @@ pub(super) struct SceneLayout {
     pub(super) fog: Option<Spanned<FogLayout>>,
     pub(super) camera: Option<Spanned<CameraLayout>>,
     pub(super) wishes: Option<WishesLayout>,
+    pub(super) picture: Option<Angle>,
     #[serde(default)]
     pub(super) objects: Vec<Spanned<ObjectLayout>>,
     #[serde(default)]
@@ -148,6 +149,7 @@ pub(super) struct WishesLayout {
     pub(super) rung: Option<Name<Rung>>,
     pub(super) hidden_surfaces: Option<Name<HiddenSurfaces>>,
     pub(super) mapping: Option<Name<Mapping>>,
+    pub(super) mipmaps: Option<bool>,
     pub(super) tessellation: Option<Positive>,
     pub(super) dither: Option<bool>,
     pub(super) max_error: Option<Positive>,
