@@ -300,6 +300,13 @@ impl ObjectView {
         Some(Vec3::new(column(0), column(1), column(2)))
     }
 
+    /// The longer side of a pixel at a distance along the view, in units of the object's mesh.
+    pub(crate) fn longest_pixel(&self, distance: f64) -> f64 {
+        // Each of the matrix's first rows is as long as a unit of the mesh at distance 1, in pixels.
+        let [across, down, _] = self.exact.0.map(|row| libm::sqrt(dot(row, row)));
+        distance / across.min(down)
+    }
+
     /// The near plane's distance.
     pub(crate) fn near(&self) -> f32 {
         self.near

@@ -23,6 +23,7 @@ fn open(path: &FilePath) -> io::Result<Box<dyn BufRead>> {
         ("folder/triangle.obj", TRIANGLE.as_bytes()),
         ("folder/broken.obj", &b"v 0 0 0\nf 1 2 3\n"[..]),
         ("folder/with_texture.obj", b"mtllib it.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl tin\nf 1/1 2/1 3/1\n"),
+        ("folder/bent.obj", b"v 0 0 0\nv 0 0 2\nv 2 0 0\nv 2 0 2\nv 2 2 0\nv 2 2 2\nf 1 2 4 3\nf 3 4 6 5\n"),
         ("folder/two.mtl", b"newmtl tin\nnewmtl oak\n"),
         ("folder/it.mtl", b"newmtl tin\nmap_Kd none.png\n"),
         ("folder/broken.pal", b"JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n"),
@@ -43,7 +44,7 @@ fn loaded(text: &str) -> Result<Loaded, SceneError> {
 #[track_caller]
 fn scene(text: &str) -> Scene {
     match loaded(text) {
-        Ok(Loaded { scene, warnings }) => {
+        Ok(Loaded { scene, warnings, .. }) => {
             assert!(warnings.is_empty(), "{warnings:?}");
             scene
         }
@@ -213,6 +214,11 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (
             list("objects = [{ shape = 'toroid' }]"),
             "1:22: key `objects[0].shape`: \"toroid\": unknown shape; there are ",
+        ),
+        (object("crease = 9"), "3:10: key `objects[0].crease`: only a model has a crease angle"),
+        (
+            list("[[objects]]\nmodel = 'bent.obj'\ncrease = 181"),
+            "3:10: key `objects[0].crease`: expected a number of degrees from 0 to 180, found 181",
         ),
         (object("up-axis = 'x'"), "3:11: key `objects[0].up-axis`: \"x\": unknown axis; there are y, z"),
         (
@@ -604,7 +610,7 @@ fn a_palette_is_a_name_a_file_or_left_to_the_program() {
 
 #[test]
 fn a_texture_of_a_model_that_is_missing_is_a_warning() {
-    let Loaded { scene, warnings } = loaded("objects = [{ model = 'with_texture.obj' }]").expect("a scene");
+    let Loaded { scene, warnings, .. } = loaded("objects = [{ model = 'with_texture.obj' }]").expect("a scene");
     assert_eq!(warnings, ["folder/none.png: entity not found; material tin is drawn without it"]);
     assert!(scene.objects()[0].materials[0].texture.is_none());
 }
@@ -683,6 +689,47 @@ fn every_key_is_documented() {
     assert!(tried > 50, "{tried} keys");
 }
 
+/// What the documents show as a line of a scene, in a sentence or in a block, is one.
+#[test]
+fn keys_in_documents_are_keys_of_scenes() {
+    let scenes = include_str!("../scenes/README.md");
+    // Its tables are those of the parser (see above).
+    let known: Vec<&str> = scenes.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
+    let mut tried = 0;
+    for document in [include_str!("../README.md"), scenes] {
+        let mut language = "";
+        for line in document.lines() {
+            if let Some(opened) = line.trim_start().strip_prefix("```") {
+                language = opened;
+                continue;
+            }
+            // In a block of a scene each line; elsewhere what stands between backquotes.
+            let quoted: Vec<&str> = match language {
+                "toml" => vec![line],
+                "" => line.split('`').skip(1).step_by(2).collect(),
+                _ => continue,
+            };
+            let assigned = quoted.into_iter().filter_map(|code| code.split_once(" = "));
+            for (key, _) in
+                assigned.filter(|(key, _)| key.chars().all(|c| c.is_ascii_alphabetic() || "-_.".contains(c)))
+            {
+                assert!(key.split('.').all(|key| known.contains(&key)), "{key} in: {line}");
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried >= 10, "{tried} keys");
+}
+
+/// The rungs that the document lists are those that there are.
+#[test]
+fn every_rung_is_documented() {
+    let row = include_str!("../scenes/README.md").lines().find(|line| line.starts_with("| `rung` |")).expect("a row");
+    let named = row.split('|').nth(2).expect("the values");
+    let all = mode13h::render::Rung::ALL.map(|rung| format!("`\"{rung}\"`"));
+    assert_eq!(named.trim(), all.join(", "));
+}
+
 #[test]
 fn a_texture_is_a_png_beside_the_scene() {
     let directory = tempfile::tempdir().expect("a directory");
@@ -700,7 +747,7 @@ fn a_texture_is_a_png_beside_the_scene() {
     let path = directory.path().join("scene.toml");
     let text = "objects = [{ shape = 'wall', material.texture = 'flag.png' }, { model = 'it.obj' }]";
     fs::write(&path, text).expect("written");
-    let Loaded { scene, warnings } = file::load(&path).expect("a scene");
+    let Loaded { scene, warnings, .. } = file::load(&path).expect("a scene");
     assert_eq!(warnings, [""; 0]);
     for object in scene.objects() {
         let texture = object.materials[0].texture.as_ref().expect("a texture");
@@ -714,4 +761,15 @@ fn textures_repeat_as_often_as_a_scene_says() {
     let scene = scene("objects = [{ shape = 'wall', subdivisions = [1, 1], repeat = [3, 0.5] }]");
     let texcoords = scene.objects()[0].mesh().texcoords().expect("a wall has them");
     assert_eq!(texcoords[3], mode13h::glam::Vec2::new(3.0, 0.5));
+}
+
+/// Each angle makes a mesh of its own of a model; the same one is shared.
+#[test]
+fn models_have_the_crease_angle_that_is_asked_for() {
+    let text = "objects = [{ model = 'bent.obj' }, { model = 'bent.obj', crease = 90 }, { model = 'bent.obj', crease = 89.9 }, \
+                { model = 'bent.obj', crease = 90 }]";
+    let scene = scene(text);
+    let vertices: Vec<usize> = scene.objects().iter().map(|object| object.mesh().positions().len()).collect();
+    assert_eq!(vertices, [8, 6, 8, 6]);
+    assert!(std::ptr::eq(scene.objects()[1].mesh(), scene.objects()[3].mesh()));
 }

@@ -22,7 +22,7 @@ fn scene(name: &str) -> Scene {
 }
 
 fn load(shipped: &Shipped) -> Scene {
-    let Loaded { mut scene, warnings } = shipped.load().unwrap_or_else(|error| panic!("{error}"));
+    let Loaded { mut scene, warnings, .. } = shipped.load().unwrap_or_else(|error| panic!("{error}"));
     assert!(warnings.is_empty(), "{warnings:?}");
     if scene.wishes.auto_palette {
         automatic(&scene).expect("a legal scene").apply(&mut scene);

@@ -12,7 +12,7 @@
 //! | `fog` | [`Fog`] |
 //! | `motion` | [`Motion`]: everything from absolute time |
 //! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
-//! | `wishes` | [`Wishes`]: rung, hidden surfaces, mapping, tessellation, dither |
+//! | `wishes` | [`Wishes`]: rung, hidden surfaces, mapping, mipmaps, tessellation, dither |
 //! | `names` | choices that are typed by name |
 //! | `file` | scenes as TOML files (feature `scene-files`) |
 //! | `shipped` | those that are compiled in (feature `scene-files`) |

@@ -37,6 +37,21 @@ fn material(scene: &mut Scene, object: usize) -> &mut Material {
     &mut scene.objects_mut()[object].materials[0]
 }
 
+/// A floor that goes far away, on which an image is repeated so many times each way.
+pub fn floor(image: &str, times: f32) -> Scene {
+    let wall = shapes::wall(12, 12);
+    let repeated = wall.texcoords().expect("a wall has some").iter().map(|uv| *uv * times).collect();
+    let mut scene = Scene::showing(wall.with_texcoords(repeated).expect("as many"));
+    let object = &mut scene.objects_mut()[0];
+    object.set_angles([-core::f64::consts::FRAC_PI_2, 0.3, 0.0]);
+    object.position = Vec3::new(0.0, -0.5, -5.0);
+    object.scale = 12.0;
+    (object.materials[0].ambient, object.materials[0].diffuse) = (1.0, 0.0);
+    object.materials[0].texture = texture(image);
+    scene.camera = Camera { eye: Vec3::new(0.0, 0.4, 1.0), target: Vec3::new(0.0, -0.1, -4.0), ..scene.camera };
+    scene
+}
+
 /// A wall close to the eye with a lamp before it.
 fn lamp_on_wall(slices: u32) -> Scene {
     let mut scene = Scene::new();
@@ -143,6 +158,8 @@ fn small() -> Vec<(&'static str, Scene)> {
     crates.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
     crates.add_light(Light::sun([-1.0, 0.0, 0.5]).with_color([1.0, 0.3, 0.1]));
     scenes.push(("texture and colour", crates));
+
+    scenes.push(("floor", floor("checker", 24.0)));
 
     let mut mirror = showing("torus");
     material(&mut mirror, 0).environment = texture("sky");

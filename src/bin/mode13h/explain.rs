@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use crate::failure::Failure;
 use crate::options::{Drawing, Moment};
 use crate::stage::Pose;
-use crate::{chart, input, output};
+use crate::{chart, input, output, read_files};
 
 #[derive(Args)]
 #[command(group(ArgGroup::new("what").required(true).args(["pixel", "row"])))]
@@ -60,9 +60,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let screen = Screen::MODE_13H;
     // Before anything is loaded.
     outside(*pixel, *row, screen).map_or(Ok(()), |error| Err(Failure::words(error)))?;
-    let input = input::input(input)?;
+    let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
+    out.as_deref().map_or(Ok(()), read_files::spare)?;
     let at = moment.of_picture(&stage.scene);
     stage.show(at, Pose::FIRST);
     let mut renderer = drawing.renderer(kernel);
@@ -231,12 +232,14 @@ fn stage_json(stage: &Stage) -> Value {
             put("threshold", threshold.into());
             "dither"
         }
-        Stage::Texture { texel, .. } => {
+        Stage::Texture { texel, level, .. } => {
             put("texel", texel.into());
+            put("mipmap_level", json!(level));
             "texture"
         }
-        Stage::TextureChannels { texel, channels } => {
+        Stage::TextureChannels { texel, level, channels } => {
             put("texel", texel.into());
+            put("mipmap_level", json!(level));
             put("channels", json!(channels));
             "texture"
         }

@@ -1,10 +1,11 @@
 //! Options that several commands share, and what may stand behind them.
 
-use std::ffi::OsString;
-use std::path::Path;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use mode13h::glam::Vec3;
+use mode13h::mesh::obj;
 use mode13h::palette::{Rgb, builtin};
 use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, VertexPath};
 use mode13h::scene::{Scene, UpAxis};
@@ -18,7 +19,7 @@ use crate::stage::{Background, Stage};
 const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 
 /// How a model or a scene is drawn. What is not said here the scene says, or else the library chooses.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct Drawing {
     #[arg(long, value_name = "RUNG", help = help_on_rungs())]
     rung: Option<Rung>,
@@ -33,11 +34,18 @@ pub(crate) struct Drawing {
     hidden: Option<HiddenSurfaces>,
     #[arg(long, value_name = "WAY", help = help_on_mappings())]
     mapping: Option<Mapping>,
+    /// Smaller copies of textures where these are far away [default: as the scene calls for]
+    #[arg(long, value_name = "WHETHER", value_enum)]
+    mipmaps: Option<Switch>,
     #[arg(long, value_name = "PATH", help = help_on_vertex_paths())]
     vertex_path: Option<VertexPath>,
     /// The axis of a model that points up [default: y]
     #[arg(long, value_name = "AXIS", value_enum)]
     up: Option<Up>,
+    /// Show an edge where faces of a model without normals meet at more than this angle: 180 is smooth everywhere, 0 flat
+    /// [default: the model's smoothing groups, or else 40; scans are smooth]
+    #[arg(long, value_name = "DEGREES", value_parser = crease)]
+    crease: Option<f32>,
     /// Show it so many times as large
     #[arg(long, value_name = "FACTOR", value_parser = factor)]
     zoom: Option<f64>,
@@ -83,6 +91,13 @@ pub(crate) enum Up {
     Z,
 }
 
+/// Whether something is done.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Switch {
+    On,
+    Off,
+}
+
 impl From<Up> for UpAxis {
     fn from(up: Up) -> UpAxis {
         match up {
@@ -105,6 +120,15 @@ impl Drawing {
             }
             _ => Ok(Kernel::fastest()),
         }
+    }
+
+    /// What INPUT says, read as was asked for.
+    pub(crate) fn input(&self, words: &OsStr) -> Result<Input, Failure> {
+        let input = input::input(words, &obj::Options { crease: self.crease })?;
+        if self.crease.is_some() && matches!(input, Input::Scene { .. }) {
+            return Err(Failure::words("--crease is for models: a scene says itself what each of its models has"));
+        }
+        Ok(input)
     }
 
     /// What INPUT shows, drawn as was asked for.
@@ -156,6 +180,13 @@ impl Drawing {
         Some(Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned())
     }
 
+    /// The palette that was asked for, if that is a file.
+    pub(crate) fn palette_file(&self) -> Option<PathBuf> {
+        let words = self.palette.as_deref()?;
+        let is_name = words == input::AUTO || words.to_str().and_then(builtin::by_name).is_some();
+        (!is_name).then(|| PathBuf::from(words))
+    }
+
     /// The rung of a scene that wishes for this one.
     pub(crate) fn rung(&self, wish: Option<Rung>) -> Rung {
         self.rung.or(wish).unwrap_or_default()
@@ -182,6 +213,7 @@ impl Drawing {
         renderer.set_kernel(kernel);
         renderer.set_hidden_surfaces(self.hidden);
         renderer.set_mapping(self.mapping);
+        renderer.set_mipmaps(self.mipmaps.map(|mipmaps| mipmaps == Switch::On));
         renderer.set_vertex_path(self.vertex_path.unwrap_or_default());
         if let Some(rung) = self.rung {
             renderer.set_rung(rung);
@@ -243,6 +275,14 @@ fn switch(words: &str) -> Result<bool, String> {
         "on" => Ok(true),
         "off" => Ok(false),
         _ => Err("neither on nor off".to_string()),
+    }
+}
+
+/// An angle between faces on the command line, in degrees.
+pub(crate) fn crease(words: &str) -> Result<f32, String> {
+    match words.parse::<f32>() {
+        Ok(degrees) if (0.0..=180.0).contains(&degrees) => Ok(degrees),
+        _ => Err("not a number of degrees from 0 to 180".to_string()),
     }
 }
 

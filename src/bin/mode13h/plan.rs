@@ -45,7 +45,7 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { input, json, time, at, drawing } = options;
     let kernel = drawing.kernel()?;
-    let input = input::input(input)?;
+    let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
     let at = at.unwrap_or(stage.scene.picture);

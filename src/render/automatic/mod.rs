@@ -8,16 +8,18 @@
 mod mixed;
 mod seen;
 
+use alloc::vec;
 use alloc::vec::Vec;
 
-use super::RenderError;
+use super::{Effect, RenderError, Renderer, Screen};
 use crate::light::{Material, RampChoice};
 use crate::mesh::Surface;
 use crate::palette::auto::{Automatic, Entries, Use, share_beside};
 use crate::palette::{Palette, Rgb};
 use crate::scene::{Object, Scene, Shared};
-use crate::texture::Texture;
+use crate::texture::{Mipmap, Texture};
 use mixed::OwnColors;
+use seen::moments;
 pub use seen::{Seen, seen};
 
 /// Pictures over one round.
@@ -59,7 +61,8 @@ impl AutomaticPalette {
 /// at the intensity `full_light` of [`Entries::Ramp`], so its ambient and diffuse shares are divided up to that, in the
 /// proportion that they have, and what is left is the highlight's. It then needs no channels any more, as its colour is
 /// in the ramp, and a `ramp` that it named is another one now. A material with an image keeps its shares; the image's
-/// colours, tinted by the material's, are the base of entries at the brightnesses seen.
+/// colours, tinted by the material's, are the base of entries at the brightnesses seen; where its plan calls for mipmaps,
+/// their colours too, those of each level counting half as much as those of the level before.
 ///
 /// What is mixed on the screen lies on no ramp: colours in fog and behind bodies that shine through, and all colours
 /// where a light is coloured. These are measured in true colour, and share the block of the textures. Under coloured
@@ -89,12 +92,15 @@ pub fn automatic(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     let mut tints = Tints::default();
     let bodies: Vec<Vec<Body>> = scene.objects().iter().map(|object| bodies(object, scene, &mut tints)).collect();
     let mut texels: Vec<Option<Vec<(Rgb, u32)>>> = Vec::new();
-    for body in bodies.iter().flatten() {
-        texels.push(match &body.image {
-            _ if in_channels => Some(Vec::new()),
-            Some(image) => Some(image.colors().iter().copied().zip(image.histogram()).collect()),
-            None => None,
-        });
+    for (object, (bodies, has_levels)) in scene.objects().iter().zip(bodies.iter().zip(have_mipmaps(scene)?)) {
+        for (material, body) in object.materials.iter().zip(bodies) {
+            texels.push(match &body.image {
+                _ if in_channels => Some(Vec::new()),
+                Some(image) if has_levels && material.texture.is_some() => Some(Mipmap::new(image).weights(image)),
+                Some(image) => Some(image.colors().iter().copied().zip(image.histogram()).collect()),
+                None => None,
+            });
+        }
     }
     let seen = seen(scene)?;
     let mut uses: Vec<Use<'_>> = Vec::new();
@@ -124,6 +130,20 @@ pub fn automatic(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
         automatic.entries.push(own);
     }
     Ok(automatic)
+}
+
+/// Of each object whether its plan calls for mipmaps at any moment.
+fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
+    let mut any = vec![false; scene.objects().len()];
+    if scene.objects().iter().flat_map(|object| &object.materials).any(|material| material.texture.is_some()) {
+        let (mut moved, mut renderer) = (scene.clone(), Renderer::new());
+        for seconds in moments(scene) {
+            moved.set_time(seconds);
+            let plan = renderer.make_plan(&moved, Screen::MODE_13H)?;
+            any.iter_mut().enumerate().for_each(|(object, any)| *any |= plan.is_on(object, Effect::Mipmaps));
+        }
+    }
+    Ok(any)
 }
 
 /// What a material of an object is to look like.
