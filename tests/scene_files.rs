@@ -701,7 +701,7 @@ fn keys_in_documents_are_keys_of_scenes() {
             }
         }
     }
-    assert!(tried >= 10, "{tried} keys");
+    assert!(tried >= 5, "{tried} keys");
 }
 
 /// The rungs that the document lists are those that there are.
