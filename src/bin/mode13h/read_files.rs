@@ -1,5 +1,6 @@
 //! The files that were read. None of them is ever written over, by whatever name.
 
+use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -38,8 +39,21 @@ impl Identity {
     }
 }
 
+thread_local! {
+    /// The files that this thread reads or looks for, while somebody wants to know.
+    static NOTED: RefCell<Option<Vec<PathBuf>>> = const { RefCell::new(None) };
+}
+
+/// What `read` returns, and the files that this thread read or looked for meanwhile.
+pub(crate) fn noting<T>(read: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
+    let outer = NOTED.replace(Some(Vec::new()));
+    let result = read();
+    (result, NOTED.replace(outer).unwrap_or_default())
+}
+
 /// Keeps in mind that a file is read.
 pub(crate) fn add(path: &Path) {
+    NOTED.with_borrow_mut(|noted| noted.iter_mut().for_each(|noted| noted.push(path.to_path_buf())));
     if let Some(identity) = Identity::of(path) {
         let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
         if read.iter().all(|(other, _)| *other != identity) {

@@ -16,7 +16,7 @@ use crate::artists::Artists;
 use crate::failure::Failure;
 use crate::film::{self, Film, Kind};
 use crate::names::{Names, number_in};
-use crate::options::{Drawing, finite};
+use crate::options::{Drawing, Moment, finite};
 use crate::stage::{Pose, Stage};
 use crate::{input, output, read_files};
 
@@ -37,9 +37,8 @@ pub(crate) struct Options {
     /// does not the camera goes
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
     turn: Option<f64>,
-    /// The time of the first frame, of a scene or of a model, which turns 90 degrees a second
-    #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, default_value_t = 0.0)]
-    at: f64,
+    #[command(flatten)]
+    moment: Moment,
     /// Frames a second: of a film, up to 50; of pictures, they say how much time passes from one to the next where
     /// --turn does not [default: 35]
     #[arg(long, value_name = "N", value_parser = rate)]
@@ -74,7 +73,7 @@ fn rate(words: &str) -> Result<f64, String> {
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut out = Out::new(options)?;
-    let stage = options.drawing.stage(input::input(&options.input)?)?;
+    let stage = options.drawing.stage(options.drawing.input(&options.input)?)?;
     out.lasts(stage.seconds());
     let frames = out.frames();
     let records = options.record.as_deref().map(|record| Names::new(record, frames, "records")).transpose()?;
@@ -85,7 +84,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let kernel = options.drawing.kernel()?;
     let progress = progress(frames);
-    let motion = Motion::new(options, &out);
+    let motion = Motion::new(options, &out, &stage);
     let make = || Artist { renderer: options.drawing.renderer(kernel), stage: stage.clone(), vga: Vga::new() };
     let artists = Artists::new(make);
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
@@ -204,11 +203,13 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(options: &Options, out: &Out) -> Motion {
+    fn new(options: &Options, out: &Out, stage: &Stage) -> Motion {
         let frames = out.frames();
         let whole_turn = (matches!(out, Out::Film(_)) && frames > 1).then_some(360.0);
         let rate = options.fps.unwrap_or(FrameRate::default().frames_per_second());
-        Motion { frames, turn: options.turn.or(whole_turn), at: options.at, rate }
+        let is_picture = frames == 1 && options.turn.is_none();
+        let at = if is_picture { options.moment.of_picture(&stage.scene) } else { options.moment.of_first() };
+        Motion { frames, turn: options.turn.or(whole_turn), at, rate }
     }
 
     /// The time and the pose in a frame. From the frame's number alone: nothing adds up.

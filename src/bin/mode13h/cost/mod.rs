@@ -75,7 +75,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let rungs = if options.rungs.is_empty() { Rung::ALL.to_vec() } else { options.rungs.clone() };
     let mut kernel = drawing.kernel()?;
-    let input = input::input(input)?;
+    let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
     let frames = turned(&mut stage, *frames, 360.0 / f64::from(*frames));
