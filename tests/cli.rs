@@ -515,21 +515,21 @@ fn shown(bytes: &[u8]) -> Vec<Vec<Rgb>> {
 fn films_of_all_kinds_show_the_same() {
     let directory = directory();
     for (scene, colors) in [("cube", "indexed"), ("fade", "true colour, as the palette changes")] {
-        let words = |out| ["render", scene, "-o", out, "--frames", "5", "--scale", "64x48"];
+        let words = |out| ["render", scene, "-o", out, "--frames", "6", "--scale", "64x48"];
         assert!(run(&directory, &words("x.gif")).status.success());
         let line = printed(&directory, &words("x.apng"));
         let apng = read(&directory, "x.apng");
         let bytes = apng.len();
-        assert_eq!(line, format!("x.apng: 64 x 48 pixels, 5 frames, 0.14 s, {colors}, {bytes} bytes\n"));
+        assert_eq!(line, format!("x.apng: 64 x 48 pixels, 6 frames, 0.17 s, {colors}, {bytes} bytes\n"));
         let of_gif: Vec<Vec<Rgb>> =
             decode(&read(&directory, "x.gif")).images.into_iter().map(|image| image.shown).collect();
-        assert!(of_gif.len() == 5 && shown(&apng) == of_gif, "{scene}");
+        assert!(of_gif.len() == 6 && shown(&apng) == of_gif, "{scene}");
 
         let stream = run(&directory, &words("-"));
         assert!(stream.status.success() && stream.stderr.is_empty(), "{stream:?}");
         let frames = stream.stdout.strip_prefix(b"YUV4MPEG2 W64 H48 F35:1 Ip A1:1 C444\n").expect("a heading");
         let frames: Vec<&[u8]> = frames.chunks(6 + 3 * 64 * 48).collect();
-        assert_eq!(frames.len(), 5);
+        assert_eq!(frames.len(), 6);
         for (frame, colors) in frames.into_iter().zip(&of_gif) {
             let planes = frame.strip_prefix(b"FRAME\n").expect("a frame");
             for (i, color) in colors.iter().enumerate() {
