@@ -141,7 +141,8 @@ impl<'a> Together<'a> {
         for ((a, b), here) in edges.each() {
             let triangle = |place: usize| here[place].1 as usize / 3;
             let is_inner = here.len() == 2 && [0, 1].iter().all(|&place| faces[triangle(place)].has_area());
-            for point in [a, b].map(|point| &mut sharp[point as usize]) {
+            for point in [a, b] {
+                let point = &mut sharp[point as usize];
                 if !is_inner {
                     *point = RIM;
                 } else if *point < 2 && !self.are(faces, triangle(0), triangle(1)) {
