@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use minifb::{InputCallback, Key, MouseButton, MouseMode, Window};
 
-use super::fit::Place;
+use super::fit::Area;
 
 /// A notch of what minifb reports. On X11, where a wheel is a button, it counts its going down and its coming up.
 const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
@@ -123,7 +123,7 @@ impl InputCallback for Events {
 
 impl Events {
     /// What happened since the last call.
-    pub(super) fn collect(&mut self, window: &Window, place: Place) -> Input {
+    pub(super) fn collect(&mut self, window: &Window, place: Area) -> Input {
         let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
         let Pressed { pressed, shifted } = self.follow(&keys);
         // A window that is left hears nothing of keys that are let go meanwhile.

@@ -31,10 +31,30 @@ impl Switch {
         }
     }
 
+    /// Whether the last frame had it anywhere.
+    pub(crate) fn is_on(self, renderer: &Renderer) -> bool {
+        self.effects().iter().any(|effect| renderer.plan().is_on_anywhere(*effect))
+    }
+
+    /// What became of it, in words.
+    pub(crate) fn outcome(self, was_on: bool, is_on: bool) -> String {
+        let name = match self {
+            Switch::Lights => "lights",
+            Switch::Fog => "fog",
+            Switch::Texture => "texture",
+            Switch::Dither => "dither",
+        };
+        match (was_on, is_on) {
+            (false, false) => format!("no {name} here"),
+            (_, true) => format!("{name} on"),
+            (true, false) => format!("{name} off"),
+        }
+    }
+
     /// Switches by force off what was on in the frame before; else leaves it to the plan, which has it on if the scene
     /// calls for it, and sees to it that the scene does.
     pub(crate) fn turn(self, scene: &mut Scene, renderer: &mut Renderer) {
-        let was_on = self.effects().iter().any(|effect| renderer.plan().is_on_anywhere(*effect));
+        let was_on = self.is_on(renderer);
         for effect in self.effects() {
             renderer.force(*effect, was_on.then_some(false));
         }

@@ -1,44 +1,80 @@
-//! The figures and the help that H shows.
+//! The figures that I shows, and the keys that H shows.
 
 use mode13h::plan::Effect;
 use mode13h::render::{Shares, Stats};
 
 use super::Demo;
+use crate::overlay::Row;
 
-/// The characters of a line that fits on the frame.
-const LINE: usize = 52;
-
-pub(super) const HELP: [&str; 6] = [
-    "1-9 [ ] rung   0 budget   B shift-B its error",
-    "E error map    Z magnify  H hide this",
-    "Esc quit   Space stop   S save     ",
-    "K kernel   P palette    M mapping",
-    "L lights   O fog        T texture  D dither",
-    "arrows, mouse turn      wheel, + - zoom",
+/// The keys, and what each does.
+const KEYS: [(&str, &str); 20] = [
+    ("Esc", "quit"),
+    ("H", "these keys"),
+    ("I", "figures of the picture"),
+    ("Space", "stop, go on"),
+    ("arrows", "turn; the mouse too"),
+    ("+ -", "zoom; the wheel too"),
+    ("1 to 9", "shade by this rung"),
+    ("[ ]", "the rung before, the next"),
+    ("0", "shade by a budget of error"),
+    ("B", "a smaller budget"),
+    ("Shift-B", "a greater one"),
+    ("E", "error map"),
+    ("Z", "magnify at the mouse"),
+    ("K", "next kernel"),
+    ("P", "next palette"),
+    ("M", "next mapping of textures"),
+    ("L O", "lights, fog"),
+    ("T D", "texture, dither"),
+    ("S", "save the picture"),
+    ("N", "next input, Shift-N back"),
 ];
 
+/// The rows of the panel of keys.
+pub(super) fn help() -> Vec<Row> {
+    KEYS.iter().map(|&(key, does)| Row::new(key, does)).collect()
+}
+
+/// So many of something, in words.
+fn counted(number: usize, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+}
+
 impl Demo {
-    pub(super) fn figures(&self) -> Vec<String> {
-        let mapping = self.mappings.chosen().map_or("by plan", |mapping| mapping.name());
-        let mut lines = vec![
-            format!("{}: {} triangles, zoom {:.2}", self.name, self.triangles, self.motion.pose.zoom),
-            format!("{}, {:.0} a second, plan {:.1} us", self.timing, self.timing.rate, self.planning.frame * 1e6),
-            self.map.figures(self.number, self.seconds, self.shading.budget()),
-            format!("{}, mapping {mapping}", self.shading),
+    /// The rows of the panel of figures.
+    pub(super) fn figures(&self) -> Vec<Row> {
+        let objects = self.stage.scene.objects().len();
+        let zoom = format!("zoom {:.2}", self.motion.pose.zoom);
+        let mut rows = vec![
+            Row::new("scene", &self.name),
+            Row::new("", format!("{}, {}, {zoom}", counted(objects, "object"), counted(self.triangles, "triangle"))),
+            Row::new("shading", self.shading.to_string()),
+            Row::new("time", self.drawn()),
+            Row::new("plan", format!("{:.1} µs", self.planning.frame * 1e6)),
+            Row::new("error", self.map.figures(self.number, self.seconds, self.shading.budget())),
         ];
         if let Some(Stats { hidden_surfaces, vertices, drawn, raster, shares, .. }) = &self.stats {
-            lines.extend(wrapped(&of_rungs(shares)));
-            lines.push(format!("{hidden_surfaces}: {vertices} vertices, {drawn} drawn"));
-            lines.push(format!("{} spans, {} pixels", raster.spans, raster.pixels));
+            let mut head = "rungs";
+            for share in of_rungs(shares) {
+                rows.push(Row::new(std::mem::take(&mut head), share));
+            }
+            let (vertices, drawn) = (counted(*vertices as usize, "vertex").replace("vertexs", "vertices"), *drawn);
+            rows.push(Row::new("hidden", format!("{hidden_surfaces}")));
+            rows.push(Row::new("drawn", format!("{drawn} of {}, {vertices}", counted(self.triangles, "triangle"))));
+            let (spans, pixels) = (raster.spans as usize, raster.pixels as usize);
+            rows.push(Row::new("", format!("{}, {}", counted(spans, "span"), counted(pixels, "pixel"))));
         }
-        lines.push(format!("kernel {}, palette {}", self.kernels.chosen(), self.palettes.chosen().0));
-        let on = in_columns(&self.effects_on());
-        lines.push(format!("on, of {} effects and {} objects:", Effect::COUNT, self.stage.scene.objects().len()));
-        lines.extend(on);
-        lines
+        rows.push(Row::new("kernel", self.kernels.chosen().to_string()));
+        rows.push(Row::new("palette", &self.palettes.chosen().0));
+        let mapping = self.mappings.chosen().map_or("by plan", |mapping| mapping.name());
+        rows.push(Row::new("mapping", mapping));
+        let on = self.effects_on();
+        rows.push(Row::new("effects", format!("{} of {} on:", on.len(), Effect::COUNT)));
+        rows.push(Row::new("", on.join(", ")));
+        rows
     }
 
-    /// The effects that are on: each with its choice, unless the lines above say that, and, if not for all objects, for
+    /// The effects that are on: each with its choice, unless the rows above say that, and, if not for all objects, for
     /// how many.
     fn effects_on(&self) -> Vec<String> {
         let objects = self.renderer.plan().objects();
@@ -62,44 +98,4 @@ impl Demo {
 /// How the triangles were shared out among the rungs.
 fn of_rungs(shares: &Shares) -> Vec<String> {
     shares.iter().map(|(rung, triangles)| format!("{rung} {triangles}")).collect()
-}
-
-/// Entries in lines that fit.
-fn wrapped(entries: &[String]) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for entry in entries {
-        match lines.last_mut() {
-            Some(line) if line.len() + 2 + entry.len() <= LINE => {
-                line.push_str(", ");
-                line.push_str(entry);
-            }
-            _ => lines.push(entry.clone()),
-        }
-    }
-    lines
-}
-
-/// Entries in two columns, down the first and then the second.
-fn in_columns(entries: &[String]) -> Vec<String> {
-    let half = LINE / 2;
-    let (left, right) = entries.split_at(entries.len().div_ceil(2));
-    let right = right.iter().map(String::as_str).chain([""]);
-    left.iter().zip(right).map(|(left, right)| format!("{left:half$.half$}{right}")).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_fit_and_hold_every_entry() {
-        let entries: Vec<String> = (0..10).map(|i| format!("gouraud-8.8-reseeded {}", 10_u32.pow(i))).collect();
-        for some in 0..entries.len() {
-            let lines = wrapped(&entries[..some]);
-            assert!(lines.iter().all(|line| line.len() <= LINE), "{lines:?}");
-            let all: Vec<&str> = lines.iter().flat_map(|line| line.split(", ")).collect();
-            assert_eq!(all, entries[..some]);
-        }
-        assert!(HELP.iter().all(|line| line.len() <= LINE - 7), "beside the legend of the error map");
-    }
 }

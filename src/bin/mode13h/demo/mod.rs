@@ -33,7 +33,7 @@ use mode13h::window::{Flow, Input, Key, Window};
 use crate::failure::Failure;
 use crate::input::Colors;
 use crate::options::Drawing;
-use crate::overlay::{self, Place};
+use crate::overlay::{self, Sheet, Side};
 use crate::stage::Stage;
 use crate::switches::Switch;
 use crate::{input, output};
@@ -62,8 +62,12 @@ pub(crate) struct Options {
     drawing: Drawing,
 }
 
-/// How long the title shows where a picture was saved, in seconds.
-const NOTICE: f64 = 3.0;
+/// What is said at first, and for how long, in seconds.
+const HINT: &str = "H help, I figures";
+const HINT_SECONDS: f64 = 3.0;
+/// How long it is said what a key has changed, and where a picture was saved.
+const NOTICE: f64 = 1.0;
+const SAVED: f64 = 3.0;
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut demo = Demo::new(options)?;
@@ -76,7 +80,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             return Ok(());
         }
     };
-    let mut title = String::new();
+    let (mut title, mut shown) = (String::new(), Look::of(&Vga::new(), Sheet::new((0, 0))));
     loop {
         let wish = demo.follow(window.input(), window.seconds())?;
         demo.draw()?;
@@ -90,9 +94,31 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             window.set_title(&new);
             title = new;
         }
-        if window.show(demo.on_screen()).map_err(Failure::work)? == Flow::Close {
+        let sheet = demo.sheet(window.size());
+        let look = Look::of(demo.on_screen(), sheet);
+        let flow = if look == shown {
+            window.rest()
+        } else {
+            shown = look;
+            window.show_over(demo.on_screen(), |canvas| shown.sheet.draw(canvas))
+        };
+        if flow.map_err(Failure::work)? == Flow::Close {
             return Ok(());
         }
+    }
+}
+
+/// All that can be seen in the window.
+#[derive(PartialEq)]
+struct Look {
+    pixels: Vec<u8>,
+    palette: Palette,
+    sheet: Sheet,
+}
+
+impl Look {
+    fn of(vga: &Vga, sheet: Sheet) -> Look {
+        Look { pixels: vga.pixels().to_vec(), palette: vga.palette(), sheet }
     }
 }
 
@@ -115,7 +141,10 @@ struct Demo {
     /// `None` leaves it to the plan.
     mappings: Choice<Option<Mapping>>,
     motion: Motion,
-    help: bool,
+    /// The keys.
+    help: Panel,
+    /// What is known of the picture.
+    figures: Panel,
     maps: bool,
     magnifies: bool,
     /// The pixel under the mouse, or the last that was.
@@ -132,8 +161,12 @@ struct Demo {
     /// Of making the plan, while it is shown.
     planning: Timing,
     stats: Option<Stats>,
-    /// What the title says besides, and until when.
+    /// Whether the last frame was drawn, and not the same as the one before.
+    is_redrawn: bool,
+    /// What is said at the lower edge, and until when.
     notice: Option<(String, f64)>,
+    /// An effect that a key has just switched, and whether it was on before.
+    switched: Option<(Switch, bool)>,
     seconds: f64,
 }
 
@@ -173,7 +206,8 @@ impl Demo {
             palettes: Choice::new(palettes, palette, |(a, _), (b, _)| a == b),
             mappings: Choice::new([None].into_iter().chain(Mapping::ALL.map(Some)), drawing.mapping(), |a, b| a == b),
             motion: Motion::new(),
-            help: false,
+            help: Panel::default(),
+            figures: Panel::default(),
             maps: false,
             magnifies: false,
             mouse: Pixel { x: Vga::WIDTH as u16 / 2, y: Vga::HEIGHT as u16 / 2 },
@@ -185,7 +219,9 @@ impl Demo {
             timing: Timing::default(),
             planning: Timing::default(),
             stats: None,
-            notice: None,
+            is_redrawn: false,
+            notice: Some((HINT.to_string(), HINT_SECONDS)),
+            switched: None,
             seconds: 0.0,
         })
     }
@@ -194,25 +230,46 @@ impl Demo {
     fn follow(&mut self, input: &Input, seconds: f64) -> Result<Wish, Failure> {
         self.seconds = seconds;
         self.notice.take_if(|(_, until)| *until < seconds);
-        self.motion.follow(input, seconds);
-        self.shading.follow(input);
+        if self.motion.follow(input, seconds) {
+            self.say(self.motion.to_string());
+        }
+        if self.shading.follow(input) {
+            self.timing = Timing::default();
+            self.say(self.shading.to_string());
+        }
         if input.pressed(Key::K) {
             self.kernels.go_round();
+            self.timing = Timing::default();
+            self.say(format!("kernel {}", self.kernels.chosen()));
         }
         if input.pressed(Key::P) {
             self.palettes.go_round();
             self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::work)?;
+            self.say(format!("palette {}", self.palettes.chosen().0));
         }
         if input.pressed(Key::M) {
             self.mappings.go_round();
+            self.timing = Timing::default();
+            self.say(self.mapping());
         }
         for (key, switch) in Switch::KEYS {
             if input.pressed(key) {
+                self.switched = Some((switch, switch.is_on(&self.renderer)));
+                self.timing = Timing::default();
                 switch.turn(&mut self.stage.scene, &mut self.renderer);
             }
         }
-        for (key, shown) in [(Key::H, &mut self.help), (Key::E, &mut self.maps), (Key::Z, &mut self.magnifies)] {
-            *shown ^= input.pressed(key);
+        for (key, panel) in [(Key::H, &mut self.help), (Key::I, &mut self.figures)] {
+            if input.pressed(key) {
+                panel.press();
+            }
+        }
+        for (key, shown, name) in [(Key::E, &mut self.maps, "error map"), (Key::Z, &mut self.magnifies, "magnifier")] {
+            if input.pressed(key) {
+                *shown ^= true;
+                let state = if *shown { "on" } else { "off" };
+                self.notice = Some((format!("{name} {state}"), seconds + NOTICE));
+            }
         }
         self.mouse = input.mouse().and_then(Pixel::at).unwrap_or(self.mouse);
         Ok(if input.pressed(Key::Escape) {
@@ -224,15 +281,18 @@ impl Demo {
         })
     }
 
+    /// Says something for a moment.
+    fn say(&mut self, what: String) {
+        self.notice = Some((what, self.seconds + NOTICE));
+    }
+
     /// Draws the picture, and what the keys lay over it.
     fn draw(&mut self) -> Result<(), Failure> {
         self.draw_scene()?;
-        if !(self.help || self.maps || self.magnifies) {
-            return Ok(());
+        if let Some((switch, was_on)) = self.switched.take() {
+            self.say(switch.outcome(was_on, switch.is_on(&self.renderer)));
         }
-        // The picture itself stays as it is, for the next frame may be the same.
-        self.shown.clone_from(&self.vga);
-        if self.help || self.maps {
+        if self.figures.is_open || self.maps {
             let frame = || error_map::Frame {
                 number: self.number,
                 seconds: self.seconds,
@@ -241,6 +301,11 @@ impl Demo {
             };
             self.map.follow(self.number, frame)?;
         }
+        if !(self.maps || self.magnifies) {
+            return Ok(());
+        }
+        // The picture itself stays as it is, for the next frame may be the same.
+        self.shown.clone_from(&self.vga);
         if self.maps {
             self.map.lay_over(&mut self.shown);
         }
@@ -250,12 +315,24 @@ impl Demo {
         } else if self.maps {
             self.map.legend(&mut self.shown, self.number, self.seconds);
         }
-        if self.help {
-            let figures = self.figures();
-            overlay::write(&mut self.shown, Place::Top, &figures);
-            overlay::write(&mut self.shown, Place::Bottom, &figures::HELP);
-        }
         Ok(())
+    }
+
+    /// What is laid over the picture in a window of this size.
+    fn sheet(&mut self, size: (usize, usize)) -> Sheet {
+        let mut sheet = Sheet::new(size);
+        if let Some((notice, _)) = &self.notice {
+            sheet.message(overlay::TEXT, notice);
+        }
+        let is_alone = !(self.help.is_open && self.figures.is_open);
+        if self.figures.is_open {
+            let rows = self.figures();
+            self.figures.pages = sheet.panel(Side::Left, &rows, is_alone, self.figures.page, "I turns the page");
+        }
+        if self.help.is_open {
+            self.help.pages = sheet.panel(Side::Right, &figures::help(), is_alone, self.help.page, "H turns the page");
+        }
+        sheet
     }
 
     fn draw_scene(&mut self) -> Result<(), Failure> {
@@ -263,7 +340,7 @@ impl Demo {
         self.shading.set(&mut self.renderer);
         self.renderer.set_kernel(*self.kernels.chosen());
         self.renderer.set_mapping(*self.mappings.chosen());
-        if self.help {
+        if self.figures.is_open {
             let start = Instant::now();
             self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
             self.planning.add(Some(start.elapsed().as_secs_f64()), self.seconds);
@@ -271,6 +348,7 @@ impl Demo {
         let start = Instant::now();
         let stats = self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::work)?;
         let taken = start.elapsed().as_secs_f64();
+        self.is_redrawn = stats.redrawn;
         self.timing.add(stats.redrawn.then_some(taken), self.seconds);
         // What was counted is of the frame that is shown, if that was there already.
         if stats.redrawn || self.stats.is_none() {
@@ -297,21 +375,50 @@ impl Demo {
 
     /// What was drawn last.
     fn on_screen(&self) -> &Vga {
-        if self.help || self.maps || self.magnifies { &self.shown } else { &self.vga }
+        if self.maps || self.magnifies { &self.shown } else { &self.vga }
     }
 
-    /// Saves the picture as it is on the screen. A failure is shown and ends nothing.
+    /// Saves the picture as it is on the screen, without the text and the panels over it. A failure is shown and ends nothing.
     fn save(&mut self) {
         let notice = match output::numbered_picture(self.on_screen()) {
             Ok(path) => format!("saved {}", path.display()),
             Err(error) => error.to_string(),
         };
         eprintln!("mode13h: {notice}");
-        self.notice = Some((notice, self.seconds + NOTICE));
+        self.notice = Some((notice, self.seconds + SAVED));
     }
 
     fn title(&self) -> String {
-        let notice = self.notice.as_ref().map_or(String::new(), |(notice, _)| format!(" - {notice}"));
-        format!("{} - {} - {} - mode13h{notice}", self.name, self.shading, self.timing)
+        format!("{} - {} - {} - mode13h", self.name, self.shading, self.drawn())
+    }
+
+    /// How long the picture took to draw, and how often it is drawn.
+    fn drawn(&self) -> String {
+        let again = if self.is_redrawn { "" } else { ", not drawn again" };
+        format!("{}{again}", self.timing)
+    }
+
+    /// The mapping of textures that was chosen.
+    fn mapping(&self) -> String {
+        format!("mapping {}", self.mappings.chosen().map_or("by plan", |mapping| mapping.name()))
+    }
+}
+
+/// A panel that a key opens, leafs through and closes.
+#[derive(Default)]
+struct Panel {
+    is_open: bool,
+    page: usize,
+    /// How many pages there were when it was laid last.
+    pages: usize,
+}
+
+impl Panel {
+    fn press(&mut self) {
+        if self.is_open && self.page + 1 < self.pages {
+            self.page += 1;
+        } else {
+            *self = Panel { is_open: !self.is_open, page: 0, pages: 0 };
+        }
     }
 }
