@@ -377,12 +377,8 @@ fn what_is_not_in_the_frame_is_refused() {
 }
 
 /// The shadings whose loop keeps a sum, and how many bits of it are its fraction.
-const LOOPS: [(Shading, u32); 4] = [
-    (Shading::Gouraud, 8),
-    (Shading::GouraudReseeded, 8),
-    (Shading::Gouraud1616, 16),
-    (Shading::GouraudPeriod, 8),
-];
+const LOOPS: [(Shading, u32); 4] =
+    [(Shading::Gouraud, 8), (Shading::GouraudReseeded, 8), (Shading::Gouraud1616, 16), (Shading::GouraudPeriod, 8)];
 
 /// Walks over a triangle as the loop would: what it writes, by its registers alone. Every stretch of it begins with what
 /// the walk says and goes on by additions.

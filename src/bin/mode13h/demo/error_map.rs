@@ -200,7 +200,8 @@ impl Map {
         // At most 0.3 of the window's sides, in pixels.
         let [width, height] = [picture.width, picture.height].map(|side| (side as f32 * SMALL) as usize);
         let (left, top) = (picture.left + picture.width - width, picture.top + picture.height - height);
-        let rim = Area { left: left.saturating_sub(2), top: top.saturating_sub(2), width: width + 2, height: height + 2 };
+        let rim =
+            Area { left: left.saturating_sub(2), top: top.saturating_sub(2), width: width + 2, height: height + 2 };
         sheet.block(rim, Rgb::WHITE, 255);
         let colors = entries.into_iter().map(|entry| colors[usize::from(entry)]).collect();
         sheet.picture(Area { left, top, width, height }, colors, Vga::WIDTH);

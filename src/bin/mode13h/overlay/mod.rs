@@ -3,7 +3,6 @@
 //! A [`Sheet`] is a list of things to draw, laid out for a window of one size. Equal sheets look the same, which tells
 //! whether a picture that stands still has to be shown again. Nothing is drawn before [`Sheet::draw`].
 
-mod frame;
 mod text;
 
 use embedded_graphics::Drawable;
@@ -16,7 +15,6 @@ use embedded_graphics::text::{Baseline, Text};
 use mode13h::palette::Rgb;
 use mode13h::window::{Area, Canvas};
 
-pub(crate) use frame::{Anchor, SMALL_LINE, block, write_at, write_small};
 use text::{Head, LEAST, Laid, laid};
 pub(crate) use text::{Letters, Row, wrapped};
 
