@@ -385,7 +385,7 @@ const LOOPS: [(Shading, u32); 4] =
 fn run_the_loop(walk: &Walk, bits: u32, pixels: &mut [Option<u8>], what: &str) {
     let mask = if bits == 8 { 0xFFFF } else { 0xFF_FFFF };
     let mut left = None;
-    let mut at = (0, 0, 0);
+    let mut at = (0_u32, 0_u32, 0_u32);
     for number in 0..walk.pixels() {
         let step = walk.step(number).expect("a pixel");
         let registers = step.registers.expect("a sum");
@@ -393,7 +393,7 @@ fn run_the_loop(walk: &Walk, bits: u32, pixels: &mut [Option<u8>], what: &str) {
         assert_eq!(walk.number(step.x, step.y), Some(number), "{what}");
         match left {
             Some(count) => {
-                let [edi, eax, ebx] = [at.0 + 1, at.1 + at.2, at.2];
+                let [edi, eax, ebx]: [u32; 3] = [at.0 + 1, at.1.wrapping_add(at.2), at.2];
                 let sums = [registers.edi, registers.eax & mask, registers.ebx & mask, registers.cx];
                 assert_eq!(sums, [edi, eax & mask, ebx & mask, count - 1], "{what}: pixel {number}");
             }

@@ -141,9 +141,12 @@ impl Tiles<'_, '_> {
         self.hits.fill(None);
         let place = |x: u32, y: u32| ((y - rows.start) * Self::SIDE + (x - columns.start)) as usize;
         for listed in faces.iter().map(|&place| &self.faces[place as usize]) {
-            let Some((body, corners)) = self.truth.triangle(listed.face) else { continue };
             let [xs, ys] = [(&listed.pixels[0], &columns), (&listed.pixels[1], &rows)]
                 .map(|(of_face, of_tile)| sampled(of_face, of_tile, step));
+            if xs.clone().next().is_none() || ys.clone().next().is_none() {
+                continue;
+            }
+            let Some((body, corners)) = self.truth.triangle(listed.face) else { continue };
             for y in ys {
                 for x in xs.clone() {
                     let centre = [f64::from(x) + 0.5, f64::from(y) + 0.5];

@@ -8,6 +8,7 @@
 //! finished, so that the map keeps up with what moves. Then the picture is refined tile by tile, from the mouse
 //! outwards, until it changes.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -15,7 +16,7 @@ use mode13h::cost::Probe;
 use mode13h::palette::{Palette, Rgb};
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
-use mode13h::truth::{ErrorMap, Figures, Shown, Tiles, Truth, TruthFrame};
+use mode13h::truth::{ErrorMap, Face, Figures, Shown, Tiles, Truth, TruthFrame};
 use mode13h::vga::Vga;
 use mode13h::window::Area;
 
@@ -283,12 +284,12 @@ fn find(
     let truth = Truth::new(scene, screen).map_err(|error| error.to_string())?;
     let mut tiles = truth.tiles();
     let order = order(&tiles, &shown, mouse);
-    let mut judged = Judged { right: tiles.empty_frame(), is_known: vec![true; Vga::SHOWN] };
+    let mut judged = Judged::new(tiles.empty_frame(), shown);
     for &tile in &order {
         tiles.draw(tile, COARSE, &mut judged.right);
-        judged.each_pixel(&tiles, tile, |x, y| is_sample(x) && is_sample(y));
+        judged.know(tiles.area(tile), COARSE);
     }
-    say(judged.found(&shown, 0.0)?);
+    say(judged.found(0.0)?);
     let mut said = Instant::now();
     for (done, &tile) in order.iter().enumerate() {
         if is_overtaken() {
@@ -296,13 +297,13 @@ fn find(
         }
         if said.elapsed() >= REPORT {
             // Of some hundreds of tiles.
-            say(judged.found(&shown, done as f64 / order.len() as f64)?);
+            say(judged.found(done as f64 / order.len() as f64)?);
             said = Instant::now();
         }
         tiles.draw(tile, 1, &mut judged.right);
-        judged.each_pixel(&tiles, tile, |_, _| true);
+        judged.know(tiles.area(tile), 1);
     }
-    say(judged.found(&shown, 1.0)?);
+    say(judged.found(1.0)?);
     Ok(())
 }
 
@@ -325,51 +326,57 @@ fn place(x: u32, y: u32) -> usize {
     y as usize * Vga::WIDTH + x as usize
 }
 
-/// Whether a column or a row is judged at first.
-fn is_sample(at: u32) -> bool {
-    at % COARSE == COARSE / 2
-}
-
-/// What is known of the truth so far.
+/// What is known so far.
 struct Judged {
+    /// Of the truth.
     right: TruthFrame,
-    /// Of each pixel whether the above says what is right there.
+    /// Of each picture: its faces where the truth is known, none elsewhere.
+    known: Vec<Shown>,
+    /// All faces of each picture.
+    faces: Vec<Vec<Option<Face>>>,
     is_known: Vec<bool>,
 }
 
 impl Judged {
-    /// Says of each pixel of a tile whether it is known.
-    fn each_pixel(&mut self, tiles: &Tiles<'_, '_>, tile: usize, is_known: impl Fn(u32, u32) -> bool) {
-        let [columns, rows] = tiles.area(tile);
-        for y in rows {
-            for x in columns.clone() {
-                self.is_known[place(x, y)] = is_known(x, y);
+    fn new(right: TruthFrame, mut shown: Vec<Shown>) -> Judged {
+        let nothing = |shown: &mut Shown| std::mem::replace(&mut shown.faces, vec![None; right.pixels.len()]);
+        let faces = shown.iter_mut().map(nothing).collect();
+        Judged { is_known: vec![false; right.pixels.len()], right, known: shown, faces }
+    }
+
+    /// That the truth is known of the pixels that a tile draws by steps of `step`.
+    fn know(&mut self, [columns, rows]: [Range<u32>; 2], step: u32) {
+        let is_drawn = |at: &u32| at % step == step / 2;
+        for y in rows.filter(is_drawn) {
+            for place in columns.clone().filter(is_drawn).map(|x| place(x, y)) {
+                self.is_known[place] = true;
+                for (known, faces) in self.known.iter_mut().zip(&self.faces) {
+                    known.faces[place] = faces[place];
+                }
             }
         }
     }
 
-    /// How far pictures are from it.
-    fn found(&self, shown: &[Shown], refined: f64) -> Result<Found, String> {
-        let side = |shown: &Shown| {
-            let faces = shown.faces.iter().zip(&self.is_known).map(|(face, is_known)| face.filter(|_| *is_known));
-            let known = Shown { faces: faces.collect(), ..shown.clone() };
-            let errors = ErrorMap::new(&self.right, &known).ok_or("the frames differ in size")?;
-            let faces = self.right.pixels.iter().zip(&known.faces);
-            let levels = errors.errors().zip(faces).map(|(error, (right, shown))| match error {
+    /// How far the pictures are from it.
+    fn found(&self, refined: f64) -> Result<Found, String> {
+        let side = |(known, faces): (&Shown, &Vec<Option<Face>>)| {
+            let errors = ErrorMap::new(&self.right, known).ok_or("the frames differ in size")?;
+            let pixels = self.right.pixels.iter().zip(&known.faces);
+            let levels = errors.errors().zip(pixels).map(|(error, (right, shown))| match error {
                 Some(error) => Some(level_of(error)),
                 None => (right.is_some() || shown.is_some()).then_some(OTHER_FACE),
             });
             let mut levels: Vec<Option<u8>> = levels.collect();
-            self.spread(&mut levels, shown);
+            self.spread(&mut levels, faces);
             Ok(Side { levels, figures: errors.figures(), errors })
         };
-        Ok(Found { sides: shown.iter().map(side).collect::<Result<_, String>>()?, refined })
+        Ok(Found { sides: self.known.iter().zip(&self.faces).map(side).collect::<Result<_, String>>()?, refined })
     }
 
     /// Gives a face's pixels that are not known yet the level of the one that was judged for all of them. Errors of cover
     /// are of single pixels, and are not spread.
-    fn spread(&self, levels: &mut [Option<u8>], shown: &Shown) {
-        for i in (0..levels.len()).filter(|&i| !self.is_known[i] && shown.faces[i].is_some()) {
+    fn spread(&self, levels: &mut [Option<u8>], faces: &[Option<Face>]) {
+        for i in (0..levels.len()).filter(|&i| !self.is_known[i] && faces[i].is_some()) {
             let coarse = COARSE as usize;
             let [x, y] = [i % Vga::WIDTH, i / Vga::WIDTH].map(|at| at / coarse * coarse + coarse / 2);
             levels[i] = levels[y * Vga::WIDTH + x].filter(|level| *level != OTHER_FACE);
@@ -522,17 +529,5 @@ mod tests {
         }
         assert!(shown.faces.iter().zip(&in_order).all(|(face, is_in)| face.is_none() || *is_in));
         assert!(order.len() < tiles.count());
-    }
-
-    #[test]
-    fn tmp_time() {
-        let scene = Scene::showing(shapes::torus(320, 160));
-        let mut probe = Probe::new(Renderer::new());
-        for _ in 0..3 {
-            let start = Instant::now();
-            let say = |found: Found| eprintln!("{:?} {:.2}", start.elapsed(), found.refined);
-            let mouse = Pixel { x: 160, y: 100 };
-            find(&mut probe, &scene, vec![Renderer::new()], mouse, &say, &|| false).expect("legal");
-        }
     }
 }
