@@ -42,7 +42,7 @@ const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 #[test]
 fn a_file_with_materials() {
-    let Loaded { mesh, warnings } = obj::load(data("chest.obj")).unwrap();
+    let Loaded { mesh, warnings, .. } = obj::load(data("chest.obj")).unwrap();
     assert_eq!(warnings, [""; 0]);
     assert_eq!(mesh.triangles().len(), 12);
     assert!(mesh.is_closed() && mesh.is_convex());
@@ -253,12 +253,12 @@ fn faces_without_area_are_kept() {
 
 #[test]
 fn missing_files_are_one_warning() {
-    let Loaded { mesh, warnings } = obj::load(data("missing_library.obj")).unwrap();
+    let Loaded { mesh, warnings, .. } = obj::load(data("missing_library.obj")).unwrap();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].contains("missing_library.obj:1: cannot read nowhere.mtl"), "{warnings:?}");
     assert_eq!((mesh.surfaces()[0].name.as_str(), mesh.surfaces()[0].diffuse), ("gold", [1.0; 3]));
 
-    let Loaded { mesh, warnings } = obj::load(data("missing_texture.obj")).unwrap();
+    let Loaded { mesh, warnings, .. } = obj::load(data("missing_texture.obj")).unwrap();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].contains("nowhere.png: no such texture"), "{warnings:?}");
     assert_eq!(mesh.surfaces()[0].texture, None);

@@ -43,7 +43,7 @@ fn loaded(text: &str) -> Result<Loaded, SceneError> {
 #[track_caller]
 fn scene(text: &str) -> Scene {
     match loaded(text) {
-        Ok(Loaded { scene, warnings }) => {
+        Ok(Loaded { scene, warnings, .. }) => {
             assert!(warnings.is_empty(), "{warnings:?}");
             scene
         }
@@ -593,7 +593,7 @@ fn a_palette_is_a_name_a_file_or_left_to_the_program() {
 
 #[test]
 fn a_texture_of_a_model_that_is_missing_is_a_warning() {
-    let Loaded { scene, warnings } = loaded("objects = [{ model = 'with_texture.obj' }]").expect("a scene");
+    let Loaded { scene, warnings, .. } = loaded("objects = [{ model = 'with_texture.obj' }]").expect("a scene");
     assert_eq!(warnings, ["folder/none.png: entity not found; material tin is drawn without it"]);
     assert!(scene.objects()[0].materials[0].texture.is_none());
 }
@@ -689,7 +689,7 @@ fn a_texture_is_a_png_beside_the_scene() {
     let path = directory.path().join("scene.toml");
     let text = "objects = [{ shape = 'wall', material.texture = 'flag.png' }, { model = 'it.obj' }]";
     fs::write(&path, text).expect("written");
-    let Loaded { scene, warnings } = file::load(&path).expect("a scene");
+    let Loaded { scene, warnings, .. } = file::load(&path).expect("a scene");
     assert_eq!(warnings, [""; 0]);
     for object in scene.objects() {
         let texture = object.materials[0].texture.as_ref().expect("a texture");

@@ -22,7 +22,7 @@ fn scene(name: &str) -> Scene {
 }
 
 fn load(shipped: &Shipped) -> Scene {
-    let Loaded { scene, warnings } = shipped.load().unwrap_or_else(|error| panic!("{error}"));
+    let Loaded { scene, warnings, .. } = shipped.load().unwrap_or_else(|error| panic!("{error}"));
     assert!(warnings.is_empty(), "{warnings:?}");
     scene
 }

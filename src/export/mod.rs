@@ -5,6 +5,10 @@
 
 mod atomic;
 #[cfg(feature = "gif")]
+mod color_table;
+#[cfg(any(feature = "gif", feature = "png"))]
+mod difference;
+#[cfg(feature = "gif")]
 mod frame_rate;
 #[cfg(feature = "gif")]
 mod gif;

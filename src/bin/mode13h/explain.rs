@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use crate::failure::Failure;
 use crate::options::{Drawing, finite};
 use crate::stage::Pose;
-use crate::{chart, input, output};
+use crate::{chart, input, output, read_files};
 
 #[derive(Args)]
 #[command(group(ArgGroup::new("what").required(true).args(["pixel", "row"])))]
@@ -64,6 +64,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let input = input::input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
+    out.as_deref().map_or(Ok(()), read_files::spare)?;
     stage.show(*at, Pose::FIRST);
     let mut renderer = drawing.renderer(kernel);
     if let Some((x, y)) = *pixel {

@@ -14,6 +14,7 @@ use mode13h::scene::{self, Scene, Shared, shipped};
 use mode13h::texture::{self, Texture};
 
 use crate::failure::Failure;
+use crate::read_files;
 
 /// A mesh, and what to call it.
 pub(crate) struct Model {
@@ -62,7 +63,8 @@ pub(crate) fn input(words: &OsStr) -> Result<Input, Failure> {
         };
         return model_or(words, "models are .obj files, scenes .toml", &known).map(Input::Model);
     };
-    let scene::file::Loaded { scene, warnings } = loaded.map_err(Failure::work)?;
+    let scene::file::Loaded { scene, warnings, files } = loaded.map_err(Failure::work)?;
+    read_files::add_all(&files);
     for warning in warnings {
         eprintln!("mode13h: {}", Failure::work(warning));
     }
@@ -84,6 +86,7 @@ fn model_or(words: &OsStr, kinds: &str, known: &dyn Fn() -> String) -> Result<Mo
         (words.to_string_lossy().into_owned(), mesh)
     } else if has_extension(path, "obj") {
         let loaded = load(path).map_err(Failure::work)?;
+        read_files::add_all(&loaded.files);
         for warning in loaded.warnings {
             eprintln!("mode13h: {}", Failure::work(warning));
         }
@@ -211,6 +214,7 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
         io::ErrorKind::IsADirectory => fail(&"is a directory, not a palette"),
         _ => fail(&error),
     })?;
+    read_files::add(path);
     let palette = file::parse_named(&words.to_string_lossy(), &bytes).map_err(|error| fail(&error))?;
     let name = path.file_stem().unwrap_or(words).to_string_lossy().into_owned();
     Ok((name, palette))

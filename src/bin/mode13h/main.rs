@@ -14,6 +14,7 @@ mod overlay;
 mod palette;
 mod plan;
 mod price;
+mod read_files;
 mod render;
 mod scenes;
 mod show;

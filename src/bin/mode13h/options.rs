@@ -1,7 +1,7 @@
 //! Options that several commands share, and what may stand behind them.
 
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use mode13h::palette::builtin;
@@ -17,7 +17,7 @@ use crate::stage::Stage;
 const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 
 /// How a model or a scene is drawn. What is not said here the scene says, or else the library chooses.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct Drawing {
     #[arg(long, value_name = "RUNG", help = help_on_rungs())]
     rung: Option<Rung>,
@@ -105,6 +105,13 @@ impl Drawing {
     pub(crate) fn palette_name(&self) -> Option<String> {
         let words = self.palette.as_deref()?;
         Some(Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned())
+    }
+
+    /// The palette that was asked for, if that is a file.
+    pub(crate) fn palette_file(&self) -> Option<PathBuf> {
+        let words = self.palette.as_deref()?;
+        let is_name = words == input::AUTO || words.to_str().and_then(builtin::by_name).is_some();
+        (!is_name).then(|| PathBuf::from(words))
     }
 
     /// The rung of a scene that wishes for this one.

@@ -12,7 +12,7 @@ use mode13h::palette::{Palette, builtin};
 use crate::failure::Failure;
 use crate::options::Up;
 use crate::stage::Stage;
-use crate::{input, output};
+use crate::{input, output, read_files};
 
 #[derive(Args)]
 pub(crate) struct Options {
@@ -36,9 +36,10 @@ fn help() -> String {
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let (name, palette, made) = match (&options.from, &options.palette) {
-        (Some(model), _) => make(model, options.up)?,
+        (Some(model), _) => make(model, options.up, options.out.as_deref())?,
         (None, words) => {
             let (name, palette) = input::palette(words.as_deref().unwrap_or_default())?;
+            options.out.as_deref().map_or(Ok(()), read_files::spare)?;
             (name, palette, String::new())
         }
     };
@@ -48,9 +49,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// A palette for a model: what to call it, the palette, and what is where in it, a line for each surface.
-fn make(model: &OsStr, up: Up) -> Result<(String, Palette, String), Failure> {
+/// A palette for a model, to be written to `out`: what to call it, the palette, and what is where in it, a line for each surface.
+fn make(model: &OsStr, up: Up, out: Option<&Path>) -> Result<(String, Palette, String), Failure> {
     let input::Model { name, mesh } = input::model(model)?;
+    out.map_or(Ok(()), read_files::spare)?;
     let textures = input::textures(&mesh);
     let mut stage = Stage::of_model(mesh, up.into(), &textures);
     let automatic = stage.automatic().map_err(Failure::work)?.clone();

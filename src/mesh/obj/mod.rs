@@ -33,7 +33,7 @@ mod warnings;
 
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::string::String;
 use std::vec::Vec;
 
@@ -50,6 +50,9 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// One line each, with the file and the line in it: the first hundred, and how many more there are.
     pub warnings: Vec<String>,
+    /// The files that were read or looked for: the model's own where it was loaded from one, MTL files, and textures
+    /// that the materials name. Some may not exist.
+    pub files: Vec<PathBuf>,
 }
 
 /// Reads an OBJ file and the MTL files that it names. Of textures it only looks whether they exist.
@@ -75,14 +78,20 @@ pub fn load_with_progress(path: impl AsRef<Path>, progress: impl FnMut(u64, u64)
         return Err(ObjError::of_file(path, ObjErrorKind::Directory));
     }
     let file = Counted::new(file, metadata.len(), progress);
-    let (mut mesh, mut warnings) = read(BufReader::with_capacity(1 << 16, file), path, library_file)?;
+    let (mut mesh, mut warnings, libraries) = read(BufReader::with_capacity(1 << 16, file), path, library_file)?;
+    let files = [path.to_owned()].into_iter().chain(libraries).chain(textures(&mesh)).collect();
     for surface in &mut mesh.surfaces {
         if let Some(texture) = surface.texture.take_if(|texture| !Path::new(texture).is_file()) {
             let name = &surface.name;
             warnings.push(|| format!("{texture}: no such texture; material {name} is drawn without it"));
         }
     }
-    Ok(Loaded { mesh, warnings: warnings.into_lines() })
+    Ok(Loaded { mesh, warnings: warnings.into_lines(), files })
+}
+
+/// The textures that a model's materials name.
+fn textures(mesh: &Mesh) -> impl Iterator<Item = PathBuf> {
+    mesh.surfaces().iter().filter_map(|surface| surface.texture.as_ref().map(PathBuf::from))
 }
 
 /// The bytes of an MTL file. What is no ordinary file is refused: a model may name a device that never ends.
@@ -115,18 +124,25 @@ pub fn parse(
     path: impl AsRef<Path>,
     library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
 ) -> Result<Loaded, ObjError> {
-    let (mesh, warnings) = read(reader, path.as_ref(), library)?;
-    Ok(Loaded { mesh, warnings: warnings.into_lines() })
+    let (mesh, warnings, libraries) = read(reader, path.as_ref(), library)?;
+    let files = libraries.into_iter().chain(textures(&mesh)).collect();
+    Ok(Loaded { mesh, warnings: warnings.into_lines(), files })
 }
 
+/// The model, its warnings, and the paths that `library` was given.
 fn read(
     reader: impl BufRead,
     path: &Path,
-    library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
-) -> Result<(Mesh, Warnings), ObjError> {
+    mut library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+) -> Result<(Mesh, Warnings, Vec<PathBuf>), ObjError> {
     let mut warnings = Warnings::default();
+    let mut libraries = Vec::new();
+    let library = |path: &Path| {
+        libraries.push(path.to_owned());
+        library(path)
+    };
     let model = statement::read(reader, path)?;
     let surfaces = material::surfaces(&model, path, library, &mut warnings)?;
     let mesh = gather::mesh(model, surfaces).map_err(|(line, kind)| ObjError { path: path.to_owned(), line, kind })?;
-    Ok((mesh, warnings))
+    Ok((mesh, warnings, libraries))
 }

@@ -1,6 +1,8 @@
 //! From the layout of a file to a scene.
 
 use std::path::Path as FilePath;
+use std::string::String;
+use std::vec::Vec;
 
 use glam::Vec3;
 use toml::Spanned;
@@ -11,7 +13,7 @@ use super::layout::{AnimationLayout, FogLayout, LightLayout, SceneLayout, Wishes
 use super::named::{Named, Open};
 use super::object::Objects;
 use super::value::{Background, FileName, List, OneOrThree};
-use super::{Loaded, SceneErrorKind, motion};
+use super::{SceneErrorKind, motion};
 use crate::light::Light;
 use crate::palette::Palette;
 use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Wishes};
@@ -28,7 +30,8 @@ impl<'a> Builder<'a> {
         Self { named: Named::new(path, open), scene: Scene::new(), extent: Extent::default() }
     }
 
-    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<Loaded, Fault> {
+    /// The scene, and what was found wanting.
+    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<(Scene, Vec<String>), Fault> {
         if layout.objects.is_empty() {
             return Err(Fault { span: None, kind: SceneErrorKind::NoObject });
         }
@@ -55,7 +58,7 @@ impl<'a> Builder<'a> {
         }
         self.camera(layout)?;
         self.scene.set_time(0.0);
-        Ok(Loaded { scene: self.scene, warnings: self.named.warnings })
+        Ok((self.scene, self.named.warnings))
     }
 
     fn palette(&mut self, name: &Spanned<FileName>) -> Result<(), Fault> {

@@ -7,7 +7,7 @@ use super::Demo;
 use crate::overlay::Row;
 
 /// The keys, and what each does.
-const KEYS: [(&str, &str); 20] = [
+const KEYS: [(&str, &str); 24] = [
     ("Esc", "quit"),
     ("H", "these keys"),
     ("I", "figures of the picture"),
@@ -20,7 +20,11 @@ const KEYS: [(&str, &str); 20] = [
     ("B", "a smaller budget"),
     ("Shift-B", "a greater one"),
     ("E", "error map"),
+    ("C", "side by side, at the mouse"),
+    ("Shift", "[ ] 1 to 9: the right side"),
+    ("X", "swap the sides"),
     ("Z", "magnify at the mouse"),
+    (". ,", "there: step, Shift a row"),
     ("K", "next kernel"),
     ("P", "next palette"),
     ("M", "next mapping of textures"),
@@ -44,10 +48,10 @@ impl Demo {
     /// The rows of the panel of figures.
     pub(super) fn figures(&self) -> Vec<Row> {
         let objects = self.stage.scene.objects().len();
-        let zoom = format!("zoom {:.2}", self.motion.pose.zoom);
         let mut rows = vec![
             Row::new("scene", &self.name),
-            Row::new("", format!("{}, {}, {zoom}", counted(objects, "object"), counted(self.triangles, "triangle"))),
+            Row::new("", format!("{}, {}", counted(objects, "object"), counted(self.triangles, "triangle"))),
+            Row::new("zoom", format!("{:.2}", self.motion.pose.zoom)),
             Row::new("shading", self.shading.to_string()),
             Row::new("time", self.drawn()),
             Row::new("plan", format!("{:.1} µs", self.planning.frame * 1e6)),

@@ -8,8 +8,9 @@
 //! | `compare` | two shadings side by side |
 //! | `magnifier`, `account` | the pixels about the mouse, and what the one under it says of itself |
 //! | `step` | a triangle pixel by pixel, and the registers of the loop |
-//! | `figures`, `timing` | what H shows |
+//! | `figures`, `timing` | what I and H show |
 //! | `background` | a thread that the picture does not wait for |
+//! | `loader` | the inputs, loaded when they are asked for and when their files change |
 //! | `choice` | one of a list |
 
 mod account;
@@ -18,6 +19,7 @@ mod choice;
 mod compare;
 mod error_map;
 mod figures;
+mod loader;
 mod magnifier;
 mod motion;
 mod shading;
@@ -25,14 +27,16 @@ mod step;
 mod timing;
 
 use std::ffi::OsString;
+use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
 use mode13h::palette::{Palette, builtin};
 use mode13h::render::{Mapping, Renderer, Screen, Stats};
+use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
-use mode13h::window::{Flow, Input, Key, Window};
+use mode13h::window::{Flow, Input, Key, Window, WindowError};
 
 use crate::failure::Failure;
 use crate::input::Colors;
@@ -44,6 +48,7 @@ use crate::{input, output};
 use choice::Choice;
 use compare::Compare;
 use error_map::Map;
+use loader::{Inputs, Loader, Loading};
 use magnifier::{Cells, Magnifier, Pixel};
 use motion::Motion;
 use shading::Shading;
@@ -54,16 +59,19 @@ use timing::Timing;
 pub(crate) const KEYS: &str = "\
 Keys in the window: Esc quits, Space stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through
 the rungs, 1 to 9 are the first nine, 0 is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2
-shades); E lays the error map over the picture: how far each pixel is from light worked out at every pixel, in shades; Z
-magnifies what is under the mouse 16 times, and the pixel there explains itself; K next kernel, P next palette, M next
+shades); E lays the error map over the picture: how far each pixel is from light worked out at every pixel, in shades; C
+divides the window at the mouse, with another shading on the right, the time and the error of each above it: a click fixes
+the divider, Shift with [ ] and digits chooses the right one's shading, X swaps the two; Z magnifies what is under the mouse
+16 times, and the pixel there explains itself: . and , step on and back through its triangle's pixels, with the registers
+of the loop, with Shift through its rows; K next kernel, P next palette, M next
 mapping of textures; L lights, O fog, T texture and D dither off and on; S saves a PNG in the current directory, H shows
 help, the plan, time, error and which rungs shade how many triangles.
 With no display one frame is saved as a PNG.";
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct Options {
-    #[arg(default_value = "torus", help = input::help())]
-    input: OsString,
+    #[arg(default_value = "torus", value_name = "INPUT", help = help_on_inputs())]
+    inputs: Vec<OsString>,
     #[command(flatten)]
     drawing: Drawing,
 }
@@ -75,24 +83,33 @@ const HINT_SECONDS: f64 = 3.0;
 const NOTICE: f64 = 1.0;
 const SAVED: f64 = 3.0;
 
+fn help_on_inputs() -> String {
+    format!("{}. Of several the first is shown, and N goes to the next", input::help())
+}
+
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let mut demo = Demo::new(options)?;
+    let Options { inputs, drawing } = options.clone();
+    let inputs = Arc::new(Inputs { drawing, words: inputs });
+    let kernel = inputs.drawing.kernel()?;
+    let first = loader::load(&inputs, 0, &[]);
+    let loader = Loader::start(Arc::clone(&inputs), &first)?;
+    let mut demo = Demo::new(inputs, kernel);
+    demo.put_on(first)?;
     let mut window = match Window::open(&demo.name) {
         Ok(window) => window,
-        Err(no_display) => {
-            demo.draw()?;
-            let path = output::numbered_picture(demo.on_screen()).map_err(Failure::work)?;
-            eprintln!("mode13h: {no_display}; one frame is in {}", path.display());
-            return Ok(());
-        }
+        Err(no_display) => return demo.save_each(&no_display),
     };
     let (mut title, mut shown) = (String::new(), Look::of(&Vga::new(), Sheet::new((0, 0))));
     loop {
         let wish = demo.follow(window.input(), window.seconds())?;
+        if let Some(loading) = loader.loaded() {
+            demo.put_on(loading)?;
+        }
         demo.draw()?;
         match wish {
             Wish::Nothing => {}
             Wish::Picture => demo.save(),
+            Wish::Input(at) => loader.ask(at),
             Wish::End => return Ok(()),
         }
         let new = demo.title();
@@ -133,17 +150,30 @@ impl Look {
 enum Wish {
     Nothing,
     Picture,
+    /// The input at this place in the list.
+    Input(usize),
     End,
 }
 
 struct Demo {
+    inputs: Arc<Inputs>,
+    /// The place of the input that is shown or being loaded.
+    at: usize,
+    /// Its name.
     name: String,
     triangles: usize,
+    /// What is shown; without objects until something could be loaded.
     stage: Stage,
+    /// Why what is shown is not what the files say.
+    wrong: Option<String>,
     renderer: Renderer,
     shading: Shading,
+    /// Whether a key chose it.
+    chose_shading: bool,
     kernels: Choice<Kernel>,
     palettes: Choice<(String, Colors)>,
+    /// Whether a key chose one.
+    chose_palette: bool,
     /// `None` leaves it to the plan.
     mappings: Choice<Option<Mapping>>,
     motion: Motion,
@@ -175,44 +205,29 @@ struct Demo {
     notice: Option<(String, f64)>,
     /// An effect that a key has just switched, and whether it was on before.
     switched: Option<(Switch, bool)>,
+    /// The effects that keys switched, and to what.
+    switches: Vec<(Switch, bool)>,
     seconds: f64,
 }
 
 impl Demo {
-    fn new(options: &Options) -> Result<Demo, Failure> {
-        let Options { input, drawing } = options;
-        let kernel = drawing.kernel()?;
-        let shown = input::input(input)?;
-        let name = shown.name().to_string();
-        let stage = drawing.stage(shown)?;
-        let rung = drawing.rung(stage.scene.wishes.rung);
-        let budget = drawing.max_error(stage.scene.wishes.max_error);
-        // A palette without ramps has no order of shades: what has no colours of its own is shown in such a one only if
-        // that was asked for.
-        let has_colors = stage.has_colors();
-        let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
-        let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::from(builtin.palette.clone())));
-        let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
-        // A scene that has none leaves the DAC alone.
-        let colors = stage.colors.clone().unwrap_or(Palette::default().into());
-        // Under its own name, if it has one, it does not stand twice in the list.
-        let usual = match &colors {
-            Colors::Auto => input::AUTO,
-            Colors::Palette(palette) => {
-                let same = builtin::ALL.iter().find(|builtin| builtin.palette.colors() == palette.colors());
-                same.map_or("the scene's", |builtin| builtin.name)
-            }
-        };
-        let palette = (drawing.palette_name().unwrap_or(usual.to_string()), colors);
-        Ok(Demo {
-            triangles: stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum(),
-            stage,
-            name,
+    /// With nothing to show yet.
+    fn new(inputs: Arc<Inputs>, kernel: Kernel) -> Demo {
+        let drawing = &inputs.drawing;
+        let stage = Stage::of_scene(Scene::new());
+        Demo {
+            at: 0,
+            name: inputs.name(0),
+            triangles: 0,
+            wrong: None,
             renderer: drawing.renderer(kernel),
-            shading: Shading::new(rung, budget),
+            shading: Shading::new(drawing.rung(None), drawing.max_error(None)),
+            chose_shading: false,
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
-            palettes: Choice::new(palettes, palette, |(a, _), (b, _)| a == b),
+            palettes: palettes(&stage, drawing),
+            chose_palette: false,
             mappings: Choice::new([None].into_iter().chain(Mapping::ALL.map(Some)), drawing.mapping(), |a, b| a == b),
+            stage,
             motion: Motion::new(),
             help: Panel::default(),
             figures: Panel::default(),
@@ -232,8 +247,121 @@ impl Demo {
             is_redrawn: false,
             notice: Some((HINT.to_string(), HINT_SECONDS)),
             switched: None,
+            switches: Vec::new(),
             seconds: 0.0,
-        })
+            inputs,
+        }
+    }
+
+    /// Shows what was loaded, unless something else has been asked for since. Loaded again, it keeps pose, time and what
+    /// keys have chosen. What could not be loaded leaves what is shown, or, the first time, an empty picture; that is a
+    /// failure if there is no other input.
+    fn put_on(&mut self, loading: Loading) -> Result<(), Failure> {
+        let Loading { at, is_again, result, .. } = loading;
+        if at != self.at {
+            return Ok(());
+        }
+        // A renderer of its own finds out whether the scene can be drawn; this one's plan is for what is shown.
+        let checked = result.and_then(|stage| {
+            let mut renderer = self.renderer.set_alike();
+            renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+            Ok(*stage)
+        });
+        let keeps = is_again && !self.stage.scene.objects().is_empty();
+        let stage = match checked {
+            Ok(stage) => {
+                self.wrong = None;
+                if is_again {
+                    self.say("loaded again".to_string());
+                } else if self.inputs.words.len() > 1 {
+                    self.say(format!("{} of {}: {}", at + 1, self.inputs.words.len(), self.inputs.name(at)));
+                }
+                stage
+            }
+            Err(failure) if self.inputs.words.len() == 1 && !is_again => return Err(failure),
+            Err(failure) => {
+                let wrong = failure.to_string();
+                if self.wrong.as_ref() != Some(&wrong) {
+                    eprintln!("mode13h: {wrong}");
+                }
+                self.notice = None;
+                self.wrong = Some(wrong);
+                if is_again {
+                    return Ok(());
+                }
+                Stage::of_scene(Scene::new())
+            }
+        };
+        self.set(stage, keeps)
+    }
+
+    /// Shows another stage, as what is shown has been changed by keys if it `keeps` that.
+    fn set(&mut self, stage: Stage, keeps: bool) -> Result<(), Failure> {
+        let drawing = &self.inputs.drawing;
+        self.name = self.inputs.name(self.at);
+        self.triangles = stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
+        self.stage = stage;
+        if !self.chose_shading {
+            let wishes = &self.stage.scene.wishes;
+            self.shading = Shading::new(drawing.rung(wishes.rung), drawing.max_error(wishes.max_error));
+        }
+        let before = std::mem::replace(&mut self.palettes, palettes(&self.stage, drawing));
+        if keeps && self.chose_palette && self.palettes.choose(|(name, _)| *name == before.chosen().0) {
+            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::work)?;
+        }
+        if keeps {
+            for &(switch, wanted) in &self.switches {
+                self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+                if switch.is_on(&self.renderer) != wanted {
+                    switch.turn(&mut self.stage.scene, &mut self.renderer);
+                }
+            }
+        } else {
+            self.renderer = drawing.renderer(*self.kernels.chosen());
+            self.switches.clear();
+            self.chose_palette = false;
+            self.motion.begin_anew();
+        }
+        self.compare.renew(&self.renderer);
+        (self.timing, self.planning, self.stats) = (Timing::default(), Timing::default(), None);
+        Ok(())
+    }
+
+    /// Goes to the next input, or back. Its place, if there is another.
+    fn leaf(&mut self, back: bool) -> Option<usize> {
+        let count = self.inputs.words.len();
+        if count == 1 {
+            self.say("there is no other input".to_string());
+            return None;
+        }
+        self.at = (self.at + if back { count - 1 } else { 1 }) % count;
+        self.notice =
+            Some((format!("{} of {count}: loading {}", self.at + 1, self.inputs.name(self.at)), f64::INFINITY));
+        Some(self.at)
+    }
+
+    /// Without a display: saves a picture of each input that can be loaded. The others are failures.
+    fn save_each(mut self, no_display: &WindowError) -> Result<(), Failure> {
+        let count = self.inputs.words.len();
+        let mut failed = 0;
+        for at in 0..count {
+            if at > 0 {
+                self.at = at;
+                self.put_on(loader::load(&self.inputs, at, &[]))?;
+            }
+            if self.wrong.take().is_some() {
+                failed += 1;
+                continue;
+            }
+            self.draw()?;
+            let path = output::numbered_picture(self.on_screen()).map_err(Failure::work)?;
+            let of = if count == 1 { String::new() } else { format!(" of {}", self.name) };
+            eprintln!("mode13h: {no_display}; one frame{of} is in {}", path.display());
+        }
+        if failed > 0 {
+            return Err(Failure::work(format!("{failed} of {count} inputs could not be drawn")));
+        }
+        Ok(())
     }
 
     /// Does what the user asks for in the frame that shows the time `seconds`.
@@ -244,6 +372,7 @@ impl Demo {
             self.say(self.motion.to_string());
         }
         if self.shading.follow(input) {
+            self.chose_shading = true;
             self.timing = Timing::default();
             self.say(self.shading.to_string());
         }
@@ -254,6 +383,7 @@ impl Demo {
         }
         if input.pressed(Key::P) {
             self.palettes.go_round();
+            self.chose_palette = true;
             self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::work)?;
             self.say(format!("palette {}", self.palettes.chosen().0));
         }
@@ -291,6 +421,10 @@ impl Demo {
         }
         Ok(if input.pressed(Key::Escape) {
             Wish::End
+        } else if input.pressed(Key::N)
+            && let Some(at) = self.leaf(input.pressed_with_shift(Key::N))
+        {
+            Wish::Input(at)
         } else if input.pressed(Key::S) {
             Wish::Picture
         } else {
@@ -307,7 +441,10 @@ impl Demo {
     fn draw(&mut self) -> Result<(), Failure> {
         self.draw_scene()?;
         if let Some((switch, was_on)) = self.switched.take() {
-            self.say(switch.outcome(was_on, switch.is_on(&self.renderer)));
+            let is_on = switch.is_on(&self.renderer);
+            self.say(switch.outcome(was_on, is_on));
+            self.switches.retain(|(other, _)| *other != switch);
+            self.switches.push((switch, is_on));
         }
         // The picture itself stays as it is, for the next frame may be the same.
         self.shown.clone_from(&self.vga);
@@ -349,6 +486,7 @@ impl Demo {
         if input.pressed(Key::X) && self.compare.is_on {
             self.compare.swap((&mut self.shading, &mut self.renderer, &mut self.vga, &mut self.timing));
             self.number += 1;
+            self.chose_shading = true;
             self.say(format!("{} | {}", self.shading, self.compare.right.shading));
         }
     }
@@ -379,6 +517,9 @@ impl Demo {
         }
         if let Some((notice, _)) = &self.notice {
             sheet.message(overlay::TEXT, notice);
+        }
+        if let Some(wrong) = &self.wrong {
+            sheet.message(overlay::WRONG, wrong);
         }
         self.lay_over(&mut sheet);
         let is_alone = !(self.help.is_open && self.figures.is_open);
@@ -486,6 +627,28 @@ impl Demo {
     fn mapping(&self) -> String {
         format!("mapping {}", self.mappings.chosen().map_or("by plan", |mapping| mapping.name()))
     }
+}
+
+/// The palettes that P goes through, of which the stage's is chosen.
+fn palettes(stage: &Stage, drawing: &Drawing) -> Choice<(String, Colors)> {
+    // A palette without ramps has no order of shades: what has no colours of its own is shown in such a one only if that
+    // was asked for.
+    let has_colors = stage.has_colors();
+    let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
+    let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::from(builtin.palette.clone())));
+    let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
+    // A scene that has none leaves the DAC alone.
+    let colors = stage.colors.clone().unwrap_or(Palette::default().into());
+    // Under its own name, if it has one, it does not stand twice in the list.
+    let usual = match &colors {
+        Colors::Auto => input::AUTO,
+        Colors::Palette(palette) => {
+            let same = builtin::ALL.iter().find(|builtin| builtin.palette.colors() == palette.colors());
+            same.map_or("the scene's", |builtin| builtin.name)
+        }
+    };
+    let palette = (drawing.palette_name().unwrap_or(usual.to_string()), colors);
+    Choice::new(palettes, palette, |(a, _), (b, _)| a == b)
 }
 
 /// A panel that a key opens, leafs through and closes.

@@ -60,6 +60,12 @@ impl Motion {
         Motion { time: 0.0, since: Some(0.0), pose: Pose::FIRST, now: 0.0, changed: Changed::Clock }
     }
 
+    /// At time 0, in the first pose; stopped if it is.
+    pub(super) fn begin_anew(&mut self) {
+        (self.time, self.pose) = (0.0, Pose::FIRST);
+        self.since = self.since.map(|_| self.now);
+    }
+
     /// Moves by what the user did until the time `seconds`. Whether a key changed something.
     pub(super) fn follow(&mut self, input: &Input, seconds: f64) -> bool {
         let was = (self.since.is_some(), self.pose);

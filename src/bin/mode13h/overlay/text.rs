@@ -131,33 +131,34 @@ pub(super) fn laid(rows: &[Row], columns: usize) -> Vec<Laid> {
     lines
 }
 
-/// A text in lines of at most `columns` letters. Words that are longer are cut in pieces.
+/// A text in lines of at most `columns` letters. Words that are longer are cut: behind a hyphen, a slash or the like if
+/// there is one, or else where the line ends.
 pub(crate) fn wrapped(text: &str, columns: usize) -> Vec<String> {
     let columns = columns.max(1);
-    let mut lines = vec![String::new()];
-    // Letters in the last of them.
-    let mut filled = 0;
+    let mut lines: Vec<Vec<char>> = vec![Vec::new()];
     for word in text.split(' ') {
-        let letters: Vec<char> = word.chars().collect();
-        let space = usize::from(filled > 0);
-        if filled + space + letters.len() > columns && filled > 0 {
-            lines.push(String::new());
-            filled = 0;
+        let mut rest: Vec<char> = word.chars().collect();
+        loop {
+            let filled = lines.last().map_or(0, Vec::len);
+            let space = usize::from(filled > 0);
+            if filled + space + rest.len() <= columns {
+                break;
+            }
+            if filled > 0 {
+                lines.push(Vec::new());
+                continue;
+            }
+            let cut = rest[..columns].iter().rposition(|letter| "-/\\_".contains(*letter)).map_or(columns, |at| at + 1);
+            let behind = rest.split_off(cut);
+            lines.pop();
+            lines.extend([std::mem::replace(&mut rest, behind), Vec::new()]);
         }
-        for (i, &letter) in letters.iter().enumerate() {
-            if filled == columns {
-                lines.push(String::new());
-                filled = 0;
+        if let Some(line) = lines.last_mut() {
+            if !line.is_empty() {
+                line.push(' ');
             }
-            if let Some(line) = lines.last_mut() {
-                if i == 0 && filled > 0 {
-                    line.push(' ');
-                    filled += 1;
-                }
-                line.push(letter);
-                filled += 1;
-            }
+            line.append(&mut rest);
         }
     }
-    lines
+    lines.iter().map(|line| line.iter().collect()).collect()
 }
