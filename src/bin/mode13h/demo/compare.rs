@@ -119,8 +119,8 @@ impl Compare {
             let rows = [
                 Row::text(shading.to_string()),
                 Row::new("time", timing.to_string()),
-                Row::new("worst", format!("{worst} shades off")),
-                Row::new("mean", format!("{mean} shades off")),
+                Row::new("worst", format!("{worst} shades")),
+                Row::new("mean", format!("{mean} shades")),
             ];
             sheet.panel(side, &rows, false, 0, "");
         }

@@ -150,13 +150,13 @@ impl Map {
         Some(found.sides.get(side)?.figures)
     }
 
-    /// Which picture it is of, and how much of that is known, in words.
+    /// When the picture that it is of was shown, and how much of that is known, in words.
     fn state(&self, number: u64, seconds: f64) -> String {
         let Some(Measured { snapshot, found }) = &self.last else { return "computing".into() };
         let refined = found.as_ref().map_or(1.0, |found| found.refined);
         let progress = match refined {
-            0.0 => ", at a quarter of the resolution".into(),
-            refined if refined < 1.0 => format!(", {:.0} % refined", 100.0 * refined),
+            0.0 => ", coarse".into(),
+            refined if refined < 1.0 => format!(", {:.0} %", 100.0 * refined),
             _ => String::new(),
         };
         if snapshot.number == number {
@@ -208,17 +208,20 @@ impl Map {
         sheet.picture(Area { left, top, width, height }, colors, Vga::WIDTH);
     }
 
-    /// What the colours mean, which picture they are laid over, and how far that is from the truth.
-    pub(super) fn legend(&self, sheet: &mut Sheet, number: u64, seconds: f64) {
-        let mut rows = vec![Row::text("error, in shades, against light at every pixel")];
+    /// What the colours mean, and which picture they are laid over: with its shading, unless that `is_named` elsewhere.
+    pub(super) fn legend(&self, sheet: &mut Sheet, number: u64, seconds: f64, is_named: bool) {
+        let mut rows = vec![Row::text("error in shades")];
+        let mut state = self.state(number, seconds);
         if let Some(Measured { snapshot, found }) = &self.last {
-            rows.push(Row::text(format!("of {}", snapshot.shadings.join(" | "))));
+            if !is_named {
+                rows.push(Row::text(format!("of {}", snapshot.shadings.join(" | "))));
+            }
             rows.extend(found.as_ref().err().map(|reason| Row::text(reason.clone())));
             if snapshot.number != number {
-                rows.push(Row::text("the small picture,"));
+                state = format!("small picture: {state}");
             }
         }
-        rows.push(Row::text(self.state(number, seconds)));
+        rows.push(Row::text(state));
         rows.extend(LEVELS.iter().map(|level| Row::color(level.color, level.label)));
         sheet.panel(Edge::Right, &rows, false, 0, "");
     }

@@ -250,19 +250,29 @@ impl Magnifier {
         let area = Area { left: picture.left, top, width: picture.width, height: bottom.saturating_sub(top) };
         sheet.block(area, PAPER.0, PAPER.1);
         let lines: Vec<&str> = first.iter().chain(account).map(String::as_str).collect();
-        let fits = |letters: Letters| laid_out(&lines, area, letters).len() <= area.height / letters.line();
-        let letters = if fits(sheet.letters()) { sheet.letters() } else { Letters::Small };
-        let tops = (area.top..).step_by(letters.line()).take(area.height / letters.line());
-        for (top, line) in tops.zip(laid_out(&lines, area, letters)) {
+        let letters = [sheet.letters(), Letters::Small]
+            .into_iter()
+            .find(|&letters| laid_out(&lines, area, letters).1 == lines.len());
+        let letters = letters.unwrap_or(Letters::Small);
+        for (top, line) in (area.top..).step_by(letters.line()).zip(laid_out(&lines, area, letters).0) {
             sheet.text((area.left + MARGIN, top), letters, overlay::TEXT, line);
         }
     }
 }
 
-/// Lines of text in lines that fit between the sides of a rectangle.
-fn laid_out(lines: &[&str], area: Area, letters: Letters) -> Vec<String> {
+/// Lines of text in lines that fit between the sides of a rectangle, as long as all of one has room above its lower edge;
+/// and how many had.
+fn laid_out(lines: &[&str], area: Area, letters: Letters) -> (Vec<String>, usize) {
     let columns = area.width.saturating_sub(2 * MARGIN) / letters.width();
-    lines.iter().flat_map(|line| overlay::wrapped(line, columns)).collect()
+    let mut laid = Vec::new();
+    for (i, line) in lines.iter().enumerate() {
+        let wrapped = overlay::wrapped(line, columns);
+        if (laid.len() + wrapped.len()) * letters.line() > area.height {
+            return (laid, i);
+        }
+        laid.extend(wrapped);
+    }
+    (laid, lines.len())
 }
 
 /// A rectangle of the lens's own colour, one pixel thick, but not where the lens is.

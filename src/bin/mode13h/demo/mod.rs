@@ -504,8 +504,8 @@ impl Demo {
             let errors = [0, 1].map(|side| self.map.errors_of(self.number, side));
             self.compare.lay_over(sheet, (&self.shading, &self.timing), errors);
         }
-        if self.maps {
-            self.map.legend(sheet, self.number, self.seconds);
+        if self.maps && !self.help.is_open {
+            self.map.legend(sheet, self.number, self.seconds, self.compare.is_on);
         }
     }
 
