@@ -257,24 +257,18 @@ mod tests {
         assert_eq!(stepper.lines(5, 0), ["no triangle to step through here"]);
         stepper.take_up(5, Some(&traced(Shading::GouraudReseeded)));
         // 320·20 + 13 is 190Dh; three times 20 more than 50.5.
-        assert_eq!(
-            stepper.lines(5, 110)[..5],
-            [
-                "body, triangle 7: row 1 of 4, pixel 4 of 7",
-                "(13, 20), whose byte in the frame is 110",
-                "EDI 190D  AX 6E80  BX 1400  CX 0004",
-                "writes AH: 6Eh = 110",
-                "exact 110.0000: the byte is off by +0.0000",
-            ]
-        );
-        assert_eq!(
-            stepper.lines(5, 110)[6..],
-            [
-                "shade 110.5000, half a shade included, step +20.0000",
-                "started at column 10, again every 64 pixels; 4 pixels left",
-            ]
-        );
-        assert!(stepper.lines(5, 9)[3].ends_with("the frame has 9: another face is in front"));
+        let lines = stepper.lines(5, 110);
+        let registers = [
+            "body, triangle 7: row 1 of 4, pixel 4 of 7",
+            "EDI 190D  AX 6E80  BX 1400  CX 0004",
+            "(13, 20) gets AH: 6Eh = 110, as the frame has it",
+            "exact 110.0000: the byte is off by +0.0000",
+        ];
+        assert_eq!(lines[..4], registers);
+        let start =
+            ["shade 110.5000, half a shade included, step +20.0000", "started at column 10, anew every 64; 4 left"];
+        assert_eq!(lines[5..], start);
+        assert!(stepper.lines(5, 9)[2].ends_with("the frame has 9: another face is in front"));
         // Another picture: the walk is of none, until it is known what is seen there.
         assert_eq!(stepper.lines(6, 110).len(), 1);
         stepper.take_up(6, Some(&traced(Shading::Gouraud1616)));
