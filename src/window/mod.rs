@@ -25,8 +25,8 @@ use input::Events;
 /// A frame of the VGA: 800 clocks × 449 lines at 25.175 MHz, 70.086 Hz.
 const FRAME: Duration = Duration::from_nanos(800 * 449 * 1_000_000 / 25_175);
 
-/// How long [`Window::rest`] waits: a key is answered within a twentieth of a second.
-const REST: Duration = Duration::from_millis(25);
+/// How often [`Window::rest`] looks for input: a key is answered within a twentieth of a second.
+const LOOK: Duration = Duration::from_millis(25);
 /// After how long [`Window::rest`] sends the picture again.
 const RESEND: Duration = Duration::from_millis(500);
 
@@ -88,6 +88,8 @@ pub struct Window {
     window: minifb::Window,
     events: Events,
     input: Input,
+    /// Whether the user did something in the time that the input is of.
+    has_input: bool,
     picture: Picture,
     opened: Instant,
     /// The time that the current frame is drawn for.
@@ -115,7 +117,7 @@ impl Window {
         window.set_input_callback(Box::new(events.clone()));
         let now = Instant::now();
         let (input, picture) = (Input::default(), Picture::default());
-        Ok(Window { window, events, input, picture, opened: now, now, begun: now, sent: now })
+        Ok(Window { window, events, input, has_input: false, picture, opened: now, now, begun: now, sent: now })
     }
 
     /// Changes the title.
@@ -160,21 +162,28 @@ impl Window {
         self.send()
     }
 
-    /// Leaves what was shown last as it is, waits for a 40th of a second, and collects what the user did in the
-    /// meantime: for a picture that stands still, next to no work.
+    /// Leaves what was shown last as it is, and waits until the user does something, at most for `longest`: for a picture
+    /// that stands still, next to no work. It is looked for input every 25 ms.
     ///
     /// A display may forget what a window shows while it is covered. So the picture is sent again twice a second.
     ///
     /// # Errors
     ///
     /// [`WindowError`] if the display went away.
-    pub fn rest(&mut self) -> Result<Flow, WindowError> {
-        self.wait(REST);
-        if self.now.duration_since(self.sent) >= RESEND {
-            return self.send();
+    pub fn rest(&mut self, longest: Duration) -> Result<Flow, WindowError> {
+        let (size, end) = (self.size(), self.begun + longest);
+        loop {
+            self.wait(LOOK.min(longest));
+            let flow = if self.now.duration_since(self.sent) >= RESEND {
+                self.send()?
+            } else {
+                self.window.update();
+                self.collect()
+            };
+            if flow == Flow::Close || self.has_input || self.size() != size || self.begun + LOOK > end {
+                return Ok(flow);
+            }
         }
-        self.window.update();
-        Ok(self.collect())
     }
 
     /// The window's columns and rows, for which the next picture is stretched.
@@ -196,7 +205,9 @@ impl Window {
 
     fn collect(&mut self) -> Flow {
         self.now = Instant::now();
-        self.input = self.events.collect(&self.window, self.picture.place());
+        let input = self.events.collect(&self.window, self.picture.place());
+        self.has_input = input.differs(&self.input);
+        self.input = input;
         if self.window.is_open() { Flow::Continue } else { Flow::Close }
     }
 

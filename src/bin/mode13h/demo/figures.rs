@@ -103,3 +103,111 @@ impl Demo {
 fn of_rungs(shares: &Shares) -> Vec<String> {
     shares.iter().map(|(rung, triangles)| format!("{rung} {triangles}")).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use clap::Parser;
+    use mode13h::scene::shipped;
+    use mode13h::span::Kernel;
+
+    use super::*;
+    use crate::demo::loader::{self, Inputs};
+    use crate::demo::shading::Shading;
+    use crate::options::Drawing;
+    use crate::overlay::tests::WINDOWS;
+
+    #[derive(Parser)]
+    struct Words {
+        #[command(flatten)]
+        drawing: Drawing,
+    }
+
+    /// The demo of a scene after its first frame.
+    fn demo(name: &str) -> Demo {
+        let drawing = Words::parse_from(["mode13h"]).drawing;
+        let inputs = Arc::new(Inputs { drawing, words: vec![name.into()] });
+        let first = loader::load(&inputs, 0, &[]);
+        let mut demo = Demo::new(inputs, Kernel::fastest());
+        demo.put_on(first).expect("a shipped scene");
+        demo.draw().expect("a legal scene");
+        demo
+    }
+
+    /// In every scene, window and page, with one panel open or both, no letter is cut, missing from the font, or over
+    /// another; and every word of a panel stands on one of its pages.
+    #[test]
+    fn text_is_never_cut_in_any_scene() {
+        for scene in shipped::ALL {
+            let mut demo = demo(scene.name);
+            for budget in [None, Some(1.0)] {
+                demo.shading = Shading::new(demo.renderer.rung(), budget);
+                demo.draw().expect("a legal scene");
+                for size in WINDOWS {
+                    for (help, figures) in [(true, false), (false, true), (true, true)] {
+                        (demo.help.is_open, demo.figures.is_open) = (help, figures);
+                        for message in
+                            ["palette the scene's", "gouraud-8.8-reseeded", "a-long-name.toml:12:3: ".repeat(9).trim()]
+                        {
+                            demo.say(message.to_string());
+                            let mut words = Vec::new();
+                            let mut pages = 1;
+                            for page in (0..).take_while(|page| *page < 9) {
+                                if page >= pages {
+                                    break;
+                                }
+                                (demo.help.page, demo.figures.page) = (page, page);
+                                let sheet = demo.sheet(size);
+                                let what = format!("{} in {size:?}, page {page}", scene.name);
+                                assert_eq!(sheet.faults(), [""; 0], "{what}");
+                                let open = [(help, demo.help.pages), (figures, demo.figures.pages)];
+                                assert!(open.iter().all(|(is_open, pages)| !is_open || *pages > 0), "{what}");
+                                pages = open
+                                    .iter()
+                                    .filter(|(is_open, _)| *is_open)
+                                    .map(|(_, pages)| *pages)
+                                    .max()
+                                    .unwrap_or(1);
+                                words.extend(sheet.words());
+                            }
+                            assert!(!help || words.iter().any(|word| word == "Shift-N"), "{} in {size:?}", scene.name);
+                            assert!(
+                                !figures || words.iter().any(|word| word == "effects"),
+                                "{} in {size:?}",
+                                scene.name
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_is_not_said_in_the_plural() {
+        assert_eq!(counted(1, "object"), "1 object");
+        assert_eq!(counted(0, "object"), "0 objects");
+        let rows = demo("torus").figures();
+        assert!(rows.iter().any(|row| format!("{row:?}").contains("1 object, 2304 triangles")), "{rows:?}");
+    }
+
+    #[test]
+    fn the_title_has_the_time_of_the_shading_that_it_names() {
+        let mut demo = demo("torus");
+        let times: Vec<f64> = ["flat", "phong"]
+            .map(|rung| {
+                demo.shading = Shading::new(rung.parse().expect("a rung"), None);
+                demo.forget_times();
+                demo.draw().expect("a legal scene");
+                assert_eq!(demo.title(), format!("torus - {rung} - {} - mode13h", demo.timing));
+                demo.timing.frame
+            })
+            .into();
+        assert!(times[0] != times[1] && times[0] > 0.0, "{times:?}");
+        // The same again is the same picture.
+        demo.draw().expect("a legal scene");
+        assert!(demo.title().contains("not drawn again"), "{}", demo.title());
+        assert_eq!(demo.timing.frame, times[1]);
+    }
+}

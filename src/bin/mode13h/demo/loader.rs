@@ -196,6 +196,12 @@ mod tests {
         loading.result.as_ref().err().map(ToString::to_string).unwrap_or_default()
     }
 
+    /// Loads an input of which no file has changed just now.
+    fn load_at_rest(inputs: &Inputs) -> Loading {
+        thread::sleep(2 * LAG);
+        load(inputs, 0, &[])
+    }
+
     const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
     #[test]
@@ -204,7 +210,7 @@ mod tests {
         let model = folder.path().join("model.obj");
         fs::write(&model, TRIANGLE).expect("written");
         let inputs = inputs(&[&model]);
-        let first = load(&inputs, 0, &[]);
+        let first = load_at_rest(&inputs);
         assert_eq!(triangles(&first), 1);
         let loader = Loader::start(Arc::clone(&inputs), &first).expect("a thread");
 
@@ -231,9 +237,9 @@ mod tests {
         fs::write(in_folder("a.obj"), format!("mtllib a.mtl\nusemtl a\n{TRIANGLE}")).expect("written");
         fs::write(in_folder("a.mtl"), "newmtl a\nKd 1 0 0\n").expect("written");
         let scene = in_folder("scene.toml");
-        fs::write(&scene, "[[object]]\nmodel = \"a.obj\"\n").expect("written");
+        fs::write(&scene, "[[objects]]\nmodel = \"a.obj\"\n").expect("written");
         let inputs = inputs(&[&scene]);
-        let first = load(&inputs, 0, &[]);
+        let first = load_at_rest(&inputs);
         assert_eq!(triangles(&first), 1);
         let loader = Loader::start(Arc::clone(&inputs), &first).expect("a thread");
 
@@ -243,7 +249,7 @@ mod tests {
         };
         fs::write(in_folder("a.mtl"), "newmtl a\nKd 0 0.5 0\n").expect("written");
         assert_eq!(diffuse(&next(&loader)), [0.0, 0.5, 0.0]);
-        fs::write(&scene, "[[object]]\nmodel = \"missing.obj\"\n").expect("written");
+        fs::write(&scene, "[[objects]]\nmodel = \"missing.obj\"\n").expect("written");
         let wrong = next(&loader);
         assert!(why(&wrong).contains("scene.toml:2"), "{}", why(&wrong));
         fs::write(in_folder("missing.obj"), TRIANGLE).expect("written");
@@ -258,7 +264,7 @@ mod tests {
         fs::write(&a, TRIANGLE).expect("written");
         fs::write(&c, format!("{TRIANGLE}f 1 3 2\n")).expect("written");
         let inputs = inputs(&[&a, &b, &c]);
-        let loader = Loader::start(Arc::clone(&inputs), &load(&inputs, 0, &[])).expect("a thread");
+        let loader = Loader::start(Arc::clone(&inputs), &load_at_rest(&inputs)).expect("a thread");
         loader.ask(1);
         let missing = next(&loader);
         assert_eq!((missing.at, missing.is_again), (1, false));

@@ -28,7 +28,7 @@ mod timing;
 
 use std::ffi::OsString;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use mode13h::palette::{Palette, builtin};
@@ -57,16 +57,18 @@ use timing::Timing;
 
 /// What the help says below the options.
 pub(crate) const KEYS: &str = "\
-Keys in the window: Esc quits, Space stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through
-the rungs, 1 to 9 are the first nine, 0 is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2
-shades); E lays the error map over the picture: how far each pixel is from light worked out at every pixel, in shades; C
-divides the window at the mouse, with another shading on the right, the time and the error of each above it: a click fixes
-the divider, Shift with [ ] and digits chooses the right one's shading, X swaps the two; Z magnifies what is under the mouse
-16 times, and the pixel there explains itself: . and , step on and back through its triangle's pixels, with the registers
-of the loop, with Shift through its rows; K next kernel, P next palette, M next
-mapping of textures; L lights, O fog, T texture and D dither off and on; S saves a PNG in the current directory, H shows
-help, the plan, time, error and which rungs shade how many triangles.
-With no display one frame is saved as a PNG.";
+Keys in the window: Esc quits, H shows the keys, I the plan, time, error and which rungs shade how many triangles; Space
+stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through the rungs, 1 to 9 are the first nine, 0
+is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2 shades); E lays the error map over the
+picture: how far each pixel is from light worked out at every pixel, in shades; C divides the window at the mouse,
+with another shading on the right, the time and the error of each above it: a click fixes the divider, Shift with [ ] and
+digits chooses the right one's shading, X swaps the two; Z magnifies what is under the mouse 16 times, and the pixel there
+explains itself: . and , step on and back through its triangle's pixels, with the registers of the loop, with Shift through
+its rows; K next kernel, P next palette, M next mapping of textures; L lights, O fog, T
+texture and D dither off and on; N shows the next INPUT and Shift-N the one before; S saves the picture, without the text
+over it, as a PNG in the current directory.
+An INPUT is loaded again when one of its files changes; what is wrong with it is said in the window.
+With no display one frame of each INPUT is saved as a PNG.";
 
 #[derive(Args, Clone)]
 pub(crate) struct Options {
@@ -82,6 +84,13 @@ const HINT_SECONDS: f64 = 3.0;
 /// How long it is said what a key has changed, and where a picture was saved.
 const NOTICE: f64 = 1.0;
 const SAVED: f64 = 3.0;
+
+/// For how long nothing changes in what stands still.
+const STILL: Duration = Duration::from_millis(500);
+/// For how long at most nothing is done but wait for the user: where all stands still, and where something moves so slowly
+/// that now and then two frames are the same.
+const STILL_REST: Duration = Duration::from_millis(100);
+const SHORT_REST: Duration = Duration::from_millis(14);
 
 fn help_on_inputs() -> String {
     format!("{}. Of several the first is shown, and N goes to the next", input::help())
@@ -100,6 +109,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Err(no_display) => return demo.save_each(&no_display),
     };
     let (mut title, mut shown) = (String::new(), Look::of(&Vga::new(), Sheet::new((0, 0))));
+    // When what is shown last changed.
+    let mut changed = 0.0;
     loop {
         let wish = demo.follow(window.input(), window.seconds())?;
         if let Some(loading) = loader.loaded() {
@@ -120,9 +131,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         let sheet = demo.sheet(window.size());
         let look = Look::of(demo.on_screen(), sheet);
         let flow = if look == shown {
-            window.rest()
+            let is_still = window.seconds() - changed > STILL.as_secs_f64();
+            window.rest(if is_still { STILL_REST } else { SHORT_REST })
         } else {
-            shown = look;
+            (shown, changed) = (look, window.seconds());
             window.show_over(demo.on_screen(), |canvas| shown.sheet.draw(canvas))
         };
         if flow.map_err(Failure::work)? == Flow::Close {
@@ -323,7 +335,8 @@ impl Demo {
             self.motion.begin_anew();
         }
         self.compare.renew(&self.renderer);
-        (self.timing, self.planning, self.stats) = (Timing::default(), Timing::default(), None);
+        self.forget_times();
+        self.stats = None;
         Ok(())
     }
 
@@ -373,12 +386,12 @@ impl Demo {
         }
         if self.shading.follow(input) {
             self.chose_shading = true;
-            self.timing = Timing::default();
+            self.forget_times();
             self.say(self.shading.to_string());
         }
         if input.pressed(Key::K) {
             self.kernels.go_round();
-            self.timing = Timing::default();
+            self.forget_times();
             self.say(format!("kernel {}", self.kernels.chosen()));
         }
         if input.pressed(Key::P) {
@@ -389,13 +402,13 @@ impl Demo {
         }
         if input.pressed(Key::M) {
             self.mappings.go_round();
-            self.timing = Timing::default();
+            self.forget_times();
             self.say(self.mapping());
         }
         for (key, switch) in Switch::KEYS {
             if input.pressed(key) {
                 self.switched = Some((switch, switch.is_on(&self.renderer)));
-                self.timing = Timing::default();
+                self.forget_times();
                 switch.turn(&mut self.stage.scene, &mut self.renderer);
                 self.compare.renew(&self.renderer);
             }
@@ -430,6 +443,11 @@ impl Demo {
         } else {
             Wish::Nothing
         })
+    }
+
+    /// Something has changed that changes how long frames take.
+    fn forget_times(&mut self) {
+        (self.timing, self.planning) = (Timing::default(), Timing::default());
     }
 
     /// Says something for a moment.
@@ -525,10 +543,10 @@ impl Demo {
         let is_alone = !(self.help.is_open && self.figures.is_open);
         if self.figures.is_open {
             let rows = self.figures();
-            self.figures.pages = sheet.panel(Side::Left, &rows, is_alone, self.figures.page, "I turns the page");
+            self.figures.pages = sheet.panel(Side::Left, &rows, is_alone, self.figures.page, "I");
         }
         if self.help.is_open {
-            self.help.pages = sheet.panel(Side::Right, &figures::help(), is_alone, self.help.page, "H turns the page");
+            self.help.pages = sheet.panel(Side::Right, &figures::help(), is_alone, self.help.page, "H");
         }
         sheet
     }
@@ -538,7 +556,8 @@ impl Demo {
         self.shading.set(&mut self.renderer);
         self.renderer.set_kernel(*self.kernels.chosen());
         self.renderer.set_mapping(*self.mappings.chosen());
-        if self.figures.is_open {
+        // Of a picture that stands still the time for its plan stays, too.
+        if self.figures.is_open && (self.is_redrawn || self.planning.frame == 0.0) {
             let start = Instant::now();
             self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
             self.planning.add(Some(start.elapsed().as_secs_f64()), self.seconds);

@@ -58,8 +58,8 @@ impl Letters {
 /// A row of a panel: a head, or a block of colour, and the text beside it, which is wrapped in its own column.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) struct Row {
-    head: Head,
-    text: String,
+    pub(super) head: Head,
+    pub(super) text: String,
 }
 
 #[derive(Clone, PartialEq, Eq, Debug)]
