@@ -84,11 +84,6 @@ impl Sheet {
         Sheet { width, height, picture, letters, things: Vec::new(), free }
     }
 
-    /// The window's columns and rows.
-    pub(crate) fn size(&self) -> (usize, usize) {
-        (self.width, self.height)
-    }
-
     /// Where the picture stands in the window. [`Area::from_frame`] finds a pixel of the frame there.
     pub(crate) fn picture_area(&self) -> Area {
         self.picture
