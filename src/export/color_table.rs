@@ -49,6 +49,12 @@ impl ColorTable {
         used(indices).iter().take(self.entries()).position(|used| !used).map(|free| free as u8)
     }
 
+    /// The entry behind the colours, where there is room for one: no pixel of any frame has it.
+    #[cfg(feature = "png")]
+    pub(super) fn spare(&self) -> Option<u8> {
+        u8::try_from(self.colors.len()).ok()
+    }
+
     /// Red, green and blue of each entry: the colours, and one more where there is room.
     pub(super) fn bytes(&self) -> Vec<u8> {
         let spare = [Rgb::BLACK];

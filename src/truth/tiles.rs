@@ -74,7 +74,7 @@ impl<'a> Truth<'a> {
     /// The columns and rows whose pixels a face may cover; `None` if there is none.
     fn pixels_of(&self, face: Face) -> Option<[Range<u16>; 2]> {
         let (body, corners) = self.triangle(face)?;
-        if !body.two_sided && ray::is_turned(&corners) {
+        if !body.shows(face.triangle, ray::is_turned(&corners)) {
             return None;
         }
         let boxed = |points: &[[f64; 2]]| {

@@ -7,7 +7,7 @@ use std::vec::Vec;
 use glam::Vec3;
 use toml::Spanned;
 
-use super::camera::{Extent, camera};
+use super::camera::camera;
 use super::error::Fault;
 use super::layout::{AnimationLayout, FogLayout, LightLayout, SceneLayout, WishesLayout};
 use super::named::{Named, Open};
@@ -16,18 +16,20 @@ use super::value::{Background, FileName, List, OneOrThree};
 use super::{SceneErrorKind, motion};
 use crate::light::Light;
 use crate::palette::Palette;
+use crate::scene::framing::{Swept, Turning};
 use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Wishes};
 
 /// Makes one scene.
 pub(super) struct Builder<'a> {
     named: Named<'a>,
     scene: Scene,
-    extent: Extent,
+    /// What the objects cover as they move, if the camera has no place of its own.
+    swept: Vec<Swept>,
 }
 
 impl<'a> Builder<'a> {
     pub(super) fn new(path: &'a FilePath, open: &'a mut Open<'a>) -> Self {
-        Self { named: Named::new(path, open), scene: Scene::new(), extent: Extent::default() }
+        Self { named: Named::new(path, open), scene: Scene::new(), swept: Vec::new() }
     }
 
     /// The scene, and what was found wanting.
@@ -38,6 +40,9 @@ impl<'a> Builder<'a> {
         self.scene.name = layout.name.clone().unwrap_or_default();
         if let Some(duration) = layout.duration {
             self.scene.duration = duration.0;
+        }
+        if let Some(picture) = layout.picture {
+            self.scene.picture = picture.0;
         }
         if let Some(ambient) = layout.ambient {
             self.scene.ambient = ambient.0;
@@ -120,6 +125,7 @@ impl<'a> Builder<'a> {
     }
 
     fn objects(&mut self, layout: &SceneLayout) -> Result<(), Fault> {
+        let is_framed = layout.camera.as_ref().is_none_or(|camera| camera.get_ref().eye.is_none());
         let mut objects = Objects::default();
         for layout in &layout.objects {
             let own = layout.get_ref();
@@ -129,8 +135,15 @@ impl<'a> Builder<'a> {
                 Some(OneOrThree::Three(turns)) => turns.map(|turns| turns.0),
                 None => [0.0; 3],
             };
+            let turning = match turns {
+                [0.0, 0.0, 0.0] => Turning::Still,
+                [0.0, _, 0.0] => Turning::Upright,
+                _ => Turning::Anyhow,
+            };
             for object in objects.object(layout, &mut self.named)? {
-                self.extent.add(&object, path.as_ref());
+                if is_framed {
+                    self.swept.push(Swept::new(&object, turning, path.as_ref()));
+                }
                 let start = object.angles();
                 let id = self.scene.add(object);
                 if turns != [0.0; 3] {
@@ -176,7 +189,7 @@ impl<'a> Builder<'a> {
     }
 
     fn camera(&mut self, layout: &SceneLayout) -> Result<(), Fault> {
-        self.scene.camera = camera(layout.camera.as_ref(), &self.extent)?;
+        self.scene.camera = camera(layout.camera.as_ref(), &self.swept)?;
         let Some(own) = &layout.camera else { return Ok(()) };
         for (path, what) in [(&own.get_ref().eye_path, Moving::Eye), (&own.get_ref().target_path, Moving::Target)] {
             if let Some(path) = path {
@@ -197,6 +210,7 @@ fn wishes(layout: &WishesLayout) -> Wishes {
         rung: layout.rung.as_ref().map(|name| name.0),
         hidden_surfaces: layout.hidden_surfaces.as_ref().map(|name| name.0),
         mapping: layout.mapping.as_ref().map(|name| name.0),
+        mipmaps: layout.mipmaps,
         tessellation: layout.tessellation.map(|shades| shades.0),
         dither: layout.dither.unwrap_or_default(),
         max_error: layout.max_error.map(|shades| shades.0),

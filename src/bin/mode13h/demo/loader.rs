@@ -11,8 +11,8 @@ use std::time::{Duration, SystemTime};
 
 use crate::failure::Failure;
 use crate::options::Drawing;
+use crate::read_files;
 use crate::stage::Stage;
-use crate::{input, read_files};
 
 /// How often it is looked whether a file has changed.
 const PERIOD: Duration = Duration::from_millis(250);
@@ -52,7 +52,7 @@ pub(super) fn load(inputs: &Inputs, at: usize, known: &[PathBuf]) -> Loading {
     let begun = SystemTime::now();
     let words = &inputs.words[at];
     let (result, mut files) = read_files::noting(|| {
-        let stage = inputs.drawing.stage(input::input(words)?)?;
+        let stage = inputs.drawing.stage(inputs.drawing.input(words)?)?;
         Ok(Box::new(stage))
     });
     files.extend(inputs.drawing.palette_file());

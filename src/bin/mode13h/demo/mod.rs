@@ -325,7 +325,7 @@ impl Demo {
             for &(switch, wanted) in &self.switches {
                 self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
                 if switch.is_on(&self.renderer) != wanted {
-                    switch.turn(&mut self.stage.scene, &mut self.renderer);
+                    switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::work)?;
                 }
             }
         } else {
@@ -366,6 +366,7 @@ impl Demo {
                 failed += 1;
                 continue;
             }
+            self.motion.go_to(self.stage.scene.picture);
             self.draw()?;
             let path = output::numbered_picture(self.on_screen()).map_err(Failure::work)?;
             let of = if count == 1 { String::new() } else { format!(" of {}", self.name) };
@@ -409,7 +410,7 @@ impl Demo {
             if input.pressed(key) {
                 self.switched = Some((switch, switch.is_on(&self.renderer)));
                 self.forget_times();
-                switch.turn(&mut self.stage.scene, &mut self.renderer);
+                switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::work)?;
                 self.compare.renew(&self.renderer);
             }
         }

@@ -66,6 +66,12 @@ impl Motion {
         self.since = self.since.map(|_| self.now);
     }
 
+    /// Puts the scene's time to `seconds`; it goes on from there.
+    pub(super) fn go_to(&mut self, seconds: f64) {
+        self.time = seconds;
+        self.since = self.since.map(|_| self.now);
+    }
+
     /// Moves by what the user did until the time `seconds`. Whether a key changed something.
     pub(super) fn follow(&mut self, input: &Input, seconds: f64) -> bool {
         let was = (self.since.is_some(), self.pose);
