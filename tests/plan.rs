@@ -349,7 +349,12 @@ fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
                 None => renderer.force(effect, Some(true)),
             });
             assert!(rung.is_none() || stats.raster.lit > 0 || stats.lit == 0, "{name}: {stats}");
-            let off = expected.iter().zip(&bytes).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+            // A vertex that splitting makes is rounded to 1/256 pixel itself: along an outline a pixel may come or go.
+            let shows = |byte: u8| byte != scene.background;
+            let (both, one): (Vec<_>, Vec<_>) =
+                expected.iter().zip(&bytes).filter(|(a, b)| a != b).partition(|(a, b)| shows(**a) && shows(**b));
+            assert!(one.len() <= if effect == Effect::Tessellation { 8 } else { 0 }, "{name}, {effect}: {one:?}");
+            let off = both.iter().map(|(a, b)| a.abs_diff(**b)).max().unwrap_or(0);
             assert!(f64::from(off) <= allowed, "{name}, {effect}: off by {off}, {bound:.2} printed");
             bounds.push((bound, off));
             tried.add(1);
@@ -370,7 +375,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
     let mut random = support::random::Random::named("perspective");
     while tried.more() {
         let pieces = random.within(1, 24) as u32;
-        let mut scene = Scene::showing(mode13h::mesh::shapes::wall(pieces, pieces));
+        let mut scene = support::scenes::framed(mode13h::mesh::shapes::wall(pieces, pieces));
         let object = &mut scene.objects_mut()[0];
         object.set_angles([random.unit() - 0.5, 2.4 * random.unit() - 1.2, random.unit()]);
         let material = &mut object.materials[0];

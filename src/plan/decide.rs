@@ -210,8 +210,10 @@ impl Rules<'_> {
     fn back_face_culling(&self) -> Decision {
         if hidden::is_transparent(self.object) {
             Decision::off(Why::SeenThrough)
-        } else if self.object.mesh().is_closed() {
+        } else if self.object.mesh().is_outward() {
             Decision::on(Why::Closed)
+        } else if self.object.mesh().is_closed() {
+            Decision::off(Why::InsideOut)
         } else {
             Decision::off(Why::Open)
         }

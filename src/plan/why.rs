@@ -40,6 +40,8 @@ pub enum Why {
     Closed,
     /// The mesh is not closed: both sides of its faces may be seen.
     Open,
+    /// The mesh is closed, but parts of it are inside out: their back faces may be seen.
+    InsideOut,
     /// What shines through shows its own far side too.
     SeenThrough,
     /// The scene's only object is convex.
@@ -187,6 +189,7 @@ impl Why {
             Self::Band => "only a part of the screen is drawn".to_string(),
             Self::Closed => "its mesh is closed".to_string(),
             Self::Open => "its mesh is open, so both sides may be seen".to_string(),
+            Self::InsideOut => "its mesh is inside out in part, so both sides may be seen".to_string(),
             Self::SeenThrough => "its far side shines through".to_string(),
             Self::OneConvex => "the only object is convex".to_string(),
             Self::Empty => "nothing is to be drawn".to_string(),

@@ -179,11 +179,28 @@ impl Object {
 
     /// The same in f64, by rows.
     pub(crate) fn turn(&self) -> [[f64; 3]; 3] {
+        self.turned_by(self.angles)
+    }
+
+    /// What [`turn`](Self::turn) would be with other angles.
+    pub(super) fn turned_by(&self, angles: [f64; 3]) -> [[f64; 3]; 3] {
         match self.up_axis {
-            UpAxis::Y => turn(self.angles),
+            UpAxis::Y => turn(angles),
             // (x, y, z) stands up as (x, z, −y).
-            UpAxis::Z => turn(self.angles).map(|[x, y, z]| [x, -z, y]),
+            UpAxis::Z => turn(angles).map(|[x, y, z]| [x, -z, y]),
         }
+    }
+}
+
+impl From<Mesh> for Object {
+    fn from(mesh: Mesh) -> Self {
+        Self::new(mesh)
+    }
+}
+
+impl From<Shared<Mesh>> for Object {
+    fn from(mesh: Shared<Mesh>) -> Self {
+        Self::new(mesh)
     }
 }
 

@@ -17,7 +17,8 @@
 //!
 //! **Visible surface.** The face with the greatest 1/w at the pixel; of equal ones the first in the order of
 //! the scene. w, the distance along the view, is that of the unrounded vertices, and 1/w linear on the
-//! screen. A closed mesh has no backs; of others a face whose back is seen has its normals turned round.
+//! screen. A closed mesh that looks outward has no backs; of others a face whose back is seen has its normals turned
+//! round. Of two faces back to back the one that looks toward the eye is seen.
 //! Nothing is nearer than the near plane. A body that shines through counts as an opaque one.
 //!
 //! **Intensity.** 0 to 1, before ramp, texture, fog, dither and blending, and rounded nowhere. The sum of
@@ -32,7 +33,7 @@
 //! face is drawn as the fan from its first corner. The guard band, which lies 4,095 pixels from the frame's corner, cuts
 //! after the near plane, and changes no intensity that is linear on the screen.
 //!
-//! What the engine makes of the scene, as [`Shown`], is compared by [`ErrorMap`].
+//! What the engine makes of the scene, as [`Shown`], is compared by [`ErrorMap`]. [`Tiles`] gives `Lit` part by part.
 
 mod body;
 mod bound;
@@ -42,6 +43,7 @@ mod error;
 mod eye;
 mod light;
 mod ray;
+mod tiles;
 mod vector;
 
 use alloc::vec;
@@ -53,6 +55,7 @@ pub use self::bound::Bound;
 use self::cover::Rounded;
 pub use self::error::{ErrorMap, Figures, Shown, Swim};
 use self::eye::Eye;
+pub use self::tiles::Tiles;
 use self::vector::{times, unit, weighted};
 use crate::scene::{Scene, named};
 pub use crate::view::Screen;
@@ -306,7 +309,7 @@ impl<'a> Truth<'a> {
     fn drawn(&self, face: Face) -> Option<Rounded> {
         let (body, corners) = self.triangle(face)?;
         let rounded = Rounded::new(&self.eye, &corners);
-        (body.two_sided || !rounded.turned).then_some(rounded)
+        body.shows(face.triangle, rounded.turned).then_some(rounded)
     }
 
     /// Every pixel that the face covers with rounded vertices.
@@ -347,9 +350,14 @@ impl<'a> Truth<'a> {
     /// Where the ray through a point of the picture meets a face, if that does not turn its back on the eye.
     fn met(&self, face: Face, at: [f64; 2]) -> Option<Hit> {
         let (body, corners) = self.triangle(face)?;
-        let met = ray::meet(&self.eye, &corners, at)?;
+        Self::hit(&self.eye, face, (body, &corners), at)
+    }
+
+    /// Does so for a face whose corners are at hand.
+    fn hit(eye: &Eye, face: Face, (body, corners): (&Body<'a>, &[Corner; 3]), at: [f64; 2]) -> Option<Hit> {
+        let met = ray::meet(eye, corners, at)?;
         let hit = Hit { face, turned: met.turned, weights: met.on_face, inverse_w: 1.0 / met.w };
-        (body.two_sided || !met.turned).then_some(hit)
+        body.shows(face.triangle, met.turned).then_some(hit)
     }
 
     /// Calls `pixel` for all pixels of the frame that points round it may enclose, and some more.

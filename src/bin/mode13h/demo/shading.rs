@@ -56,10 +56,28 @@ fn wish(input: &Input) -> Option<Wish> {
     if input.pressed(Key::B) {
         return Some(if input.pressed_with_shift(Key::B) { Wish::More } else { Wish::Less });
     }
-    if input.pressed(Key::LeftBracket) || typed('[') {
+    let without_shift = |key| input.pressed(key) && !input.pressed_with_shift(key);
+    if without_shift(Key::LeftBracket) || typed('[') {
         return Some(Wish::Cheaper);
     }
-    (input.pressed(Key::RightBracket) || typed(']')).then_some(Wish::Dearer)
+    (without_shift(Key::RightBracket) || typed(']')).then_some(Wish::Dearer)
+}
+
+/// What the user wishes for the right half of a picture: the same keys with Shift.
+fn shifted_wish(input: &Input) -> Option<Wish> {
+    let typed = |character: char| input.typed().contains(character);
+    // Where digits are typed with Shift they are the left half's.
+    let is_down = |&(key, _, character): &(Key, Key, char)| input.pressed_with_shift(key) && !typed(character);
+    if let Some(rung) = DIGITS.iter().zip(Rung::ALL).find_map(|(digit, rung)| is_down(digit).then_some(rung)) {
+        return Some(Wish::Rung(rung));
+    }
+    if is_down(&(Key::Key0, Key::NumPad0, '0')) {
+        return Some(Wish::Budget);
+    }
+    if input.pressed_with_shift(Key::LeftBracket) {
+        return Some(Wish::Cheaper);
+    }
+    input.pressed_with_shift(Key::RightBracket).then_some(Wish::Dearer)
 }
 
 /// A rung and a budget, one of which is in force.
@@ -77,10 +95,18 @@ impl Shading {
         Shading { rung, budget: budget.unwrap_or(USUAL), by_budget: budget.is_some() }
     }
 
-    pub(super) fn follow(&mut self, input: &Input) {
-        if let Some(wish) = wish(input) {
-            self.fulfil(wish);
-        }
+    /// Does what the user wishes. Whether they wished anything.
+    pub(super) fn follow(&mut self, input: &Input) -> bool {
+        let wish = wish(input);
+        wish.into_iter().for_each(|wish| self.fulfil(wish));
+        wish.is_some()
+    }
+
+    /// Does what the user wishes for the right half of a picture. Whether they wished anything.
+    pub(super) fn follow_shifted(&mut self, input: &Input) -> bool {
+        let wish = shifted_wish(input);
+        wish.into_iter().for_each(|wish| self.fulfil(wish));
+        wish.is_some()
     }
 
     fn fulfil(&mut self, wish: Wish) {
@@ -123,7 +149,11 @@ impl Shading {
 
 impl fmt::Display for Shading {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.by_budget { write!(f, "budget {} shades", self.budget) } else { f.write_str(self.rung.name()) }
+        if self.by_budget {
+            write!(f, "budget {} {}", self.budget, if self.budget == 1.0 { "shade" } else { "shades" })
+        } else {
+            f.write_str(self.rung.name())
+        }
     }
 }
 
@@ -156,7 +186,8 @@ mod tests {
         assert_eq!(shading, Shading::new(Rung::Flat, Some(USUAL)));
         (0..9).for_each(|_| shading.fulfil(Wish::More));
         for budget in BUDGETS {
-            assert_eq!(shading.to_string(), format!("budget {budget} shades"));
+            let shades = if budget == 1.0 { "shade" } else { "shades" };
+            assert_eq!(shading.to_string(), format!("budget {budget} {shades}"));
             shading.fulfil(Wish::Less);
         }
         assert_eq!(shading.budget(), 0.5);
@@ -165,7 +196,7 @@ mod tests {
         shading.fulfil(Wish::Rung(Rung::Phong));
         assert_eq!(shading.to_string(), "phong");
         shading.fulfil(Wish::Budget);
-        assert_eq!(shading.to_string(), "budget 1 shades");
+        assert_eq!(shading.to_string(), "budget 1 shade");
         // One that is not in the list.
         let mut shading = Shading::new(Rung::Flat, Some(3.0));
         shading.fulfil(Wish::More);
