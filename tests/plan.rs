@@ -486,8 +486,11 @@ fn mipmaps_are_asked_for() {
     assert_eq!((why.on, why.why.as_str()), (false, "asked for"));
 }
 
+/// Red, green and blue of each pixel.
+type Picture = Vec<[f64; 3]>;
+
 /// The colours of a frame as the card shows them.
-fn shown(scene: &Scene, bytes: &[u8]) -> Vec<[f64; 3]> {
+fn shown(scene: &Scene, bytes: &[u8]) -> Picture {
     let palette = scene.palette.as_ref().unwrap_or(&mode13h::palette::BIOS).on_dac();
     let color = |byte: &u8| palette.color(*byte);
     bytes.iter().map(color).map(|c| [c.r, c.g, c.b].map(f64::from)).collect()
@@ -531,7 +534,7 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
         paint(&mut scene);
         let (mut errors, mut sparkles) = ([[0.0; 2]; 3], [[0.0; 2]; 3]);
         // What is right, and for each mapping what is drawn without and with.
-        let mut before: Option<(Vec<[f64; 3]>, [[Vec<[f64; 3]>; 2]; 3])> = None;
+        let mut before: Option<(Picture, [[Picture; 2]; 3])> = None;
         for frame in 0..FRAMES {
             let moved = f32::from(frame) * 0.01;
             scene.camera.eye.x = moved;
@@ -543,14 +546,14 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
                 let sums = rows.fold([0.0; 3], |sums, color| [0, 1, 2].map(|i| sums[i] + color[i]));
                 sums.map(|sum| sum / (PART * PART) as f64)
             };
-            let right: Vec<[f64; 3]> = (0..SIZE.0 * SIZE.1).map(mean).collect();
+            let right: Picture = (0..SIZE.0 * SIZE.1).map(mean).collect();
             let drawn = Mapping::ALL.map(|mapping| [false, true].map(|on| picture(&scene, 1, mapping, on)));
             for (i, mapping) in Mapping::ALL.into_iter().enumerate() {
                 let error = drawn[i].each_ref().map(|picture| apart(picture, &right));
                 assert!(error[1] < error[0], "{image}, {mapping}, frame {frame}: {error:?}");
                 errors[i] = [0, 1].map(|on| errors[i][on] + error[on] / f64::from(FRAMES));
                 if let Some((old_right, old_drawn)) = &before {
-                    let change = |new: &[[f64; 3]], old: &[[f64; 3]]| -> Vec<[f64; 3]> {
+                    let change = |new: &[[f64; 3]], old: &[[f64; 3]]| -> Picture {
                         new.iter().zip(old).map(|(new, old)| [0, 1, 2].map(|i| new[i] - old[i])).collect()
                     };
                     let right = change(&right, old_right);
