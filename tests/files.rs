@@ -576,9 +576,7 @@ fn f4_a_folder_that_is_not_there() {
     for (words, name) in WRITERS {
         let folder = folder();
         fs::write(folder.path().join("file"), OLD).expect("written");
-        for (directory, says) in
-            [("none", "the directory none does not exist"), ("file", "file is no directory")]
-        {
+        for (directory, says) in [("none", "the directory none does not exist"), ("file", "file is no directory")] {
             let path = format!("{directory}/{name}");
             let words: Vec<&str> = words.iter().map(|word| if word == &name { path.as_str() } else { word }).collect();
             let said = assert_failed(&program(folder.path()).args(words).output().expect("started"));

@@ -411,7 +411,7 @@ fn mipmaps_change_nothing_of_what_is_near() {
             [0.0, 0.3, -0.6].into_iter().flat_map(|angle| Mapping::ALL.map(|mapping| (angle, mapping)))
         {
             for channels in [false, true] {
-                let mut scene = Scene::showing(mode13h::mesh::shapes::wall(3, 3));
+                let mut scene = support::scenes::framed(mode13h::mesh::shapes::wall(3, 3));
                 let object = &mut scene.objects_mut()[0];
                 object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
                 object.set_angles([angle, angle, angle]);
@@ -443,7 +443,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
     let mut tried = Tried::new("mipmaps_are_called_for_by_texels_to_a_pixel", 40);
     let texture = mode13h::scene::Shared::new(mode13h::texture::Texture::by_name("bricks").expect("listed"));
     for step in 0..40 {
-        let mut scene = Scene::showing(mode13h::mesh::shapes::wall(1, 1));
+        let mut scene = support::scenes::framed(mode13h::mesh::shapes::wall(1, 1));
         let object = &mut scene.objects_mut()[0];
         object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
         let distance = 0.4 * 1.12_f32.powi(step);

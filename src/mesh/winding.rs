@@ -42,11 +42,8 @@ const MEETINGS_PER_FACE: u64 = 64;
 const MAX_MEETINGS: u64 = 64 * RAYS as u64 * RAYS as u64;
 
 /// Meetings that are held at a time, for each face; and beside.
-const HELD_PER_FACE: usize = 4;
-const HELD: usize = 1024;
-
-/// The number after a grid's last ray.
-const END: u32 = (RAYS + 2) * (RAYS + 2);
+const HELD_PER_FACE: u64 = 2;
+const HELD: u64 = 256;
 
 /// Whether no point has a negative winding number, folds aside: then no back face of a closed mesh is seen from
 /// outside. Takes memory in proportion to the faces, and says no where that would take too long to find out.
@@ -75,28 +72,34 @@ pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bo
         }
     };
     let most = MAX_MEETINGS + MEETINGS_PER_FACE * triangles.len() as u64;
-    let held = (HELD + HELD_PER_FACE * triangles.len()) as u64;
+    let held = HELD + HELD_PER_FACE * triangles.len() as u64;
     let mut meetings = Vec::new();
     (0..3).all(|axis| {
-        // How many meetings each ray has. A face meets a ray once at most, so a ray's meetings can be held.
-        let mut counts = vec![0_u64; END as usize];
-        each(axis, &mut |corners| meet_all(corners, 0..END, |meeting| counts[meeting.ray as usize] += 1));
-        if counts.iter().sum::<u64>() > most {
+        let count = |rays: &Range<u32>| {
+            let mut count = 0_u64;
+            each(axis, &mut |corners| meet_all(corners, rays, |_| count += 1));
+            count
+        };
+        let all = 0..(RAYS + 2) * (RAYS + 2);
+        let met = count(&all);
+        if met > most {
             return false;
         }
-        let mut from = 0;
-        while from < END {
-            let (mut to, mut sum) = (from, 0);
-            while to < END && sum + counts[to as usize] <= held {
-                sum += counts[to as usize];
-                to += 1;
+        // Rays whose meetings are too many to be held are halved. A face meets a ray once at most, so one ray's can be held.
+        let mut left = vec![(all, met)];
+        while let Some((rays, met)) = left.pop() {
+            if rays.len() > 1 && met > held {
+                let middle = rays.start.midpoint(rays.end);
+                let first = rays.start..middle;
+                let met_first = count(&first);
+                left.extend([(middle..rays.end, met - met_first), (first, met_first)]);
+                continue;
             }
             meetings.clear();
-            each(axis, &mut |corners| meet_all(corners, from..to, |meeting| meetings.push(meeting)));
+            each(axis, &mut |corners| meet_all(corners, &rays, |meeting| meetings.push(meeting)));
             if !never_below(&mut meetings, longest * scale[axis] * THINNEST) {
                 return false;
             }
-            from = to;
         }
         true
     })
@@ -124,14 +127,15 @@ fn never_below(meetings: &mut [Meeting], thinnest: f64) -> bool {
 
 /// Calls `visit` for each of `rays` that meets a triangle. Rays run along the third coordinate, and lie where the other two
 /// are whole numbers.
-fn meet_all(corners: [Wide; 3], rays: Range<u32>, mut visit: impl FnMut(Meeting)) {
+fn meet_all(corners: [Wide; 3], rays: &Range<u32>, mut visit: impl FnMut(Meeting)) {
     let rows = corners.map(|corner| corner[1]);
     let low = (rows[0].min(rows[1]).min(rows[2]) as u32 + 1).max(rays.start / (RAYS + 2));
     let high = (rows[0].max(rows[1]).max(rows[2]) as u32).min(rays.end.saturating_sub(1) / (RAYS + 2));
     for row in low..=high {
         let Some((from, to, step)) = cross_row(&corners, f64::from(row)) else { continue };
         let first = row * (RAYS + 2);
-        let columns = (from[0] as u32 + 1).max(rays.start.saturating_sub(first))..(to[0] as u32 + 1).min(rays.end - first);
+        let columns =
+            (from[0] as u32 + 1).max(rays.start.saturating_sub(first))..(to[0] as u32 + 1).min(rays.end - first);
         for column in columns {
             visit(Meeting { ray: first + column, at: between(from, to, f64::from(column)), step });
         }
