@@ -8,7 +8,7 @@ mod against_the_oracle;
 #[path = "raster_batch/shapes.rs"]
 mod shapes;
 
-use against_the_oracle::batches_against_the_oracle;
+use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
 use mode13h::raster::{Batch, DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex};
 use mode13h::span::Kernel;
 use support::oracle;
@@ -66,6 +66,11 @@ fn per_kernel(triangles: u64) -> u64 {
 #[test]
 fn r4_batches_against_the_oracle() {
     batches_against_the_oracle(Tried::new("r4_batches_against_the_oracle", per_kernel(200_000)));
+}
+
+#[test]
+fn r6_order_and_winding_make_no_difference_in_batches() {
+    orders_and_windings(Tried::new("r6_order_and_winding_make_no_difference_in_batches", 300));
 }
 
 #[test]

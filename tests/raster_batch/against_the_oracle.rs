@@ -198,3 +198,28 @@ pub(crate) fn batches_against_the_oracle(mut tried: Tried) {
     tried.worst("pixels hidden", hidden as f64);
     assert!(hidden > each / 10, "{hidden} pixels hidden");
 }
+
+/// The same triangles with their corners in other orders give the same bytes, depths and counts.
+pub(crate) fn orders_and_windings(mut tried: Tried) {
+    let mut random = Random::named("r6 batches");
+    while tried.more() {
+        let place = Place::random(&mut random);
+        let size = (place.width.into(), place.height.into());
+        let mut triangles = Vec::new();
+        while triangles.len() < Batch::CAPACITY / 2 {
+            let class = random.one_of(&CLASSES);
+            let shapes = shape(&mut random, class, size);
+            triangles.extend(shapes.into_iter().map(|vertices| (vertices, shading(&mut random))));
+        }
+        triangles.truncate(random.within(1, Batch::CAPACITY as i64) as usize);
+        let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+        let turned: Vec<Triangle> = triangles
+            .iter()
+            .map(|(vertices, shading)| (random.one_of(&orders).map(|corner| vertices[corner]), *shading))
+            .collect();
+        for kernel in Kernel::available() {
+            let (drawn, expected) = (place.drawn(&turned, kernel), place.drawn(&triangles, kernel));
+            assert!(drawn == expected, "{kernel}, {place:?}: {triangles:?} and {turned:?}");
+        }
+    }
+}

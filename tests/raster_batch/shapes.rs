@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use mode13h::raster::Vertex;
 
 use crate::support::random::Random;
-use crate::support::triangles::vertex;
+use crate::support::triangles::{edge_beside, vertex};
 
 const BAND: i64 = Vertex::GUARD_BAND as i64;
 
@@ -102,28 +102,12 @@ fn sliver(random: &mut Random, (width, height): Point) -> [Point; 3] {
     [a, (middle.0 + random.within(-2, 2), middle.1 + random.within(-2, 2)), b]
 }
 
-/// An edge that passes the centre of a pixel as closely as an edge can: the two and the centre span a triangle of twice the
-/// area 1, in square units, to one side or the other.
+/// An edge that passes the centre of a pixel as closely as an edge can.
 fn beside_a_centre(random: &mut Random, (width, height): Point) -> [Point; 2] {
-    let (x, y) = (random.within(0, width - 1) * 256 + 128, random.within(0, height - 1) * 256 + 128);
-    let (dx, dy) = (reach(random) * random.one_of(&[-1, 1]), reach(random));
-    let (divisor, v, u) = euclid(dx, dy);
-    let (dx, dy) = (dx / divisor, dy / divisor);
-    // dx·v − dy·u = ±1, also of what is a whole edge further on.
+    let centre = (random.within(0, width - 1) * 256 + 128, random.within(0, height - 1) * 256 + 128);
+    let along = (reach(random) * random.one_of(&[-1, 1]), reach(random));
     let side = random.one_of(&[-1, 1]);
-    let (u, v) = (-u * side, v * side);
-    let (u, v) = if v < 0 { (u + dx, v + dy) } else { (u, v) };
-    let a = (x - u, y - v);
-    [a, (a.0 + dx, a.1 + dy)]
-}
-
-/// Euclid's algorithm: the greatest common divisor g > 0, and x and y with a·x + b·y = g.
-fn euclid(a: i64, b: i64) -> (i64, i64, i64) {
-    if b == 0 {
-        return (a.abs(), a.signum(), 0);
-    }
-    let (g, x, y) = euclid(b, a % b);
-    (g, y, x - a / b * y)
+    edge_beside(centre, along, side)
 }
 
 /// A triangle with a corner on the guard band or just inside it.
