@@ -207,7 +207,7 @@ fn n5_a_light_stronger_than_f32_holds_is_refused() {
             let mut color = [0.5; 3];
             color[channel] = share;
             for light in [Light::sun([0.0, 0.0, 1.0]), Light::lamp([0.0, 0.0, 3.0], 9.0)] {
-                let mut scene = Scene::showing(shapes::cube());
+                let mut scene = support::scenes::framed(shapes::cube());
                 scene.lights_mut()[0] = light.with_intensity(intensity).with_color(color);
                 let refused = Renderer::new().draw(&scene, &mut Vga::new());
                 assert!(matches!(refused, Err(RenderError::Light { index: 0, .. })), "{intensity:e} of {color:?}");
@@ -282,10 +282,10 @@ fn r9_what_is_not_finite_is_refused_where_it_enters() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         assert_eq!(I24F8::round_from_f32(bad), None);
     }
-    let mut scene = Scene::showing(shapes::cube());
+    let mut scene = support::scenes::framed(shapes::cube());
     scene.lights_mut()[0] = Light::sun([0.0; 3]);
     assert!(matches!(Renderer::new().draw(&scene, &mut Vga::new()), Err(RenderError::Light { index: 0, .. })));
-    scene = Scene::showing(shapes::cube());
+    scene = support::scenes::framed(shapes::cube());
     scene.camera.target = scene.camera.eye;
     assert!(matches!(Renderer::new().draw(&scene, &mut Vga::new()), Err(RenderError::Camera(_))));
 }

@@ -58,7 +58,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
         renderer
     };
     let mesh = Shared::new(shapes::torus(8, 6));
-    let (mut renderer, mut scene) = (fresh(), Scene::showing(mesh.clone()));
+    let (mut renderer, mut scene) = (fresh(), support::scenes::framed(mesh.clone()));
     let mut bytes = [0; (WIDTH * HEIGHT) as usize];
     // A step as any other: its sums are rounded.
     let step = 0.013_7;
@@ -72,7 +72,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
         draw(&mut renderer, &scene, &mut bytes);
         moved += u32::from(bytes != before);
 
-        let mut at_once = Scene::showing(mesh.clone());
+        let mut at_once = support::scenes::framed(mesh.clone());
         at_once.objects_mut()[0].set_angles([f64::from(n) * STEPS[0], f64::from(n) * STEPS[1], 0.0]);
         let mut expected = [n as u8; (WIDTH * HEIGHT) as usize];
         draw(&mut fresh(), &at_once, &mut expected);
@@ -126,14 +126,14 @@ fn t1_long_a_million_frames_on_the_integer_path() {
 fn t2_any_step_is_defined() {
     let mut tried = Tried::new("t2_any_step_is_defined", 12);
     let turned = |angle: f64| {
-        let mut scene = Scene::showing(shapes::cube());
+        let mut scene = support::scenes::framed(shapes::cube());
         scene.objects_mut()[0].rotate_y(angle);
         frame(&mut Renderer::new(), &scene)
     };
     assert_eq!(turned(0.0), turned(-0.0));
     // An hour at 90° a second is 900 whole turns.
     let hour = 3600.0 * std::f64::consts::FRAC_PI_2;
-    let mut scene = Scene::showing(shapes::cube());
+    let mut scene = support::scenes::framed(shapes::cube());
     scene.objects_mut()[0].rotate_y(hour);
     scene.objects_mut()[0].rotate_y(-hour);
     assert_eq!(frame(&mut Renderer::new(), &scene), turned(0.0), "there and back");
@@ -150,7 +150,7 @@ fn e1_a_used_renderer_draws_as_a_fresh_one() {
     let mut random = Random::named("e1");
     let (mut used, mut other) = (Renderer::new(), Renderer::new());
     let mut vga = [Vga::new(), Vga::new()];
-    let mut scene = Scene::showing(shapes::torus(16, 8));
+    let mut scene = support::scenes::framed(shapes::torus(16, 8));
     while tried.more() {
         // Whatever may change between two frames, in any order.
         match random.within(0, 9) {
@@ -164,7 +164,7 @@ fn e1_a_used_renderer_draws_as_a_fresh_one() {
             4 => used.set_rung(random.one_of(&Rung::ALL)),
             5 => {
                 let name = random.one_of(&["cube", "sphere", "wall", "cone"]);
-                scene = Scene::showing(shapes::by_name(name).expect("listed"));
+                scene = support::scenes::framed(shapes::by_name(name).expect("listed"));
             }
             6 => {
                 let mut object = Object::new(shapes::cube());

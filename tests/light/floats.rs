@@ -11,6 +11,7 @@ use mode13h::render::Renderer;
 use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Scene};
 use mode13h::vga::Vga;
 
+use crate::support::scenes::framed;
 use crate::support::tried::Tried;
 
 /// Puts a number into a scene, as one of so many components.
@@ -140,7 +141,9 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("Mesh.positions", "tests/mesh_normals.rs"),
     ("Mesh.texcoords", "tests/mesh_normals.rs"),
     ("Object.longest_edges", "worked out from positions"),
+    ("Object.steepest_texcoords", "worked out from positions and texture coordinates"),
     ("Scene.duration", "the length of a film, not a number of a frame: tests/scene_files.rs"),
+    ("Scene.picture", "a moment, which motions make nothing of if it is none"),
     ("Scene.time", "in what it has moved"),
 ];
 
@@ -190,7 +193,7 @@ pub(crate) fn every_float_is_refused(mut tried: Tried) {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for (name, components, put, what) in FLOATS {
             for i in 0..*components {
-                let mut scene = Scene::showing(mode13h::mesh::shapes::cube());
+                let mut scene = framed(mode13h::mesh::shapes::cube());
                 scene.add_light(Light::lamp([1.0, 2.0, 3.0], 9.0));
                 let mut begins = scene.clone();
                 let mut vga = Vga::new();

@@ -4,10 +4,10 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
 use mode13h::render::{Renderer, Screen, VertexPath};
-use mode13h::scene::Scene;
 
 use super::judged::judged;
 use super::random::Random;
+use super::scenes::framed;
 use super::tried::Tried;
 
 /// C4: fields of view from 1° to 179°, the eye inside a torus, on a vertex or a face of it, or anywhere near.
@@ -17,7 +17,7 @@ pub fn odd_views(mut tried: Tried, path: VertexPath) {
     let screen = Screen { width: 64, height: 40, ..Screen::MODE_13H };
     let (mut seen, mut clipped) = (0, 0);
     while tried.more() {
-        let mut scene = Scene::showing(mesh.clone());
+        let mut scene = framed(mesh.clone());
         scene.background = 7;
         scene.add_light(Light::sun([0.3, 0.5, -1.0]));
         let mut place =
