@@ -515,21 +515,21 @@ fn shown(bytes: &[u8]) -> Vec<Vec<Rgb>> {
 fn films_of_all_kinds_show_the_same() {
     let directory = directory();
     for (scene, colors) in [("cube", "indexed"), ("fade", "true colour, as the palette changes")] {
-        let words = |out| ["render", scene, "-o", out, "--frames", "5", "--scale", "64x48"];
+        let words = |out| ["render", scene, "-o", out, "--frames", "6", "--scale", "64x48"];
         assert!(run(&directory, &words("x.gif")).status.success());
         let line = printed(&directory, &words("x.apng"));
         let apng = read(&directory, "x.apng");
         let bytes = apng.len();
-        assert_eq!(line, format!("x.apng: 64 x 48 pixels, 5 frames, 0.14 s, {colors}, {bytes} bytes\n"));
+        assert_eq!(line, format!("x.apng: 64 x 48 pixels, 6 frames, 0.17 s, {colors}, {bytes} bytes\n"));
         let of_gif: Vec<Vec<Rgb>> =
             decode(&read(&directory, "x.gif")).images.into_iter().map(|image| image.shown).collect();
-        assert!(of_gif.len() == 5 && shown(&apng) == of_gif, "{scene}");
+        assert!(of_gif.len() == 6 && shown(&apng) == of_gif, "{scene}");
 
         let stream = run(&directory, &words("-"));
         assert!(stream.status.success() && stream.stderr.is_empty(), "{stream:?}");
         let frames = stream.stdout.strip_prefix(b"YUV4MPEG2 W64 H48 F35:1 Ip A1:1 C444\n").expect("a heading");
         let frames: Vec<&[u8]> = frames.chunks(6 + 3 * 64 * 48).collect();
-        assert_eq!(frames.len(), 5);
+        assert_eq!(frames.len(), 6);
         for (frame, colors) in frames.into_iter().zip(&of_gif) {
             let planes = frame.strip_prefix(b"FRAME\n").expect("a frame");
             for (i, color) in colors.iter().enumerate() {
@@ -698,7 +698,9 @@ fn a_plan_is_a_table_of_a_hundred_columns() {
     let directory = directory();
     for scene in shipped::ALL.iter().map(|shipped| shipped.name).chain(["sphere"]) {
         let text = printed(&directory, &["plan", scene]);
-        assert!(text.starts_with(&format!("{scene} at 0 s, 1/35 s after the frame before it: ")), "{text}");
+        // The moment of its picture.
+        let at = shipped::by_name(scene).map_or(0.0, |shipped| shipped.load().expect("a scene").scene.picture);
+        assert!(text.starts_with(&format!("{scene} at {at} s, 1/35 s after the frame before it: ")), "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= 100 && line.trim_end() == line), "{text}");
         assert!(text.contains("making the plan takes "), "{text}");
         for effect in Effect::ALL {
@@ -798,7 +800,8 @@ fn with_no_display_one_frame_is_saved() {
     assert!(run(&directory, &["flash"]).status.success());
     let (palette, pixels) = indexed(&read(&directory, "mode13h-0004.png"));
     let bright = pixels.iter().filter(|pixel| palette[usize::from(**pixel)].brightness() > 60_000).count();
-    assert!(bright > 64_000 / 2, "{bright} pixels");
+    // At time 0 there are none.
+    assert!(bright > 64_000 / 4, "{bright} pixels");
 }
 
 #[test]
@@ -1164,9 +1167,8 @@ fn a_palette_made_for_a_scene_keeps_the_colors_of_its_ramps() {
         let (own, made) = (colors(&[scene]), colors(&[scene, "--palette", "auto"]));
         let far = own.iter().zip(&made).map(|(a, b)| f64::from(a.distance_squared(*b)).sqrt());
         let mean = far.sum::<f64>() / own.len() as f64;
-        // A made ramp is a line from black by the colour to the highlight; the palette's own ramps are bent. In greys they
-        // would be 50 and more apart.
-        assert!(mean < 12.0, "{scene}: {mean}");
+        // Of three steps of a channel on the card one in each channel. In greys they would be 30 and more apart.
+        assert!(mean < 4.0 * 3_f64.sqrt(), "{scene}: {mean}");
     }
 }
 

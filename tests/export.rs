@@ -296,7 +296,7 @@ fn f4_each_reason_has_its_own_error_with_the_path() {
 
     for (path, says) in [
         (folder.path().join("none").join("frame.png"), "none does not exist"),
-        (file.join("frame.png"), "file does not exist"),
+        (file.join("frame.png"), "file is no directory"),
     ] {
         let error = write_atomically(&path, nothing).expect_err("no such folder");
         assert!(matches!(error.kind(), ExportErrorKind::MissingDirectory), "{error}");

@@ -710,15 +710,15 @@ fn keys_in_documents_are_keys_of_scenes() {
                 _ => continue,
             };
             let assigned = quoted.into_iter().filter_map(|code| code.split_once(" = "));
-            for (key, _) in
-                assigned.filter(|(key, _)| key.chars().all(|c| c.is_ascii_alphabetic() || "-_.".contains(c)))
-            {
+            let is_key = |key: &str| key.chars().all(|c| c.is_ascii_alphabetic() || "-_.".contains(c));
+            // `features` is Cargo's.
+            for (key, _) in assigned.filter(|(key, _)| is_key(key) && *key != "features") {
                 assert!(key.split('.').all(|key| known.contains(&key)), "{key} in: {line}");
                 tried += 1;
             }
         }
     }
-    assert!(tried >= 10, "{tried} keys");
+    assert!(tried >= 5, "{tried} keys");
 }
 
 /// The rungs that the document lists are those that there are.

@@ -51,7 +51,7 @@ pub(crate) struct Options {
     /// Take times for at most so long, though for seven rounds in any case; fewer rounds make wider intervals [default:
     /// about 10, up to 20 where a ratio is not known to 2 %]. Before that errors are found, which takes a second or two a
     /// frame: --frames says how many
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Draw what instructions are counted of, and nothing else
     #[arg(long, hide = true)]
