@@ -189,7 +189,7 @@ fn wrong_words_end_with_2() {
         (vec!["render", "--xml"], "(mode13h render --help shows"),
         (vec!["--xml"], "(mode13h --help shows"),
         (vec!["torus", "--xml"], "(mode13h --help shows"),
-        (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
+        (vec!["torus", "verify"], "verify is a command, and stands before its INPUT"),
         (vec!["plan"], "<INPUT>"),
         (vec!["plan", "torus", "--at", "inf"], "--at"),
         (vec!["plan", "torus", "--rung", "mirror"], "there are flat, gouraud-period, gouraud-8.8, "),

@@ -251,8 +251,8 @@ fn time_to_parse(text: &str, library: &str) -> f64 {
     }
 }
 
-/// A file eight times as long takes about eight times as long to read, not 64 times. Half-way between them, at 24, lies
-/// what is refused; three attempts, as the machine may be busy.
+/// A file eight times as long takes about eight times as long to read, and no more than twelve times, but where the reason
+/// is known; three attempts, as the machine may be busy.
 #[test]
 #[ignore = "the long run: it measures time"]
 fn f1_long_time_grows_as_the_file_does() {
@@ -313,9 +313,16 @@ fn f1_long_time_grows_as_the_file_does() {
     for (what, make) in cases {
         let [(short, short_library), (long, long_library)] = [make(5_000), make(40_000)];
         let ratio = || time_to_parse(&long, &long_library) / time_to_parse(&short, &short_library);
-        let least = (0..3).map(|_| ratio()).inspect(|ratio| println!("{what}: {ratio:.1}")).find(|ratio| *ratio < 24.0);
-        tried.worst("times as long for eight times the file", least.unwrap_or(f64::INFINITY));
-        assert!(least.is_some(), "{what}: a file eight times as long takes more than 24 times as long");
+        // A name is hashed, kept twice and copied into a surface of its own: of 5,000 all that lies in the caches, of 40,000 it
+        // does not. The time of a name grows by a tenth for each doubling, from 2,500 to 60,000, and not in proportion.
+        let (limit, measure) = match what {
+            "names of materials" => (24.0, "of materials that all have names of their own"),
+            _ => (12.0, "times as long for eight times the file"),
+        };
+        let least =
+            (0..3).map(|_| ratio()).inspect(|ratio| println!("{what}: {ratio:.1}")).find(|ratio| *ratio <= limit);
+        tried.worst(measure, least.unwrap_or(f64::INFINITY));
+        assert!(least.is_some(), "{what}: a file eight times as long takes more than {limit} times as long");
         tried.add(1);
     }
 }
@@ -576,9 +583,7 @@ fn f4_a_folder_that_is_not_there() {
     for (words, name) in WRITERS {
         let folder = folder();
         fs::write(folder.path().join("file"), OLD).expect("written");
-        for (directory, says) in
-            [("none", "the directory none does not exist"), ("file", "the directory file does not exist")]
-        {
+        for (directory, says) in [("none", "the directory none does not exist"), ("file", "file is no directory")] {
             let path = format!("{directory}/{name}");
             let words: Vec<&str> = words.iter().map(|word| if word == &name { path.as_str() } else { word }).collect();
             let said = assert_failed(&program(folder.path()).args(words).output().expect("started"));

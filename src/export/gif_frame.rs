@@ -168,12 +168,12 @@ impl Image {
         indices.iter_mut().for_each(|index| *index = places[usize::from(*index)]);
         let table = own.as_ref().unwrap_or(&film);
         let mut image = Image { area, palette: None, transparent: None, data: compressed(&indices)? };
-        if let (Some(kept), Some(free)) = (kept, table.free(&indices)) {
-            if leave_out(&mut indices, &kept, columns.len(), free) {
-                let data = compressed(&indices)?;
-                if data.len() < image.data.len() {
-                    (image.data, image.transparent) = (data, Some(free));
-                }
+        if let (Some(kept), Some(free)) = (kept, table.free(&indices))
+            && leave_out(&mut indices, &kept, columns.len(), free)
+        {
+            let data = compressed(&indices)?;
+            if data.len() < image.data.len() {
+                (image.data, image.transparent) = (data, Some(free));
             }
         }
         image.palette = own.map(|own| own.bytes());

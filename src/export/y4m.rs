@@ -40,9 +40,9 @@ pub fn y4m_frame(picture: &Picture<'_>, scale: Scale) -> Result<Vec<u8>, Picture
     frame.try_reserve_exact(bytes).map_err(|_| PictureError::Memory { bytes })?;
     frame.extend(HEADING);
     let colors = picture.palette.map(luma_and_differences);
-    for plane in 0..3 {
+    for plane in [0, 1, 2].map(|plane| colors.map(|color| color[plane])) {
         for row in scaled.rows() {
-            frame.extend(row.iter().map(|&index| colors[usize::from(index)][plane]));
+            frame.extend(row.iter().map(|&index| plane[usize::from(index)]));
         }
     }
     Ok(frame)

@@ -58,8 +58,11 @@ fn written<W: Write>(frames: &Frames, scale: Scale, colors: &FilmColors, out: W)
     film.finish()
 }
 
+/// The red, green and blue of each pixel.
+type Colors = Vec<[u8; 3]>;
+
 /// What a reader shows of each frame, how many frames blend, and how long each stays.
-fn shown(file: &[u8]) -> (Vec<Vec<[u8; 3]>>, usize, Vec<(u16, u16)>) {
+fn shown(file: &[u8]) -> (Vec<Colors>, usize, Vec<(u16, u16)>) {
     let mut decoder = Decoder::new(Cursor::new(file));
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info().expect("a PNG");

@@ -78,6 +78,13 @@ pub(crate) struct Options {
     drawing: Drawing,
 }
 
+impl Options {
+    /// The inputs behind the first one.
+    pub(crate) fn more_inputs(&self) -> &[OsString] {
+        self.inputs.get(1..).unwrap_or_default()
+    }
+}
+
 /// What is said at first, and for how long, in seconds.
 const HINT: &str = "H help, I figures";
 const HINT_SECONDS: f64 = 3.0;
