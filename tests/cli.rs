@@ -189,7 +189,7 @@ fn wrong_words_end_with_2() {
         (vec!["render", "--xml"], "(mode13h render --help shows"),
         (vec!["--xml"], "(mode13h --help shows"),
         (vec!["torus", "--xml"], "(mode13h --help shows"),
-        (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
+        (vec!["torus", "verify"], "verify is a command, and stands before its INPUT"),
         (vec!["plan"], "<INPUT>"),
         (vec!["plan", "torus", "--at", "inf"], "--at"),
         (vec!["plan", "torus", "--rung", "mirror"], "there are flat, gouraud-period, gouraud-8.8, "),
@@ -698,7 +698,9 @@ fn a_plan_is_a_table_of_a_hundred_columns() {
     let directory = directory();
     for scene in shipped::ALL.iter().map(|shipped| shipped.name).chain(["sphere"]) {
         let text = printed(&directory, &["plan", scene]);
-        assert!(text.starts_with(&format!("{scene} at 0 s, 1/35 s after the frame before it: ")), "{text}");
+        // The moment of its picture.
+        let at = shipped::by_name(scene).map_or(0.0, |shipped| shipped.load().expect("a scene").scene.picture);
+        assert!(text.starts_with(&format!("{scene} at {at} s, 1/35 s after the frame before it: ")), "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= 100 && line.trim_end() == line), "{text}");
         assert!(text.contains("making the plan takes "), "{text}");
         for effect in Effect::ALL {
@@ -798,7 +800,8 @@ fn with_no_display_one_frame_is_saved() {
     assert!(run(&directory, &["flash"]).status.success());
     let (palette, pixels) = indexed(&read(&directory, "mode13h-0004.png"));
     let bright = pixels.iter().filter(|pixel| palette[usize::from(**pixel)].brightness() > 60_000).count();
-    assert!(bright > 64_000 / 2, "{bright} pixels");
+    // At time 0 there are none.
+    assert!(bright > 64_000 / 4, "{bright} pixels");
 }
 
 #[test]
@@ -1164,9 +1167,8 @@ fn a_palette_made_for_a_scene_keeps_the_colors_of_its_ramps() {
         let (own, made) = (colors(&[scene]), colors(&[scene, "--palette", "auto"]));
         let far = own.iter().zip(&made).map(|(a, b)| f64::from(a.distance_squared(*b)).sqrt());
         let mean = far.sum::<f64>() / own.len() as f64;
-        // A made ramp is a line from black by the colour to the highlight; the palette's own ramps are bent. In greys they
-        // would be 50 and more apart.
-        assert!(mean < 12.0, "{scene}: {mean}");
+        // Of three steps of a channel on the card one in each channel. In greys they would be 30 and more apart.
+        assert!(mean < 4.0 * 3_f64.sqrt(), "{scene}: {mean}");
     }
 }
 

@@ -94,7 +94,13 @@ fn everything_is_measured_and_written() {
     // What the rungs promise, and what they do not.
     assert!(number(&of(Rung::Gouraud88Reseeded)["error_gouraud"]["max"]) < 1.0);
     assert!(number(&of(Rung::Phong)["error_lit"]["rms"]) < number(&of(Rung::Flat)["error_lit"]["rms"]));
-    assert!(of(Rung::GouraudPeriod)["cover_errors"].as_u64() > Some(0) && of(Rung::Gouraud88)["cover_errors"] == 0);
+    // Where cover is exact, only depths that are equal but for rounding show another face than the truth has: in the same
+    // pixels, however they are shaded.
+    let cover_errors = |rung| of(rung)["cover_errors"].as_u64().expect("a count");
+    for rung in [Rung::Gouraud88Reseeded, Rung::Gouraud1616, Rung::GouraudHyperbolic, Rung::Phong, Rung::Float] {
+        assert_eq!(cover_errors(rung), cover_errors(Rung::Gouraud88), "{rung}");
+    }
+    assert!(cover_errors(Rung::GouraudPeriod) > 1_000 * cover_errors(Rung::Gouraud88).max(1));
     // None is nearer to `lit`.
     assert_eq!(of(Rung::Phong)["efficient"], true);
 

@@ -3,17 +3,19 @@
 
 mod support;
 
-use mode13h::explain::{self, Account, Column, EdgeKind, ExplainError, Fate, Pixel, ShadedBy, Stage, Way};
+use mode13h::cost::Probe;
+use mode13h::explain::{self, Account, Column, EdgeKind, ExplainError, Fate, Pixel, ShadedBy, Stage, Walk, Way};
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
 use mode13h::raster::{Frame, Shading};
 use mode13h::render::{HiddenSurfaces, Renderer, Rung, Screen, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
-use mode13h::truth::{Standard, Truth};
+use mode13h::truth::{Face, Standard, Truth};
 use support::oracle::{self, Shades};
 use support::random::Random;
 use support::scenes;
+use support::triangles;
 
 const SCREEN: Screen = Screen::MODE_13H;
 
@@ -372,6 +374,102 @@ fn what_is_not_in_the_frame_is_refused() {
     assert_eq!(error, ExplainError::OutsideRow { y: 200, height: 200 });
     let none = Screen { width: 0, ..SCREEN };
     assert_eq!(explain::pixel(&mut Renderer::new(), &scene, none, 0, 0).expect_err("none"), ExplainError::Screen);
+}
+
+/// The shadings whose loop keeps a sum, and how many bits of it are its fraction.
+const LOOPS: [(Shading, u32); 4] =
+    [(Shading::Gouraud, 8), (Shading::GouraudReseeded, 8), (Shading::Gouraud1616, 16), (Shading::GouraudPeriod, 8)];
+
+/// Walks over a triangle as the loop would: what it writes, by its registers alone. Every stretch of it begins with what
+/// the walk says and goes on by additions.
+fn run_the_loop(walk: &Walk, bits: u32, pixels: &mut [Option<u8>], what: &str) {
+    let mask = if bits == 8 { 0xFFFF } else { 0xFF_FFFF };
+    let mut left = None;
+    let mut at = (0_u32, 0_u32, 0_u32);
+    for number in 0..walk.pixels() {
+        let step = walk.step(number).expect("a pixel");
+        let registers = step.registers.expect("a sum");
+        assert_eq!(registers.edi, 320 * step.y + step.x, "{what}");
+        assert_eq!(walk.number(step.x, step.y), Some(number), "{what}");
+        match left {
+            Some(count) => {
+                let [edi, eax, ebx]: [u32; 3] = [at.0 + 1, at.1.wrapping_add(at.2), at.2];
+                let sums = [registers.edi, registers.eax & mask, registers.ebx & mask, registers.cx];
+                assert_eq!(sums, [edi, eax & mask, ebx & mask, count - 1], "{what}: pixel {number}");
+            }
+            // The loop begins: in a new row, or 64 pixels on.
+            None => assert!(step.x == step.start && (step.column == 0 || step.column % 64 == 0), "{what}"),
+        }
+        at = (registers.edi, registers.eax, registers.ebx);
+        left = (registers.cx > 1).then_some(registers.cx);
+        assert!(pixels[registers.edi as usize].is_none(), "{what}: pixel {number} is written twice");
+        // AH, or the third byte of EAX.
+        pixels[registers.edi as usize] = Some((registers.eax >> bits) as u8);
+        assert_eq!(step.account.byte, (registers.eax >> bits) as u8, "{what}");
+    }
+    assert_eq!(left, None, "{what}: the last count is 1");
+}
+
+#[test]
+fn a_walk_writes_what_the_raster_does() {
+    let mut random = Random::named("walk");
+    let mut tried = [0; 4];
+    for i in 0..400 {
+        let triangle = triangles::triangle(&mut random, 320, 200);
+        for ((shading, bits), tried) in LOOPS.into_iter().zip(&mut tried) {
+            let what = format!("triangle {i} by {shading:?}: {triangle:?}");
+            // Whatever a byte is, one of the two frames shows that it was written.
+            let [zeros, ones] = [0, 255].map(|empty| triangles::draw(&triangle, shading, 320, 200, None, empty));
+            let walk = Walk::new(&triangle, shading, shading.has_exact_cover(), SCREEN);
+            let mut walked = vec![None; 64_000];
+            run_the_loop(&walk, bits, &mut walked, &what);
+            for (place, walked) in walked.into_iter().enumerate() {
+                let drawn = (zeros[place] == ones[place]).then_some(zeros[place]);
+                assert_eq!(walked, drawn, "{what} at ({}, {})", place % 320, place / 320);
+            }
+            *tried += walk.pixels();
+        }
+    }
+    assert!(tried.into_iter().all(|pixels| pixels > 100_000), "{tried:?}");
+}
+
+#[test]
+fn a_walk_over_what_is_seen_has_the_frames_bytes() {
+    let loops = [Rung::Gouraud88, Rung::Gouraud88Reseeded, Rung::Gouraud1616, Rung::GouraudPeriod];
+    let mut random = Random::named("walk of scenes");
+    for (shape, rung) in ["torus", "cube", "cone", "teapot"].into_iter().flat_map(|s| loops.map(|rung| (s, rung))) {
+        let scene = scenes::showing(shape);
+        let mut renderer = Renderer::new();
+        renderer.set_rung(rung);
+        let bytes = frame(&mut renderer, &scene);
+        let shown = Probe::new(renderer.set_alike()).look(&scene, SCREEN).expect("a legal scene");
+        let mut seen = 0;
+        for (x, y) in some_pixels(&bytes, scene.background, 12, &mut random) {
+            let pixel = explain(&mut renderer, &scene, x, y);
+            let Some((face, of_face)) = pixel.front() else { continue };
+            let walk = Walk::new(&face.corners, face.shading, of_face.exact_cover, SCREEN);
+            let asked = walk.number(x, y).and_then(|number| walk.step(number)).expect("it covers the pixel");
+            assert_eq!(vec![asked.account], of_face.accounts, "{shape} by {rung} at ({x}, {y})");
+            let name = face.triangle.map(|triangle| Face { object: face.object, triangle });
+            for step in (0..walk.pixels()).filter_map(|number| walk.step(number)) {
+                let place = (320 * step.y + step.x) as usize;
+                if shown.faces[place] == name {
+                    assert_eq!(step.account.byte, bytes[place], "{shape} by {rung} at ({}, {})", step.x, step.y);
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 12, "{shape} by {rung}: {seen}");
+    }
+}
+
+#[test]
+fn what_keeps_no_sum_has_no_registers() {
+    let triangle = triangles::triangle(&mut Random::named("no registers"), 320, 200);
+    for shading in [Shading::Flat(9), Shading::GouraudHyperbolic, Shading::Float] {
+        let walk = Walk::new(&triangle, shading, true, SCREEN);
+        assert!((0..walk.pixels()).all(|i| walk.step(i).is_some_and(|step| step.registers.is_none())));
+    }
 }
 
 /// The level of a texel is the one that is chosen: taken from far and near rows of a floor, it rises with the distance, and

@@ -197,7 +197,7 @@ fn circle(corners: usize, radius: impl Fn(usize) -> f32) -> Vec<(f32, f32)> {
 /// What is large but well formed loads, up to limits that are written down.
 #[test]
 fn f1_large_faces_and_long_lines() {
-    let mut tried = Tried::new("f1_large_faces_and_long_lines", 10);
+    let mut tried = Tried::new("f1_large_faces_and_long_lines", 11);
     let mut loads = |text: &str, triangles: usize| {
         assert_eq!(parse(text).unwrap_or_else(|error| panic!("{error}")).mesh.triangles().len(), triangles);
         tried.add(1);
@@ -210,7 +210,8 @@ fn f1_large_faces_and_long_lines() {
     loads(&format!("{TRIANGLE}f 1 2 \\\n{} 3\n", "\\\n".repeat(megabyte)), 1);
     loads(&format!("o {}\n{plain}", "name".repeat(megabyte / 4)), 1);
     loads(&format!("{TRIANGLE}usemtl {}\nf 1 2 3\n", "m".repeat(megabyte)), 1);
-    // Convex: any number of corners. (A circle of so many is not convex after rounding; a square is.)
+    // Convex: any number of corners, also where rounding has dented them.
+    loads(&face_of(&circle(100_000, |_| 1.0)), 99_998);
     let side = 25_000_i16;
     let mut square: Vec<(f32, f32)> = (0..side).map(|i| (f32::from(i), 0.0)).collect();
     square.extend((0..side).map(|i| (f32::from(side), f32::from(i))));
@@ -218,7 +219,7 @@ fn f1_large_faces_and_long_lines() {
     square.extend((1..=side).rev().map(|i| (0.0, f32::from(i))));
     loads(&face_of(&square), 99_998);
     // All in one point, or all on a line.
-    loads(&format!("{TRIANGLE}f{}", " 1".repeat(1_000_000)), 999_998);
+    loads(&format!("{plain}f{}", " 1".repeat(1_000_000)), 999_999);
     // Concave: up to 20,000.
     loads(&face_of(&circle(10_000, |i| if i % 2 == 0 { 1.0 } else { 0.5 })), 9_998);
     loads(&face_of(&circle(20_000, |i| if i % 2 == 0 { 1.0 } else { 0.5 })), 19_998);
@@ -250,8 +251,8 @@ fn time_to_parse(text: &str, library: &str) -> f64 {
     }
 }
 
-/// A file eight times as long takes about eight times as long to read, not 64 times. Half-way between them, at 24, lies
-/// what is refused; three attempts, as the machine may be busy.
+/// A file eight times as long takes about eight times as long to read, and no more than twelve times, but where the reason
+/// is known; three attempts, as the machine may be busy.
 #[test]
 #[ignore = "the long run: it measures time"]
 fn f1_long_time_grows_as_the_file_does() {
@@ -312,9 +313,16 @@ fn f1_long_time_grows_as_the_file_does() {
     for (what, make) in cases {
         let [(short, short_library), (long, long_library)] = [make(5_000), make(40_000)];
         let ratio = || time_to_parse(&long, &long_library) / time_to_parse(&short, &short_library);
-        let least = (0..3).map(|_| ratio()).inspect(|ratio| println!("{what}: {ratio:.1}")).find(|ratio| *ratio < 24.0);
-        tried.worst("times as long for eight times the file", least.unwrap_or(f64::INFINITY));
-        assert!(least.is_some(), "{what}: a file eight times as long takes more than 24 times as long");
+        // A name is hashed, kept twice and copied into a surface of its own: of 5,000 all that lies in the caches, of 40,000 it
+        // does not. The time of a name grows by a tenth for each doubling, from 2,500 to 60,000, and not in proportion.
+        let (limit, measure) = match what {
+            "names of materials" => (24.0, "of materials that all have names of their own"),
+            _ => (12.0, "times as long for eight times the file"),
+        };
+        let least =
+            (0..3).map(|_| ratio()).inspect(|ratio| println!("{what}: {ratio:.1}")).find(|ratio| *ratio <= limit);
+        tried.worst(measure, least.unwrap_or(f64::INFINITY));
+        assert!(least.is_some(), "{what}: a file eight times as long takes more than {limit} times as long");
         tried.add(1);
     }
 }
@@ -575,9 +583,7 @@ fn f4_a_folder_that_is_not_there() {
     for (words, name) in WRITERS {
         let folder = folder();
         fs::write(folder.path().join("file"), OLD).expect("written");
-        for (directory, says) in
-            [("none", "the directory none does not exist"), ("file", "the directory file does not exist")]
-        {
+        for (directory, says) in [("none", "the directory none does not exist"), ("file", "file is no directory")] {
             let path = format!("{directory}/{name}");
             let words: Vec<&str> = words.iter().map(|word| if word == &name { path.as_str() } else { word }).collect();
             let said = assert_failed(&program(folder.path()).args(words).output().expect("started"));

@@ -78,6 +78,33 @@ fn d1_bars_in_a_circle_are_never_left_to_the_painter() {
     assert_eq!(wrong, 72, "painter's order is wrong in every one of them");
 }
 
+/// Two bodies so far away that all their depths are 1: their ranges are equal, not apart. Of equal depths the first submitted
+/// stays, which painting one over the other would not keep.
+#[test]
+fn d3_objects_of_equal_depths_are_not_left_to_the_painter() {
+    let mut tried = Tried::new("d3_objects_of_equal_depths_are_not_left_to_the_painter", 4);
+    for distances in [[1.0, 1.3], [1.3, 1.0], [1.0, 1.0], [2.0, 1.2]] {
+        let mut scene = Scene::new();
+        scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, near: 0.25, ..Camera::default() };
+        for (distance, diffuse) in distances.into_iter().zip([0.9, 0.4]) {
+            let mut cube = Object::new(shapes::cube());
+            (cube.position.z, cube.scale) = (-2e10 * distance, 1e9);
+            cube.materials[0].diffuse = diffuse;
+            scene.add(cube);
+        }
+        scene.add_light(Light::sun([0.2, 0.3, 1.0]));
+        let (chosen, way) = picture(&scene, None);
+        assert_eq!(way, HiddenSurfaces::DepthBuffer, "{distances:?}");
+        let mut alone = Scene::clone(&scene);
+        alone.objects_mut()[1].position.x = 1e12;
+        let first = picture(&alone, None).0;
+        let pixels = first.iter().filter(|&&byte| byte != 0).count();
+        let kept = first.iter().zip(&chosen).filter(|(first, chosen)| **first != 0 && first == chosen).count();
+        assert!(pixels > 20 && kept == pixels, "{distances:?}: {kept} of {pixels} pixels of the first");
+        tried.add(1);
+    }
+}
+
 /// Of each pixel, how many triangles cover it, by the oracle.
 fn covers(scene: &Scene) -> Vec<u32> {
     let (width, height) = (Vga::WIDTH as i32, Vga::HEIGHT as i32);

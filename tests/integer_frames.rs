@@ -14,6 +14,8 @@ use mode13h::raster::{Frame, Rect, Vertex};
 use mode13h::render::{RenderError, Renderer, Rung, Screen, Stats, VertexPath};
 use mode13h::scene::{Camera, Object, Scene, UpAxis};
 use mode13h::vga::Vga;
+use support::near_plane::{cuts_on_the_near_plane, lit, normal};
+use support::odd_views::odd_views;
 use support::oracle;
 use support::random::Random;
 use support::tried::Tried;
@@ -395,7 +397,7 @@ fn r7_a_floor_on_the_integer_path_is_closed_to_the_horizon() {
 fn c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0() {
     let mut tried = Tried::new("c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000);
     let mut random = Random::named("c1 integer");
-    let mut drawn = 0_u64;
+    let (mut drawn, mut cuts) = (0_u64, 0_u64);
     while tried.more() {
         let mut corner = || {
             let z = random.one_of(&[-0.25, -0.0, 0.0, 0.25, 1.0, -1.0, -0.250_000_03, -0.249_999_99, -5.0]);
@@ -404,13 +406,22 @@ fn c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0() {
         let corners = [corner(), corner(), corner()];
         // In 16.16 a corner a hair nearer than the near plane may lie on it.
         let visible = corners.iter().any(|p| -p.z >= 0.249_999);
-        let Ok(mesh) = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]) else { panic!("{corners:?}") };
-        let (counts, _) = counts(&scene(mesh));
+        let intensities = [0; 3].map(|_| random.unit());
+        let normals = intensities.map(normal).to_vec();
+        let Ok(mesh) = Mesh::with_normals(corners.to_vec(), normals, vec![[0, 1, 2]]) else { panic!("{corners:?}") };
+        let scene = lit(scene(mesh));
+        let (counts, _) = counts(&scene);
+        // Normals and cosines are in 16.16: each is off by a unit or two, which is as many 256ths of a shade.
+        let renderer = &mut renderer(VertexPath::Integer);
+        cuts += cuts_on_the_near_plane(renderer, &scene, corners, intensities, 6.0);
         assert!(visible || counts.iter().all(|&times| times == 0), "nothing of {corners:?} is in sight");
         assert!(counts.iter().all(|&times| times <= 1), "{corners:?} is cut into parts that overlap");
         drawn += u64::from(counts.contains(&1));
     }
-    assert!(drawn > 500, "faces were in sight: {drawn}");
+    tried.worst("faces in sight", drawn as f64);
+    tried.worst("cuts with their shades", cuts as f64);
+    let stated = tried.stated();
+    assert!(drawn * 4 > stated && cuts * 4 > stated, "{drawn} of {stated} in sight, {cuts} cuts");
 }
 
 #[test]
@@ -464,24 +475,7 @@ fn hit(a: [f64; 3], b: [f64; 3], c: [f64; 3], ray: [f64; 3]) -> bool {
 
 #[test]
 fn c4_odd_views_on_the_integer_path_are_quiet() {
-    let mut tried = Tried::new("c4_odd_views_on_the_integer_path_are_quiet", 500);
-    let mut random = Random::named("c4 integer");
-    let mesh = shapes::torus(16, 8);
-    while tried.more() {
-        let mut scene = support::scenes::framed(mesh.clone());
-        let mut place =
-            || Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, random.unit() as f32 - 0.5);
-        scene.camera.eye = place() * 2.0;
-        scene.camera.target = place();
-        scene.camera.near = 1e-3;
-        if random.within(0, 3) == 0 {
-            scene.camera.eye = random.one_of(mesh.positions());
-        }
-        scene.camera.field_of_view = random.one_of(&[1.0_f32, 40.0, 90.0, 179.0]).to_radians();
-        let mut vga = Vga::new();
-        let stats = renderer(VertexPath::Integer).draw(&scene, &mut vga).expect("a legal scene");
-        assert_eq!(stats.faces, 256);
-    }
+    odd_views(Tried::new("c4_odd_views_on_the_integer_path_are_quiet", 500), VertexPath::Integer);
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn random_color(random: &mut Random) -> Rgb {
 }
 
 fn matt(color: Rgb, area: f32) -> Use<'static> {
-    Use { color, highlight: None, area, darkest: 0.15, brightest: 1.0, texels: None }
+    Use { color, highlight: None, area, darkest: 0.15, brightest: 1.0, texels: None, along: None }
 }
 
 fn random_use(random: &mut Random) -> Use<'static> {
@@ -32,6 +32,7 @@ fn random_use(random: &mut Random) -> Use<'static> {
         darkest: random.unit() as f32,
         brightest: random.unit() as f32,
         texels: None,
+        along: None,
     }
 }
 
@@ -311,6 +312,7 @@ fn anything_may_be_asked_for() {
                 darkest: random.one_of(&odd),
                 brightest: random.one_of(&odd),
                 texels: (random.unit() < 0.2).then(|| random.one_of(&texels)),
+                along: None,
             })
             .map(|of| Use { highlight: of.highlight.map(|light| light.saturating_add(of.color)), ..of })
             .collect();

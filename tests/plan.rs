@@ -349,7 +349,12 @@ fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
                 None => renderer.force(effect, Some(true)),
             });
             assert!(rung.is_none() || stats.raster.lit > 0 || stats.lit == 0, "{name}: {stats}");
-            let off = expected.iter().zip(&bytes).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+            // A vertex that splitting makes is rounded to 1/256 pixel itself: along an outline a pixel may come or go.
+            let shows = |byte: u8| byte != scene.background;
+            let (both, one): (Vec<_>, Vec<_>) =
+                expected.iter().zip(&bytes).filter(|(a, b)| a != b).partition(|(a, b)| shows(**a) && shows(**b));
+            assert!(one.len() <= if effect == Effect::Tessellation { 8 } else { 0 }, "{name}, {effect}: {one:?}");
+            let off = both.iter().map(|(a, b)| a.abs_diff(**b)).max().unwrap_or(0);
             assert!(f64::from(off) <= allowed, "{name}, {effect}: off by {off}, {bound:.2} printed");
             bounds.push((bound, off));
             tried.add(1);
@@ -406,7 +411,7 @@ fn mipmaps_change_nothing_of_what_is_near() {
             [0.0, 0.3, -0.6].into_iter().flat_map(|angle| Mapping::ALL.map(|mapping| (angle, mapping)))
         {
             for channels in [false, true] {
-                let mut scene = Scene::showing(mode13h::mesh::shapes::wall(3, 3));
+                let mut scene = support::scenes::framed(mode13h::mesh::shapes::wall(3, 3));
                 let object = &mut scene.objects_mut()[0];
                 object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
                 object.set_angles([angle, angle, angle]);
@@ -438,7 +443,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
     let mut tried = Tried::new("mipmaps_are_called_for_by_texels_to_a_pixel", 40);
     let texture = mode13h::scene::Shared::new(mode13h::texture::Texture::by_name("bricks").expect("listed"));
     for step in 0..40 {
-        let mut scene = Scene::showing(mode13h::mesh::shapes::wall(1, 1));
+        let mut scene = support::scenes::framed(mode13h::mesh::shapes::wall(1, 1));
         let object = &mut scene.objects_mut()[0];
         object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
         let distance = 0.4 * 1.12_f32.powi(step);
@@ -481,8 +486,11 @@ fn mipmaps_are_asked_for() {
     assert_eq!((why.on, why.why.as_str()), (false, "asked for"));
 }
 
+/// Red, green and blue of each pixel.
+type Picture = Vec<[f64; 3]>;
+
 /// The colours of a frame as the card shows them.
-fn shown(scene: &Scene, bytes: &[u8]) -> Vec<[f64; 3]> {
+fn shown(scene: &Scene, bytes: &[u8]) -> Picture {
     let palette = scene.palette.as_ref().unwrap_or(&mode13h::palette::BIOS).on_dac();
     let color = |byte: &u8| palette.color(*byte);
     bytes.iter().map(color).map(|c| [c.r, c.g, c.b].map(f64::from)).collect()
@@ -494,9 +502,9 @@ fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     (squares / (3 * a.len()) as f64).sqrt()
 }
 
-/// What mipmaps are for. Right is the mean of what is drawn where each pixel is 16 × 16 smaller ones. Over small steps of the
-/// camera every frame is nearer to that with mipmaps than without, and so is its change from the frame before: it sparkles
-/// less. By how much is printed.
+/// What mipmaps are for. Right is the mean of what is drawn, in perspective, where each pixel is 16 × 16 smaller ones. Over
+/// small steps of the camera every frame is nearer to that with mipmaps than without, and so is its change from the frame
+/// before: it sparkles less. By how much is printed.
 #[test]
 fn mipmaps_lessen_sparkle_on_every_frame() {
     const SIZE: (usize, usize) = (128, 80);
@@ -511,56 +519,54 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
         scene.palette = Some(mode13h::palette::builtin::by_name("cube").expect("built in").palette.clone());
     };
     let palettes: [&dyn Fn(&mut Scene); 2] = [&grey, &cube];
-    for (image, times, paint) in [("checker", 24.0), ("bricks", 24.0)]
-        .into_iter()
-        .flat_map(|(image, times)| palettes.map(|paint| (image, times, paint)))
-    {
-        for mapping in Mapping::ALL {
-            let mut scene = scenes::floor(image, times);
-            paint(&mut scene);
-            let mut before: Option<[Vec<[f64; 3]>; 3]> = None;
-            let (mut errors, mut sparkles) = ([0.0; 2], [0.0; 2]);
-            for frame in 0..FRAMES {
-                let moved = f32::from(frame) * 0.01;
-                scene.camera.eye.x = moved;
-                scene.camera.target.x = moved;
-                let picture = |part: usize, mipmaps: bool| {
-                    let (width, height) = (SIZE.0 * part, SIZE.1 * part);
-                    let mut bytes = vec![0; width * height];
-                    let frame = Frame::new(&mut bytes, width as u32, height as u32, width).expect("a legal frame");
-                    let mut renderer = Renderer::new();
-                    // What is right follows the perspective; linear mapping is wrong in other ways, too.
-                    renderer.set_mapping(Some(if part > 1 { Mapping::Perspective } else { mapping }));
-                    renderer.set_mipmaps(Some(mipmaps));
-                    renderer.draw_frame(&scene, frame, (5, 6)).expect("a legal scene");
-                    shown(&scene, &bytes)
-                };
-                let fine = picture(PART, false);
-                let mean = |i: usize| {
-                    let (x, y) = (i % SIZE.0 * PART, i / SIZE.0 * PART);
-                    let rows = (y..y + PART).flat_map(|y| &fine[y * SIZE.0 * PART + x..][..PART]);
-                    let sums = rows.fold([0.0; 3], |sums, color| [0, 1, 2].map(|i| sums[i] + color[i]));
-                    sums.map(|sum| sum / (PART * PART) as f64)
-                };
-                let right: Vec<[f64; 3]> = (0..SIZE.0 * SIZE.1).map(mean).collect();
-                let [without, with] = [false, true].map(|mipmaps| picture(1, mipmaps));
-                let error = [&without, &with].map(|picture| apart(picture, &right));
+    let picture = |scene: &Scene, part: usize, mapping: Mapping, mipmaps: bool| {
+        let (width, height) = (SIZE.0 * part, SIZE.1 * part);
+        let mut bytes = vec![0; width * height];
+        let frame = Frame::new(&mut bytes, width as u32, height as u32, width).expect("a legal frame");
+        let mut renderer = Renderer::new();
+        renderer.set_mapping(Some(mapping));
+        renderer.set_mipmaps(Some(mipmaps));
+        renderer.draw_frame(scene, frame, (5, 6)).expect("a legal scene");
+        shown(scene, &bytes)
+    };
+    for (image, paint) in ["checker", "bricks"].into_iter().flat_map(|image| palettes.map(|paint| (image, paint))) {
+        let mut scene = scenes::floor(image, 24.0);
+        paint(&mut scene);
+        let (mut errors, mut sparkles) = ([[0.0; 2]; 3], [[0.0; 2]; 3]);
+        // What is right, and for each mapping what is drawn without and with.
+        let mut before: Option<(Picture, [[Picture; 2]; 3])> = None;
+        for frame in 0..FRAMES {
+            let moved = f32::from(frame) * 0.01;
+            scene.camera.eye.x = moved;
+            scene.camera.target.x = moved;
+            let fine = picture(&scene, PART, Mapping::Perspective, false);
+            let mean = |i: usize| {
+                let (x, y) = (i % SIZE.0 * PART, i / SIZE.0 * PART);
+                let rows = (y..y + PART).flat_map(|y| &fine[y * SIZE.0 * PART + x..][..PART]);
+                let sums = rows.fold([0.0; 3], |sums, color| [0, 1, 2].map(|i| sums[i] + color[i]));
+                sums.map(|sum| sum / (PART * PART) as f64)
+            };
+            let right: Picture = (0..SIZE.0 * SIZE.1).map(mean).collect();
+            let drawn = Mapping::ALL.map(|mapping| [false, true].map(|on| picture(&scene, 1, mapping, on)));
+            for (i, mapping) in Mapping::ALL.into_iter().enumerate() {
+                let error = drawn[i].each_ref().map(|picture| apart(picture, &right));
                 assert!(error[1] < error[0], "{image}, {mapping}, frame {frame}: {error:?}");
-                if let Some([old_right, old_without, old_with]) = &before {
-                    let change = |new: &[[f64; 3]], old: &[[f64; 3]]| -> Vec<[f64; 3]> {
+                errors[i] = [0, 1].map(|on| errors[i][on] + error[on] / f64::from(FRAMES));
+                if let Some((old_right, old_drawn)) = &before {
+                    let change = |new: &[[f64; 3]], old: &[[f64; 3]]| -> Picture {
                         new.iter().zip(old).map(|(new, old)| [0, 1, 2].map(|i| new[i] - old[i])).collect()
                     };
                     let right = change(&right, old_right);
-                    let sparkle =
-                        [(&without, old_without), (&with, old_with)].map(|(new, old)| apart(&change(new, old), &right));
+                    let sparkle = [0, 1].map(|on| apart(&change(&drawn[i][on], &old_drawn[i][on]), &right));
                     assert!(sparkle[1] < sparkle[0], "{image}, {mapping}, frame {frame}: {sparkle:?}");
-                    sparkles = [0, 1].map(|i| sparkles[i] + sparkle[i] / f64::from(FRAMES - 1));
+                    sparkles[i] = [0, 1].map(|on| sparkles[i][on] + sparkle[on] / f64::from(FRAMES - 1));
                 }
-                errors = [0, 1].map(|i| errors[i] + error[i] / f64::from(FRAMES));
-                before = Some([right, without, with]);
                 tried.add(1);
             }
-            println!("{image}, {mapping}: error {errors:.1?}, sparkle {sparkles:.1?}");
+            before = Some((right, drawn));
+        }
+        for (i, mapping) in Mapping::ALL.into_iter().enumerate() {
+            println!("{image}, {mapping}: error {:.1?}, sparkle {:.1?}", errors[i], sparkles[i]);
         }
     }
 }

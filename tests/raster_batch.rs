@@ -3,11 +3,18 @@
 
 mod support;
 
+#[path = "raster_batch/against_the_oracle.rs"]
+mod against_the_oracle;
+#[path = "raster_batch/shapes.rs"]
+mod shapes;
+
+use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
 use mode13h::raster::{Batch, DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex};
 use mode13h::span::Kernel;
 use support::oracle;
 use support::random::Random;
 use support::triangles::{triangle, vertex};
+use support::tried::Tried;
 
 /// Shadings that a batch takes.
 fn shading(random: &mut Random) -> Shading {
@@ -49,6 +56,27 @@ fn one_by_one(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Shading)]) -> 
     let mut sum = Drawn::default();
     triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
     sum
+}
+
+/// `triangles` of them for each kernel.
+fn per_kernel(triangles: u64) -> u64 {
+    triangles * Kernel::available().count() as u64
+}
+
+#[test]
+fn r4_batches_against_the_oracle() {
+    batches_against_the_oracle(Tried::new("r4_batches_against_the_oracle", per_kernel(200_000)));
+}
+
+#[test]
+fn r6_order_and_winding_make_no_difference_in_batches() {
+    orders_and_windings(Tried::new("r6_order_and_winding_make_no_difference_in_batches", 300));
+}
+
+#[test]
+#[ignore = "the long run: ten million triangles by each kernel"]
+fn r4_long_batches_against_the_oracle() {
+    batches_against_the_oracle(Tried::new("r4_long_batches_against_the_oracle", per_kernel(10_000_000)));
 }
 
 #[test]
@@ -251,6 +279,52 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
         total += expected.2;
     }
     assert!(total.pixels > 10_000_000 && total.tested > 10_000_000, "{total:?}");
+}
+
+/// Where set-up in f64 is at the end of its digits: what is larger is drawn by single triangles.
+#[test]
+fn r4_large_triangles_of_batches_start_exactly() {
+    let mut tried = Tried::new("r4_large_triangles_of_batches_start_exactly", per_kernel(320));
+    let mut random = Random::named("exact starts");
+    let place = Place {
+        width: shapes::SIDE as u32,
+        height: shapes::SIDE as u32,
+        pitch: shapes::SIDE as usize,
+        clip: None,
+        band: 0..shapes::SIDE as u32,
+        depth: false,
+    };
+    // By their number of squares of a batch.
+    let (mut larger, mut smaller) = (0, 0);
+    for _ in 0..320 {
+        let shading = random.one_of(&[Shading::Gouraud, Shading::GouraudReseeded]);
+        let triangle = (shapes::with_exact_starts(&mut random), shading);
+        let [columns, rows] = [Vertex::x, Vertex::y].map(|of| {
+            let along = triangle.0.each_ref().map(|v| of(v).to_bits());
+            (along.iter().max().expect("three") - along.iter().min().expect("three")) / 256
+        });
+        *if columns * rows > 1 << 18 { &mut larger } else { &mut smaller } += 1;
+        let mut batch = Batch::new();
+        assert!(batch.push(&triangle.0, shading));
+        let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &[triangle]);
+        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, |_| Drawn::default());
+        // The bytes of the first pixels of rows, from the oracle.
+        let points = triangle.0.each_ref().map(oracle::point);
+        let shades = oracle::Shades::of_vertices(&triangle.0, shading);
+        for y in (0..shapes::SIDE as i32).step_by(61) {
+            let covers = |x: &i32| oracle::covers(points, oracle::centre(*x, y));
+            if let Some(x) = (0..shapes::SIDE as i32).find(covers) {
+                let byte = expected.0[(y * shapes::SIDE as i32 + x) as usize];
+                assert_eq!(byte, shades.byte((x, x), x, y, None), "({x}, {y}) of {triangle:?}");
+            }
+        }
+        for kernel in Kernel::available() {
+            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |_| Drawn::default());
+            assert!(batched == expected, "{kernel}: {:?} and {:?} of {triangle:?}", batched.2, expected.2);
+            tried.add(1);
+        }
+    }
+    assert!(larger > 60 && smaller > 20, "{larger} are larger than what a batch draws, {smaller} are not");
 }
 
 /// A depth buffer laid over other rows than the frame's: those that it lacks are not drawn, as one by one.

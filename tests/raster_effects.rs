@@ -10,6 +10,7 @@ use mode13h::raster::effects::{Apart, Attributes, Lighting, Limits, Look, Mix, S
 use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
+use mode13h::span::depth::Cell;
 use mode13h::span::dither::BAYER;
 use mode13h::span::lit::{Lanes, Points};
 use mode13h::span::texture::{Levels, Texels};
@@ -450,6 +451,47 @@ fn effects_keep_to_the_depth_buffer() {
         }
         assert_eq!((drawn.pixels, drawn.tested), (written, drawn.covered));
     }
+}
+
+/// Whatever the order of the corners, with a depth buffer of either kind.
+#[test]
+fn r6_order_and_winding_make_no_difference_with_effects() {
+    let mut tried = Tried::new("r6_order_and_winding_make_no_difference_with_effects", 400);
+    let mut random = Random::named("r6 effects");
+    let stock = Stock::new(&mut random);
+    let size = (WIDTH * HEIGHT) as usize;
+    let mut pixels = 0;
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let attributes = attributes(&mut random);
+        let look = look(&mut random, &stock);
+        let before: Vec<u32> = (0..size).map(|_| random.log_uniform(30) as u32).collect();
+        let on = |order: [usize; 3]| {
+            let (vertices, attributes) = (order.map(|i| vertices[i]), order.map(|i| attributes[i]));
+            let (mut wide, mut narrow) = (before.clone(), before.iter().map(|&d| u16::of_depth(d)).collect::<Vec<_>>());
+            let (mut bytes, mut second) = (vec![BEFORE; size], vec![BEFORE; size]);
+            let mut like = vec![0; size];
+            let frame = |bytes| Frame::new(bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+            let like = frame(&mut like);
+            let deep = DepthBuffer::new(&mut wide, &like).expect("long enough");
+            let shallow = DepthBuffer::new(&mut narrow, &like).expect("long enough");
+            let drawn = [
+                Raster::new(frame(&mut bytes)).with_depth(deep).triangle_with_effects(&vertices, &attributes, &look),
+                Raster::new(frame(&mut second)).with_depth(shallow).triangle_with_effects(
+                    &vertices,
+                    &attributes,
+                    &look,
+                ),
+            ];
+            (bytes, second, wide, narrow, drawn)
+        };
+        let expected = on([0, 1, 2]);
+        for order in [[0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+            assert!(on(order) == expected, "{order:?} of {vertices:?}, {attributes:?}, {look:?}");
+        }
+        pixels += expected.4[0].pixels;
+    }
+    assert!(pixels > 30_000, "{pixels} pixels");
 }
 
 /// Small triangles that are lit at every pixel take light for several rows at once: bytes, depths and counts are those of

@@ -8,7 +8,7 @@ use mode13h::raster::depth::DepthPlane;
 use mode13h::raster::{DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex, VertexError};
 use support::oracle;
 use support::random::Random;
-use support::triangles::{draw, triangle, vertex};
+use support::triangles::{draw, edge_beside, triangle, vertex};
 use support::tried::Tried;
 
 const WIDTH: u32 = 96;
@@ -118,30 +118,51 @@ fn r1_zero_area_draws_nothing() {
     }
 }
 
+/// A sliver a hundred pixels long and at most 1/256 pixel wide that covers this pixel, and what its shades change by from
+/// one pixel to the next.
+fn sliver_through(random: &mut Random, (x, y): (i64, i64)) -> Option<([Vertex; 3], oracle::Ratio)> {
+    let turn = random.unit() * std::f64::consts::TAU;
+    let along = ((turn.cos() * 25_600.0) as i64, (turn.sin() * 25_600.0) as i64);
+    let centre = (x * 256 + 128, y * 256 + 128);
+    let side = random.one_of(&[-1, 1]);
+    let [a, b] = edge_beside(centre, along, side);
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    if dx.pow(2) + dy.pow(2) < 25_000_i64.pow(2) {
+        return None;
+    }
+    // The third corner is up to so many times as far from the edge as the centre; 25,600 times is a unit.
+    let times = random.log_uniform(14) as i64 + 1;
+    // And lies between the edge's ends.
+    let part = -(times * ((centre.0 - a.0) * dx + (centre.1 - a.1) * dy)).div_euclid(dx.pow(2) + dy.pow(2));
+    let c = (a.0 + (centre.0 - a.0) * times + part * dx, a.1 + (centre.1 - a.1) * times + part * dy);
+    let shades = random.one_of(&[[0, 0, 0xFF00], [0xFF00, 0xFF00, 0], [0, 0xFF00, 0x1234], [0x00FF, 0, 0xFF00]]);
+    let depths = [random.log_uniform(30) as i64, 2, 3];
+    let vertices = [0, 1, 2].map(|i| vertex([a, b, c][i].0, [a, b, c][i].1, shades[i], depths[i]));
+    let points = vertices.each_ref().map(oracle::point);
+    oracle::covers(points, oracle::centre(x as i32, y as i32))
+        .then(|| (vertices, oracle::per_pixel(points, shades.map(i128::from))))
+}
+
 #[test]
 fn r2_slivers() {
-    let mut tried = Tried::new("r2_slivers", 600);
+    let mut tried = Tried::new("r2_slivers", 1_000);
     let mut random = Random::named("r2");
-    let mut drawn = 0;
-    while tried.more() {
-        // A hundred pixels long, a unit wide, in every direction; along a pixel's centre, or it would
-        // hardly ever cover one.
-        let turn = random.unit() * std::f64::consts::TAU;
-        let (dx, dy) = ((turn.cos() * 25_600.0) as i64, (turn.sin() * 25_600.0) as i64);
-        let back = random.unit();
-        let x = random.within(0, 95) * 256 + 128 - (dx as f64 * back) as i64;
-        let y = random.within(0, 23) * 256 + 128 - (dy as f64 * back) as i64;
-        let t = random.unit();
-        let mut shade = || random.one_of(&[0, 0xFF00, 0x1234, 0x00FF]);
-        let shades = [shade(), shade(), shade()];
-        let middle = (x + (dx as f64 * t) as i64 + 1, y + (dy as f64 * t) as i64);
-        drawn += check(&[
-            vertex(x, y, shades[0], 1),
-            vertex(x + dx, y + dy, shades[1], 2),
-            vertex(middle.0, middle.1, shades[2], 3),
-        ]);
+    let (mut beyond, mut most) = (0, 0);
+    while tried.stated() > beyond {
+        let pixel = (random.within(0, i64::from(WIDTH) - 1), random.within(0, i64::from(HEIGHT) - 1));
+        let Some((vertices, slope)) = sliver_through(&mut random, pixel) else { continue };
+        let covered = check(&vertices);
+        // So thin a sliver covers the one pixel, and seldom others.
+        assert!(covered >= 1, "{pixel:?} of {vertices:?}");
+        most = most.max(covered);
+        // A change in 16.16, whose whole part has 16 bits with the sign: 2¹⁵ shades, 2²³ of their 256ths.
+        let is_beyond = slope.n.abs() >= slope.d << 23;
+        beyond += u64::from(is_beyond);
+        tried.add(u64::from(is_beyond));
+        tried.worst("shades a pixel", slope.n.abs() as f64 / slope.d as f64 / 256.0);
     }
-    assert!(drawn > 100, "slivers that cover pixels were among them: {drawn}");
+    tried.worst("pixels of a sliver", most.into());
+    assert!(most > 1, "{most} pixels of a sliver at most");
 }
 
 #[test]
@@ -187,11 +208,29 @@ fn r6_order_and_winding_make_no_difference() {
         let [a, b, c] = triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT));
         for shading in shadings() {
             let first = draw(&[a, b, c], shading, WIDTH, HEIGHT, None, 0);
+            let deep = draw_with_depth(&[a, b, c], shading);
             for order in [[a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]] {
                 assert_eq!(draw(&order, shading, WIDTH, HEIGHT, None, 0), first, "{order:?}");
+                assert!(draw_with_depth(&order, shading) == deep, "with depths, {shading:?} of {order:?}");
             }
         }
     }
+}
+
+/// Bytes and depths of 32 bits and of 16 of a triangle before a half that is near and one that is far.
+fn draw_with_depth(vertices: &[Vertex; 3], shading: Shading) -> (Vec<u8>, Vec<u32>, Vec<u16>) {
+    const SIZE: usize = (WIDTH * HEIGHT) as usize;
+    let (mut bytes, mut wide) = (vec![0; 2 * SIZE], vec![1_u32; SIZE]);
+    let mut narrow = vec![1_u16; SIZE];
+    wide[SIZE / 2..].fill(1 << 20);
+    narrow[SIZE / 2..].fill(1 << 6);
+    let (first, second) = bytes.split_at_mut(SIZE);
+    let mut like = vec![0; SIZE];
+    let like = Frame::new(&mut like, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
+    let on = |bytes| Raster::new(Frame::new(bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal"));
+    on(first).with_depth(DepthBuffer::new(&mut wide, &like).expect("enough")).triangle(vertices, shading);
+    on(second).with_depth(DepthBuffer::new(&mut narrow, &like).expect("enough")).triangle(vertices, shading);
+    (bytes, wide, narrow)
 }
 
 #[test]

@@ -16,6 +16,12 @@ use support::tried::Tried;
 #[cfg(target_os = "linux")]
 #[path = "span_abi/edge.rs"]
 mod edge;
+#[cfg(all(target_os = "linux", target_arch = "x86_64", feature = "std"))]
+#[path = "span_abi/every.rs"]
+mod every;
+#[cfg(all(target_os = "linux", target_arch = "x86_64", feature = "std"))]
+#[path = "span_abi/guarded.rs"]
+mod guarded;
 #[cfg(target_arch = "x86_64")]
 #[path = "span_abi/x86_64.rs"]
 mod machine;
@@ -39,6 +45,30 @@ pub(crate) struct Seen {
     mxcsr_after: u32,
 }
 
+impl Seen {
+    /// What rule was broken.
+    fn rules(&self) -> Result<(), String> {
+        for (i, name) in machine::KEPT.iter().enumerate() {
+            if self.kept[i] != kept_value(i) {
+                return Err(format!("{name} is {:#x}, not {:#x}", self.kept[i], kept_value(i)));
+            }
+        }
+        if self.flags & DIRECTION_FLAG != 0 {
+            return Err("the direction flag is set".to_owned());
+        }
+        if self.stack_error != 0 {
+            return Err(format!("the stack pointer is off by {}", self.stack_error as isize));
+        }
+        if self.stack_guard != 0 {
+            return Err(format!("the caller's stack was written to: {:#x}", self.stack_guard));
+        }
+        if (self.mxcsr_before ^ self.mxcsr_after) & MXCSR_CONTROL != 0 {
+            return Err(format!("MXCSR is {:#x}, was {:#x}", self.mxcsr_after, self.mxcsr_before));
+        }
+        Ok(())
+    }
+}
+
 /// The value with which the trampoline fills the register number `i` of those to keep.
 fn kept_value(i: usize) -> usize {
     (0x1357_9BDF_u32 as usize).wrapping_mul(0x0101_0101).wrapping_add(i * 0x1111)
@@ -54,23 +84,7 @@ fn called(kernel: entry::Entry, length: usize, shade: u16, step: u16, rubbish: u
     let mut seen = Seen::default();
     let row = canvas[GUARD..GUARD + length].as_mut_ptr();
     machine::call(kernel, row, length, shade, step, rubbish, &mut seen);
-    for (i, name) in machine::KEPT.iter().enumerate() {
-        if seen.kept[i] != kept_value(i) {
-            return Err(format!("{name} is {:#x}, not {:#x}", seen.kept[i], kept_value(i)));
-        }
-    }
-    if seen.flags & DIRECTION_FLAG != 0 {
-        return Err("the direction flag is set".to_owned());
-    }
-    if seen.stack_error != 0 {
-        return Err(format!("the stack pointer is off by {}", seen.stack_error as isize));
-    }
-    if seen.stack_guard != 0 {
-        return Err(format!("the caller's stack was written to: {:#x}", seen.stack_guard));
-    }
-    if (seen.mxcsr_before ^ seen.mxcsr_after) & MXCSR_CONTROL != 0 {
-        return Err(format!("MXCSR is {:#x}, was {:#x}", seen.mxcsr_after, seen.mxcsr_before));
-    }
+    seen.rules()?;
     let expected = naive_span(length, shade, step);
     if let Some(k) = (0..length).find(|&k| canvas[GUARD + k] != expected[k]) {
         return Err(format!("pixel {k} is {:#04x}, not {:#04x}", canvas[GUARD + k], expected[k]));
@@ -79,6 +93,15 @@ fn called(kernel: entry::Entry, length: usize, shade: u16, step: u16, rubbish: u
         return Err("a byte beside the row was written".to_owned());
     }
     Ok(())
+}
+
+#[cfg(all(target_os = "linux", target_arch = "x86_64", feature = "std"))]
+/// Runs `action` through the trampoline, `rubbish` in all that it must not read.
+fn ran(mut action: impl FnMut(), rubbish: u64) -> Result<(), String> {
+    let mut action: &mut dyn FnMut() = &mut action;
+    let mut seen = Seen::default();
+    machine::call(machine::run, (&raw mut action).cast(), 1, 0, 0, rubbish, &mut seen);
+    seen.rules()
 }
 
 /// Calls it for many spans.

@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::raster::Vertex;
+use mode13h::raster::{Shading, Vertex};
 use mode13h::render::{Renderer, Rung, Screen};
 use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
@@ -184,6 +184,8 @@ fn n7_a_highlight_inside_a_face() {
 /// N3: normals that point apart at the two ends of an edge.
 #[test]
 fn n3_opposite_normals_at_two_ends_of_an_edge() {
+    // Of none of the ramp's entries.
+    const BACKGROUND: u8 = 7;
     let mut tried = Tried::new("n3_opposite_normals_at_two_ends_of_an_edge", 6 * 40);
     let mut random = Random::named("n3");
     let positions = vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
@@ -192,6 +194,7 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
         let normals = vec![axis, -axis, if random.within(0, 1) == 0 { axis } else { -axis }];
         let mesh = Mesh::with_normals(positions.clone(), normals, vec![[0, 1, 2]]).expect("sound");
         let mut scene = support::scenes::framed(mesh);
+        scene.background = BACKGROUND;
         scene.palette = mode13h::palette::builtin::by_name("materials-4x64").map(|found| found.palette.clone());
         let material = &mut scene.objects_mut()[0].materials[0];
         (material.specular, material.shininess) = (0.7, 10.0);
@@ -203,9 +206,20 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
                 renderer.set_rung(rung);
                 let mut vga = Vga::new();
                 renderer.draw(&scene, &mut vga).expect("a legal scene");
-                let drawn: Vec<u8> = vga.pixels().iter().copied().filter(|byte| *byte != 0).collect();
-                assert!(drawn.len() > 5000, "{rung}: it is drawn");
-                assert!(drawn.iter().all(|byte| (128..192).contains(byte)), "{rung}: in its ramp");
+                // Every pixel that the face covers is in the ramp, whatever its byte, and no other is drawn.
+                let mut covered = vec![false; vga.pixels().len()];
+                renderer
+                    .for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| {
+                        for pixel in oracle::pixels(vertices, Shading::Flat(0), 320, 200) {
+                            covered[(pixel.y * 320 + pixel.x) as usize] = true;
+                        }
+                    })
+                    .expect("a legal scene");
+                assert!(covered.iter().filter(|covered| **covered).count() > 5000, "{rung}: it is drawn");
+                for (place, (&byte, &covered)) in vga.pixels().iter().zip(&covered).enumerate() {
+                    let is_right = if covered { (128..192).contains(&byte) } else { byte == BACKGROUND };
+                    assert!(is_right, "{rung}, dither {dither}: {byte} at pixel {place}, {axis}");
+                }
                 tried.add(1);
             }
         }

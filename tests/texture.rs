@@ -5,9 +5,14 @@ mod support;
 
 use std::collections::BTreeSet;
 
+use mode13h::glam::Vec2;
+use mode13h::mesh::shapes;
 use mode13h::palette::{Palette, Rgb, Table};
+use mode13h::render::{Mapping, Renderer};
+use mode13h::scene::Shared;
 use mode13h::span::texture::{Levels, TexelsError};
 use mode13h::texture::{Mipmap, Texture, TextureError};
+use mode13h::vga::Vga;
 use support::random::Random;
 use support::tried::Tried;
 
@@ -22,6 +27,39 @@ fn picture(texture: &Texture) -> Vec<Rgb> {
 
 fn used_colors(texture: &Texture) -> BTreeSet<Rgb> {
     texture.texels().iter().map(|&texel| texture.colors()[usize::from(texel)]).collect()
+}
+
+/// An image that begins any whole number of images away from where it is drawn looks the same: coordinates are brought back
+/// before they leave what 16.16 holds.
+#[test]
+fn images_far_from_their_corner_are_brought_back() {
+    let offsets = [1.0, 100.0, 250.0, 257.0, 300.0, 511.0, 513.0, 520.0, 600.0, 1_000.0, 15_000.0];
+    let mut tried = Tried::new("images_far_from_their_corner_are_brought_back", 2 * 3 * offsets.len() as u64);
+    let texture = Shared::new(Texture::by_name("crate").expect("compiled in"));
+    let size = texture.width() as f32;
+    assert!(offsets.iter().any(|k| k * size < 16_384.0) && offsets.iter().any(|k| k * size > 32_768.0));
+    let frame = |mapping: Mapping, at: Vec2| {
+        let mesh = shapes::wall(2, 2);
+        // Within one image: in exact quarters and eighths.
+        let inner = mesh.texcoords().expect("a wall has them").iter().map(|&uv| uv * 0.5 + 0.25 + at).collect();
+        let mut scene = support::scenes::framed(mesh.with_texcoords(inner).expect("as many"));
+        scene.objects_mut()[0].materials[0].texture = Some(Shared::clone(&texture));
+        scene.objects_mut()[0].set_angles([0.2, 0.9, 0.1]);
+        scene.wishes.mapping = Some(mapping);
+        let mut vga = Vga::new();
+        Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
+        vga.pixels().to_vec()
+    };
+    for mapping in [Mapping::Affine, Mapping::Perspective] {
+        let expected = frame(mapping, Vec2::ZERO);
+        assert!(expected.iter().collect::<BTreeSet<_>>().len() > 10, "a picture");
+        for k in offsets {
+            for at in [Vec2::new(k, 0.0), Vec2::new(-k, k), Vec2::new(0.0, -k)] {
+                assert!(frame(mapping, at) == expected, "{mapping}, {at} images away");
+                tried.add(1);
+            }
+        }
+    }
 }
 
 // From a picture

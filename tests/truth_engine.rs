@@ -108,35 +108,56 @@ fn check_cover(name: &str, scene: &Scene, truth: &Truth, frame: &TruthFrame, sho
 /// dozens.
 const F32: f64 = 0.01;
 
-/// What is right at each pixel changes by so much over 1/256 pixel across and down, in shades. From its neighbours of the same
-/// face, a pixel away: a quarter more for what bends between. Where a face has no other pixel in a row or column it counts
-/// as level there.
-fn over_a_unit(frame: &TruthFrame, place: usize) -> f64 {
+/// What is right at each pixel changes by so much over 1/256 pixel across and down, in shades: from its neighbours of the same
+/// face, a pixel away, and a quarter more for what bends between. `None` where a face has no other pixel in the row or in the
+/// column: it is a pixel wide there, and what its shades change by is not known.
+fn over_a_unit(frame: &TruthFrame, place: usize) -> Option<f64> {
     let (x, y) = (place % 320, place / 320);
-    let Some(here) = frame.pixels[place] else { return 0.0 };
+    let here = frame.pixels[place]?;
     let change = |x: Option<usize>, y: Option<usize>| {
         let there = frame.pixels[x.filter(|x| *x < 320)? + 320 * y.filter(|y| *y < 200)?]?;
         let apart = (0..3).map(|i| (there.intensity[i] - here.intensity[i]).abs()).fold(0.0, f64::max);
         (there.face == here.face).then_some(apart)
     };
-    let most = |one: Option<f64>, other: Option<f64>| f64::max(one.unwrap_or(0.0), other.unwrap_or(0.0));
-    let across = most(change(x.checked_sub(1), Some(y)), change(Some(x + 1), Some(y)));
-    let down = most(change(Some(x), y.checked_sub(1)), change(Some(x), Some(y + 1)));
-    1.25 * 255.0 * (across + down) / 256.0
+    let most = |one: Option<f64>, other: Option<f64>| one.into_iter().chain(other).reduce(f64::max);
+    let across = most(change(x.checked_sub(1), Some(y)), change(Some(x + 1), Some(y)))?;
+    let down = most(change(Some(x), y.checked_sub(1)), change(Some(x), Some(y + 1)))?;
+    Some(1.25 * 255.0 * (across + down) / 256.0)
 }
 
-/// How many of the pixels are farther off than `bound` and what shades change by over 1/256 pixel. Of a hundred
-/// coordinates one is rounded to the unit beside the right one, as the engine's come from f32, and a face that is clipped
-/// has new corners, which are rounded too; either moves shades by no more than a unit.
-fn beyond(frame: &TruthFrame, errors: &ErrorMap, bound: f64) -> u64 {
-    let beyond = |(place, error): (usize, Option<f64>)| {
-        error.is_some_and(|error| error > bound && error > bound + over_a_unit(frame, place))
-    };
-    errors.errors().enumerate().filter(|&pixel| beyond(pixel)).count() as u64
+/// Pixels that are farther off than the bound, by what exempts them from it.
+#[derive(Default)]
+struct Exempt {
+    /// A coordinate was rounded to the unit beside the right one: of a hundred one is, as the engine's come from f32, and a
+    /// face that is clipped has new corners, which are rounded too. Either moves shades by no more than a unit.
+    moved: u64,
+    /// The same of a face a pixel wide, where nothing says what its shades change by.
+    narrow: u64,
+}
+
+/// Compares every pixel with the bound itself. What is beyond it for no reason fails.
+fn beyond(what: &str, frame: &TruthFrame, errors: &ErrorMap, bound: f64) -> Exempt {
+    let mut exempt = Exempt::default();
+    for (place, error) in errors.errors().enumerate() {
+        let Some(error) = error.filter(|error| *error > bound) else { continue };
+        match over_a_unit(frame, place) {
+            Some(change) => {
+                let at = (place % 320, place / 320);
+                assert!(
+                    error <= bound + change,
+                    "{what}: {error:.4} at {at:?}, {bound:.4} and {change:.4} are allowed"
+                );
+                exempt.moved += 1;
+            }
+            None => exempt.narrow += 1,
+        }
+    }
+    exempt
 }
 
 /// Checks every rung that claims a bound, and is linear between vertices, on a scene.
-fn check_linear(tried: &mut Tried, name: &str, scene: &Scene) {
+fn check_linear(tried: &mut Tried, name: &str, scene: &Scene) -> Exempt {
+    let mut all_exempt = Exempt::default();
     let truth = truth(scene);
     let right = [Standard::Gouraud, Standard::GouraudPerspective].map(|standard| truth.draw(standard));
     for rung in Rung::ALL {
@@ -150,18 +171,31 @@ fn check_linear(tried: &mut Tried, name: &str, scene: &Scene) {
         let figures = errors.figures();
         // A pixel of a face that is moved: what is left to a whole shade, or to two.
         assert!(figures.max <= shades.ceil(), "{name}, {rung}: {:.3} shades from {standard}", figures.max);
-        // Where a face is a pixel wide what its shades change by is not known.
-        let beyond = beyond(frame, &errors, shades + F32);
-        assert!(beyond * 1_000 <= figures.count, "{name}, {rung}: {beyond} of {} beyond {shades:.4}", figures.count);
+        let exempt = beyond(&format!("{name}, {rung}"), frame, &errors, shades + F32);
+        // Whatever exempts them, few are.
+        let (Exempt { moved, narrow }, all) = (exempt, figures.count);
+        assert!((moved + narrow) * 1_000 <= all, "{name}, {rung}: {moved} and {narrow} of {all} beyond {shades:.4}");
+        (all_exempt.moved, all_exempt.narrow) = (all_exempt.moved + moved, all_exempt.narrow + narrow);
         tried.add(figures.count);
         tried.worst("shades", figures.max);
-        tried.worst("pixels beyond the bound", beyond as f64);
         let others = check_cover(name, scene, &truth, frame, &shown);
         tried.worst("pixels of another face", others as f64);
         assert_eq!(others, errors.cover_errors());
         // Rounded alike, they differ in one pixel of thousands.
         assert!(others <= 5, "{name}, {rung}: {others} pixels show another face");
     }
+    all_exempt
+}
+
+/// Checks them on all of these, and reports what was exempt.
+fn check_all_linear(mut tried: Tried, scenes: impl Iterator<Item = (String, Scene)>) {
+    let mut sum = Exempt::default();
+    for (name, scene) in scenes {
+        let Exempt { moved, narrow } = check_linear(&mut tried, &name, &scene);
+        (sum.moved, sum.narrow) = (sum.moved + moved, sum.narrow + narrow);
+    }
+    tried.worst("pixels exempt as vertices are moved", sum.moved as f64);
+    tried.worst("as faces are a pixel wide", sum.narrow as f64);
 }
 
 /// How many pixels are compared at least: the shipped scenes are files.
@@ -171,19 +205,14 @@ fn stated() -> u64 {
 
 #[test]
 fn linear_rungs_keep_their_bounds_on_every_scene() {
-    let mut tried = Tried::new("linear_rungs_keep_their_bounds_on_every_scene", stated());
-    for (name, scene) in all() {
-        check_linear(&mut tried, &name, &scene);
-    }
+    check_all_linear(Tried::new("linear_rungs_keep_their_bounds_on_every_scene", stated()), all().into_iter());
 }
 
 #[test]
 fn linear_rungs_keep_their_bounds_on_random_scenes() {
-    let mut tried = Tried::new("linear_rungs_keep_their_bounds_on_random_scenes", 200_000);
     let mut random = Random::named("truth linear");
-    for i in 0..12 {
-        check_linear(&mut tried, &format!("random scene {i}"), &scenes::random(&mut random));
-    }
+    let scenes = (0..12).map(|i| (format!("random scene {i}"), scenes::random(&mut random)));
+    check_all_linear(Tried::new("linear_rungs_keep_their_bounds_on_random_scenes", 200_000), scenes);
 }
 
 /// Light at every pixel is right but for the rounding of a shade to 1/256 and to a byte, and for vertices that are
@@ -545,6 +574,44 @@ fn n7_a_highlight_inside_a_face_against_the_truth() {
     }
 }
 
+/// That tiles show what the whole frame does, pixel by pixel and bit by bit, and nothing beside it.
+fn check_tiles(name: &str, scene: &Scene) {
+    let truth = truth(scene);
+    let whole = truth.draw(Standard::Lit);
+    let mut tiles = truth.tiles();
+    for (step, first) in [(1, 0), (4, 2), (7, 3)] {
+        let mut frame = tiles.empty_frame();
+        // In whatever order.
+        (0..tiles.count()).rev().for_each(|tile| tiles.draw(tile, step, &mut frame));
+        for (place, (pixel, right)) in frame.pixels.iter().zip(&whole.pixels).enumerate() {
+            let (x, y) = (place as u32 % whole.width, place as u32 / whole.width);
+            let is_drawn = x % step == first && y % step == first;
+            assert_eq!(*pixel, right.filter(|_| is_drawn), "{name}: ({x}, {y}) by steps of {step}");
+        }
+    }
+    for tile in (0..tiles.count()).filter(|&tile| tiles.is_empty(tile)) {
+        let [columns, rows] = tiles.area(tile);
+        let mut pixels = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+        assert!(pixels.all(|(x, y)| whole.at(x, y).is_none()), "{name}: tile {tile} is not empty");
+    }
+}
+
+#[test]
+fn tiles_are_parts_of_the_whole_truth() {
+    for (name, scene) in all() {
+        check_tiles(&name, &scene);
+    }
+    let mut random = Random::named("tiles");
+    for i in 0..10 {
+        check_tiles(&format!("random scene {i}"), &scenes::random(&mut random));
+    }
+    // An eye within the body: faces reach behind it, and are clipped.
+    let mut within = Scene::showing(shapes::torus(24, 12));
+    within.camera.eye = Vec3::new(0.7, 0.0, 0.05);
+    within.camera.target = Vec3::new(0.0, 0.7, 0.0);
+    check_tiles("within", &within);
+}
+
 // Models as scanners and exporters make them.
 
 /// A closed body of some thousand faces, as OBJ text: positions and faces, from 1.
@@ -871,7 +938,7 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
             for (eye, target) in [
                 (Vec3::new(0.4, 0.3, 3.0 * side), Vec3::ZERO),
                 (Vec3::new(-0.3, 0.2, 0.4 * side), Vec3::new(1.0, 0.9, 0.0)),
-                (Vec3::new(0.4, 0.3, 2000.0 * side), Vec3::ZERO),
+                (Vec3::new(0.4, 0.3, 40.0 * side), Vec3::ZERO),
             ] {
                 let mut scene = Scene::new();
                 scene.add(Object::new(mesh.clone()));
@@ -879,8 +946,8 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
                 scene.add_light(Light::sun([0.3, 0.7, 1.0]));
                 let near = if eye.length() < 1.0 { 0.5 } else { 0.1 };
                 scene.camera = Camera { eye, target, near, ..Camera::default() };
-                if eye.length() > 100.0 {
-                    scene.camera.field_of_view = 0.002;
+                if eye.length() > 10.0 {
+                    scene.camera.field_of_view = 0.08;
                 }
                 let toward = look_toward(&mesh, eye);
                 for way in HiddenSurfaces::ALL {

@@ -5,6 +5,7 @@
 //! | `face` | a triangle at the pixel: its corners, its edges, who owns a tie, what became of it |
 //! | `pixel` | [`pixel()`]: everything about one |
 //! | `text`, `span_text` | the same in words |
+//! | `walk` | [`Walk`]: a triangle pixel by pixel, and the registers of the loop of 1994 at each |
 //! | `row` | [`row()`]: a row's intensity and its slope, drawn and true |
 //!
 //! The bytes are the raster's own: every face is drawn again, clipped to the one pixel, and every stage's byte is what
@@ -31,6 +32,7 @@ mod pixel;
 mod row;
 mod span_text;
 mod text;
+mod walk;
 
 use core::fmt;
 
@@ -43,6 +45,7 @@ use crate::truth::TruthError;
 pub use face::{Edge, EdgeKind, FaceHere};
 pub use pixel::{Against, Pixel, Seen, Stage, pixel};
 pub use row::{Column, Row, row};
+pub use walk::{Registers, Step, Walk};
 
 /// Why there is nothing to explain.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -103,6 +103,11 @@ impl Light {
                 Self::Lamp { .. } => "its position, intensity, range and colour must be finite",
             });
         }
+        // Infinity beside a number of the other sign would leave none.
+        let is_held = |share: f32| (share * self.intensity()).is_finite();
+        if !(self.color().into_iter().all(is_held) && self.brightness().is_finite()) {
+            return Err("its intensity times its colour must be finite");
+        }
         match *self {
             Self::Sun { direction, .. } if !direction.is_finite() => {
                 Err("its direction, intensity and colour must be finite")

@@ -108,7 +108,7 @@ pub(super) struct Together<'a> {
     /// if none has one.
     groups: &'a [u32],
     /// Of a mesh that may be a scan.
-    edges: Option<&'a topology::Edges>,
+    edges: Option<topology::Edges>,
 }
 
 impl<'a> Together<'a> {
@@ -128,7 +128,7 @@ impl<'a> Together<'a> {
     ///
     /// [scattered]: Self::is_scattered
     #[cfg(feature = "obj")]
-    pub(super) fn unless_scattered(self, edges: &'a topology::Edges) -> Self {
+    pub(super) fn unless_scattered(self, edges: topology::Edges) -> Self {
         Self { edges: Some(edges), ..self }
     }
 
@@ -141,12 +141,11 @@ impl<'a> Together<'a> {
         for ((a, b), here) in edges.each() {
             let triangle = |place: usize| here[place].1 as usize / 3;
             let is_inner = here.len() == 2 && [0, 1].iter().all(|&place| faces[triangle(place)].has_area());
-            for point in [a, b] {
-                let point = &mut sharp[point as usize];
+            for point in [a as usize, b as usize] {
                 if !is_inner {
-                    *point = RIM;
-                } else if *point < 2 && !self.are(faces, triangle(0), triangle(1)) {
-                    *point += 1;
+                    sharp[point] = RIM;
+                } else if sharp[point] < 2 && !self.are(faces, triangle(0), triangle(1)) {
+                    sharp[point] += 1;
                 }
             }
         }
@@ -179,7 +178,7 @@ impl Mesh {
         let points = topology::weld(&self.positions);
         let known = vec![None; self.positions.len()];
         let together = crease.map(|crease| Together::new(f64::from(crease), &[]));
-        self.average(&points, weight, together.as_ref(), known);
+        self.average(&points, weight, together, known);
     }
 
     /// Gives every face its own normal at all its corners. Vertices are split where they must be.
@@ -207,16 +206,15 @@ impl Mesh {
         &mut self,
         points: &[u32],
         weight: Weight,
-        together: Option<&Together<'_>>,
+        mut together: Option<Together<'_>>,
         known: Vec<Option<Vec3>>,
     ) {
         let faces = self.faces();
-        let is_flat = |triangle: usize| together.is_some_and(|rule| rule.group(triangle) == Together::FLAT);
         // One for each class, which is a point, or a part of the faces there. (One for each corner always would be 48
         // bytes a corner: of ten million faces over a gigabyte.)
-        let classes = together.and_then(|rule| {
+        let classes = together.as_ref().and_then(|rule| {
             let classes = self.classes(points, &faces, rule)?;
-            match rule.edges {
+            match &rule.edges {
                 Some(edges) if rule.is_scattered(edges, &faces, points.len()) => {
                     let smooth = Together::new(core::f64::consts::PI, rule.groups);
                     self.classes(points, &faces, &smooth)
@@ -224,6 +222,11 @@ impl Mesh {
                 _ => Some(classes),
             }
         });
+        // Not beside all that follows.
+        if let Some(together) = &mut together {
+            together.edges = None;
+        }
+        let is_flat = |triangle: usize| together.as_ref().is_some_and(|rule| rule.group(triangle) == Together::FLAT);
         let class = |corner: usize, vertex: u32| match &classes {
             None => points[vertex as usize] as usize,
             Some(classes) => classes[corner] as usize,

@@ -9,7 +9,9 @@
 //! that both faces of the edge agree on: the place where an edge crosses a row of rays is computed from its two ends in
 //! one order, so the numbers along a ray always come back to 0.
 
+use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use glam::Vec3;
 
@@ -33,8 +35,18 @@ struct Meeting {
     step: i32,
 }
 
+/// More meetings than so many for each face, and [`MAX_MEETINGS`] beside, are not looked at: the mesh then counts as turned
+/// in part. A surface of many faces has one or two for each; to have more it must cross the whole box again and again.
+const MEETINGS_PER_FACE: u64 = 64;
+/// A surface that crosses the box 64 times along each ray.
+const MAX_MEETINGS: u64 = 64 * RAYS as u64 * RAYS as u64;
+
+/// Meetings that are held at a time, for each face; and beside.
+const HELD_PER_FACE: u64 = 2;
+const HELD: u64 = 256;
+
 /// Whether no point has a negative winding number, folds aside: then no back face of a closed mesh is seen from
-/// outside.
+/// outside. Takes memory in proportion to the faces, and says no where that would take too long to find out.
 pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bounds) -> bool {
     let (min, max) = (widen(bounds.min), widen(bounds.max));
     let sides = [0, 1, 2].map(|axis| max[axis] - min[axis]);
@@ -47,20 +59,50 @@ pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bo
         let p = widen(p);
         [0, 1, 2].map(|axis| (p[axis] - min[axis]) * scale[axis] + part[axis])
     };
-    let mut meetings: [Vec<Meeting>; 3] = Default::default();
-    for triangle in triangles {
-        let corners = triangle.map(|vertex| scaled(positions[vertex as usize]));
-        // Above 0 and below 65: the casts round down.
-        let cells = corners.map(|corner| corner.map(|c| c as u32));
-        let spans = [0, 1, 2].map(|axis| cells[0][axis] != cells[1][axis] || cells[0][axis] != cells[2][axis]);
-        for (axis, meetings) in meetings.iter_mut().enumerate() {
-            let (right, up) = ((axis + 1) % 3, (axis + 2) % 3);
-            if spans[right] && spans[up] {
-                meet_all(corners.map(|corner| [corner[right], corner[up], corner[axis]]), meetings);
+    // Calls `visit` with each triangle that rays along an axis may meet, their direction last.
+    let each = |axis: usize, visit: &mut dyn FnMut([Wide; 3])| {
+        let (right, up) = ((axis + 1) % 3, (axis + 2) % 3);
+        for triangle in triangles {
+            let corners = triangle.map(|vertex| scaled(positions[vertex as usize]));
+            // Above 0 and below 65: the casts round down.
+            let spans = |axis: usize| corners.iter().any(|corner| corner[axis] as u32 != corners[0][axis] as u32);
+            if spans(right) && spans(up) {
+                visit(corners.map(|corner| [corner[right], corner[up], corner[axis]]));
             }
         }
-    }
-    meetings.iter_mut().zip(scale).all(|(meetings, scale)| never_below(meetings, longest * scale * THINNEST))
+    };
+    let most = MAX_MEETINGS + MEETINGS_PER_FACE * triangles.len() as u64;
+    let held = HELD + HELD_PER_FACE * triangles.len() as u64;
+    let mut meetings = Vec::new();
+    (0..3).all(|axis| {
+        let count = |rays: &Range<u32>| {
+            let mut count = 0_u64;
+            each(axis, &mut |corners| meet_all(corners, rays, |_| count += 1));
+            count
+        };
+        let all = 0..(RAYS + 2) * (RAYS + 2);
+        let met = count(&all);
+        if met > most {
+            return false;
+        }
+        // Rays whose meetings are too many to be held are halved. A face meets a ray once at most, so one ray's can be held.
+        let mut left = vec![(all, met)];
+        while let Some((rays, met)) = left.pop() {
+            if rays.len() > 1 && met > held {
+                let middle = rays.start.midpoint(rays.end);
+                let first = rays.start..middle;
+                let met_first = count(&first);
+                left.extend([(middle..rays.end, met - met_first), (first, met_first)]);
+                continue;
+            }
+            meetings.clear();
+            each(axis, &mut |corners| meet_all(corners, &rays, |meeting| meetings.push(meeting)));
+            if !never_below(&mut meetings, longest * scale[axis] * THINNEST) {
+                return false;
+            }
+        }
+        true
+    })
 }
 
 /// Whether no ray's winding number is below 0 for longer than `thinnest`.
@@ -83,17 +125,19 @@ fn never_below(meetings: &mut [Meeting], thinnest: f64) -> bool {
     })
 }
 
-/// Where the rays of a grid meet a triangle: rays run along the third coordinate, and lie where the other two are whole
-/// numbers.
-fn meet_all(corners: [Wide; 3], meetings: &mut Vec<Meeting>) {
+/// Calls `visit` for each of `rays` that meets a triangle. Rays run along the third coordinate, and lie where the other two
+/// are whole numbers.
+fn meet_all(corners: [Wide; 3], rays: &Range<u32>, mut visit: impl FnMut(Meeting)) {
     let rows = corners.map(|corner| corner[1]);
-    let low = rows[0].min(rows[1]).min(rows[2]) as u32 + 1;
-    let high = rows[0].max(rows[1]).max(rows[2]) as u32;
+    let low = (rows[0].min(rows[1]).min(rows[2]) as u32 + 1).max(rays.start / (RAYS + 2));
+    let high = (rows[0].max(rows[1]).max(rows[2]) as u32).min(rays.end.saturating_sub(1) / (RAYS + 2));
     for row in low..=high {
         let Some((from, to, step)) = cross_row(&corners, f64::from(row)) else { continue };
-        for column in from[0] as u32 + 1..=to[0] as u32 {
-            let at = between(from, to, f64::from(column));
-            meetings.push(Meeting { ray: row * (RAYS + 2) + column, at, step });
+        let first = row * (RAYS + 2);
+        let columns =
+            (from[0] as u32 + 1).max(rays.start.saturating_sub(first))..(to[0] as u32 + 1).min(rays.end - first);
+        for column in columns {
+            visit(Meeting { ray: first + column, at: between(from, to, f64::from(column)), step });
         }
     }
 }

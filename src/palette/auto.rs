@@ -53,6 +53,9 @@ pub struct Use<'a> {
     /// If it has a texture, the colours of that in full light, each with the number of its texels. Then
     /// `color` and `highlight` do not count.
     pub texels: Option<&'a [(Rgb, u32)]>,
+    /// If its colours do not lie on a straight line: those at equal steps of intensity from none to 1, at least two and at
+    /// most 256. Then the ramp runs through them, full light is 1, and `color` does not count.
+    pub along: Option<&'a [Rgb]>,
 }
 
 /// What a surface gets.
@@ -110,6 +113,7 @@ const FARTHER_THAN_ANY: u32 = 400_000;
 /// use mode13h::palette::{Rgb, auto};
 /// let roof = auto::Use {
 ///     color: Rgb::new(190, 50, 30), highlight: None, area: 0.75, darkest: 0.25, brightest: 1.0, texels: None,
+///     along: None,
 /// };
 /// let ground = auto::Use { color: Rgb::new(40, 130, 40), area: 0.25, ..roof };
 /// let automatic = auto::share(&[roof, ground]);
@@ -224,11 +228,10 @@ fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
 
 /// A ramp that is wanted, and how many entries it has so far.
 struct Wanted {
-    color: Rgb,
-    highlight: Rgb,
-    /// Where on the ramp `color` stands, in 255ths.
+    keys: Vec<Key>,
+    /// Where on the ramp the colour in full light stands, in 255ths.
     full_light: u8,
-    /// From black to `color` and on to `highlight`, in 255ths of a channel.
+    /// From key to key, in 255ths of a channel.
     length: f64,
     area: f64,
     /// The part of the ramp that is seen, 0 to 1.
@@ -241,16 +244,27 @@ struct Wanted {
 
 impl Wanted {
     fn new(of: &Use<'_>) -> Self {
-        let (color, highlight) = of.shown();
-        let up = libm::sqrt(f64::from(Rgb::BLACK.distance_squared(color)));
-        let on = libm::sqrt(f64::from(color.distance_squared(highlight)));
-        // 0 to 255; of a black that stays black NaN becomes 0.
-        let full_light = if on == 0.0 { 255 } else { (up / (up + on) * 255.0 + 0.5) as u8 };
+        let distance = |a: Rgb, b: Rgb| libm::sqrt(f64::from(a.distance_squared(b)));
+        let (keys, full_light) = match of.bent() {
+            Some(colors) => {
+                let last = colors.len() - 1;
+                // 0 to 255.
+                let key = |(i, color): (usize, &Rgb)| Key { at: (255 * i / last) as u8, color: color.nearest_on_dac() };
+                (colors.iter().enumerate().map(key).collect(), 255)
+            }
+            None => {
+                let (color, highlight) = of.shown();
+                let (up, on) = (distance(Rgb::BLACK, color), distance(color, highlight));
+                // 0 to 255; of a black that stays black NaN becomes 0.
+                let full_light = if on == 0.0 { 255 } else { (up / (up + on) * 255.0 + 0.5) as u8 };
+                let keys = [(0, Rgb::BLACK), (full_light, color), (255, highlight)];
+                (keys.map(|(at, color)| Key { at, color }).to_vec(), full_light)
+            }
+        };
         let mut ramp = Self {
-            color,
-            highlight,
             full_light,
-            length: up + on,
+            length: keys.windows(2).map(|ends| distance(ends[0].color, ends[1].color)).sum(),
+            keys,
             area: 0.0,
             darkest: 1.0,
             brightest: 0.0,
@@ -258,7 +272,7 @@ impl Wanted {
             entries: 0,
         };
         // Sixteen places for every step of one channel, so that hardly a colour is missed.
-        let places = (0..=1024).filter_map(|i| color_at(i, 1025, &ramp.keys())).map(Rgb::nearest_on_dac);
+        let places = (0..=1024).filter_map(|i| color_at(i, 1025, &ramp.keys)).map(Rgb::nearest_on_dac);
         let mut before = None;
         ramp.colors = places.filter(|&color| before.replace(color) != Some(color)).count();
         ramp.entries = ramp.colors.min(LEAST);
@@ -274,16 +288,8 @@ impl Wanted {
         self.brightest = self.brightest.max(if of.highlight.is_some() { 1.0 } else { brightest * full_light });
     }
 
-    fn keys(&self) -> [Key; 3] {
-        [
-            Key { at: 0, color: Rgb::BLACK },
-            Key { at: self.full_light, color: self.color },
-            Key { at: 255, color: self.highlight },
-        ]
-    }
-
     fn fill(&self, ramp: Ramp, colors: &mut [Rgb; 256]) {
-        fill(colors, ramp, &self.keys());
+        fill(colors, ramp, &self.keys);
         for i in ramp.range() {
             let color = &mut colors[usize::from(i)];
             *color = color.nearest_on_dac();
@@ -306,8 +312,17 @@ impl Wanted {
 }
 
 impl Use<'_> {
-    /// The colours in full light and of the highlight as the card can show them.
+    /// The colours of a ramp that is not straight.
+    fn bent(&self) -> Option<&[Rgb]> {
+        self.along.filter(|along| (2..=256).contains(&along.len()))
+    }
+
+    /// The colours in full light and of the highlight as the card can show them; of a ramp that is not straight those in
+    /// the middle and at the end.
     fn shown(&self) -> (Rgb, Rgb) {
+        if let Some(along) = self.bent() {
+            return (along[along.len() / 2].nearest_on_dac(), along[along.len() - 1].nearest_on_dac());
+        }
         (self.color.nearest_on_dac(), self.highlight.unwrap_or(self.color).nearest_on_dac())
     }
 

@@ -3,6 +3,8 @@
 //! The loops of [`span`](crate::span) keep none of this; here it is worked out again for a single pixel, from the very
 //! planes that the loops start from.
 
+use alloc::vec::Vec;
+
 use super::cover::{Ordered, Row};
 use super::float::FloatPlane;
 use super::frame::Rect;
@@ -181,14 +183,24 @@ fn on_face(plane: &HyperbolicPlane, x: i32, y: i32) -> Ratio {
 
 /// The row of a pixel that a triangle draws in a frame of so many columns: by exact cover, or as `shading` covers.
 pub(crate) fn row_of(triangle: &Ordered, shading: Option<Shading>, width: u32, x: u32, y: u32) -> Option<Row> {
-    let clip = Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
     let mut found = None;
-    if shading == Some(Shading::GouraudPeriod) {
-        PeriodTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, _| found = Some(row));
-    } else {
-        triangle.rows(width, clip, |row| found = Some(row));
-    }
+    each_row(triangle, shading, width, Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 }, |row| found = Some(row));
     found
+}
+
+/// All rows that it draws in a frame of so many columns and rows.
+pub(crate) fn rows_of(triangle: &Ordered, shading: Option<Shading>, width: u32, height: u32) -> Vec<Row> {
+    let mut rows = Vec::new();
+    each_row(triangle, shading, width, Rect { x0: 0, y0: 0, x1: width, y1: height }, |row| rows.push(row));
+    rows
+}
+
+fn each_row(triangle: &Ordered, shading: Option<Shading>, width: u32, clip: Rect, mut each: impl FnMut(Row)) {
+    if shading == Some(Shading::GouraudPeriod) {
+        PeriodTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, _| each(row));
+    } else {
+        triangle.rows(width, clip, each);
+    }
 }
 
 #[cfg(test)]

@@ -51,6 +51,11 @@ pub(super) fn clip(eye: &Eye, triangle: &[Corner; 3]) -> Vec<Kept> {
     polygon
 }
 
+/// Whether clipping leaves a triangle as it is.
+pub(super) fn is_whole(eye: &Eye, triangle: &[Corner; 3]) -> bool {
+    triangle.iter().all(|corner| (0..5).all(|plane| inside(eye, plane, corner.seen) >= 0.0))
+}
+
 /// How far inside a plane a point lies, in whatever unit; below 0 it is outside.
 fn inside(eye: &Eye, plane: usize, [x, y, w]: Vector) -> f64 {
     let [cx, cy] = eye.centre;

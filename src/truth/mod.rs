@@ -33,7 +33,7 @@
 //! face is drawn as the fan from its first corner. The guard band, which lies 4,095 pixels from the frame's corner, cuts
 //! after the near plane, and changes no intensity that is linear on the screen.
 //!
-//! What the engine makes of the scene, as [`Shown`], is compared by [`ErrorMap`].
+//! What the engine makes of the scene, as [`Shown`], is compared by [`ErrorMap`]. [`Tiles`] gives `Lit` part by part.
 
 mod body;
 mod bound;
@@ -43,6 +43,7 @@ mod error;
 mod eye;
 mod light;
 mod ray;
+mod tiles;
 mod vector;
 
 use alloc::vec;
@@ -54,6 +55,7 @@ pub use self::bound::Bound;
 use self::cover::Rounded;
 pub use self::error::{ErrorMap, Figures, Shown, Swim};
 use self::eye::Eye;
+pub use self::tiles::Tiles;
 use self::vector::{times, unit, weighted};
 use crate::scene::{Scene, named};
 pub use crate::view::Screen;
@@ -348,7 +350,12 @@ impl<'a> Truth<'a> {
     /// Where the ray through a point of the picture meets a face, if that does not turn its back on the eye.
     fn met(&self, face: Face, at: [f64; 2]) -> Option<Hit> {
         let (body, corners) = self.triangle(face)?;
-        let met = ray::meet(&self.eye, &corners, at)?;
+        Self::hit(&self.eye, face, (body, &corners), at)
+    }
+
+    /// Does so for a face whose corners are at hand.
+    fn hit(eye: &Eye, face: Face, (body, corners): (&Body<'a>, &[Corner; 3]), at: [f64; 2]) -> Option<Hit> {
+        let met = ray::meet(eye, corners, at)?;
         let hit = Hit { face, turned: met.turned, weights: met.on_face, inverse_w: 1.0 / met.w };
         body.shows(face.triangle, met.turned).then_some(hit)
     }

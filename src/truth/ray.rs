@@ -30,7 +30,7 @@ pub(super) struct Met {
 pub(super) fn meet(eye: &Eye, triangle: &[Corner; 3], [x, y]: [f64; 2]) -> Option<Met> {
     let [a, b, c] = triangle.each_ref().map(|corner| corner.seen);
     let p = [x - eye.centre[0], y - eye.centre[1], 1.0];
-    let whole = dot(a, cross(b, c));
+    let whole = volume(triangle);
     let opposite = |from: Vector, to: Vector| {
         let edge = cross(from, to).map(|c| if whole < 0.0 { -c } else { c });
         let side = dot(edge, p);
@@ -46,6 +46,16 @@ pub(super) fn meet(eye: &Eye, triangle: &[Corner; 3], [x, y]: [f64; 2]) -> Optio
         return None;
     }
     Some(Met { on_face: sides.map(|side| side / sum), w, turned: whole > 0.0 })
+}
+
+/// Six times the volume of the corners and the eye; above 0 if the eye sees the triangle's back.
+fn volume([a, b, c]: &[Corner; 3]) -> f64 {
+    dot(a.seen, cross(b.seen, c.seen))
+}
+
+/// Whether the eye sees the triangle's back, wherever a ray meets it.
+pub(super) fn is_turned(triangle: &[Corner; 3]) -> bool {
+    volume(triangle) > 0.0
 }
 
 /// How much each of the three corners counts at a point of the picture for what is linear on the screen; of a

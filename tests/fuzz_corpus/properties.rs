@@ -113,8 +113,10 @@ fn check_obj(result: &Result<Loaded, ObjError>, model: &[u8], materials: &[u8]) 
             if let Some(line) = error.line {
                 assert!(line >= 1 && line <= lines_in(text) as u64, "{error}: of {} lines", lines_in(text));
             }
-            let whole_file =
-                matches!(error.kind, ObjErrorKind::NoFaces | ObjErrorKind::TooLarge("more than 65,536 materials"));
+            let whole_file = matches!(
+                error.kind,
+                ObjErrorKind::NoFaces | ObjErrorKind::NoArea | ObjErrorKind::TooLarge("more than 65,536 materials")
+            );
             assert_eq!(error.line.is_none(), whole_file, "{error}");
             let said = error.to_string();
             assert!(!said.contains(char::is_control) && said.len() < 300, "{said:?}");

@@ -133,6 +133,13 @@ pub(crate) unsafe extern "sysv64" fn shim<const I: usize>(row: *mut u8, count: u
     kernel.fill(unsafe { std::slice::from_raw_parts_mut(row, count as usize) }, shade, step);
 }
 
+/// Anything: `row` is the place of a `&mut dyn FnMut()`, which it calls.
+pub(crate) unsafe extern "sysv64" fn run(row: *mut u8, _count: u32, _shade: u16, _step: u16) {
+    // SAFETY: the caller's promise, and nobody else has it meanwhile.
+    let action = unsafe { &mut *row.cast::<&mut dyn FnMut()>() };
+    action();
+}
+
 /// A loop with r8d for the step, so that it touches no register that has to be kept.
 macro_rules! sound_loop {
     ($($before:literal,)* ; $($after:literal),*) => {

@@ -6,7 +6,13 @@ pub mod display;
 pub mod film;
 #[cfg(feature = "png")]
 pub mod golden;
+#[cfg(feature = "alloc")]
+pub mod judged;
 pub mod naive_span;
+#[cfg(feature = "alloc")]
+pub mod near_plane;
+#[cfg(feature = "alloc")]
+pub mod odd_views;
 pub mod oracle;
 pub mod property;
 pub mod random;

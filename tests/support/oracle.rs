@@ -130,6 +130,8 @@ pub struct Shades {
     /// The vertices from top to bottom, of one height from left to right, and their values.
     triangle: [Point; 3],
     values: [i128; 3],
+    /// The value's change per pixel along a row.
+    slope: Ratio,
     /// Of `GouraudPeriod` the first row, and the rows.
     top: i64,
     rows: Vec<PeriodRow>,
@@ -149,7 +151,8 @@ impl Shades {
         let values = order.map(|i| i128::from(values[i]));
         let (top, rows) =
             if shading == Shading::GouraudPeriod { period_rows(triangle, values) } else { (0, Vec::new()) };
-        Self { shading, triangle, values, top, rows, depths: order.map(|i| i128::from(vertices[i].depth().max(1))) }
+        let depths = order.map(|i| i128::from(vertices[i].depth().max(1)));
+        Self { shading, triangle, values, slope: per_pixel(triangle, values), top, rows, depths }
     }
 
     /// The exact value.
@@ -175,11 +178,13 @@ impl Shades {
         // Asked for by `Float` alone.
         #[cfg(not(feature = "alloc"))]
         let _ = last;
-        let exact = self.exact(centre(x, y));
         let byte = match self.shading {
             Shading::Flat(byte) => byte.into(),
             Shading::GouraudPeriod => (self.period(x, y) + i128::from(threshold.unwrap_or(0))) >> 8,
-            Shading::GouraudHyperbolic => Ratio { n: exact.n + half * exact.d, d: 256 * exact.d }.floor(),
+            Shading::GouraudHyperbolic => {
+                let exact = self.exact(centre(x, y));
+                Ratio { n: exact.n + half * exact.d, d: 256 * exact.d }.floor()
+            }
             #[cfg(feature = "alloc")]
             Shading::Float => {
                 let shade = self.float(first, last, x, y);
@@ -192,13 +197,12 @@ impl Shades {
             _ => {
                 // In 1/256 shade, or in 1/65,536.
                 let finer = if self.shading == Shading::Gouraud1616 { 256 } else { 1 };
-                let values = self.values.map(|value| value * finer);
                 let seed = match self.shading {
                     Shading::GouraudReseeded => first + (x - first) / 64 * 64,
                     _ => first,
                 };
-                let (start, slope) =
-                    (interpolate(self.triangle, values, centre(seed, y)), per_pixel(self.triangle, values));
+                let finer_of = |exact: Ratio| Ratio { n: exact.n * finer, d: exact.d };
+                let (start, slope) = (finer_of(self.exact(centre(seed, y))), finer_of(self.slope));
                 let start = if slope.n < 0 { start.ceil() } else { start.floor() };
                 (start + slope.truncate() * i128::from(x - seed) + half * finer).div_euclid(256 * finer)
             }
@@ -302,27 +306,51 @@ pub fn pixels(vertices: &[Vertex; 3], shading: Shading, width: i32, height: i32)
 
 /// The depth at a covered pixel, by the letter of the definition in `raster::depth`.
 pub fn depth_at(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
-    u32::try_from(depth_sum(vertices, x, y)).expect("a depth within its vertices'")
+    Depths::of_vertices(vertices).at(x, y)
 }
 
 /// The depth of the triangle's plane at any pixel, modulo 2³².
 pub fn depth_beyond(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
-    depth_sum(vertices, x, y) as u32
+    Depths::of_vertices(vertices).sum(x, y) as u32
 }
 
-fn depth_sum(vertices: &[Vertex; 3], x: i32, y: i32) -> i128 {
-    let mut order = *vertices;
-    order.sort_by_key(|v| (v.y(), v.x()));
-    let [p0, p1, p2] = order.each_ref().map(point);
-    let [d0, d1, d2] = order.each_ref().map(|v| i128::from(v.depth()));
-    let area = edge(p0, p1, p2);
-    let nearest = |n: i128| {
-        let (n, d) = (n * area.signum(), area.abs());
-        ((n << 24) + d / 2).div_euclid(d)
-    };
-    let gx = nearest((d1 - d0) * (p2.1 - p0.1) - (d2 - d0) * (p1.1 - p0.1));
-    let gy = nearest((d2 - d0) * (p1.0 - p0.0) - (d1 - d0) * (p2.0 - p0.0));
-    let c = centre(x, y);
-    let sum = (d0 << 24) + gx * (c.0 - p0.0) + gy * (c.1 - p0.1) + (1 << 23);
-    sum >> 24
+/// Depth over a triangle that has an area.
+pub struct Depths {
+    /// The first vertex in (y, x) order, its depth, and the gradients with 24 fraction bits.
+    first: Point,
+    depth: i128,
+    gradients: (i128, i128),
+}
+
+impl Depths {
+    pub fn of_vertices(vertices: &[Vertex; 3]) -> Self {
+        let mut order = *vertices;
+        order.sort_by_key(|v| (v.y(), v.x()));
+        let [p0, p1, p2] = order.each_ref().map(point);
+        let [d0, d1, d2] = order.each_ref().map(|v| i128::from(v.depth()));
+        let area = edge(p0, p1, p2);
+        let nearest = |n: i128| {
+            let (n, d) = (n * area.signum(), area.abs());
+            ((n << 24) + d / 2).div_euclid(d)
+        };
+        let gx = nearest((d1 - d0) * (p2.1 - p0.1) - (d2 - d0) * (p1.1 - p0.1));
+        let gy = nearest((d2 - d0) * (p1.0 - p0.0) - (d1 - d0) * (p2.0 - p0.0));
+        Self { first: p0, depth: d0, gradients: (gx, gy) }
+    }
+
+    /// At a covered pixel.
+    pub fn at(&self, x: i32, y: i32) -> u32 {
+        u32::try_from(self.sum(x, y)).expect("a depth within its vertices'")
+    }
+
+    fn sum(&self, x: i32, y: i32) -> i128 {
+        let (c, (gx, gy)) = (centre(x, y), self.gradients);
+        let sum = (self.depth << 24) + gx * (c.0 - self.first.0) + gy * (c.1 - self.first.1) + (1 << 23);
+        sum >> 24
+    }
+}
+
+/// What a depth buffer of 16 bits holds for a depth: 2¹⁴ make one, rounded up, so that 0 alone is nothing.
+pub fn narrow_depth(depth: u32) -> u16 {
+    u64::from(depth).div_ceil(1 << 14).min(0xFFFF) as u16
 }

@@ -15,6 +15,27 @@ pub fn vertex(x: i64, y: i64, shade: i64, depth: i64) -> Vertex {
     .expect("inside the guard band")
 }
 
+/// The ends of an edge along (dx, dy), or a whole part of it, that passes a point as closely as an edge can: the point and
+/// the two span twice the area `side`, in square units, 1 or −1.
+pub fn edge_beside((x, y): (i64, i64), (dx, dy): (i64, i64), side: i64) -> [(i64, i64); 2] {
+    let (divisor, v, u) = euclid(dx, dy);
+    let (dx, dy) = (dx / divisor, dy / divisor);
+    // dx·v − dy·u = `side`, also of what is a whole edge further on.
+    let (u, v) = (-u * side, v * side);
+    let (u, v) = if v * dy.signum() < 0 { (u + dx, v + dy) } else { (u, v) };
+    let a = (x - u, y - v);
+    [a, (a.0 + dx, a.1 + dy)]
+}
+
+/// Euclid's algorithm: the greatest common divisor g > 0, and x and y with a·x + b·y = g.
+fn euclid(a: i64, b: i64) -> (i64, i64, i64) {
+    if b == 0 {
+        return (a.abs(), a.signum(), 0);
+    }
+    let (g, x, y) = euclid(b, a % b);
+    (g, y, x - a / b * y)
+}
+
 /// A random triangle near a frame of `width × height` pixels; a third of them slivers.
 pub fn triangle(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
     const BAND: i64 = Vertex::GUARD_BAND as i64;

@@ -76,7 +76,10 @@ fn main() -> ExitCode {
 
 fn run(words: Words) -> Result<(), Failure> {
     match words.command {
-        None => demo::run(&words.demo),
+        None => match words.demo.more_inputs().iter().find(|word| Words::command().find_subcommand(word).is_some()) {
+            Some(word) => Err(Failure::words(format!("{} is a command, and stands before its INPUT", word.display()))),
+            None => demo::run(&words.demo),
+        },
         Some(Command::Demo(options)) => demo::run(&options),
         Some(Command::Render(options)) => render::run(&options),
         Some(Command::Scenes(options)) => scenes::run(&options),

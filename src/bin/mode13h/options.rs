@@ -44,7 +44,7 @@ pub(crate) struct Drawing {
     up: Option<Up>,
     /// Show an edge where faces of a model without normals meet at more than this angle: 180 is smooth everywhere, 0 flat
     /// [default: the model's smoothing groups, or else 40; scans are smooth]
-    #[arg(long, value_name = "DEGREES", value_parser = crease, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = crease)]
     crease: Option<f32>,
     /// Show it so many times as large
     #[arg(long, value_name = "FACTOR", value_parser = factor)]

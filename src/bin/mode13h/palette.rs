@@ -28,7 +28,7 @@ pub(crate) struct Options {
     up: Up,
     /// Show an edge where faces of that model without normals meet at more than this angle [default: the model's smoothing
     /// groups, or else 40; scans are smooth]
-    #[arg(long, value_name = "DEGREES", value_parser = options::crease, conflicts_with = "palette")]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, conflicts_with = "palette")]
     crease: Option<f32>,
     /// Write it to a file, in the format of its extension; .png makes a chart of the colours
     #[arg(short, long, value_name = "OUT")]

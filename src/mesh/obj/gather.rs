@@ -85,9 +85,9 @@ pub(super) fn mesh(
     if !complete {
         let together = match crease {
             Some(degrees) => Together::new(f64::from(degrees).to_radians(), &[]),
-            None => Together::new(f64::from(CREASE).to_radians(), &groups).unless_scattered(&edges),
+            None => Together::new(f64::from(CREASE).to_radians(), &groups).unless_scattered(edges),
         };
-        mesh.average(&points, Weight::Angle, Some(&together), known);
+        mesh.average(&points, Weight::Angle, Some(together), known);
     }
     Ok((mesh, mended))
 }

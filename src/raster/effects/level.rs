@@ -21,15 +21,17 @@ use crate::raster::cover::Ordered;
 use crate::raster::hyperbolic::Linear;
 use crate::span::hyperbolic::floor_quotient;
 
-/// The least level, up to `last`, at which neither step is longer than √2 texels; steps are given in units, and a texel of
-/// level 0 is so many of these.
-fn choose([across, down]: [[i128; 2]; 2], unit: u128, last: u32) -> u32 {
-    let doubled = |[u, v]: [i128; 2]| {
-        let (u, v) = (u.unsigned_abs(), v.unsigned_abs());
-        2 * u.max(v) + u.min(v)
-    };
-    // Twice a length below 2¹²⁰, and a unit below 2¹¹⁵.
-    let (mut length, longest) = (64 * doubled(across).max(doubled(down)), 181 * unit);
+/// Twice the length of a step.
+fn doubled([u, v]: [i128; 2]) -> u128 {
+    let (u, v) = (u.unsigned_abs(), v.unsigned_abs());
+    2 * u.max(v) + u.min(v)
+}
+
+/// The least level, up to `last`, at which neither of two steps is longer than √2 texels. Twice their lengths are given, in
+/// units of which a texel of level 0 has so many.
+fn choose(across: u128, down: u128, unit: u128, last: u32) -> u32 {
+    // Twice a length is below 2¹²¹, a unit below 2¹¹⁵.
+    let (mut length, longest) = (64 * across.max(down), 181 * unit);
     let mut level = 0;
     while level < last && length > longest {
         // Rounded up: it is then above `longest` just where the exact half is.
@@ -41,9 +43,9 @@ fn choose([across, down]: [[i128; 2]; 2], unit: u128, last: u32) -> u32 {
 
 /// The level of a face whose coordinates are linear on the screen.
 pub(super) fn of_face(coordinates: &[Linear; 2], area: i64, last: u32) -> u32 {
-    let steps = [Linear::per_column, Linear::per_row].map(|step| coordinates.each_ref().map(step));
+    let [across, down] = [Linear::per_column, Linear::per_row].map(|step| doubled(coordinates.each_ref().map(step)));
     // Coordinates have 16 fraction bits. The area is at most 2⁴².
-    choose(steps, u128::from(area.unsigned_abs()) << 16, last)
+    choose(across, down, u128::from(area.unsigned_abs()) << 16, last)
 }
 
 /// Where a face has which level, if its coordinates follow the perspective.
@@ -73,16 +75,23 @@ impl LevelPlane {
         Self { area: triangle.area(), sums, times_y, times_x }
     }
 
-    /// The level at pixel (`x`, `y`), whose centre lies in the triangle, where D is `denominator`.
-    pub(super) fn at(&self, x: i32, y: i32, denominator: i128, last: u32) -> u32 {
-        let at = |pixel: i32, times: &[i128; 2]| {
-            let centre = i128::from(pixel) * 256 + 128;
-            [0, 1].map(|of| self.sums[of] * centre - times[of])
-        };
+    /// Twice the length of the sums at a row or a column, of which the corners have `times`.
+    fn doubled_at(&self, pixel: i32, times: &[i128; 2]) -> u128 {
+        let centre = i128::from(pixel) * 256 + 128;
+        doubled([0, 1].map(|of| self.sums[of] * centre - times[of]))
+    }
+
+    /// What [`at`](Self::at) needs of a row: twice the length of a step along it.
+    pub(super) fn across(&self, y: i32) -> u128 {
+        self.doubled_at(y, &self.times_y)
+    }
+
+    /// The level at a pixel of column `x` whose centre lies in the triangle, where D is `denominator`.
+    pub(super) fn at(&self, across: u128, x: i32, denominator: i128, last: u32) -> u32 {
         // Of depths from 1 to 2³².
         let depth = floor_quotient(16 * denominator, i128::from(self.area)).unsigned_abs();
         // In texels a step is 256 · A · S / D² / 2¹⁶ = S / (A · (16 D / A)²), S being the sum.
         let unit = u128::from(self.area.unsigned_abs()) * u128::from(depth) * u128::from(depth);
-        choose([at(y, &self.times_y), at(x, &self.times_x)], unit, last)
+        choose(across, self.doubled_at(x, &self.times_x), unit, last)
     }
 }

@@ -96,9 +96,10 @@ impl TexturePlane {
     ) {
         let mut chosen = [0; PIECE / EVERY];
         let chosen = &mut chosen[..texels.len().div_ceil(EVERY)];
+        let across = plane.across(row.y);
         for (level, x) in chosen.iter_mut().zip((seed..).step_by(EVERY)) {
             let x = (x + EVERY as i32 / 2).min(row.last).max(x);
-            *level = plane.at(x, row.y, self.denominator.at(x, row.y), levels.last());
+            *level = plane.at(across, x, self.denominator.at(x, row.y), levels.last());
         }
         let (mut x, mut rest) = (seed, texels);
         for alike in chosen.chunk_by(|a, b| a == b) {

@@ -15,7 +15,7 @@ use super::{Effect, RenderError, Renderer, Screen};
 use crate::light::{Material, RampChoice};
 use crate::mesh::Surface;
 use crate::palette::auto::{Automatic, Entries, Use, share_beside};
-use crate::palette::{Palette, Ramp, Rgb};
+use crate::palette::{Palette, Rgb};
 use crate::scene::{Object, Scene, Shared};
 use crate::texture::{Mipmap, Texture};
 use mixed::OwnColors;
@@ -55,9 +55,9 @@ impl AutomaticPalette {
 
 /// A palette for a scene, by [`share_beside`], and its materials in it.
 ///
-/// Area and brightness are those of [`seen`]. A material's colour is its [own](Material::own_colors), or, where it has none
-/// and no image, that of the ramp that it names in the scene's palette; in the light that it gives back in full light,
-/// ambient and diffuse together. Its highlight adds to that. On its ramp that colour stands
+/// Area and brightness are those of [`seen`]. A material that has no colour of its own and no image, and names a coloured
+/// ramp of the scene's palette, keeps the colours of that. Another's colour is its [own](Material::own_colors), in the
+/// light that it gives back in full light, ambient and diffuse together; its highlight adds to that. On its ramp that colour stands
 /// at the intensity `full_light` of [`Entries::Ramp`], so its ambient and diffuse shares are divided up to that, in the
 /// proportion that they have, and what is left is the highlight's. It then needs no channels any more, as its colour is
 /// in the ramp, and a `ramp` that it named is another one now. A material with an image keeps its shares; the image's
@@ -105,8 +105,8 @@ pub fn automatic(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     let seen = seen(scene)?;
     let mut uses: Vec<Use<'_>> = Vec::new();
     for ((body, seen), texels) in bodies.iter().flatten().zip(seen.iter().flatten()).zip(&texels) {
-        // An image's shades are not divided anew.
-        let part = if body.image.is_some() { body.full } else { 1.0 };
+        // The shades of an image, or of a ramp that is taken over, are not divided anew.
+        let part = if body.image.is_some() || body.along.is_some() { body.full } else { 1.0 };
         uses.push(Use {
             color: body.color,
             highlight: body.highlight,
@@ -114,6 +114,7 @@ pub fn automatic(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
             darkest: seen.darkest * part,
             brightest: seen.brightest * part,
             texels: texels.as_deref(),
+            along: body.along.as_deref(),
         });
     }
     let own: Vec<OwnColors> = bodies.iter().flatten().map(|body| body.own).collect();
@@ -151,6 +152,8 @@ struct Body {
     full: f32,
     /// On three channels.
     own: OwnColors,
+    /// Those of a ramp that is taken over.
+    along: Option<Vec<Rgb>>,
     color: Rgb,
     highlight: Option<Rgb>,
     /// Its texture, or what it mirrors, in its colour.
@@ -172,18 +175,21 @@ fn bodies(object: &Object, scene: &Scene, tints: &mut Tints) -> Vec<Body> {
 impl Body {
     fn new(material: &Material, surface: &Surface, scene: &Scene, tints: &mut Tints) -> Self {
         let full = full_light(material, scene.ambient);
-        let own = match (material.own_colors(surface), &scene.palette) {
-            (([1.0, 1.0, 1.0], [1.0, 1.0, 1.0]), Some(palette)) => colors_of_ramp(material, full, palette),
-            (own, _) => own,
-        };
+        let image = material.texture.as_ref().or(material.environment.as_ref());
+        let mut own = material.own_colors(surface);
+        let is_plain = own == ([1.0; 3], [1.0; 3]) && image.is_none();
+        let along = scene.palette.as_ref().filter(|_| is_plain).and_then(|palette| colors_of_ramp(material, palette));
+        if let Some(along) = &along {
+            own = own_colors_on(along, material, full);
+        }
         let color = Rgb::from_intensities(own.0.map(|channel| channel * full));
         // With the exponent 0 a highlight would be everywhere.
         let is_shiny = material.specular > 0.0 && material.shininess > 0.0;
         let light = Rgb::from_intensities(own.1.map(|channel| channel * material.specular));
-        let image = material.texture.as_ref().or(material.environment.as_ref());
         Self {
             full,
             own,
+            along,
             color,
             highlight: (is_shiny && light != Rgb::BLACK).then(|| color.saturating_add(light)),
             image: image.map(|image| tints.tinted(image, Rgb::from_intensities(own.0))),
@@ -197,6 +203,9 @@ impl Body {
         }
         let plain = Material { color: [1.0; 3], highlight: [1.0; 3], ..material.clone() };
         match (entries, &self.image) {
+            (Entries::Ramp { ramp, .. }, None) if self.along.is_some() => {
+                Material { ramp: RampChoice::Entries(ramp), ..plain }
+            }
             (Entries::Ramp { ramp, full_light }, None) => Material {
                 ramp: RampChoice::Entries(ramp),
                 ambient: material.ambient / self.full * full_light,
@@ -210,18 +219,20 @@ impl Body {
     }
 }
 
-/// The colours of a material that has none of its own but names a ramp of a palette: what the ramp shows in full light,
-/// and what its highlight adds to that. Of an image, and in a palette without ramps, white.
-fn colors_of_ramp(material: &Material, full: f32, palette: &Palette) -> OwnColors {
-    let has_image = material.texture.is_some() || material.environment.is_some();
+/// The colours of the ramp that a material names in a palette; `None` if they are greys, or the palette has no ramps.
+fn colors_of_ramp(material: &Material, palette: &Palette) -> Option<Vec<Rgb>> {
     let ramp = material.ramp.in_palette(Some(palette));
-    if has_image || ramp == Ramp::WHOLE && palette.ramps() != 1 {
-        return ([1.0; 3], [1.0; 3]);
-    }
+    let is_named = matches!(material.ramp, RampChoice::Entries(_)) || palette.ramps() > 0;
+    let colors: Vec<Rgb> = ramp.range().map(|entry| palette.color(entry)).collect();
+    let has_color = colors.iter().any(|color| color.r != color.g || color.g != color.b);
+    (is_named && material.ramp != RampChoice::Nearest && has_color && colors.len() > 1).then_some(colors)
+}
+
+/// What stands for the colours of a ramp where light is mixed: that in full light, and what the highlight adds to it.
+fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
     let shown = |intensity: f32| {
-        // From the first entry to the last.
-        let entry = libm::roundf(intensity.clamp(0.0, 1.0) * f32::from(ramp.entries() - 1)) as u8;
-        let Rgb { r, g, b } = palette.color(ramp.first().saturating_add(entry));
+        // From the first to the last.
+        let Rgb { r, g, b } = along[libm::roundf(intensity.clamp(0.0, 1.0) * (along.len() - 1) as f32) as usize];
         [r, g, b].map(|channel| f32::from(channel) / 255.0)
     };
     let (color, brightest) = (shown(full), shown(full + material.specular));

@@ -4,27 +4,30 @@ use mode13h::explain::{self, Edge, FaceHere, Seen};
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
 
-use super::magnifier::{LETTERS, LINES, Pixel};
+use super::magnifier::Pixel;
+use super::step::Traced;
+
+/// Letters of a line beyond which it is cut: more than any has.
+const LONGEST: usize = 200;
 
 /// The account of a pixel of the frame that `renderer`, as it is set, draws of `scene`: what became of its byte, then its
-/// edges, why it is shaded as it is, and the effects; as much as there is room for.
-pub(super) fn lines(renderer: &mut Renderer, scene: &Scene, pixel: Pixel) -> Vec<String> {
+/// edges, why it is shaded as it is, and the effects. And the triangle that is seen there, if one is.
+pub(super) fn lines(renderer: &mut Renderer, scene: &Scene, pixel: Pixel) -> (Vec<String>, Option<Traced>) {
     let (x, y) = (u32::from(pixel.x), u32::from(pixel.y));
     let account = match explain::pixel(renderer, scene, Screen::MODE_13H, x, y) {
         Ok(account) => account,
-        Err(error) => return wrapped(&error.to_string()),
+        Err(error) => return (vec![error.to_string()], None),
     };
-    let mut lines = account.lines(LETTERS);
+    let mut lines = account.lines(LONGEST);
     if let Some((face, seen)) = account.front() {
         if seen.exact_cover {
             lines.push(edges(face, x, y));
         }
         lines.extend(exact(seen));
-        lines.extend(wrapped(&format!("rung: {}", account.rung_why)));
-        lines.extend(wrapped(&format!("on: {}", effects(seen))));
+        lines.push(format!("rung: {}", account.rung_why));
+        lines.push(format!("on: {}", effects(seen)));
     }
-    lines.truncate(LINES);
-    lines
+    (lines, Traced::of(&account))
 }
 
 /// The three edges: what kind each is, and how far inside of it the centre lies.
@@ -49,21 +52,6 @@ fn effects(seen: &Seen) -> String {
     names.join(", ")
 }
 
-/// A text in lines that fit.
-fn wrapped(text: &str) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= LETTERS => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_string()),
-        }
-    }
-    lines
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,7 +59,7 @@ mod tests {
     use mode13h::render::Rung;
 
     #[test]
-    fn an_account_begins_with_the_pixel_and_fits() {
+    fn an_account_begins_with_the_pixel() {
         let scene = Scene::showing(shapes::torus(24, 12));
         for rung in Rung::ALL {
             let mut renderer = Renderer::new();
@@ -79,12 +67,13 @@ mod tests {
             let mut vga = mode13h::vga::Vga::new();
             renderer.draw(&scene, &mut vga).expect("a legal scene");
             for (x, y) in [(0, 0), (160, 60), (100, 100), (319, 199)] {
-                let lines = lines(&mut renderer, &scene, Pixel { x, y });
+                let (lines, seen) = lines(&mut renderer, &scene, Pixel { x, y });
                 let byte = vga.pixels()[usize::from(y) * 320 + usize::from(x)];
                 assert!(lines[0].starts_with(&format!("({x}, {y}) byte {byte} ")), "{lines:#?}");
-                assert!(lines.len() <= LINES && lines.iter().all(|line| line.chars().count() <= LETTERS), "{lines:#?}");
+                assert!(lines.iter().all(|line| line.chars().count() < LONGEST), "{lines:#?}");
                 // Where there is a face it says more than its place.
                 assert_eq!(lines.len() > 4, byte != scene.background, "{lines:#?}");
+                assert_eq!(seen.is_some(), byte != scene.background, "{lines:#?}");
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Work that the picture does not wait for: a thread that is asked, and the last answer that it gave.
 //!
 //! It is handed over one question at a time. A newer one takes the place of one that nobody has begun with, so that the
-//! thread never falls behind by more than the one it is at, however fast questions come.
+//! thread never falls behind by more than the one it is at, however fast questions come. An answer may come in several
+//! stages, each better than the one before; the thread can ask whether a newer question makes the rest needless.
 
 use std::io;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -14,7 +15,7 @@ pub(super) struct Background<Question, Answer> {
 }
 
 /// Where questions and answers lie. It is locked for moving one, never while one is worked on.
-struct Desk<Question, Answer> {
+pub(super) struct Desk<Question, Answer> {
     papers: Mutex<Papers<Question, Answer>>,
     asked: Condvar,
 }
@@ -38,21 +39,33 @@ impl<Question, Answer> Desk<Question, Answer> {
         let mut papers = waited.unwrap_or_else(PoisonError::into_inner);
         if papers.closed { None } else { papers.question.take() }
     }
+
+    /// Gives an answer, in place of one that nobody has taken.
+    pub(super) fn give(&self, answer: Answer) {
+        let before = self.papers().answer.replace(answer);
+        // Not under the lock: freeing a picture takes its time.
+        drop(before);
+    }
+
+    /// Whether there is a newer question, or nobody who waits for an answer.
+    pub(super) fn is_overtaken(&self) -> bool {
+        let papers = self.papers();
+        papers.question.is_some() || papers.closed
+    }
 }
 
 impl<Question: Send + 'static, Answer: Send + 'static> Background<Question, Answer> {
-    /// Starts the thread. There may be none to be had.
+    /// Starts the thread, which gives its answers to the desk. There may be none to be had.
     pub(super) fn start(
         name: &str,
-        mut work: impl FnMut(Question) -> Answer + Send + 'static,
+        mut work: impl FnMut(Question, &Desk<Question, Answer>) + Send + 'static,
     ) -> io::Result<Background<Question, Answer>> {
         let papers = Papers { question: None, answer: None, closed: false };
         let desk = Arc::new(Desk { papers: Mutex::new(papers), asked: Condvar::new() });
         let own = Arc::clone(&desk);
         thread::Builder::new().name(name.to_string()).spawn(move || {
             while let Some(question) = own.next() {
-                let answer = work(question);
-                own.papers().answer = Some(answer);
+                work(question, &own);
             }
         })?;
         Ok(Background { desk })
@@ -92,11 +105,11 @@ mod tests {
     fn held_up() -> (Background<u32, u32>, Receiver<u32>, Sender<()>) {
         let (begins, begun) = channel();
         let (go_on, gone_on) = channel::<()>();
-        let work = move |question| {
+        let work = move |question, desk: &Desk<u32, u32>| {
             begins.send(question).expect("the test listens");
             // A test that is over lets it go on too.
             let _ = gone_on.recv();
-            question * 10
+            desk.give(question * 10 + u32::from(desk.is_overtaken()));
         };
         (Background::start("test", work).expect("a thread"), begun, go_on)
     }
@@ -119,7 +132,8 @@ mod tests {
         (2..=1000).for_each(|question| background.ask(question));
         assert_eq!(background.answer(), None);
         go_on.send(()).expect("it works");
-        assert_eq!(wait_for(&background), 10);
+        // It knew that it was overtaken.
+        assert_eq!(wait_for(&background), 11);
         assert_eq!(begun.recv_timeout(LONG), Ok(1000));
         go_on.send(()).expect("it works");
         assert_eq!(wait_for(&background), 10_000);

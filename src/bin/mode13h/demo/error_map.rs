@@ -2,17 +2,28 @@
 //!
 //! The picture under it is another machine's: its palette has 32 entries of brightness in each of eight colours. So
 //! what is shown stays recognizable, and E costs a table look-up a pixel.
+//!
+//! A map is laid over the frame that it was worked out for and over no other. While the picture moves on, the map is shown
+//! in a corner, small, over its own frame. First every fourth pixel of every fourth row is judged; that is always
+//! finished, so that the map keeps up with what moves. Then the picture is refined tile by tile, from the mouse
+//! outwards, until it changes.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use mode13h::cost::Probe;
 use mode13h::palette::{Palette, Rgb};
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
-use mode13h::truth::{ErrorMap, Figures, Standard, Truth};
+use mode13h::truth::{ErrorMap, Face, Figures, Shown, Tiles, Truth, TruthFrame};
 use mode13h::vga::Vga;
+use mode13h::window::Area;
 
-use super::background::Background;
+use super::background::{Background, Desk};
+use super::magnifier::Pixel;
 use crate::failure::Failure;
-use crate::overlay::{self, Anchor};
+use crate::overlay::{Row, Sheet, Side as Edge};
 
 /// A colour of the map: below which error it stands, in shades, what the legend says, and the colour in full light.
 struct Level {
@@ -45,25 +56,52 @@ const LEAST: u32 = 112;
 /// The same of what is right, which need not be told from anything.
 const LEAST_GREY: u32 = 0;
 
-/// What is to be measured.
+/// Columns and rows from one pixel to the next that the first map judges.
+const COARSE: u32 = 4;
+/// The least time from one refined map to the next.
+const REPORT: Duration = Duration::from_millis(60);
+/// The small picture's share of the large one's sides.
+const SMALL: f32 = 0.3;
+
+/// What is to be measured: the picture of one renderer, or of two side by side.
 pub(super) struct Frame {
+    pub(super) snapshot: Snapshot,
+    pub(super) scene: Scene,
+    /// Those that are set as the ones that drew it, from the left.
+    pub(super) renderers: Vec<Renderer>,
+    /// The pixel from which on it is refined.
+    pub(super) mouse: Pixel,
+}
+
+/// The picture that a map belongs to.
+#[derive(Clone)]
+pub(super) struct Snapshot {
     /// Its number, which changes when the picture does.
     pub(super) number: u64,
     /// When it is shown, in seconds.
     pub(super) seconds: f64,
-    pub(super) scene: Scene,
-    /// One set as that which drew it.
-    pub(super) renderer: Renderer,
+    pub(super) picture: Vga,
+    /// The column from which on the second renderer's picture is seen.
+    pub(super) divider: usize,
+    /// How each is shaded.
+    pub(super) shadings: Vec<String>,
 }
 
 /// What was found.
-pub(super) struct Measured {
-    number: u64,
-    seconds: f64,
+struct Measured {
+    snapshot: Arc<Snapshot>,
     found: Result<Found, String>,
 }
 
 struct Found {
+    /// One for each renderer.
+    sides: Vec<Side>,
+    /// How much of it is refined, 0 to 1.
+    refined: f64,
+}
+
+/// How far a renderer's picture is from the truth.
+struct Side {
     /// Of each pixel its place in [`LEVELS`]; `None` where there is no face, nor should be.
     levels: Vec<Option<u8>>,
     errors: ErrorMap,
@@ -86,7 +124,7 @@ impl Map {
             Some(thread) => thread,
             none => {
                 let mut probe = Probe::new(Renderer::new());
-                let work = move |frame| measure(&mut probe, frame);
+                let work = move |frame, desk: &Desk<Frame, Measured>| measure(&mut probe, frame, desk);
                 none.insert(Background::start("error map", work).map_err(Failure::work)?)
             }
         };
@@ -100,43 +138,105 @@ impl Map {
         Ok(())
     }
 
-    /// How old it is when the frame of this number is shown, in words.
-    fn age(&self, number: u64, seconds: f64) -> String {
-        match &self.last {
-            None => "computing".to_string(),
-            Some(measured) if measured.number == number => "now".to_string(),
-            Some(measured) => format!("-{:.1} s", (seconds - measured.seconds).max(0.0)),
+    /// What was found of the frame of this number.
+    fn of(&self, number: u64) -> Option<&Found> {
+        let measured = self.last.as_ref().filter(|measured| measured.snapshot.number == number)?;
+        measured.found.as_ref().ok()
+    }
+
+    /// How far a side of the frame of this number is from the truth; `None` until all of its pixels were judged.
+    pub(super) fn errors_of(&self, number: u64, side: usize) -> Option<Figures> {
+        let found = self.of(number).filter(|found| found.refined == 1.0)?;
+        Some(found.sides.get(side)?.figures)
+    }
+
+    /// When the picture that it is of was shown, and how much of that is known, in words.
+    fn state(&self, number: u64, seconds: f64) -> String {
+        let Some(Measured { snapshot, found }) = &self.last else { return "computing".into() };
+        let refined = found.as_ref().map_or(1.0, |found| found.refined);
+        let progress = match refined {
+            0.0 => ", coarse".into(),
+            refined if refined < 1.0 => format!(", {:.0} %", 100.0 * refined),
+            _ => String::new(),
+        };
+        if snapshot.number == number {
+            format!("now{progress}")
+        } else {
+            format!("{:.1} s ago{progress}", (seconds - snapshot.seconds).max(0.0))
         }
     }
 
     /// How far the picture is from the truth, in a line.
     pub(super) fn figures(&self, number: u64, seconds: f64, budget: f32) -> String {
-        let age = self.age(number, seconds);
+        let state = self.state(number, seconds);
         match self.last.as_ref().map(|measured| &measured.found) {
-            None => format!("error against lit: {age}"),
+            None => format!("error against lit: {state}"),
             Some(Err(reason)) => format!("error: {reason}"),
-            Some(Ok(found)) => {
-                let share = 100.0 * found.errors.share_within(f64::from(budget));
-                format!("error to lit {:.1}, {share:.2} % within {budget} ({age})", found.figures.max)
+            Some(Ok(Found { sides, .. })) => sides.first().map_or(String::new(), |side| {
+                let share = 100.0 * side.errors.share_within(f64::from(budget));
+                format!("error to lit {:.1}, {share:.2} % within {budget} ({state})", side.figures.max)
+            }),
+        }
+    }
+
+    /// Lays it over what `vga` shows, if it is the map of that: of the frame of this number, whose second side begins at
+    /// a column. [`legend`](Self::legend) says what the colours mean.
+    pub(super) fn lay_over(&self, vga: &mut Vga, number: u64, divider: usize) {
+        if let Some(found) = self.of(number) {
+            let entries = found.entries(vga, divider);
+            vga.set_palette(&palette());
+            vga.pixels_mut().copy_from_slice(&entries);
+        }
+    }
+
+    /// Lays it over its own frame, in a corner, if another frame is shown.
+    pub(super) fn corner(&self, sheet: &mut Sheet, number: u64) {
+        let Some(Measured { snapshot, found: Ok(found) }) = &self.last else { return };
+        if snapshot.number == number {
+            return;
+        }
+        let colors = *palette().colors();
+        let entries = found.entries(&snapshot.picture, snapshot.divider);
+        let picture = sheet.picture_area();
+        // At most 0.3 of the window's sides, in pixels.
+        let [width, height] = [picture.width, picture.height].map(|side| (side as f32 * SMALL) as usize);
+        let (left, top) = (picture.left + picture.width - width, picture.top + picture.height - height);
+        let rim =
+            Area { left: left.saturating_sub(2), top: top.saturating_sub(2), width: width + 2, height: height + 2 };
+        sheet.block(rim, Rgb::WHITE, 255);
+        let colors = entries.into_iter().map(|entry| colors[usize::from(entry)]).collect();
+        sheet.picture(Area { left, top, width, height }, colors, Vga::WIDTH);
+    }
+
+    /// What the colours mean, and which picture they are laid over: with its shading, unless that `is_named` elsewhere.
+    pub(super) fn legend(&self, sheet: &mut Sheet, number: u64, seconds: f64, is_named: bool) {
+        let mut rows = vec![Row::text("error in shades")];
+        let mut state = self.state(number, seconds);
+        if let Some(Measured { snapshot, found }) = &self.last {
+            if !is_named {
+                rows.push(Row::text(format!("of {}", snapshot.shadings.join(" | "))));
+            }
+            rows.extend(found.as_ref().err().map(|reason| Row::text(reason.clone())));
+            if snapshot.number != number {
+                state = format!("small picture: {state}");
             }
         }
+        rows.push(Row::text(state));
+        rows.extend(LEVELS.iter().map(|level| Row::color(level.color, level.label)));
+        sheet.panel(Edge::Right, &rows, false, 0, "");
     }
+}
 
-    /// Lays it over what `vga` shows. [`legend`](Self::legend) says what the colours mean.
-    pub(super) fn lay_over(&self, vga: &mut Vga) {
-        let found = self.last.as_ref().and_then(|measured| measured.found.as_ref().ok());
-        let shown = vga.palette();
-        let steps = shown.colors().map(step);
-        vga.set_palette(&palette());
-        for (i, pixel) in vga.pixels_mut().iter_mut().enumerate() {
-            let level = found.and_then(|found| found.levels.get(i).copied().flatten()).unwrap_or(0);
-            *pixel = level * STEPS + steps[usize::from(*pixel)];
-        }
-    }
-
-    /// Draws the legend, and how old the map is, on a picture that it was laid over.
-    pub(super) fn legend(&self, vga: &mut Vga, number: u64, seconds: f64) {
-        legend(vga, &self.age(number, seconds));
+impl Found {
+    /// The bytes of a picture with the map over it, in the map's palette.
+    fn entries(&self, vga: &Vga, divider: usize) -> Vec<u8> {
+        let steps = vga.palette().colors().map(step);
+        let entry = |(place, &byte): (usize, &u8)| {
+            let side = usize::from(place % Vga::WIDTH >= divider).min(self.sides.len().saturating_sub(1));
+            let level = self.sides.get(side).and_then(|side| side.levels[place]);
+            level.unwrap_or(0) * STEPS + steps[usize::from(byte)]
+        };
+        vga.pixels().iter().enumerate().map(entry).collect()
     }
 }
 
@@ -160,36 +260,131 @@ fn palette() -> Palette {
     Palette::from_colors(colors)
 }
 
-fn legend(vga: &mut Vga, age: &str) {
-    let left = Vga::WIDTH as i32 - 34;
-    // Nine lines of ten rows above the lower edge.
-    let mut top = Vga::HEIGHT as i32 - 94;
-    overlay::write_at(vga, (Vga::WIDTH as i32 - 4, top), Anchor::Right, age);
-    for (i, level) in (0..).zip(&LEVELS) {
-        top += 10;
-        let full = i * STEPS + (STEPS - 1);
-        overlay::block(vga, (left - 10, top), (10, 10), full);
-        overlay::write_at(vga, (left, top), Anchor::Left, &format!(" {:4}", level.label));
-    }
+fn measure(probe: &mut Probe, frame: Frame, desk: &Desk<Frame, Measured>) {
+    let snapshot = Arc::new(frame.snapshot);
+    let say = |found| desk.give(Measured { snapshot: Arc::clone(&snapshot), found });
+    let is_overtaken = || desk.is_overtaken();
+    let found = find(probe, &frame.scene, frame.renderers, frame.mouse, &|found| say(Ok(found)), &is_overtaken);
+    found.unwrap_or_else(|reason| say(Err(reason)));
 }
 
-fn measure(probe: &mut Probe, frame: Frame) -> Measured {
-    let Frame { number, seconds, scene, renderer } = frame;
-    *probe.renderer() = renderer;
-    Measured { number, seconds, found: find(probe, &scene) }
-}
-
-fn find(probe: &mut Probe, scene: &Scene) -> Result<Found, String> {
+/// Judges a frame and says what it finds: all of it coarsely, and then, as long as no other waits, tile by tile, which it
+/// says now and then and in the end.
+fn find(
+    probe: &mut Probe,
+    scene: &Scene,
+    renderers: Vec<Renderer>,
+    mouse: Pixel,
+    say: &dyn Fn(Found),
+    is_overtaken: &dyn Fn() -> bool,
+) -> Result<(), String> {
     let screen = Screen::MODE_13H;
-    let shown = probe.look(scene, screen).map_err(|error| error.to_string())?;
-    let truth = Truth::new(scene, screen).map_err(|error| error.to_string())?.draw(Standard::Lit);
-    let errors = ErrorMap::new(&truth, &shown).ok_or("the frames differ in size")?;
-    let faces = truth.pixels.iter().zip(&shown.faces);
-    let levels = errors.errors().zip(faces).map(|(error, (right, shown))| match error {
-        Some(error) => Some(level_of(error)),
-        None => (right.is_some() || shown.is_some()).then_some(OTHER_FACE),
+    let mut shown = Vec::new();
+    for renderer in renderers {
+        *probe.renderer() = renderer;
+        shown.push(probe.look(scene, screen).map_err(|error| error.to_string())?);
+    }
+    let truth = Truth::new(scene, screen).map_err(|error| error.to_string())?;
+    let mut tiles = truth.tiles();
+    let order = order(&tiles, &shown, mouse);
+    let mut judged = Judged::new(tiles.empty_frame(), shown);
+    for &tile in &order {
+        tiles.draw(tile, COARSE, &mut judged.right);
+        judged.know(tiles.area(tile), COARSE);
+    }
+    say(judged.found(0.0)?);
+    let mut said = Instant::now();
+    for (done, &tile) in order.iter().enumerate() {
+        if is_overtaken() {
+            return Ok(());
+        }
+        if said.elapsed() >= REPORT {
+            // Of some hundreds of tiles.
+            say(judged.found(done as f64 / order.len() as f64)?);
+            said = Instant::now();
+        }
+        tiles.draw(tile, 1, &mut judged.right);
+        judged.know(tiles.area(tile), 1);
+    }
+    say(judged.found(1.0)?);
+    Ok(())
+}
+
+/// The tiles in which there is anything, from the mouse outwards.
+fn order(tiles: &Tiles<'_, '_>, shown: &[Shown], mouse: Pixel) -> Vec<usize> {
+    let is_drawn = |tile: usize| {
+        let [columns, rows] = tiles.area(tile);
+        let mut pixels = rows.flat_map(|y| columns.clone().map(move |x| place(x, y)));
+        !tiles.is_empty(tile) || pixels.any(|place| shown.iter().any(|shown| shown.faces[place].is_some()))
+    };
+    let mut order: Vec<usize> = (0..tiles.count()).filter(|&tile| is_drawn(tile)).collect();
+    order.sort_by_key(|&tile| {
+        let [x, y] = tiles.area(tile).map(|range| (range.start + range.end).div_ceil(2));
+        x.abs_diff(mouse.x.into()).pow(2) + y.abs_diff(mouse.y.into()).pow(2)
     });
-    Ok(Found { levels: levels.collect(), figures: errors.figures(), errors })
+    order
+}
+
+fn place(x: u32, y: u32) -> usize {
+    y as usize * Vga::WIDTH + x as usize
+}
+
+/// What is known so far.
+struct Judged {
+    /// Of the truth.
+    right: TruthFrame,
+    /// Of each picture: its faces where the truth is known, none elsewhere.
+    known: Vec<Shown>,
+    /// All faces of each picture.
+    faces: Vec<Vec<Option<Face>>>,
+    is_known: Vec<bool>,
+}
+
+impl Judged {
+    fn new(right: TruthFrame, mut shown: Vec<Shown>) -> Judged {
+        let nothing = |shown: &mut Shown| std::mem::replace(&mut shown.faces, vec![None; right.pixels.len()]);
+        let faces = shown.iter_mut().map(nothing).collect();
+        Judged { is_known: vec![false; right.pixels.len()], right, known: shown, faces }
+    }
+
+    /// That the truth is known of the pixels that a tile draws by steps of `step`.
+    fn know(&mut self, [columns, rows]: [Range<u32>; 2], step: u32) {
+        let is_drawn = |at: &u32| at % step == step / 2;
+        for y in rows.filter(is_drawn) {
+            for place in columns.clone().filter(is_drawn).map(|x| place(x, y)) {
+                self.is_known[place] = true;
+                for (known, faces) in self.known.iter_mut().zip(&self.faces) {
+                    known.faces[place] = faces[place];
+                }
+            }
+        }
+    }
+
+    /// How far the pictures are from it.
+    fn found(&self, refined: f64) -> Result<Found, String> {
+        let side = |(known, faces): (&Shown, &Vec<Option<Face>>)| {
+            let errors = ErrorMap::new(&self.right, known).ok_or("the frames differ in size")?;
+            let pixels = self.right.pixels.iter().zip(&known.faces);
+            let levels = errors.errors().zip(pixels).map(|(error, (right, shown))| match error {
+                Some(error) => Some(level_of(error)),
+                None => (right.is_some() || shown.is_some()).then_some(OTHER_FACE),
+            });
+            let mut levels: Vec<Option<u8>> = levels.collect();
+            self.spread(&mut levels, faces);
+            Ok(Side { levels, figures: errors.figures(), errors })
+        };
+        Ok(Found { sides: self.known.iter().zip(&self.faces).map(side).collect::<Result<_, String>>()?, refined })
+    }
+
+    /// Gives a face's pixels that are not known yet the level of the one that was judged for all of them. Errors of cover
+    /// are of single pixels, and are not spread.
+    fn spread(&self, levels: &mut [Option<u8>], faces: &[Option<Face>]) {
+        for i in (0..levels.len()).filter(|&i| !self.is_known[i] && faces[i].is_some()) {
+            let coarse = COARSE as usize;
+            let [x, y] = [i % Vga::WIDTH, i / Vga::WIDTH].map(|at| at / coarse * coarse + coarse / 2);
+            levels[i] = levels[y * Vga::WIDTH + x].filter(|level| *level != OTHER_FACE);
+        }
+    }
 }
 
 /// The place in [`LEVELS`] of an error.
@@ -203,6 +398,7 @@ mod tests {
     use super::*;
     use mode13h::mesh::shapes;
     use mode13h::render::Rung;
+    use mode13h::truth::Standard;
 
     #[test]
     fn the_legend_says_from_which_error_on_a_colour_stands() {
@@ -216,46 +412,125 @@ mod tests {
         assert_eq!((step(Rgb::BLACK), step(Rgb::WHITE)), (0, STEPS - 1));
     }
 
+    fn frame(number: u64, scene: &Scene, rungs: &[Rung]) -> Frame {
+        let mut picture = Vga::new();
+        let renderer = |&rung| {
+            let mut renderer = Renderer::new();
+            renderer.set_rung(rung);
+            renderer.draw(scene, &mut picture).expect("a legal scene");
+            renderer.set_alike()
+        };
+        let renderers = rungs.iter().map(renderer).collect();
+        let shadings = rungs.iter().map(|rung| rung.name().to_string()).collect();
+        let snapshot = Snapshot { number, seconds: 0.5, picture, divider: 100, shadings };
+        Frame { snapshot, scene: scene.clone(), renderers, mouse: Pixel { x: 160, y: 100 } }
+    }
+
+    /// The whole truth against what is drawn.
+    fn errors(scene: &Scene, rung: Rung) -> ErrorMap {
+        let mut renderer = Renderer::new();
+        renderer.set_rung(rung);
+        let shown = Probe::new(renderer).look(scene, Screen::MODE_13H).expect("a legal scene");
+        let truth = Truth::new(scene, Screen::MODE_13H).expect("a legal scene").draw(Standard::Lit);
+        ErrorMap::new(&truth, &shown).expect("of one size")
+    }
+
+    /// All that is found of a frame, and no newer one comes.
+    fn all_found(scene: &Scene, rungs: &[Rung], is_overtaken: bool) -> Vec<Found> {
+        let found = std::cell::RefCell::new(Vec::new());
+        let Frame { renderers, mouse, .. } = frame(0, scene, rungs);
+        let mut probe = Probe::new(Renderer::new());
+        let say = |some| found.borrow_mut().push(some);
+        find(&mut probe, scene, renderers, mouse, &say, &|| is_overtaken).expect("a legal scene");
+        found.into_inner()
+    }
+
     #[test]
     fn the_map_of_a_frame_that_stands_still_is_that_frames_own() {
         let scene = Scene::showing(shapes::torus(24, 12));
-        let mut renderer = Renderer::new();
-        renderer.set_rung(Rung::Flat);
         let mut map = Map::default();
         assert_eq!(map.figures(3, 0.0, 1.0), "error against lit: computing");
         let mut asked = 0;
-        while map.last.is_none() {
+        while map.errors_of(3, 1).is_none() {
             let frame = || {
                 asked += 1;
-                Frame { number: 3, seconds: 0.5, scene: scene.clone(), renderer: renderer.set_alike() }
+                frame(3, &scene, &[Rung::Flat, Rung::Phong])
             };
             map.follow(3, frame).expect("a thread");
         }
         assert_eq!(asked, 1);
-        assert_eq!(map.age(3, 9.0), "now");
-        assert_eq!(map.age(4, 0.75), "-0.2 s");
-        let found = map.last.as_ref().expect("it came").found.as_ref().expect("a legal scene");
+        assert_eq!((map.state(3, 9.0), map.state(4, 0.75)), ("now".into(), "0.2 s ago".into()));
+        for (side, rung) in [Rung::Flat, Rung::Phong].into_iter().enumerate() {
+            assert_eq!(map.errors_of(3, side), Some(errors(&scene, rung).figures()));
+        }
+        assert!(map.errors_of(4, 0).is_none() && map.errors_of(3, 2).is_none());
+        let found = map.of(3).expect("it came");
         // Of each colour as many pixels as there are errors in its range.
-        let here = Probe::new(renderer).look(&scene, Screen::MODE_13H).expect("a legal scene");
-        let truth = Truth::new(&scene, Screen::MODE_13H).expect("a legal scene").draw(Standard::Lit);
-        let errors = ErrorMap::new(&truth, &here).expect("of one size");
+        let errors = errors(&scene, Rung::Flat);
         let mut from = 0.0;
         for (i, level) in (0..).zip(&LEVELS[..7]) {
             let expected = errors.errors().flatten().filter(|error| (from..level.below).contains(error)).count();
-            assert_eq!(found.levels.iter().filter(|there| **there == Some(i)).count(), expected);
+            assert_eq!(found.sides[0].levels.iter().filter(|there| **there == Some(i)).count(), expected);
             from = level.below;
         }
-        let other = found.levels.iter().filter(|level| **level == Some(OTHER_FACE)).count();
+        let other = found.sides[0].levels.iter().filter(|level| **level == Some(OTHER_FACE)).count();
         assert_eq!(other, errors.cover_errors());
-        // And laid over a picture: the bright pixels in their colours.
+        // And laid over its picture, each side of the divider its own: the bright pixels in their colours.
         let mut vga = Vga::new();
         let white = vga.palette().nearest(Rgb::WHITE);
         vga.pixels_mut().fill(white);
-        map.lay_over(&mut vga);
+        let plain = vga.clone();
+        map.lay_over(&mut vga, 3, 150);
         for x in 0..Vga::WIDTH {
             let place = 100 * Vga::WIDTH + x;
-            let level = found.levels[place].unwrap_or(0);
+            let level = found.sides[usize::from(x >= 150)].levels[place].unwrap_or(0);
             assert_eq!(vga.pixels()[place] / STEPS, level);
         }
+        // Over another picture it is not laid.
+        let mut other = plain.clone();
+        map.lay_over(&mut other, 4, 150);
+        assert!(other.pixels() == plain.pixels() && other.palette() == plain.palette());
+    }
+
+    #[test]
+    fn a_map_is_coarse_at_first_and_right_where_it_was_judged() {
+        let scene = Scene::showing(shapes::torus(24, 12));
+        let errors: Vec<Option<f64>> = errors(&scene, Rung::Flat).errors().collect();
+        // Overtaken at once: what moves is judged coarsely all the same.
+        let found = all_found(&scene, &[Rung::Flat], true);
+        assert_eq!(found.len(), 1);
+        let levels = &found[0].sides[0].levels;
+        for y in (2..200).step_by(4) {
+            for x in (2..320).step_by(4) {
+                let right = errors[y * 320 + x].map(level_of);
+                assert_eq!(levels[y * 320 + x].filter(|level| *level != OTHER_FACE), right, "({x}, {y})");
+            }
+        }
+        let judged = (0..64_000).filter(|i| i % 4 == 2 && i / 320 % 4 == 2);
+        assert_eq!(found[0].sides[0].figures.count as usize, judged.filter(|&i| errors[i].is_some()).count());
+        // With time it is refined.
+        let found = all_found(&scene, &[Rung::Flat], false);
+        assert_eq!(found[0].sides[0].levels, *levels);
+        let last = found.last().expect("the last");
+        assert_eq!(last.refined, 1.0);
+        assert_eq!(last.sides[0].errors.errors().collect::<Vec<_>>(), errors);
+    }
+
+    #[test]
+    fn tiles_with_a_face_come_from_the_mouse_outwards() {
+        let scene = Scene::showing(shapes::torus(24, 12));
+        let shown = Probe::new(Renderer::new()).look(&scene, Screen::MODE_13H).expect("a legal scene");
+        let truth = Truth::new(&scene, Screen::MODE_13H).expect("a legal scene");
+        let tiles = truth.tiles();
+        let order = order(&tiles, std::slice::from_ref(&shown), Pixel { x: 72, y: 110 });
+        let [columns, rows] = tiles.area(order[0]);
+        assert!(columns.contains(&72) && rows.contains(&110));
+        let mut in_order = vec![false; Vga::SHOWN];
+        for &tile in &order {
+            let [columns, rows] = tiles.area(tile);
+            rows.for_each(|y| columns.clone().for_each(|x| in_order[place(x, y)] = true));
+        }
+        assert!(shown.faces.iter().zip(&in_order).all(|(face, is_in)| face.is_none() || *is_in));
+        assert!(order.len() < tiles.count());
     }
 }

@@ -7,7 +7,7 @@ use super::Demo;
 use crate::overlay::Row;
 
 /// The keys, and what each does.
-const KEYS: [(&str, &str); 20] = [
+const KEYS: [(&str, &str); 24] = [
     ("Esc", "quit"),
     ("H", "these keys"),
     ("I", "figures of the picture"),
@@ -20,7 +20,11 @@ const KEYS: [(&str, &str); 20] = [
     ("B", "a smaller budget"),
     ("Shift-B", "a greater one"),
     ("E", "error map"),
+    ("C", "side by side, at the mouse"),
+    ("Shift", "[ ] 1 to 9: the right side"),
+    ("X", "swap the sides"),
     ("Z", "magnify at the mouse"),
+    (". ,", "there: step, Shift a row"),
     ("K", "next kernel"),
     ("P", "next palette"),
     ("M", "next mapping of textures"),

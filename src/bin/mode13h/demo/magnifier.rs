@@ -2,7 +2,8 @@
 //! the account that the pixel under the mouse gives of itself.
 //!
 //! Faces and account are worked out in the background. The pixels are those of the frame that they belong to, so that
-//! edges and pixels agree while things move.
+//! edges and pixels agree while things move. While one steps through a triangle (`step`), the lens follows, and the
+//! registers stand above the account.
 //!
 //! The lens stands beside the mouse and the account above or below both, so that what is magnified stays in sight:
 //!
@@ -20,30 +21,32 @@ use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
 use mode13h::show::{Enlarged, Segment};
 use mode13h::vga::Vga;
+use mode13h::window::Area;
 
 use super::account;
-use super::background::Background;
+use super::background::{Background, Desk};
+use super::step::Traced;
 use crate::failure::Failure;
-use crate::overlay;
+use crate::overlay::{self, Letters, Sheet};
 
 /// Pixels that the lens is wide and high: half the frame's width, and what leaves room for the account.
 const COLUMNS: u16 = 10;
 const ROWS: u16 = 7;
 /// The place in the lens of the pixel under the mouse.
 const MIDDLE: (i32, i32) = (5, 3);
+/// What lies under the account, and how much of 255 of it is seen.
+const PAPER: (Rgb, u8) = (Rgb::new(0x08, 0x08, 0x10), 224);
+/// Pixels of the window between the account and the picture's edge.
+const MARGIN: usize = 4;
 const WIDTH: i32 = Vga::WIDTH as i32;
 const HEIGHT: i32 = Vga::HEIGHT as i32;
 /// The lens's sides on the screen.
 const LENS: (i32, i32) = (COLUMNS as i32 * Enlarged::ZOOM, ROWS as i32 * Enlarged::ZOOM);
-/// Letters in a line of the account, of 5 pixels each, and its lines.
-pub(super) const LETTERS: usize = (Vga::WIDTH - 4) / 5;
-pub(super) const LINES: usize = (HEIGHT - LENS.1) as usize / overlay::SMALL_LINE as usize;
 
 /// The colours that the lens adds, at the end of the palette.
 #[derive(Clone, Copy)]
 #[repr(u8)]
 enum Ink {
-    Paper,
     /// Beyond the frame.
     Beyond,
     Grid,
@@ -54,8 +57,7 @@ enum Ink {
 }
 
 impl Ink {
-    /// The last is for words, which take the palette's lightest.
-    const COLORS: [u32; 8] = [0x000000, 0x1B2547, 0x2B3863, 0x28C8F0, 0xD8E0FF, 0x283048, 0xFF3060, 0xFFFFFF];
+    const COLORS: [u32; 6] = [0x1B2547, 0x2B3863, 0x28C8F0, 0xD8E0FF, 0x283048, 0xFF3060];
     /// The first entry of these colours.
     const FIRST: usize = 256 - Self::COLORS.len();
 
@@ -110,6 +112,8 @@ struct Places {
 
 /// What the lens asks about.
 pub(super) struct Question {
+    /// The number of the frame.
+    pub(super) number: u64,
     pub(super) pixel: Pixel,
     pub(super) scene: Scene,
     /// One set as that which drew the frame.
@@ -119,11 +123,14 @@ pub(super) struct Question {
 }
 
 struct Answer {
+    number: u64,
     pixel: Pixel,
     cells: Cells,
     /// Edges of the faces that are seen in the lens, in pixels of the frame.
     edges: Vec<Segment>,
     account: Vec<String>,
+    /// The triangle that is seen at the pixel.
+    seen: Option<Traced>,
 }
 
 /// The frame's bytes under the lens, row by row; `None` beyond the frame.
@@ -173,7 +180,10 @@ impl Magnifier {
     ) -> Result<(), Failure> {
         let thread = match &mut self.thread {
             Some(thread) => thread,
-            none => none.insert(Background::start("magnifier", answer).map_err(Failure::work)?),
+            none => {
+                let work = |question, desk: &Desk<Question, Answer>| desk.give(answer(question));
+                none.insert(Background::start("magnifier", work).map_err(Failure::work)?)
+            }
         };
         if self.asked != Some((number, pixel)) {
             self.asked = Some((number, pixel));
@@ -185,13 +195,20 @@ impl Magnifier {
         Ok(())
     }
 
-    /// Draws the lens and the account over what `vga` shows.
-    pub(super) fn lay_over(&self, vga: &mut Vga, pixel: Pixel) {
+    /// What is seen at a pixel of the frame of this number; `None` until that is known.
+    pub(super) fn seen(&self, number: u64, pixel: Pixel) -> Option<Option<&Traced>> {
+        let answer = self.last.as_ref().filter(|answer| (answer.number, answer.pixel) == (number, pixel))?;
+        Some(answer.seen.as_ref())
+    }
+
+    /// Draws the lens over what `vga` shows, which is the frame of this number.
+    pub(super) fn lay_over(&self, vga: &mut Vga, number: u64, pixel: Pixel) {
         let last = self.last.as_ref();
-        let same = last.filter(|answer| answer.pixel == pixel);
-        let cells = same.map_or_else(|| Cells::about(pixel, vga), |answer| answer.cells.clone());
+        // What is laid over a frame may change while that stays.
+        let older = last.filter(|answer| answer.pixel == pixel && answer.number != number);
+        let cells = older.map_or_else(|| Cells::about(pixel, vga), |answer| answer.cells.clone());
         let entries = make_room(vga, &cells);
-        let Places { lens, account } = pixel.places();
+        let Places { lens, .. } = pixel.places();
         let (left, top) = pixel.corner();
 
         let enlarged = Enlarged { at: lens, columns: COLUMNS, rows: ROWS };
@@ -217,19 +234,45 @@ impl Magnifier {
 
         // Where the lens looks, on the frame, as far as the lens and the account leave room.
         outline(vga, (left - 1, top - 1), (i32::from(COLUMNS) + 2, i32::from(ROWS) + 2), lens);
-        let height = (HEIGHT - LENS.1).unsigned_abs();
-        overlay::block(vga, account, (WIDTH.unsigned_abs(), height), Ink::Paper.entry());
-        let byte = vga_byte(&cells);
+    }
+
+    /// Writes the account of a pixel below or above the lens, after lines that come first. In a small window what has no
+    /// room is left out, from the end.
+    pub(super) fn write(&self, sheet: &mut Sheet, pixel: Pixel, byte: u8, first: Vec<String>) {
+        let answer = self.last.as_ref().filter(|answer| answer.pixel == pixel);
         let waiting = [format!("({}, {}) byte {byte}", pixel.x, pixel.y), "computing".to_string()];
-        let lines = same.map_or(&waiting[..], |answer| &answer.account);
-        overlay::write_small(vga, (account.0 + 2, account.1), lines);
+        let account = answer.map_or(&waiting[..], |answer| &answer.account);
+        let picture = sheet.picture_area();
+        let Places { account: (_, top), .. } = pixel.places();
+        // Rows of the window.
+        let row = |y: i32| picture.from_frame(0.0, y as f32).1 as usize;
+        let (top, bottom) = (row(top), row(top + HEIGHT - LENS.1));
+        let area = Area { left: picture.left, top, width: picture.width, height: bottom.saturating_sub(top) };
+        sheet.block(area, PAPER.0, PAPER.1);
+        let lines: Vec<&str> = first.iter().chain(account).map(String::as_str).collect();
+        let letters = [sheet.letters(), Letters::Small]
+            .into_iter()
+            .find(|&letters| laid_out(&lines, area, letters).1 == lines.len());
+        let letters = letters.unwrap_or(Letters::Small);
+        for (top, line) in (area.top..).step_by(letters.line()).zip(laid_out(&lines, area, letters).0) {
+            sheet.text((area.left + MARGIN, top), letters, overlay::TEXT, line);
+        }
     }
 }
 
-/// The byte under the mouse.
-fn vga_byte(cells: &Cells) -> u8 {
-    // Within the lens; the pixel under the mouse is on the frame.
-    cells.0[MIDDLE.1 as usize][MIDDLE.0 as usize].unwrap_or(0)
+/// Lines of text in lines that fit between the sides of a rectangle, as long as all of one has room above its lower edge;
+/// and how many had.
+fn laid_out(lines: &[&str], area: Area, letters: Letters) -> (Vec<String>, usize) {
+    let columns = area.width.saturating_sub(2 * MARGIN) / letters.width();
+    let mut laid = Vec::new();
+    for (i, line) in lines.iter().enumerate() {
+        let wrapped = overlay::wrapped(line, columns);
+        if (laid.len() + wrapped.len()) * letters.line() > area.height {
+            return (laid, i);
+        }
+        laid.extend(wrapped);
+    }
+    (laid, lines.len())
 }
 
 /// A rectangle of the lens's own colour, one pixel thick, but not where the lens is.
@@ -272,7 +315,7 @@ fn make_room(vga: &mut Vga, cells: &Cells) -> [u8; 256] {
                     homeless.push(entry);
                 }
                 colors[entry] = shown.colors()[byte];
-                // Below 248.
+                // Below 250.
                 entries[byte] = entry as u8;
             }
             None => homeless.push(byte),
@@ -292,7 +335,7 @@ fn make_room(vga: &mut Vga, cells: &Cells) -> [u8; 256] {
 }
 
 fn answer(question: Question) -> Answer {
-    let Question { pixel, scene, mut renderer, cells } = question;
+    let Question { number, pixel, scene, mut renderer, cells } = question;
     let mut triangles = Vec::new();
     let (left, top) = pixel.corner();
     let (columns, rows) = (left..left + i32::from(COLUMNS), top..top + i32::from(ROWS));
@@ -303,8 +346,8 @@ fn answer(question: Question) -> Answer {
         }
     });
     let edges = seen_edges(&triangles, columns, rows);
-    let account = account::lines(&mut renderer, &scene, pixel);
-    Answer { pixel, cells, edges, account }
+    let (account, seen) = account::lines(&mut renderer, &scene, pixel);
+    Answer { number, pixel, cells, edges, account, seen }
 }
 
 /// Whether the rectangle about a triangle meets the view.
@@ -421,8 +464,8 @@ mod tests {
 
     #[test]
     fn the_frame_keeps_its_colours_beside_the_lens() {
-        // All entries but 20 low ones in use, the last among them; then all, where eight must give way.
-        for (first, may_change) in [(20_usize, 0), (0, 8)] {
+        // All entries but 20 low ones in use, the last among them; then all, where six must give way.
+        for (first, may_change) in [(20_usize, 0), (0, 6)] {
             let mut vga = Vga::new();
             let colors = std::array::from_fn(|i| Rgb::new((i as u8) & 0xFC, 255 - ((i as u8) & 0xFC), (i as u8) << 6));
             vga.set_palette(&Palette::from_colors(colors));

@@ -5,7 +5,9 @@
 //! | `shading` | the keys for rungs and the budget |
 //! | `motion` | what the clock and the user move |
 //! | `error_map` | how far each pixel is from the truth, over the picture |
+//! | `compare` | two shadings side by side |
 //! | `magnifier`, `account` | the pixels about the mouse, and what the one under it says of itself |
+//! | `step` | a triangle pixel by pixel, and the registers of the loop |
 //! | `figures`, `timing` | what I and H show |
 //! | `background` | a thread that the picture does not wait for |
 //! | `loader` | the inputs, loaded when they are asked for and when their files change |
@@ -14,12 +16,14 @@
 mod account;
 mod background;
 mod choice;
+mod compare;
 mod error_map;
 mod figures;
 mod loader;
 mod magnifier;
 mod motion;
 mod shading;
+mod step;
 mod timing;
 
 use std::ffi::OsString;
@@ -42,11 +46,13 @@ use crate::stage::Stage;
 use crate::switches::Switch;
 use crate::{input, output};
 use choice::Choice;
+use compare::Compare;
 use error_map::Map;
 use loader::{Inputs, Loader, Loading};
 use magnifier::{Cells, Magnifier, Pixel};
 use motion::Motion;
 use shading::Shading;
+use step::Stepper;
 use timing::Timing;
 
 /// What the help says below the options.
@@ -54,8 +60,11 @@ pub(crate) const KEYS: &str = "\
 Keys in the window: Esc quits, H shows the keys, I the plan, time, error and which rungs shade how many triangles; Space
 stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through the rungs, 1 to 9 are the first nine, 0
 is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2 shades); E lays the error map over the
-picture: how far each pixel is from light worked out at every pixel, in shades; Z magnifies what is under the mouse 16
-times, and the pixel there explains itself; K next kernel, P next palette, M next mapping of textures; L lights, O fog, T
+picture: how far each pixel is from light worked out at every pixel, in shades; C divides the window at the mouse,
+with another shading on the right, the time and the error of each above it: a click fixes the divider, Shift with [ ] and
+digits chooses the right one's shading, X swaps the two; Z magnifies what is under the mouse 16 times, and the pixel there
+explains itself: . and , step on and back through its triangle's pixels, with the registers of the loop, with Shift through
+its rows; K next kernel, P next palette, M next mapping of textures; L lights, O fog, T
 texture and D dither off and on; N shows the next INPUT and Shift-N the one before; S saves the picture, without the text
 over it, as a PNG in the current directory.
 An INPUT is loaded again when one of its files changes; what is wrong with it is said in the window.
@@ -67,6 +76,13 @@ pub(crate) struct Options {
     inputs: Vec<OsString>,
     #[command(flatten)]
     drawing: Drawing,
+}
+
+impl Options {
+    /// The inputs behind the first one.
+    pub(crate) fn more_inputs(&self) -> &[OsString] {
+        self.inputs.get(1..).unwrap_or_default()
+    }
 }
 
 /// What is said at first, and for how long, in seconds.
@@ -190,6 +206,8 @@ struct Demo {
     mouse: Pixel,
     map: Map,
     magnifier: Magnifier,
+    stepper: Stepper,
+    compare: Compare,
     /// The picture.
     vga: Vga,
     /// The picture with what is laid over it.
@@ -237,6 +255,8 @@ impl Demo {
             mouse: Pixel { x: Vga::WIDTH as u16 / 2, y: Vga::HEIGHT as u16 / 2 },
             map: Map::default(),
             magnifier: Magnifier::default(),
+            stepper: Stepper::default(),
+            compare: Compare::new(),
             vga: Vga::new(),
             shown: Vga::new(),
             number: 0,
@@ -321,6 +341,7 @@ impl Demo {
             self.chose_palette = false;
             self.motion.begin_anew();
         }
+        self.compare.renew(&self.renderer);
         self.forget_times();
         self.stats = None;
         Ok(())
@@ -397,8 +418,10 @@ impl Demo {
                 self.switched = Some((switch, switch.is_on(&self.renderer)));
                 self.forget_times();
                 switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::work)?;
+                self.compare.renew(&self.renderer);
             }
         }
+        self.follow_sides(input);
         for (key, panel) in [(Key::H, &mut self.help), (Key::I, &mut self.figures)] {
             if input.pressed(key) {
                 panel.press();
@@ -412,6 +435,11 @@ impl Demo {
             }
         }
         self.mouse = input.mouse().and_then(Pixel::at).unwrap_or(self.mouse);
+        if !self.magnifies {
+            self.stepper.stop();
+        } else if self.stepper.follow(input, self.mouse) {
+            self.motion.stop();
+        }
         Ok(if input.pressed(Key::Escape) {
             Wish::End
         } else if input.pressed(Key::N)
@@ -444,41 +472,82 @@ impl Demo {
             self.switches.retain(|(other, _)| *other != switch);
             self.switches.push((switch, is_on));
         }
-        if self.figures.is_open || self.maps {
+        // The picture itself stays as it is, for the next frame may be the same.
+        self.shown.clone_from(&self.vga);
+        self.compare.compose(&mut self.shown);
+        if self.figures.is_open || self.maps || self.compare.is_on {
+            let right = self.compare.is_on.then_some(&self.compare.right);
+            let renderers = [&self.renderer].into_iter().chain(right.map(|right| &right.renderer));
+            let shadings = [&self.shading].into_iter().chain(right.map(|right| &right.shading));
             let frame = || error_map::Frame {
-                number: self.number,
-                seconds: self.seconds,
+                snapshot: error_map::Snapshot {
+                    number: self.number,
+                    seconds: self.seconds,
+                    picture: self.shown.clone(),
+                    divider: self.compare.divider(),
+                    shadings: shadings.map(|shading| shading.to_string()).collect(),
+                },
                 scene: self.stage.scene.clone(),
-                renderer: self.renderer.set_alike(),
+                renderers: renderers.map(Renderer::set_alike).collect(),
+                mouse: self.mouse,
             };
             self.map.follow(self.number, frame)?;
         }
-        if !(self.maps || self.magnifies) {
-            return Ok(());
-        }
-        // The picture itself stays as it is, for the next frame may be the same.
-        self.shown.clone_from(&self.vga);
         if self.maps {
-            self.map.lay_over(&mut self.shown);
+            self.map.lay_over(&mut self.shown, self.number, self.compare.divider());
         }
         if self.magnifies {
-            // The account needs the room that the legend would take.
             self.magnify()?;
-        } else if self.maps {
-            self.map.legend(&mut self.shown, self.number, self.seconds);
         }
         Ok(())
+    }
+
+    /// Compares two shadings as the keys say.
+    fn follow_sides(&mut self, input: &Input) {
+        if let Some(said) = self.compare.follow(input, &self.shading, &self.renderer) {
+            // Another picture, if only of the right half.
+            self.number += 1;
+            self.say(said);
+        }
+        if input.pressed(Key::X) && self.compare.is_on {
+            self.compare.swap((&mut self.shading, &mut self.renderer, &mut self.vga, &mut self.timing));
+            self.number += 1;
+            self.chose_shading = true;
+            self.say(format!("{} | {}", self.shading, self.compare.right.shading));
+        }
+    }
+
+    /// Lays the error map's legend, the magnifier's account and what is said of two halves over the picture.
+    fn lay_over(&self, sheet: &mut Sheet) {
+        if self.magnifies {
+            // The account needs the room that the legend would take.
+            let Pixel { x, y } = self.pixel();
+            let byte = self.side(x).1.pixels()[usize::from(y) * Vga::WIDTH + usize::from(x)];
+            let registers = self.stepper.lines(self.lens_number(), byte);
+            return self.magnifier.write(sheet, self.pixel(), byte, registers);
+        }
+        if self.compare.is_on {
+            let errors = [0, 1].map(|side| self.map.errors_of(self.number, side));
+            self.compare.lay_over(sheet, (&self.shading, &self.timing), errors);
+        }
+        if self.maps && !self.help.is_open {
+            self.map.legend(sheet, self.number, self.seconds, self.compare.is_on);
+        }
     }
 
     /// What is laid over the picture in a window of this size.
     fn sheet(&mut self, size: (usize, usize)) -> Sheet {
         let mut sheet = Sheet::new(size);
+        if self.maps && !self.magnifies {
+            self.map.corner(&mut sheet, self.number);
+        }
         if let Some((notice, _)) = &self.notice {
             sheet.message(overlay::TEXT, notice);
         }
         if let Some(wrong) = &self.wrong {
             sheet.message(overlay::WRONG, wrong);
         }
+        self.lay_over(&mut sheet);
         let is_alone = !(self.help.is_open && self.figures.is_open);
         if self.figures.is_open {
             let rows = self.figures();
@@ -511,27 +580,54 @@ impl Demo {
             self.stats = Some(stats);
             self.number += 1;
         }
+        if self.compare.is_on {
+            self.compare.right.renderer.set_kernel(*self.kernels.chosen());
+            self.compare.right.renderer.set_mapping(*self.mappings.chosen());
+            let is_new = self.compare.draw(&self.stage.scene, self.seconds).map_err(Failure::work)?;
+            self.number += u64::from(is_new);
+        }
         Ok(())
     }
 
+    /// The pixel in the middle of the lens.
+    fn pixel(&self) -> Pixel {
+        self.stepper.pixel().unwrap_or(self.mouse)
+    }
+
+    /// What draws a column of the picture, and the picture that is its own.
+    fn side(&self, column: u16) -> (&Renderer, &Vga) {
+        let is_left = usize::from(column) < self.compare.divider();
+        if is_left { (&self.renderer, &self.vga) } else { (&self.compare.right.renderer, &self.compare.right.vga) }
+    }
+
+    /// The number of the picture in the lens: with the error map that.
+    fn lens_number(&self) -> u64 {
+        2 * self.number + u64::from(self.maps)
+    }
+
     fn magnify(&mut self) -> Result<(), Failure> {
-        let pixel = self.mouse;
-        // With the error map the lens shows that.
-        let number = 2 * self.number + u64::from(self.maps);
-        let question = || magnifier::Question {
+        let (number, pixel) = (self.lens_number(), self.pixel());
+        // Out of the way of what the question borrows.
+        let mut magnifier = std::mem::take(&mut self.magnifier);
+        let followed = magnifier.follow(number, pixel, || magnifier::Question {
+            number,
             pixel,
             scene: self.stage.scene.clone(),
-            renderer: self.renderer.set_alike(),
+            renderer: self.side(pixel.x).0.set_alike(),
             cells: Cells::about(pixel, &self.shown),
-        };
-        self.magnifier.follow(number, pixel, question)?;
-        self.magnifier.lay_over(&mut self.shown, pixel);
-        Ok(())
+        });
+        if let Some(seen) = magnifier.seen(number, pixel) {
+            self.stepper.take_up(number, seen);
+        }
+        let pixel = self.pixel();
+        magnifier.lay_over(&mut self.shown, number, pixel);
+        self.magnifier = magnifier;
+        followed
     }
 
     /// What was drawn last.
     fn on_screen(&self) -> &Vga {
-        if self.maps || self.magnifies { &self.shown } else { &self.vga }
+        if self.maps || self.magnifies || self.compare.is_on { &self.shown } else { &self.vga }
     }
 
     /// Saves the picture as it is on the screen, without the text and the panels over it. A failure is shown and ends nothing.

@@ -110,6 +110,12 @@ impl Motion {
         true
     }
 
+    /// Stops the clock.
+    pub(super) fn stop(&mut self) {
+        self.time = self.seconds();
+        self.since = None;
+    }
+
     /// The scene's time at the time of the last [`follow`](Self::follow). It comes from the clock and not from the frames
     /// that were drawn since.
     pub(super) fn seconds(&self) -> f64 {

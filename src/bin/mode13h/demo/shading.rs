@@ -56,10 +56,28 @@ fn wish(input: &Input) -> Option<Wish> {
     if input.pressed(Key::B) {
         return Some(if input.pressed_with_shift(Key::B) { Wish::More } else { Wish::Less });
     }
-    if input.pressed(Key::LeftBracket) || typed('[') {
+    let without_shift = |key| input.pressed(key) && !input.pressed_with_shift(key);
+    if without_shift(Key::LeftBracket) || typed('[') {
         return Some(Wish::Cheaper);
     }
-    (input.pressed(Key::RightBracket) || typed(']')).then_some(Wish::Dearer)
+    (without_shift(Key::RightBracket) || typed(']')).then_some(Wish::Dearer)
+}
+
+/// What the user wishes for the right half of a picture: the same keys with Shift.
+fn shifted_wish(input: &Input) -> Option<Wish> {
+    let typed = |character: char| input.typed().contains(character);
+    // Where digits are typed with Shift they are the left half's.
+    let is_down = |&(key, _, character): &(Key, Key, char)| input.pressed_with_shift(key) && !typed(character);
+    if let Some(rung) = DIGITS.iter().zip(Rung::ALL).find_map(|(digit, rung)| is_down(digit).then_some(rung)) {
+        return Some(Wish::Rung(rung));
+    }
+    if is_down(&(Key::Key0, Key::NumPad0, '0')) {
+        return Some(Wish::Budget);
+    }
+    if input.pressed_with_shift(Key::LeftBracket) {
+        return Some(Wish::Cheaper);
+    }
+    input.pressed_with_shift(Key::RightBracket).then_some(Wish::Dearer)
 }
 
 /// A rung and a budget, one of which is in force.
@@ -80,6 +98,13 @@ impl Shading {
     /// Does what the user wishes. Whether they wished anything.
     pub(super) fn follow(&mut self, input: &Input) -> bool {
         let wish = wish(input);
+        wish.into_iter().for_each(|wish| self.fulfil(wish));
+        wish.is_some()
+    }
+
+    /// Does what the user wishes for the right half of a picture. Whether they wished anything.
+    pub(super) fn follow_shifted(&mut self, input: &Input) -> bool {
+        let wish = shifted_wish(input);
         wish.into_iter().for_each(|wish| self.fulfil(wish));
         wish.is_some()
     }

@@ -3,7 +3,6 @@
 //! A [`Sheet`] is a list of things to draw, laid out for a window of one size. Equal sheets look the same, which tells
 //! whether a picture that stands still has to be shown again. Nothing is drawn before [`Sheet::draw`].
 
-mod frame;
 mod text;
 
 use embedded_graphics::Drawable;
@@ -16,7 +15,6 @@ use embedded_graphics::text::{Baseline, Text};
 use mode13h::palette::Rgb;
 use mode13h::window::{Area, Canvas};
 
-pub(crate) use frame::{Anchor, SMALL_LINE, block, write_at, write_small};
 use text::{Head, LEAST, Laid, laid};
 pub(crate) use text::{Letters, Row, wrapped};
 
@@ -84,11 +82,6 @@ impl Sheet {
         let (picture, letters) = (Area::within(width, height), Letters::of_window(width, height));
         let free = [(PADDING, height.saturating_sub(PADDING)); 2];
         Sheet { width, height, picture, letters, things: Vec::new(), free }
-    }
-
-    /// The window's columns and rows.
-    pub(crate) fn size(&self) -> (usize, usize) {
-        (self.width, self.height)
     }
 
     /// Where the picture stands in the window. [`Area::from_frame`] finds a pixel of the frame there.
