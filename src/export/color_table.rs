@@ -17,6 +17,7 @@ impl ColorTable {
     }
 
     /// The colours that these indices of a palette stand for, in the order of its entries.
+    #[cfg(any(feature = "gif", test))]
     pub(super) fn of_used(palette: &[Rgb; 256], indices: &[u8]) -> ColorTable {
         let used = used(indices);
         ColorTable::new(palette.iter().zip(used).filter_map(|(color, used)| used.then_some(color)))
@@ -45,6 +46,7 @@ impl ColorTable {
     }
 
     /// The first index of the table that none of these is, for pixels without a colour.
+    #[cfg(any(feature = "gif", test))]
     pub(super) fn free(&self, indices: &[u8]) -> Option<u8> {
         used(indices).iter().take(self.entries()).position(|used| !used).map(|free| free as u8)
     }

@@ -20,6 +20,7 @@ impl Area {
     }
 
     /// How many pixels it has.
+    #[cfg(feature = "gif")]
     pub(super) fn pixels(self) -> usize {
         (self.right - self.left) * (self.bottom - self.top)
     }
