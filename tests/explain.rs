@@ -398,7 +398,7 @@ fn run_the_loop(walk: &Walk, bits: u32, pixels: &mut [Option<u8>], what: &str) {
                 assert_eq!(sums, [edi, eax & mask, ebx & mask, count - 1], "{what}: pixel {number}");
             }
             // The loop begins: in a new row, or 64 pixels on.
-            None => assert!(step.x == step.start && (step.column == 0 || step.column % 64 == 0), "{what}"),
+            None => assert!(step.x == step.start && (step.column == 0 || step.column.is_multiple_of(64)), "{what}"),
         }
         at = (registers.edi, registers.eax, registers.ebx);
         left = (registers.cx > 1).then_some(registers.cx);

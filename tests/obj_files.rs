@@ -409,7 +409,7 @@ fn creases_are_what_the_naive_oracle_says() {
         }
         let place = |i: u32| mesh.positions()[i as usize];
         let normal = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| place(i));
+            let [a, b, c] = t.map(place);
             (b - a).cross(c - a).normalize_or_zero()
         };
         let normals: Vec<_> = mesh.triangles().iter().map(normal).collect();

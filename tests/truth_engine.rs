@@ -766,7 +766,7 @@ fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)
         ("inside out", body.clone().turned(), vec![turned]),
         ("inside out, with sheets", with(&[&stand, &twice]).turned(), vec![left_out, turned]),
         ("bodies apart, one inside out", joined(&[apart[0].clone(), apart[1].clone().turned()]), vec![turned]),
-        ("overlapping", joined(&[overlapping.clone()]), vec![]),
+        ("overlapping", joined(std::slice::from_ref(&overlapping)), vec![]),
         ("overlapping, inside out", joined(&[overlapping.turned()]), vec![turned]),
         ("with a cavity and what is in it", joined(&[cavity.turned(), in_cavity]), vec![]),
         ("all at once", all_over, vec![left_out, turned]),

@@ -24,7 +24,7 @@ pub(crate) struct Model {
 
 /// What INPUT says.
 pub(crate) enum Input {
-    Model(Model),
+    Model(Box<Model>),
     Scene { name: String, scene: Box<Scene> },
 }
 
@@ -32,7 +32,8 @@ impl Input {
     /// What to call it.
     pub(crate) fn name(&self) -> &str {
         match self {
-            Self::Model(Model { name, .. }) | Self::Scene { name, .. } => name,
+            Self::Model(model) => &model.name,
+            Self::Scene { name, .. } => name,
         }
     }
 }
@@ -61,7 +62,8 @@ pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Fail
                 shapes::NAMES.join(", ")
             )
         };
-        return model_or(words, options, "models are .obj files, scenes .toml", &known).map(Input::Model);
+        return model_or(words, options, "models are .obj files, scenes .toml", &known)
+            .map(|model| Input::Model(Box::new(model)));
     };
     let scene::file::Loaded { scene, warnings, files } = loaded.map_err(Failure::work)?;
     read_files::add_all(&files);

@@ -135,7 +135,8 @@ impl Drawing {
     pub(crate) fn stage(&self, input: Input) -> Result<Stage, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
         let (mut stage, usual) = match input {
-            Input::Model(Model { mesh, .. }) => {
+            Input::Model(model) => {
+                let Model { mesh, .. } = *model;
                 let textures = input::textures(&mesh);
                 let stage = Stage::of_model(mesh, self.up.unwrap_or(Up::Y).into(), &textures);
                 let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };

@@ -97,12 +97,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 
     let renderer = || drawing.renderer(kernel);
     let subject = Subject { name: &name, frames: &frames, steps: &steps, renderer: &renderer };
-    let mut settings = Settings::default();
-    settings.rungs = rungs;
+    let mut settings = Settings { rungs, host: host::host(), clock: host::clock(), ..Settings::default() };
     if let Some(seconds) = *seconds {
         (settings.seconds, settings.at_most) = (seconds, true);
     }
-    (settings.host, settings.clock) = (host::host(), host::clock());
     let times = match *seconds {
         Some(seconds) => format!("at most {seconds} s"),
         None => format!("{} to {} s", settings.seconds, 2.0 * settings.seconds),
