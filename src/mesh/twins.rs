@@ -4,6 +4,7 @@
 //! leaves out the other. Leaves are made so, each side with a normal and a surface of its own. Scans have such
 //! triangles by mistake.
 
+#[cfg(feature = "obj")]
 use alloc::vec;
 use alloc::vec::Vec;
 

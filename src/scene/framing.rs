@@ -33,6 +33,10 @@ type Row = [f64; 3];
 
 /// How an object turns.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(
+    not(any(feature = "scene-files", test)),
+    expect(dead_code, reason = "only scene files have what does not turn, or turns in any way")
+)]
 pub(super) enum Turning {
     /// It does not.
     Still,
