@@ -15,10 +15,11 @@ use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use mode13h::fixed::{I24F8, U8F8};
+use mode13h::glam::Vec3;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Drawn, Frame, Raster, Shading, Vertex};
 use mode13h::render::{Renderer, Rung, Screen};
-use mode13h::scene::Scene;
+use mode13h::scene::{Camera, Scene};
 use mode13h::vga::Vga;
 
 type Triangles = Vec<([Vertex; 3], Shading)>;
@@ -26,6 +27,7 @@ type Triangles = Vec<([Vertex; 3], Shading)>;
 /// The triangles of a mesh as the raster gets them, back to front.
 fn of_mesh(mesh: Mesh, rung: Rung) -> Triangles {
     let mut scene = Scene::showing(mesh);
+    scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
     scene.objects_mut()[0].set_angles([0.4, 0.6, 0.0]);
     let mut renderer = Renderer::new();
     renderer.set_rung(rung);

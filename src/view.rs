@@ -15,6 +15,7 @@ use glam::{Mat3, Vec3};
 use crate::fixed::{I24F8, U8F8};
 use crate::mesh::Bounds;
 use crate::raster::{Rect, Vertex};
+use crate::scene::framing::{axes, dot, unit, widen};
 use crate::scene::{Camera, Object, matrix_product};
 
 pub(crate) mod lanes;
@@ -44,24 +45,6 @@ impl Screen {
 
 type Row = [f64; 3];
 type Matrix = [Row; 3];
-
-fn dot(a: Row, b: Row) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Row, b: Row) -> Row {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn widen(v: Vec3) -> Row {
-    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
-}
-
-/// `None` for the zero vector. Finite f32 components can neither overflow nor vanish in f64.
-fn unit(v: Row) -> Option<Row> {
-    let length = libm::sqrt(dot(v, v));
-    (length > 0.0).then(|| v.map(|c| c / length))
-}
 
 /// The camera's part of the way: from the world to the screen.
 #[derive(Clone, Copy, Debug)]
@@ -96,25 +79,16 @@ impl View {
         let Some(forward) = unit([to_target[0] - eye[0], to_target[1] - eye[1], to_target[2] - eye[2]]) else {
             return Err("it looks at the point where it is");
         };
-        // The axis that is farthest from the view serves where `up` lies along it. Within 10⁻⁶ of
-        // it the direction of the product is mostly rounding of the f32 that made it.
-        let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
-        let mut axis = [0.0; 3];
-        axis[least] = 1.0;
-        let right = unit(up)
-            .map(|up| cross(forward, up))
-            .filter(|right| dot(*right, *right) > 1e-12)
-            .and_then(unit)
-            .or_else(|| unit(cross(forward, axis)))
-            .ok_or("it has no right-hand side")?;
-        let up = cross(right, forward);
+        let Some([right, up, backward]) = axes(forward, up) else {
+            return Err("it has no right-hand side");
+        };
 
         let (width, height) = (f64::from(screen.width), f64::from(screen.height));
         let [fx, fy] = screen.focal_lengths(field_of_view);
         Ok(Self {
             eye,
             rows: [right.map(|c| fx * c), up.map(|c| -fy * c), forward],
-            axes: [right, up, forward.map(|c| -c)],
+            axes: [right, up, backward],
             size: (width, height),
             // Halves of whole numbers up to 4,096: exact.
             centre: ((width / 2.0) as f32, (height / 2.0) as f32),
@@ -324,6 +298,13 @@ impl ObjectView {
         let world = unit(widen(world))?;
         let column = |j: usize| dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], world) as f32;
         Some(Vec3::new(column(0), column(1), column(2)))
+    }
+
+    /// The longer side of a pixel at a distance along the view, in units of the object's mesh.
+    pub(crate) fn longest_pixel(&self, distance: f64) -> f64 {
+        // Each of the matrix's first rows is as long as a unit of the mesh at distance 1, in pixels.
+        let [across, down, _] = self.exact.0.map(|row| libm::sqrt(dot(row, row)));
+        distance / across.min(down)
     }
 
     /// The near plane's distance.

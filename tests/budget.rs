@@ -291,7 +291,7 @@ fn a_wider_budget_lights_fewer_pixels() {
 
 #[test]
 fn the_budget_is_the_renderers_or_the_scenes() {
-    let mut scene = Scene::showing(shapes::torus(24, 12));
+    let mut scene = support::scenes::framed(shapes::torus(24, 12));
     scene.wishes.max_error = Some(3.0);
     let mut renderer = Renderer::new();
     assert_eq!(renderer.max_error(&scene), Some(3.0));
@@ -310,7 +310,7 @@ fn the_budget_is_the_renderers_or_the_scenes() {
 /// The 16.16 path has no budget, and says so.
 #[test]
 fn integers_know_no_budget() {
-    let scene = Scene::showing(shapes::torus(24, 12));
+    let scene = support::scenes::framed(shapes::torus(24, 12));
     let mut renderer = within(2.0);
     renderer.set_vertex_path(VertexPath::Integer);
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
@@ -322,14 +322,14 @@ fn integers_know_no_budget() {
 /// The plan names the budget and what came of it.
 #[test]
 fn the_plan_says_who_got_what() {
-    let scene = Scene::showing(shapes::torus(24, 12));
+    let scene = support::scenes::framed(shapes::torus(24, 12));
     let mut renderer = within(14.0);
     renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     let rows = renderer.rows(&scene);
     let row = rows.iter().find(|row| row.effect == Effect::Gouraud).expect("listed");
     assert!(row.on && row.why.starts_with("within an error budget of 14 shades"), "{}", row.why);
     assert!(row.why.contains(" gouraud-8.8-reseeded (") && row.why.contains(" not drawn"), "{}", row.why);
-    let cube = Scene::showing(shapes::cube());
+    let cube = support::scenes::framed(shapes::cube());
     renderer.draw(&cube, &mut Vga::new()).expect("a legal scene");
     let row = renderer.rows(&cube).into_iter().find(|row| row.effect == Effect::Gouraud).expect("listed");
     assert!(!row.on && row.why.contains("one shade a face is right"), "{}", row.why);

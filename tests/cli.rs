@@ -143,24 +143,54 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.png", "--scale", "3"], "a scale is 1, 2, 5x6"),
         (vec!["render", "torus", "-o", "x.png", "--scale", "16385x1"], "a scale is 1, 2, 5x6"),
         (vec!["render", "torus", "-o", "x.png", "--turn", "NaN"], "--turn"),
-        (vec!["render", "torus", "-o", "x.png", "--at", "inf"], "--at"),
+        (vec!["render", "torus", "-o", "x.png", "--at", "inf"], "--time"),
+        (vec!["render", "torus", "-o", "x.png", "--time", "soon"], "--time"),
+        (vec!["render", "torus", "-o", "x.png", "--zoom", "0"], "not a number from 0.001 to 1000"),
+        (vec!["render", "torus", "-o", "x.png", "--zoom", "nan"], "not a number from 0.001 to 1000"),
+        (vec!["render", "torus", "-o", "x.png", "--camera", "1,2"], "\"1,2\" is no point: three numbers"),
+        (vec!["render", "torus", "-o", "x.png", "--camera", "1,2,3:inf,0,0"], "\"inf,0,0\" is no point"),
+        (vec!["render", "torus", "-o", "x.png", "--camera", "-1,2,3:-1,2,3"], "it looks at the point where it is"),
+        (
+            vec!["render", "torus", "-o", "x.png", "--background", "256"],
+            "neither a colour such as '#203040' nor an entry",
+        ),
+        (vec!["render", "torus", "-o", "x.png", "--background", "#12345"], "neither a colour"),
+        (vec!["render", "torus", "-o", "x.png", "--dither=maybe"], "neither on nor off"),
         (vec!["render", "torus", "-o", "x.png", "--fps", "0"], "--fps"),
         (vec!["render", "torus", "-o", "x.png", "--turn", "9", "--fps", "9"], "x.png: both --turn and --fps"),
         (vec!["render", "torus", "-o", "x.png", "--up", "x"], "--up"),
-        (vec!["render", "torus", "-o", "x.gif", "--rgb"], "x.gif: a GIF has a palette"),
+        (vec!["render", "torus", "-o", "x.gif", "--rgb"], "x.gif: --rgb is for .png"),
         (vec!["render", "torus", "-o", "x%04d.gif"], "x%04d.gif: a film is one file"),
-        (vec!["render", "torus", "-o", "x.gif", "--fps", "60"], "x.gif: a GIF shows 0.1 to 50 frames a second, not 60"),
-        (vec!["render", "torus", "-o", "x.gif", "--fps", "0.05"], "x.gif: a GIF shows 0.1 to 50 frames a second"),
+        (
+            vec!["render", "torus", "-o", "x.gif", "--fps", "60"],
+            "x.gif: a film shows 0.1 to 50 frames a second, not 60",
+        ),
+        (vec!["render", "torus", "-o", "x.gif", "--fps", "0.05"], "x.gif: a film shows 0.1 to 50 frames a second"),
         (vec!["render", "torus", "-o", "x.gif", "--frames", "0"], "--frames"),
+        (vec!["render", "torus", "-o", "x%d-%04d.png"], "x%d-%04d.png: a name holds one number"),
+        (vec!["render", "torus", "-o", "x%d%d.png", "--frames", "2"], "x%d%d.png: a name holds one number"),
+        (
+            vec!["render", "torus", "-o", "x%d.png", "--frames", "2", "--record", "%d%d"],
+            "%d%d: a name holds one number",
+        ),
+        (vec!["render", "torus", "-o", "x.apng", "--rgb"], "x.apng: --rgb is for .png"),
+        (vec!["render", "torus", "-o", "x%d.apng"], "x%d.apng: a film is one file"),
+        (vec!["render", "torus", "-o", "-", "--fps", "60"], "-: a film shows 0.1 to 50 frames a second, not 60"),
         (vec!["render", "torus", "-o", "x.gif", "--record", "r.txt"], "r.txt: a row of records needs"),
         (vec!["palette", "grey", "-o", "x.txt"], "x.txt: "),
         (vec!["render", "torus", "-o", "x.png", "--up", "z"], "--up is for models"),
+        (vec!["render", "torus", "-o", "x.png", "--crease", "30"], "--crease is for models"),
+        (vec!["plan", "sphere", "--crease", "181"], "--crease"),
+        (vec!["cost", "sphere", "--crease", "NaN"], "--crease"),
+        (vec!["explain", "sphere", "--row", "9", "--crease", "-1"], "--crease"),
         (vec!["render", "torus", "-o", "x.png", "--mapping", "best"], "there are affine, every-16, perspective"),
         (vec!["render", "torus", "-o", "x.png", "--vertex-path", "best"], "there are float, integer"),
         (vec!["demo", "torus", "--hidden", "best"], "there are back-faces, painter"),
         (vec!["scenes", "-o", "x.toml"], "--copy"),
-        (vec!["verify", "--xml"], "--xml"),
-        (vec!["torus", "cube"], "unexpected argument 'cube' found"),
+        (vec!["verify", "--xml"], "(mode13h verify --help shows"),
+        (vec!["render", "--xml"], "(mode13h render --help shows"),
+        (vec!["--xml"], "(mode13h --help shows"),
+        (vec!["torus", "--xml"], "(mode13h --help shows"),
         (vec!["torus", "verify"], "the subcommand 'verify' cannot be used with"),
         (vec!["plan"], "<INPUT>"),
         (vec!["plan", "torus", "--at", "inf"], "--at"),
@@ -399,7 +429,11 @@ fn a_film_is_as_long_fast_large_and_colorful_as_asked_for() {
         // A shape without colours of its own is grey.
         let palette = if words.contains(&"copper") { "copper" } else { "grey" };
         let palette = builtin::by_name(palette).expect("a built-in").palette.on_dac();
-        assert_eq!(film.palette, palette.colors());
+        // Each colour once, and black where the length of the table, a power of two, leaves room.
+        let all = palette.colors();
+        let different: Vec<Rgb> = (0..256).filter(|&i| !all[..i].contains(&all[i])).map(|i| all[i]).collect();
+        let (colors, rest) = film.palette.split_at(different.len());
+        assert!(colors == different && rest.iter().all(|color| *color == Rgb::BLACK));
         let said = format!(": {} x {} pixels, {frames} frame", size.0, size.1);
         assert!(line.contains(&said), "{line}");
     }
@@ -548,6 +582,137 @@ fn a_film_of_any_length_takes_as_much_memory() {
 fn film_long_of_a_hundred_thousand_frames() {
     let mut tried = Tried::new("film_long_of_a_hundred_thousand_frames", 100_000);
     films_of(&mut tried, 100_000);
+}
+
+/// The frames of an animated PNG as they are shown, in colours.
+fn shown(bytes: &[u8]) -> Vec<Vec<Rgb>> {
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().expect("a PNG");
+    let (width, height) = (reader.info().width, reader.info().height);
+    let frames = reader.info().animation_control.expect("an animation").num_frames;
+    let channels = reader.output_color_type().0.samples();
+    let mut canvas = vec![Rgb::BLACK; (width * height) as usize];
+    let mut buffer = vec![0; canvas.len() * 4];
+    let mut all = Vec::new();
+    for _ in 0..frames {
+        reader.next_frame(&mut buffer).expect("a frame");
+        let part = *reader.info().frame_control().expect("its control");
+        assert_eq!((part.delay_num, part.delay_den), (1, 35));
+        for (i, pixel) in (0..part.width * part.height).zip(buffer.chunks(channels)) {
+            let at = (part.y_offset + i / part.width) * width + part.x_offset + i % part.width;
+            if pixel.get(3) != Some(&0) {
+                canvas[at as usize] = Rgb::new(pixel[0], pixel[1], pixel[2]);
+            }
+        }
+        all.push(canvas.clone());
+    }
+    all
+}
+
+/// The three kinds of film of a scene, one that moves and one whose palette fades, show the same.
+#[test]
+fn films_of_all_kinds_show_the_same() {
+    let directory = directory();
+    for (scene, colors) in [("cube", "indexed"), ("fade", "true colour, as the palette changes")] {
+        let words = |out| ["render", scene, "-o", out, "--frames", "5", "--scale", "64x48"];
+        assert!(run(&directory, &words("x.gif")).status.success());
+        let line = printed(&directory, &words("x.apng"));
+        let apng = read(&directory, "x.apng");
+        let bytes = apng.len();
+        assert_eq!(line, format!("x.apng: 64 x 48 pixels, 5 frames, 0.14 s, {colors}, {bytes} bytes\n"));
+        let of_gif: Vec<Vec<Rgb>> =
+            decode(&read(&directory, "x.gif")).images.into_iter().map(|image| image.shown).collect();
+        assert!(of_gif.len() == 5 && shown(&apng) == of_gif, "{scene}");
+
+        let stream = run(&directory, &words("-"));
+        assert!(stream.status.success() && stream.stderr.is_empty(), "{stream:?}");
+        let frames = stream.stdout.strip_prefix(b"YUV4MPEG2 W64 H48 F35:1 Ip A1:1 C444\n").expect("a heading");
+        let frames: Vec<&[u8]> = frames.chunks(6 + 3 * 64 * 48).collect();
+        assert_eq!(frames.len(), 5);
+        for (frame, colors) in frames.into_iter().zip(&of_gif) {
+            let planes = frame.strip_prefix(b"FRAME\n").expect("a frame");
+            for (i, color) in colors.iter().enumerate() {
+                let (r, g, b) = (f64::from(color.r), f64::from(color.g), f64::from(color.b));
+                // The luma of ITU-R BT.601; the rest is tested where it is made.
+                let y = 16.0 + 219.0 * (0.299 * r + 0.587 * g + 0.114 * b) / 255.0;
+                assert!((f64::from(planes[i]) - y).abs() <= 0.5 + 0.0015, "{color:?}: {}", planes[i]);
+            }
+        }
+    }
+}
+
+/// A model with all that it may name, and a scene with all that it may; each by every command that writes, under its own
+/// name, by links of both kinds, and as one of a row.
+#[cfg(unix)]
+#[test]
+fn f4_what_was_read_is_never_overwritten() {
+    let mut tried = Tried::new("f4_what_was_read_is_never_overwritten", 30);
+    let directory = directory();
+    let path = |name: &str| directory.path().join(name);
+    let put = |name: &str, text: &str| fs::write(path(name), text).expect("written");
+    for name in ["box.png", "row3.png", "around.png"] {
+        succeed(&directory, &["render", "cube", "-o", name]);
+    }
+    put("box.mtl", "newmtl tin\nmap_Kd box.png\nnewmtl wood\nmap_Kd row3.png\n");
+    let face = "f 1/1 2/1 3/1\n";
+    let faces = format!("usemtl tin\n{face}usemtl wood\n{face}");
+    put("box.obj", &format!("mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n{faces}"));
+    // Without texture coordinates no texture is looked at, and is the model's all the same.
+    put("bare.obj", "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\n");
+    succeed(&directory, &["palette", "grey", "-o", "own.gpl"]);
+    succeed(&directory, &["palette", "copper", "-o", "faded.pal"]);
+    put(
+        "scene.toml",
+        "palette = 'own.gpl'\nanimation = { fade = 'faded.pal' }\n\
+         objects = [{ model = 'box.obj' }, { shape = 'wall', material.environment = 'around.png' }]\n",
+    );
+    for (name, target) in [("link.png", "box.png"), ("link.gif", "row3.png"), ("link.apng", "box.png")] {
+        std::os::unix::fs::symlink(target, path(name)).expect("a link");
+    }
+    std::os::unix::fs::symlink("own.gpl", path("link.svg")).expect("a link");
+    fs::hard_link(path("box.png"), path("hard.png")).expect("a link");
+    fs::create_dir(path("study")).expect("made");
+    fs::hard_link(path("scene.toml"), path("study/report.html")).expect("a link");
+    fs::create_dir(path("of-model")).expect("made");
+    std::os::unix::fs::symlink("../box.mtl", path("of-model/cost.json")).expect("a link");
+    let names = names_in(directory.path());
+    let before: Vec<Option<Vec<u8>>> = names.iter().map(|name| fs::read(path(name)).ok()).collect();
+
+    let absolute = path("box.png").to_string_lossy().into_owned();
+    let mut all: Vec<Vec<&str>> = Vec::new();
+    for input in ["box.obj", "scene.toml"] {
+        for out in ["box.png", "./box.png", "study/../box.png", &absolute, "link.png", "hard.png", "row3.png"] {
+            all.push(vec!["render", input, "-o", out]);
+        }
+        for out in ["link.gif", "link.apng"] {
+            all.push(vec!["render", input, "-o", out, "--frames", "2"]);
+        }
+        all.push(vec!["render", input, "-o", "row%d.png", "--frames", "5"]);
+        for record in ["box.obj", "box.mtl", "box.png"] {
+            all.push(vec!["render", input, "-o", "new.png", "--record", record]);
+        }
+    }
+    for record in ["scene.toml", "own.gpl", "faded.pal", "around.png"] {
+        all.push(vec!["render", "scene.toml", "-o", "new.png", "--record", record]);
+    }
+    all.push(vec!["render", "bare.obj", "-o", "box.png"]);
+    all.push(vec!["render", "cube", "--palette", "own.gpl", "-o", "new.png", "--record", "own.gpl"]);
+    all.push(vec!["palette", "own.gpl", "-o", "own.gpl"]);
+    all.push(vec!["palette", "--from", "box.obj", "-o", "box.png"]);
+    all.push(vec!["explain", "scene.toml", "--row", "5", "-o", "link.svg"]);
+    all.push(vec!["cost", "scene.toml", "-o", "study"]);
+    all.push(vec!["cost", "box.obj", "-o", "of-model"]);
+    for words in all {
+        assert_fails(&run(&directory, &words), 2, "is not overwritten");
+        tried.add(1);
+    }
+    assert_eq!(names_in(directory.path()), names);
+    for (name, before) in names.iter().zip(before) {
+        assert!(fs::read(path(name)).ok() == before, "{name}");
+    }
+    // What was not read may be, as ever.
+    succeed(&directory, &["render", "cube", "-o", "box.png"]);
 }
 
 #[test]
@@ -729,6 +894,11 @@ fn with_no_display_one_frame_is_saved() {
         assert_eq!(names_in(directory.path()).len(), number);
     }
     assert_eq!(read(&directory, "mode13h-0002.png"), read(&directory, "mode13h-0003.png"));
+    // Of a scene that begins in the dark, the moment that it names for a picture.
+    assert!(run(&directory, &["flash"]).status.success());
+    let (palette, pixels) = indexed(&read(&directory, "mode13h-0004.png"));
+    let bright = pixels.iter().filter(|pixel| palette[usize::from(**pixel)].brightness() > 60_000).count();
+    assert!(bright > 64_000 / 2, "{bright} pixels");
 }
 
 #[test]
@@ -802,6 +972,8 @@ fn palettes_are_made_for_models() {
     assert_fails(&run(&directory, &["palette"]), 2, "<FILE|NAME>");
     assert_fails(&run(&directory, &["palette", "grey", "--from", "torus"]), 2, "--from");
     assert_fails(&run(&directory, &["palette", "grey", "--up", "z"]), 2, "--up");
+    assert_fails(&run(&directory, &["palette", "grey", "--crease", "9"]), 2, "--crease");
+    assert_fails(&run(&directory, &["palette", "--from", "sphere", "--crease", "999"]), 2, "--crease");
     assert_fails(&run(&directory, &["palette", "--from", "none.obj"]), 1, "none.obj: No such file");
     assert_fails(&run(&directory, &["palette", "--from", "torus", "-o", "x.txt"]), 2, "x.txt: ");
 }
@@ -1044,6 +1216,60 @@ fn words_have_the_last_word_over_a_scene() {
     assert!(stats(&["crate", "--at", "0.3", "--mapping", "perspective"]).1 == perspective);
 }
 
+/// Enlarged, from another place, before another colour, with dither: what is asked for is seen.
+#[test]
+fn the_view_is_as_asked_for() {
+    let directory = directory();
+    let picture = |words: &[&str]| {
+        succeed(&directory, &[&["render"], words, &["-o", "x.png"]].concat());
+        indexed(&read(&directory, "x.png"))
+    };
+    let own = picture(&["sphere"]);
+    let covered = |(_, pixels): &(Vec<Rgb>, Vec<u8>)| pixels.iter().filter(|pixel| **pixel != pixels[0]).count();
+    assert!(picture(&["sphere", "--zoom", "1"]) == own);
+    // A view twice as narrow, or from twice as far away: four times the area, and a quarter but for perspective.
+    let (larger, smaller) = (picture(&["sphere", "--zoom", "1.05"]), picture(&["sphere", "--zoom", "0.5"]));
+    let part = |of| covered(of) as f64 / covered(&own) as f64;
+    assert!((part(&larger) - 1.05 * 1.05).abs() < 0.01, "{}", part(&larger));
+    assert!((0.2..0.25).contains(&part(&smaller)), "{}", part(&smaller));
+    // From the other side a torus under a sun before it is dark; beyond it there is nothing to be seen.
+    assert!(picture(&["torus", "--camera", "0,0,-3"]) != picture(&["torus", "--camera", "0,0,3"]));
+    assert!(picture(&["torus", "--camera", "0,0,3:0,0,0"]) == picture(&["torus", "--camera", "0,0,3"]));
+    assert_eq!(covered(&picture(&["torus", "--camera", "0,0,3:0,0,9"])), 0);
+    // A scene's own camera that moves stands still then.
+    let still = |time: &'static str| picture(&["interlock", "--camera", "0,0,4", "--time", time]);
+    assert!(still("0") == still("1"));
+    for (word, color) in [("#ff0000", Rgb::new(255, 0, 0)), ("00ff00", Rgb::new(0, 255, 0))] {
+        let (palette, pixels) = picture(&["cube", "--palette", "bios", "--background", word]);
+        assert!(palette[usize::from(pixels[0])].distance_squared(color) < 100, "{word}");
+    }
+    assert_eq!(picture(&["cube", "--background", "7"]).1[0], 7);
+    let [with, without] = ["--dither", "--dither=off"].map(|word| picture(&["still", word]));
+    assert!(with == picture(&["still"]) && with != without && without == picture(&["still", "--dither=off"]));
+    // With nothing said a picture is of the moment that the scene names; a film and a turn begin at 0.
+    assert!(picture(&["flash"]) == picture(&["flash", "--time", "1.11"]));
+    assert!(picture(&["flash", "--turn", "0"]) == picture(&["flash", "--at", "0"]));
+}
+
+/// What a scene shows in the ramps of its palette keeps its colours in one that is made for it.
+#[test]
+fn a_palette_made_for_a_scene_keeps_the_colors_of_its_ramps() {
+    let directory = directory();
+    let colors = |words: &[&str]| {
+        succeed(&directory, &[&["render"], words, &["-o", "x.png", "--dither=off"]].concat());
+        let (palette, pixels) = indexed(&read(&directory, "x.png"));
+        pixels.into_iter().map(move |pixel| palette[usize::from(pixel)]).collect::<Vec<Rgb>>()
+    };
+    for scene in ["still", "interlock", "teapot", "phong"] {
+        let (own, made) = (colors(&[scene]), colors(&[scene, "--palette", "auto"]));
+        let far = own.iter().zip(&made).map(|(a, b)| f64::from(a.distance_squared(*b)).sqrt());
+        let mean = far.sum::<f64>() / own.len() as f64;
+        // A made ramp is a line from black by the colour to the highlight; the palette's own ramps are bent. In greys they
+        // would be 50 and more apart.
+        assert!(mean < 12.0, "{scene}: {mean}");
+    }
+}
+
 /// A scene has a time; `--turn` takes one that moves further in its round, and leads the camera round another.
 #[test]
 fn scenes_are_drawn_at_their_time() {
@@ -1142,4 +1368,19 @@ fn explain_refuses_what_is_not_there() {
         assert_fails(&run(&directory, &words), status, says);
     }
     assert!(names_in(directory.path()).is_empty());
+}
+
+/// Two squares that meet at 90°: with an edge between them, as flat ones have, or without.
+#[test]
+fn a_crease_angle_is_for_models() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let bent = "v 0 0 0\nv 0 0 2\nv 2 0 0\nv 2 0 2\nv 2 2 0\nv 2 2 2\nf 1 2 4 3\nf 3 4 6 5\n";
+    fs::write(directory.path().join("bent.obj"), bent).expect("written");
+    let picture = |name: &str, crease: &[&str]| {
+        succeed(&directory, &[&["render", "bent.obj", "-o", name], crease].concat());
+        fs::read(directory.path().join(name)).expect("a picture")
+    };
+    let usual = picture("usual.png", &[]);
+    assert!(usual == picture("40.png", &["--crease", "40"]) && usual == picture("0.png", &["--crease", "0"]));
+    assert!(usual != picture("180.png", &["--crease", "180"]));
 }

@@ -240,7 +240,7 @@ fn c4_odd_views_are_quiet() {
     let mut random = Random::named("c4");
     let mesh = shapes::torus(16, 8);
     while tried.more() {
-        let mut scene = Scene::showing(mesh.clone());
+        let mut scene = support::scenes::framed(mesh.clone());
         let mut place =
             || Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, random.unit() as f32 - 0.5);
         // Inside the mesh, on a vertex of it, far away.

@@ -207,6 +207,51 @@ fn where_the_picture_is_the_truth_nothing_is_off() {
     assert!((all / 4..=all).contains(&samples), "{samples} of {all}");
 }
 
+/// A study that cannot be written when it is made, though it could be when it began, is kept elsewhere.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_study_is_not_lost_when_it_cannot_be_written() {
+    let (directory, elsewhere) = (directory(), directory());
+    fs::create_dir(directory.path().join("out")).expect("made");
+    let mut child = program(&directory);
+    let child =
+        child.args(["cost", "cube", "--frames", "2", "--seconds", "0", "-o", "out"]).env("TMPDIR", elsewhere.path());
+    let child =
+        child.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().expect("started");
+    sleep(Duration::from_millis(300));
+    // A file takes the directory's place.
+    fs::remove_dir(directory.path().join("out")).expect("removed");
+    fs::write(directory.path().join("out"), "in the way").expect("written");
+    let output = child.wait_with_output().expect("it ends");
+    let lines = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(1), "{lines}");
+    let kept = elsewhere.path().join(format!(
+        "mode13h-cost-cube-{}",
+        fs::read_dir(&elsewhere)
+            .expect("a directory")
+            .next()
+            .expect("kept")
+            .expect("kept")
+            .file_name()
+            .to_string_lossy()
+            .rsplit('-')
+            .next()
+            .expect("a number")
+    ));
+    assert!(
+        lines.lines().last().is_some_and(
+            |line| line.contains("out: ") && line.ends_with(&format!("the study is in {}", kept.display()))
+        ),
+        "{lines}"
+    );
+    assert!(fs::read_to_string(kept.join("cost.json")).expect("read").contains("\"schema\": 1"));
+    let table = String::from_utf8(output.stdout).expect("text");
+    assert!(
+        table.contains("gouraud-8.8-reseeded") && table.contains(&format!("written to {}", kept.display())),
+        "{table}"
+    );
+}
+
 #[test]
 fn what_is_wrong_is_said_in_one_line() {
     let directory = directory();
@@ -217,6 +262,10 @@ fn what_is_wrong_is_said_in_one_line() {
         (&["torus", "--frames", "0"], 2, "--frames"),
         (&["nothing.toml"], 1, "nothing.toml"),
         (&["torus", "-o", "/dev/null"], 1, "/dev/null: is no directory"),
+        // Before anything is measured.
+        #[cfg(target_os = "linux")]
+        (&["torus", "-o", "/proc/a/b"], 1, "/proc/a: no file can be made in the directory /proc"),
+        (&["torus", "--seconds", "-1"], 2, "--seconds"),
     ] {
         assert_fails(&directory, &run(&directory, words), status, says);
     }
@@ -234,7 +283,15 @@ fn an_interrupted_study_leaves_nothing_behind() {
     let child = child.stderr(std::process::Stdio::piped()).spawn().expect("started");
     sleep(Duration::from_secs(2));
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("started");
-    assert_fails(&directory, &child.wait_with_output().expect("it ends"), 130, "interrupted");
+    let output = child.wait_with_output().expect("it ends");
+    let lines = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(130), "{lines}");
+    assert!(
+        lines.lines().next().is_some_and(|line| line.ends_with("then times are taken, for at most 600 s")),
+        "{lines}"
+    );
+    assert_eq!(lines.lines().last(), Some("mode13h: interrupted"));
+    assert!(output.stdout.is_empty() && fs::read_dir(&directory).expect("a directory").next().is_none());
 }
 
 /// Where valgrind is: each rung's instructions, and the times with the kernel that they were counted of.

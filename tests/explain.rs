@@ -373,3 +373,30 @@ fn what_is_not_in_the_frame_is_refused() {
     let none = Screen { width: 0, ..SCREEN };
     assert_eq!(explain::pixel(&mut Renderer::new(), &scene, none, 0, 0).expect_err("none"), ExplainError::Screen);
 }
+
+/// The level of a texel is the one that is chosen: taken from far and near rows of a floor, it rises with the distance, and
+/// of an image without levels there is none.
+#[test]
+fn the_level_of_a_texel_is_named() {
+    let scene = scenes::floor("bricks", 24.0);
+    let level = |mipmaps: bool, y: u32| {
+        let mut renderer = Renderer::new();
+        renderer.set_mipmaps(Some(mipmaps));
+        let bytes = frame(&mut renderer, &scene);
+        let pixel = explain(&mut renderer, &scene, 160, y);
+        assert_eq!(pixel.byte, bytes[y as usize * 320 + 160]);
+        let (_, seen) = pixel.front().expect("the floor");
+        let text = pixel.to_string();
+        seen.stages.iter().find_map(|stage| match *stage {
+            Stage::Texture { level, .. } => {
+                assert_eq!(text.contains(" of level "), level.is_some(), "{text}");
+                Some(level)
+            }
+            _ => None,
+        })
+    };
+    let rows = [100, 120, 150, 199];
+    let levels = rows.map(|y| level(true, y).expect("it has a texture").expect("it has levels"));
+    assert!(levels.is_sorted_by(|far, near| far >= near) && levels[0] > levels[3], "{levels:?}");
+    assert_eq!(rows.map(|y| level(false, y)), [Some(None); 4]);
+}

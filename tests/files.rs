@@ -400,7 +400,7 @@ fn load_as_a_child(path: &Path) {
     let begun = Instant::now();
     let length = fs::metadata(path).expect("a file").len();
     let mut told = vec![0];
-    let loaded = obj::load_with_progress(path, |read, total| {
+    let loaded = obj::load_with(path, &obj::Options::default(), |read, total| {
         assert_eq!(total, length);
         told.push(read);
     });

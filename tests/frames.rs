@@ -65,7 +65,7 @@ fn check(scene: &Scene, rung: Rung) -> usize {
 }
 
 fn turned(mesh: Mesh, degrees: f64) -> Scene {
-    let mut scene = Scene::showing(mesh);
+    let mut scene = support::scenes::framed(mesh);
     scene.objects_mut()[0].set_angles([0.4, degrees.to_radians(), 0.1]);
     scene
 }

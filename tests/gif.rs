@@ -56,6 +56,11 @@ impl Given {
     }
 }
 
+/// Each colour of a palette once, in the order of its entries.
+fn different(palette: &[Rgb; 256]) -> Vec<Rgb> {
+    (0..256).filter(|&i| !palette[..i].contains(&palette[i])).map(|i| palette[i]).collect()
+}
+
 fn write(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<u8>, Film) {
     let mut film = GifWriter::new(Vec::new(), scale, rate);
     for frame in frames {
@@ -93,6 +98,17 @@ fn a_frame_that_was_made_ready_for_another_place_is_still_a_frame() {
     assert!(matches!(refused, GifError::Picture(PictureError::OtherSize { .. })), "{refused}");
     let (file, _) = film.finish().expect("finished");
     assert!(file == write(&[frame], Scale::Double, FrameRate::default()).0);
+
+    // What leaves out what stays, though its rectangle is all, cannot begin a film either.
+    let before = Given { pixels: vec![7; 60 * 9], width: 60, height: 9, pitch: 60, palette: grey() };
+    let mut frame = before.clone();
+    (frame.pixels[0], frame.pixels[60 * 9 - 1]) = (90, 91);
+    (1..50).for_each(|i| frame.pixels[60 * 4 + i] = 100 + i as u8);
+    let made = GifFrame::after(&before.picture(), &frame.picture(), Scale::One, &frame.palette).expect("made");
+    let mut film = GifWriter::new(Vec::new(), Scale::One, FrameRate::default());
+    film.add_frame(made).expect("added");
+    let (file, _) = film.finish().expect("finished");
+    assert!(file == write(&[frame], Scale::One, FrameRate::default()).0);
 }
 
 /// What is seen, and for how long, in 1/100 s: what follows itself without a change is one.
@@ -115,7 +131,10 @@ fn check(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<Image>, Film) 
     let decoded = decode(&file);
     let (width, height) = scale.size(frames[0].width, frames[0].height);
     assert_eq!((decoded.width, decoded.height), (width, height));
-    assert_eq!(decoded.palette, frames[0].palette);
+    // Each colour once, and black for what is left of a table whose length is a power of two.
+    let first = different(&frames[0].palette);
+    assert_eq!(decoded.palette[..first.len()], first);
+    assert!(decoded.palette[first.len()..].iter().all(|color| *color == Rgb::BLACK));
 
     let given: Vec<Vec<Rgb>> = frames.iter().map(|frame| frame.colors(scale)).collect();
     // Of the rates here none is so near to another quotient that f64 would round it over a whole number.
@@ -146,9 +165,8 @@ fn check(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<Image>, Film) 
                 assert_eq!((left, top, left + w, top + h), (least(&xs), least(&ys), most(&xs), most(&ys)));
             }
         }
-        let is_global = |at: usize, index: u8| decoded.palette[usize::from(index)] == image.shown[at];
         let at = |k: usize| (top + k / w) * width + left + k % w;
-        let all_global = image.indices.iter().enumerate().all(|(k, &index)| is_global(at(k), index));
+        let all_global = (0..w * h).all(|k| first.contains(&image.shown[at(k)]));
         assert_eq!(image.has_palette, !all_global, "the palette of image {i}");
         assert!(image.delay >= 2);
         before = Some(image);
@@ -243,6 +261,50 @@ fn random_films_show_what_was_given() {
     assert!(images > 1_000, "{images} images");
 }
 
+/// A still ground of noise, which cannot be compressed, over which something goes: what it leaves as it was is
+/// transparent where an index is free, and written where none is.
+#[test]
+fn what_stays_is_transparent_where_that_is_shorter() {
+    let mut random = Random::named("what_stays_is_transparent_where_that_is_shorter");
+    for colors in [200, 256] {
+        let ground: Vec<u8> = (0..100 * 60).map(|_| random.within(0, colors - 1) as u8).collect();
+        let frames: Vec<Given> = (0..6)
+            .map(|i| {
+                let mut pixels = ground.clone();
+                // In opposite corners, so that the rectangle is nearly all.
+                (0..5).for_each(|k| pixels[i * 100 + k] ^= 1);
+                (0..5).for_each(|k| pixels[(59 - i) * 100 + 95 + k] ^= 1);
+                Given { pixels, width: 100, height: 60, pitch: 100, palette: grey() }
+            })
+            .collect();
+        let (images, film) = check(&frames, Scale::One, FrameRate::default());
+        let transparent: Vec<bool> = images.iter().map(|image| image.transparent > 0).collect();
+        let whole = (100 * 60 * images.len()) as u64;
+        if colors == 200 {
+            assert_eq!(transparent, [false, true, true, true, true, true]);
+            assert!(film.bytes < whole / 3, "{} bytes", film.bytes);
+        } else {
+            assert!(transparent.iter().all(|any| !any) && film.bytes > whole, "{} bytes", film.bytes);
+        }
+    }
+}
+
+/// 256 entries of 64 colours, as a DAC of 6 bits has greys: what differs in its index alone is written alike.
+#[test]
+fn indices_of_one_color_are_one() {
+    let mut random = Random::named("indices_of_one_color_are_one");
+    let palette: [Rgb; 256] = std::array::from_fn(|i| Rgb::new(i as u8 / 4 * 4, 9, 9));
+    let frames: Vec<Given> = (0..3)
+        .map(|level| {
+            let pixels = (0..50 * 40).map(|_| level * 4 + random.within(0, 3) as u8).collect();
+            Given { pixels, width: 50, height: 40, pitch: 50, palette }
+        })
+        .collect();
+    let (images, film) = check(&frames, Scale::One, FrameRate::default());
+    assert!(images.iter().all(|image| image.indices.iter().all(|index| *index == image.indices[0])));
+    assert!(film.bytes < 1_200, "{} bytes", film.bytes);
+}
+
 #[test]
 fn one_frame_is_a_film() {
     let mut random = Random::named("one_frame_is_a_film");
@@ -307,8 +369,8 @@ fn a_fade_redraws_what_fades() {
         assert_eq!((image.left, image.top, image.width, image.height), (100, 50, 30, 10));
     }
     let palettes: Vec<bool> = images.iter().map(|image| image.has_palette).collect();
-    // The last frame has the first one's colours again.
-    assert_eq!(palettes, [false, true, true, true, true, false]);
+    // Black is one of the first frame's colours, and the last frame has them all again.
+    assert_eq!(palettes, [false, true, true, false, true, false]);
     // What the DAC shows: 6 bits expanded to 8.
     assert!(images.iter().flat_map(|image| &image.shown).all(|color| *color == color.on_dac()));
 }
@@ -397,7 +459,7 @@ fn delays_add_up_to_the_exact_time() {
 #[test]
 fn rates_that_no_gif_has_are_refused() {
     for (rate, says) in [
-        (60.0, "a GIF shows 0.1 to 50 frames a second, not 60: browsers slow down anything faster"),
+        (60.0, "a film shows 0.1 to 50 frames a second, not 60: browsers slow down anything faster"),
         (50.000_000_1, "not 50.0000001: browsers"),
         (f64::INFINITY, "not inf: browsers"),
         (0.0, "not 0"),

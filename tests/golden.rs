@@ -27,7 +27,7 @@ fn golden_frames() {
     all.extend([("torus", Rung::Flat), ("torus", Rung::Gouraud88)]);
     let mut wrong = Vec::new();
     for (name, rung) in all {
-        let mut scene = Scene::showing(shapes::by_name(name).expect("listed"));
+        let mut scene = support::scenes::framed(shapes::by_name(name).expect("listed"));
         scene.palette = Some(builtin::COPPER.clone());
         scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1]);
         scene.wishes.rung = Some(rung);
@@ -45,6 +45,9 @@ fn golden_frames_of_every_scene() {
     let mut wrong = Vec::new();
     for shipped in &shipped::ALL {
         let mut scene = shipped.load().expect("a scene that loads").scene;
+        if scene.wishes.auto_palette {
+            mode13h::render::automatic(&scene).expect("a legal scene").apply(&mut scene);
+        }
         for third in 0..3_u8 {
             scene.set_time(scene.duration * f64::from(third) / 3.0);
             wrong.extend(check(&format!("scenes/{}-{third}", shipped.name), &mut tried, |kernel| draw(&scene, kernel)));

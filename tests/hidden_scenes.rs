@@ -108,7 +108,7 @@ fn d4_all_four_methods_on_convex_meshes() {
     let fine = [shapes::sphere(128, 64), shapes::sphere(300, 20), shapes::cone(300, 1)].map(|mesh| (mesh, 60));
     for (mesh, poses) in shipped.into_iter().chain(fine) {
         for _ in 0..poses {
-            let mut scene = Scene::showing(mesh.clone());
+            let mut scene = support::scenes::framed(mesh.clone());
             let object = &mut scene.objects_mut()[0];
             object.scale = (0.01_f64.powf(random.unit())) as f32;
             object.set_angles([(); 3].map(|()| random.unit() * 6.3));
@@ -209,7 +209,7 @@ fn a_model_of_your_own() {
     #[cfg(feature = "obj")]
     {
         let mut tried = Tried::new("hidden_a_model_of_your_own", 360);
-        let mut scene = Scene::showing(mode13h::mesh::obj::load(&path).expect("a model").mesh);
+        let mut scene = support::scenes::framed(mode13h::mesh::obj::load(&path).expect("a model").mesh);
         for degrees in 0..360 {
             scene.objects_mut()[0].set_angles([0.2, f64::from(degrees).to_radians(), 0.0]);
             assert_eq!(by(&scene, HiddenSurfaces::DepthBuffer), by(&scene, HiddenSurfaces::ScanLine), "{degrees}°");

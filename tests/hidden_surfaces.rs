@@ -430,11 +430,11 @@ fn depths_of_earlier_frames_do_not_count() {
     use mode13h::glam::Vec3;
     use mode13h::mesh::shapes;
     use mode13h::render::{HiddenSurfaces, Renderer, Rung};
-    use mode13h::scene::{Object, Scene};
+    use mode13h::scene::Object;
     use mode13h::vga::Vga;
 
     let mut random = Random::named("depths of earlier frames");
-    let mut scene = Scene::showing(shapes::torus(24, 12));
+    let mut scene = support::scenes::framed(shapes::torus(24, 12));
     let second = scene.add(Object::new(shapes::by_name("cube").expect("listed")));
     let (mut again, mut machine) = (Renderer::new(), Vga::new());
     again.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));

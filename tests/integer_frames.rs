@@ -48,7 +48,7 @@ fn distance(p: (f64, f64), a: (f64, f64), b: (f64, f64)) -> f64 {
 }
 
 /// How far apart the two paths' vertices may be on the screen, either way, in pixels, in a scene made by
-/// [`Scene::showing`] whose angles both have exactly.
+/// [`framed`](support::scenes::framed) whose angles both have exactly.
 ///
 /// An entry of the 16.16 matrix is off by half a unit and a hair of what the scale's mantissa makes of 1, so a
 /// vertex at r or nearer to the pivot by 0.51 · √3 · r / 65,536 along each axis, all else by less than
@@ -146,7 +146,7 @@ fn both_paths_draw_the_same_picture() {
     let mut random = Random::named("both paths");
     let (mut compared, mut differ) = (0, 0);
     for name in shapes::NAMES {
-        let mut scene = Scene::showing(shapes::by_name(name).expect("listed"));
+        let mut scene = support::scenes::framed(shapes::by_name(name).expect("listed"));
         scene.add_light(Light::sun([-1.0, 0.3, 0.2]).with_intensity(0.5));
         for _ in 0..24 {
             let angles = [0; 3].map(|_| steps(random.within(-70_000, 70_000)));
@@ -166,7 +166,7 @@ fn both_paths_draw_the_same_picture() {
 #[test]
 fn the_plan_names_the_rung_that_is_drawn() {
     let mut tried = Tried::new("the_plan_names_the_rung_that_is_drawn", 2 * 10);
-    let scene = Scene::showing(shapes::torus(12, 8));
+    let scene = support::scenes::framed(shapes::torus(12, 8));
     for path in VertexPath::ALL {
         for rung in Rung::ALL {
             let drawn = if path == VertexPath::Integer { rung.in_integers() } else { rung };
@@ -232,7 +232,7 @@ fn t3_a_full_turn_returns_to_the_picture() {
     let mut tried = Tried::new("t3_a_full_turn_returns_to_the_picture", 3 * 300);
     let mut random = Random::named("t3");
     let mut renderer = renderer(VertexPath::Integer);
-    let mut scene = Scene::showing(shapes::torus(24, 12));
+    let mut scene = support::scenes::framed(shapes::torus(24, 12));
     let mut different = std::collections::HashSet::new();
     for axis in 0..3 {
         for _ in 0..300 {
@@ -258,7 +258,7 @@ fn t3_a_full_turn_returns_to_the_picture() {
 fn t2_steps_of_any_size() {
     let mut tried = Tried::new("t2_steps_of_any_size", 9);
     let mut renderer = renderer(VertexPath::Integer);
-    let mut scene = Scene::showing(shapes::cube());
+    let mut scene = support::scenes::framed(shapes::cube());
     let id = 0;
     let first = frame(&mut renderer, &scene);
     for step in [0.0, -0.0, 0.1, -0.1, 3600.0, -3600.0, 86_400.0, 1e9] {
@@ -279,7 +279,7 @@ fn t2_steps_of_any_size() {
 fn t1_frame_n_after_n_frames_is_frame_n_at_once() {
     let mut tried = Tried::new("t1_frame_n_after_n_frames_is_frame_n_at_once", 500);
     let mut renderer = renderer(VertexPath::Integer);
-    let mut scene = Scene::showing(shapes::torus(12, 8));
+    let mut scene = support::scenes::framed(shapes::torus(12, 8));
     for n in 0..500 {
         scene.objects_mut()[0].set_angles([steps(3 * n), steps(131 * n), steps(-7 * n)]);
         let after_all_before = frame(&mut renderer, &scene);
@@ -293,7 +293,7 @@ fn e1_a_changed_mesh_is_converted_anew() {
     let mut tried = Tried::new("e1_a_changed_mesh_is_converted_anew", 40);
     let mut kept = renderer(VertexPath::Integer);
     let mut random = Random::named("e1 integer");
-    let mut scene = Scene::showing(shapes::cube());
+    let mut scene = support::scenes::framed(shapes::cube());
     while tried.more() {
         // A mesh that is dropped leaves its address to the next.
         let mesh = match random.within(0, 3) {
@@ -318,7 +318,7 @@ fn e1_a_changed_mesh_is_converted_anew() {
 #[test]
 fn r8_bands_on_the_integer_path_give_the_bytes_of_the_whole() {
     let mut tried = Tried::new("r8_bands_on_the_integer_path_give_the_bytes_of_the_whole", 25);
-    let mut scene = Scene::showing(shapes::torus(24, 12));
+    let mut scene = support::scenes::framed(shapes::torus(24, 12));
     scene.objects_mut()[0].set_angles([steps(5000), steps(900), 0.0]);
     let mut renderer = renderer(VertexPath::Integer);
     let whole = frame(&mut renderer, &scene);
@@ -468,7 +468,7 @@ fn c4_odd_views_on_the_integer_path_are_quiet() {
     let mut random = Random::named("c4 integer");
     let mesh = shapes::torus(16, 8);
     while tried.more() {
-        let mut scene = Scene::showing(mesh.clone());
+        let mut scene = support::scenes::framed(mesh.clone());
         let mut place =
             || Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, random.unit() as f32 - 0.5);
         scene.camera.eye = place() * 2.0;
@@ -488,7 +488,7 @@ fn c4_odd_views_on_the_integer_path_are_quiet() {
 fn scenes_that_16_16_cannot_hold_are_refused_and_others_drawn() {
     let mut tried = Tried::new("scenes_that_16_16_cannot_hold_are_refused_and_others_drawn", 12);
     let mut check = |change: fn(&mut Scene), expected: fn(&Result<Stats, RenderError>) -> bool| {
-        let mut scene = Scene::showing(shapes::cube());
+        let mut scene = support::scenes::framed(shapes::cube());
         change(&mut scene);
         let mut vga = Vga::new();
         vga.poke(0, 99);

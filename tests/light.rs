@@ -114,7 +114,7 @@ fn r9_what_is_not_finite_is_refused_where_it_enters() {
             ("the ambient light", |scene, bad| scene.ambient = bad.y),
         ];
         for (what, change) in changes {
-            let mut scene = Scene::showing(shapes::cube());
+            let mut scene = support::scenes::framed(shapes::cube());
             change(&mut scene, at);
             let mut vga = Vga::new();
             vga.pixels_mut().fill(7);
@@ -129,10 +129,10 @@ fn r9_what_is_not_finite_is_refused_where_it_enters() {
         assert!(Mesh::with_normals(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![at; 3], vec![[0, 1, 2]]).is_err());
         assert_eq!(I24F8::round_from_f32(bad), None);
     }
-    let mut scene = Scene::showing(shapes::cube());
+    let mut scene = support::scenes::framed(shapes::cube());
     scene.lights_mut()[0] = Light::sun([0.0; 3]);
     assert!(matches!(Renderer::new().draw(&scene, &mut Vga::new()), Err(RenderError::Light { index: 0, .. })));
-    scene = Scene::showing(shapes::cube());
+    scene = support::scenes::framed(shapes::cube());
     scene.camera.target = scene.camera.eye;
     assert!(matches!(Renderer::new().draw(&scene, &mut Vga::new()), Err(RenderError::Camera(_))));
 }

@@ -282,7 +282,7 @@ fn given_normals_are_made_unit() {
 }
 
 #[test]
-fn closed_needs_each_edge_once_each_way() {
+fn closed_needs_each_edge_as_often_each_way() {
     let cube = box8();
     let with = |change: fn(&mut Vec<[u32; 3]>)| {
         let mut triangles = cube.triangles().to_vec();
@@ -292,12 +292,19 @@ fn closed_needs_each_edge_once_each_way() {
     assert!(cube.is_closed() && cube.is_convex() && cube.volume() == 8.0);
     assert!(!with(|t| t.truncate(11)).is_closed());
     assert!(!with(|t| t[3].swap(0, 1)).is_closed());
-    assert!(!with(|t| t.extend_from_within(..)).is_closed());
+    // All faces twice: each edge twice each way. And two of them the other way as well.
+    let twice = with(|t| t.extend_from_within(..));
+    assert!(twice.is_closed() && twice.is_outward() && !twice.is_convex());
+    let thrice = with(|t| t.extend([[t[0][0], t[0][2], t[0][1]], t[0]]));
+    assert!(thrice.is_closed() && thrice.is_outward() && !thrice.is_convex());
+    assert_eq!((0..14).filter(|&t| thrice.has_twin(t)).collect::<Vec<_>>(), [0, 12, 13]);
+    assert!(!with(|t| t.push([t[0][0], t[0][2], t[0][1]])).is_closed());
     // A line changes nothing.
     assert!(with(|t| t.push([0, 0, 1])).is_convex());
     // Inside out: closed, but its faces look inward.
     let inside_out = with(|t| t.iter_mut().for_each(|t| t.swap(0, 1)));
-    assert!(inside_out.is_closed() && !inside_out.is_convex() && inside_out.volume() == -8.0);
+    assert!(inside_out.is_closed() && !inside_out.is_outward() && !inside_out.is_convex());
+    assert!(inside_out.volume() == -8.0);
 }
 
 /// All edges of a double pyramid over a pentagram are convex, but it winds twice about its axis.

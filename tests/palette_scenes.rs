@@ -358,3 +358,24 @@ fn a_round_is_seen_and_not_its_beginning() {
     let all: f32 = seen.iter().flatten().map(|seen| seen.area).sum();
     assert!((all - 1.0).abs() < 1e-5);
 }
+
+/// An image of two colours that is far away has their mean, and so has the palette that is made for it.
+#[test]
+fn an_automatic_palette_has_the_colours_of_mipmaps() {
+    use mode13h::scene::Shared;
+    use mode13h::texture::Texture;
+
+    let (red, green) = (Rgb::new(255, 0, 0), Rgb::new(0, 255, 0));
+    let texture = Texture::from_rgb(2, 2, &[red, green, green, red]).expect("a texture");
+    let mut scene = support::scenes::floor("checker", 24.0 * 32.0);
+    scene.objects_mut()[0].materials[0].texture = Some(Shared::new(texture));
+    let farthest = |scene: &Scene| {
+        let palette = automatic(scene).expect("a legal scene").palette.on_dac();
+        let mean = Rgb::new(128, 128, 0);
+        palette.color(palette.nearest(mean)).distance_squared(mean)
+    };
+    // A level of the DAC is 4 units, of which three are off.
+    assert!(farthest(&scene) <= 3 * 16, "{}", farthest(&scene));
+    scene.wishes.mipmaps = Some(false);
+    assert!(farthest(&scene) > 3 * 64 * 64, "{}", farthest(&scene));
+}

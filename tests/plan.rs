@@ -4,7 +4,8 @@
 mod support;
 
 use mode13h::plan::{Class, Effect};
-use mode13h::render::{HiddenSurfaces, Renderer, Rung, Screen, Stats};
+use mode13h::raster::Frame;
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, Screen, Stats};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use support::scenes;
@@ -30,7 +31,7 @@ fn called_for(renderer: &Renderer, effect: Effect) -> bool {
 
 #[test]
 fn every_effect_is_called_for_by_a_scene_and_not_by_another() {
-    let mut tried = Tried::new("every_effect_is_called_for_by_a_scene_and_not_by_another", 19);
+    let mut tried = Tried::new("every_effect_is_called_for_by_a_scene_and_not_by_another", 20);
     let plans: Vec<_> = scenes::all().iter().map(|(_, scene)| draw(scene, |_| ()).2).collect();
     for effect in Effect::ALL {
         let on = plans.iter().filter(|renderer| called_for(renderer, effect)).count();
@@ -124,6 +125,7 @@ fn counters_of_what_is_off_are_zero() {
             (Effect::Transform, stats.vertices),
             (Effect::Texture, if on(Effect::EnvironmentMap) { 0 } else { u64::from(raster.textured) }),
             (Effect::EnvironmentMap, if on(Effect::Texture) { 0 } else { u64::from(raster.textured) }),
+            (Effect::Mipmaps, u64::from(raster.mipmapped)),
             (Effect::Fog, u64::from(raster.fogged)),
             (Effect::Transparency, u64::from(raster.blended)),
             (Effect::RgbChannels, u64::from(raster.mixed)),
@@ -368,7 +370,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
     let mut random = support::random::Random::named("perspective");
     while tried.more() {
         let pieces = random.within(1, 24) as u32;
-        let mut scene = Scene::showing(mode13h::mesh::shapes::wall(pieces, pieces));
+        let mut scene = support::scenes::framed(mode13h::mesh::shapes::wall(pieces, pieces));
         let object = &mut scene.objects_mut()[0];
         object.set_angles([random.unit() - 0.5, 2.4 * random.unit() - 1.2, random.unit()]);
         let material = &mut object.materials[0];
@@ -390,6 +392,175 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
             let apart = f64::from(apart.min(64 - apart));
             // The coordinates are apart by so much; the texels that they lie in by less than one more.
             assert!(apart < texels + 1.0, "{apart} texels apart, {texels:.3} printed");
+        }
+    }
+}
+
+/// Proof (a) for mipmaps: where no more than a texel goes to a pixel they change no byte, though levels are chosen.
+#[test]
+fn mipmaps_change_nothing_of_what_is_near() {
+    let mut tried = Tried::new("mipmaps_change_nothing_of_what_is_near", 60);
+    for name in mode13h::texture::Texture::NAMES {
+        let texture = mode13h::scene::Shared::new(mode13h::texture::Texture::by_name(name).expect("listed"));
+        for (angle, mapping) in
+            [0.0, 0.3, -0.6].into_iter().flat_map(|angle| Mapping::ALL.map(|mapping| (angle, mapping)))
+        {
+            for channels in [false, true] {
+                let mut scene = Scene::showing(mode13h::mesh::shapes::wall(3, 3));
+                let object = &mut scene.objects_mut()[0];
+                object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
+                object.set_angles([angle, angle, angle]);
+                // 128 texels on √2 units: even the far corners of the tilted wall have fewer than √2 to a pixel.
+                scene.camera.eye = mode13h::glam::Vec3::new(0.0, 0.0, 0.8);
+                if channels {
+                    scene.add_light(mode13h::light::Light::sun([1.0, 0.2, 1.0]).with_color([1.0, 0.5, 0.2]));
+                }
+                let frame = |mipmaps| {
+                    draw(&scene, |renderer| {
+                        renderer.set_mapping(Some(mapping));
+                        renderer.set_mipmaps(Some(mipmaps));
+                    })
+                };
+                let ((without, off, _), (with, on, _)) = (frame(false), frame(true));
+                assert!(off.raster.mipmapped == 0 && on.raster.mipmapped == on.raster.textured, "{name}: {on}");
+                assert!(on.raster.textured > 10_000, "{name}: {on}");
+                assert_eq!(differing(&with, &without), 0, "{name}, turned by {angle}, {mapping}");
+                tried.add(1);
+            }
+        }
+    }
+}
+
+/// The plan's figure against what is drawn: of a wall that is parallel to the screen every level 0 is seen as long as it
+/// is below √2, and none where it is above.
+#[test]
+fn mipmaps_are_called_for_by_texels_to_a_pixel() {
+    let mut tried = Tried::new("mipmaps_are_called_for_by_texels_to_a_pixel", 40);
+    let texture = mode13h::scene::Shared::new(mode13h::texture::Texture::by_name("bricks").expect("listed"));
+    for step in 0..40 {
+        let mut scene = Scene::showing(mode13h::mesh::shapes::wall(1, 1));
+        let object = &mut scene.objects_mut()[0];
+        object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
+        let distance = 0.4 * 1.12_f32.powi(step);
+        scene.camera.eye = mode13h::glam::Vec3::new(0.0, 0.0, distance);
+        let (bytes, _, renderer) = draw(&scene, |_| ());
+        let decision = *renderer.plan().objects()[0].decision(Effect::Mipmaps);
+        let mode13h::plan::Why::TexelsToPixel { texels } = decision.why else { panic!("the plan says how many") };
+        // 128 texels on √2 units; a pixel is higher than it is wide, and half of the screen's rows lie within half the angle.
+        let expected =
+            8192.0_f64.sqrt() * f64::from(distance) * (f64::from(scene.camera.field_of_view) / 2.0).tan() / 100.0;
+        assert!((expected..expected * 1.01).contains(&texels), "{texels} texels to a pixel, not {expected}");
+        assert_eq!(decision.on, texels > core::f64::consts::FRAC_1_SQRT_2);
+        let without = draw(&scene, |renderer| renderer.set_mipmaps(Some(false))).0;
+        // The corners' coordinates and places are rounded.
+        if texels < 1.40 {
+            assert_eq!(differing(&bytes, &without), 0, "{texels} texels to a pixel");
+        } else if texels > 1.44 {
+            assert!(differing(&bytes, &without) > 0, "{texels} texels to a pixel");
+        }
+        tried.add(1);
+    }
+}
+
+/// What is asked for has the last word, the renderer's before the scene's; where there is no texture there is nothing.
+#[test]
+fn mipmaps_are_asked_for() {
+    let mut floor = scenes::floor("bricks", 8.0);
+    let is_on = |scene: &Scene, asked| {
+        let (_, _, renderer) = draw(scene, |renderer| renderer.set_mipmaps(asked));
+        called_for(&renderer, Effect::Mipmaps)
+    };
+    assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [true, true, false]);
+    floor.wishes.mipmaps = Some(false);
+    assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [false, true, false]);
+    let mut plain = scenes::showing("torus");
+    plain.wishes.mipmaps = Some(true);
+    assert!(!is_on(&plain, Some(true)));
+    let why = draw(&floor, |_| ()).2.plan().rows(&floor);
+    let why = why.iter().find(|row| row.effect == Effect::Mipmaps).expect("a row");
+    assert_eq!((why.on, why.why.as_str()), (false, "asked for"));
+}
+
+/// The colours of a frame as the card shows them.
+fn shown(scene: &Scene, bytes: &[u8]) -> Vec<[f64; 3]> {
+    let palette = scene.palette.as_ref().unwrap_or(&mode13h::palette::BIOS).on_dac();
+    let color = |byte: &u8| palette.color(*byte);
+    bytes.iter().map(color).map(|c| [c.r, c.g, c.b].map(f64::from)).collect()
+}
+
+/// How far two pictures are apart: the root of the mean square over the pixels and their channels.
+fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    let squares: f64 = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b) * (a - b)).sum();
+    (squares / (3 * a.len()) as f64).sqrt()
+}
+
+/// What mipmaps are for. Right is the mean of what is drawn where each pixel is 16 × 16 smaller ones. Over small steps of the
+/// camera every frame is nearer to that with mipmaps than without, and so is its change from the frame before: it sparkles
+/// less. By how much is printed.
+#[test]
+fn mipmaps_lessen_sparkle_on_every_frame() {
+    const SIZE: (usize, usize) = (128, 80);
+    const PART: usize = 16;
+    const FRAMES: u8 = 4;
+    let mut tried = Tried::new("mipmaps_lessen_sparkle_on_every_frame", 4 * 3 * u64::from(FRAMES));
+    let grey = |scene: &mut Scene| {
+        let ramp = core::array::from_fn(|i| mode13h::palette::Rgb::from_dac([(i / 4) as u8; 3]));
+        scene.palette = Some(mode13h::palette::Palette::from_colors(ramp));
+    };
+    let cube = |scene: &mut Scene| {
+        scene.palette = Some(mode13h::palette::builtin::by_name("cube").expect("built in").palette.clone());
+    };
+    let palettes: [&dyn Fn(&mut Scene); 2] = [&grey, &cube];
+    for (image, times, paint) in [("checker", 24.0), ("bricks", 24.0)]
+        .into_iter()
+        .flat_map(|(image, times)| palettes.map(|paint| (image, times, paint)))
+    {
+        for mapping in Mapping::ALL {
+            let mut scene = scenes::floor(image, times);
+            paint(&mut scene);
+            let mut before: Option<[Vec<[f64; 3]>; 3]> = None;
+            let (mut errors, mut sparkles) = ([0.0; 2], [0.0; 2]);
+            for frame in 0..FRAMES {
+                let moved = f32::from(frame) * 0.01;
+                scene.camera.eye.x = moved;
+                scene.camera.target.x = moved;
+                let picture = |part: usize, mipmaps: bool| {
+                    let (width, height) = (SIZE.0 * part, SIZE.1 * part);
+                    let mut bytes = vec![0; width * height];
+                    let frame = Frame::new(&mut bytes, width as u32, height as u32, width).expect("a legal frame");
+                    let mut renderer = Renderer::new();
+                    // What is right follows the perspective; linear mapping is wrong in other ways, too.
+                    renderer.set_mapping(Some(if part > 1 { Mapping::Perspective } else { mapping }));
+                    renderer.set_mipmaps(Some(mipmaps));
+                    renderer.draw_frame(&scene, frame, (5, 6)).expect("a legal scene");
+                    shown(&scene, &bytes)
+                };
+                let fine = picture(PART, false);
+                let mean = |i: usize| {
+                    let (x, y) = (i % SIZE.0 * PART, i / SIZE.0 * PART);
+                    let rows = (y..y + PART).flat_map(|y| &fine[y * SIZE.0 * PART + x..][..PART]);
+                    let sums = rows.fold([0.0; 3], |sums, color| [0, 1, 2].map(|i| sums[i] + color[i]));
+                    sums.map(|sum| sum / (PART * PART) as f64)
+                };
+                let right: Vec<[f64; 3]> = (0..SIZE.0 * SIZE.1).map(mean).collect();
+                let [without, with] = [false, true].map(|mipmaps| picture(1, mipmaps));
+                let error = [&without, &with].map(|picture| apart(picture, &right));
+                assert!(error[1] < error[0], "{image}, {mapping}, frame {frame}: {error:?}");
+                if let Some([old_right, old_without, old_with]) = &before {
+                    let change = |new: &[[f64; 3]], old: &[[f64; 3]]| -> Vec<[f64; 3]> {
+                        new.iter().zip(old).map(|(new, old)| [0, 1, 2].map(|i| new[i] - old[i])).collect()
+                    };
+                    let right = change(&right, old_right);
+                    let sparkle =
+                        [(&without, old_without), (&with, old_with)].map(|(new, old)| apart(&change(new, old), &right));
+                    assert!(sparkle[1] < sparkle[0], "{image}, {mapping}, frame {frame}: {sparkle:?}");
+                    sparkles = [0, 1].map(|i| sparkles[i] + sparkle[i] / f64::from(FRAMES - 1));
+                }
+                errors = [0, 1].map(|i| errors[i] + error[i] / f64::from(FRAMES));
+                before = Some([right, without, with]);
+                tried.add(1);
+            }
+            println!("{image}, {mapping}: error {errors:.1?}, sparkle {sparkles:.1?}");
         }
     }
 }

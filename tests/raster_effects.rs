@@ -12,7 +12,9 @@ use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
 use mode13h::span::dither::BAYER;
 use mode13h::span::lit::{Lanes, Points};
-use mode13h::span::texture::Texels;
+use mode13h::span::texture::{Levels, Texels};
+use num_bigint::BigInt;
+use num_traits::Signed;
 use support::oracle::{self, Point, Ratio};
 use support::random::Random;
 use support::triangles;
@@ -28,6 +30,8 @@ struct Stock {
     tables: Vec<Box<[u8; 65_536]>>,
     map: Box<[u8; 32_768]>,
     texels: Vec<u8>,
+    /// Of all levels from 1 on.
+    levels: Vec<u8>,
 }
 
 impl Stock {
@@ -38,6 +42,7 @@ impl Stock {
             tables: (0..6).map(|_| table(bytes(65_536))).collect(),
             map: bytes(32_768).into_boxed_slice().try_into().expect("32 KiB"),
             texels: bytes(65_536),
+            levels: bytes(21_845),
         }
     }
 }
@@ -101,6 +106,10 @@ fn look<'a>(random: &mut Random, stock: &'a Stock) -> Look<'a> {
         dither: dither.then_some(&BAYER),
         texture: texture.then(|| TextureLook {
             texels: Texels::new(&stock.texels[..1 << (ubits + vbits)], ubits, vbits).expect("as many texels"),
+            levels: (random.within(0, 1) == 0).then(|| {
+                let levels = &stock.levels[..Levels::length(ubits, vbits)];
+                Levels::new(levels, ubits, vbits).expect("as many texels")
+            }),
             mapping: random.one_of(&[TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective]),
             tables: [&stock.tables[1], &stock.tables[2], &stock.tables[3]],
         }),
@@ -180,28 +189,60 @@ impl<'a> Naive<'a> {
         ((nearest.max(least).min(most) + i128::from(threshold)) >> 8) as u8
     }
 
-    fn texel(&self, texture: &TextureLook<'_>, seed: i32, last: i32, x: i32, y: i32) -> u8 {
+    /// The level of a mipmap at a pixel: of the coordinates' exact derivatives, with the depth in whole sixteenths.
+    fn level(&self, mapping: TextureMapping, last: u32, x: i32, y: i32) -> u32 {
+        let depths = if mapping == TextureMapping::Affine { [1; 3] } else { self.depths() };
+        let at = |values: [i128; 3], x, y| oracle::interpolate(self.corners, values, oracle::centre(x, y)).n;
+        // By the quotient's rule, times the divisor's square.
+        let derivative = |of: usize, dx: i32, dy: i32| {
+            let products = [0, 1, 2].map(|i| depths[i] * i128::from(self.attributes[i].texture[of]));
+            let (n, d) = (at(products, x, y), at(depths, x, y));
+            let (dn, dd) = (at(products, x + dx, y + dy) - n, at(depths, x + dx, y + dy) - d);
+            (BigInt::from(dn) * d - BigInt::from(n) * dd).abs()
+        };
+        let length = |dx: i32, dy: i32| -> BigInt {
+            let (u, v) = (derivative(0, dx, dy), derivative(1, dx, dy));
+            2 * u.clone().max(v.clone()) + u.min(v)
+        };
+        let doubled = length(1, 0).max(length(0, 1));
+        let depth = oracle::interpolate(self.corners, depths, oracle::centre(x, y));
+        let sixteenths = Ratio { n: 16 * depth.n, d: depth.d }.floor();
+        let square = BigInt::from(sixteenths * depth.d).pow(2);
+        // doubled / 2 / (square / 256) / 65,536 is at most 181/128 texels of the level.
+        (0..last).find(|level| &doubled * 64 <= ((&square * 181) << level) * 256).unwrap_or(last)
+    }
+
+    fn texel(&self, texture: &TextureLook<'_>, seed: i32, last: i32, x: i32, y: i32) -> (u32, u8) {
+        let from = seed + (x - seed) / 16 * 16;
+        let middle = (from + 8).min(last).max(from);
+        let level = texture.levels.map_or(0, |levels| self.level(texture.mapping, levels.last(), middle, y));
+        let size = 1 << level;
+        let of_level = |exact: Ratio| Ratio { d: exact.d * size, ..exact };
         let [u, v] = [0, 1].map(|i| {
             let values = self.attributes.each_ref().map(|a| i128::from(a.texture[i]));
+            let on_face = |x: i32| of_level(self.on_face(values, x, y)).floor();
             match texture.mapping {
                 TextureMapping::Affine => {
-                    let exact = oracle::interpolate(self.corners, values, oracle::centre(seed, y));
-                    let step = oracle::per_pixel(self.corners, values);
+                    let exact = of_level(oracle::interpolate(self.corners, values, oracle::centre(seed, y)));
+                    let step = of_level(oracle::per_pixel(self.corners, values));
                     let start = if step.n < 0 { exact.ceil() } else { exact.floor() };
                     start + step.truncate() * i128::from(x - seed)
                 }
-                TextureMapping::Perspective => self.on_face(values, x, y).floor(),
+                TextureMapping::Perspective => on_face(x),
                 TextureMapping::Every16 => {
-                    let from = seed + (x - seed) / 16 * 16;
                     let to = (from + 16).min(last).max(from);
-                    let (a, b) = (self.on_face(values, from, y).floor(), self.on_face(values, to, y).floor());
+                    let (a, b) = (on_face(from), on_face(to));
                     let step = if to == from { 0 } else { (b - a) / i128::from(to - from) };
                     a + step * i128::from(x - from)
                 }
             }
         });
+        let texels = match texture.levels {
+            Some(levels) if level > 0 => levels.get(level).expect("a level"),
+            _ => texture.texels,
+        };
         let whole = |c: i128, size: usize| c.div_euclid(65_536).rem_euclid(size as i128) as u32 * 65_536;
-        texture.texels.at(whole(u, texture.texels.width()), whole(v, texture.texels.height()))
+        (level, texels.at(whole(u, texels.width()), whole(v, texels.height())))
     }
 
     /// The byte of a pixel in a row whose first and last covered pixels inside the frame are `first` and
@@ -236,7 +277,7 @@ impl<'a> Naive<'a> {
             }
             _ => i128::from(lit_at(x) >> shift),
         };
-        let textured = self.look.texture.as_ref().map(|texture| (texture, self.texel(texture, seed, last, x, y)));
+        let textured = self.look.texture.as_ref().map(|texture| (texture, self.texel(texture, seed, last, x, y).1));
         let mut byte = if let Some(mix) = &self.look.channels {
             let mut channels = match self.look.source {
                 Source::Lit(_) | Source::LitEvery(..) => [0, 1, 2].map(|i| byte_of(lit(i), 128)),
@@ -560,5 +601,110 @@ fn quadratic_shades_of_any_numbers_stay_within() {
                 );
             }
         }
+    }
+}
+
+/// Every level is chosen for many pixels, by every mapping: texels are the numbers of their levels, and each is the
+/// oracle's, with every kernel, whole or in bands.
+#[test]
+fn levels_are_the_definition() {
+    let mut tried = Tried::new("levels_are_the_definition", 600);
+    let mut random = Random::named("levels");
+    let (ubits, vbits) = (8_u32, 7_u32);
+    let zeros = vec![0; 1 << (ubits + vbits)];
+    let mut numbers = Vec::new();
+    for level in 1..=8_u32 {
+        let bits = ubits.saturating_sub(level) + vbits.saturating_sub(level);
+        numbers.extend(vec![level as u8; 1 << bits]);
+    }
+    let levels = Levels::new(&numbers, ubits, vbits).expect("as many texels");
+    let texel: Box<[u8; 65_536]> = (0..=255).flat_map(|_| 0..=255).collect::<Vec<u8>>().try_into().expect("64 KiB");
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let mappings = [TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective];
+    let mut pixels = [[0_u32; 9]; 3];
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let reach = 1 << random.within(20, 30);
+        let attributes = [0; 3].map(|_| Attributes {
+            texture: [0; 2].map(|_| random.within(-reach, reach) as i32),
+            ..Attributes::default()
+        });
+        let i = random.within(0, 2) as usize;
+        let texture = TextureLook {
+            texels: Texels::new(&zeros, ubits, vbits).expect("as many texels"),
+            levels: Some(levels),
+            mapping: mappings[i],
+            tables: [&texel; 3],
+        };
+        let look = Look { texture: Some(texture), ..Look::PLAIN };
+        let naive = Naive::new(&vertices, &attributes, &look);
+        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+            continue;
+        }
+        let bytes = draw(&vertices, &attributes, &look, None, kernels[0]);
+        for kernel in &kernels[1..] {
+            assert_eq!(draw(&vertices, &attributes, &look, None, *kernel), bytes, "{kernel}: {vertices:?}");
+        }
+        let cut = random.within(1, i64::from(HEIGHT) - 1) as u32;
+        let mut bands = vec![BEFORE; (WIDTH * HEIGHT) as usize];
+        for rows in [0..cut, cut..HEIGHT as u32] {
+            let band = &mut bands[(rows.start as usize * WIDTH as usize)..(rows.end as usize * WIDTH as usize)];
+            let frame = Frame::band(band, WIDTH as u32, HEIGHT as u32, WIDTH as usize, rows).expect("a legal band");
+            Raster::new(frame).triangle_with_effects(&vertices, &attributes, &look);
+        }
+        assert_eq!(bands, bytes, "{vertices:?}, in bands");
+        for y in 0..HEIGHT {
+            let row: Vec<i32> = (0..WIDTH).filter(|&x| oracle::covers(naive.corners, oracle::centre(x, y))).collect();
+            let (Some(&first), Some(&last)) = (row.first(), row.last()) else { continue };
+            for x in row {
+                let (level, _) = naive.texel(&texture, first + (x - first) / 64 * 64, last, x, y);
+                let is = bytes[(y * WIDTH + x) as usize];
+                assert_eq!(u32::from(is), level, "({x}, {y}): {vertices:?}, {attributes:?}, {:?}", mappings[i]);
+                pixels[i][level as usize] += 1;
+            }
+        }
+    }
+    assert!(pixels.iter().flatten().all(|&count| count > 0), "{pixels:?}");
+}
+
+/// The level is right by what it is for: between the pixel chosen for and the next in either direction coordinates are no
+/// farther apart than √2 texels of the level, as an exact length, and the level before would not do, but for the 12 % that
+/// a length may be taken too long. On triangles that face the eye, whose coordinates change alike everywhere.
+#[test]
+fn a_level_is_the_least_whose_texels_are_as_large_as_pixels() {
+    let mut tried = Tried::new("a_level_is_the_least_whose_texels_are_as_large_as_pixels", 2_000);
+    let mut random = Random::named("levels, lengths");
+    let numbers: Vec<u8> = (1..=8_u8).flat_map(|level| vec![level; 1 << (2 * (8 - u32::from(level)))]).collect();
+    let zeros = vec![0; 65_536];
+    let texel: Box<[u8; 65_536]> = (0..=255).flat_map(|_| 0..=255).collect::<Vec<u8>>().try_into().expect("64 KiB");
+    let depth = 1 << 20;
+    let at = |x: i32, y: i32| Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::default(), depth);
+    let vertices = [at(0, 0), at(40 * 256, 0), at(0, 40 * 256)].map(|vertex| vertex.expect("in range"));
+    while tried.more() {
+        let mapping = random.one_of(&[TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective]);
+        // Texels to a pixel, some turn of the image, and a shear.
+        let reach = 0.05 * 2_f64.powf(13.0 * random.unit());
+        let [across, down] = [0, 1].map(|_| {
+            let (sin, cos) = (6.3 * random.unit()).sin_cos();
+            [reach * cos, reach * random.unit() * sin]
+        });
+        let corner = |part: f64, step: [f64; 2]| step.map(|texels| (40.0 * part * texels * 65_536.0).round() as i32);
+        let attributes = [[0; 2], corner(1.0, across), corner(1.0, down)]
+            .map(|texture| Attributes { texture, ..Attributes::default() });
+        let look = Look {
+            texture: Some(TextureLook {
+                texels: Texels::new(&zeros, 8, 8).expect("as many texels"),
+                levels: Some(Levels::new(&numbers, 8, 8).expect("as many texels")),
+                mapping,
+                tables: [&texel; 3],
+            }),
+            ..Look::PLAIN
+        };
+        let level = draw(&vertices, &attributes, &look, None, Kernel::PORTABLE)[0];
+        let longest = across[0].hypot(across[1]).max(down[0].hypot(down[1]));
+        // 181/128 is √2 but for 1 part in 10⁴; coordinates are rounded to a part in 2²¹ of a texel a pixel.
+        let (most, slack) = (std::f64::consts::SQRT_2 * f64::from(1 << level), 1.001);
+        assert!(level == 8 || longest <= most * slack, "{longest} texels to a pixel, level {level}");
+        assert!(level == 0 || 1.119 * longest * slack > most / 2.0, "{longest} texels to a pixel, level {level}");
     }
 }

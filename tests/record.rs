@@ -18,7 +18,7 @@ use support::triangles::triangle;
 use support::tried::Tried;
 
 fn scene(name: &str) -> Scene {
-    let mut scene = Scene::showing(shapes::by_name(name).expect("listed"));
+    let mut scene = support::scenes::framed(shapes::by_name(name).expect("listed"));
     scene.objects_mut()[0].set_angles([0.4, 0.5, 0.1]);
     scene
 }

@@ -23,6 +23,7 @@ fn open(path: &FilePath) -> io::Result<Box<dyn BufRead>> {
         ("folder/triangle.obj", TRIANGLE.as_bytes()),
         ("folder/broken.obj", &b"v 0 0 0\nf 1 2 3\n"[..]),
         ("folder/with_texture.obj", b"mtllib it.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl tin\nf 1/1 2/1 3/1\n"),
+        ("folder/bent.obj", b"v 0 0 0\nv 0 0 2\nv 2 0 0\nv 2 0 2\nv 2 2 0\nv 2 2 2\nf 1 2 4 3\nf 3 4 6 5\n"),
         ("folder/two.mtl", b"newmtl tin\nnewmtl oak\n"),
         ("folder/it.mtl", b"newmtl tin\nmap_Kd none.png\n"),
         ("folder/broken.pal", b"JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n"),
@@ -43,7 +44,7 @@ fn loaded(text: &str) -> Result<Loaded, SceneError> {
 #[track_caller]
 fn scene(text: &str) -> Scene {
     match loaded(text) {
-        Ok(Loaded { scene, warnings }) => {
+        Ok(Loaded { scene, warnings, .. }) => {
             assert!(warnings.is_empty(), "{warnings:?}");
             scene
         }
@@ -213,6 +214,11 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (
             list("objects = [{ shape = 'toroid' }]"),
             "1:22: key `objects[0].shape`: \"toroid\": unknown shape; there are ",
+        ),
+        (object("crease = 9"), "3:10: key `objects[0].crease`: only a model has a crease angle"),
+        (
+            list("[[objects]]\nmodel = 'bent.obj'\ncrease = 181"),
+            "3:10: key `objects[0].crease`: expected a number of degrees from 0 to 180, found 181",
         ),
         (object("up-axis = 'x'"), "3:11: key `objects[0].up-axis`: \"x\": unknown axis; there are y, z"),
         (
@@ -396,6 +402,7 @@ fn f3_files_that_are_missing_or_no_files() {
 const EVERYTHING: &str = r##"
 name = "everything"
 duration = 8
+picture = -2.5
 ambient = 0.25
 background = "#102030"
 palette = "two.hex"
@@ -455,6 +462,7 @@ path = { circle = { centre = [0, 1, 0], radius = 2, axis = "z", start = 90 }, ro
 fn what_a_file_says_is_what_is_in_the_scene() {
     let scene = scene(EVERYTHING);
     assert_eq!((scene.name.as_str(), scene.duration, scene.ambient), ("everything", 8.0, 0.25));
+    assert_eq!(scene.picture, -2.5);
     let palette = scene.palette.as_ref().expect("a palette");
     assert_eq!(palette.color(0), Rgb::new(0x10, 0x20, 0x30));
     assert_eq!((scene.background, scene.background_color), (0, Some(Rgb::new(0x10, 0x20, 0x30))));
@@ -550,22 +558,31 @@ fn what_is_left_out_has_a_default() {
     assert!(scene.lights().is_empty() && scene.motions.is_empty() && scene.palette_animation.is_none());
     let torus = &scene.objects()[0];
     assert_eq!((torus.name.as_str(), torus.scale, torus.position), ("torus", 1.0, Vec3::ZERO));
-    // Seen as a model is.
-    assert_eq!(scene.camera, mode13h::scene::Camera::framing(Vec3::ZERO, torus.mesh().bounds().radius));
+    assert_eq!(scene.picture, 0.0);
+    // It fills nine tenths of the picture's height: of its front, at the depth z, the point that is seen highest.
+    let reach = |p: &Vec3| p.y / ((scene.camera.eye.z - p.z) * (scene.camera.field_of_view / 2.0).tan());
+    let highest = torus.mesh().positions().iter().map(reach).fold(0.0, f32::max);
+    assert!((highest - 0.9).abs() < 1e-5, "{highest}");
 }
 
 #[test]
 fn a_camera_without_a_place_sees_everything() {
     let text = "objects = [{ shape = 'sphere', positions = [[3, 0, 0], [-1, 0, 0]], scale = 0.5 }]\n";
     let Scene { camera, .. } = scene(text);
-    // Both lie within a sphere of radius 2.5 about (1, 0, 0), but for rounding of the mesh.
-    let expected = mode13h::scene::Camera::framing(Vec3::X, 2.5);
-    assert!((camera.eye - expected.eye).length() < 1e-4, "{} {}", camera.eye, expected.eye);
+    // Two spheres of radius 1/2 beside each other fill the width: an edge of the view touches the sphere about (3, 0, 0)
+    // where its slope is k, 9/10 of 4/3 of the tangent of 20°, so k · z = 2 + √(1 + k²)/2, but for the mesh's facets.
+    let k = 1.2 * 20_f32.to_radians().tan();
+    let expected = Vec3::new(1.0, 0.0, (2.0 + (1.0 + k * k).sqrt() / 2.0) / k);
+    assert!((camera.eye - expected).length() < 2e-2, "{} {expected}", camera.eye);
+    assert_eq!((camera.target.x, camera.target.y), (camera.eye.x, camera.eye.y));
+    // One behind the other: the nearer one fills the height.
     let from = scene(&format!("{text}camera.from = [2, 0, 0]")).camera;
-    assert!((from.eye - Vec3::new(1.0 + expected.eye.z, 0.0, 0.0)).length() < 1e-4, "{}", from.eye);
+    let half = (0.9 * 20_f32.to_radians().tan()).atan();
+    let expected = Vec3::new(3.0 + 0.5 / half.sin(), 0.0, 0.0);
+    assert!((from.eye - expected).length() < 2e-2, "{} {expected}", from.eye);
     // A wider view from nearer.
     let wide = scene(&format!("{text}camera.field-of-view = 90")).camera;
-    assert!(wide.eye.z > 2.5 && wide.eye.z < expected.eye.z);
+    assert!(wide.eye.z > 0.5 && wide.eye.z < camera.eye.z);
     // What moves is in the picture wherever it goes.
     let moving = "objects = [{ shape = 'sphere', path = { line = [[3, 0, 0], [-1, 0, 0]] }, scale = 0.5 }]";
     assert_eq!(scene(moving).camera, camera);
@@ -593,7 +610,7 @@ fn a_palette_is_a_name_a_file_or_left_to_the_program() {
 
 #[test]
 fn a_texture_of_a_model_that_is_missing_is_a_warning() {
-    let Loaded { scene, warnings } = loaded("objects = [{ model = 'with_texture.obj' }]").expect("a scene");
+    let Loaded { scene, warnings, .. } = loaded("objects = [{ model = 'with_texture.obj' }]").expect("a scene");
     assert_eq!(warnings, ["folder/none.png: entity not found; material tin is drawn without it"]);
     assert!(scene.objects()[0].materials[0].texture.is_none());
 }
@@ -672,6 +689,47 @@ fn every_key_is_documented() {
     assert!(tried > 50, "{tried} keys");
 }
 
+/// What the documents show as a line of a scene, in a sentence or in a block, is one.
+#[test]
+fn keys_in_documents_are_keys_of_scenes() {
+    let scenes = include_str!("../scenes/README.md");
+    // Its tables are those of the parser (see above).
+    let known: Vec<&str> = scenes.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
+    let mut tried = 0;
+    for document in [include_str!("../README.md"), scenes] {
+        let mut language = "";
+        for line in document.lines() {
+            if let Some(opened) = line.trim_start().strip_prefix("```") {
+                language = opened;
+                continue;
+            }
+            // In a block of a scene each line; elsewhere what stands between backquotes.
+            let quoted: Vec<&str> = match language {
+                "toml" => vec![line],
+                "" => line.split('`').skip(1).step_by(2).collect(),
+                _ => continue,
+            };
+            let assigned = quoted.into_iter().filter_map(|code| code.split_once(" = "));
+            for (key, _) in
+                assigned.filter(|(key, _)| key.chars().all(|c| c.is_ascii_alphabetic() || "-_.".contains(c)))
+            {
+                assert!(key.split('.').all(|key| known.contains(&key)), "{key} in: {line}");
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried >= 10, "{tried} keys");
+}
+
+/// The rungs that the document lists are those that there are.
+#[test]
+fn every_rung_is_documented() {
+    let row = include_str!("../scenes/README.md").lines().find(|line| line.starts_with("| `rung` |")).expect("a row");
+    let named = row.split('|').nth(2).expect("the values");
+    let all = mode13h::render::Rung::ALL.map(|rung| format!("`\"{rung}\"`"));
+    assert_eq!(named.trim(), all.join(", "));
+}
+
 #[test]
 fn a_texture_is_a_png_beside_the_scene() {
     let directory = tempfile::tempdir().expect("a directory");
@@ -689,7 +747,7 @@ fn a_texture_is_a_png_beside_the_scene() {
     let path = directory.path().join("scene.toml");
     let text = "objects = [{ shape = 'wall', material.texture = 'flag.png' }, { model = 'it.obj' }]";
     fs::write(&path, text).expect("written");
-    let Loaded { scene, warnings } = file::load(&path).expect("a scene");
+    let Loaded { scene, warnings, .. } = file::load(&path).expect("a scene");
     assert_eq!(warnings, [""; 0]);
     for object in scene.objects() {
         let texture = object.materials[0].texture.as_ref().expect("a texture");
@@ -703,4 +761,15 @@ fn textures_repeat_as_often_as_a_scene_says() {
     let scene = scene("objects = [{ shape = 'wall', subdivisions = [1, 1], repeat = [3, 0.5] }]");
     let texcoords = scene.objects()[0].mesh().texcoords().expect("a wall has them");
     assert_eq!(texcoords[3], mode13h::glam::Vec2::new(3.0, 0.5));
+}
+
+/// Each angle makes a mesh of its own of a model; the same one is shared.
+#[test]
+fn models_have_the_crease_angle_that_is_asked_for() {
+    let text = "objects = [{ model = 'bent.obj' }, { model = 'bent.obj', crease = 90 }, { model = 'bent.obj', crease = 89.9 }, \
+                { model = 'bent.obj', crease = 90 }]";
+    let scene = scene(text);
+    let vertices: Vec<usize> = scene.objects().iter().map(|object| object.mesh().positions().len()).collect();
+    assert_eq!(vertices, [8, 6, 8, 6]);
+    assert!(std::ptr::eq(scene.objects()[1].mesh(), scene.objects()[3].mesh()));
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use mode13h::export;
 use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung};
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, automatic};
 use mode13h::scene::Scene;
 use mode13h::scene::file::Loaded;
 use mode13h::scene::shipped::{self, Shipped};
@@ -22,8 +22,11 @@ fn scene(name: &str) -> Scene {
 }
 
 fn load(shipped: &Shipped) -> Scene {
-    let Loaded { scene, warnings } = shipped.load().unwrap_or_else(|error| panic!("{error}"));
+    let Loaded { mut scene, warnings, .. } = shipped.load().unwrap_or_else(|error| panic!("{error}"));
     assert!(warnings.is_empty(), "{warnings:?}");
+    if scene.wishes.auto_palette {
+        automatic(&scene).expect("a legal scene").apply(&mut scene);
+    }
     scene
 }
 
@@ -210,9 +213,6 @@ fn painters_order_and_affine_mapping_show_their_faults() {
     }
 }
 
-/// Of a scene's round, when its picture is taken.
-const MOMENT: f64 = 0.37;
-
 fn kept(shipped: &Shipped) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/pictures/{}.png", shipped.name))
 }
@@ -235,7 +235,7 @@ fn the_pictures_of_the_readme_are_those_that_are_drawn() {
     let write = std::env::var_os("MODE13H_PICTURES").is_some_and(|value| value == "write");
     for shipped in &shipped::ALL {
         let mut scene = load(shipped);
-        scene.set_time(MOMENT * scene.duration);
+        scene.set_time(scene.picture);
         let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
         renderer.draw(&scene, &mut vga).expect("a legal scene");
         if write {

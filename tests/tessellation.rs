@@ -146,7 +146,7 @@ fn r12_creases_are_split_alike_from_both_sides() {
 
 /// A wall of two triangles with a highlight in its middle.
 fn highlight() -> Scene {
-    let mut scene = Scene::showing(shapes::wall(1, 1));
+    let mut scene = support::scenes::framed(shapes::wall(1, 1));
     *scene.lights_mut() = vec![Light::sun([0.0, 0.0, 1.0])];
     scene.ambient = 0.0;
     let material = Material { diffuse: 0.2, specular: 0.8, shininess: 120.0, ..Material::white() };
@@ -191,7 +191,7 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
         let axis = Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, random.unit() as f32 - 0.5);
         let normals = vec![axis, -axis, if random.within(0, 1) == 0 { axis } else { -axis }];
         let mesh = Mesh::with_normals(positions.clone(), normals, vec![[0, 1, 2]]).expect("sound");
-        let mut scene = Scene::showing(mesh);
+        let mut scene = support::scenes::framed(mesh);
         scene.palette = mode13h::palette::builtin::by_name("materials-4x64").map(|found| found.palette.clone());
         let material = &mut scene.objects_mut()[0].materials[0];
         (material.specular, material.shininess) = (0.7, 10.0);
@@ -220,7 +220,7 @@ fn p2_dither_keeps_to_its_ramp() {
         for (first, entries) in
             [(1, 1_u16), (7, 2), (64, 64), (192, 64), (255, 1)].into_iter().flat_map(|ramp| [ramp; 5])
         {
-            let mut scene = Scene::showing(shapes::torus(12, 8));
+            let mut scene = support::scenes::framed(shapes::torus(12, 8));
             scene.wishes.dither = true;
             scene.wishes.rung = Some(rung);
             scene.objects_mut()[0].set_angles([0.3, tried_angle(first, entries), 0.2]);

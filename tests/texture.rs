@@ -6,7 +6,8 @@ mod support;
 use std::collections::BTreeSet;
 
 use mode13h::palette::{Palette, Rgb, Table};
-use mode13h::texture::{Texture, TextureError};
+use mode13h::span::texture::{Levels, TexelsError};
+use mode13h::texture::{Mipmap, Texture, TextureError};
 use support::random::Random;
 use support::tried::Tried;
 
@@ -245,6 +246,93 @@ fn a_plain_texture_has_one_colour() {
             color.distance_squared(palette.color(shade)) <= shown.color(shade).distance_squared(palette.color(shade))
         );
     }
+}
+
+// Mipmaps
+
+/// The mean colour of the texels that texel (x, y) of a level stands for, every texel of level 0 being looked at.
+fn naive_mean(texture: &Texture, level: u32, (x, y): (u32, u32)) -> Rgb {
+    let is_part = |at: u32, side: u32, of: u32| at >> level.min(side.ilog2()) == of;
+    let (width, height) = (texture.width(), texture.height());
+    let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let parts: Vec<Rgb> =
+        all.filter(|&(i, j)| is_part(i, width, x) && is_part(j, height, y)).map(|(i, j)| texture.color(i, j)).collect();
+    let mean = |channel: fn(&Rgb) -> u8| {
+        let sum: usize = parts.iter().map(|color| usize::from(channel(color))).sum();
+        ((2 * sum + parts.len()) / (2 * parts.len())) as u8
+    };
+    Rgb::new(mean(|c| c.r), mean(|c| c.g), mean(|c| c.b))
+}
+
+/// Every texel of every level has, of all colours that texels have, one that is nearest to the mean; the mean itself
+/// where there is room for all means. Level 0 keeps its texels and their colours.
+#[test]
+fn levels_are_means_of_colours() {
+    let mut tried = Tried::new("levels_are_means_of_colours", 120);
+    let mut random = Random::named("mipmaps");
+    let (mut exact, mut matched) = (0, 0);
+    while tried.more() {
+        let (width, height) = (1 << random.within(0, 5), 1 << random.within(0, 5));
+        let count = random.one_of(&[1, 2, 20, 250, 256]);
+        let few: Vec<Rgb> = (0..count).map(|_| random_color(&mut random)).collect();
+        let pixels: Vec<Rgb> = (0..width * height).map(|_| random.one_of(&few)).collect();
+        let texture = Texture::from_rgb(width, height, &pixels).expect("a texture");
+        let mipmap = Mipmap::new(&texture);
+        let own = used_colors(&texture);
+        let mut shown = BTreeSet::new();
+        for &texel in texture.texels() {
+            assert_eq!(mipmap.colors()[usize::from(texel)], texture.colors()[usize::from(texel)]);
+            shown.insert(mipmap.colors()[usize::from(texel)]);
+        }
+        let mut wanted = own.clone();
+        let mut texels = Vec::new();
+        let last = mipmap.levels().last();
+        assert_eq!(1 << last, width.max(height));
+        for level in 1..=last {
+            let of_level = mipmap.levels().get(level).expect("a level");
+            let (columns, rows) = ((width >> level).max(1), (height >> level).max(1));
+            assert_eq!((of_level.width(), of_level.height()), (columns as usize, rows as usize));
+            for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))) {
+                let color = mipmap.colors()[usize::from(of_level.at(x << 16, y << 16))];
+                let mean = naive_mean(&texture, level, (x, y));
+                wanted.insert(mean);
+                shown.insert(color);
+                texels.push((color, mean));
+            }
+        }
+        for (color, mean) in texels {
+            let nearest = shown.iter().map(|other| other.distance_squared(mean)).min();
+            assert_eq!(Some(color.distance_squared(mean)), nearest, "{width} × {height}, {count} colours");
+            if wanted.len() <= 256 {
+                assert_eq!(color, mean, "{width} × {height}, {count} colours");
+                exact += 1;
+            } else {
+                matched += 1;
+            }
+        }
+    }
+    assert!(exact > 1_000 && matched > 1_000, "{exact} means shown, {matched} matched");
+}
+
+/// A third of a square texture's texels, whatever its size, and no level of one texel.
+#[test]
+fn levels_take_a_third_of_the_texels() {
+    for bits in 0..=8 {
+        assert_eq!(Levels::length(bits, bits), (1 << (2 * bits)) / 3);
+        assert_eq!(Levels::deepest(bits, 0), bits);
+    }
+    assert_eq!(Levels::length(3, 1), 4 + 2 + 1);
+    let bytes: Vec<u8> = (0..7).collect();
+    let levels = Levels::new(&bytes, 3, 1).expect("4 × 1, 2 × 1 and 1 × 1");
+    assert!(levels.get(0).is_none());
+    let row = |level: u32| -> Vec<u8> {
+        let texels = levels.get(level).expect("a level");
+        (0..texels.width() as u32).map(|x| texels.at(x << 16, 0)).collect()
+    };
+    assert_eq!([1, 2, 3, 9].map(row), [vec![0, 1, 2, 3], vec![4, 5], vec![6], vec![6]]);
+    assert_eq!(Levels::new(&bytes, 9, 1).unwrap_err(), TexelsError::Bits { ubits: 9, vbits: 1 });
+    assert_eq!(Levels::new(&bytes, 2, 1).unwrap_err(), TexelsError::Length { is: 7, should: 3 });
+    assert!(Levels::new(&[], 0, 0).expect("none").get(1).is_none());
 }
 
 // Files

@@ -59,7 +59,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
         renderer
     };
     let mesh = Shared::new(shapes::torus(8, 6));
-    let (mut renderer, mut scene) = (fresh(), Scene::showing(mesh.clone()));
+    let (mut renderer, mut scene) = (fresh(), support::scenes::framed(mesh.clone()));
     let mut bytes = [0; (WIDTH * HEIGHT) as usize];
     // A step as any other: its sums are rounded.
     let step = 0.013_7;
@@ -73,7 +73,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
         draw(&mut renderer, &scene, &mut bytes);
         moved += u32::from(bytes != before);
 
-        let mut at_once = Scene::showing(mesh.clone());
+        let mut at_once = support::scenes::framed(mesh.clone());
         at_once.objects_mut()[0].set_angles([f64::from(n) * STEPS[0], f64::from(n) * STEPS[1], 0.0]);
         let mut expected = [n as u8; (WIDTH * HEIGHT) as usize];
         draw(&mut fresh(), &at_once, &mut expected);
@@ -127,14 +127,14 @@ fn t1_long_a_million_frames_on_the_integer_path() {
 fn t2_any_step_is_defined() {
     let mut tried = Tried::new("t2_any_step_is_defined", 12);
     let turned = |angle: f64| {
-        let mut scene = Scene::showing(shapes::cube());
+        let mut scene = support::scenes::framed(shapes::cube());
         scene.objects_mut()[0].rotate_y(angle);
         frame(&mut Renderer::new(), &scene)
     };
     assert_eq!(turned(0.0), turned(-0.0));
     // An hour at 90° a second is 900 whole turns.
     let hour = 3600.0 * std::f64::consts::FRAC_PI_2;
-    let mut scene = Scene::showing(shapes::cube());
+    let mut scene = support::scenes::framed(shapes::cube());
     scene.objects_mut()[0].rotate_y(hour);
     scene.objects_mut()[0].rotate_y(-hour);
     assert_eq!(frame(&mut Renderer::new(), &scene), turned(0.0), "there and back");

@@ -10,7 +10,7 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
 use mode13h::raster::FrameError;
-use mode13h::render::{RenderError, Renderer, Rung, VertexPath};
+use mode13h::render::{HiddenSurfaces, RenderError, Renderer, Rung, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::span::channels::mix_cube;
 use mode13h::truth::{Bound, ErrorMap, Face, Screen, Shown, Standard, Truth, TruthFrame};
@@ -385,7 +385,7 @@ fn the_probe_shows_what_is_drawn() {
 /// Channels are mixed to the colour that is drawn.
 #[test]
 fn the_probe_shows_the_channels_that_are_mixed() {
-    let mut scene = Scene::showing(shapes::sphere(24, 12));
+    let mut scene = support::scenes::framed(shapes::sphere(24, 12));
     scene.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
     scene.add_light(Light::sun([-1.0, 0.5, 0.5]).with_color([1.0, 0.4, 0.2]));
     // A body without colour beside one that has one: both are on channels, as the light is coloured.
@@ -439,7 +439,7 @@ fn the_probe_numbers_any_triangle() {
     assert!(errors.cover_errors() * 100 < errors.figures().count as usize, "{}", errors.cover_errors());
     assert!(errors.figures().max <= 1.0, "{:?}", errors.figures());
 
-    let mut torus = Scene::showing(shapes::torus(48, 24));
+    let mut torus = support::scenes::framed(shapes::torus(48, 24));
     torus.objects_mut()[0].set_angles([0.3, 0.2, 0.0]);
     let mut probe = probe(Rung::Gouraud88Reseeded);
     probe.renderer().set_vertex_path(VertexPath::Integer);
@@ -451,7 +451,7 @@ fn the_probe_numbers_any_triangle() {
 
 #[test]
 fn the_probe_refuses_what_cannot_be_drawn() {
-    let scene = Scene::showing(shapes::cube());
+    let scene = support::scenes::framed(shapes::cube());
     let mut probe = Probe::new(Renderer::new());
     let too_wide = Screen { width: 5_000, ..SCREEN };
     assert!(matches!(probe.look(&scene, too_wide), Err(ProbeError::Screen(FrameError::Size { width: 5_000, .. }))));
@@ -541,6 +541,370 @@ fn n7_a_highlight_inside_a_face_against_the_truth() {
             let figures = figures("wall", &scene, rung, Standard::Lit);
             assert!(figures.max > 50.0, "{rung} at {angle}: {figures:?}");
             tried.add(figures.count);
+        }
+    }
+}
+
+// Models as scanners and exporters make them.
+
+/// A closed body of some thousand faces, as OBJ text: positions and faces, from 1.
+#[cfg(feature = "obj")]
+#[derive(Clone)]
+struct Written {
+    positions: Vec<Vec3>,
+    faces: Vec<[usize; 3]>,
+}
+
+#[cfg(feature = "obj")]
+impl Written {
+    /// A sphere whose vertices lie a little too high or too low.
+    fn scan(random: &mut Random, radius: f32, centre: Vec3, stacks: u32) -> Self {
+        let sphere = shapes::sphere(2 * stacks, stacks);
+        // Its seam and its poles are listed several times.
+        let mut positions: Vec<Vec3> = Vec::new();
+        let mut number = Vec::new();
+        let mut written = Vec::new();
+        for &p in sphere.positions() {
+            let known = positions.iter().position(|&other| other == p).unwrap_or_else(|| {
+                positions.push(p);
+                written.push(centre + p * radius * (1.0 + 0.3 * (random.unit() as f32 - 0.5) / stacks as f32));
+                positions.len() - 1
+            });
+            number.push(known + 1);
+        }
+        let faces = sphere.triangles().iter().map(|t| t.map(|i| number[i as usize])).collect();
+        Self { positions: written, faces }
+    }
+
+    fn add(&mut self, other: &Self) {
+        let before = self.positions.len();
+        self.positions.extend(&other.positions);
+        self.faces.extend(other.faces.iter().map(|face| face.map(|i| i + before)));
+    }
+
+    fn turned(mut self) -> Self {
+        self.faces.iter_mut().for_each(|face| face.swap(1, 2));
+        self
+    }
+
+    fn at(&self, i: usize) -> Vec3 {
+        self.positions[i - 1]
+    }
+
+    fn push(&mut self, p: Vec3) -> usize {
+        self.positions.push(p);
+        self.positions.len()
+    }
+
+    fn both_ways(&mut self, [a, b, c]: [usize; 3]) {
+        self.faces.extend([[a, b, c], [b, a, c]]);
+    }
+
+    /// In any order, so that of two faces at one depth either may come first.
+    fn load(mut self, random: &mut Random) -> mode13h::mesh::obj::Loaded {
+        for i in (1..self.faces.len()).rev() {
+            self.faces.swap(i, random.within(0, i as i64) as usize);
+        }
+        let mut text = String::new();
+        self.positions.iter().for_each(|p| text += &format!("v {} {} {}\n", p.x, p.y, p.z));
+        self.faces.iter().for_each(|[a, b, c]| text += &format!("f {a} {b} {c}\n"));
+        let none = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
+        mode13h::mesh::obj::parse(text.as_bytes(), "scan.obj", none).expect("a model")
+    }
+}
+
+/// The faults, one by one and together: their name, the model, and the end of each warning that is due.
+#[cfg(feature = "obj")]
+fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)> {
+    let body = Written::scan(random, 1.0, Vec3::ZERO, 30);
+    let count = body.faces.len();
+    let mut some = |count: usize| -> Vec<[usize; 3]> {
+        (0..count).map(|_| body.faces[random.within(0, body.faces.len() as i64 - 1) as usize]).collect()
+    };
+    let (doubled, ribs, fins, cut, lines) = (some(60), some(20), some(8), some(25), some(30));
+
+    // Once more, and once the other way round.
+    let twice = |w: &mut Written| doubled.iter().for_each(|&face| w.both_ways(face));
+    // Faces that stand on edges, as one sheet of both sides.
+    let stand = |w: &mut Written| {
+        for &[a, b, _] in &ribs {
+            let tip = w.push((w.at(a) + w.at(b)) * 0.53);
+            w.both_ways([a, b, tip]);
+        }
+    };
+    // Two to four such sheets on one edge: 6 to 10 faces.
+    let fan = |w: &mut Written| {
+        for (i, &[a, b, c]) in fins.iter().enumerate() {
+            for k in 0..2 + i % 3 {
+                let out = (w.at(a) + w.at(b)) * (0.55 + 0.02 * k as f32) + (w.at(c) - w.at(a)) * (k as f32 * 0.4 - 0.4);
+                let tip = w.push(out);
+                w.both_ways([a, b, tip]);
+            }
+        }
+    };
+    // An edge cut on one side only, closed by a face without area.
+    let filled = |w: &mut Written| {
+        for &[a, b, c] in &cut {
+            let Some(place) = w.faces.iter().position(|face| *face == [a, b, c]) else { continue };
+            let middle = w.push((w.at(a) + w.at(b)) * 0.5);
+            w.faces[place] = [a, middle, c];
+            w.faces.extend([[middle, b, c], [a, b, middle]]);
+        }
+    };
+    // The same, left open.
+    let open = |w: &mut Written| {
+        for &[a, b, c] in &cut {
+            let Some(place) = w.faces.iter().position(|face| *face == [a, b, c]) else { continue };
+            let middle = w.push((w.at(a) + w.at(b)) * 0.5);
+            w.faces[place] = [a, middle, c];
+            w.faces.push([middle, b, c]);
+        }
+    };
+    let without_area = |w: &mut Written| lines.iter().for_each(|&[a, b, _]| w.faces.extend([[a, a, b], [a, b, a]]));
+    let with = |changes: &[&dyn Fn(&mut Written)]| {
+        let mut written = body.clone();
+        changes.iter().for_each(|change| change(&mut written));
+        written
+    };
+    let mut random = Random::named("shells");
+    let small = |random: &mut Random, radius, x, y, z| Written::scan(random, radius, Vec3::new(x, y, z), 8);
+    let joined = |parts: &[Written]| {
+        let mut all = body.clone();
+        parts.iter().for_each(|part| all.add(part));
+        all
+    };
+    let apart = [small(&mut random, 0.3, 1.1, 0.9, 0.3), small(&mut random, 0.25, -1.2, 0.5, 0.5)];
+    let overlapping = small(&mut random, 0.4, 0.5, 0.5, 0.6);
+    let cavity = small(&mut random, 0.5, 0.0, 0.0, 0.0);
+    let in_cavity = small(&mut random, 0.2, 0.05, 0.0, 0.0);
+    let mut all_over = joined(&[apart[0].clone().turned(), apart[1].clone(), cavity.clone().turned()]);
+    [&twice as &dyn Fn(&mut Written), &stand, &fan, &filled, &without_area]
+        .iter()
+        .for_each(|change| change(&mut all_over));
+    let mut everything_twice = body.clone();
+    everything_twice.faces.extend(body.faces.iter().map(|&[a, b, c]| [b, a, c]));
+    let mut with_hole = with(&[&stand, &fan, &twice]);
+    with_hole.faces.truncate(count - 40);
+    let eight = eight();
+
+    let (left_out, turned) = ("pairs of faces back to back", "a body that was inside out");
+    vec![
+        ("as it is", body.clone(), vec![]),
+        ("faces doubled both ways", with(&[&twice]), vec![left_out]),
+        ("sheets on edges", with(&[&stand]), vec![]),
+        ("edges of 6 to 10 faces", with(&[&fan]), vec![]),
+        ("cuts on one side, filled", with(&[&filled]), vec![]),
+        ("cuts on one side", with(&[&open, &stand, &without_area]), vec![]),
+        ("faces without area", with(&[&without_area]), vec![]),
+        ("inside out", body.clone().turned(), vec![turned]),
+        ("inside out, with sheets", with(&[&stand, &twice]).turned(), vec![left_out, turned]),
+        ("bodies apart, one inside out", joined(&[apart[0].clone(), apart[1].clone().turned()]), vec![turned]),
+        ("overlapping", joined(&[overlapping.clone()]), vec![]),
+        ("overlapping, inside out", joined(&[overlapping.turned()]), vec![turned]),
+        ("with a cavity and what is in it", joined(&[cavity.turned(), in_cavity]), vec![]),
+        ("all at once", all_over, vec![left_out, turned]),
+        ("every face both ways", everything_twice, vec![]),
+        ("open, with sheets", with_hole, vec![]),
+        ("an 8", eight, vec![turned]),
+    ]
+}
+
+/// A closed spindle whose outline is an 8: one half of it is inside out, whichever way it is turned.
+#[cfg(feature = "obj")]
+fn eight() -> Written {
+    let (around, along) = (16, 48);
+    let mut positions = Vec::new();
+    for i in 0..along {
+        // Its radius has both signs, so that the surface passes through itself.
+        let t = std::f32::consts::PI * i as f32 / (along - 1) as f32;
+        let (x, radius) = (-t.cos(), 0.6 * (2.0 * t).sin());
+        let radius = if i == 0 || i == along - 1 { 0.0 } else { radius + 0.001 };
+        for k in 0..around {
+            let angle = std::f32::consts::TAU * k as f32 / around as f32;
+            positions.push(Vec3::new(x, radius * angle.cos(), radius * angle.sin()));
+        }
+    }
+    let at = |i: usize, k: usize| 1 + i * around + k % around;
+    let mut faces = Vec::new();
+    for i in 0..along - 1 {
+        for k in 0..around {
+            let [a, b, c, d] = [at(i, k), at(i, k + 1), at(i + 1, k + 1), at(i + 1, k)];
+            faces.extend([[a, c, b], [a, d, c]]);
+        }
+    }
+    Written { positions, faces }
+}
+
+/// Which faces look toward an eye.
+fn look_toward(mesh: &Mesh, eye: Vec3) -> Vec<bool> {
+    let wide = |p: Vec3| p.to_array().map(f64::from);
+    let toward = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|i| wide(mesh.positions()[i as usize]));
+        let from_a = |p: [f64; 3]| [0, 1, 2].map(|i| p[i] - a[i]);
+        let (u, v, e) = (from_a(b), from_a(c), from_a(wide(eye)));
+        let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > 0.0
+    };
+    mesh.triangles().iter().map(toward).collect()
+}
+
+/// The scene with both sides of all faces, whatever is closed, and of faces back to back the one that looks toward the eye;
+/// and for each of its faces the number that it has in the scene. A stray face that no picture shows leaves the mesh open.
+#[cfg(feature = "obj")]
+fn two_sided(scene: &Scene) -> (Scene, Vec<usize>) {
+    let mesh = scene.objects()[0].mesh();
+    let toward = look_toward(mesh, scene.camera.eye);
+    let key = |triangle: &[u32; 3]| {
+        let mut places = triangle.map(|i| (mesh.positions()[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits));
+        places.sort_unstable();
+        places
+    };
+    let mut sides = std::collections::HashMap::<_, [bool; 2]>::new();
+    for (triangle, toward) in mesh.triangles().iter().zip(&toward) {
+        sides.entry(key(triangle)).or_default()[usize::from(*toward)] = true;
+    }
+    let keeps = |&i: &usize| toward[i] || !sides[&key(&mesh.triangles()[i])][1];
+    let kept: Vec<usize> = (0..mesh.triangles().len()).filter(keeps).collect();
+    let (mut positions, mut normals) = (mesh.positions().to_vec(), mesh.normals().to_vec());
+    let behind = scene.camera.eye + (scene.camera.eye - scene.camera.target) * 3.0;
+    let first = positions.len() as u32;
+    positions.extend([behind, behind + Vec3::X, behind + Vec3::Y]);
+    normals.extend([Vec3::Z; 3]);
+    let triangles = kept.iter().map(|&i| mesh.triangles()[i]).chain([[first, first + 1, first + 2]]).collect();
+    let mut both = Scene::new();
+    (both.camera, both.ambient) = (scene.camera, scene.ambient);
+    let mut object = Object::new(Mesh::with_normals(positions, normals, triangles).expect("legal"));
+    object.materials = scene.objects()[0].materials.clone();
+    both.add(object);
+    scene.lights().iter().for_each(|light| {
+        both.add_light(*light);
+    });
+    (both, kept)
+}
+
+/// Pixels that are not what they should be: that show a face that is not in front, or the back of one where another
+/// looks toward the eye, or that are far darker than everything about them should be.
+#[cfg(feature = "obj")]
+fn specks(scene: &Scene, probe: &mut Probe) -> Vec<(usize, usize)> {
+    let (right, kept) = two_sided(scene);
+    let truth = truth(&right);
+    let frame = truth.draw(Standard::Gouraud);
+    let shown = probe.look(scene, SCREEN).expect("a legal scene");
+    let toward = look_toward(scene.objects()[0].mesh(), scene.camera.eye);
+    let in_right = |face: Face| kept.binary_search(&face.triangle).ok().map(|triangle| Face { object: 0, triangle });
+    let darkest = |place: usize| {
+        let near = [0, 1, 319, 320, 321].into_iter().flat_map(|step| [place.checked_sub(step), Some(place + step)]);
+        let near = near.flatten().filter_map(|place| frame.pixels.get(place)?.as_ref());
+        near.map(|pixel| 255.0 * pixel.intensity[0]).fold(255.0, f64::min)
+    };
+    let is_speck = |&place: &usize| {
+        let (x, y) = (place % 320, place / 320);
+        let face = frame.pixels[place].map(|pixel| pixel.face);
+        let Some(seen) = shown.faces[place] else {
+            return face.is_some() && !may_be_taken_for(&truth, right.camera.near, face, None, (x, y));
+        };
+        // A face that is left out of what is right lies back to back with one that is not.
+        let Some(seen_right) = in_right(seen) else { return true };
+        let is_other = Some(seen_right) != face;
+        let behind = is_other && !may_be_taken_for(&truth, right.camera.near, face, Some(seen_right), (x, y));
+        let back = is_other && !toward[seen.triangle] && face.is_some_and(|face| toward[kept[face.triangle]]);
+        behind || back || shown.shades[place][0] < darkest(place) - 16.0
+    };
+    (0..shown.faces.len()).filter(is_speck).map(|place| (place % 320, place / 320)).collect()
+}
+
+#[cfg(feature = "obj")]
+fn eyes() -> [Vec3; 3] {
+    [Vec3::new(1.1, 0.7, 3.4), Vec3::new(-2.6, 2.3, 1.4), Vec3::new(0.9, -1.2, -3.3)]
+}
+
+#[cfg(feature = "obj")]
+#[test]
+fn n2_models_with_faults_have_no_specks() {
+    let mut tried = Tried::new("n2_models_with_faults_have_no_specks", 17 * 3);
+    let mut random = Random::named("faulty models");
+    let mut found = Vec::new();
+    for (name, written, warnings) in faulty(&mut random) {
+        let loaded = written.load(&mut random);
+        if loaded.warnings.len() != warnings.len()
+            || loaded.warnings.iter().zip(&warnings).any(|(given, due)| !given.contains(due))
+        {
+            found.push(format!("{name}: warned {:?}, due {warnings:?}", loaded.warnings));
+        }
+        let mut scene = Scene::new();
+        scene.add(Object::new(loaded.mesh));
+        scene.add_light(Light::sun([0.3, 0.7, 1.0]));
+        for (i, eye) in eyes().into_iter().enumerate() {
+            scene.camera = Camera { eye, target: Vec3::ZERO, near: 0.1, ..Camera::default() };
+            let mut probe = probe(Rung::Gouraud88Reseeded);
+            // The others are right for what is convex and far to near.
+            let way = if i == 1 { HiddenSurfaces::ScanLine } else { HiddenSurfaces::DepthBuffer };
+            probe.renderer().set_hidden_surfaces(Some(way));
+            let specks = specks(&scene, &mut probe);
+            tried.worst("specks", specks.len() as f64);
+            if !specks.is_empty() {
+                found.push(format!("{name}, from {eye}: {} specks, the first at {:?}", specks.len(), specks[0]));
+            }
+            tried.add(1);
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// Of two faces back to back the one that looks toward the eye is drawn, by every way to hidden surfaces, in floats and in
+/// 16.16, on every rung and within a budget, whichever comes first, and where the near plane cuts them.
+#[test]
+fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
+    let mut tried = Tried::new("d3_of_faces_back_to_back_the_one_in_front_is_seen", 2 * 2 * 3 * 4 * 12);
+    let leaf = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.2), Vec3::Y];
+    // A face apart, so that the mesh is open and both sides of its faces may be seen.
+    let positions: Vec<Vec3> = leaf.into_iter().chain([Vec3::NEG_X, Vec3::NEG_Y, Vec3::new(-1.0, -1.0, 0.3)]).collect();
+    for swapped in [false, true] {
+        let mut triangles = vec![[0, 1, 2], [0, 2, 3], [2, 1, 0], [3, 2, 0], [4, 5, 6]];
+        if swapped {
+            triangles.rotate_left(2);
+        }
+        let mesh = Mesh::new(positions.clone(), triangles).expect("legal");
+        assert!(!mesh.is_closed() && (0..5).filter(|&t| mesh.has_twin(t)).count() == 4);
+        for side in [1.0, -1.0] {
+            // From afar, and so near that the near plane cuts the leaf.
+            for (eye, target) in [
+                (Vec3::new(0.4, 0.3, 3.0 * side), Vec3::ZERO),
+                (Vec3::new(-0.3, 0.2, 0.4 * side), Vec3::new(1.0, 0.9, 0.0)),
+                (Vec3::new(0.4, 0.3, 2000.0 * side), Vec3::ZERO),
+            ] {
+                let mut scene = Scene::new();
+                scene.add(Object::new(mesh.clone()));
+                scene.add_light(Light::lamp([0.5, 0.5, 1.0], 3.0));
+                scene.add_light(Light::sun([0.3, 0.7, 1.0]));
+                let near = if eye.length() < 1.0 { 0.5 } else { 0.1 };
+                scene.camera = Camera { eye, target, near, ..Camera::default() };
+                if eye.length() > 100.0 {
+                    scene.camera.field_of_view = 0.002;
+                }
+                let toward = look_toward(&mesh, eye);
+                for way in HiddenSurfaces::ALL {
+                    if way == HiddenSurfaces::BackFaces {
+                        tried.add(12);
+                        continue;
+                    }
+                    for setting in 0..12 {
+                        let mut probe = probe(Rung::ALL[setting % Rung::ALL.len()]);
+                        probe.renderer().set_hidden_surfaces(Some(way));
+                        match setting {
+                            10 => probe.renderer().set_vertex_path(VertexPath::Integer),
+                            11 => probe.renderer().set_max_error(Some(4.0)),
+                            _ => {}
+                        }
+                        let shown = probe.look(&scene, SCREEN).expect("a legal scene");
+                        let leaf = shown.faces.iter().flatten().copied().filter(|face| mesh.has_twin(face.triangle));
+                        let (front, back) = leaf.partition::<Vec<Face>, _>(|face| toward[face.triangle]);
+                        assert!(front.len() > 500, "{way} {setting} {eye}: {}", front.len());
+                        assert!(back.is_empty(), "{way} {setting} {eye}: {} pixels of the back", back.len());
+                        tried.add(1);
+                    }
+                }
+            }
         }
     }
 }

@@ -4,11 +4,12 @@ use std::rc::Rc;
 
 use allocation_counter::measure;
 use mode13h::fixed::{I24F8, U8F8};
+use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Batch, Frame, Raster, Shading, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer};
-use mode13h::scene::{Scene, Shared};
+use mode13h::scene::{Camera, Object, Scene, Shared};
 use mode13h::vga::Vga;
 
 /// One frame, drawn again and again.
@@ -86,7 +87,11 @@ pub(crate) fn spheres(most: u64) -> Vec<Sphere> {
 }
 
 fn showing(mesh: &Shared<Mesh>) -> Scene {
-    Scene::showing(Shared::clone(mesh))
+    let mut scene = Scene::new();
+    scene.camera = Camera::framing(Vec3::ZERO, mesh.bounds().radius);
+    scene.add(Object::new(Shared::clone(mesh)).centred());
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    scene
 }
 
 /// With a depth for every pixel, as most models need, also where a sphere is found to be convex.

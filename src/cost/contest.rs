@@ -151,6 +151,8 @@ pub(super) struct Spent {
     pub(super) clock: Clock,
     /// About how long.
     pub(super) seconds: f64,
+    /// Whether that is the most, and not what ratios that are not known well enough may prolong.
+    pub(super) at_most: bool,
     /// Of the order.
     pub(super) seed: u64,
 }
@@ -164,7 +166,7 @@ pub(super) struct Outcome {
 
 /// Times all ways on their frames (all of one number), about as long as `spent` says: longer where fewer than 25 rounds would
 /// fit in, up to four times as long, and twice as long as long as a rung's or a budget's ratio to the first way is not
-/// known to 2 %. `progress` is told the share of the time that is over.
+/// known to 2 %. Where `spent` says at most, as long as it says, or for seven rounds. `progress` is told the share of the time that is over.
 pub(super) fn contest(
     ways: &[(&Way<'_>, &[Scene])],
     base: &dyn Fn() -> Renderer,
@@ -209,6 +211,7 @@ pub(super) fn contest(
         progress((elapsed / seconds).min(1.0));
         let enough = match round {
             round if round < ROUNDS.1 => false,
+            _ if spent.at_most => elapsed >= seconds,
             round if round < ROUNDS.0 => elapsed >= 4.0 * seconds,
             _ => {
                 elapsed >= 2.0 * seconds
@@ -275,9 +278,12 @@ mod tests {
         let frames = [Scene::showing(shapes::torus(12, 6)), Scene::showing(shapes::torus(12, 6))];
         let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong), Way::budget(4.0)];
         let ways: Vec<(&Way<'_>, &[Scene])> = ways.iter().map(|way| (way, &frames[..])).collect();
-        let Ok(Outcome { samples, work }) =
-            contest(&ways, &Renderer::new, &Spent { clock: Clock::WALL, seconds: 0.001, seed: 1 }, &|_| {})
-        else {
+        let Ok(Outcome { samples, work }) = contest(
+            &ways,
+            &Renderer::new,
+            &Spent { clock: Clock::WALL, seconds: 0.001, at_most: false, seed: 1 },
+            &|_| {},
+        ) else {
             unreachable!("a scene that can be drawn")
         };
         let rounds = samples.rounds();

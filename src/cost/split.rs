@@ -144,9 +144,13 @@ mod tests {
         let frames = [Scene::showing(shapes::sphere(24, 12))];
         let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong)];
         let ways: Vec<&Way<'_>> = ways.iter().collect();
-        let Ok(split) =
-            split(&ways, &frames, &Renderer::new, &Spent { clock: Clock::WALL, seconds: 0.3, seed: 1 }, &|_| {})
-        else {
+        let Ok(split) = split(
+            &ways,
+            &frames,
+            &Renderer::new,
+            &Spent { clock: Clock::WALL, seconds: 0.3, at_most: false, seed: 1 },
+            &|_| {},
+        ) else {
             unreachable!("a scene that can be drawn")
         };
         assert_eq!(split.len(), 2);

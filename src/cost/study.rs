@@ -115,7 +115,7 @@ pub struct RungRow {
     pub cover_errors: u64,
     /// How much errors change from a frame to the next, root mean square.
     pub swim: f64,
-    /// Whether no other rung is both faster and nearer to `lit`.
+    /// Whether no other rung is as near to `lit` and faster, as far as times can be told apart.
     pub efficient: bool,
     /// Rungs whose time cannot be told from this one's.
     pub as_fast_as: Vec<Rung>,

@@ -97,6 +97,8 @@ pub enum Stage {
     Texture {
         /// The texel.
         texel: u8,
+        /// The level of the image that it is of; `None` of an image without smaller copies.
+        level: Option<u8>,
         /// What came of it.
         byte: u8,
     },
@@ -104,6 +106,8 @@ pub enum Stage {
     TextureChannels {
         /// The texel.
         texel: u8,
+        /// The level of the image that it is of; `None` of an image without smaller copies.
+        level: Option<u8>,
         /// What came of it.
         channels: [u8; 3],
     },
@@ -328,15 +332,15 @@ impl Inputs<'_> {
 }
 
 fn stages(bytes: &Bytes) -> Vec<Stage> {
-    let Bytes { shades, channels, texel, dithered, textured, mixed, fogged, blended, .. } = *bytes;
+    let Bytes { shades, channels, texel, level, dithered, textured, mixed, fogged, blended, .. } = *bytes;
     let texel = texel.unwrap_or_default();
     let first = if channels { Stage::Channels(shades) } else { Stage::Shade(shades[0]) };
     [
         Some(first),
         dithered.filter(|_| !channels).map(|(threshold, byte)| Stage::Dither { threshold, byte }),
         textured.map(|values| match channels {
-            true => Stage::TextureChannels { texel, channels: values },
-            false => Stage::Texture { texel, byte: values[0] },
+            true => Stage::TextureChannels { texel, level, channels: values },
+            false => Stage::Texture { texel, level, byte: values[0] },
         }),
         mixed.map(|byte| Stage::Mix { threshold: dithered.map(|(threshold, _)| threshold), byte }),
         fogged.map(|(level, byte)| Stage::Fog { level, byte }),

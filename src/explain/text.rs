@@ -328,6 +328,11 @@ fn in_shades(seen: &Seen, shades: &[u16; 3]) -> String {
     }
 }
 
+/// The level that a texel is of, behind its number.
+fn of_level(level: Option<u8>) -> String {
+    level.map_or(String::new(), |level| format!(" of level {level}"))
+}
+
 /// The way of the byte through the stages.
 fn stages(seen: &Seen, whole: bool) -> String {
     if whole && let [Stage::Shade(byte)] = seen.stages.as_slice() {
@@ -338,8 +343,10 @@ fn stages(seen: &Seen, whole: bool) -> String {
         Stage::Shade(shade) => format!("shade {shade}"),
         Stage::Channels([r, g, b]) => format!("rgb {r} {g} {b}"),
         Stage::Dither { threshold, byte } => format!("dither by {threshold}: {byte}"),
-        Stage::Texture { texel, byte } => format!("texel {texel}: {byte}"),
-        Stage::TextureChannels { texel, channels: [r, g, b] } => format!("texel {texel}: {r} {g} {b}"),
+        Stage::Texture { texel, level, byte } => format!("texel {texel}{}: {byte}", of_level(level)),
+        Stage::TextureChannels { texel, level, channels: [r, g, b] } => {
+            format!("texel {texel}{}: {r} {g} {b}", of_level(level))
+        }
         Stage::Mix { threshold: Some(threshold), byte } => format!("mix, dither by {threshold}: {byte}"),
         Stage::Mix { threshold: None, byte } => format!("mix: {byte}"),
         Stage::Fog { level, byte } => format!("fog of {level}: {byte}"),

@@ -37,6 +37,10 @@ impl ExportError {
 pub enum ExportErrorKind {
     /// The directory that the file was to stand in does not exist.
     MissingDirectory,
+    /// What was named as a directory is a file.
+    NotADirectory,
+    /// The directory exists, and no file can be made in it: the system makes those that it has.
+    NoNewFiles,
     /// The name is that of a directory, or ends like one.
     IsDirectory,
     /// No right to write there; also a file or a file system that is read-only.
@@ -47,17 +51,29 @@ pub enum ExportErrorKind {
     #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
     Picture(super::PictureError),
     /// A film without a frame.
-    #[cfg(feature = "gif")]
+    #[cfg(any(feature = "gif", feature = "png"))]
     NoFrames,
+    /// A film of more or fewer frames than were promised.
+    #[cfg(feature = "png")]
+    FrameCount {
+        /// As many as the film's head says.
+        promised: u32,
+        /// As many as were added.
+        given: u32,
+    },
     /// Any other failure that the system reports.
     Io(io::Error),
 }
 
 impl ExportErrorKind {
-    /// From opening or renaming a file.
-    fn from_opening(error: io::Error) -> ExportErrorKind {
+    /// From opening or renaming a file of this name.
+    fn from_opening(path: &Path, error: io::Error) -> ExportErrorKind {
         match error.kind() {
-            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ExportErrorKind::MissingDirectory,
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => match fs::metadata(directory_of(path)) {
+                Ok(directory) if directory.is_dir() => ExportErrorKind::NoNewFiles,
+                Ok(_) => ExportErrorKind::NotADirectory,
+                Err(_) => ExportErrorKind::MissingDirectory,
+            },
             io::ErrorKind::IsADirectory => ExportErrorKind::IsDirectory,
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => ExportErrorKind::NotPermitted,
             _ => ExportErrorKind::from_writing(error),
@@ -80,12 +96,20 @@ impl fmt::Display for ExportError {
             ExportErrorKind::MissingDirectory => {
                 write!(f, "the directory {} does not exist", directory_of(&self.path).display())
             }
+            ExportErrorKind::NotADirectory => write!(f, "{} is no directory", directory_of(&self.path).display()),
+            ExportErrorKind::NoNewFiles => {
+                write!(f, "no file can be made in the directory {}", directory_of(&self.path).display())
+            }
             ExportErrorKind::IsDirectory => f.write_str("is a directory"),
             ExportErrorKind::NotPermitted => f.write_str("no right to write there"),
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),
             #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
             ExportErrorKind::Picture(error) => write!(f, "{error}"),
-            #[cfg(feature = "gif")]
+            #[cfg(feature = "png")]
+            ExportErrorKind::FrameCount { promised, given } => {
+                write!(f, "a film of {promised} frames was given {given}")
+            }
+            #[cfg(any(feature = "gif", feature = "png"))]
             ExportErrorKind::NoFrames => f.write_str("a film without a frame"),
             ExportErrorKind::Io(error) => write!(f, "{error}"),
         }
@@ -135,6 +159,16 @@ pub fn write_atomically(
     }
 }
 
+/// Finds out whether [`write_atomically`] could write a file under this name, short of a disk that is full: a temporary
+/// file is made and removed. What stands under the name is left alone.
+///
+/// # Errors
+///
+/// [`ExportError`], as `write_atomically` would say it.
+pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ExportError> {
+    AtomicFile::create(path.as_ref()).map(drop)
+}
+
 /// A file in the making, as [`write_atomically`] has it: there under its name once it is committed, and removed if it is
 /// dropped before.
 pub(super) struct AtomicFile {
@@ -151,7 +185,7 @@ pub(super) struct AtomicFile {
 
 impl AtomicFile {
     pub(super) fn create(path: &Path) -> Result<AtomicFile, ExportError> {
-        let fail = |error: io::Error| ExportError::new(path, ExportErrorKind::from_opening(error));
+        let fail = |error: io::Error| ExportError::new(path, ExportErrorKind::from_opening(path, error));
         let begun = |target: &Path, file, temporary, permissions| AtomicFile {
             path: path.to_path_buf(),
             target: target.to_path_buf(),
@@ -188,7 +222,7 @@ impl AtomicFile {
     /// Flushes the file to the disk and gives it its name.
     pub(super) fn commit(self) -> Result<(), ExportError> {
         let AtomicFile { path, target, out, temporary, permissions } = self;
-        let fail = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_opening(error));
+        let fail = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_opening(&path, error));
         let fail_to_write = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_writing(error));
         let file = out.into_inner().map_err(|error| fail_to_write(error.into_error()))?;
         let Some(temporary) = temporary else { return Ok(()) };

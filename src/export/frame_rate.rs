@@ -34,6 +34,18 @@ impl FrameRate {
         self.0
     }
 
+    /// The rate as a fraction of two numbers of 16 bits, the nearest that there is: 35 is 35/1, 29.97 is 2997/100.
+    ///
+    /// ```
+    /// use mode13h::export::FrameRate;
+    /// assert_eq!(FrameRate::default().fraction(), (35, 1));
+    /// assert_eq!(FrameRate::new(29.97)?.fraction(), (2997, 100));
+    /// # Ok::<(), mode13h::export::FrameRateError>(())
+    /// ```
+    pub fn fraction(self) -> (u16, u16) {
+        fraction(self.0)
+    }
+
     /// How long frame `number` stays, counted from 0, in 1/100 s: 2 to 1,000. A frame begins at the first hundredth that
     /// is not before its time, ⌈100·number / rate⌉, whatever the frames before it: nothing adds up.
     ///
@@ -59,6 +71,27 @@ impl Default for FrameRate {
     }
 }
 
+/// The last convergent of a positive number's continued fraction of which both numbers are below 2¹⁶. No fraction of
+/// smaller numbers is nearer.
+fn fraction(number: f64) -> (u16, u16) {
+    let (mut before, mut last) = ((0_u16, 1_u16), (1_u16, 0_u16));
+    let mut rest = number;
+    loop {
+        let whole = rest.floor();
+        let next = |last: u16, before: u16| {
+            let next = whole * f64::from(last) + f64::from(before);
+            (next <= f64::from(u16::MAX)).then_some(next as u16)
+        };
+        let (Some(above), Some(below)) = (next(last.0, before.0), next(last.1, before.1)) else { return last };
+        (before, last) = (last, (above, below));
+        // What f64 knows no better is that number.
+        if f64::from(above) / f64::from(below) == number || rest == whole {
+            return last;
+        }
+        rest = 1.0 / (rest - whole);
+    }
+}
+
 /// A rate that is no [`FrameRate`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameRateError {
@@ -69,7 +102,7 @@ impl fmt::Display for FrameRateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "a GIF shows {} to {} frames a second, not {}",
+            "a film shows {} to {} frames a second, not {}",
             FrameRate::LOWEST.0,
             FrameRate::HIGHEST.0,
             self.frames_per_second

@@ -1,5 +1,6 @@
-//! GIF films, written frame by frame: each frame cropped to what it changes, with a palette of its own only where the
-//! colours that it uses are not the first frame's.
+//! GIF films, written frame by frame: each frame cropped to what it changes, with transparent pixels where that is
+//! shorter, and with a palette of its own only where the first frame's lacks a colour that it uses. Indices of one colour
+//! are made one.
 //!
 //! A frame that changes nothing is not written: the one before it stays longer. (A frame of one pixel would keep the time
 //! as well, at 25 bytes and one more image for every reader.) How long a frame stays is therefore known only when the next
@@ -14,7 +15,8 @@ use std::io::{self, Write};
 
 use gif::{Encoder, EncodingError, Frame, Repeat};
 
-use super::gif_frame::{GifFrame, Image, table};
+use super::color_table::ColorTable;
+use super::gif_frame::{GifFrame, Image};
 use super::{FrameRate, Picture, PictureError, Scale};
 use crate::palette::Rgb;
 
@@ -163,7 +165,9 @@ impl<W: Write> GifWriter<W> {
     /// Writes the frame that is held, if there is one.
     fn write_held(&mut self) -> Result<(), GifError> {
         let Some(Held { frame, image, delay }) = self.held.take() else { return Ok(()) };
-        let Some(Image { area, palette, data }) = image.or_else(|| frame.into_image()) else { return Ok(()) };
+        let Some(Image { area, palette, transparent, data }) = image.or_else(|| frame.into_image()) else {
+            return Ok(());
+        };
         self.film.images += 1;
         *self.film.delays.entry(delay).or_default() += 1;
         let frame = Frame {
@@ -174,6 +178,7 @@ impl<W: Write> GifWriter<W> {
             width: (area.right - area.left) as u16,
             height: (area.bottom - area.top) as u16,
             palette,
+            transparent,
             buffer: data.into(),
             ..Frame::default()
         };
@@ -230,7 +235,8 @@ impl<W: Write> Out<W> {
     fn opened(self, (width, height): (u16, u16), palette: &[Rgb; 256]) -> Result<Encoder<Counted<W>>, EncodingError> {
         match self {
             Out::Unopened(out) => {
-                let mut encoder = Encoder::new(Counted { out, bytes: 0 }, width, height, &table(palette))?;
+                let mut encoder =
+                    Encoder::new(Counted { out, bytes: 0 }, width, height, &ColorTable::of_all(palette).bytes())?;
                 encoder.set_repeat(Repeat::Infinite)?;
                 Ok(encoder)
             }

@@ -2,6 +2,8 @@
 
 use gif::Frame;
 
+use super::color_table::ColorTable;
+use super::difference::{Area, changed, kept};
 use super::scale::Scaled;
 use super::{Picture, PictureError, PixelShape, Scale};
 use crate::palette::Rgb;
@@ -40,7 +42,9 @@ pub(super) struct Image {
     pub(super) area: Area,
     /// A palette of its own, where it shows a colour that the film's has otherwise.
     pub(super) palette: Option<Vec<u8>>,
-    /// Its palette indices, row by row, compressed.
+    /// The index of pixels that stay as they were.
+    pub(super) transparent: Option<u8>,
+    /// Its indices of the colour table, row by row, compressed.
     pub(super) data: Vec<u8>,
 }
 
@@ -52,7 +56,7 @@ impl GifFrame {
     /// Sizes that do not fit the bytes, or are too large when enlarged; no memory.
     pub fn first(picture: &Picture<'_>, scale: Scale) -> Result<GifFrame, PictureError> {
         let scaled = Scaled::new(picture, scale)?;
-        let image = Image::new(&scaled, Area::whole(&scaled), picture.palette)?;
+        let image = Image::new(None, &scaled, Area::whole(&scaled), picture.palette)?;
         GifFrame::new(&scaled, Some(image))
     }
 
@@ -69,7 +73,10 @@ impl GifFrame {
     ) -> Result<GifFrame, PictureError> {
         before.check()?;
         let scaled = Scaled::new(picture, scale)?;
-        let image = changed(before, &scaled)?.map(|area| Image::new(&scaled, area, film)).transpose()?;
+        let image = match changed(before, &scaled)? {
+            Some(area) => Some(Image::new(Some(&Scaled::new(before, scale)?), &scaled, area, film)?),
+            None => None,
+        };
         GifFrame::new(&scaled, image)
     }
 
@@ -106,11 +113,10 @@ impl GifFrame {
         self.image.is_some()
     }
 
-    /// Whether all of it is written.
+    /// Whether all of it is written, whatever the frame before it showed.
     pub(super) fn is_whole(&self) -> bool {
-        let all = |area: Area| (area.right - area.left, area.bottom - area.top);
-        let size = (usize::from(self.size.0), usize::from(self.size.1));
-        self.image.as_ref().is_some_and(|image| all(image.area) == size)
+        let pixels = usize::from(self.size.0) * usize::from(self.size.1);
+        self.image.as_ref().is_some_and(|image| image.area.pixels() == pixels && image.transparent.is_none())
     }
 
     pub(super) fn into_image(self) -> Option<Image> {
@@ -119,93 +125,85 @@ impl GifFrame {
 
     /// Its first pixel, for a frame that changes nothing and yet must be written.
     pub(super) fn first_pixel(&self, scale: Scale, film: &[Rgb; 256]) -> Result<Image, PictureError> {
-        Image::new(&Scaled::new(&self.picture(), scale)?, Area::FIRST_PIXEL, film)
+        Image::new(None, &Scaled::new(&self.picture(), scale)?, Area::FIRST_PIXEL, film)
     }
 }
+
+/// Pixels that stay as they were are left transparent in rows of so many at least. Fewer of them would break up what is
+/// around them, which costs more than it saves: on the torus 16 came to less than 1, 4, 8 and 32.
+const TRANSPARENT_RUN: usize = 16;
 
 impl Image {
-    fn new(scaled: &Scaled<'_>, area: Area, film: &[Rgb; 256]) -> Result<Image, PictureError> {
-        let part = scaled.part(area.left..area.right, area.top..area.bottom)?;
-        let palette = scaled.sources().0.palette;
-        let own = shows_otherwise(&part, palette, film).then(|| table(palette));
-        // The compressor asks for this much at first, and for an image larger than memory says so by a panic.
-        let bytes = part.len() / 2;
-        Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| PictureError::Memory { bytes })?;
-        let mut frame = Frame { buffer: part.into(), ..Frame::default() };
-        frame.make_lzw_pre_encoded();
-        Ok(Image { area, palette: own, data: frame.buffer.into_owned() })
-    }
-}
-
-/// Whether any of these pixels has another colour in one palette than in the other.
-fn shows_otherwise(pixels: &[u8], palette: &[Rgb; 256], other: &[Rgb; 256]) -> bool {
-    palette != other && pixels.iter().any(|&pixel| palette[usize::from(pixel)] != other[usize::from(pixel)])
-}
-
-/// A colour table of GIF: red, green and blue of each entry.
-pub(super) fn table(palette: &[Rgb; 256]) -> Vec<u8> {
-    palette.iter().flat_map(|color| [color.r, color.g, color.b]).collect()
-}
-
-/// A rectangle of the film, in its pixels: from `left` and `top` to before `right` and `bottom`.
-#[derive(Clone, Copy)]
-pub(super) struct Area {
-    pub(super) left: usize,
-    pub(super) top: usize,
-    pub(super) right: usize,
-    pub(super) bottom: usize,
-}
-
-impl Area {
-    const FIRST_PIXEL: Area = Area { left: 0, top: 0, right: 1, bottom: 1 };
-
-    fn whole(scaled: &Scaled<'_>) -> Area {
-        Area { left: 0, top: 0, right: scaled.width as usize, bottom: scaled.height as usize }
-    }
-
-    /// The least that holds this one, if there is one, and a row from `left` to before `right`.
-    fn with_row(area: Option<Area>, y: usize, left: usize, right: usize) -> Area {
-        match area {
-            Some(area) => {
-                Area { left: area.left.min(left), top: area.top, right: area.right.max(right), bottom: y + 1 }
+    /// A part of a frame: compressed as it is and, beside a frame that stands before it, with transparent pixels; the
+    /// shorter of both.
+    fn new(
+        before: Option<&Scaled<'_>>,
+        scaled: &Scaled<'_>,
+        area: Area,
+        film: &[Rgb; 256],
+    ) -> Result<Image, PictureError> {
+        let (columns, rows) = (area.left..area.right, area.top..area.bottom);
+        let mut indices = scaled.part(columns.clone(), rows.clone())?;
+        let picture = scaled.sources().0;
+        let kept: Option<Vec<bool>> = match before {
+            None => None,
+            Some(before) => {
+                let was = before.part(columns.clone(), rows)?;
+                let mut all = Vec::new();
+                all.try_reserve_exact(was.len()).map_err(|_| PictureError::Memory { bytes: was.len() })?;
+                all.extend(kept(before.sources().0, &was, picture, &indices));
+                Some(all)
             }
-            None => Area { left, top: y, right, bottom: y + 1 },
+        };
+        let film = ColorTable::of_all(film);
+        let (own, places) = match film.places(picture.palette, &indices) {
+            Some(places) => (None, places),
+            None => {
+                let own = ColorTable::of_used(picture.palette, &indices);
+                // It holds all that is used.
+                let places = own.places(picture.palette, &indices).unwrap_or([0; 256]);
+                (Some(own), places)
+            }
+        };
+        indices.iter_mut().for_each(|index| *index = places[usize::from(*index)]);
+        let table = own.as_ref().unwrap_or(&film);
+        let mut image = Image { area, palette: None, transparent: None, data: compressed(&indices)? };
+        if let (Some(kept), Some(free)) = (kept, table.free(&indices)) {
+            if leave_out(&mut indices, &kept, columns.len(), free) {
+                let data = compressed(&indices)?;
+                if data.len() < image.data.len() {
+                    (image.data, image.transparent) = (data, Some(free));
+                }
+            }
         }
+        image.palette = own.map(|own| own.bytes());
+        Ok(image)
     }
 }
 
-/// What the frame `now` shows otherwise than `before`: the least rectangle with all pixels that it shows in another colour,
-/// whether the index or the palette is the reason; nothing if there is none. An index that stands for the same
-/// colour as before changes nothing.
-fn changed(before: &Picture<'_>, now: &Scaled<'_>) -> Result<Option<Area>, PictureError> {
-    let (picture, columns, rows) = now.sources();
-    let (first, size) = ((before.width, before.height), (picture.width, picture.height));
-    if first != size {
-        return Err(PictureError::OtherSize { first, now: size });
-    }
-    let same_palette = before.palette == picture.palette;
-    let changed = |y: usize| {
-        let (old, new) = (before.row(y), picture.row(y));
-        if same_palette && old == new {
-            return None;
-        }
-        let differs = |&x: &usize| before.palette[usize::from(old[x])] != picture.palette[usize::from(new[x])];
-        let left = columns.iter().position(differs)?;
-        let right = columns.iter().rposition(differs)? + 1;
-        Some((left, right))
-    };
-    let mut area = None;
-    // Rows of the film that are one row of the frame are compared once.
-    let mut last = None;
-    for (y, &row) in rows.iter().enumerate() {
-        let ends = match last {
-            Some((of, ends)) if of == row => ends,
-            _ => changed(row),
-        };
-        last = Some((row, ends));
-        if let Some((left, right)) = ends {
-            area = Some(Area::with_row(area, y, left, right));
+/// Makes long rows of pixels that stay as they were transparent. Returns whether there are any.
+fn leave_out(indices: &mut [u8], kept: &[bool], width: usize, transparent: u8) -> bool {
+    let mut any = false;
+    for (indices, kept) in indices.chunks_mut(width).zip(kept.chunks(width)) {
+        let mut rest = indices;
+        for run in kept.chunk_by(|a, b| a == b) {
+            let (of_run, behind) = std::mem::take(&mut rest).split_at_mut(run.len());
+            if run[0] && run.len() >= TRANSPARENT_RUN {
+                of_run.fill(transparent);
+                any = true;
+            }
+            rest = behind;
         }
     }
-    Ok(area)
+    any
+}
+
+/// Indices compressed as GIF has it.
+fn compressed(indices: &[u8]) -> Result<Vec<u8>, PictureError> {
+    // The compressor asks for this much at first, and for an image larger than memory says so by a panic.
+    let bytes = indices.len() / 2;
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| PictureError::Memory { bytes })?;
+    let mut frame = Frame { buffer: indices.into(), ..Frame::default() };
+    frame.make_lzw_pre_encoded();
+    Ok(frame.buffer.into_owned())
 }

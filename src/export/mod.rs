@@ -3,8 +3,16 @@
 //! Every file goes through [`write_atomically`]: it is written beside its name and then renamed, so that whatever
 //! stood under the name before is whole until the new file is.
 
+#[cfg(feature = "png")]
+mod apng;
 mod atomic;
-#[cfg(feature = "gif")]
+#[cfg(any(feature = "png", feature = "image"))]
+mod chunk;
+#[cfg(any(feature = "gif", feature = "png"))]
+mod color_table;
+#[cfg(any(feature = "gif", feature = "png"))]
+mod difference;
+#[cfg(any(feature = "gif", feature = "png"))]
 mod frame_rate;
 #[cfg(feature = "gif")]
 mod gif;
@@ -20,11 +28,15 @@ mod picture;
 mod rgb;
 #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
 mod scale;
+#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+mod y4m;
 
+#[cfg(feature = "png")]
+pub use self::apng::{ApngFile, ApngFrame, FilmColors};
 #[cfg(feature = "gif")]
 pub use self::gif::{Film, GifError, GifWriter};
-pub use atomic::{ExportError, ExportErrorKind, write_atomically};
-#[cfg(feature = "gif")]
+pub use atomic::{ExportError, ExportErrorKind, check_writable, write_atomically};
+#[cfg(any(feature = "gif", feature = "png"))]
 pub use frame_rate::{FrameRate, FrameRateError};
 #[cfg(feature = "gif")]
 pub use gif_file::GifFile;
@@ -38,3 +50,5 @@ pub use picture::{Picture, PictureError, PixelShape};
 pub use rgb::{encode_rgb_png, picture_rgb_png, rgb_png};
 #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
 pub use scale::{MAX_SIDE, Scale, ScaleError};
+#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+pub use y4m::{y4m_frame, y4m_header};

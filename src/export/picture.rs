@@ -84,6 +84,8 @@ pub enum PictureError {
         /// The pitch that was given.
         pitch: usize,
     },
+    /// A frame of a film of fixed colours that shows another.
+    OtherColors,
     /// A frame of a film that has not the size of the film's first.
     OtherSize {
         /// Pixels in a row, and rows, of the first frame.
@@ -107,6 +109,7 @@ impl fmt::Display for PictureError {
             PictureError::Bytes { bytes, pitch } => {
                 write!(f, "{bytes} bytes do not hold the picture's rows at a pitch of {pitch}")
             }
+            PictureError::OtherColors => f.write_str("a frame in a colour that the film's palette has not"),
             PictureError::OtherSize { first, now } => {
                 write!(f, "a frame of {} x {} pixels in a film that began with {} x {}", now.0, now.1, first.0, first.1)
             }

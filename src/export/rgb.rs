@@ -5,6 +5,7 @@ use std::path::Path;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
+use super::chunk::chunk;
 use super::scale::Scaled;
 use super::{ExportError, ExportErrorKind, Picture, PictureError, Scale, write_atomically};
 use crate::vga::Vga;
@@ -62,20 +63,7 @@ pub fn encode_rgb_png(picture: &Picture<'_>, scale: Scale) -> Result<Vec<u8>, Pi
 fn insert_density(file: &mut Vec<u8>, (across, down): (u32, u32)) {
     // Signature 8 bytes, then IHDR: length 4, name 4, data 13, check 4.
     const BEHIND_HEADER: usize = 8 + 4 + 4 + 13 + 4;
-    let mut body = Vec::from(*b"pHYs");
-    body.extend(across.to_be_bytes());
-    body.extend(down.to_be_bytes());
     // Unit unspecified: the two numbers are a ratio.
-    body.push(0);
-    let mut chunk = Vec::from(9_u32.to_be_bytes());
-    chunk.extend(&body);
-    chunk.extend(crc32(&body).to_be_bytes());
+    let chunk = chunk(*b"pHYs", &[&across.to_be_bytes(), &down.to_be_bytes(), &[0]]);
     file.splice(BEHIND_HEADER..BEHIND_HEADER, chunk);
-}
-
-/// The cyclic redundancy check of PNG chunks (PNG specification, annex D), bit by bit: it runs over thirteen bytes.
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(u32::MAX, |crc, &byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 * (crc & 1)))
-    })
 }

@@ -2,13 +2,11 @@
 
 use std::error::Error;
 use std::fmt;
-#[cfg(feature = "gif")]
+#[cfg(any(feature = "gif", feature = "png"))]
 use std::ops::Range;
 use std::str::FromStr;
 
-use super::Picture;
-#[cfg(any(feature = "png", feature = "image"))]
-use super::PixelShape;
+use super::{Picture, PixelShape};
 
 /// The longest side of an exported picture, in pixels.
 pub const MAX_SIDE: u16 = 16_384;
@@ -122,7 +120,6 @@ impl<'a> Scaled<'a> {
     }
 
     /// The palette indices of each row of the result, from the top.
-    #[cfg(any(feature = "png", feature = "image"))]
     pub(super) fn rows(&self) -> impl Iterator<Item = Vec<u8>> + '_ {
         self.rows.iter().map(|&y| {
             let row = self.picture.row(y);
@@ -131,7 +128,7 @@ impl<'a> Scaled<'a> {
     }
 
     /// The palette indices of a part of the result, row by row. The part lies within the result.
-    #[cfg(feature = "gif")]
+    #[cfg(any(feature = "gif", feature = "png"))]
     pub(super) fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<u8>, super::PictureError> {
         let bytes = columns.len() * rows.len();
         let mut part = Vec::new();
@@ -144,14 +141,13 @@ impl<'a> Scaled<'a> {
     }
 
     /// The picture itself, and which of its columns and rows the columns and rows of the result are.
-    #[cfg(feature = "gif")]
+    #[cfg(any(feature = "gif", feature = "png"))]
     pub(super) fn sources(&self) -> (&Picture<'a>, &[usize], &[usize]) {
         (&self.picture, &self.columns, &self.rows)
     }
 
     /// Pixels per unit of length, across and down, in lowest terms: what `pHYs` says. The picture keeps its shape
     /// whatever its size, so that 320 × 200 pixels of 5:6 are 6 across to 5 down, and 1600 × 1200 are square.
-    #[cfg(any(feature = "png", feature = "image"))]
     pub(super) fn density(&self) -> (u32, u32) {
         let PixelShape { width: across, height: down } = self.picture.shape;
         let x = u64::from(self.width) * u64::from(down) * self.picture.height as u64;
@@ -173,7 +169,6 @@ fn source(at: usize, to: usize, from: usize) -> usize {
     (2 * at + 1) * from / (2 * to)
 }
 
-#[cfg(any(feature = "png", feature = "image"))]
 fn greatest_common_divisor(mut a: u64, mut b: u64) -> u64 {
     while b != 0 {
         (a, b) = (b, a % b);

@@ -82,6 +82,8 @@ pub struct FixedMesh<'a, I: Index = u16> {
     pub(crate) normals: &'a [Vector],
     pub(crate) triangles: &'a [[I; 3]],
     pub(crate) closed: bool,
+    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does.
+    pub(crate) twins: &'a [u64],
     pub(crate) exponent: i32,
     /// No vertex is farther from the origin, in 1/65,536 of the mesh's own unit.
     pub(crate) radius: u64,
@@ -130,6 +132,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
             normals,
             triangles,
             closed,
+            twins: &[],
             exponent: 0,
             radius: most.isqrt() + 1,
             vertex_surfaces: &[],
@@ -168,6 +171,12 @@ impl<'a, I: Index> FixedMesh<'a, I> {
     #[must_use]
     pub fn vertices(&self) -> usize {
         self.positions.len()
+    }
+
+    /// Whether a triangle is left out where it is turned away: of a closed mesh, and of two that lie back to back.
+    #[inline]
+    pub(super) fn hides_back(&self, triangle: usize) -> bool {
+        self.closed || self.twins.get(triangle / 64).is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
     }
 
     #[inline]

@@ -119,7 +119,7 @@ impl<'a, I: Index> Stage<'a, I> {
     }
 
     /// Hands the faces that are to be drawn to `triangle`, clipped where they must be. Those of a
-    /// closed mesh that are turned away are left out; others show their back.
+    /// closed mesh that are turned away are left out, and of two that lie back to back; others show their back.
     pub fn faces(&self, mut triangle: impl FnMut(&[Vertex; 3], Shading)) -> Faces {
         let mut counts = Faces::default();
         let mesh = &self.object.mesh;
@@ -134,7 +134,7 @@ impl<'a, I: Index> Stage<'a, I> {
             }
             let vertices = corners.map(|corner| corner.vertex);
             let area = doubled_area(&vertices);
-            if self.is_culled(area) {
+            if self.is_culled(face, area) {
                 counts.culled += 1;
                 continue;
             }
@@ -160,7 +160,7 @@ impl<'a, I: Index> Stage<'a, I> {
         triangle: &mut impl FnMut(&[Vertex; 3], Shading),
     ) {
         let at = indices.map(|i| self.view.homogeneous(self.object.mesh.positions[i]));
-        let turned = !self.object.mesh.closed && is_turned_away(&at);
+        let turned = !self.object.mesh.hides_back(face) && is_turned_away(&at);
         let corner = |i: usize| {
             let LitVertex { vertex, back, needs_clipping } = corners[i];
             let shade = if turned { back } else { vertex.shade() };
@@ -168,7 +168,7 @@ impl<'a, I: Index> Stage<'a, I> {
         };
         let on_face = self.technique == Technique::GouraudHyperbolic;
         let Some(clipped) = clip(&self.view, on_face, [corner(0), corner(1), corner(2)]) else { return };
-        if self.is_culled(clipped.doubled_area()) {
+        if self.is_culled(face, clipped.doubled_area()) {
             counts.culled += 1;
             return;
         }
@@ -202,8 +202,8 @@ impl<'a, I: Index> Stage<'a, I> {
     }
 
     #[inline]
-    fn is_culled(&self, doubled_area: i64) -> bool {
-        doubled_area == 0 || (doubled_area > 0 && self.object.mesh.closed)
+    fn is_culled(&self, face: usize, doubled_area: i64) -> bool {
+        doubled_area == 0 || (doubled_area > 0 && self.object.mesh.hides_back(face))
     }
 }
 

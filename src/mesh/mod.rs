@@ -14,12 +14,17 @@ pub mod normals;
 pub mod obj;
 
 mod orientation;
+mod sets;
 pub mod shapes;
+#[cfg(feature = "obj")]
+mod shells;
 mod split;
 mod stretch;
 mod surface;
 mod topology;
+mod twins;
 mod wide;
+mod winding;
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -52,7 +57,10 @@ pub struct Mesh {
     surfaces: Vec<Surface>,
     bounds: Bounds,
     closed: bool,
+    outward: bool,
     convex: bool,
+    /// A bit for each triangle that lies back to back with another; empty if there is none.
+    twins: Vec<u64>,
 }
 
 impl Mesh {
@@ -139,15 +147,17 @@ impl Mesh {
     /// Finite positions, unit normals, indices in range: a shape, or input that was checked.
     pub(in crate::mesh) fn assemble(positions: Vec<Vec3>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let points = topology::weld(&positions);
-        Self::assemble_welded(positions, normals, triangles, &points)
+        let edges = topology::Edges::new(&triangles, &points);
+        Self::assemble_welded(positions, normals, triangles, &points, &edges)
     }
 
-    /// The same, where the points of the vertices are known.
+    /// [`assemble`](Self::assemble), where the points of the vertices and the edges are known.
     fn assemble_welded(
         mut positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
         mut triangles: Vec<[u32; 3]>,
         points: &[u32],
+        edges: &topology::Edges,
     ) -> Self {
         // Made by pushing, they hold up to twice as much; a mesh stays for long.
         positions.shrink_to_fit();
@@ -155,9 +165,10 @@ impl Mesh {
         triangles.shrink_to_fit();
         debug_assert!(check(&positions, &triangles).is_ok() && normals.len() == positions.len());
         let bounds = Bounds::of(&positions, &triangles);
-        let edges = topology::Edges::new(&triangles, points);
-        let closed = edges.are_closed();
-        let convex = closed && topology::is_convex(&positions, &triangles, points, &edges);
+        let closed = edges.balance();
+        let convex = closed && topology::is_convex(&positions, &triangles, points, edges);
+        let outward = convex || (closed && winding::is_outward(&positions, &triangles, &bounds));
+        let twins = twins::mark(edges, &triangles, points);
         Self {
             positions,
             normals,
@@ -167,7 +178,9 @@ impl Mesh {
             surfaces: vec![Surface::default()],
             bounds,
             closed,
+            outward,
             convex,
+            twins,
         }
     }
 
@@ -218,12 +231,22 @@ impl Mesh {
         self.bounds
     }
 
-    /// Is every edge shared by exactly two triangles that run through it in opposite directions?
-    /// Vertices at the same position count as one. No back face of a closed mesh can be seen from
-    /// outside.
+    /// Do as many triangles run through every edge in one direction as in the other? Then the mesh bounds a body, or
+    /// several that may share edges and points. Vertices at the same position count as one, and triangles with two
+    /// corners in one point do not count.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.closed
+    }
+
+    /// Is the mesh closed, and does it look outward everywhere? Then no back face of it can be seen from outside.
+    ///
+    /// That is so where the mesh winds round no point of space a negative number of times, which is tried along 64 × 64
+    /// rays of each axis. A region that is turned the wrong way counts if some ray is in it for more than 1/32 of the
+    /// longest side of the mesh's box: thinner ones are the folds of scans.
+    #[must_use]
+    pub fn is_outward(&self) -> bool {
+        self.outward
     }
 
     /// Is the mesh certainly closed, convex and wound outward? Then its front faces never hide each

@@ -12,7 +12,7 @@
 //! |---|---|
 //! | a face of no area | none; it has no weight in any vertex |
 //! | face normals that cancel, as on a folded sheet | the vertex is split, each face keeps its own |
-//! | faces that meet at more than the crease angle | the vertex is split, each side has its own |
+//! | faces whose normals differ by more than the crease angle | the vertex is split, each side has its own |
 //! | a vertex that no face with an area uses | +z |
 
 use alloc::vec;
@@ -20,6 +20,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
+use super::sets::Sets;
 use super::wide::{Wide, add, cross, dot, length, narrow, scale, sub, widen};
 use super::{Mesh, topology};
 
@@ -99,17 +100,86 @@ fn angles(corners: [Vec3; 3]) -> [f64; 3] {
     })
 }
 
+/// Which faces at one position count together in a normal.
+pub(super) struct Together<'a> {
+    /// The cosine of the greatest angle between two faces of no group that count together.
+    least: f64,
+    /// For each triangle the number of its smoothing group, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Empty
+    /// if none has one.
+    groups: &'a [u32],
+    /// Of a mesh that may be a scan.
+    edges: Option<&'a topology::Edges>,
+}
+
+impl<'a> Together<'a> {
+    /// Faces that count with no other.
+    pub(super) const FLAT: u32 = 0;
+    /// Faces of which no group is known: the angle decides.
+    pub(super) const NO_GROUP: u32 = u32::MAX;
+
+    /// By the angle between faces, in radians, and by groups where there are any.
+    pub(super) fn new(crease: f64, groups: &'a [u32]) -> Self {
+        // 2⁻⁴⁰ for rounding: faces at exactly the crease angle are smooth. No number at all leaves all faces flat.
+        let least = libm::cos(crease.clamp(0.0, core::f64::consts::PI)) - 1.0 / 1_099_511_627_776.0;
+        Self { least, groups, edges: None }
+    }
+
+    /// The same rule, but smooth everywhere on a scan: on a mesh of these edges whose sharp ones are [scattered].
+    ///
+    /// [scattered]: Self::is_scattered
+    #[cfg(feature = "obj")]
+    pub(super) fn unless_scattered(self, edges: &'a topology::Edges) -> Self {
+        Self { edges: Some(edges), ..self }
+    }
+
+    /// Whether sharp edges end anywhere, as noise makes them. Those of a model that was designed run on until they meet
+    /// others or the mesh's rim: nearly all of its points that have one sharp edge have two. On scans a third of these
+    /// points and more are ends; from an eighth on they count as scattered.
+    fn is_scattered(&self, edges: &topology::Edges, faces: &[Face], count: usize) -> bool {
+        const RIM: u8 = u8::MAX;
+        let mut sharp = vec![0_u8; count];
+        for ((a, b), here) in edges.each() {
+            let triangle = |place: usize| here[place].1 as usize / 3;
+            let is_inner = here.len() == 2 && [0, 1].iter().all(|&place| faces[triangle(place)].has_area());
+            for point in [a, b] {
+                let point = &mut sharp[point as usize];
+                if !is_inner {
+                    *point = RIM;
+                } else if *point < 2 && !self.are(faces, triangle(0), triangle(1)) {
+                    *point += 1;
+                }
+            }
+        }
+        let ends = sharp.iter().filter(|&&sharp| sharp == 1).count();
+        let others = sharp.iter().filter(|&&sharp| sharp == 2).count();
+        8 * ends > ends + others
+    }
+
+    fn group(&self, triangle: usize) -> u32 {
+        self.groups.get(triangle).copied().unwrap_or(Self::NO_GROUP)
+    }
+
+    fn are(&self, faces: &[Face], a: usize, b: usize) -> bool {
+        match (self.group(a), self.group(b)) {
+            (Self::NO_GROUP, Self::NO_GROUP) => dot(faces[a].normal, faces[b].normal) >= self.least,
+            (a, b) => a == b && a != Self::FLAT,
+        }
+    }
+}
+
 impl Mesh {
     /// Gives every vertex the weighted mean of the normals of the faces around its position; vertices
-    /// at the same position count as one. With a crease angle (radians) a face counts only with those
-    /// that it meets, over edges at this position, at that angle or less; vertices are split where
-    /// they must be. An angle is 0 where two faces lie in one plane.
+    /// at the same position count as one. With a crease angle (radians) two faces count together if the
+    /// angle between their normals is no greater, or if other faces at this position link them so; vertices
+    /// are split where they must be. The angle is 0 where two faces lie in one plane.
     ///
-    /// Vertices keep their numbers; new ones come at the end.
+    /// Vertices keep their numbers; new ones come at the end. Of more than 64 faces at one position not all are
+    /// compared with each other.
     pub fn smooth(&mut self, weight: Weight, crease: Option<f32>) {
         let points = topology::weld(&self.positions);
         let known = vec![None; self.positions.len()];
-        self.average(&points, weight, crease, known);
+        let together = crease.map(|crease| Together::new(f64::from(crease), &[]));
+        self.average(&points, weight, together.as_ref(), known);
     }
 
     /// Gives every face its own normal at all its corners. Vertices are split where they must be.
@@ -130,21 +200,38 @@ impl Mesh {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
-    /// As [`smooth`](Self::smooth), where `points` says which vertices count as one (points are
-    /// numbered below the number of vertices), and `known` which of them keep the normal that it gives.
-    pub(super) fn average(&mut self, points: &[u32], weight: Weight, crease: Option<f32>, known: Vec<Option<Vec3>>) {
+    /// Gives normals as [`smooth`](Self::smooth) does, where `points` says which vertices count as one (points are
+    /// numbered below the number of vertices), and `known` which of them keep the normal that it gives. Without
+    /// `together` all faces at a position count together.
+    pub(super) fn average(
+        &mut self,
+        points: &[u32],
+        weight: Weight,
+        together: Option<&Together<'_>>,
+        known: Vec<Option<Vec3>>,
+    ) {
         let faces = self.faces();
-        // One for each class, which is a point or, with a crease, a corner. (One for each corner always would be 48
+        let is_flat = |triangle: usize| together.is_some_and(|rule| rule.group(triangle) == Together::FLAT);
+        // One for each class, which is a point, or a part of the faces there. (One for each corner always would be 48
         // bytes a corner: of ten million faces over a gigabyte.)
-        let classes = crease.map(|angle| self.classes(points, &faces, angle));
+        let classes = together.and_then(|rule| {
+            let classes = self.classes(points, &faces, rule)?;
+            match rule.edges {
+                Some(edges) if rule.is_scattered(edges, &faces, points.len()) => {
+                    let smooth = Together::new(core::f64::consts::PI, rule.groups);
+                    self.classes(points, &faces, &smooth)
+                }
+                _ => Some(classes),
+            }
+        });
         let class = |corner: usize, vertex: u32| match &classes {
             None => points[vertex as usize] as usize,
             Some(classes) => classes[corner] as usize,
         };
-        let greatest = classes.as_deref().unwrap_or(points).iter().max();
+        let greatest = points.iter().chain(classes.iter().flatten()).max();
         let count = greatest.map_or(0, |&greatest| greatest as usize + 1);
         let mut sums = vec![([0.0; 3], 0.0); count];
-        for (t, face) in faces.iter().enumerate().filter(|(_, face)| face.has_area()) {
+        for (t, face) in faces.iter().enumerate().filter(|(t, face)| face.has_area() && !is_flat(*t)) {
             let weights = match weight {
                 Weight::Count => [1.0; 3],
                 Weight::Area => [face.double_area; 3],
@@ -168,46 +255,60 @@ impl Mesh {
         let is_known: Vec<bool> = known.iter().map(Option::is_some).collect();
         let normal = |corner: usize, vertex: u32| {
             let face = &faces[corner / 3];
-            (face.has_area() && !is_known[vertex as usize])
-                .then(|| means[class(corner, vertex)].unwrap_or_else(|| narrow(face.normal)))
+            let mean = || if is_flat(corner / 3) { None } else { means[class(corner, vertex)] };
+            (face.has_area() && !is_known[vertex as usize]).then(|| mean().unwrap_or_else(|| narrow(face.normal)))
         };
         self.give(normal, known);
     }
 
-    /// For each corner the corner that stands for all that share a normal with it: two faces at a
-    /// point do if they meet over an edge at no more than the crease angle, or if others link them.
-    fn classes(&self, points: &[u32], faces: &[Face], crease: f32) -> Vec<u32> {
-        // 2⁻⁴⁰ for rounding: faces at exactly the crease angle are smooth.
-        let least = libm::cos(f64::from(crease).clamp(0.0, core::f64::consts::PI)) - 1.0 / 1_099_511_627_776.0;
-        // The edges at each point: (this point, the other one), corner.
-        let mut edges: Vec<(u64, u32)> = Vec::with_capacity(faces.len() * 6);
-        for (t, triangle) in self.triangles.iter().enumerate() {
-            if !faces[t].has_area() {
-                continue;
-            }
-            for i in 0..3 {
-                let at = |corner: usize| u64::from(points[triangle[corner % 3] as usize]);
-                // Fits, see `Mesh::MOST`.
-                let corner = (3 * t + i) as u32;
-                edges.push((at(i) << 32 | at(i + 1), corner));
-                edges.push((at(i) << 32 | at(i + 2), corner));
-            }
-        }
-        edges.sort_unstable();
-        let mut parent: Vec<u32> = (0..self.triangles.len() as u32 * 3).collect();
-        for run in edges.chunk_by(|a, b| a.0 == b.0) {
-            for (i, &(_, corner)) in run.iter().enumerate() {
-                // More than two faces over one edge are rare; more than nine are not all compared.
-                for &(_, earlier) in &run[i.saturating_sub(8)..i] {
-                    let (a, b) = (&faces[corner as usize / 3].normal, &faces[earlier as usize / 3].normal);
-                    if dot(*a, *b) >= least {
-                        let (a, b) = (root(&mut parent, corner), root(&mut parent, earlier));
-                        parent[a.max(b) as usize] = a.min(b);
-                    }
+    /// For each corner the class of faces that share a normal there: the number of its point, or where the faces at a
+    /// point do not all count together, a number beyond those of all points. `None` if there is no such point.
+    fn classes(&self, points: &[u32], faces: &[Face], together: &Together<'_>) -> Option<Vec<u32>> {
+        const NONE: u32 = u32::MAX;
+        let count = points.iter().max().map_or(0, |&greatest| greatest as usize + 1);
+        let takes_part = |t: usize| faces[t].has_area() && together.group(t) != Together::FLAT;
+        // Where all faces count together with the first one there is nothing to find out: nearly everywhere on a scan.
+        let mut first = vec![NONE; count];
+        let mut is_divided = vec![false; count];
+        let mut any = false;
+        for (t, triangle) in self.triangles.iter().enumerate().filter(|(t, _)| takes_part(*t)) {
+            for &vertex in triangle {
+                let point = points[vertex as usize] as usize;
+                if first[point] == NONE {
+                    first[point] = t as u32;
+                } else if !is_divided[point] && !together.are(faces, first[point] as usize, t) {
+                    (is_divided[point], any) = (true, true);
                 }
             }
         }
-        (0..parent.len() as u32).map(|corner| root(&mut parent, corner)).collect()
+        drop(first);
+        if !any {
+            return None;
+        }
+        let mut classes: Vec<u32> = self.triangles.as_flattened().iter().map(|&i| points[i as usize]).collect();
+        // Point and corner, of which there are fewer than 2³², see `Mesh::MOST`.
+        let corners = (0..).zip(&classes).filter(|&(corner, point)| {
+            is_divided[*point as usize] && takes_part(corner as usize / 3) //
+        });
+        let mut corners: Vec<(u32, u32)> = corners.map(|(corner, point)| (*point, corner)).collect();
+        corners.sort_unstable();
+        let mut next = count as u32;
+        let mut parts = Parts::default();
+        for here in corners.chunk_by(|a, b| a.0 == b.0) {
+            let face = |place: u32| here[place as usize].1 as usize / 3;
+            parts.find(here.len() as u32, |a, b| together.are(faces, face(a), face(b)));
+            for (place, &(_, corner)) in (0..).zip(here) {
+                // The first face of a part stands for it, and has been here before the others.
+                let stands = parts.sets.of(place);
+                classes[corner as usize] = if stands == place {
+                    next += 1;
+                    next - 1
+                } else {
+                    classes[here[stands as usize].1 as usize]
+                };
+            }
+        }
+        Some(classes)
     }
 
     /// A normal for each corner of a vertex; `None`: any will do. Splits the vertices whose corners want more
@@ -241,11 +342,31 @@ impl Mesh {
     }
 }
 
-/// The corner that stands for `corner`; shortens the way there.
-fn root(parent: &mut [u32], mut corner: u32) -> u32 {
-    while parent[corner as usize] != corner {
-        parent[corner as usize] = parent[parent[corner as usize] as usize];
-        corner = parent[corner as usize];
+/// The faces at one point, in parts that are linked.
+#[derive(Default)]
+struct Parts {
+    sets: Sets,
+    compared: Vec<u32>,
+}
+
+impl Parts {
+    /// Up to so many faces are all compared; beyond them, with these, with the last eight, and with those that were linked
+    /// with none of these, so that a point takes no time by the square of its faces.
+    const COMPARED: usize = 64;
+
+    fn find(&mut self, count: u32, linked: impl Fn(u32, u32) -> bool) {
+        self.sets.renew(count);
+        self.compared.clear();
+        for place in 0..count {
+            for other in self.compared.iter().copied().chain(place.saturating_sub(8)..place) {
+                if self.sets.of(other) != self.sets.of(place) && linked(other, place) {
+                    self.sets.join(other, place);
+                }
+            }
+            let is_alone = self.sets.of(place) == place && self.compared.len() < 4 * Self::COMPARED;
+            if is_alone || self.compared.len() < Self::COMPARED {
+                self.compared.push(place);
+            }
+        }
     }
-    corner
 }

@@ -73,7 +73,7 @@ fn weld_by_sorting(keys: impl Iterator<Item = [u32; 3]>) -> Vec<u32> {
 
 /// A triangle with two corners in one point is a line: it draws nothing, and its two edges undo each
 /// other. It is no part of the surface.
-fn is_line(triangle: [u32; 3]) -> bool {
+pub(super) fn is_line(triangle: [u32; 3]) -> bool {
     triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]
 }
 
@@ -132,26 +132,84 @@ impl Edges {
         self.starts[point] as usize..self.starts[point + 1] as usize
     }
 
-    /// Is every edge run through exactly once in each direction?
-    pub(super) fn are_closed(&self) -> bool {
-        // In order, a closed mesh reads: edge upward, edge downward, next edge upward … An edge with four faces reads
+    /// The faces at each edge, one edge after the other: its two points, the lower first, and for each face whether it
+    /// runs downward, and the corner that it comes from.
+    pub(super) fn each(&self) -> impl Iterator<Item = ((u32, u32), &[(u32, u32)])> {
+        (0..self.starts.len() - 2).flat_map(|point| {
+            // Points are below 2³¹.
+            let one_edge = self.edges[self.of(point)].chunk_by(|a, b| a.0 >> 1 == b.0 >> 1);
+            one_edge.map(move |faces| ((point as u32, faces[0].0 >> 1), faces))
+        })
+    }
+
+    /// Whether every edge is run through as often in one direction as in the other: the surface bounds a body, or
+    /// several.
+    pub(super) fn balance(&self) -> bool {
+        // Nearly all edges have two faces, and need no count.
+        let balances = |faces: &[(u32, u32)]| match faces {
+            [up, down] => up.0 & 1 == 0 && down.0 & 1 == 1,
+            faces => 2 * faces.iter().filter(|face| face.0 & 1 == 1).count() == faces.len(),
+        };
+        !self.edges.is_empty() && self.each().all(|(_, faces)| balances(faces))
+    }
+
+    /// Whether every edge has exactly two faces, which run through it in opposite directions.
+    fn are_pairs(&self) -> bool {
+        // In order, such a mesh reads: edge upward, edge downward, next edge upward … An edge with four faces reads
         // upward, upward, downward, downward.
-        let closed = |edges: &[(u32, u32)]| {
+        let paired = |edges: &[(u32, u32)]| {
             let (pairs, rest) = edges.as_chunks::<2>();
             rest.is_empty() && pairs.iter().all(|[up, down]| up.0 & 1 == 0 && down.0 == up.0 + 1)
         };
-        !self.edges.is_empty() && (0..self.starts.len() - 2).all(|point| closed(&self.edges[self.of(point)]))
+        !self.edges.is_empty() && (0..self.starts.len() - 2).all(|point| paired(&self.edges[self.of(point)]))
     }
 
-    /// Both corners that the two faces of each edge come to it from, of a closed mesh.
+    /// Both corners that the two faces of each edge come to it from, if [all are pairs](Self::are_pairs).
     fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
         self.edges.as_chunks::<2>().0.iter().map(|pair| pair.map(|(_, corner)| corner as usize))
     }
+
+    /// The faces at each edge: for each whether it runs downward, from the edge's higher point to the lower one, and
+    /// the corner that it comes from, counted through all triangles.
+    #[cfg(feature = "obj")]
+    pub(super) fn faces_by_edge(&self) -> impl Iterator<Item = impl Iterator<Item = (bool, usize)> + Clone> {
+        self.each().map(|(_, faces)| faces.iter().map(|&(to, corner)| (to & 1 == 1, corner as usize)))
+    }
+
+    /// Hands on the triangles that lie back to back with others, of the same three points and wound the other way:
+    /// those wound one way, and those wound the other way, neither list empty and each in ascending order.
+    pub(super) fn opposites(&self, triangles: &[[u32; 3]], points: &[u32], mut found: impl FnMut(&[u32], &[u32])) {
+        let (mut ups, mut downs) = (Vec::new(), Vec::new());
+        let third = |corner: u32| points[triangles[corner as usize / 3][(corner as usize + 2) % 3] as usize];
+        for ((_, higher), faces) in self.each() {
+            // Most edges have two faces, and these two other corners.
+            if let [a, b] = faces
+                && third(a.1) != third(b.1)
+            {
+                continue;
+            }
+            // All three edges of two such triangles are shared: they are found at the one between their lower points.
+            let mut thirds: Vec<u32> = faces.iter().map(|face| third(face.1)).filter(|&far| far > higher).collect();
+            thirds.sort_unstable();
+            thirds.dedup();
+            for far in thirds {
+                ups.clear();
+                downs.clear();
+                for &(to, corner) in faces.iter().filter(|face| third(face.1) == far) {
+                    if to & 1 == 0 { ups.push(corner / 3) } else { downs.push(corner / 3) }
+                }
+                if !ups.is_empty() && !downs.is_empty() {
+                    found(&ups, &downs);
+                }
+            }
+        }
+    }
 }
 
-/// Is a closed mesh convex, wound so that its faces look outward?
+/// Is a mesh closed and convex, wound so that its faces look outward?
 ///
-/// Three things are asked for, which together suffice. (1) The mean of the vertices lies behind every
+/// Each edge has exactly two faces, which run through it in opposite directions. Three more things are asked for, which
+/// together suffice. (1) The mean of the vertices lies behind every
 /// face. (2) Seen from there the faces cover the sphere once: their solid angles add up to 4π. So the
 /// surface is one piece, is seen whole from that point, and nowhere passes through itself. (3) Over
 /// every edge the next face's far corner lies behind the face or in its plane. With (2) this makes the
@@ -163,6 +221,9 @@ impl Edges {
 /// its diagonal lies 10⁻⁸ too deep makes the mesh not convex. A face of no area makes it not convex
 /// either.
 pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u32], edges: &Edges) -> bool {
+    if !edges.are_pairs() {
+        return false;
+    }
     let mut sum = [0.0; 3];
     let mut corners = 0.0;
     for &triangle in triangles {

@@ -11,6 +11,10 @@ use crate::view::{ObjectView, Reach};
 /// How far an affine mapping may be off before it is given up, in texels: half of one.
 const AFFINE_TOLERANCE: f64 = 0.5;
 
+/// The texels to a pixel, seen straight on, above which an object has mipmaps: half of the √2 up to which level 0 is shown.
+/// A face that is tilted by 60° has twice as many.
+const LEAST_TEXELS: f64 = core::f64::consts::FRAC_1_SQRT_2;
+
 /// The shades that [`Rung::GouraudTessellated`] asks for.
 pub(crate) const LEAST_TESSELLATION: f32 = 1.0;
 
@@ -28,6 +32,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) max_error: Option<f32>,
     pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
     pub(crate) mapping: Option<Mapping>,
+    pub(crate) mipmaps: Option<bool>,
     /// Whether the frame holds the whole screen.
     pub(crate) whole: bool,
     /// Whether vertices are made in 16.16.
@@ -165,6 +170,7 @@ impl Rules<'_> {
                 self.material_has(|material| material.environment.is_some() && material.texture.is_none())
             }
             Effect::Perspective => self.perspective(),
+            Effect::Mipmaps => self.mipmaps(before),
             Effect::Transparency => self.material_has(|material| material.blend != crate::light::Blend::Opaque),
             Effect::Dither => self.dither(before),
             Effect::PaletteAnimation => match self.scene.palette_animation {
@@ -204,8 +210,10 @@ impl Rules<'_> {
     fn back_face_culling(&self) -> Decision {
         if hidden::is_transparent(self.object) {
             Decision::off(Why::SeenThrough)
-        } else if self.object.mesh().is_closed() {
+        } else if self.object.mesh().is_outward() {
             Decision::on(Why::Closed)
+        } else if self.object.mesh().is_closed() {
+            Decision::off(Why::InsideOut)
         } else {
             Decision::off(Why::Open)
         }
@@ -341,6 +349,25 @@ impl Rules<'_> {
         (root - 1.0) / (root + 1.0) * f64::from(texture_edge) * f64::from(size)
     }
 
+    fn mipmaps(&self, before: &ObjectPlan) -> Decision {
+        if !before.is_on(Effect::Texture) {
+            return Decision::off(before.decision(Effect::Texture).why);
+        }
+        if !self.object.materials.iter().any(|material| material.texture.is_some()) {
+            return Decision::off(Why::NoImage);
+        }
+        let texels = texels_to_pixel(self.object, self.view, self.reach.farthest);
+        let (on, why) = match self.inputs.mipmaps {
+            Some(asked) => (asked, Why::Asked),
+            None => (texels > LEAST_TEXELS, Why::TexelsToPixel { texels }),
+        };
+        let affine = [Mapping::Affine.name(), ""].contains(&before.decision(Effect::Perspective).choice);
+        match on {
+            true => Decision::on(why).choosing(if affine { "per face" } else { "per 16 pixels" }),
+            false => Decision::off(why),
+        }
+    }
+
     fn rgb_channels(&self) -> Decision {
         if let Some(light) = self.scene.lights().iter().position(|light| light.is_colored() && light.intensity() != 0.0)
         {
@@ -371,4 +398,16 @@ impl Rules<'_> {
             None => Decision::off(Why::NoMaterialHas),
         }
     }
+}
+
+/// How many texels of an object's images go to a pixel at most, counted along a side of the pixel, where a face is parallel
+/// to the screen and at most `farthest` away along the view: so many as an image's longer side has, times what texture
+/// coordinates change by over a unit, times a pixel's longer side.
+fn texels_to_pixel(object: &Object, view: &ObjectView, farthest: f64) -> f64 {
+    let images = object.materials.iter().zip(object.steepest_texcoords());
+    let steepest = images.filter_map(|(material, change)| {
+        let texture = material.texture.as_ref()?;
+        Some(change * f64::from(texture.width().max(texture.height())))
+    });
+    steepest.fold(0.0, f64::max) * view.longest_pixel(farthest.max(0.0))
 }

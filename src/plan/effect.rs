@@ -37,6 +37,8 @@ named! {
         Texture = "texture",
         /// An image of what the surface mirrors.
         EnvironmentMap = "environment-map",
+        /// Where an image is far away, a smaller copy of it; else its own texels everywhere.
+        Mipmaps = "mipmaps",
         /// What is behind shines through, by a table.
         Transparency = "transparency",
         /// Shades between two entries become a pattern of both.
@@ -81,6 +83,7 @@ impl Effect {
             | Self::RgbChannels
             | Self::Texture
             | Self::EnvironmentMap
+            | Self::Mipmaps
             | Self::Transparency
             | Self::Dither
             | Self::PaletteAnimation => Class::ChangesPicture,
@@ -108,6 +111,7 @@ impl Effect {
             Self::RgbChannels => cfg!(mode13h_leave_out = "rgb-channels"),
             Self::Texture => cfg!(mode13h_leave_out = "texture"),
             Self::EnvironmentMap => cfg!(mode13h_leave_out = "environment-map"),
+            Self::Mipmaps => cfg!(mode13h_leave_out = "mipmaps"),
             Self::Transparency => cfg!(mode13h_leave_out = "transparency"),
             Self::Dither => cfg!(mode13h_leave_out = "dither"),
             Self::PaletteAnimation => cfg!(mode13h_leave_out = "palette-animation"),

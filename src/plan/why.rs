@@ -40,6 +40,8 @@ pub enum Why {
     Closed,
     /// The mesh is not closed: both sides of its faces may be seen.
     Open,
+    /// The mesh is closed, but parts of it are inside out: their back faces may be seen.
+    InsideOut,
     /// What shines through shows its own far side too.
     SeenThrough,
     /// The scene's only object is convex.
@@ -131,6 +133,13 @@ pub enum Why {
     },
     /// There is nothing that follows the perspective.
     NoTexture,
+    /// No material has a texture.
+    NoImage,
+    /// How many texels go to a pixel at most, where a face is parallel to the screen.
+    TexelsToPixel {
+        /// Along a pixel's side.
+        texels: f64,
+    },
     /// A light is coloured.
     ColoredLight {
         /// Its place in the scene.
@@ -180,6 +189,7 @@ impl Why {
             Self::Band => "only a part of the screen is drawn".to_string(),
             Self::Closed => "its mesh is closed".to_string(),
             Self::Open => "its mesh is open, so both sides may be seen".to_string(),
+            Self::InsideOut => "its mesh is inside out in part, so both sides may be seen".to_string(),
             Self::SeenThrough => "its far side shines through".to_string(),
             Self::OneConvex => "the only object is convex".to_string(),
             Self::Empty => "nothing is to be drawn".to_string(),
@@ -219,6 +229,11 @@ impl Why {
             }
             Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
             Self::NoTexture => "nothing follows the perspective".to_string(),
+            Self::NoImage => "no material has a texture".to_string(),
+            // A bound is rounded up.
+            Self::TexelsToPixel { texels } => {
+                format!("up to {:.2} texels to a pixel, seen straight on", libm::ceil(texels * 100.0) / 100.0)
+            }
             Self::ColoredLight { light } => format!("light {light} is coloured"),
             Self::ColoredMaterial { material: i } => format!("{} is drawn in its own colours", material(i)),
             Self::WholeShades => "the table of normals holds whole shades".to_string(),

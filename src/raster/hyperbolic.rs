@@ -53,6 +53,11 @@ impl Linear {
     pub(super) fn per_column(&self) -> i128 {
         self.per_column
     }
+
+    /// What it changes by from one row to the next.
+    pub(super) fn per_row(&self) -> i128 {
+        self.per_row
+    }
 }
 
 /// The perspective-correct shades of a triangle.

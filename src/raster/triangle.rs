@@ -22,6 +22,8 @@ pub struct Drawn {
     pub tested: u32,
     /// Pixels that got a texel.
     pub textured: u32,
+    /// Pixels whose texel is of a level that was chosen for them, level 0 among them.
+    pub mipmapped: u32,
     /// Pixels that got a threshold of the dither pattern.
     pub dithered: u32,
     /// Pixels looked up in a fog table.
@@ -43,6 +45,7 @@ impl core::ops::AddAssign for Drawn {
         add(&mut self.pixels, other.pixels);
         add(&mut self.tested, other.tested);
         add(&mut self.textured, other.textured);
+        add(&mut self.mipmapped, other.mipmapped);
         add(&mut self.dithered, other.dithered);
         add(&mut self.fogged, other.fogged);
         add(&mut self.blended, other.blended);

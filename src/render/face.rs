@@ -71,6 +71,9 @@ pub(super) struct Faces<'a> {
     pub(super) extras: &'a [Extra],
     /// Whether faces that are turned away are left out.
     pub(super) culls: bool,
+    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. Turned away, such a
+    /// face is left out even where others show their backs: the other one has the same depth, and looks toward the eye.
+    pub(super) twins: &'a [u64],
     /// Whether any light falls on it.
     pub(super) is_lit: bool,
     /// Whether its shades run: else each surface has one.
@@ -112,6 +115,12 @@ impl Faces<'_> {
         stats.shares.add(self.rung, stats.drawn - before);
     }
 
+    /// Which of a chunk of up to 64 triangles lie back to back with others.
+    #[inline]
+    pub(super) fn twins_of(&self, chunk: usize) -> u64 {
+        self.twins.get(chunk).copied().unwrap_or(0)
+    }
+
     /// Which of up to 64 faces are to be drawn, those that need clipping among them. A face that covers no pixel centre is
     /// left out where it would draw nothing (a shading with a cover of its own draws beside them), though it counts as
     /// drawn.
@@ -120,11 +129,11 @@ impl Faces<'_> {
         &self,
         sieve: Option<&Sieve>,
         exact_cover: bool,
-        triangles: &[[u32; 3]],
+        (chunk, triangles): (usize, &[[u32; 3]]),
         stats: &mut Stats,
     ) -> (Sifted, u64) {
         let sifted = sieve.unwrap_or(&Sieve::EVERYTHING).sift(&self.lit.places, triangles, CULLS);
-        let drawn = if CULLS { sifted.front } else { sifted.front | sifted.back };
+        let drawn = if CULLS { sifted.front } else { sifted.front | (sifted.back & !self.twins_of(chunk)) };
         let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(sifted.clipped.count_ones()));
         stats.drawn += drawn_here;
         stats.clipped += clipped;
@@ -141,7 +150,7 @@ impl Faces<'_> {
         let mut listed = if one_shading { self.listed::<EFFECTS>(sink, self.rung.shading()) } else { None };
         let chunks = triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST));
         for (chunk, (triangles, surfaces)) in chunks.enumerate() {
-            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), exact_cover, triangles, stats);
+            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), exact_cover, (chunk, triangles), stats);
             if let (Some((listed, numbered)), Some(sieve)) = (&mut listed, &sieve) {
                 if sifted.clipped == 0 {
                     let sides = (chunk * sift::MOST, if CULLS { 0 } else { sifted.back });
@@ -163,7 +172,11 @@ impl Faces<'_> {
                 let is = |bits: u64| bits >> at & 1 == 1;
                 if is(sifted.clipped) {
                     let corners = indices.map(|i| self.lit.get(i as usize));
-                    self.clipped::<CULLS, EFFECTS>(indices, surface, &corners, stats, sink);
+                    if CULLS || !is(self.twins_of(chunk)) {
+                        self.clipped::<CULLS, EFFECTS>(indices, surface, &corners, stats, sink);
+                    } else {
+                        self.clipped::<true, EFFECTS>(indices, surface, &corners, stats, sink);
+                    }
                     continue;
                 }
                 let turned = !CULLS && is(sifted.back);

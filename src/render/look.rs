@@ -5,17 +5,16 @@ use super::face::{LitAt, Manner};
 use super::object::ObjectState;
 use super::paint::Paint;
 use super::pixel_light::PixelLight;
-use super::tables::Tables;
+use super::tables::{Image, Tables};
 use crate::light::{Blend, Material};
 use crate::palette::Palette;
 use crate::plan::{Effect, ObjectPlan, Plan, Why};
 use crate::raster::Drawn;
 use crate::raster::effects::{Look, Source, TextureLook, TextureMapping};
-use crate::scene::{Mapping, Rung, Scene, Shared};
+use crate::scene::{Mapping, Rung, Scene};
 use crate::span::Kernel;
 use crate::span::dither::BAYER;
 use crate::span::texture::Texels;
-use crate::texture::Texture;
 
 /// One texel, for an image that changes nothing.
 const ONE_TEXEL: [u8; 1] = [0];
@@ -31,14 +30,15 @@ fn is_forced(plan: &ObjectPlan, effect: Effect) -> bool {
 }
 
 /// The image of a surface, if one is on: its own, or what it mirrors.
-fn image<'a>(material: &'a Material, paint: &Paint) -> Option<&'a Shared<Texture>> {
-    if paint.texture_size.is_some() {
-        material.texture.as_ref()
+fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &Paint) -> Option<Image<'a>> {
+    let (texture, has_levels) = if paint.texture_size.is_some() {
+        (&material.texture, plan.is_on(Effect::Mipmaps))
     } else if paint.environment_size.is_some() {
-        material.environment.as_ref()
+        (&material.environment, false)
     } else {
-        None
-    }
+        return None;
+    };
+    texture.as_ref().map(|texture| Image { texture, has_levels })
 }
 
 /// Whether an image runs on a surface that has none.
@@ -63,9 +63,13 @@ pub(super) fn need(tables: &mut Tables, scene: &Scene, palette: &Palette, plan: 
             tables.need_mix();
         }
         for (material, paint) in object.materials.iter().zip(state.paints()) {
-            match image(material, paint) {
-                Some(texture) if channels => tables.need_channels(texture),
-                Some(texture) => tables.need_shades(Some(texture)),
+            let image = image(plan, material, paint);
+            if let Some(image) = image {
+                tables.need_levels(image);
+            }
+            match image {
+                Some(image) if channels => tables.need_channels(image),
+                Some(image) => tables.need_shades(Some(image)),
                 None if neutral_image(plan) => tables.need_shades(None),
                 None => {}
             }
@@ -115,21 +119,23 @@ impl Looks<'_> {
         let light = PixelLight { lights: state.lights(plan), paint, kernel: self.kernel };
         let dither = plan.is_on(Effect::Dither);
         let channels = plan.is_on(Effect::RgbChannels).then(|| self.tables.mix(dither));
-        let texture = image(material, paint);
-        let texture_look = match texture {
-            Some(texture) => {
+        let image = image(plan, material, paint);
+        let texture_look = match image {
+            Some(image) => {
+                let texture = image.texture;
                 let texels = Texels::new(texture.texels(), texture.width_bits(), texture.height_bits()).ok();
                 let tables =
-                    if channels.is_some() { self.tables.channels(texture) } else { self.tables.shades(Some(texture)) };
+                    if channels.is_some() { self.tables.channels(image) } else { self.tables.shades(Some(image)) };
                 texels.zip(tables).map(|(texels, tables)| {
                     let mapping = if paint.texture_size.is_some() { mapping(plan) } else { TextureMapping::Affine };
-                    TextureLook { texels, mapping, tables }
+                    TextureLook { texels, levels: self.tables.levels(image), mapping, tables }
                 })
             }
             None if neutral_image(plan) && channels.is_none() => {
                 let texels = Texels::new(&ONE_TEXEL, 0, 0).ok();
                 texels.zip(self.tables.shades(None)).map(|(texels, tables)| TextureLook {
                     texels,
+                    levels: None,
                     mapping: TextureMapping::Affine,
                     tables,
                 })

@@ -94,6 +94,7 @@ pub struct Renderer {
     rung: Option<Rung>,
     max_error: Option<f32>,
     mapping: Option<Mapping>,
+    mipmaps: Option<bool>,
     vertex_path: VertexPath,
     /// Bits after the point of projected vertices; 8 as the raster has them.
     vertex_bits: u32,
@@ -130,6 +131,7 @@ impl Renderer {
             rung: None,
             max_error: None,
             mapping: None,
+            mipmaps: None,
             vertex_path: VertexPath::default(),
             vertex_bits: VERTEX_BITS,
             kernel: Kernel::fastest(),
@@ -160,6 +162,7 @@ impl Renderer {
             rung: self.rung,
             max_error: self.max_error,
             mapping: self.mapping,
+            mipmaps: self.mipmaps,
             vertex_path: self.vertex_path,
             kernel: self.kernel,
             hidden_surfaces: self.hidden_surfaces,
@@ -201,6 +204,11 @@ impl Renderer {
     /// Chooses how textures are mapped, whatever the scene asks for; `None` leaves it to the scene.
     pub fn set_mapping(&mut self, mapping: Option<Mapping>) {
         self.mapping = mapping;
+    }
+
+    /// Gives textures mipmaps or none, whatever the scene asks for; `None` leaves it to the scene.
+    pub fn set_mipmaps(&mut self, mipmaps: Option<bool>) {
+        self.mipmaps = mipmaps;
     }
 
     /// Chooses the way from mesh to vertices.
@@ -520,6 +528,7 @@ impl Renderer {
             max_error,
             hidden_surfaces: self.hidden_surfaces.or(scene.wishes.hidden_surfaces),
             mapping: self.mapping.or(scene.wishes.mapping),
+            mipmaps: self.mipmaps.or(scene.wishes.mipmaps),
             whole,
             integer: self.vertex_path == VertexPath::Integer,
             keeps: self.may_keep() && self.vertex_path == VertexPath::Float,

@@ -223,7 +223,8 @@ impl ObjectState {
                 other => &other.insert((Shared::clone(object.shared_mesh()), object.mesh().points())).1,
             };
             let tolerance = scene.wishes.tessellation.unwrap_or(LEAST_TESSELLATION);
-            self.tessellated.split(&geometry, points, &lights, &self.paints, tolerance);
+            let twins = object.mesh().twins();
+            self.tessellated.split(&geometry, (points, twins), &lights, &self.paints, tolerance);
             self.tessellated.geometry()
         } else {
             geometry
@@ -384,6 +385,7 @@ impl ObjectState {
             lit: &self.lit,
             extras: &self.extras,
             culls: plan.is_on(Effect::BackFaceCulling),
+            twins: if self.is_tessellated { self.tessellated.twins() } else { object.mesh().twins() },
             is_lit: plan.is_on(Effect::Lighting),
             runs: plan.is_on(Effect::Gouraud),
             full: plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular),

@@ -3,6 +3,7 @@
 //! Nothing is worked out here that drawing works out: a face is drawn by the raster, clipped to the pixel, and a stage's
 //! byte is what is drawn with the stages after it taken away.
 
+use alloc::vec;
 use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
 
@@ -14,6 +15,7 @@ use crate::raster::effects::{Attributes, Lighting, Look, Mix, Source, TextureLoo
 use crate::raster::{Drawn, Frame, Raster, Rect, Vertex};
 use crate::span::Kernel;
 use crate::span::lit::{LANES, Lanes, Points};
+use crate::span::texture::{Levels, Texels};
 
 /// Where the shades of a face come from.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -52,6 +54,8 @@ pub(crate) struct Bytes {
     pub(crate) shades: [u8; 3],
     pub(crate) channels: bool,
     pub(crate) texel: Option<u8>,
+    /// The level of its image that the texel is of; `None` of an image without levels.
+    pub(crate) level: Option<u8>,
     /// The threshold, and the byte.
     pub(crate) dithered: Option<(u8, u8)>,
     /// Of channels, each with the texel's.
@@ -195,6 +199,7 @@ pub(super) fn bytes(looks: &Looks<'_>, met: &Met, pixel: &mut OnePixel, behind: 
         shades: [shade; 3],
         channels: false,
         texel: None,
+        level: None,
         dithered: None,
         textured: None,
         mixed: None,
@@ -271,6 +276,25 @@ fn stages(
     made.texel = look.texture.map(|texture| {
         let texture = TextureLook { tables: [columns.as_array(); 3], ..texture };
         pixel.look(met, behind, &Look { texture: Some(texture), ..single })
+    });
+    made.level = look.texture.and_then(|texture| {
+        // An image whose texels are the numbers of their levels.
+        let (ubits, vbits) = (texture.texels.width().ilog2(), texture.texels.height().ilog2());
+        texture.levels?;
+        let zeros = vec![0; texture.texels.width() * texture.texels.height()];
+        let all = Levels::length(ubits, vbits);
+        let mut numbers = Vec::with_capacity(all);
+        for (level, number) in (1..=Levels::deepest(ubits, vbits)).zip(1..) {
+            let deeper = Levels::length(ubits.saturating_sub(level), vbits.saturating_sub(level));
+            numbers.resize(all - deeper, number);
+        }
+        let texture = TextureLook {
+            texels: Texels::new(&zeros, ubits, vbits).ok()?,
+            levels: Some(Levels::new(&numbers, ubits, vbits).ok()?),
+            tables: [columns.as_array(); 3],
+            ..texture
+        };
+        Some(pixel.look(met, behind, &Look { texture: Some(texture), ..single }))
     });
     let mut so_far = bare;
     if let Some(thresholds) = look.dither {

@@ -110,6 +110,7 @@ impl fmt::Display for Stats {
         let counts = [
             (u64::from(raster.tested), "tested for depth"),
             (u64::from(raster.textured), "textured"),
+            (u64::from(raster.mipmapped), "of a level of their texture"),
             (u64::from(raster.mixed), "mixed from channels"),
             (u64::from(raster.lit), "lit as pixels"),
             (u64::from(raster.fogged), "fogged"),

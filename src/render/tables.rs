@@ -2,13 +2,31 @@
 //! the palette, or what else it was made from, has changed; a table that nothing needs is not there.
 
 use alloc::vec::Vec;
+use core::mem;
 
 use crate::light::Blend;
 use crate::palette::cube::CUBE;
 use crate::palette::{Nearest, Palette, Rgb, Table};
 use crate::raster::effects::Mix;
 use crate::scene::Shared;
-use crate::texture::Texture;
+use crate::span::texture::Levels;
+use crate::texture::{Mipmap, Texture};
+
+/// A texture as it is drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Image<'a> {
+    pub(super) texture: &'a Shared<Texture>,
+    /// Whether it has smaller copies, and so more colours.
+    pub(super) has_levels: bool,
+}
+
+/// What was made for an image.
+#[derive(Debug)]
+struct Made<T> {
+    texture: Shared<Texture>,
+    has_levels: bool,
+    made: T,
+}
 
 /// The tables of a palette.
 #[derive(Debug, Default)]
@@ -16,8 +34,10 @@ pub(super) struct Tables {
     palette: Option<Palette>,
     fog: Option<(Rgb, Table)>,
     nearest: Option<Nearest>,
-    shades: Vec<(Shared<Texture>, Table)>,
-    channels: Vec<(Shared<Texture>, [Table; 3])>,
+    /// They hold for every palette.
+    mipmaps: Vec<(Shared<Texture>, Mipmap)>,
+    shades: Vec<Made<Table>>,
+    channels: Vec<Made<[Table; 3]>>,
     blends: Vec<(Blend, Table)>,
     /// The row itself: an image that changes no shade.
     neutral_shades: Option<Table>,
@@ -33,7 +53,8 @@ impl Tables {
         if self.palette.as_ref() == Some(palette) {
             return false;
         }
-        *self = Self { palette: Some(palette.clone()), only_channel: self.only_channel, ..Self::default() };
+        let mipmaps = mem::take(&mut self.mipmaps);
+        *self = Self { palette: Some(palette.clone()), mipmaps, only_channel: self.only_channel, ..Self::default() };
         true
     }
 
@@ -76,41 +97,65 @@ impl Tables {
         }
     }
 
-    pub(super) fn need_shades(&mut self, texture: Option<&Shared<Texture>>) {
-        match texture {
+    /// Sees to it that the smaller copies of an image are there, if it has some.
+    pub(super) fn need_levels(&mut self, image: Image<'_>) {
+        if image.has_levels && self.mipmap(image).is_none() {
+            self.mipmaps.push((Shared::clone(image.texture), Mipmap::new(image.texture)));
+        }
+    }
+
+    fn mipmap(&self, image: Image<'_>) -> Option<&Mipmap> {
+        let mut made = self.mipmaps.iter().filter(|_| image.has_levels);
+        made.find(|(of, _)| Shared::ptr_eq(of, image.texture)).map(|(_, mipmap)| mipmap)
+    }
+
+    /// The smaller copies of an image that has some.
+    pub(super) fn levels(&self, image: Image<'_>) -> Option<Levels<'_>> {
+        self.mipmap(image).map(Mipmap::levels)
+    }
+
+    /// The colours of an image, those of its smaller copies among them.
+    fn colors<'a>(&'a self, image: Image<'a>) -> &'a [Rgb; 256] {
+        self.mipmap(image).map_or(image.texture.colors(), Mipmap::colors)
+    }
+
+    pub(super) fn need_shades(&mut self, image: Option<Image<'_>>) {
+        match image {
             None if self.neutral_shades.is_none() => self.neutral_shades = Some(Table::from_fn(|shade, _| shade)),
-            Some(texture) if find(&self.shades, texture).is_none() => {
-                let table = Table::shades(self.palette(), texture.colors());
-                self.shades.push((Shared::clone(texture), table));
+            Some(image) if find(&self.shades, image).is_none() => {
+                let table = Table::shades(self.palette(), self.colors(image));
+                self.shades.push(Made::of(image, table));
             }
             _ => {}
         }
     }
 
-    pub(super) fn shades(&self, texture: Option<&Shared<Texture>>) -> Option<[&[u8; 65_536]; 3]> {
-        let table = match texture {
+    pub(super) fn shades(&self, image: Option<Image<'_>>) -> Option<[&[u8; 65_536]; 3]> {
+        let table = match image {
             None => self.neutral_shades.as_ref(),
-            Some(texture) => find(&self.shades, texture),
+            Some(image) => find(&self.shades, image),
         };
         table.map(|table| [table.as_array(); 3])
     }
 
     /// Of channels: row a channel's shade, column a texel, entry the channel of the lit texel.
-    pub(super) fn need_channels(&mut self, texture: &Shared<Texture>) {
-        if find(&self.channels, texture).is_none() {
+    pub(super) fn need_channels(&mut self, image: Image<'_>) {
+        if find(&self.channels, image).is_none() {
+            let colors = self.colors(image);
             let lit = |channel: fn(Rgb) -> u8| {
                 Table::from_fn(|shade, texel| {
-                    let full = u32::from(channel(texture.colors()[usize::from(texel)]));
+                    let full = u32::from(channel(colors[usize::from(texel)]));
                     // At most 255.
                     ((full * u32::from(shade) + 127) / 255) as u8
                 })
             };
-            self.channels.push((Shared::clone(texture), [lit(|c| c.r), lit(|c| c.g), lit(|c| c.b)]));
+            let tables = [lit(|c| c.r), lit(|c| c.g), lit(|c| c.b)];
+            self.channels.push(Made::of(image, tables));
         }
     }
 
-    pub(super) fn channels(&self, texture: &Shared<Texture>) -> Option<[&[u8; 65_536]; 3]> {
-        find(&self.channels, texture).map(|tables| tables.each_ref().map(Table::as_array))
+    pub(super) fn channels(&self, image: Image<'_>) -> Option<[&[u8; 65_536]; 3]> {
+        find(&self.channels, image).map(|tables| tables.each_ref().map(Table::as_array))
     }
 
     pub(super) fn need_blend(&mut self, blend: Blend) {
@@ -137,11 +182,19 @@ impl Tables {
             + self.blends.len()
             + usize::from(self.neutral_shades.is_some())
             + usize::from(self.neutral_fog.is_some());
-        tables * Table::BYTES + if self.nearest.is_some() { Nearest::BYTES } else { 0 }
+        let levels: usize = self.mipmaps.iter().map(|(_, mipmap)| mipmap.bytes()).sum();
+        levels + tables * Table::BYTES + if self.nearest.is_some() { Nearest::BYTES } else { 0 }
     }
 }
 
-/// What was made for a texture: for the very same one, not for one that looks alike.
-fn find<'a, T>(made: &'a [(Shared<Texture>, T)], texture: &Shared<Texture>) -> Option<&'a T> {
-    made.iter().find(|(of, _)| Shared::ptr_eq(of, texture)).map(|(_, table)| table)
+impl<T> Made<T> {
+    fn of(image: Image<'_>, made: T) -> Self {
+        Self { texture: Shared::clone(image.texture), has_levels: image.has_levels, made }
+    }
+}
+
+/// What was made for an image: for the very same texture, not for one that looks alike.
+fn find<'a, T>(all: &'a [Made<T>], image: Image<'_>) -> Option<&'a T> {
+    let is_of = |made: &&Made<T>| Shared::ptr_eq(&made.texture, image.texture) && made.has_levels == image.has_levels;
+    all.iter().find(is_of).map(|made| &made.made)
 }

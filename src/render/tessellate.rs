@@ -41,6 +41,8 @@ pub(super) struct Tessellated {
     triangle_surfaces: Vec<u16>,
     /// Of each vertex, the number of its point: vertices in one place have the same.
     points: Vec<u32>,
+    /// A bit for each triangle whose mesh's triangle lies back to back with another; empty if there is none.
+    twins: Vec<u64>,
     /// Of each triangle, whether its edges have been looked at, and none of them bent.
     settled: Vec<bool>,
     /// Of each vertex, its light, and how far what it mirrors is from each light.
@@ -62,13 +64,14 @@ struct Known {
 }
 
 impl Tessellated {
-    /// Splits `geometry`, whose vertices lie at the points of these numbers, until linear shades are off
+    /// Splits `geometry`, whose vertices lie at the points of these numbers and whose triangles are marked that lie back to
+    /// back, until linear shades are off
     /// by no more than `tolerance` shades, of which 255 are full intensity.
     #[inline(never)]
     pub(super) fn split(
         &mut self,
         geometry: &Geometry<'_>,
-        points: &[u32],
+        (points, twins): (&[u32], &[u64]),
         lights: &Lights<'_>,
         paints: &[Paint],
         tolerance: f32,
@@ -87,6 +90,8 @@ impl Tessellated {
         self.triangle_surfaces.extend_from_slice(geometry.triangle_surfaces);
         self.points.clear();
         self.points.extend_from_slice(points);
+        self.twins.clear();
+        self.twins.extend_from_slice(twins);
         self.settled.clear();
         self.settled.resize(self.triangles.len(), false);
         self.known.light.clear();
@@ -112,6 +117,12 @@ impl Tessellated {
         }
     }
 
+    /// Which of its triangles lie back to back with others, as [`Mesh::twins`](crate::mesh::Mesh::twins) has it: parts of
+    /// two such triangles may be cut differently, but lie in one plane, and are turned away together.
+    pub(super) fn twins(&self) -> &[u64] {
+        &self.twins
+    }
+
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
         self.positions.capacity() * size_of::<Vec3>()
@@ -120,6 +131,7 @@ impl Tessellated {
             + (self.vertex_surfaces.capacity() + self.triangle_surfaces.capacity()) * 2
             + self.triangles.capacity() * size_of::<[u32; 3]>()
             + self.points.capacity() * 4
+            + self.twins.capacity() * 8
             + self.settled.capacity()
             + self.known.light.capacity() * size_of::<(f64, f64)>()
             + self.known.angles.capacity() * size_of::<f64>()
@@ -202,6 +214,11 @@ impl Tessellated {
                     self.triangles[i] = part;
                     self.settled[i] = false;
                 } else {
+                    if !self.twins.is_empty() {
+                        let new = self.triangles.len();
+                        self.twins.resize((new + 1).div_ceil(64), 0);
+                        self.twins[new / 64] |= (self.twins[i / 64] >> (i % 64) & 1) << (new % 64);
+                    }
                     self.triangles.push(part);
                     self.settled.push(false);
                     self.triangle_surfaces.push(surface);

@@ -201,6 +201,7 @@ impl Renderer {
         (0..triangles.len()).find(|&i| {
             faces.geometry.triangles = &triangles[i..=i];
             faces.geometry.triangle_surfaces = &triangle_surfaces[i..=i];
+            faces.twins = &[];
             let mut same = Same { wanted: &met.vertices, found: false };
             // Which rung draws it changes no vertex's place.
             let mut undecided = Decided::default();

@@ -39,7 +39,7 @@ impl Faces<'_> {
         for (chunk, triangles) in triangles.chunks(sift::MOST).enumerate() {
             let first = chunk * sift::MOST;
             let surfaces = &triangle_surfaces[first..];
-            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), true, triangles, stats);
+            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), true, (chunk, triangles), stats);
             let here = left & !sifted.clipped;
             let sides = (first, if CULLS { 0 } else { sifted.back });
             let (settled, hopeless) = self.settled((budget, &mut vain), sides, decided, here);
@@ -80,8 +80,10 @@ impl Faces<'_> {
                 }
                 let face = (first + at, indices, surface, turned);
                 let (choice, known) = (&mut choices[at], &mut bodies[at]);
-                if is(sifted.clipped) {
+                if is(sifted.clipped) && (CULLS || !is(self.twins_of(chunk))) {
                     self.clipped_within::<CULLS, EFFECTS>(face, (budget, choice, known), stats, sink);
+                } else if is(sifted.clipped) {
+                    self.clipped_within::<true, EFFECTS>(face, (budget, choice, known), stats, sink);
                 } else {
                     self.one_within::<EFFECTS>(face, (budget, choice, known), (&mut vain, is(hopeless)), stats, sink);
                 }

@@ -8,10 +8,11 @@
 //! |---|---|
 //! | `object` | [`Object`]: a mesh, where it is, what it is made of |
 //! | `camera` | [`Camera`] |
+//! | `framing` | from where a picture holds everything |
 //! | `fog` | [`Fog`] |
 //! | `motion` | [`Motion`]: everything from absolute time |
 //! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
-//! | `wishes` | [`Wishes`]: rung, hidden surfaces, mapping, tessellation, dither |
+//! | `wishes` | [`Wishes`]: rung, hidden surfaces, mapping, mipmaps, tessellation, dither |
 //! | `names` | choices that are typed by name |
 //! | `file` | scenes as TOML files (feature `scene-files`) |
 //! | `shipped` | those that are compiled in (feature `scene-files`) |
@@ -21,6 +22,7 @@ mod camera;
 #[cfg(feature = "scene-files")]
 pub mod file;
 mod fog;
+pub(crate) mod framing;
 mod motion;
 mod names;
 mod object;
@@ -35,7 +37,6 @@ use core::ops::{Index, IndexMut};
 use glam::Vec3;
 
 use crate::light::Light;
-use crate::mesh::Mesh;
 use crate::palette::{Palette, Rgb, builtin};
 use crate::vga::Vga;
 pub use animation::PaletteAnimation;
@@ -96,12 +97,17 @@ pub struct Scene {
     /// How long one round of it takes, in seconds; above 0. A film of that length that is played again and again has
     /// no seam, if its motions take whole parts of it.
     pub duration: f64,
+    /// The moment that shows best what it is about, in seconds: of a single picture.
+    pub picture: f64,
     time: f64,
     objects: Vec<Object>,
     lights: Vec<Light>,
 }
 
 impl Scene {
+    /// How far the upper end of what is [shown](Self::showing) is tilted towards the eye, in radians.
+    const TILT: f64 = 0.35;
+
     /// An empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four seconds.
     #[must_use]
     pub fn new() -> Self {
@@ -117,20 +123,37 @@ impl Scene {
             wishes: Wishes::default(),
             motions: Vec::new(),
             duration: 4.0,
+            picture: 0.0,
             time: 0.0,
             objects: Vec::new(),
             lights: Vec::new(),
         }
     }
 
-    /// A mesh to look at: in the middle, filling the picture, turning about its middle, one sun
-    /// from the upper right behind the eye.
+    /// A mesh, or an object with materials and an upward axis of its own, to look at: in the middle, filling the picture,
+    /// turning about its middle, one sun from the upper right behind the eye.
+    ///
+    /// It is tilted a little towards the eye, so that a flat one is not a line, and turns once in a
+    /// [round](Self::duration): [`set_time`](Self::set_time) puts it where it is. Over the whole turn it fills nine tenths
+    /// of the picture's width or height ([`Camera::framing_turn`]).
+    ///
+    /// ```
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::scene::Scene;
+    /// let mut scene = Scene::showing(shapes::teapot(8));
+    /// scene.set_time(scene.duration / 4.0);
+    /// assert_eq!(scene.objects()[0].angles()[1], std::f64::consts::FRAC_PI_2);
+    /// ```
     #[must_use]
-    pub fn showing(mesh: impl Into<Shared<Mesh>>) -> Self {
+    pub fn showing(object: impl Into<Object>) -> Self {
+        let mut object = object.into().centred();
+        object.position = Vec3::ZERO;
+        object.set_angles([Self::TILT, 0.0, 0.0]);
         let mut scene = Self::new();
-        let object = Object::new(mesh).centred();
-        scene.camera = Camera::framing(Vec3::ZERO, object.mesh().bounds().radius);
-        scene.add(object);
+        scene.camera = Camera::framing_turn(&object);
+        let start = object.angles();
+        let object = scene.add(object);
+        scene.motions.push(Motion::Spin { object, start, turns: [0.0, 1.0 / scene.duration, 0.0] });
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
         scene
     }

@@ -118,6 +118,8 @@ pub struct Wishes {
     pub hidden_surfaces: Option<HiddenSurfaces>,
     /// How textures are mapped.
     pub mapping: Option<Mapping>,
+    /// Whether textures have mipmaps.
+    pub mipmaps: Option<bool>,
     /// Faces are split until the shades on their edges are linear to so many shades of 1/255 of
     /// full intensity; above 0. [`Rung::GouraudTessellated`] asks for one shade.
     pub tessellation: Option<f32>,

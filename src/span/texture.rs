@@ -84,6 +84,69 @@ impl<'a> Texels<'a> {
     }
 }
 
+/// The smaller copies of a texture: the levels of a mipmap from 1 on. Each has half the columns and half the rows of the
+/// level before it, or one where that has one; the last is a single texel. Level 0 is the texture itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Levels<'a> {
+    /// Level after level.
+    bytes: &'a [u8],
+    ubits: u32,
+    vbits: u32,
+}
+
+impl<'a> Levels<'a> {
+    /// The smaller copies of a texture 2^`ubits` wide and 2^`vbits` high: level 1 row by row, then level 2, and so on.
+    ///
+    /// # Errors
+    /// [`TexelsError`] if the texture is wider or higher than 256, or if `bytes` has another length than
+    /// [`length`](Self::length).
+    pub const fn new(bytes: &'a [u8], ubits: u32, vbits: u32) -> Result<Self, TexelsError> {
+        if ubits > Texels::MAX_BITS || vbits > Texels::MAX_BITS {
+            return Err(TexelsError::Bits { ubits, vbits });
+        }
+        let should = Self::length(ubits, vbits);
+        if bytes.len() != should {
+            return Err(TexelsError::Length { is: bytes.len(), should });
+        }
+        Ok(Self { bytes, ubits, vbits })
+    }
+
+    /// The number of the last level: 0 of a texture of one texel, at most 8.
+    #[must_use]
+    pub const fn deepest(ubits: u32, vbits: u32) -> u32 {
+        if ubits > vbits { ubits } else { vbits }
+    }
+
+    /// The texels of all levels from 1 on: a third of a square texture's, rounded down.
+    #[must_use]
+    pub const fn length(ubits: u32, vbits: u32) -> usize {
+        let (mut length, mut level) = (0, 1);
+        while level <= Self::deepest(ubits, vbits) {
+            length += 1 << (ubits.saturating_sub(level) + vbits.saturating_sub(level));
+            level += 1;
+        }
+        length
+    }
+
+    /// The number of the last level.
+    #[must_use]
+    pub const fn last(self) -> u32 {
+        Self::deepest(self.ubits, self.vbits)
+    }
+
+    /// The texels of a level from 1 to the last; of a higher number those of the last. `None` of level 0.
+    #[must_use]
+    pub fn get(self, level: u32) -> Option<Texels<'a>> {
+        let level = level.min(self.last());
+        let bits = |level: u32| (self.ubits.saturating_sub(level), self.vbits.saturating_sub(level));
+        let length = |(ubits, vbits): (u32, u32)| 1 << (ubits + vbits);
+        let first: usize = (1..level).map(|before| length(bits(before))).sum();
+        let (ubits, vbits) = bits(level);
+        let bytes = self.bytes.get(first..first + length((ubits, vbits)))?;
+        if level == 0 { None } else { Some(Texels { bytes, ubits, vbits }) }
+    }
+}
+
 /// Bytes are not a texture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]

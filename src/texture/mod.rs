@@ -5,6 +5,7 @@
 //! | [`Texture`] | texels of powers of two, and up to 256 colours of their own |
 //! | [`Texture::from_rgb`] | from a picture of any size: resampled, its colours reduced |
 //! | [`Texture::by_name`] | those that are compiled in: crate, checker, bricks, sky |
+//! | [`Mipmap`] | a texture's smaller copies, for where it is far away |
 //! | `load`, `decode` | from a PNG file (feature `image`) |
 //!
 //! A texel is shaded by a table that [`Table::shades`](crate::palette::Table::shades) makes from a
@@ -13,6 +14,7 @@
 mod builtin;
 #[cfg(feature = "image")]
 mod load;
+mod mipmap;
 mod resample;
 
 use alloc::vec;
@@ -23,6 +25,7 @@ use crate::palette::median_cut::MedianCut;
 use crate::palette::{Rgb, Search};
 #[cfg(feature = "image")]
 pub use load::{LoadError, LoadErrorKind, decode, load};
+pub use mipmap::Mipmap;
 
 /// Why texels, or pixels, are no texture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -23,7 +23,7 @@ pub(super) struct Body<'a> {
     pub(super) object: &'a Object,
     /// One for each vertex of its mesh.
     pub(super) corners: Vec<Corner>,
-    /// Whether faces that are turned away are seen too.
+    /// Whether faces that are turned away are seen too, other than those back to back with one that is not.
     pub(super) two_sided: bool,
     /// Whether red, green and blue are lit each for itself.
     pub(super) in_color: bool,
@@ -44,9 +44,14 @@ impl<'a> Body<'a> {
         Self {
             object,
             corners: mesh.positions().iter().zip(mesh.normals()).map(corner).collect(),
-            two_sided: !mesh.is_closed(),
+            two_sided: !mesh.is_outward(),
             in_color: scene.lights().iter().any(shines_in_color) || object.materials.iter().any(Material::is_colored),
         }
+    }
+
+    /// Whether a triangle is seen that is `turned` away, or is not.
+    pub(super) fn shows(&self, triangle: usize, turned: bool) -> bool {
+        !turned || (self.two_sided && !self.object.mesh().has_twin(triangle))
     }
 
     /// The corners of one of its triangles.

@@ -17,7 +17,8 @@
 //!
 //! **Visible surface.** The face with the greatest 1/w at the pixel; of equal ones the first in the order of
 //! the scene. w, the distance along the view, is that of the unrounded vertices, and 1/w linear on the
-//! screen. A closed mesh has no backs; of others a face whose back is seen has its normals turned round.
+//! screen. A closed mesh that looks outward has no backs; of others a face whose back is seen has its normals turned
+//! round. Of two faces back to back the one that looks toward the eye is seen.
 //! Nothing is nearer than the near plane. A body that shines through counts as an opaque one.
 //!
 //! **Intensity.** 0 to 1, before ramp, texture, fog, dither and blending, and rounded nowhere. The sum of
@@ -306,7 +307,7 @@ impl<'a> Truth<'a> {
     fn drawn(&self, face: Face) -> Option<Rounded> {
         let (body, corners) = self.triangle(face)?;
         let rounded = Rounded::new(&self.eye, &corners);
-        (body.two_sided || !rounded.turned).then_some(rounded)
+        body.shows(face.triangle, rounded.turned).then_some(rounded)
     }
 
     /// Every pixel that the face covers with rounded vertices.
@@ -349,7 +350,7 @@ impl<'a> Truth<'a> {
         let (body, corners) = self.triangle(face)?;
         let met = ray::meet(&self.eye, &corners, at)?;
         let hit = Hit { face, turned: met.turned, weights: met.on_face, inverse_w: 1.0 / met.w };
-        (body.two_sided || !met.turned).then_some(hit)
+        body.shows(face.triangle, met.turned).then_some(hit)
     }
 
     /// Calls `pixel` for all pixels of the frame that points round it may enclose, and some more.

@@ -167,7 +167,7 @@ fn is_hit([a, b, c]: &[[f64; 3]; 3], ray: [f64; 3]) -> bool {
 fn odd_views(group: &mut Group, random: &mut Random, project: Project<'_>) {
     let mesh = shapes::torus(12, 6);
     for case in 0..60 {
-        let mut scene = Scene::showing(mesh.clone());
+        let mut scene = super::framed(mesh.clone());
         let mut place = || Vec3::from_array([0; 3].map(|_| random.around_zero(1.0) as f32));
         (scene.camera.eye, scene.camera.target) = (place(), place());
         scene.camera.near = 1e-3;
@@ -265,7 +265,7 @@ fn refused(group: &mut Group) {
             |scene, bad| scene.objects_mut()[0].materials[0].diffuse = bad,
         ];
         for (number, spoil) in spoil.into_iter().enumerate() {
-            let mut scene = Scene::showing(shapes::cube());
+            let mut scene = super::framed(shapes::cube());
             spoil(&mut scene, bad);
             let mut vga = Vga::new();
             vga.pixels_mut().fill(7);

@@ -53,7 +53,7 @@ pub fn frames(kernel: Kernel) -> Frames {
             renderer.set_vertex_path(path);
             renderer.set_rung(rung);
             for step in 0..4_u8 {
-                let mut scene = Scene::showing(mesh.clone());
+                let mut scene = super::framed(mesh.clone());
                 scene.palette = Some(builtin::ALL[(shape + number) % builtin::ALL.len()].palette.clone());
                 scene.background = step;
                 scene.objects_mut()[0].set_angles([0.4, f64::from(step) * 1.7, 0.1]);
@@ -89,7 +89,7 @@ impl Frames {
 
 /// Two tori, one through the other, that reach beyond the near plane and the guard band.
 fn close_up(torus: &Shared<Mesh>, turn: f64) -> Scene {
-    let mut scene = Scene::showing(torus.clone());
+    let mut scene = super::framed(torus.clone());
     scene.palette = Some(builtin::COPPER.clone());
     let mut second = Object::new(torus.clone());
     second.position = Vec3::new(0.5, 0.0, 0.0);
@@ -111,7 +111,7 @@ mod tests {
     fn a_wrong_frame_changes_the_hash() {
         let mut vga = Vga::new();
         let mut hash_of = |change: &dyn Fn(&mut Scene)| {
-            let mut scene = Scene::showing(shapes::cube());
+            let mut scene = super::super::framed(shapes::cube());
             change(&mut scene);
             let mut frames = Frames { count: 0, hash: START };
             frames.draw(&mut Renderer::new(), &scene, &mut vga);

@@ -8,7 +8,6 @@ use crate::mesh::shapes;
 use crate::raster::{Shading, Vertex};
 use crate::record::Record;
 use crate::render::{HiddenSurfaces, Renderer, Screen};
-use crate::scene::Scene;
 use crate::span::Kernel;
 
 /// Random triangles through each other, in circles, with the same vertices, of one depth (hard cases
@@ -76,7 +75,7 @@ fn face(random: &mut Random, record: &Record) -> ([Vertex; 3], Shading) {
 fn convex(group: &mut Group, random: &mut Random, draw: Draw<'_>) {
     for name in ["cube", "sphere", "cone", "cylinder"] {
         let Some(mesh) = shapes::by_name(name) else { continue };
-        let mut scene = Scene::showing(mesh);
+        let mut scene = super::framed(mesh);
         for _ in 0..3 {
             scene.objects_mut()[0].set_angles([0; 3].map(|_| random.around_zero(3.2)));
             let Ok(record) = Record::of_scene(&mut Renderer::new(), &scene, Screen::MODE_13H) else { continue };

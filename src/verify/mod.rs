@@ -50,7 +50,22 @@ pub use spans::spans;
 pub use time::time;
 pub use triangles::triangles;
 
+use crate::glam::Vec3;
+use crate::light::Light;
+use crate::mesh::Mesh;
 use crate::record::Record;
+use crate::scene::{Camera, Object, Scene, Shared};
+
+/// A mesh in the middle, seen straight on by a camera that frames its sphere, under one sun: however it is turned it is in
+/// the picture.
+fn framed(mesh: impl Into<Shared<Mesh>>) -> Scene {
+    let object = Object::new(mesh).centred();
+    let mut scene = Scene::new();
+    scene.camera = Camera::framing(Vec3::ZERO, object.mesh().bounds().radius);
+    scene.add(object);
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    scene
+}
 
 /// Every group. Each is given the seed of its random cases.
 pub const GROUPS: [fn(u64) -> Group; 9] =

@@ -208,10 +208,9 @@ mod tests {
     use super::*;
     use crate::mesh::shapes;
     use crate::render::{Renderer, Screen};
-    use crate::scene::Scene;
 
     fn torus() -> Record {
-        let mut scene = Scene::showing(shapes::torus(12, 6));
+        let mut scene = super::super::framed(shapes::torus(12, 6));
         scene.objects_mut()[0].set_angles([1.1, 0.0, 0.4]);
         Record::of_scene(&mut Renderer::new(), &scene, Screen::MODE_13H).expect("a legal scene")
     }

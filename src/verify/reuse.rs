@@ -33,7 +33,7 @@ fn check(seed: u64, draw: Draw<'_>) -> Group {
     let meshes: Vec<Shared<Mesh>> =
         shapes::NAMES.iter().filter_map(|name| shapes::by_name(name)).map(Shared::new).collect();
     let palettes: Vec<Palette> = builtin::ALL.iter().map(|builtin| builtin.palette.clone()).collect();
-    let mut scene = Scene::showing(meshes[0].clone());
+    let mut scene = super::framed(meshes[0].clone());
     for case in 0..150 {
         let what = change(&mut random, &mut scene, &meshes, &palettes);
         let (rung, way) = (random.one_of(&Rung::ALL), random.one_of(&HiddenSurfaces::ALL));
@@ -67,7 +67,7 @@ fn change(random: &mut Random, scene: &mut Scene, meshes: &[Shared<Mesh>], palet
     match (mesh(), random.below(7)) {
         (mesh, 0) => {
             let palette = scene.palette.take();
-            *scene = Scene::showing(mesh);
+            *scene = super::framed(mesh);
             scene.palette = palette;
             "the mesh"
         }

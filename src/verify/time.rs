@@ -56,7 +56,7 @@ fn integer_turn(steps: [f64; 3]) -> [[f64; 3]; 3] {
 fn full_turns(group: &mut Group, random: &mut Random) {
     let mut renderer = Renderer::new();
     renderer.set_vertex_path(VertexPath::Integer);
-    let mut scene = Scene::showing(shapes::torus(16, 8));
+    let mut scene = super::framed(shapes::torus(16, 8));
     let mut draw = |steps: [i64; 3]| {
         scene.objects_mut()[0].set_angles(steps.map(|steps| steps as f64 / 65_536.0 * core::f64::consts::TAU));
         let mut vga = Vga::new();
@@ -92,7 +92,7 @@ fn orthonormal(group: &mut Group, turn: Turn<'_>, angles: [f64; 3], limit: f64) 
 fn frame_at_once(group: &mut Group, random: &mut Random, pose: Pose<'_>) {
     const FRAMES: u32 = 140;
     let angles = |frame: u32| [0.3, f64::from(frame) * core::f64::consts::TAU / f64::from(FRAMES), 0.1];
-    let mut scene = Scene::showing(shapes::torus(16, 8));
+    let mut scene = super::framed(shapes::torus(16, 8));
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     let alone = random.below(20);
     for frame in 0..FRAMES {
@@ -101,7 +101,7 @@ fn frame_at_once(group: &mut Group, random: &mut Random, pose: Pose<'_>) {
         if frame % 20 != alone {
             continue;
         }
-        let mut at_once = Scene::showing(shapes::torus(16, 8));
+        let mut at_once = super::framed(shapes::torus(16, 8));
         at_once.objects_mut()[0].set_angles(angles(frame));
         let mut fresh = Vga::new();
         let drawn = drawn && Renderer::new().draw(&at_once, &mut fresh).is_ok();

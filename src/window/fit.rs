@@ -1,32 +1,46 @@
 //! From 320 × 200 pixels of 5:6 to a 4:3 picture in a window of any shape.
 
+use std::mem;
+
+use super::canvas::Canvas;
 use crate::vga::Vga;
 
 const WIDTH: usize = 320;
 const HEIGHT: usize = 200;
 
-/// Where the picture stands in the window, in the window's pixels.
+/// A rectangle of the window's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Place {
-    pub(super) left: usize,
-    pub(super) top: usize,
-    pub(super) width: usize,
-    pub(super) height: usize,
+pub struct Area {
+    /// Columns of the window to the left of it.
+    pub left: usize,
+    /// Rows of the window above it.
+    pub top: usize,
+    /// Its columns.
+    pub width: usize,
+    /// Its rows.
+    pub height: usize,
 }
 
-impl Place {
-    /// The largest 4:3 rectangle in the middle of a window. Both its sides may be a part of a pixel too short.
-    fn within(width: usize, height: usize) -> Place {
+impl Area {
+    /// Where the picture stands in a window: the largest 4:3 rectangle in the middle. Both its sides may be a part of a
+    /// pixel too short.
+    pub fn within(width: usize, height: usize) -> Area {
         let (w, h) = if width * 3 <= height * 4 { (width, width * 3 / 4) } else { (height * 4 / 3, height) };
-        Place { left: (width - w) / 2, top: (height - h) / 2, width: w, height: h }
+        Area { left: (width - w) / 2, top: (height - h) / 2, width: w, height: h }
     }
 
-    /// A point of the window as a point of the frame: 0 to 320 across and 0 to 200 down if it is on the picture,
-    /// beyond these beside it.
-    pub(super) fn to_frame(self, x: f32, y: f32) -> (f32, f32) {
+    /// A point of the window as a point of the frame that fills this rectangle: 0 to 320 across and 0 to 200 down if it
+    /// is on the picture, beyond these beside it.
+    pub fn to_frame(self, x: f32, y: f32) -> (f32, f32) {
         let along = |at: f32, from: usize, length: usize, frame: usize| {
             (at - from as f32) * frame as f32 / length.max(1) as f32
         };
+        (along(x, self.left, self.width, WIDTH), along(y, self.top, self.height, HEIGHT))
+    }
+
+    /// A point of the frame that fills this rectangle, 0 to 320 across and 0 to 200 down, as a point of the window.
+    pub fn from_frame(self, x: f32, y: f32) -> (f32, f32) {
+        let along = |at: f32, from: usize, length: usize, frame: usize| from as f32 + at * length as f32 / frame as f32;
         (along(x, self.left, self.width, WIDTH), along(y, self.top, self.height, HEIGHT))
     }
 }
@@ -35,24 +49,29 @@ impl Place {
 #[derive(Default)]
 pub(super) struct Picture {
     size: (usize, usize),
-    place: Place,
+    place: Area,
     /// Of each column of the picture, the frame's column.
     columns: Vec<usize>,
     frame: Vec<u32>,
     stretched: Vec<u32>,
+    /// Whether something may be drawn beside the picture.
+    is_drawn_over: bool,
 }
 
 impl Picture {
-    pub(super) fn place(&self) -> Place {
+    pub(super) fn place(&self) -> Area {
         self.place
     }
 
     /// What `vga` displays, at `width` × `height` pixels of the window: 0x00RRGGBB, row by row, black beside the
     /// picture. Each pixel shows the one of the frame that its centre falls in.
     pub(super) fn stretch(&mut self, vga: &Vga, width: usize, height: usize) -> &[u32] {
+        if mem::take(&mut self.is_drawn_over) {
+            self.stretched.fill(0);
+        }
         if self.size != (width, height) {
             self.size = (width, height);
-            self.place = Place::within(width, height);
+            self.place = Area::within(width, height);
             self.columns = (0..self.place.width).map(|x| source(x, self.place.width, WIDTH)).collect();
             self.stretched.clear();
             self.stretched.resize(width * height, 0);
@@ -60,7 +79,7 @@ impl Picture {
         self.frame.resize(WIDTH * HEIGHT, 0);
         vga.scan_out(&mut self.frame);
 
-        let Place { left, top, width: across, height: down } = self.place;
+        let Area { left, top, width: across, height: down } = self.place;
         let mut drawn: Option<usize> = None;
         for y in 0..down {
             let start = (top + y) * width + left;
@@ -78,6 +97,17 @@ impl Picture {
         }
         &self.stretched
     }
+
+    /// What was stretched last, to be drawn over.
+    pub(super) fn canvas(&mut self) -> Canvas<'_> {
+        self.is_drawn_over = true;
+        Canvas::over(&mut self.stretched, self.size, self.place)
+    }
+
+    /// What was stretched last, with what was drawn over it, if it has this size.
+    pub(super) fn last(&self, width: usize, height: usize) -> Option<&[u32]> {
+        (self.size == (width, height) && !self.stretched.is_empty()).then_some(&self.stretched)
+    }
 }
 
 /// The pixel of `from` that the centre of pixel `at` of `to` falls in: floor((at + ½) · from / to).
@@ -92,13 +122,13 @@ mod tests {
     #[test]
     fn the_picture_is_the_largest_of_4_to_3() {
         for (window, expected) in [
-            ((960, 720), Place { left: 0, top: 0, width: 960, height: 720 }),
-            ((1920, 720), Place { left: 480, top: 0, width: 960, height: 720 }),
-            ((400, 900), Place { left: 0, top: 300, width: 400, height: 300 }),
-            ((1, 1), Place { left: 0, top: 0, width: 1, height: 0 }),
-            ((0, 0), Place { left: 0, top: 0, width: 0, height: 0 }),
+            ((960, 720), Area { left: 0, top: 0, width: 960, height: 720 }),
+            ((1920, 720), Area { left: 480, top: 0, width: 960, height: 720 }),
+            ((400, 900), Area { left: 0, top: 300, width: 400, height: 300 }),
+            ((1, 1), Area { left: 0, top: 0, width: 1, height: 0 }),
+            ((0, 0), Area { left: 0, top: 0, width: 0, height: 0 }),
         ] {
-            assert_eq!(Place::within(window.0, window.1), expected, "{window:?}");
+            assert_eq!(Area::within(window.0, window.1), expected, "{window:?}");
         }
     }
 
@@ -128,5 +158,30 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn what_was_drawn_over_a_picture_is_gone_from_the_next() {
+        let (vga, mut picture) = (Vga::new(), Picture::default());
+        for (width, height) in [(640, 480), (500, 100)] {
+            let fresh = Picture::default().stretch(&vga, width, height).to_vec();
+            picture.stretch(&vga, width, height);
+            picture.canvas().pixels_mut().fill(0xFF_FFFF);
+            assert!(picture.last(width, height).is_some_and(|pixels| pixels != fresh));
+            assert_eq!(picture.stretch(&vga, width, height), fresh);
+            assert_eq!(picture.last(width + 1, height), None);
+        }
+    }
+
+    #[test]
+    fn points_of_the_frame_lead_to_the_window_and_back() {
+        let area = Area::within(1000, 700);
+        for (x, y) in [(0.0, 0.0), (320.0, 200.0), (17.5, 99.25)] {
+            let (wx, wy) = area.from_frame(x, y);
+            let (bx, by) = area.to_frame(wx, wy);
+            // Four roundings of numbers below 1,024, of 24 bits: half of 2⁻¹⁴ each.
+            assert!((bx - x).abs() <= 2.0 / 16384.0 && (by - y).abs() <= 2.0 / 16384.0, "{bx}, {by}");
+        }
+        assert_eq!(area.from_frame(0.0, 0.0), (area.left as f32, area.top as f32));
     }
 }

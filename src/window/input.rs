@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use minifb::{InputCallback, Key, MouseButton, MouseMode, Window};
 
-use super::fit::Place;
+use super::fit::Area;
 
 /// A notch of what minifb reports. On X11, where a wheel is a button, it counts its going down and its coming up.
 const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
@@ -84,6 +84,14 @@ impl Input {
     pub fn wheel(&self) -> f32 {
         self.wheel
     }
+
+    /// Whether the user did anything, or holds anything, after `before`.
+    pub(super) fn differs(&self, before: &Input) -> bool {
+        let Input { pressed, shifted: _, held, typed, mouse, buttons, drag, wheel } = self;
+        !(pressed.is_empty() && held.is_empty() && typed.is_empty())
+            || (*mouse, *buttons) != (before.mouse, before.buttons)
+            || (*drag, *wheel) != ((0.0, 0.0), 0.0)
+    }
 }
 
 /// Keys and characters in the order in which the desktop reported them. minifb's own list of keys that were pressed
@@ -123,7 +131,7 @@ impl InputCallback for Events {
 
 impl Events {
     /// What happened since the last call.
-    pub(super) fn collect(&mut self, window: &Window, place: Place) -> Input {
+    pub(super) fn collect(&mut self, window: &Window, place: Area) -> Input {
         let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
         let Pressed { pressed, shifted } = self.follow(&keys);
         // A window that is left hears nothing of keys that are let go meanwhile.
@@ -206,6 +214,23 @@ mod tests {
         // Shift since the frame before.
         assert_eq!(events.follow(&[(Key::B, down), (Key::RightShift, up)]).shifted, [Key::B]);
         assert_eq!(events.follow(&[(Key::B, up), (Key::B, down)]).shifted, []);
+    }
+
+    #[test]
+    fn what_the_user_does_is_told_from_nothing() {
+        let nothing = Input { mouse: Some((1.0, 2.0)), ..Input::default() };
+        assert!(!nothing.differs(&nothing));
+        for something in [
+            Input { pressed: vec![Key::H], ..nothing.clone() },
+            Input { held: vec![Key::Left], ..nothing.clone() },
+            Input { typed: "+".to_string(), ..nothing.clone() },
+            Input { mouse: None, ..nothing.clone() },
+            Input { buttons: Buttons { left: true, ..Buttons::default() }, ..nothing.clone() },
+            Input { drag: (0.0, 1.0), ..nothing.clone() },
+            Input { wheel: -1.0, ..nothing.clone() },
+        ] {
+            assert!(something.differs(&nothing), "{something:?}");
+        }
     }
 
     #[test]

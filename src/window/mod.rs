@@ -3,6 +3,7 @@
 //! [`run`] is a whole game's frame; [`Window`] is the same for programs that keep their own loop. Without a display
 //! both give a [`WindowError`] and no panic.
 
+mod canvas;
 mod fit;
 mod input;
 mod screen;
@@ -12,6 +13,8 @@ use std::fmt;
 use std::thread;
 use std::time::{Duration, Instant};
 
+pub use canvas::Canvas;
+pub use fit::Area;
 pub use input::{Buttons, Input};
 pub use minifb::Key;
 
@@ -21,6 +24,11 @@ use input::Events;
 
 /// A frame of the VGA: 800 clocks × 449 lines at 25.175 MHz, 70.086 Hz.
 const FRAME: Duration = Duration::from_nanos(800 * 449 * 1_000_000 / 25_175);
+
+/// How often [`Window::rest`] looks for input: a key is answered within a twentieth of a second.
+const LOOK: Duration = Duration::from_millis(25);
+/// After how long [`Window::rest`] sends the picture again.
+const RESEND: Duration = Duration::from_millis(500);
 
 /// Whether the window stays open after a frame.
 ///
@@ -80,12 +88,16 @@ pub struct Window {
     window: minifb::Window,
     events: Events,
     input: Input,
+    /// Whether the user did something in the time that the input is of.
+    has_input: bool,
     picture: Picture,
     opened: Instant,
     /// The time that the current frame is drawn for.
     now: Instant,
-    /// When the next frame is due.
-    due: Instant,
+    /// When the last frame was due, or came if it was late.
+    begun: Instant,
+    /// When the picture was last sent to the display.
+    sent: Instant,
 }
 
 impl Window {
@@ -104,7 +116,8 @@ impl Window {
         let events = Events::default();
         window.set_input_callback(Box::new(events.clone()));
         let now = Instant::now();
-        Ok(Window { window, events, input: Input::default(), picture: Picture::default(), opened: now, now, due: now })
+        let (input, picture) = (Input::default(), Picture::default());
+        Ok(Window { window, events, input, has_input: false, picture, opened: now, now, begun: now, sent: now })
     }
 
     /// Changes the title.
@@ -129,29 +142,80 @@ impl Window {
     ///
     /// [`WindowError`] if the display went away.
     pub fn show(&mut self, vga: &Vga) -> Result<Flow, WindowError> {
-        self.wait();
-        let (width, height) = self.window.get_size();
-        let pixels = self.picture.stretch(vga, width, height);
-        if pixels.is_empty() {
-            // A window of no size, which a tiling desktop can make.
-            self.window.update();
-        } else {
-            self.window.update_with_buffer(pixels, width, height).map_err(WindowError::new)?;
-        }
-        self.now = Instant::now();
-        self.input = self.events.collect(&self.window, self.picture.place());
-        Ok(if self.window.is_open() { Flow::Continue } else { Flow::Close })
+        self.wait(FRAME);
+        let (width, height) = self.size();
+        self.picture.stretch(vga, width, height);
+        self.send()
     }
 
-    fn wait(&mut self) {
-        let now = Instant::now();
-        if let Some(early) = self.due.checked_duration_since(now) {
-            thread::sleep(early);
-            self.due += FRAME;
-        } else {
-            // Late: no frame is made up for.
-            self.due = now + FRAME;
+    /// [`show`](Self::show), with what `over` draws over the stretched picture, at the window's own resolution: text that
+    /// stays readable, panels that leave the picture as it is.
+    ///
+    /// # Errors
+    ///
+    /// [`WindowError`] if the display went away.
+    pub fn show_over(&mut self, vga: &Vga, over: impl FnOnce(&mut Canvas<'_>)) -> Result<Flow, WindowError> {
+        self.wait(FRAME);
+        let (width, height) = self.size();
+        self.picture.stretch(vga, width, height);
+        over(&mut self.picture.canvas());
+        self.send()
+    }
+
+    /// Leaves what was shown last as it is, and waits until the user does something, at most for `longest`: for a picture
+    /// that stands still, next to no work. It is looked for input every 25 ms.
+    ///
+    /// A display may forget what a window shows while it is covered. So the picture is sent again twice a second.
+    ///
+    /// # Errors
+    ///
+    /// [`WindowError`] if the display went away.
+    pub fn rest(&mut self, longest: Duration) -> Result<Flow, WindowError> {
+        let (size, end) = (self.size(), self.begun + longest);
+        loop {
+            self.wait(LOOK.min(longest));
+            let flow = if self.now.duration_since(self.sent) >= RESEND {
+                self.send()?
+            } else {
+                self.window.update();
+                self.collect()
+            };
+            if flow == Flow::Close || self.has_input || self.size() != size || self.begun + LOOK > end {
+                return Ok(flow);
+            }
         }
+    }
+
+    /// The window's columns and rows, for which the next picture is stretched.
+    pub fn size(&self) -> (usize, usize) {
+        self.window.get_size()
+    }
+
+    /// Sends what was stretched last to the display.
+    fn send(&mut self) -> Result<Flow, WindowError> {
+        let (width, height) = self.size();
+        match self.picture.last(width, height) {
+            Some(pixels) => self.window.update_with_buffer(pixels, width, height).map_err(WindowError::new)?,
+            // A window of no size, which a tiling desktop can make, or one that was resized since.
+            None => self.window.update(),
+        }
+        self.sent = Instant::now();
+        Ok(self.collect())
+    }
+
+    fn collect(&mut self) -> Flow {
+        self.now = Instant::now();
+        let input = self.events.collect(&self.window, self.picture.place());
+        self.has_input = input.differs(&self.input);
+        self.input = input;
+        if self.window.is_open() { Flow::Continue } else { Flow::Close }
+    }
+
+    /// Waits until so long after the last frame began. A late frame puts off those that follow: none is made up for.
+    fn wait(&mut self, period: Duration) {
+        let (now, due) = (Instant::now(), self.begun + period);
+        self.begun = due.max(now);
+        thread::sleep(due.saturating_duration_since(now));
     }
 }
 

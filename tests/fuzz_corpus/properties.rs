@@ -108,7 +108,7 @@ fn outcome(result: &Result<Loaded, ObjError>) -> Result<&Loaded, String> {
 
 fn check_obj(result: &Result<Loaded, ObjError>, model: &[u8], materials: &[u8]) {
     match result {
-        Ok(Loaded { mesh, warnings }) => {
+        Ok(Loaded { mesh, warnings, .. }) => {
             check_mesh(mesh);
             for warning in warnings {
                 assert!(!warning.contains(['\n', '\r']), "a warning of more than one line: {warning:?}");

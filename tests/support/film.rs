@@ -12,6 +12,8 @@ pub struct Image {
     /// In 1/100 s.
     pub delay: u64,
     pub has_palette: bool,
+    /// How many pixels are left as they were.
+    pub transparent: usize,
     pub indices: Vec<u8>,
     pub shown: Vec<Rgb>,
 }
@@ -28,7 +30,7 @@ fn colors_of(table: &[u8]) -> Vec<Rgb> {
     table.chunks_exact(3).map(|color| Rgb::new(color[0], color[1], color[2])).collect()
 }
 
-/// Reads a film that goes round for ever, whose images stay and have no transparent colour.
+/// Reads a film that goes round for ever, whose images stay.
 pub fn decode(file: &[u8]) -> Decoded {
     assert!(file.starts_with(b"GIF89a") && file.ends_with(&[0x3B]));
     let mut options = DecodeOptions::new();
@@ -40,11 +42,12 @@ pub fn decode(file: &[u8]) -> Decoded {
     let mut canvas: Vec<Option<Rgb>> = vec![None; width * height];
     let mut images = Vec::new();
     while let Some(frame) = decoder.read_next_frame().expect("an image") {
-        assert_eq!((frame.dispose, frame.transparent), (DisposalMethod::Keep, None));
+        assert_eq!(frame.dispose, DisposalMethod::Keep);
         assert!(!frame.needs_user_input);
         let [left, top, w, h] = [frame.left, frame.top, frame.width, frame.height].map(usize::from);
         let own = frame.palette.as_deref().map(colors_of);
-        for (i, &index) in frame.buffer.iter().enumerate() {
+        let is_drawn = |index: &u8| Some(*index) != frame.transparent;
+        for (i, &index) in frame.buffer.iter().enumerate().filter(|(_, index)| is_drawn(index)) {
             canvas[(top + i / w) * width + left + i % w] = Some(own.as_ref().unwrap_or(&palette)[usize::from(index)]);
         }
         images.push(Image {
@@ -54,6 +57,7 @@ pub fn decode(file: &[u8]) -> Decoded {
             height: h,
             delay: frame.delay.into(),
             has_palette: own.is_some(),
+            transparent: frame.buffer.iter().filter(|index| !is_drawn(index)).count(),
             indices: frame.buffer.to_vec(),
             shown: canvas.iter().map(|color| color.expect("the first image covers the film")).collect(),
         });

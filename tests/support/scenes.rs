@@ -2,16 +2,27 @@
 
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
-use mode13h::mesh::shapes;
+use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Rgb, builtin};
 use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Rung, Scene, Shared, Wishes};
 use mode13h::texture::Texture;
 
 use super::random::Random;
 
+/// A mesh that does not turn, in the middle, seen straight on by a camera that frames its sphere, under one sun: however
+/// it is turned it is in the picture.
+pub fn framed(mesh: impl Into<Shared<Mesh>>) -> Scene {
+    let object = Object::new(mesh).centred();
+    let mut scene = Scene::new();
+    scene.camera = Camera::framing(Vec3::ZERO, object.mesh().bounds().radius);
+    scene.add(object);
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    scene
+}
+
 /// A scene with one shape, turned a little.
 pub fn showing(shape: &str) -> Scene {
-    let mut scene = Scene::showing(shapes::by_name(shape).expect("listed"));
+    let mut scene = framed(shapes::by_name(shape).expect("listed"));
     scene.name = shape.to_string();
     scene.objects_mut()[0].name = shape.to_string();
     scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1]);
@@ -24,6 +35,21 @@ fn texture(name: &str) -> Option<Shared<Texture>> {
 
 fn material(scene: &mut Scene, object: usize) -> &mut Material {
     &mut scene.objects_mut()[object].materials[0]
+}
+
+/// A floor that goes far away, on which an image is repeated so many times each way.
+pub fn floor(image: &str, times: f32) -> Scene {
+    let wall = shapes::wall(12, 12);
+    let repeated = wall.texcoords().expect("a wall has some").iter().map(|uv| *uv * times).collect();
+    let mut scene = Scene::showing(wall.with_texcoords(repeated).expect("as many"));
+    let object = &mut scene.objects_mut()[0];
+    object.set_angles([-core::f64::consts::FRAC_PI_2, 0.3, 0.0]);
+    object.position = Vec3::new(0.0, -0.5, -5.0);
+    object.scale = 12.0;
+    (object.materials[0].ambient, object.materials[0].diffuse) = (1.0, 0.0);
+    object.materials[0].texture = texture(image);
+    scene.camera = Camera { eye: Vec3::new(0.0, 0.4, 1.0), target: Vec3::new(0.0, -0.1, -4.0), ..scene.camera };
+    scene
 }
 
 /// A wall close to the eye with a lamp before it.
@@ -72,8 +98,13 @@ pub fn all() -> Vec<(String, Scene)> {
 
 #[cfg(feature = "scene-files")]
 fn shipped() -> impl Iterator<Item = (String, Scene)> {
+    use mode13h::render::automatic;
+
     mode13h::scene::shipped::ALL.iter().map(|shipped| {
         let mut scene = shipped.load().expect("a scene that loads").scene;
+        if scene.wishes.auto_palette {
+            automatic(&scene).expect("a legal scene").apply(&mut scene);
+        }
         scene.set_time(0.4 * scene.duration);
         (format!("scene {}", shipped.name), scene)
     })
@@ -120,13 +151,15 @@ fn small() -> Vec<(&'static str, Scene)> {
     near.camera.eye *= 0.6;
     scenes.push(("beyond the edges", near));
 
-    let mut crates = Scene::showing(shapes::wall(1, 1));
+    let mut crates = framed(shapes::wall(1, 1));
     material(&mut crates, 0).texture = texture("crate");
     crates.objects_mut()[0].set_angles([0.0, 1.1, 0.0]);
     scenes.push(("texture", crates.clone()));
     crates.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
     crates.add_light(Light::sun([-1.0, 0.0, 0.5]).with_color([1.0, 0.3, 0.1]));
     scenes.push(("texture and colour", crates));
+
+    scenes.push(("floor", floor("checker", 24.0)));
 
     let mut mirror = showing("torus");
     material(&mut mirror, 0).environment = texture("sky");

@@ -26,6 +26,7 @@ pub(super) struct Settings {
     rung: Option<Rung>,
     max_error: Option<f32>,
     mapping: Option<Mapping>,
+    mipmaps: Option<bool>,
     vertex_path: VertexPath,
     kernel: Kernel,
     hidden_surfaces: Option<HiddenSurfaces>,
@@ -39,6 +40,7 @@ impl Default for Settings {
             rung: None,
             max_error: None,
             mapping: None,
+            mipmaps: None,
             vertex_path: VertexPath::default(),
             kernel: Kernel::fastest(),
             hidden_surfaces: None,
@@ -50,7 +52,7 @@ impl Default for Settings {
 impl Settings {
     /// A fresh renderer that is set so.
     pub(super) fn renderer(&self) -> Renderer {
-        let Self { rung, max_error, mapping, vertex_path, kernel, hidden_surfaces, forced } = self;
+        let Self { rung, max_error, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
         let mut renderer = Renderer::new();
         if let Some(rung) = rung {
             renderer.set_rung(*rung);
@@ -59,6 +61,7 @@ impl Settings {
             renderer.set_max_error(*max_error);
         }
         renderer.set_mapping(*mapping);
+        renderer.set_mipmaps(*mipmaps);
         renderer.set_vertex_path(*vertex_path);
         renderer.set_kernel(*kernel);
         renderer.set_hidden_surfaces(*hidden_surfaces);
@@ -114,6 +117,8 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene.fog", |w, r| w.scene.fog = sometimes(r, fog)),
     seen("Scene.wishes", |w, _| w.scene.wishes = Default::default()),
     unseen("Scene.motions", |w, r| w.scene.motions.truncate(r.within(0, 1) as usize)),
+    // When a picture is taken of it, which the program asks for.
+    unseen("Scene.picture", |w, r| w.scene.picture = r.unit()),
     unseen("Scene.duration", |w, r| w.scene.duration = 1.0 + r.unit()),
     seen("Scene::add", |w, r| {
         if w.scene.objects().len() < 5 {
@@ -177,6 +182,10 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Wishes.mapping", |w, r| {
         textured(w, r);
         w.scene.wishes.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
+    }),
+    seen("Wishes.mipmaps", |w, r| {
+        textured(w, r);
+        w.scene.wishes.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
     }),
     seen("Wishes.tessellation", |w, r| w.scene.wishes.tessellation = sometimes(r, |r| between(r, 0.5, 4.0))),
     seen("Wishes.dither", |w, r| w.scene.wishes.dither = r.within(0, 1) == 1),
@@ -307,6 +316,11 @@ pub(super) const CHANGES: &[Change] = &[
         textured(w, r);
         w.settings.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
         w.kept.set_mapping(w.settings.mapping);
+    }),
+    seen("Renderer::set_mipmaps", |w, r| {
+        textured(w, r);
+        w.settings.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
+        w.kept.set_mipmaps(w.settings.mipmaps);
     }),
     seen("Renderer::set_vertex_path", |w, r| {
         w.settings.vertex_path = r.one_of(&VertexPath::ALL);
@@ -594,7 +608,8 @@ static TEXTURES: LazyLock<Vec<Shared<Texture>>> = LazyLock::new(|| {
         Texture::new(1 << bits, 1 << bits, texels, colors).expect("powers of two")
     };
     let plain = Texture::plain(Rgb::new(200, 100, 30));
-    [small(2), small(5), plain].into_iter().map(Shared::new).collect()
+    // The last is large beside what it covers on the screen.
+    [small(2), small(5), plain, small(8)].into_iter().map(Shared::new).collect()
 });
 
 /// One of three, or one that looks like it at another address.
@@ -655,7 +670,7 @@ fn textured(world: &mut World, random: &mut Random) {
         object.scale = 1.0;
     }
     if object.materials[0].texture.is_none() {
-        object.materials[0].texture = Some(Shared::clone(&TEXTURES[1]));
+        object.materials[0].texture = Some(Shared::clone(&TEXTURES[3]));
     }
     drawn(world);
 }

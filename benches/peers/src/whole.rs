@@ -4,10 +4,11 @@ use std::error::Error;
 use std::ffi::{CStr, c_char, c_int};
 use std::time::Instant;
 
+use mode13h::glam::Vec3;
 use mode13h::mesh::Mesh;
 use mode13h::plan::Effect;
 use mode13h::render::{Renderer, Screen};
-use mode13h::scene::{HiddenSurfaces, Scene};
+use mode13h::scene::{Camera, HiddenSurfaces, Scene};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 
@@ -67,6 +68,7 @@ pub fn measure(mesh: &Mesh, kernel: Kernel) -> Result<Whole, Box<dyn Error>> {
         peers_mesa_mesh(positions.as_ptr().cast(), normals.as_ptr().cast(), indices.as_ptr(), indices.len() as c_int);
     }
     let mut scene = Scene::showing(mesh.clone());
+    scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
     let bounds = scene.objects()[0].mesh().bounds();
     let eye = scene.camera.eye;
     // Ours sees the mesh as large as it is from where it fills the frame; Mesa sees it at the unit's size.

@@ -4,10 +4,11 @@ use std::error::Error;
 use std::path::Path;
 
 use mode13h::fixed::{I24F8, U8F8};
+use mode13h::glam::Vec3;
 use mode13h::mesh::{Mesh, obj, shapes};
 use mode13h::raster::Vertex;
 use mode13h::render::{Renderer, Screen};
-use mode13h::scene::Scene;
+use mode13h::scene::{Camera, Scene};
 
 use crate::refine::refined;
 
@@ -22,6 +23,7 @@ impl Workload {
     /// The front faces of a mesh that fills the frame, by the mean depth of their vertices.
     fn of_mesh(name: String, mesh: Mesh) -> Result<Self, Box<dyn Error>> {
         let mut scene = Scene::showing(mesh.clone());
+        scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
         scene.objects_mut()[0].set_angles([0.4, 0.6, 0.0]);
         let mut triangles = Vec::new();
         Renderer::new().for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| triangles.push(*vertices))?;

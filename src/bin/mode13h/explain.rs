@@ -10,9 +10,9 @@ use mode13h::truth::Standard;
 use serde_json::{Map, Value, json};
 
 use crate::failure::Failure;
-use crate::options::{Drawing, finite};
+use crate::options::{Drawing, Moment};
 use crate::stage::Pose;
-use crate::{chart, input, output};
+use crate::{chart, input, output, read_files};
 
 #[derive(Args)]
 #[command(group(ArgGroup::new("what").required(true).args(["pixel", "row"])))]
@@ -33,9 +33,8 @@ pub(crate) struct Options {
     /// As JSON, for programs
     #[arg(long)]
     json: bool,
-    /// The time of the frame, in seconds
-    #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, default_value_t = 0.0)]
-    at: f64,
+    #[command(flatten)]
+    moment: Moment,
     #[command(flatten)]
     drawing: Drawing,
 }
@@ -48,7 +47,7 @@ fn place(words: &str) -> Result<(u32, u32), String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, pixel, row, out, json, at, drawing } = options;
+    let Options { input, pixel, row, out, json, moment, drawing } = options;
     if out.is_some() && row.is_none() {
         return Err(Failure::words("--out is for the chart of a --row"));
     }
@@ -61,14 +60,16 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let screen = Screen::MODE_13H;
     // Before anything is loaded.
     outside(*pixel, *row, screen).map_or(Ok(()), |error| Err(Failure::words(error)))?;
-    let input = input::input(input)?;
+    let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
-    stage.show(*at, Pose::FIRST);
+    out.as_deref().map_or(Ok(()), read_files::spare)?;
+    let at = moment.of_picture(&stage.scene);
+    stage.show(at, Pose::FIRST);
     let mut renderer = drawing.renderer(kernel);
     if let Some((x, y)) = *pixel {
         let pixel = explain::pixel(&mut renderer, &stage.scene, screen, x, y).map_err(Failure::work)?;
-        let text = if *json { pretty(&pixel_json(&name, *at, &pixel))? } else { format!("{name} at {at} s, {pixel}") };
+        let text = if *json { pretty(&pixel_json(&name, at, &pixel))? } else { format!("{name} at {at} s, {pixel}") };
         return output::print(&text);
     }
     let Some(y) = *row else { return Ok(()) };
@@ -77,7 +78,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let title = format!("{name} at {at} s, row {y}, {rung}");
     match out {
         Some(out) => output::file(|| chart::svg(&title, &row, out)).map_err(Failure::work),
-        None if *json => output::print(&pretty(&row_json(&name, *at, &row))?),
+        None if *json => output::print(&pretty(&row_json(&name, at, &row))?),
         None => output::print(&chart::text(&title, &row)),
     }
 }
@@ -231,12 +232,14 @@ fn stage_json(stage: &Stage) -> Value {
             put("threshold", threshold.into());
             "dither"
         }
-        Stage::Texture { texel, .. } => {
+        Stage::Texture { texel, level, .. } => {
             put("texel", texel.into());
+            put("mipmap_level", json!(level));
             "texture"
         }
-        Stage::TextureChannels { texel, channels } => {
+        Stage::TextureChannels { texel, level, channels } => {
             put("texel", texel.into());
+            put("mipmap_level", json!(level));
             put("channels", json!(channels));
             "texture"
         }

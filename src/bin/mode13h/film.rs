@@ -1,10 +1,13 @@
 //! A film: frames drawn and compressed side by side, several at a time, and written in their order.
 
+use std::io::{ErrorKind, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
-use mode13h::export::{self, FrameRate, GifFile, GifFrame, Picture, PictureError, Scale};
+use mode13h::export::{
+    self, ApngFile, ApngFrame, FilmColors, FrameRate, GifFile, GifFrame, Picture, PictureError, Scale,
+};
 use mode13h::palette::Palette;
 use mode13h::vga::Vga;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -29,8 +32,18 @@ impl Frame {
     }
 }
 
+/// What a film is written as.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Gif,
+    Apng,
+    /// YUV4MPEG2 on standard output.
+    Stream,
+}
+
 /// Where a film goes, and how it is shown.
 pub(crate) struct Film {
+    kind: Kind,
     out: PathBuf,
     frames: u32,
     /// Whether somebody said how many frames.
@@ -44,14 +57,20 @@ impl Film {
     const SCALE: Scale = Scale::To { width: 640, height: 480 };
 
     /// A film of so many frames, or of one.
-    pub(crate) fn new(out: &Path, frames: Option<u32>, rate: FrameRate, scale: Option<Scale>) -> Film {
+    pub(crate) fn new(kind: Kind, out: &Path, frames: Option<u32>, rate: FrameRate, scale: Option<Scale>) -> Film {
         Film {
+            kind,
             out: out.to_path_buf(),
             frames: frames.unwrap_or(1),
             is_told: frames.is_some(),
             rate,
             scale: scale.unwrap_or(Self::SCALE),
         }
+    }
+
+    /// The file that it is written to, if it is one.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        (self.kind != Kind::Stream).then_some(&self.out)
     }
 
     /// Where nobody said how many frames, as many as so many seconds hold.
@@ -68,29 +87,110 @@ impl Film {
 
     /// Draws the frames by `draw`, by as many artists at a time as there are threads in the pool it is called in, writes
     /// them, and prints a line about the file. A frame is drawn from its number alone, so that the film is the same with
-    /// any number of threads.
+    /// any number of threads. `fades`: whether its palette changes.
     pub(crate) fn write<Artist: Send>(
         &self,
+        fades: bool,
         progress: &ProgressBar,
         artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
         draw: impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send,
     ) -> Result<(), Failure> {
-        let film = output::long_file(|| {
-            let film = self.write_file(progress, artists, &draw);
+        let figures = output::long_file(|| {
+            let figures = match self.kind {
+                Kind::Gif => self.write_gif(progress, artists, &draw),
+                Kind::Apng => self.write_apng(fades, progress, artists, &draw),
+                Kind::Stream => self.write_stream(progress, artists, &draw).map(|()| String::new()),
+            };
             progress.finish_and_clear();
-            film
+            figures
         })?;
-        output::print(&self.figures(&film))
+        output::print(&figures)
     }
 
-    /// While some frames are compressed and written, the next are drawn: these are all that is in memory.
-    fn write_file<Artist: Send>(
+    /// Returns a line about what was written.
+    fn write_gif<Artist: Send>(
         &self,
         progress: &ProgressBar,
         artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
-    ) -> Result<export::Film, Failure> {
+    ) -> Result<String, Failure> {
         let mut file = GifFile::create(&self.out, self.scale, self.rate).map_err(Failure::work)?;
+        let make = |before: Option<&Frame>, frame: &Frame, first: &Palette| match before {
+            None => GifFrame::first(&frame.picture(), self.scale),
+            Some(before) => GifFrame::after(&before.picture(), &frame.picture(), self.scale, first.colors()),
+        };
+        self.each(progress, artists, draw, make, |frame| file.add_frame(frame).map_err(Failure::work))?;
+        file.finish().map(|film| self.figures(&film)).map_err(Failure::work)
+    }
+
+    /// As [`write_gif`](Self::write_gif).
+    fn write_apng<Artist: Send>(
+        &self,
+        fades: bool,
+        progress: &ProgressBar,
+        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
+    ) -> Result<String, Failure> {
+        let colors = |first: &Palette| match fades {
+            true => FilmColors::True,
+            false => FilmColors::Palette(Box::new(*first.colors())),
+        };
+        let mut file = ApngFile::create(&self.out, self.rate, self.frames).map_err(Failure::work)?;
+        let make = |before: Option<&Frame>, frame: &Frame, first: &Palette| {
+            ApngFrame::new(before.map(Frame::picture).as_ref(), &frame.picture(), self.scale, &colors(first))
+        };
+        self.each(progress, artists, draw, make, |frame| file.add(&frame).map_err(Failure::work))?;
+        let bytes = file.finish().map_err(Failure::work)?;
+        let (width, height) = self.scale.size(320, 200);
+        let (above, below) = self.rate.fraction();
+        Ok(format!(
+            "{}: {width} x {height} pixels, {} frame{}, {:.2} s, {}, {bytes} bytes\n",
+            on_one_line(&self.out.to_string_lossy()),
+            self.frames,
+            plural(self.frames.into()),
+            f64::from(self.frames) * f64::from(below) / f64::from(above),
+            if fades { "true colour, as the palette changes" } else { "indexed" },
+        ))
+    }
+
+    /// That nobody reads on ends it, and is no failure.
+    fn write_stream<Artist: Send>(
+        &self,
+        progress: &ProgressBar,
+        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
+    ) -> Result<(), Failure> {
+        let mut out = std::io::stdout().lock();
+        let mut nobody_reads = false;
+        let make = |before: Option<&Frame>, frame: &Frame, _: &Palette| {
+            let picture = frame.picture();
+            let mut bytes = Vec::new();
+            if before.is_none() {
+                bytes.extend(export::y4m_header(&picture, self.scale, self.rate.fraction())?.into_bytes());
+            }
+            bytes.extend(export::y4m_frame(&picture, self.scale)?);
+            Ok(bytes)
+        };
+        let result = self.each(progress, artists, draw, make, |bytes: Vec<u8>| {
+            out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| {
+                nobody_reads = error.kind() == ErrorKind::BrokenPipe;
+                Failure::work(format!("standard output: {error}"))
+            })
+        });
+        if nobody_reads { Ok(()) } else { result }
+    }
+
+    /// Draws the frames, makes of each, beside the one before it and with the colours of the first, what is written, and
+    /// gives that to `add` in their order. While some frames are made ready and added, the next are drawn: these are all
+    /// that is in memory.
+    fn each<Artist: Send, Made: Send>(
+        &self,
+        progress: &ProgressBar,
+        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
+        make: impl Fn(Option<&Frame>, &Frame, &Palette) -> Result<Made, PictureError> + Sync,
+        mut add: impl FnMut(Made) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         let draw = |number| go_on().and_then(|()| artists.work(|artist| draw(artist, number)));
         let draw_all =
             |numbers: Range<u32>| -> Result<Vec<Frame>, Failure> { numbers.into_par_iter().map(draw).collect() };
@@ -102,40 +202,29 @@ impl Film {
         let colors = drawn.first().map(|first| first.palette.clone()).unwrap_or_default();
         let mut last: Option<Frame> = None;
         for first in (0..self.frames).step_by(batch as usize) {
-            let compress = |(i, frame): (usize, &Frame)| {
+            let make = |(i, frame): (usize, &Frame)| {
                 go_on()?;
                 let before = i.checked_sub(1).map_or(last.as_ref(), |before| drawn.get(before));
-                self.compressed(before, frame, &colors)
+                make(before, frame, &colors)
                     .map_err(|error| Failure::work(on_one_line(&format!("{}: {error}", self.out.to_string_lossy()))))
             };
-            let write_all = || -> Result<(), Failure> {
-                let compressed: Vec<GifFrame> = drawn.par_iter().enumerate().map(compress).collect::<Result<_, _>>()?;
-                for frame in compressed {
-                    go_on()?;
-                    file.add_frame(frame).map_err(Failure::work)?;
-                    progress.inc(1);
-                }
-                Ok(())
-            };
-            let (written, following) = rayon::join(write_all, || draw_all(batch_from(first + batch)));
-            written?;
+            let make_all =
+                || -> Result<Vec<Made>, Failure> { drawn.par_iter().enumerate().map(make).collect::<Result<_, _>>() };
+            let (made, following) = rayon::join(make_all, || draw_all(batch_from(first + batch)));
+            for made in made? {
+                go_on()?;
+                add(made)?;
+                progress.inc(1);
+            }
             last = drawn.pop();
             drawn = following?;
         }
-        file.finish().map_err(Failure::work)
-    }
-
-    fn compressed(&self, before: Option<&Frame>, frame: &Frame, film: &Palette) -> Result<GifFrame, PictureError> {
-        match before {
-            None => GifFrame::first(&frame.picture(), self.scale),
-            Some(before) => GifFrame::after(&before.picture(), &frame.picture(), self.scale, film.colors()),
-        }
+        Ok(())
     }
 
     /// A line about what was written.
     fn figures(&self, film: &export::Film) -> String {
         let export::Film { width, height, frames, images, delays, bytes, .. } = film;
-        let plural = |count: u64| if count == 1 { "" } else { "s" };
         let in_images = match images == frames {
             true => String::new(),
             false => format!(" in {images} image{}", plural(*images)),
@@ -150,6 +239,10 @@ impl Film {
             delays.join(" + "),
         )
     }
+}
+
+fn plural(count: u64) -> &'static str {
+    if count == 1 { "" } else { "s" }
 }
 
 /// An error if the program has been told to end. It is never seen: [`output::long_file`] does not return then.

@@ -8,12 +8,13 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::mesh::{Mesh, obj, shapes};
+use mode13h::mesh::{Mesh, Weight, obj, shapes};
 use mode13h::palette::{Palette, builtin, file};
 use mode13h::scene::{self, Scene, Shared, shipped};
 use mode13h::texture::{self, Texture};
 
 use crate::failure::Failure;
+use crate::read_files;
 
 /// A mesh, and what to call it.
 pub(crate) struct Model {
@@ -46,7 +47,7 @@ pub(crate) fn help() -> String {
 
 /// The scene or the model of a file or of a name; of a name that both have, the scene. Warnings go to standard error, a
 /// line each.
-pub(crate) fn input(words: &OsStr) -> Result<Input, Failure> {
+pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Failure> {
     let loaded = if let Some(shipped) = words.to_str().and_then(shipped::by_name) {
         shipped.load()
     } else if has_extension(Path::new(words), "toml") {
@@ -60,9 +61,10 @@ pub(crate) fn input(words: &OsStr) -> Result<Input, Failure> {
                 shapes::NAMES.join(", ")
             )
         };
-        return model_or(words, "models are .obj files, scenes .toml", &known).map(Input::Model);
+        return model_or(words, options, "models are .obj files, scenes .toml", &known).map(Input::Model);
     };
-    let scene::file::Loaded { scene, warnings } = loaded.map_err(Failure::work)?;
+    let scene::file::Loaded { scene, warnings, files } = loaded.map_err(Failure::work)?;
+    read_files::add_all(&files);
     for warning in warnings {
         eprintln!("mode13h: {}", Failure::work(warning));
     }
@@ -71,19 +73,23 @@ pub(crate) fn input(words: &OsStr) -> Result<Input, Failure> {
 }
 
 /// The model of a file or the shape of a name. Warnings go to standard error, a line each.
-pub(crate) fn model(words: &OsStr) -> Result<Model, Failure> {
-    model_or(words, "models are .obj files", &|| {
+pub(crate) fn model(words: &OsStr, options: &obj::Options) -> Result<Model, Failure> {
+    model_or(words, options, "models are .obj files", &|| {
         format!("neither a file nor a shape; shapes are {}", shapes::NAMES.join(", "))
     })
 }
 
 /// A model; `kinds` says what files there are, `known` what names, where it is none of them.
-fn model_or(words: &OsStr, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
+fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
     let path = Path::new(words);
-    let (name, mesh) = if let Some(mesh) = words.to_str().and_then(shapes::by_name) {
+    let (name, mesh) = if let Some(mut mesh) = words.to_str().and_then(shapes::by_name) {
+        if let Some(degrees) = options.crease {
+            mesh.smooth(Weight::Angle, Some(degrees.to_radians()));
+        }
         (words.to_string_lossy().into_owned(), mesh)
     } else if has_extension(path, "obj") {
-        let loaded = load(path).map_err(Failure::work)?;
+        let loaded = load(path, options).map_err(Failure::work)?;
+        read_files::add_all(&loaded.files);
         for warning in loaded.warnings {
             eprintln!("mode13h: {}", Failure::work(warning));
         }
@@ -117,11 +123,11 @@ pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
 }
 
 /// Loads a model; if that takes longer than a moment and standard error is a terminal, with a bar there.
-fn load(path: &Path) -> Result<obj::Loaded, obj::ObjError> {
+fn load(path: &Path, options: &obj::Options) -> Result<obj::Loaded, obj::ObjError> {
     const MOMENT: Duration = Duration::from_millis(300);
     let begun = Instant::now();
     let mut bar: Option<ProgressBar> = None;
-    let loaded = obj::load_with_progress(path, |read, total| {
+    let loaded = obj::load_with(path, options, |read, total| {
         if begun.elapsed() < MOMENT {
             return;
         }
@@ -211,6 +217,7 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
         io::ErrorKind::IsADirectory => fail(&"is a directory, not a palette"),
         _ => fail(&error),
     })?;
+    read_files::add(path);
     let palette = file::parse_named(&words.to_string_lossy(), &bytes).map_err(|error| fail(&error))?;
     let name = path.file_stem().unwrap_or(words).to_string_lossy().into_owned();
     Ok((name, palette))

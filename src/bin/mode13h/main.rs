@@ -8,12 +8,14 @@ mod explain;
 mod failure;
 mod film;
 mod input;
+mod names;
 mod options;
 mod output;
 mod overlay;
 mod palette;
 mod plan;
 mod price;
+mod read_files;
 mod render;
 mod scenes;
 mod show;
@@ -108,5 +110,15 @@ fn sentence(error: &clap::Error) -> String {
     };
     let message = message.strip_prefix("error: ").unwrap_or(&message);
     let paragraph: Vec<&str> = message.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
-    format!("{} (mode13h --help shows the words there are)", paragraph.join(" "))
+    let help = match command() {
+        Some(command) => format!("mode13h {command} --help"),
+        None => "mode13h --help".to_string(),
+    };
+    format!("{} ({help} shows the words there are)", paragraph.join(" "))
+}
+
+/// The command that the first word names, if it names one.
+fn command() -> Option<String> {
+    let first = std::env::args_os().nth(1)?;
+    Words::command().find_subcommand(first).map(|command| command.get_name().to_string())
 }

@@ -5,14 +5,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use mode13h::export::{self, Picture, PixelShape, Scale};
+use mode13h::mesh::obj;
 use mode13h::palette::auto::Entries;
 use mode13h::palette::file::Format;
 use mode13h::palette::{Palette, builtin};
 
 use crate::failure::Failure;
-use crate::options::Up;
+use crate::options::{self, Up};
 use crate::stage::Stage;
-use crate::{input, output};
+use crate::{input, output, read_files};
 
 #[derive(Args)]
 pub(crate) struct Options {
@@ -25,6 +26,10 @@ pub(crate) struct Options {
     /// The axis of that model that points up
     #[arg(long, value_name = "AXIS", value_enum, default_value = "y", conflicts_with = "palette")]
     up: Up,
+    /// Show an edge where faces of that model without normals meet at more than this angle [default: the model's smoothing
+    /// groups, or else 40; scans are smooth]
+    #[arg(long, value_name = "DEGREES", value_parser = options::crease, conflicts_with = "palette")]
+    crease: Option<f32>,
     /// Write it to a file, in the format of its extension; .png makes a chart of the colours
     #[arg(short, long, value_name = "OUT")]
     out: Option<PathBuf>,
@@ -36,9 +41,10 @@ fn help() -> String {
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let (name, palette, made) = match (&options.from, &options.palette) {
-        (Some(model), _) => make(model, options.up)?,
+        (Some(model), _) => make(model, options.up, options.crease, options.out.as_deref())?,
         (None, words) => {
             let (name, palette) = input::palette(words.as_deref().unwrap_or_default())?;
+            options.out.as_deref().map_or(Ok(()), read_files::spare)?;
             (name, palette, String::new())
         }
     };
@@ -48,9 +54,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// A palette for a model: what to call it, the palette, and what is where in it, a line for each surface.
-fn make(model: &OsStr, up: Up) -> Result<(String, Palette, String), Failure> {
-    let input::Model { name, mesh } = input::model(model)?;
+/// A palette for a model, to be written to `out`: what to call it, the palette, and what is where in it, a line for each surface.
+fn make(model: &OsStr, up: Up, crease: Option<f32>, out: Option<&Path>) -> Result<(String, Palette, String), Failure> {
+    let input::Model { name, mesh } = input::model(model, &obj::Options { crease })?;
+    out.map_or(Ok(()), read_files::spare)?;
     let textures = input::textures(&mesh);
     let mut stage = Stage::of_model(mesh, up.into(), &textures);
     let automatic = stage.automatic().map_err(Failure::work)?.clone();

@@ -34,9 +34,10 @@ pub(crate) struct Options {
     /// Measure each effect: what a frame is shorter by without it, or, of one that is off, longer by with it
     #[arg(long)]
     time: bool,
-    /// The time of the frame, in seconds. It follows one 1/35 s before it, so that one sees what is kept
-    #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, default_value_t = 0.0)]
-    at: f64,
+    /// The time of the frame, in seconds. It follows one 1/35 s before it, so that one sees what is kept [default: the
+    /// scene's `picture`, or 0]
+    #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true)]
+    at: Option<f64>,
     #[command(flatten)]
     drawing: Drawing,
 }
@@ -44,10 +45,11 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { input, json, time, at, drawing } = options;
     let kernel = drawing.kernel()?;
-    let input = input::input(input)?;
+    let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
-    let frames = [at - STEP, *at].map(|seconds| {
+    let at = at.unwrap_or(stage.scene.picture);
+    let frames = [at - STEP, at].map(|seconds| {
         stage.show(seconds, Pose::FIRST);
         stage.scene.clone()
     });
@@ -66,7 +68,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         as_json(&name, &rows, prices.as_deref())?
     } else {
         let plan = renderer.plan();
-        let head = Head { name: &name, at: *at, plan, stats: &stats, planning: meter.plan()? };
+        let head = Head { name: &name, at, plan, stats: &stats, planning: meter.plan()? };
         let frame = if *time { Some(meter.frame()?) } else { None };
         head.text(&rows, frame) + &tables(&rows, prices.as_deref())
     })

@@ -14,17 +14,19 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::artists::Artists;
 use crate::failure::Failure;
-use crate::film::{self, Film};
-use crate::options::{Drawing, finite};
+use crate::film::{self, Film, Kind};
+use crate::names::{Names, number_in};
+use crate::options::{Drawing, Moment, finite};
 use crate::stage::{Pose, Stage};
-use crate::{input, output};
+use crate::{input, output, read_files};
 
 #[derive(Args)]
 pub(crate) struct Options {
     #[arg(help = input::help())]
     input: OsString,
     /// The picture: a name ending in .png; with --frames, one that holds %04d or the like for the number. A film: a name
-    /// ending in .gif
+    /// ending in .gif or .apng, or - for ffmpeg: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p torus.mp4`. What
+    /// is piped is Y4M, as that says size and rate itself; its colours are rounded to YCbCr, those of .apng are exact
     #[arg(short, long, value_name = "OUT")]
     out: PathBuf,
     /// How many frames, numbered from 0 [default: 1; a film, those of one round: four seconds, or what the scene says]
@@ -35,9 +37,8 @@ pub(crate) struct Options {
     /// does not the camera goes
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
     turn: Option<f64>,
-    /// The time of the first frame, of a scene or of a model, which turns 90 degrees a second
-    #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, default_value_t = 0.0)]
-    at: f64,
+    #[command(flatten)]
+    moment: Moment,
     /// Frames a second: of a film, up to 50; of pictures, they say how much time passes from one to the next where
     /// --turn does not [default: 35]
     #[arg(long, value_name = "N", value_parser = rate)]
@@ -72,16 +73,18 @@ fn rate(words: &str) -> Result<f64, String> {
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut out = Out::new(options)?;
-    let stage = options.drawing.stage(input::input(&options.input)?)?;
+    let stage = options.drawing.stage(options.drawing.input(&options.input)?)?;
     out.lasts(stage.seconds());
     let frames = out.frames();
     let records = options.record.as_deref().map(|record| Names::new(record, frames, "records")).transpose()?;
+    out.spare()?;
+    records.as_ref().map_or(Ok(()), |records| records.spare(frames))?;
     if options.record.as_ref() == Some(&options.out) {
         return Err(Failure::words(format!("{}: one name for the picture and its record", options.out.display())));
     }
     let kernel = options.drawing.kernel()?;
     let progress = progress(frames);
-    let motion = Motion::new(options, &out);
+    let motion = Motion::new(options, &out, &stage);
     let make = || Artist { renderer: options.drawing.renderer(kernel), stage: stage.clone(), vga: Vga::new() };
     let artists = Artists::new(make);
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
@@ -113,7 +116,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Out::Pictures(names, frames) => pool()?.install(|| {
             (0..*frames).into_par_iter().try_for_each(|n| artists.work(|artist| picture(names, artist, n)))
         }),
-        Out::Film(film) => pool()?.install(|| film.write(&progress, &artists, frame)),
+        Out::Film(film) => {
+            let fades = stage.scene.palette_animation.is_some();
+            pool()?.install(|| film.write(fades, &progress, &artists, frame))
+        }
     };
     progress.finish_and_clear();
     result
@@ -137,17 +143,17 @@ impl Out {
             }
             let frames = frames.unwrap_or(1);
             Ok(Out::Pictures(Names::new(out, frames, "pictures")?, frames))
-        } else if ends_in("gif") {
+        } else if let Some(kind) = film_kind(out) {
             if *rgb {
-                return Err(wrong(&"a GIF has a palette: --rgb is for .png"));
+                return Err(wrong(&"--rgb is for .png: a film has the colours that it needs"));
             }
-            if out.file_name().and_then(|name| number_in(name.to_str()?)).is_some() {
+            if kind != Kind::Stream && out.file_name().and_then(|name| number_in(name.to_str()?)).is_some() {
                 return Err(wrong(&"a film is one file: its name needs no number"));
             }
             let rate = fps.map_or(Ok(FrameRate::default()), FrameRate::new).map_err(|error| wrong(&error))?;
-            Ok(Out::Film(Film::new(out, *frames, rate, *scale)))
+            Ok(Out::Film(Film::new(kind, out, *frames, rate, *scale)))
         } else {
-            Err(wrong(&"no kind of picture that can be written: the name must end in .png or .gif"))
+            Err(wrong(&"no kind of picture that can be written: the name must end in .png, .gif or .apng"))
         }
     }
 
@@ -158,11 +164,30 @@ impl Out {
         }
     }
 
+    /// A failure if a file that was read would be overwritten.
+    fn spare(&self) -> Result<(), Failure> {
+        match self {
+            Out::Pictures(names, frames) => names.spare(*frames),
+            Out::Film(film) => film.file().map_or(Ok(()), read_files::spare),
+        }
+    }
+
     fn frames(&self) -> u32 {
         match self {
             Out::Pictures(_, frames) => *frames,
             Out::Film(film) => film.frames(),
         }
+    }
+}
+
+/// What kind of film a name asks for, if it asks for one.
+fn film_kind(out: &Path) -> Option<Kind> {
+    let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
+    match () {
+        () if out == Path::new("-") => Some(Kind::Stream),
+        () if ends_in("gif") => Some(Kind::Gif),
+        () if ends_in("apng") => Some(Kind::Apng),
+        () => None,
     }
 }
 
@@ -178,11 +203,13 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(options: &Options, out: &Out) -> Motion {
+    fn new(options: &Options, out: &Out, stage: &Stage) -> Motion {
         let frames = out.frames();
         let whole_turn = (matches!(out, Out::Film(_)) && frames > 1).then_some(360.0);
         let rate = options.fps.unwrap_or(FrameRate::default().frames_per_second());
-        Motion { frames, turn: options.turn.or(whole_turn), at: options.at, rate }
+        let is_picture = frames == 1 && options.turn.is_none();
+        let at = if is_picture { options.moment.of_picture(&stage.scene) } else { options.moment.of_first() };
+        Motion { frames, turn: options.turn.or(whole_turn), at, rate }
     }
 
     /// The time and the pose in a frame. From the frame's number alone: nothing adds up.
@@ -220,47 +247,6 @@ impl Artist {
     }
 }
 
-/// The names of a row of files.
-struct Names {
-    /// What stands before and behind the number, and the number's least count of digits; nothing if the name holds
-    /// no number.
-    numbered: Option<(String, usize, String)>,
-    out: PathBuf,
-}
-
-impl Names {
-    fn new(out: &Path, frames: u32, of: &str) -> Result<Names, Failure> {
-        let numbered = out.file_name().and_then(|name| number_in(name.to_str()?));
-        if frames > 1 && numbered.is_none() {
-            let reason = format!("a row of {of} needs a place for the number in the name, such as %04d");
-            return Err(Failure::words(format!("{}: {reason}", out.display())));
-        }
-        Ok(Names { numbered, out: out.to_path_buf() })
-    }
-
-    fn of(&self, number: u32) -> PathBuf {
-        match &self.numbered {
-            Some((before, digits, behind)) => self.out.with_file_name(format!("{before}{number:0digits$}{behind}")),
-            None => self.out.clone(),
-        }
-    }
-}
-
-/// Splits a name at `%d` or `%04d` (any one digit): what stands before it, the least count of digits, what stands
-/// behind.
-fn number_in(name: &str) -> Option<(String, usize, String)> {
-    name.match_indices('%').find_map(|(at, _)| {
-        let behind = &name[at + 1..];
-        let (digits, behind) = match behind.strip_prefix('0') {
-            Some(padded) => (padded.chars().next()?.to_digit(10)?, padded.get(1..)?),
-            None => (1, behind),
-        };
-        let behind = behind.strip_prefix('d')?;
-        // At most 9.
-        Some((name[..at].to_string(), digits as usize, behind.to_string()))
-    })
-}
-
 /// A bar on standard error, if that is a terminal and there is more than one frame.
 fn progress(frames: u32) -> ProgressBar {
     if frames == 1 {
@@ -270,29 +256,5 @@ fn progress(frames: u32) -> ProgressBar {
     match ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {eta} left") {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_name_holds_a_number_where_it_says_so() {
-        for (out, name) in [
-            ("a/b%04d.png", "a/b0007.png"),
-            ("%d.png", "7.png"),
-            ("%01d.png", "7.png"),
-            ("50%-%09d-x.PNG", "50%-000000007-x.PNG"),
-            ("100%d%d.png", "1007%d.png"),
-        ] {
-            let names = Names::new(Path::new(out), 8, "pictures").expect("a number");
-            assert_eq!(names.of(7), Path::new(name));
-        }
-        for out in ["a.png", "%.png", "%4d.png", "%0d.png", "%0xd.png", "%04x.png", "%04d/a.png", "%0"] {
-            assert!(Names::new(Path::new(out), 8, "pictures").is_err(), "{out}");
-        }
-        let one = Names::new(Path::new("a.png"), 1, "pictures").expect("one picture");
-        assert_eq!(one.of(0), Path::new("a.png"));
     }
 }

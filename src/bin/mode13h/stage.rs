@@ -1,22 +1,14 @@
 //! What is shown: a model in a scene made for it, or a scene of its own.
 
-use std::f64::consts::TAU;
-
 use mode13h::glam::Vec3;
-use mode13h::light::{Blend, Light, Material};
+use mode13h::light::{Blend, Material};
 use mode13h::mesh::Mesh;
-use mode13h::palette::Palette;
+use mode13h::palette::{Palette, Rgb};
 use mode13h::render::{AutomaticPalette, RenderError, automatic};
-use mode13h::scene::{Camera, Motion, Object, ObjectId, Scene, Shared, UpAxis};
+use mode13h::scene::{Camera, Motion, Moving, Object, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 
 use crate::input::Colors;
-
-/// How fast a model turns when nothing is said: once in four seconds, in radians a second.
-const SPEED: f64 = TAU / 4.0;
-
-/// How far a model's upper end is tilted towards the camera, in radians, so that a flat model is not a line.
-const TILT: f64 = 0.35;
 
 /// How the user has turned what is shown, and how near it is, beyond what the clock does.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -34,35 +26,52 @@ impl Pose {
     pub(crate) const FIRST: Pose = Pose { turn: 0.0, tilt: 0.0, zoom: 1.0 };
 }
 
+/// What a frame is cleared to.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) enum Background {
+    /// An entry of the palette.
+    Entry(u8),
+    /// The entry that is nearest to a colour.
+    Color(Rgb),
+}
+
 /// A scene, and what moves in it.
 #[derive(Clone)]
 pub(crate) struct Stage {
     pub(crate) scene: Scene,
     shown: Shown,
+    /// Where it stands by itself.
+    camera: Camera,
+    /// How many times as large it is shown, whatever the pose.
+    zoom: f64,
     /// The objects' materials, whatever the palette.
     materials: Vec<Vec<Material>>,
+    /// Whether their images are shown.
+    has_images: bool,
+    /// The palette whose ramps they name.
+    palette: Option<Palette>,
     /// Whether the scene wishes for dither, whatever the palette.
     dithers: bool,
+    /// Whether there is dither, whatever the scene and the palette, if that was asked for.
+    dither: Option<bool>,
     /// Made when first asked for.
     automatic: Option<AutomaticPalette>,
     /// What was chosen last.
     pub(crate) colors: Option<Colors>,
 }
 
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 enum Shown {
     /// One model, which turns under a light that stands still, as in a hand.
-    Model { object: ObjectId, radius: f32 },
-    /// A scene with its own motion, which the camera goes round. This is where it stands by itself.
-    Scene { camera: Camera },
+    Model,
+    /// A scene with its own motion, which the camera goes round.
+    Scene,
 }
 
 impl Stage {
-    /// A model about the origin, a sun, and a camera that frames it; in greys. `textures` are those of its surfaces.
+    /// A model as [`Scene::showing`] shows it, in greys. `textures` are those of its surfaces.
     pub(crate) fn of_model(mesh: Mesh, up: UpAxis, textures: &[Option<Shared<Texture>>]) -> Stage {
-        let radius = mesh.bounds().radius;
-        let mut scene = Scene::new();
-        let mut object = Object::new(mesh).centred();
+        let mut object = Object::new(mesh);
         object.up_axis = up;
         for (i, texture) in textures.iter().enumerate() {
             if let Some(texture) = texture {
@@ -70,22 +79,29 @@ impl Stage {
                 object.materials[i] = object.materials[i].clone().with_map(&object.mesh().surfaces()[i], texture);
             }
         }
-        let object = scene.add(object);
-        scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-        let mut stage = Stage::new(scene, Shown::Model { object, radius });
-        stage.show(0.0, Pose::FIRST);
-        stage
+        Stage::new(Scene::showing(object), Shown::Model)
     }
 
     pub(crate) fn of_scene(scene: Scene) -> Stage {
-        let camera = scene.camera;
-        Stage::new(scene, Shown::Scene { camera })
+        Stage::new(scene, Shown::Scene)
     }
 
     fn new(scene: Scene, shown: Shown) -> Stage {
         let materials = scene.objects().iter().map(|object| object.materials.clone()).collect();
-        let dithers = scene.wishes.dither;
-        Stage { scene, shown, materials, dithers, automatic: None, colors: None }
+        let (camera, palette, dithers) = (scene.camera, scene.palette.clone(), scene.wishes.dither);
+        Stage {
+            scene,
+            shown,
+            camera,
+            zoom: 1.0,
+            materials,
+            has_images: true,
+            palette,
+            dithers,
+            dither: None,
+            automatic: None,
+            colors: None,
+        }
     }
 
     /// Whether any of its objects has colours of its own: a texture, or a surface that is not grey.
@@ -103,7 +119,7 @@ impl Stage {
     pub(crate) fn turned(&self, seconds: f64, degrees: f64) -> (f64, Pose) {
         let moves = !self.scene.motions.is_empty() || self.scene.palette_animation.is_some();
         match self.shown {
-            Shown::Scene { .. } if moves => (seconds + degrees / 360.0 * self.scene.duration, Pose::FIRST),
+            Shown::Scene if moves => (seconds + degrees / 360.0 * self.scene.duration, Pose::FIRST),
             _ => (seconds, Pose { turn: degrees.to_radians(), ..Pose::FIRST }),
         }
     }
@@ -111,19 +127,88 @@ impl Stage {
     /// Puts everything where it is at a time, in seconds, seen as `pose` says.
     pub(crate) fn show(&mut self, seconds: f64, pose: Pose) {
         let Pose { turn, tilt, zoom } = pose;
+        self.scene.camera = self.camera;
+        self.scene.set_time(seconds);
+        let is_turned = turn != 0.0 || tilt != 0.0;
         match self.shown {
-            Shown::Model { object, radius } => {
-                self.scene[object].set_angles([TILT + tilt, turn + SPEED * seconds, 0.0]);
-                self.scene.camera = zoomed(Camera::framing(Vec3::ZERO, radius), zoom);
+            Shown::Model => {
+                for object in self.scene.objects_mut() {
+                    let [x, y, z] = object.angles();
+                    object.set_angles([x + tilt, y + turn, z]);
+                }
             }
-            Shown::Scene { camera } => {
-                self.scene.camera = camera;
-                self.scene.set_time(seconds);
-                if pose != Pose::FIRST {
-                    self.scene.camera = zoomed(gone_round(self.scene.camera, turn, tilt), zoom);
+            Shown::Scene if is_turned => self.scene.camera = gone_round(self.scene.camera, turn, tilt),
+            Shown::Scene => {}
+        }
+        let zoom = self.zoom * zoom;
+        if zoom != 1.0 {
+            self.scene.camera = zoomed(self.scene.camera, zoom);
+        }
+    }
+
+    /// Shows it so many times as large.
+    pub(crate) fn set_zoom(&mut self, zoom: f64) {
+        self.zoom = zoom;
+    }
+
+    /// Looks from another place, which stays, at another, which stays.
+    pub(crate) fn set_camera(&mut self, eye: Vec3, target: Vec3) {
+        let near = self.camera.near.min(Camera::near_for(eye.distance(target)));
+        self.camera = Camera { eye, target, near, ..self.camera };
+        let moves_eye = |motion: &Motion| matches!(motion, Motion::Path { what: Moving::Eye | Moving::Target, .. });
+        self.scene.motions.retain(|motion| !moves_eye(motion));
+    }
+
+    /// What the frame is cleared to, from the next [`set_colors`](Self::set_colors) on.
+    pub(crate) fn set_background(&mut self, background: Background) {
+        (self.scene.background, self.scene.background_color) = match background {
+            Background::Entry(entry) => (entry, None),
+            Background::Color(color) => (Palette::default().nearest(color), Some(color)),
+        };
+    }
+
+    /// With dither or without, from the next [`set_colors`](Self::set_colors) on.
+    pub(crate) fn set_dither(&mut self, dither: bool) {
+        self.dither = Some(dither);
+    }
+
+    /// Images on or off. Where there are none, each surface gets a chequered one: by the mesh's texture coordinates, or
+    /// else as what the surface mirrors. A palette that is made for what is seen is made anew.
+    pub(crate) fn set_images(&mut self, on: bool) -> Result<(), RenderError> {
+        self.has_images = on;
+        self.automatic = None;
+        let is_plain = |material: &Material| material.texture.is_none() && material.environment.is_none();
+        if on
+            && self.materials.iter().flatten().all(is_plain)
+            && let Some(checker) = Texture::by_name("checker").map(Shared::new)
+        {
+            for (object, materials) in self.scene.objects().iter().zip(&mut self.materials) {
+                let has_coordinates = object.mesh().texcoords().is_some();
+                for material in materials {
+                    let place = if has_coordinates { &mut material.texture } else { &mut material.environment };
+                    *place = Some(Shared::clone(&checker));
                 }
             }
         }
+        match self.colors.clone() {
+            Some(colors) => self.set_colors(&colors),
+            None => {
+                let materials = self.materials_shown();
+                self.scene.objects_mut().iter_mut().zip(materials).for_each(|(object, own)| object.materials = own);
+                Ok(())
+            }
+        }
+    }
+
+    /// The objects' materials, without images if these are off.
+    fn materials_shown(&self) -> Vec<Vec<Material>> {
+        let mut materials = self.materials.clone();
+        if !self.has_images {
+            for material in materials.iter_mut().flatten() {
+                (material.texture, material.environment) = (None, None);
+            }
+        }
+        materials
     }
 
     /// Other colours. What the frame is cleared to stays the colour it was chosen for. Where a palette has no ramps,
@@ -131,15 +216,16 @@ impl Stage {
     /// as no palette for everything has many shades of one colour.
     pub(crate) fn set_colors(&mut self, colors: &Colors) -> Result<(), RenderError> {
         let mut dithers = self.dithers;
-        for (object, materials) in self.scene.objects_mut().iter_mut().zip(&self.materials) {
-            object.materials.clone_from(materials);
-            if matches!(colors, Colors::Palette(palette) if palette.ramps() == 0) && has_colors(object, materials) {
-                let own = materials.iter().zip(object.mesh().surfaces());
-                object.materials = own.map(|(material, surface)| material.in_own_colors(surface)).collect();
-                dithers |= matches!(self.shown, Shown::Model { .. });
+        let shown = self.materials_shown();
+        for ((object, shown), own) in self.scene.objects_mut().iter_mut().zip(shown).zip(&self.materials) {
+            object.materials = shown;
+            if matches!(colors, Colors::Palette(palette) if palette.ramps() == 0) && has_colors(object, own) {
+                let shown = object.materials.iter().zip(object.mesh().surfaces());
+                object.materials = shown.map(|(material, surface)| material.in_own_colors(surface)).collect();
+                dithers |= matches!(self.shown, Shown::Model);
             }
         }
-        self.scene.wishes.dither = dithers;
+        self.scene.wishes.dither = self.dither.unwrap_or(dithers);
         self.scene.wishes.auto_palette = false;
         match colors {
             Colors::Palette(palette) => {
@@ -163,18 +249,13 @@ impl Stage {
         Ok(self.automatic.insert(made))
     }
 
-    /// The scene as it moves by itself.
+    /// The scene as it moves by itself, in its own palette.
     fn round(&self) -> Scene {
         let mut stage = self.clone();
         stage.show(0.0, Pose::FIRST);
         let mut scene = stage.scene;
-        for (object, materials) in scene.objects_mut().iter_mut().zip(&self.materials) {
-            object.materials.clone_from(materials);
-        }
-        if let Shown::Model { object, .. } = self.shown {
-            let (start, turns) = (scene[object].angles(), [0.0, SPEED / TAU, 0.0]);
-            scene.motions.push(Motion::Spin { object, start, turns });
-        }
+        scene.palette.clone_from(&self.palette);
+        scene.objects_mut().iter_mut().zip(self.materials_shown()).for_each(|(object, own)| object.materials = own);
         scene
     }
 
@@ -231,6 +312,7 @@ fn about(axis: Vec3, angle: f64, v: Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use mode13h::scene::shipped;
+    use std::f64::consts::TAU;
 
     fn near(a: Vec3, b: Vec3) -> bool {
         (a - b).length() < 1e-5

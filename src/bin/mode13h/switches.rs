@@ -4,10 +4,11 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::palette::{Palette, Rgb};
 use mode13h::plan::Effect;
-use mode13h::render::Renderer;
-use mode13h::scene::{Fog, Object, Scene, Shared};
-use mode13h::texture::Texture;
+use mode13h::render::{RenderError, Renderer};
+use mode13h::scene::{Fog, Object, Scene};
 use mode13h::window::Key;
+
+use crate::stage::Stage;
 
 /// What a key switches.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -31,24 +32,43 @@ impl Switch {
         }
     }
 
-    /// Switches by force off what was on in the frame before; else leaves it to the plan, which has it on if the scene
-    /// calls for it, and sees to it that the scene does.
-    pub(crate) fn turn(self, scene: &mut Scene, renderer: &mut Renderer) {
-        let was_on = self.effects().iter().any(|effect| renderer.plan().is_on_anywhere(*effect));
+    /// Whether the last frame had it anywhere.
+    pub(crate) fn is_on(self, renderer: &Renderer) -> bool {
+        self.effects().iter().any(|effect| renderer.plan().is_on_anywhere(*effect))
+    }
+
+    /// What became of it, in words.
+    pub(crate) fn outcome(self, was_on: bool, is_on: bool) -> String {
+        let name = match self {
+            Switch::Lights => "lights",
+            Switch::Fog => "fog",
+            Switch::Texture => "texture",
+            Switch::Dither => "dither",
+        };
+        match (was_on, is_on) {
+            (false, false) => format!("no {name} here"),
+            (_, true) => format!("{name} on"),
+            (true, false) => format!("{name} off"),
+        }
+    }
+
+    /// Switches off what was on in the frame before: images by taking them away, the rest by force. Else leaves it to
+    /// the plan, which has it on if the scene calls for it, and sees to it that the scene does.
+    pub(crate) fn turn(self, stage: &mut Stage, renderer: &mut Renderer) -> Result<(), RenderError> {
+        let was_on = self.is_on(renderer);
+        if self == Switch::Texture {
+            return stage.set_images(!was_on);
+        }
         for effect in self.effects() {
             renderer.force(*effect, was_on.then_some(false));
         }
-        if !was_on {
-            match self {
-                Switch::Lights => light(scene),
-                Switch::Fog => fog(scene),
-                Switch::Texture => texture(scene),
-                Switch::Dither => {}
-            }
+        match self {
+            Switch::Lights if !was_on => light(&mut stage.scene),
+            Switch::Fog if !was_on => fog(&mut stage.scene),
+            Switch::Dither => stage.scene.wishes.dither = !was_on,
+            _ => {}
         }
-        if self == Switch::Dither {
-            scene.wishes.dither = !was_on;
-        }
+        Ok(())
     }
 }
 
@@ -84,28 +104,15 @@ fn depths(scene: &Scene, object: &Object) -> (f32, f32) {
     ((middle - radius).max(camera.near), middle + radius)
 }
 
-/// A scene without images gets a chequered one on every surface: by the mesh's texture coordinates, or else as what the
-/// surface mirrors.
-fn texture(scene: &mut Scene) {
-    let mut materials = scene.objects().iter().flat_map(|object| &object.materials);
-    if materials.any(|material| material.texture.is_some() || material.environment.is_some()) {
-        return;
-    }
-    let Some(checker) = Texture::by_name("checker").map(Shared::new) else { return };
-    for object in scene.objects_mut() {
-        let has_coordinates = object.mesh().texcoords().is_some();
-        for material in &mut object.materials {
-            let place = if has_coordinates { &mut material.texture } else { &mut material.environment };
-            *place = Some(Shared::clone(&checker));
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::Colors;
+    use crate::stage::Pose;
     use mode13h::mesh::shapes;
-    use mode13h::scene::shipped;
+    use mode13h::palette::builtin;
+    use mode13h::scene::{UpAxis, shipped};
+    use mode13h::texture::Texture;
     use mode13h::vga::Vga;
 
     fn all_scenes() -> Vec<(&'static str, Scene)> {
@@ -123,20 +130,20 @@ mod tests {
         let mut failures = Vec::new();
         for (name, scene) in all_scenes() {
             for (_, switch) in Switch::KEYS {
-                let mut scene = scene.clone();
+                let mut stage = Stage::of_scene(scene.clone());
                 // The flash's lamp comes by.
-                scene.set_time(0.3 * scene.duration);
+                stage.show(0.3 * scene.duration, Pose::FIRST);
                 let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
                 let mut draw = |scene: &Scene, renderer: &mut Renderer| {
                     renderer.draw(scene, &mut vga).expect("a legal scene");
                     let on = switch.effects().iter().any(|effect| renderer.plan().is_on_anywhere(*effect));
                     (on, vga.pixels().to_vec())
                 };
-                let (at_first, picture) = draw(&scene, &mut renderer);
+                let (at_first, picture) = draw(&stage.scene, &mut renderer);
                 let mut was = (at_first, picture.clone());
                 for turn in 0..4 {
-                    switch.turn(&mut scene, &mut renderer);
-                    let is = draw(&scene, &mut renderer);
+                    switch.turn(&mut stage, &mut renderer).expect("a legal scene");
+                    let is = draw(&stage.scene, &mut renderer);
                     if (name, switch) == ("phong-table", Switch::Dither) {
                         // A table of whole shades: there is nothing to dither.
                         assert!(is == was);
@@ -153,5 +160,34 @@ mod tests {
             }
         }
         assert!(failures.is_empty(), "{failures:#?}");
+    }
+    /// What T leaves of a model with an image, in a palette made for what is seen and in one without ramps: shades in
+    /// order, not the entries of the palette one after the other.
+    #[test]
+    fn a_model_without_its_image_is_shaded_in_order() {
+        let texture = Texture::by_name("crate").map(mode13h::scene::Shared::new);
+        let cube = builtin::by_name("cube").expect("built in").palette.clone();
+        for colors in [Colors::Auto, cube.into()] {
+            let mut stage = Stage::of_model(shapes::cube(), UpAxis::Y, std::slice::from_ref(&texture));
+            stage.set_colors(&colors).expect("a legal scene");
+            stage.scene.wishes.dither = false;
+            let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+            let mut draw = |stage: &Stage, renderer: &mut Renderer| {
+                renderer.draw(&stage.scene, &mut vga).expect("a legal scene");
+                let palette = vga.palette();
+                vga.pixels().iter().map(|&pixel| palette.color(pixel)).collect::<Vec<Rgb>>()
+            };
+            let with = draw(&stage, &mut renderer);
+            Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");
+            stage.scene.wishes.dither = false;
+            let without = draw(&stage, &mut renderer);
+            // White in white light: greys, or what is nearest to them.
+            let is_grey = |color: Rgb| color.r.abs_diff(color.g).max(color.g.abs_diff(color.b)) < 24;
+            assert!(without.iter().all(|color| is_grey(*color)), "{colors:?}");
+            assert!(without != with && without.iter().any(|color| color.brightness() > 100_000), "{colors:?}");
+            Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");
+            stage.scene.wishes.dither = false;
+            assert!(draw(&stage, &mut renderer) == with, "{colors:?}: the image comes back");
+        }
     }
 }

@@ -18,6 +18,8 @@ const FRAMES: u32 = 2;
 /// A mesh, turned from frame to frame so that no edge keeps its place among the pixels.
 fn turned(mesh: Mesh, shiny: bool) -> Vec<Scene> {
     let mut scene = Scene::showing(mesh);
+    // By its sphere, as it is turned about two axes.
+    scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
     for object in scene.objects_mut() {
         let materials = object.materials.iter_mut();
         if shiny {

@@ -211,7 +211,7 @@ fn key(root: &Area<'_>, no_budget: bool) -> Outcome {
     let y = 18;
     root.draw(&PathElement::new([(80, y), (104, y)], RUNGS.stroke_width(2)))?;
     root.draw(&Circle::new((92, y), 5, RUNGS.filled()))?;
-    root.draw(&Text::new("efficient rungs: none is both faster and nearer", (112, y), style.clone()))?;
+    root.draw(&Text::new("efficient rungs: none is as near and surely faster", (112, y), style.clone()))?;
     root.draw(&Circle::new((440, y), 4, BEATEN.stroke_width(2)))?;
     root.draw(&Text::new("other rungs", (452, y), style.clone()))?;
     if !no_budget {

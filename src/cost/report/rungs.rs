@@ -43,7 +43,7 @@ fn times(study: &Study) -> Markup {
                 th { "where it goes" }
             } }
             tbody { @for row in &study.rungs { tr {
-                th scope="row" { (row.rung) @if row.efficient { " " span.mark title="no rung is both faster and nearer to lit" { "★" } } }
+                th scope="row" { (row.rung) @if row.efficient { " " span.mark title="no rung is both as near to lit and told to be faster" { "★" } } }
                 td { (time(row.per_frame.median)) }
                 td.soft { (time(row.per_frame.lower_quartile)) " – " (time(row.per_frame.upper_quartile)) }
                 td { (three_digits(row.per_pixel)) " ns" }
@@ -55,7 +55,7 @@ fn times(study: &Study) -> Markup {
             } } }
         } }
         p.key {
-            span { span.mark { "★" } " efficient: no rung is both faster and nearer to lit (root mean square)" }
+            span { span.mark { "★" } " efficient: no rung is as near to lit (root mean square) and faster, as far as times can be told apart" }
             @for (name, class, _) in PARTS { span { i.swatch.(class) {} " " (name) } }
             span { "A frame’s time leaves scan-out to the screen’s colours out; the bars show it." }
         }

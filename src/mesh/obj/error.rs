@@ -48,6 +48,8 @@ pub enum ObjErrorKind {
     FewCorners(usize),
     /// The file holds no face.
     NoFaces,
+    /// All corners of each face are on a line, or in one point.
+    NoArea,
     /// More than [`Mesh::MOST`](crate::mesh::Mesh::MOST) of a kind, more than 2³² − 1 corners, more than 65,536
     /// materials, or a concave face of more than 20,000 corners.
     TooLarge(&'static str),
@@ -87,6 +89,7 @@ impl fmt::Display for ObjErrorKind {
             Self::FewCorners(1) => write!(f, "a face with 1 corner; 3 are needed"),
             Self::FewCorners(corners) => write!(f, "a face with {corners} corners; 3 are needed"),
             Self::NoFaces => write!(f, "no faces"),
+            Self::NoArea => write!(f, "no face has an area, so nothing can be drawn"),
             Self::TooLarge(what) => write!(f, "{what}"),
         }
     }

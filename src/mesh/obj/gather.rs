@@ -5,50 +5,166 @@ use std::vec::Vec;
 
 use glam::{Vec2, Vec3};
 
-use super::ObjErrorKind;
 use super::polygon::Splitter;
 use super::statement::{Corner, Model};
-use crate::mesh::{Mesh, Surface, Weight, normals, topology};
+use super::{CREASE, ObjErrorKind};
+use crate::mesh::normals::Together;
+use crate::mesh::shells::{self, InsideOut};
+use crate::mesh::topology::Edges;
+use crate::mesh::{Mesh, Surface, Weight, normals, topology, twins};
 
-/// The mesh. `surfaces` are those of `model.names`; those that no face uses are dropped.
+/// What a model's faces were found to have wrong, and was mended.
+#[derive(Default)]
+pub(super) struct Mended {
+    /// Pairs of faces back to back that were left out.
+    pub(super) pairs: usize,
+    /// Bodies that were turned, being inside out.
+    pub(super) turned: usize,
+}
+
+/// The mesh. `surfaces` are those of `model.names`; those that no face uses are dropped. `crease` is in degrees.
 ///
 /// # Errors
 /// What is wrong, and in which line if one is at fault.
-pub(super) fn mesh(model: Model, surfaces: Vec<Surface>) -> Result<Mesh, (Option<u64>, ObjErrorKind)> {
-    let (triangles, triangle_surfaces, surfaces) = split(&model, surfaces)?;
+pub(super) fn mesh(
+    model: Model,
+    surfaces: Vec<Surface>,
+    crease: Option<f32>,
+) -> Result<(Mesh, Mended), (Option<u64>, ObjErrorKind)> {
+    let Split { triangles, mut triangle_surfaces, mut groups, surfaces } = split(&model, surfaces)?;
     let Model { positions, texcoords, normals, corners, .. } = model;
-    let (triples, triangles) = vertices(&corners, triangles, positions.len()).map_err(|kind| (None, kind))?;
+    let (mut triples, mut triangles) = vertices(&corners, triangles, positions.len()).map_err(|kind| (None, kind))?;
     drop(corners);
 
     let place = |triple: &Corner| positions[triple.position as usize];
-    // `Corner::NONE` is out of range of both.
-    let pair = |triple: &Corner| texcoords.get(triple.texcoord as usize).copied();
+    let has_area = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|vertex| place(&triples[vertex as usize]));
+        normals::face_normal(a, b, c).is_some()
+    };
+    if !triangles.iter().any(has_area) {
+        return Err((None, ObjErrorKind::NoArea));
+    }
     let normal = |triple: &Corner| normals.get(triple.normal as usize).copied().and_then(normals::unit);
-    let known: Vec<Option<Vec3>> = triples.iter().map(normal).collect();
+    let mut known: Vec<Option<Vec3>> = triples.iter().map(normal).collect();
     let complete = known.iter().all(Option::is_some);
 
+    let mut places: Vec<Vec3> = triples.iter().map(place).collect();
+    let mut points = topology::weld(&places);
+    let mut edges = Edges::new(&triangles, &points);
+    let mut mended = Mended::default();
+    if edges.balance() {
+        let pairs = twins::mistaken(&edges, &triangles, &points, &triangle_surfaces);
+        if !pairs.is_empty() {
+            mended.pairs = pairs.len();
+            let mut keep = vec![true; triangles.len()];
+            pairs.as_flattened().iter().for_each(|&triangle| keep[triangle as usize] = false);
+            retain(&mut triangles, &keep);
+            retain(&mut triangle_surfaces, &keep);
+            retain(&mut groups, &keep);
+            edges = Edges::new(&triangles, &points);
+        }
+        if let Some(inside_out) = shells::inside_out(&places, &triangles, &edges) {
+            mended.turned = inside_out.count();
+            let copies = turn(&inside_out, &mut triangles, &places, &mut known);
+            triples.extend(copies.iter().map(|&vertex| triples[vertex as usize]).collect::<Vec<_>>());
+            places.extend(copies.iter().map(|&vertex| places[vertex as usize]).collect::<Vec<_>>());
+            points.extend(copies.iter().map(|&vertex| points[vertex as usize]).collect::<Vec<_>>());
+            edges = Edges::new(&triangles, &points);
+        }
+    }
+
     let given = known.iter().map(|normal| normal.unwrap_or(Vec3::Z)).collect();
-    let positions: Vec<Vec3> = triples.iter().map(place).collect();
-    let points = topology::weld(&positions);
-    let mut mesh = Mesh::assemble_welded(positions, given, triangles, &points);
+    let mut mesh = Mesh::assemble_welded(places, given, triangles, &points, &edges);
+    // `Corner::NONE` is out of range.
+    let pair = |triple: &Corner| texcoords.get(triple.texcoord as usize).copied();
     if triples.iter().any(|triple| pair(triple).is_some()) {
         mesh.texcoords = Some(triples.iter().map(|triple| pair(triple).unwrap_or(Vec2::ZERO)).collect());
     }
     mesh.surfaces = surfaces;
     mesh.triangle_surfaces = triangle_surfaces;
     if !complete {
-        mesh.average(&points, Weight::Angle, None, known);
+        let together = match crease {
+            Some(degrees) => Together::new(f64::from(degrees).to_radians(), &[]),
+            None => Together::new(f64::from(CREASE).to_radians(), &groups).unless_scattered(&edges),
+        };
+        mesh.average(&points, Weight::Angle, Some(&together), known);
     }
-    Ok(mesh)
+    Ok((mesh, mended))
 }
 
-/// Triangles as numbers of corners, their surfaces, and the surfaces that are used.
-type Split = (Vec<[u32; 3]>, Vec<u16>, Vec<Surface>);
+/// Keeps what is to be kept, of a list that has one for each, or none at all.
+fn retain<T>(list: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    list.retain(|_| keep.next().is_none_or(|&keep| keep));
+}
+
+/// Turns faces round that are inside out, and with them their given normals, if more of these then look inward than
+/// outward in a body. Returns the vertices of which a copy is needed, for such a face beside one that keeps its normal; the
+/// copies come at the end.
+fn turn(
+    inside_out: &InsideOut,
+    triangles: &mut [[u32; 3]],
+    places: &[Vec3],
+    known: &mut Vec<Option<Vec3>>,
+) -> Vec<u32> {
+    let mut agrees = vec![0.0; inside_out.shells()];
+    let mut is_shared = vec![false; known.len()];
+    for (number, triangle) in triangles.iter_mut().enumerate() {
+        let Some(shell) = inside_out.shell(number) else { continue };
+        triangle.swap(1, 2);
+        let [a, b, c] = triangle.map(|vertex| places[vertex as usize]);
+        let face = normals::face_normal(a, b, c).unwrap_or(Vec3::ZERO);
+        let given = triangle.iter().filter_map(|&vertex| known[vertex as usize]);
+        agrees[shell] += given.map(|normal| f64::from(normal.dot(face))).sum::<f64>();
+    }
+    let turns = |number: usize| inside_out.shell(number).is_some_and(|shell| agrees[shell] < 0.0);
+    for (number, triangle) in triangles.iter().enumerate() {
+        if !turns(number) {
+            triangle.iter().for_each(|&vertex| is_shared[vertex as usize] = true);
+        }
+    }
+    // Of each vertex of a turned face the vertex that has the turned normal.
+    let mut turned: HashMap<u32, u32> = HashMap::new();
+    let mut copies = Vec::new();
+    for (number, triangle) in triangles.iter_mut().enumerate() {
+        if !turns(number) {
+            continue;
+        }
+        for vertex in triangle {
+            let Some(normal) = known[*vertex as usize] else { continue };
+            *vertex = *turned.entry(*vertex).or_insert_with_key(|&vertex| {
+                if !is_shared[vertex as usize] {
+                    known[vertex as usize] = Some(-normal);
+                    return vertex;
+                }
+                copies.push(vertex);
+                known.push(Some(-normal));
+                // At most three for each triangle.
+                known.len() as u32 - 1
+            });
+        }
+    }
+    copies
+}
+
+/// What the faces of a file come to.
+struct Split {
+    /// Three corners each, by their numbers in the file.
+    triangles: Vec<[u32; 3]>,
+    triangle_surfaces: Vec<u16>,
+    /// For each triangle its smoothing group; empty if the file has none.
+    groups: Vec<u32>,
+    /// Those that are used.
+    surfaces: Vec<Surface>,
+}
 
 fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, (Option<u64>, ObjErrorKind)> {
     let count = model.corners.len() - 2 * model.sizes.len();
     let mut triangles = Vec::with_capacity(count);
     let mut triangle_surfaces = Vec::with_capacity(count);
+    let mut groups = Vec::with_capacity(if model.smoothing.is_empty() { 0 } else { count });
+    let mut changes = model.smoothing.iter().copied().peekable();
+    let mut group = Together::NO_GROUP;
     let mut surfaces: Vec<Option<Surface>> = surfaces.into_iter().map(Some).collect();
     let mut numbers: Vec<Option<u16>> = surfaces.iter().map(|_| None).collect();
     let mut used = Vec::new();
@@ -83,10 +199,16 @@ fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, (Option<u64>, O
                 triangles.extend(pieces.iter().map(|piece| piece.map(|corner| start + corner)));
             }
             triangle_surfaces.resize(triangles.len(), surface);
+            if !model.smoothing.is_empty() {
+                while let Some((_, next)) = changes.next_if(|change| change.0 <= place) {
+                    group = next;
+                }
+                groups.resize(triangles.len(), group);
+            }
             first += size as usize;
         }
     }
-    Ok((triangles, triangle_surfaces, used))
+    Ok(Split { triangles, triangle_surfaces, groups, surfaces: used })
 }
 
 /// The different triples, in the order in which the triangles first use them, and the triangles with

@@ -5,6 +5,7 @@
 //! | `v x y z` | a position; what follows (a weight, a colour) is left alone |
 //! | `vt u v`, `vn x y z` | texture coordinates (`v` is 0 if left out), a normal |
 //! | `f`, with `v`, `v/vt`, `v//vn`, `v/vt/vn` | a face of three corners or more; negative indices count back from the last; an index may name what comes later in the file |
+//! | `s` | a smoothing group, for faces without normals; `off` and 0: each face is flat |
 //! | `mtllib`, `usemtl` | surfaces: `Kd`, `Ks`, `Ns`, `map_Kd` of the MTL file |
 //! | all others, `l` and `p` among them | left alone |
 //!
@@ -12,8 +13,14 @@
 //! UTF-8 and may be of any length. Each different triple of position, texture coordinates and normal becomes a vertex; what
 //! no face uses does not. A face of n corners becomes n − 2 triangles, those without area among them.
 //!
-//! Corners without a normal, or with one of length 0, get the mean by angle over all faces at that
-//! position.
+//! Corners without a normal, or with one of length 0, get the mean by angle over faces at that position: those of the
+//! same smoothing group; where the file names no group, those that meet at no more than the crease angle
+//! ([`Options::crease`]).
+//!
+//! Two faults of scans are mended in a model that is closed, each with a warning. Pairs of triangles back to back, of the
+//! same three points, are left out where other faces go on at their edges; sheets with a rim of their own, as leaves, stay.
+//! Bodies that are inside out are turned round, unless they are cavities in others; their normals too, if these look
+//! inward.
 //!
 //! A broken file is an [`ObjError`] that names file and line. A missing MTL file or texture is a
 //! warning, and white, matt surfaces take its place.
@@ -33,7 +40,7 @@ mod warnings;
 
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::string::String;
 use std::vec::Vec;
 
@@ -50,6 +57,21 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// One line each, with the file and the line in it: the first hundred, and how many more there are.
     pub warnings: Vec<String>,
+    /// The files that were read or looked for: the model's own where it was loaded from one, MTL files, and textures
+    /// that the materials name. Some may not exist.
+    pub files: Vec<PathBuf>,
+}
+
+/// The crease angle of models that ask for none, in degrees.
+const CREASE: f32 = 40.0;
+
+/// How a model is read.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Options {
+    /// The crease angle, in degrees, for corners without a normal: faces whose normals differ by more have an edge between
+    /// them. 180 is smooth everywhere, 0 flat; what is beyond counts as these. With `None` the smoothing groups of the
+    /// file hold, and where it has none, 40; but a scan, whose sharp edges end anywhere, is smooth everywhere.
+    pub crease: Option<f32>,
 }
 
 /// Reads an OBJ file and the MTL files that it names. Of textures it only looks whether they exist.
@@ -57,16 +79,21 @@ pub struct Loaded {
 /// # Errors
 /// A file that cannot be read, or that is broken: see [`ObjErrorKind`].
 pub fn load(path: impl AsRef<Path>) -> Result<Loaded, ObjError> {
-    load_with_progress(path, |_, _| {})
+    load_with(path, &Options::default(), |_, _| {})
 }
 
-/// As [`load`], and tells `progress` how much of the OBJ file has been read, in bytes, and how long the file is: after
-/// every 64 KiB or so, and at the end. What remains then, making a mesh of it, takes about as long again. Of a pipe or a
-/// device the length is 0; a file that grows meanwhile may be read beyond the length that it had.
+/// Reads a file as [`load`] does, as `options` say, and tells `progress` how much of the OBJ file has been read, in bytes,
+/// and how long the file is: after every 64 KiB or so, and at the end. What remains then, making a mesh of it, takes about
+/// as long again. Of a pipe or a device the length is 0; a file that grows meanwhile may be read beyond the length that it
+/// had.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_with_progress(path: impl AsRef<Path>, progress: impl FnMut(u64, u64)) -> Result<Loaded, ObjError> {
+pub fn load_with(
+    path: impl AsRef<Path>,
+    options: &Options,
+    progress: impl FnMut(u64, u64),
+) -> Result<Loaded, ObjError> {
     let path = path.as_ref();
     let failed = |error: io::Error| ObjError::of_file(path, ObjErrorKind::Read(error));
     let file = File::open(path).map_err(failed)?;
@@ -75,14 +102,21 @@ pub fn load_with_progress(path: impl AsRef<Path>, progress: impl FnMut(u64, u64)
         return Err(ObjError::of_file(path, ObjErrorKind::Directory));
     }
     let file = Counted::new(file, metadata.len(), progress);
-    let (mut mesh, mut warnings) = read(BufReader::with_capacity(1 << 16, file), path, library_file)?;
+    let (mut mesh, mut warnings, libraries) =
+        read(BufReader::with_capacity(1 << 16, file), path, library_file, options)?;
+    let files = [path.to_owned()].into_iter().chain(libraries).chain(textures(&mesh)).collect();
     for surface in &mut mesh.surfaces {
         if let Some(texture) = surface.texture.take_if(|texture| !Path::new(texture).is_file()) {
             let name = &surface.name;
             warnings.push(|| format!("{texture}: no such texture; material {name} is drawn without it"));
         }
     }
-    Ok(Loaded { mesh, warnings: warnings.into_lines() })
+    Ok(Loaded { mesh, warnings: warnings.into_lines(), files })
+}
+
+/// The textures that a model's materials name.
+fn textures(mesh: &Mesh) -> impl Iterator<Item = PathBuf> {
+    mesh.surfaces().iter().filter_map(|surface| surface.texture.as_ref().map(PathBuf::from))
 }
 
 /// The bytes of an MTL file. What is no ordinary file is refused: a model may name a device that never ends.
@@ -115,18 +149,54 @@ pub fn parse(
     path: impl AsRef<Path>,
     library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
 ) -> Result<Loaded, ObjError> {
-    let (mesh, warnings) = read(reader, path.as_ref(), library)?;
-    Ok(Loaded { mesh, warnings: warnings.into_lines() })
+    parse_with(reader, path, library, &Options::default())
 }
 
+/// Reads a model as [`parse`] does, as `options` say.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse_with(
+    reader: impl BufRead,
+    path: impl AsRef<Path>,
+    library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    options: &Options,
+) -> Result<Loaded, ObjError> {
+    let (mesh, warnings, libraries) = read(reader, path.as_ref(), library, options)?;
+    let files = libraries.into_iter().chain(textures(&mesh)).collect();
+    Ok(Loaded { mesh, warnings: warnings.into_lines(), files })
+}
+
+/// The model, its warnings, and the paths that `library` was given.
 fn read(
     reader: impl BufRead,
     path: &Path,
-    library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
-) -> Result<(Mesh, Warnings), ObjError> {
+    mut library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    options: &Options,
+) -> Result<(Mesh, Warnings, Vec<PathBuf>), ObjError> {
     let mut warnings = Warnings::default();
+    let mut libraries = Vec::new();
+    let library = |path: &Path| {
+        libraries.push(path.to_owned());
+        library(path)
+    };
     let model = statement::read(reader, path)?;
     let surfaces = material::surfaces(&model, path, library, &mut warnings)?;
-    let mesh = gather::mesh(model, surfaces).map_err(|(line, kind)| ObjError { path: path.to_owned(), line, kind })?;
-    Ok((mesh, warnings))
+    let (mesh, mended) = gather::mesh(model, surfaces, options.crease).map_err(|(line, kind)| ObjError {
+        path: path.to_owned(),
+        line,
+        kind,
+    })?;
+    let path = path.display();
+    match mended.pairs {
+        0 => {}
+        1 => warnings.push(|| format!("{path}: left out two faces back to back")),
+        pairs => warnings.push(|| format!("{path}: left out {pairs} pairs of faces back to back")),
+    }
+    match mended.turned {
+        0 => {}
+        1 => warnings.push(|| format!("{path}: turned round a body that was inside out")),
+        turned => warnings.push(|| format!("{path}: turned round {turned} bodies that were inside out")),
+    }
+    Ok((mesh, warnings, libraries))
 }

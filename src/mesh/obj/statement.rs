@@ -33,10 +33,12 @@ pub(super) struct Model {
     pub(super) corners: Vec<Corner>,
     /// How many of them each face has, three or more.
     pub(super) sizes: Vec<u32>,
-    /// Place in `sizes` and line of each face that is too large if it is concave.
+    /// Place in `sizes` and line of each face that is too large if it is neither convex nor monotone.
     pub(super) large: Vec<(usize, u64)>,
     /// From which face on which material, by its place in `names`.
     pub(super) runs: Vec<(usize, usize)>,
+    /// From which face on which smoothing group: its number, or 0 for none. Before the first none is known.
+    pub(super) smoothing: Vec<(usize, u32)>,
     /// Of `usemtl`, each once, in order. The first is that of faces before any `usemtl`: empty.
     pub(super) names: Vec<String>,
     /// Line and text of each `mtllib`.
@@ -66,6 +68,12 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Model, ObjError>
                     next
                 });
                 model.runs.push((model.sizes.len(), number));
+                Ok(())
+            }
+            b"s" => {
+                if let Some(group) = group(rest) {
+                    model.smoothing.push((model.sizes.len(), group));
+                }
                 Ok(())
             }
             b"mtllib" => {
@@ -105,6 +113,16 @@ fn texcoord(model: &mut Model, rest: &[u8]) -> Result<(), ObjErrorKind> {
 
 fn normal(model: &mut Model, rest: &[u8]) -> Result<(), ObjErrorKind> {
     push(&mut model.normals, Vec3::from_array(numbers(&mut words(rest), "a normal (3)")?))
+}
+
+/// The number of a smoothing group: 0 for `off`, 1 for `on`. What is no group is left alone.
+fn group(rest: &[u8]) -> Option<u32> {
+    match words(rest).next()? {
+        b"off" => Some(0),
+        b"on" => Some(1),
+        // The greatest number stands for no group that is known.
+        word => whole(word).and_then(|number| u32::try_from(number).ok()).filter(|&group| group < u32::MAX),
+    }
 }
 
 /// A statement that is not for us, unless the file is no text at all.

@@ -3,7 +3,7 @@
 use crate::fixed::U8F8;
 use crate::raster::shading::Shading;
 use crate::span::lit::{Lanes, Points};
-use crate::span::texture::Texels;
+use crate::span::texture::{Levels, Texels};
 
 /// The values of a corner beyond its position, shade and depth. What a look does not use may be
 /// anything.
@@ -120,6 +120,8 @@ pub enum Mix<'a> {
 pub struct TextureLook<'a> {
     /// The image.
     pub texels: Texels<'a>,
+    /// Its smaller copies, from which one is taken where more than √2 texels go to a pixel; `None` for the image alone.
+    pub levels: Option<Levels<'a>>,
     /// How its coordinates run.
     pub mapping: TextureMapping,
     /// The byte for a shade (row) and a texel (column); of channels, one table each.
@@ -171,6 +173,12 @@ impl<'a> Look<'a> {
         self.texture
             .as_ref()
             .filter(|_| !cfg!(all(mode13h_leave_out = "texture", mode13h_leave_out = "environment-map")))
+    }
+
+    /// The levels of its image.
+    #[inline]
+    pub(super) fn levels(&self) -> Option<Levels<'a>> {
+        self.texture()?.levels.filter(|_| !cfg!(mode13h_leave_out = "mipmaps"))
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! shades     as a shading has them, from a table of normals, or lit at every pixel
-//! texture    shade and texel looked up in a table; or red, green and blue mixed to an index
+//! texture    shade and texel, of a level of the image, looked up in a table; or red, green and blue mixed to an index
 //! fog        level and index looked up
 //! blend      index and what the frame holds looked up
 //! write      all of it, or where nearer
@@ -18,6 +18,7 @@
 //! lies in [min >> 8, ⌈max⌉].
 
 mod curve;
+mod level;
 mod look;
 mod planes;
 mod small;
@@ -29,7 +30,6 @@ pub use self::look::{Apart, Attributes, Lighting, Limits, Look, Mix, Source, Tex
 use self::planes::{KNOTS, Knots, LitPlane, TexturePlane};
 use super::cover::{Ordered, Row};
 use super::depth::{Cell, DepthPlane};
-use super::hyperbolic::Linear;
 use super::paint::{Paint, to_bytes};
 use super::shade::{RESEED, ShadePlane};
 use super::shading::Shading;
@@ -39,13 +39,12 @@ use crate::fixed::U8F8;
 use crate::span::channels::{mix_cube, mix_nearest};
 use crate::span::depth::{copy_before, copy_nearer};
 use crate::span::lit::LANES;
-use crate::span::texture::{fill_affine, fill_perspective};
 use crate::span::{Kernel, lookup};
 
 /// Pixels in a piece.
 const PIECE: usize = RESEED as usize;
 
-/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`].
+/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`], and between two choices of a level.
 const EVERY: usize = 16;
 
 /// A half for every pixel: no dither.
@@ -130,7 +129,8 @@ impl<'a> EffectPaint<'a> {
             (Source::NormalTable(_), Some(_)) => channels(Shading::default()),
             (Source::NormalTable(_), None) => Planes::Slope([plane(|c| c.slope[0]), plane(|c| c.slope[1])]),
         };
-        let texture = look.texture().map(|texture| TexturePlane::new(triangle, corners, texture.mapping));
+        let texture =
+            look.texture().map(|texture| TexturePlane::new(triangle, corners, texture.mapping, look.levels()));
         Self { look, planes, texture, fog: look.fog().map(|_| plane(|c| c.fog)) }
     }
 
@@ -200,6 +200,7 @@ impl<'a> EffectPaint<'a> {
     fn count(&self, pixels: u32, drawn: &mut Drawn) {
         let add = |on: bool, count: &mut u32| *count += if on { pixels } else { 0 };
         add(self.look.texture().is_some(), &mut drawn.textured);
+        add(self.look.levels().is_some(), &mut drawn.mipmapped);
         add(self.look.dither().is_some(), &mut drawn.dithered);
         add(self.look.fog().is_some(), &mut drawn.fogged);
         add(self.look.blend().is_some(), &mut drawn.blended);
@@ -327,36 +328,8 @@ impl<'a> EffectPaint<'a> {
 
     /// The texels from pixel `seed` on.
     fn texels(&self, row: &Row, seed: i32, texels: &mut [u8]) {
-        let (Some(look), Some(plane)) = (self.look.texture(), &self.texture) else { return };
-        let y = row.y;
-        match look.mapping {
-            TextureMapping::Affine => {
-                let ([u, v], [du, dv]) = (plane.start(seed, y), plane.steps);
-                fill_affine(texels, look.texels, u, v, du, dv);
-            }
-            TextureMapping::Perspective => {
-                let numerators = plane.numerators.each_ref().map(|n| n.at(seed, y));
-                let steps = plane.numerators.each_ref().map(Linear::per_column);
-                let (d, dd) = (plane.denominator.at(seed, y), plane.denominator.per_column());
-                fill_perspective(texels, look.texels, numerators, steps, d, dd);
-            }
-            TextureMapping::Every16 => {
-                let mut x = seed;
-                let mut from = plane.at(x, y);
-                for texels in texels.chunks_mut(EVERY) {
-                    // The row's last pixel inside the frame, whatever the clip rectangle: beyond the
-                    // triangle there may be no coordinates at all.
-                    let next = (x + EVERY as i32).min(row.last).max(x);
-                    let to = plane.at(next, y);
-                    let step = |i: usize| match next - x {
-                        0 => 0,
-                        // Both lie between the corners' coordinates. The wrap is meant: texels repeat.
-                        pixels => (i64::from(to[i].wrapping_sub(from[i]) as i32) / i64::from(pixels)) as u32,
-                    };
-                    fill_affine(texels, look.texels, from[0], from[1], step(0), step(1));
-                    (x, from) = (next, to);
-                }
-            }
+        if let (Some(look), Some(plane)) = (self.look.texture(), &self.texture) {
+            plane.fill(look, self.look.levels(), row, seed, texels);
         }
     }
 }

@@ -3,7 +3,8 @@
 
 use core::ops::Range;
 
-use super::{Apart, Attributes, PIECE, TextureMapping};
+use super::level::{self, LevelPlane};
+use super::{Apart, Attributes, EVERY, PIECE, TextureLook, TextureMapping};
 use crate::raster::cover::{Ordered, Row};
 use crate::raster::hyperbolic::Linear;
 use crate::raster::paint::to_bytes;
@@ -11,6 +12,7 @@ use crate::raster::weights::Weights;
 use crate::span::Kernel;
 use crate::span::hyperbolic::floor_quotient;
 use crate::span::lit::{LANES, Lanes, Points};
+use crate::span::texture::{Levels, Texels, fill_affine, fill_perspective};
 
 /// The most places in a piece that are lit for [`Source::LitEvery`], its end being one, and as many as are lit at once.
 pub(super) const KNOTS: usize = (PIECE / Apart::Four.pixels() + 1).next_multiple_of(LANES);
@@ -18,38 +20,150 @@ pub(super) const KNOTS: usize = (PIECE / Apart::Four.pixels() + 1).next_multiple
 /// Texture coordinates over a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TexturePlane {
-    pub(super) numerators: [Linear; 2],
-    /// Of affine mapping the area: the same everywhere.
-    pub(super) denominator: Linear,
+    numerators: [Linear; 2],
+    /// Of affine mapping the area times 2ⁿ for level n: the same everywhere, so coordinates are those of the level.
+    denominator: Linear,
     /// Of affine mapping, from one pixel to the next, rounded toward zero.
-    pub(super) steps: [u32; 2],
+    steps: [u32; 2],
+    /// Which level's texels are shown, if the image has several.
+    level: Level,
+}
+
+/// The level of a mipmap that is shown.
+#[derive(Clone, Copy, Debug)]
+enum Level {
+    /// One all over the face; 0 of an image without levels.
+    OfFace(u32),
+    /// One for every 16 pixels.
+    OfPixels(LevelPlane),
 }
 
 impl TexturePlane {
-    pub(super) fn new(triangle: &Ordered, corners: [&Attributes; 3], mapping: TextureMapping) -> Self {
-        let depths = match mapping {
-            TextureMapping::Affine => [1; 3],
-            _ => triangle.vertices.each_ref().map(|v| i128::from(v.depth().max(1))),
-        };
+    pub(super) fn new(
+        triangle: &Ordered,
+        corners: [&Attributes; 3],
+        mapping: TextureMapping,
+        levels: Option<Levels<'_>>,
+    ) -> Self {
+        let affine = mapping == TextureMapping::Affine;
+        let depths = if affine { [1; 3] } else { triangle.vertices.each_ref().map(|v| i128::from(v.depth().max(1))) };
         let numerators =
             [0, 1].map(|i| Linear::new(triangle, [0, 1, 2].map(|k| i128::from(corners[k].texture[i]) * depths[k])));
-        let area = i128::from(triangle.area());
+        let area = triangle.area();
+        let level = match levels {
+            None => Level::OfFace(0),
+            Some(levels) if affine => Level::OfFace(level::of_face(&numerators, area, levels.last())),
+            Some(_) => Level::OfPixels(LevelPlane::new(triangle, corners.map(|corner| corner.texture), depths)),
+        };
+        let size = if let Level::OfFace(level) = level { 1 << level } else { 1 };
         // The wrap is meant: of two pixels or more in a row the step is that of two coordinates; of one it
         // is never used.
-        let steps = numerators.map(|n| (n.per_column() / area) as u32);
-        Self { numerators, denominator: Linear::new(triangle, depths), steps }
+        let steps = numerators.map(|n| (n.per_column() / (i128::from(area) * size)) as u32);
+        Self { numerators, denominator: Linear::new(triangle, depths.map(|depth| depth * size)), steps, level }
     }
 
-    /// The coordinates at a pixel, rounded down; 16.16, modulo 2³².
-    pub(super) fn at(&self, x: i32, y: i32) -> [u32; 2] {
+    /// The texels from pixel `seed` on.
+    pub(super) fn fill(
+        &self,
+        look: &TextureLook<'_>,
+        levels: Option<Levels<'_>>,
+        row: &Row,
+        seed: i32,
+        texels: &mut [u8],
+    ) {
+        match (&self.level, levels) {
+            (_, None) => self.fill_level((look.texels, 0), look.mapping, row, seed, texels),
+            (Level::OfFace(level), Some(levels)) => {
+                let of_level = levels.get(*level).unwrap_or(look.texels);
+                self.fill_level((of_level, 0), look.mapping, row, seed, texels);
+            }
+            (Level::OfPixels(plane), Some(levels)) => {
+                self.fill_by_levels((plane, levels), look, row, seed, texels);
+            }
+        }
+    }
+
+    /// The same from the level that is chosen for every 16 pixels: at the middle one, or at the row's last inside the frame
+    /// if that comes before, whatever the clip rectangle.
+    #[inline(never)]
+    fn fill_by_levels(
+        &self,
+        (plane, levels): (&LevelPlane, Levels<'_>),
+        look: &TextureLook<'_>,
+        row: &Row,
+        seed: i32,
+        texels: &mut [u8],
+    ) {
+        let mut chosen = [0; PIECE / EVERY];
+        let chosen = &mut chosen[..texels.len().div_ceil(EVERY)];
+        for (level, x) in chosen.iter_mut().zip((seed..).step_by(EVERY)) {
+            let x = (x + EVERY as i32 / 2).min(row.last).max(x);
+            *level = plane.at(x, row.y, self.denominator.at(x, row.y), levels.last());
+        }
+        let (mut x, mut rest) = (seed, texels);
+        for alike in chosen.chunk_by(|a, b| a == b) {
+            let part;
+            (part, rest) = rest.split_at_mut((alike.len() * EVERY).min(rest.len()));
+            let level = alike[0];
+            let of_level = levels.get(level).unwrap_or(look.texels);
+            self.fill_level((of_level, level), look.mapping, row, x, part);
+            // At most 64.
+            x += part.len() as i32;
+        }
+    }
+
+    /// The texels of one level, from pixel `x` on. Coordinates are divided by 2^`shift`.
+    fn fill_level(
+        &self,
+        (texels, shift): (Texels<'_>, u32),
+        mapping: TextureMapping,
+        row: &Row,
+        mut x: i32,
+        pixels: &mut [u8],
+    ) {
+        let y = row.y;
+        match mapping {
+            TextureMapping::Affine => {
+                let ([u, v], [du, dv]) = (self.start(x, y), self.steps);
+                fill_affine(pixels, texels, u, v, du, dv);
+            }
+            TextureMapping::Perspective => {
+                let numerators = self.numerators.each_ref().map(|n| n.at(x, y));
+                let steps = self.numerators.each_ref().map(Linear::per_column);
+                let (d, dd) = (self.denominator.at(x, y), self.denominator.per_column());
+                fill_perspective(pixels, texels, numerators, steps, d << shift, dd << shift);
+            }
+            TextureMapping::Every16 => {
+                let at = |x: i32| self.at(x, y).map(|coordinate| coordinate >> shift);
+                let mut from = at(x);
+                for pixels in pixels.chunks_mut(EVERY) {
+                    // The row's last pixel inside the frame, whatever the clip rectangle: beyond the
+                    // triangle there may be no coordinates at all.
+                    let next = (x + EVERY as i32).min(row.last).max(x);
+                    let to = at(next);
+                    let step = |i: usize| match next - x {
+                        0 => 0,
+                        // Both lie between the corners' coordinates. The wrap is meant: texels repeat.
+                        pixels => (i64::from(to[i].wrapping_sub(from[i])) / i64::from(pixels)) as u32,
+                    };
+                    // The wrap is meant here, too.
+                    fill_affine(pixels, texels, from[0] as u32, from[1] as u32, step(0), step(1));
+                    (x, from) = (next, to);
+                }
+            }
+        }
+    }
+
+    /// The coordinates at a pixel, rounded down; 16.16.
+    fn at(&self, x: i32, y: i32) -> [i32; 2] {
         let d = self.denominator.at(x, y);
-        // A mean of the corners' coordinates, so it fits in 32 bits. The wrap is meant: texels repeat.
-        self.numerators.each_ref().map(|n| floor_quotient(n.at(x, y), d) as u32)
+        // A mean of the corners' coordinates, so it fits in 32 bits.
+        self.numerators.each_ref().map(|n| floor_quotient(n.at(x, y), d) as i32)
     }
 
     /// The same, rounded back toward where the coordinates come from, as shades are: so no sum leaves
     /// the range of the corners.
-    pub(super) fn start(&self, x: i32, y: i32) -> [u32; 2] {
+    fn start(&self, x: i32, y: i32) -> [u32; 2] {
         let d = self.denominator.at(x, y);
         self.numerators.each_ref().map(|n| {
             let bias = if n.per_column() < 0 { d - 1 } else { 0 };

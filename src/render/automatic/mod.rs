@@ -8,16 +8,18 @@
 mod mixed;
 mod seen;
 
+use alloc::vec;
 use alloc::vec::Vec;
 
-use super::RenderError;
+use super::{Effect, RenderError, Renderer, Screen};
 use crate::light::{Material, RampChoice};
 use crate::mesh::Surface;
 use crate::palette::auto::{Automatic, Entries, Use, share_beside};
-use crate::palette::{Palette, Rgb};
+use crate::palette::{Palette, Ramp, Rgb};
 use crate::scene::{Object, Scene, Shared};
-use crate::texture::Texture;
+use crate::texture::{Mipmap, Texture};
 use mixed::OwnColors;
+use seen::moments;
 pub use seen::{Seen, seen};
 
 /// Pictures over one round.
@@ -35,8 +37,10 @@ pub struct AutomaticPalette {
 
 impl AutomaticPalette {
     /// Gives `scene` the palette, and its objects their materials in it. It is the scene that the palette was made for,
-    /// or one with the same objects; objects with other numbers of materials stay as they are.
+    /// or one with the same objects; objects with other numbers of materials stay as they are. Its wish for such a palette
+    /// is met.
     pub fn apply(&self, scene: &mut Scene) {
+        scene.wishes.auto_palette = false;
         if let Some(color) = scene.background_color {
             scene.background = self.palette.nearest(color);
         }
@@ -51,12 +55,14 @@ impl AutomaticPalette {
 
 /// A palette for a scene, by [`share_beside`], and its materials in it.
 ///
-/// Area and brightness are those of [`seen`]. A material's colour is its [own](Material::own_colors), in the light that
-/// it gives back in full light, ambient and diffuse together; its highlight adds to that. On its ramp that colour stands
+/// Area and brightness are those of [`seen`]. A material's colour is its [own](Material::own_colors), or, where it has none
+/// and no image, that of the ramp that it names in the scene's palette; in the light that it gives back in full light,
+/// ambient and diffuse together. Its highlight adds to that. On its ramp that colour stands
 /// at the intensity `full_light` of [`Entries::Ramp`], so its ambient and diffuse shares are divided up to that, in the
 /// proportion that they have, and what is left is the highlight's. It then needs no channels any more, as its colour is
 /// in the ramp, and a `ramp` that it named is another one now. A material with an image keeps its shares; the image's
-/// colours, tinted by the material's, are the base of entries at the brightnesses seen.
+/// colours, tinted by the material's, are the base of entries at the brightnesses seen; where its plan calls for mipmaps,
+/// their colours too, those of each level counting half as much as those of the level before.
 ///
 /// What is mixed on the screen lies on no ramp: colours in fog and behind bodies that shine through, and all colours
 /// where a light is coloured. These are measured in true colour, and share the block of the textures. Under coloured
@@ -84,15 +90,17 @@ impl AutomaticPalette {
 pub fn automatic(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     let in_channels = mixed::has_colored_light(scene);
     let mut tints = Tints::default();
-    let bodies: Vec<Vec<Body>> =
-        scene.objects().iter().map(|object| bodies(object, scene.ambient, &mut tints)).collect();
+    let bodies: Vec<Vec<Body>> = scene.objects().iter().map(|object| bodies(object, scene, &mut tints)).collect();
     let mut texels: Vec<Option<Vec<(Rgb, u32)>>> = Vec::new();
-    for body in bodies.iter().flatten() {
-        texels.push(match &body.image {
-            _ if in_channels => Some(Vec::new()),
-            Some(image) => Some(image.colors().iter().copied().zip(image.histogram()).collect()),
-            None => None,
-        });
+    for (object, (bodies, has_levels)) in scene.objects().iter().zip(bodies.iter().zip(have_mipmaps(scene)?)) {
+        for (material, body) in object.materials.iter().zip(bodies) {
+            texels.push(match &body.image {
+                _ if in_channels => Some(Vec::new()),
+                Some(image) if has_levels && material.texture.is_some() => Some(Mipmap::new(image).weights(image)),
+                Some(image) => Some(image.colors().iter().copied().zip(image.histogram()).collect()),
+                None => None,
+            });
+        }
     }
     let seen = seen(scene)?;
     let mut uses: Vec<Use<'_>> = Vec::new();
@@ -123,6 +131,20 @@ pub fn automatic(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     Ok(automatic)
 }
 
+/// Of each object whether its plan calls for mipmaps at any moment.
+fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
+    let mut any = vec![false; scene.objects().len()];
+    if scene.objects().iter().flat_map(|object| &object.materials).any(|material| material.texture.is_some()) {
+        let (mut moved, mut renderer) = (scene.clone(), Renderer::new());
+        for seconds in moments(scene) {
+            moved.set_time(seconds);
+            let plan = renderer.make_plan(&moved, Screen::MODE_13H)?;
+            any.iter_mut().enumerate().for_each(|(object, any)| *any |= plan.is_on(object, Effect::Mipmaps));
+        }
+    }
+    Ok(any)
+}
+
 /// What a material of an object is to look like.
 struct Body {
     /// Of 1, what it gives back in full light: its ambient and diffuse shares.
@@ -136,21 +158,24 @@ struct Body {
 }
 
 /// A body for each material.
-fn bodies(object: &Object, ambient: f32, tints: &mut Tints) -> Vec<Body> {
+fn bodies(object: &Object, scene: &Scene, tints: &mut Tints) -> Vec<Body> {
     let plain = Surface::default();
     let surfaces = object.mesh().surfaces().iter().chain(core::iter::repeat(&plain));
     object
         .materials
         .iter()
         .zip(surfaces)
-        .map(|(material, surface)| Body::new(material, surface, ambient, tints))
+        .map(|(material, surface)| Body::new(material, surface, scene, tints))
         .collect()
 }
 
 impl Body {
-    fn new(material: &Material, surface: &Surface, ambient: f32, tints: &mut Tints) -> Self {
-        let full = full_light(material, ambient);
-        let own = material.own_colors(surface);
+    fn new(material: &Material, surface: &Surface, scene: &Scene, tints: &mut Tints) -> Self {
+        let full = full_light(material, scene.ambient);
+        let own = match (material.own_colors(surface), &scene.palette) {
+            (([1.0, 1.0, 1.0], [1.0, 1.0, 1.0]), Some(palette)) => colors_of_ramp(material, full, palette),
+            (own, _) => own,
+        };
         let color = Rgb::from_intensities(own.0.map(|channel| channel * full));
         // With the exponent 0 a highlight would be everywhere.
         let is_shiny = material.specular > 0.0 && material.shininess > 0.0;
@@ -183,6 +208,26 @@ impl Body {
             (_, image) => Material { environment: image.clone(), ..plain },
         }
     }
+}
+
+/// The colours of a material that has none of its own but names a ramp of a palette: what the ramp shows in full light,
+/// and what its highlight adds to that. Of an image, and in a palette without ramps, white.
+fn colors_of_ramp(material: &Material, full: f32, palette: &Palette) -> OwnColors {
+    let has_image = material.texture.is_some() || material.environment.is_some();
+    let ramp = material.ramp.in_palette(Some(palette));
+    if has_image || ramp == Ramp::WHOLE && palette.ramps() != 1 {
+        return ([1.0; 3], [1.0; 3]);
+    }
+    let shown = |intensity: f32| {
+        // From the first entry to the last.
+        let entry = libm::roundf(intensity.clamp(0.0, 1.0) * f32::from(ramp.entries() - 1)) as u8;
+        let Rgb { r, g, b } = palette.color(ramp.first().saturating_add(entry));
+        [r, g, b].map(|channel| f32::from(channel) / 255.0)
+    };
+    let (color, brightest) = (shown(full), shown(full + material.specular));
+    let added = |i: usize| (brightest[i] - color[i]).max(0.0) / material.specular;
+    let highlight = if material.is_specular() { core::array::from_fn(added) } else { [1.0; 3] };
+    (color.map(|channel| channel / full), highlight)
 }
 
 /// What a material gives back of ambient and diffuse light in full light. At most 1, as no more is shown, and 1 where it

@@ -1,40 +1,48 @@
 //! From the layout of a file to a scene.
 
 use std::path::Path as FilePath;
+use std::string::String;
+use std::vec::Vec;
 
 use glam::Vec3;
 use toml::Spanned;
 
-use super::camera::{Extent, camera};
+use super::camera::camera;
 use super::error::Fault;
 use super::layout::{AnimationLayout, FogLayout, LightLayout, SceneLayout, WishesLayout};
 use super::named::{Named, Open};
 use super::object::Objects;
 use super::value::{Background, FileName, List, OneOrThree};
-use super::{Loaded, SceneErrorKind, motion};
+use super::{SceneErrorKind, motion};
 use crate::light::Light;
 use crate::palette::Palette;
+use crate::scene::framing::{Swept, Turning};
 use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Wishes};
 
 /// Makes one scene.
 pub(super) struct Builder<'a> {
     named: Named<'a>,
     scene: Scene,
-    extent: Extent,
+    /// What the objects cover as they move, if the camera has no place of its own.
+    swept: Vec<Swept>,
 }
 
 impl<'a> Builder<'a> {
     pub(super) fn new(path: &'a FilePath, open: &'a mut Open<'a>) -> Self {
-        Self { named: Named::new(path, open), scene: Scene::new(), extent: Extent::default() }
+        Self { named: Named::new(path, open), scene: Scene::new(), swept: Vec::new() }
     }
 
-    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<Loaded, Fault> {
+    /// The scene, and what was found wanting.
+    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<(Scene, Vec<String>), Fault> {
         if layout.objects.is_empty() {
             return Err(Fault { span: None, kind: SceneErrorKind::NoObject });
         }
         self.scene.name = layout.name.clone().unwrap_or_default();
         if let Some(duration) = layout.duration {
             self.scene.duration = duration.0;
+        }
+        if let Some(picture) = layout.picture {
+            self.scene.picture = picture.0;
         }
         if let Some(ambient) = layout.ambient {
             self.scene.ambient = ambient.0;
@@ -55,7 +63,7 @@ impl<'a> Builder<'a> {
         }
         self.camera(layout)?;
         self.scene.set_time(0.0);
-        Ok(Loaded { scene: self.scene, warnings: self.named.warnings })
+        Ok((self.scene, self.named.warnings))
     }
 
     fn palette(&mut self, name: &Spanned<FileName>) -> Result<(), Fault> {
@@ -117,6 +125,7 @@ impl<'a> Builder<'a> {
     }
 
     fn objects(&mut self, layout: &SceneLayout) -> Result<(), Fault> {
+        let is_framed = layout.camera.as_ref().is_none_or(|camera| camera.get_ref().eye.is_none());
         let mut objects = Objects::default();
         for layout in &layout.objects {
             let own = layout.get_ref();
@@ -126,8 +135,15 @@ impl<'a> Builder<'a> {
                 Some(OneOrThree::Three(turns)) => turns.map(|turns| turns.0),
                 None => [0.0; 3],
             };
+            let turning = match turns {
+                [0.0, 0.0, 0.0] => Turning::Still,
+                [0.0, _, 0.0] => Turning::Upright,
+                _ => Turning::Anyhow,
+            };
             for object in objects.object(layout, &mut self.named)? {
-                self.extent.add(&object, path.as_ref());
+                if is_framed {
+                    self.swept.push(Swept::new(&object, turning, path.as_ref()));
+                }
                 let start = object.angles();
                 let id = self.scene.add(object);
                 if turns != [0.0; 3] {
@@ -173,7 +189,7 @@ impl<'a> Builder<'a> {
     }
 
     fn camera(&mut self, layout: &SceneLayout) -> Result<(), Fault> {
-        self.scene.camera = camera(layout.camera.as_ref(), &self.extent)?;
+        self.scene.camera = camera(layout.camera.as_ref(), &self.swept)?;
         let Some(own) = &layout.camera else { return Ok(()) };
         for (path, what) in [(&own.get_ref().eye_path, Moving::Eye), (&own.get_ref().target_path, Moving::Target)] {
             if let Some(path) = path {
@@ -194,6 +210,7 @@ fn wishes(layout: &WishesLayout) -> Wishes {
         rung: layout.rung.as_ref().map(|name| name.0),
         hidden_surfaces: layout.hidden_surfaces.as_ref().map(|name| name.0),
         mapping: layout.mapping.as_ref().map(|name| name.0),
+        mipmaps: layout.mipmaps,
         tessellation: layout.tessellation.map(|shades| shades.0),
         dither: layout.dither.unwrap_or_default(),
         max_error: layout.max_error.map(|shades| shades.0),

@@ -13,8 +13,8 @@ use toml::Spanned;
 
 use super::shape::Shape;
 use super::value::{
-    Angle, Background, Color, Entries, Entry, FieldOfView, FileName, List, Name, NotNegative, Number, OneOrThree,
-    Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
+    Angle, Background, Color, Crease, Entries, Entry, FieldOfView, FileName, List, Name, NotNegative, Number,
+    OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
 };
 use crate::light::Blend;
 use crate::scene::{HiddenSurfaces, Mapping, Rung, UpAxis};
@@ -32,6 +32,7 @@ pub(super) struct SceneLayout {
     pub(super) fog: Option<Spanned<FogLayout>>,
     pub(super) camera: Option<Spanned<CameraLayout>>,
     pub(super) wishes: Option<WishesLayout>,
+    pub(super) picture: Option<Angle>,
     #[serde(default)]
     pub(super) objects: Vec<Spanned<ObjectLayout>>,
     #[serde(default)]
@@ -60,6 +61,7 @@ pub(super) struct ObjectLayout {
     pub(super) shape: Option<Name<Shape>>,
     pub(super) subdivisions: Option<Spanned<Subdivisions>>,
     pub(super) model: Option<Spanned<FileName>>,
+    pub(super) crease: Option<Spanned<Crease>>,
     pub(super) position: Option<Vector>,
     pub(super) positions: Option<Spanned<Vec<Vector>>>,
     pub(super) scale: Option<Spanned<OneOrThree<Positive>>>,
@@ -147,6 +149,7 @@ pub(super) struct WishesLayout {
     pub(super) rung: Option<Name<Rung>>,
     pub(super) hidden_surfaces: Option<Name<HiddenSurfaces>>,
     pub(super) mapping: Option<Name<Mapping>>,
+    pub(super) mipmaps: Option<bool>,
     pub(super) tessellation: Option<Positive>,
     pub(super) dither: Option<bool>,
     pub(super) max_error: Option<Positive>,

@@ -46,7 +46,7 @@ mod value;
 use std::boxed::Box;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::string::String;
 use std::vec::Vec;
 
@@ -74,6 +74,9 @@ pub struct Loaded {
     pub scene: Scene,
     /// One line each, with a file and the place in it.
     pub warnings: Vec<String>,
+    /// The files that were read or looked for: the scene's own where it was loaded from one, and the models, MTL files,
+    /// textures and palettes that it names. Some may not exist.
+    pub files: Vec<PathBuf>,
 }
 
 /// Reads a scene file. The files that it names are looked for from the folder it lies in.
@@ -93,7 +96,9 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, SceneError> {
             SceneErrorKind::Read(error)
         })
     })?;
-    Scene::from_toml_bytes(&bytes, path, open)
+    let mut loaded = Scene::from_toml_bytes(&bytes, path, open)?;
+    loaded.files.push(path.to_owned());
+    Ok(loaded)
 }
 
 /// A file that a scene names. What is no ordinary file is refused: a scene may name a device that never ends.
@@ -151,5 +156,14 @@ fn read(text: &str, path: &Path, mut open: impl FnMut(&Path) -> io::Result<Box<d
     }
     let document = Deserializer::parse(text).map_err(|error| not_toml(&error))?;
     let layout = SceneLayout::deserialize(document).map_err(|error| not_a_scene(&error))?;
-    Builder::new(path, &mut open).scene(&layout)
+    let mut files = Vec::new();
+    let mut open = |path: &Path| {
+        files.push(path.to_owned());
+        open(path)
+    };
+    let (scene, warnings) = Builder::new(path, &mut open).scene(&layout)?;
+    // Also those that are not looked for, as no face has texture coordinates.
+    let surfaces = scene.objects().iter().flat_map(|object| object.mesh().surfaces());
+    files.extend(surfaces.filter_map(|surface| surface.texture.as_ref().map(PathBuf::from)));
+    Ok(Loaded { scene, warnings, files })
 }

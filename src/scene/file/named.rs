@@ -23,7 +23,8 @@ pub(super) type Open<'a> = dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>> + 'a
 pub(super) struct Named<'a> {
     folder: &'a Path,
     open: &'a mut Open<'a>,
-    models: BTreeMap<PathBuf, Shared<Mesh>>,
+    /// By the file, and the bits of the crease angle that was asked for.
+    models: BTreeMap<(PathBuf, Option<u32>), Shared<Mesh>>,
     textures: BTreeMap<PathBuf, Shared<Texture>>,
     pub(super) warnings: Vec<String>,
 }
@@ -40,9 +41,11 @@ impl<'a> Named<'a> {
         Self { folder, open, models: BTreeMap::new(), textures: BTreeMap::new(), warnings: Vec::new() }
     }
 
-    pub(super) fn model(&mut self, name: &Spanned<FileName>) -> Result<Shared<Mesh>, Fault> {
+    /// A model, with a crease angle in degrees if one is asked for.
+    pub(super) fn model(&mut self, name: &Spanned<FileName>, crease: Option<f32>) -> Result<Shared<Mesh>, Fault> {
         let path = self.folder.join(&name.get_ref().0);
-        if let Some(known) = self.models.get(&path) {
+        let key = (path.clone(), crease.map(f32::to_bits));
+        if let Some(known) = self.models.get(&key) {
             return Ok(known.clone());
         }
         if !has_extension(&path, "obj") {
@@ -55,11 +58,11 @@ impl<'a> Named<'a> {
             open(path)?.read_to_end(&mut bytes)?;
             Ok(bytes)
         };
-        let loaded =
-            obj::parse(file, &path, library).map_err(|error| Fault::of(name.span(), SceneErrorKind::Model(error)))?;
+        let loaded = obj::parse_with(file, &path, library, &obj::Options { crease })
+            .map_err(|error| Fault::of(name.span(), SceneErrorKind::Model(error)))?;
         self.warnings.extend(loaded.warnings);
         let mesh = Shared::new(loaded.mesh);
-        self.models.insert(path, mesh.clone());
+        self.models.insert(key, mesh.clone());
         Ok(mesh)
     }
 

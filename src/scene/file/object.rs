@@ -79,13 +79,16 @@ impl Objects {
             Vec2::new(u.0, v.0)
         });
         let change = Change { stretch, repeat };
+        if let (None, Some(crease)) = (&layout.model, &layout.crease) {
+            return Err(Fault::value(crease.span(), "only a model has a crease angle"));
+        }
         let mesh = match (&layout.shape, &layout.model) {
             (Some(_), None) => self.shape(layout, &span, change, positions.len())?,
             (None, Some(model)) => {
                 if let Some(subdivisions) = &layout.subdivisions {
                     return Err(Fault::value(subdivisions.span(), "only a shape has subdivisions"));
                 }
-                let mesh = named.model(model)?;
+                let mesh = named.model(model, layout.crease.as_ref().map(|crease| crease.get_ref().0))?;
                 if change == Change::NONE { mesh } else { Shared::new(changed(&mesh, change, layout, &span)?) }
             }
             (Some(_), Some(model)) => {

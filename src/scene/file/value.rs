@@ -72,7 +72,7 @@ macro_rules! numbers {
 numbers! {
     /// A coordinate, an intensity.
     Plain(f32): "a finite number", |_x| true;
-    /// An angle in degrees, turns.
+    /// An angle in degrees, turns, a moment in seconds.
     Angle(f64): "a finite number", |_x| true;
     /// A share.
     Share(f32): "a number from 0 to 1", |x| (0.0..=1.0).contains(&x);
@@ -90,6 +90,8 @@ numbers! {
     Seconds(f64): "a number of seconds above 0, at most 3600", |x| x > 0.0 && x <= 3600.0;
     /// Between the picture's upper and lower edge, in degrees.
     FieldOfView(f32): "a number of degrees from 1 to 179", |x| (1.0..=179.0).contains(&x);
+    /// Between two faces, in degrees.
+    Crease(f32): "a number of degrees from 0 to 180", |x| (0.0..=180.0).contains(&x);
     /// An entry of the palette.
     Entry(f32): "a palette entry, a whole number from 0 to 255", |x| (0.0..=255.0).contains(&x) && x == libm::truncf(x);
     /// How many entries of the palette.

@@ -1,19 +1,19 @@
 //! `mode13h cost`: what accuracy costs in time.
 
+mod files;
 mod host;
 mod instructions;
 mod json;
 mod text;
 
 use std::ffi::OsString;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Mutex;
+use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::cost::{self, Settings, Step, Subject, report};
-use mode13h::export;
 use mode13h::render::Rung;
 use mode13h::scene::Scene;
 use mode13h::span::Kernel;
@@ -48,14 +48,24 @@ pub(crate) struct Options {
     /// kernel that ran there
     #[arg(long)]
     instructions: bool,
-    /// About how long times are taken
-    #[arg(long, value_name = "SECONDS", value_parser = finite, default_value_t = 10.0, hide = true)]
-    seconds: f64,
+    /// Take times for at most so long, though for seven rounds in any case; fewer rounds make wider intervals [default:
+    /// about 10, up to 20 where a ratio is not known to 2 %]. Before that errors are found, which takes a second or two a
+    /// frame: --frames says how many
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    seconds: Option<f64>,
     /// Draw what instructions are counted of, and nothing else
     #[arg(long, hide = true)]
     counted: bool,
     #[command(flatten)]
     drawing: Drawing,
+}
+
+/// A time on the command line.
+fn seconds(words: &str) -> Result<f64, String> {
+    match finite(words) {
+        Ok(seconds) if seconds >= 0.0 => Ok(seconds),
+        _ => Err("not a number of seconds, 0 or more".to_string()),
+    }
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
@@ -65,7 +75,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let rungs = if options.rungs.is_empty() { Rung::ALL.to_vec() } else { options.rungs.clone() };
     let mut kernel = drawing.kernel()?;
-    let input = input::input(input)?;
+    let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
     let frames = turned(&mut stage, *frames, 360.0 / f64::from(*frames));
@@ -79,9 +89,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         (None, false) => Some(PathBuf::from(format!("cost-{name}"))),
     };
     // Before much time is spent.
-    if let Some(directory) = directory.as_ref().filter(|directory| directory.exists() && !directory.is_dir()) {
-        return Err(Failure::work(format!("{}: is no directory", directory.display())));
-    }
+    directory.as_deref().map_or(Ok(()), files::check)?;
     let counts = if *instructions { Some(instructions::count(&rungs, frames.len())?) } else { None };
     if let Some(counts) = &counts {
         kernel = Kernel::by_name(&counts.kernel).map_err(Failure::work)?;
@@ -90,8 +98,17 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let renderer = || drawing.renderer(kernel);
     let subject = Subject { name: &name, frames: &frames, steps: &steps, renderer: &renderer };
     let mut settings = Settings::default();
-    (settings.rungs, settings.seconds) = (rungs, *seconds);
+    settings.rungs = rungs;
+    if let Some(seconds) = *seconds {
+        (settings.seconds, settings.at_most) = (seconds, true);
+    }
     (settings.host, settings.clock) = (host::host(), host::clock());
+    let times = match *seconds {
+        Some(seconds) => format!("at most {seconds} s"),
+        None => format!("{} to {} s", settings.seconds, 2.0 * settings.seconds),
+    };
+    let compared = if frames.len() == 1 { "1 frame is".to_string() } else { format!("{} frames are", frames.len()) };
+    eprintln!("mode13h: {compared} compared with the truth; then times are taken, for {times}");
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
     progress.bar.finish_and_clear();
@@ -104,14 +121,16 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         eprintln!("mode13h: {}", Failure::work(warning));
     }
     let as_json = json::json(&study, &warnings)?;
-    if let Some(directory) = &directory {
-        fs::create_dir_all(directory).map_err(|error| Failure::work(format!("{}: {error}", directory.display())))?;
-        write(directory, "samples.csv", &samples.to_csv())?;
-        write(directory, "cost.json", &as_json)?;
-        write(directory, "chart.svg", &report::chart_svg(&study))?;
-        write(directory, "report.html", &report::html(&study))?;
-    }
-    output::print(&if *json { as_json } else { text::text(&study, directory.as_deref()) })
+    let (written, result) = match &directory {
+        None => (None, Ok(())),
+        Some(directory) => {
+            let contents = [samples.to_csv(), as_json.clone(), report::chart_svg(&study), report::html(&study)];
+            files::write(directory, &name, &contents)
+        }
+    };
+    // Whatever became of the files, what was found out is not lost.
+    output::print(&if *json { as_json } else { text::text(&study, written.as_deref()) })?;
+    result
 }
 
 /// So many frames of what is shown, each turned by so many degrees more than the one before it.
@@ -125,16 +144,11 @@ fn turned(stage: &mut Stage, frames: u32, degrees: f64) -> Vec<Scene> {
     scenes
 }
 
-/// Writes a file of the directory, whole or not at all.
-fn write(directory: &Path, name: &str, text: &str) -> Result<(), Failure> {
-    let path = directory.join(name);
-    output::file(|| export::write_atomically(path, |out| out.write_all(text.as_bytes()))).map_err(Failure::work)
-}
-
 /// A bar on standard error, if that is a terminal.
 struct Progress {
     bar: ProgressBar,
     step: Mutex<Option<Step>>,
+    begun: Instant,
 }
 
 impl Progress {
@@ -144,13 +158,19 @@ impl Progress {
             Ok(style) => bar.with_style(style),
             Err(_) => bar,
         };
-        Progress { bar, step: Mutex::new(None) }
+        Progress { bar, step: Mutex::new(None), begun: Instant::now() }
     }
 
     fn show(&self, step: Step, share: f64) {
         let mut last = self.step.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if *last != Some(step) {
             *last = Some(step);
+            if step == Step::Errors {
+                // The first frame is done, and on every other processor nearly another.
+                let threads = std::thread::available_parallelism().map_or(1.0, |threads| threads.get() as f64);
+                let seconds = (self.begun.elapsed().as_secs_f64() / (share * threads)).ceil().max(1.0);
+                self.bar.suspend(|| eprintln!("mode13h: the comparison takes about {seconds} s"));
+            }
             self.bar.set_message(match step {
                 Step::Errors => "frames compared with the truth",
                 Step::Times => "of the time, frames being timed side by side",

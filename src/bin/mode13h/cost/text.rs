@@ -13,7 +13,7 @@ pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
     );
     text += &heading();
     text.extend(study.rungs.iter().map(rung));
-    text += "\n* none is both as fast and as near to lit. Errors in shades of 1/255: largest against gouraud, largest and root\n  \
+    text += "\n* none is as near to lit and faster, as far as times can be told apart. Errors in shades of 1/255: largest against gouraud, largest and root\n  \
              mean square against lit\n\n";
     text += "  budget  within E  largest   µs/frame  best single rung           µs/frame  ratio\n";
     text.extend(study.budget.iter().map(budget));

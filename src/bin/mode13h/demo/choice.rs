@@ -21,6 +21,13 @@ impl<T> Choice<T> {
         &self.list[self.at]
     }
 
+    /// Chooses the first of which this is true. Whether there is one.
+    pub(super) fn choose(&mut self, is_wanted: impl FnMut(&T) -> bool) -> bool {
+        let found = self.list.iter().position(is_wanted);
+        self.at = found.unwrap_or(self.at);
+        found.is_some()
+    }
+
     pub(super) fn go_round(&mut self) {
         self.at = (self.at + 1) % self.list.len();
     }
@@ -37,6 +44,8 @@ mod tests {
         assert_eq!(*choice.chosen(), 3);
         choice.go_round();
         assert_eq!(*choice.chosen(), 1);
+        assert!(choice.choose(|&entry| entry > 1) && *choice.chosen() == 2);
+        assert!(!choice.choose(|&entry| entry > 3) && *choice.chosen() == 2);
         assert_eq!(Choice::new([1, 2], 7, |a, b| a == b).list, [7, 1, 2]);
     }
 }

@@ -1,44 +1,80 @@
-//! The figures and the help that H shows.
+//! The figures that I shows, and the keys that H shows.
 
 use mode13h::plan::Effect;
 use mode13h::render::{Shares, Stats};
 
 use super::Demo;
+use crate::overlay::Row;
 
-/// The characters of a line that fits on the frame.
-const LINE: usize = 52;
-
-pub(super) const HELP: [&str; 6] = [
-    "1-9 [ ] rung   0 budget   B shift-B its error",
-    "E error map    Z magnify  H hide this",
-    "Esc quit   Space stop   S save     ",
-    "K kernel   P palette    M mapping",
-    "L lights   O fog        T texture  D dither",
-    "arrows, mouse turn      wheel, + - zoom",
+/// The keys, and what each does.
+const KEYS: [(&str, &str); 20] = [
+    ("Esc", "quit"),
+    ("H", "these keys"),
+    ("I", "figures of the picture"),
+    ("Space", "stop, go on"),
+    ("arrows", "turn; the mouse too"),
+    ("+ -", "zoom; the wheel too"),
+    ("1 to 9", "shade by this rung"),
+    ("[ ]", "the rung before, the next"),
+    ("0", "shade by a budget of error"),
+    ("B", "a smaller budget"),
+    ("Shift-B", "a greater one"),
+    ("E", "error map"),
+    ("Z", "magnify at the mouse"),
+    ("K", "next kernel"),
+    ("P", "next palette"),
+    ("M", "next mapping of textures"),
+    ("L O", "lights, fog"),
+    ("T D", "texture, dither"),
+    ("S", "save the picture"),
+    ("N", "next input, Shift-N back"),
 ];
 
+/// The rows of the panel of keys.
+pub(super) fn help() -> Vec<Row> {
+    KEYS.iter().map(|&(key, does)| Row::new(key, does)).collect()
+}
+
+/// So many of something, in words.
+fn counted(number: usize, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+}
+
 impl Demo {
-    pub(super) fn figures(&self) -> Vec<String> {
-        let mapping = self.mappings.chosen().map_or("by plan", |mapping| mapping.name());
-        let mut lines = vec![
-            format!("{}: {} triangles, zoom {:.2}", self.name, self.triangles, self.motion.pose.zoom),
-            format!("{}, {:.0} a second, plan {:.1} us", self.timing, self.timing.rate, self.planning.frame * 1e6),
-            self.map.figures(self.number, self.seconds, self.shading.budget()),
-            format!("{}, mapping {mapping}", self.shading),
+    /// The rows of the panel of figures.
+    pub(super) fn figures(&self) -> Vec<Row> {
+        let objects = self.stage.scene.objects().len();
+        let mut rows = vec![
+            Row::new("scene", &self.name),
+            Row::new("", format!("{}, {}", counted(objects, "object"), counted(self.triangles, "triangle"))),
+            Row::new("zoom", format!("{:.2}", self.motion.pose.zoom)),
+            Row::new("shading", self.shading.to_string()),
+            Row::new("time", self.drawn()),
+            Row::new("plan", format!("{:.1} µs", self.planning.frame * 1e6)),
+            Row::new("error", self.map.figures(self.number, self.seconds, self.shading.budget())),
         ];
         if let Some(Stats { hidden_surfaces, vertices, drawn, raster, shares, .. }) = &self.stats {
-            lines.extend(wrapped(&of_rungs(shares)));
-            lines.push(format!("{hidden_surfaces}: {vertices} vertices, {drawn} drawn"));
-            lines.push(format!("{} spans, {} pixels", raster.spans, raster.pixels));
+            let mut head = "rungs";
+            for share in of_rungs(shares) {
+                rows.push(Row::new(std::mem::take(&mut head), share));
+            }
+            let (vertices, drawn) = (counted(*vertices as usize, "vertex").replace("vertexs", "vertices"), *drawn);
+            rows.push(Row::new("hidden", format!("{hidden_surfaces}")));
+            rows.push(Row::new("drawn", format!("{drawn} of {}, {vertices}", counted(self.triangles, "triangle"))));
+            let (spans, pixels) = (raster.spans as usize, raster.pixels as usize);
+            rows.push(Row::new("", format!("{}, {}", counted(spans, "span"), counted(pixels, "pixel"))));
         }
-        lines.push(format!("kernel {}, palette {}", self.kernels.chosen(), self.palettes.chosen().0));
-        let on = in_columns(&self.effects_on());
-        lines.push(format!("on, of {} effects and {} objects:", Effect::COUNT, self.stage.scene.objects().len()));
-        lines.extend(on);
-        lines
+        rows.push(Row::new("kernel", self.kernels.chosen().to_string()));
+        rows.push(Row::new("palette", &self.palettes.chosen().0));
+        let mapping = self.mappings.chosen().map_or("by plan", |mapping| mapping.name());
+        rows.push(Row::new("mapping", mapping));
+        let on = self.effects_on();
+        rows.push(Row::new("effects", format!("{} of {} on:", on.len(), Effect::COUNT)));
+        rows.push(Row::new("", on.join(", ")));
+        rows
     }
 
-    /// The effects that are on: each with its choice, unless the lines above say that, and, if not for all objects, for
+    /// The effects that are on: each with its choice, unless the rows above say that, and, if not for all objects, for
     /// how many.
     fn effects_on(&self) -> Vec<String> {
         let objects = self.renderer.plan().objects();
@@ -64,42 +100,110 @@ fn of_rungs(shares: &Shares) -> Vec<String> {
     shares.iter().map(|(rung, triangles)| format!("{rung} {triangles}")).collect()
 }
 
-/// Entries in lines that fit.
-fn wrapped(entries: &[String]) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for entry in entries {
-        match lines.last_mut() {
-            Some(line) if line.len() + 2 + entry.len() <= LINE => {
-                line.push_str(", ");
-                line.push_str(entry);
-            }
-            _ => lines.push(entry.clone()),
-        }
-    }
-    lines
-}
-
-/// Entries in two columns, down the first and then the second.
-fn in_columns(entries: &[String]) -> Vec<String> {
-    let half = LINE / 2;
-    let (left, right) = entries.split_at(entries.len().div_ceil(2));
-    let right = right.iter().map(String::as_str).chain([""]);
-    left.iter().zip(right).map(|(left, right)| format!("{left:half$.half$}{right}")).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use clap::Parser;
+    use mode13h::scene::shipped;
+    use mode13h::span::Kernel;
+
     use super::*;
+    use crate::demo::loader::{self, Inputs};
+    use crate::demo::shading::Shading;
+    use crate::options::Drawing;
+    use crate::overlay::tests::WINDOWS;
+
+    #[derive(Parser)]
+    struct Words {
+        #[command(flatten)]
+        drawing: Drawing,
+    }
+
+    /// The demo of a scene after its first frame.
+    fn demo(name: &str) -> Demo {
+        let drawing = Words::parse_from(["mode13h"]).drawing;
+        let inputs = Arc::new(Inputs { drawing, words: vec![name.into()] });
+        let first = loader::load(&inputs, 0, &[]);
+        let mut demo = Demo::new(inputs, Kernel::fastest());
+        demo.put_on(first).expect("a shipped scene");
+        demo.draw().expect("a legal scene");
+        demo
+    }
+
+    /// In every scene, window and page, with one panel open or both, no letter is cut, missing from the font, or over
+    /// another; and every word of a panel stands on one of its pages.
+    #[test]
+    fn text_is_never_cut_in_any_scene() {
+        for scene in shipped::ALL {
+            let mut demo = demo(scene.name);
+            for budget in [None, Some(1.0)] {
+                demo.shading = Shading::new(demo.renderer.rung(), budget);
+                demo.draw().expect("a legal scene");
+                for size in WINDOWS {
+                    for (help, figures) in [(true, false), (false, true), (true, true)] {
+                        (demo.help.is_open, demo.figures.is_open) = (help, figures);
+                        for message in
+                            ["palette the scene's", "gouraud-8.8-reseeded", "a-long-name.toml:12:3: ".repeat(9).trim()]
+                        {
+                            demo.say(message.to_string());
+                            let mut words = Vec::new();
+                            let mut pages = 1;
+                            for page in (0..).take_while(|page| *page < 9) {
+                                if page >= pages {
+                                    break;
+                                }
+                                (demo.help.page, demo.figures.page) = (page, page);
+                                let sheet = demo.sheet(size);
+                                let what = format!("{} in {size:?}, page {page}", scene.name);
+                                assert_eq!(sheet.faults(), [""; 0], "{what}");
+                                let open = [(help, demo.help.pages), (figures, demo.figures.pages)];
+                                assert!(open.iter().all(|(is_open, pages)| !is_open || *pages > 0), "{what}");
+                                pages = open
+                                    .iter()
+                                    .filter(|(is_open, _)| *is_open)
+                                    .map(|(_, pages)| *pages)
+                                    .max()
+                                    .unwrap_or(1);
+                                words.extend(sheet.words());
+                            }
+                            assert!(!help || words.iter().any(|word| word == "Shift-N"), "{} in {size:?}", scene.name);
+                            assert!(
+                                !figures || words.iter().any(|word| word == "effects"),
+                                "{} in {size:?}",
+                                scene.name
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
-    fn lines_fit_and_hold_every_entry() {
-        let entries: Vec<String> = (0..10).map(|i| format!("gouraud-8.8-reseeded {}", 10_u32.pow(i))).collect();
-        for some in 0..entries.len() {
-            let lines = wrapped(&entries[..some]);
-            assert!(lines.iter().all(|line| line.len() <= LINE), "{lines:?}");
-            let all: Vec<&str> = lines.iter().flat_map(|line| line.split(", ")).collect();
-            assert_eq!(all, entries[..some]);
-        }
-        assert!(HELP.iter().all(|line| line.len() <= LINE - 7), "beside the legend of the error map");
+    fn one_is_not_said_in_the_plural() {
+        assert_eq!(counted(1, "object"), "1 object");
+        assert_eq!(counted(0, "object"), "0 objects");
+        let rows = demo("torus").figures();
+        assert!(rows.iter().any(|row| format!("{row:?}").contains("1 object, 2304 triangles")), "{rows:?}");
+    }
+
+    #[test]
+    fn the_title_has_the_time_of_the_shading_that_it_names() {
+        let mut demo = demo("torus");
+        let times: Vec<f64> = ["flat", "phong"]
+            .map(|rung| {
+                demo.shading = Shading::new(rung.parse().expect("a rung"), None);
+                demo.forget_times();
+                demo.draw().expect("a legal scene");
+                assert_eq!(demo.title(), format!("torus - {rung} - {} - mode13h", demo.timing));
+                demo.timing.frame
+            })
+            .into();
+        assert!(times[0] != times[1] && times[0] > 0.0, "{times:?}");
+        // The same again is the same picture.
+        demo.draw().expect("a legal scene");
+        assert!(demo.title().contains("not drawn again"), "{}", demo.title());
+        assert_eq!(demo.timing.frame, times[1]);
     }
 }

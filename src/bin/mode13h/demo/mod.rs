@@ -6,8 +6,9 @@
 //! | `motion` | what the clock and the user move |
 //! | `error_map` | how far each pixel is from the truth, over the picture |
 //! | `magnifier`, `account` | the pixels about the mouse, and what the one under it says of itself |
-//! | `figures`, `timing` | what H shows |
+//! | `figures`, `timing` | what I and H show |
 //! | `background` | a thread that the picture does not wait for |
+//! | `loader` | the inputs, loaded when they are asked for and when their files change |
 //! | `choice` | one of a list |
 
 mod account;
@@ -15,30 +16,34 @@ mod background;
 mod choice;
 mod error_map;
 mod figures;
+mod loader;
 mod magnifier;
 mod motion;
 mod shading;
 mod timing;
 
 use std::ffi::OsString;
-use std::time::Instant;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use mode13h::palette::{Palette, builtin};
 use mode13h::render::{Mapping, Renderer, Screen, Stats};
+use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
-use mode13h::window::{Flow, Input, Key, Window};
+use mode13h::window::{Flow, Input, Key, Window, WindowError};
 
 use crate::failure::Failure;
 use crate::input::Colors;
 use crate::options::Drawing;
-use crate::overlay::{self, Place};
+use crate::overlay::{self, Sheet, Side};
 use crate::stage::Stage;
 use crate::switches::Switch;
 use crate::{input, output};
 use choice::Choice;
 use error_map::Map;
+use loader::{Inputs, Loader, Loading};
 use magnifier::{Cells, Magnifier, Pixel};
 use motion::Motion;
 use shading::Shading;
@@ -46,43 +51,67 @@ use timing::Timing;
 
 /// What the help says below the options.
 pub(crate) const KEYS: &str = "\
-Keys in the window: Esc quits, Space stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through
-the rungs, 1 to 9 are the first nine, 0 is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2
-shades); E lays the error map over the picture: how far each pixel is from light worked out at every pixel, in shades; Z
-magnifies what is under the mouse 16 times, and the pixel there explains itself; K next kernel, P next palette, M next
-mapping of textures; L lights, O fog, T texture and D dither off and on; S saves a PNG in the current directory, H shows
-help, the plan, time, error and which rungs shade how many triangles.
-With no display one frame is saved as a PNG.";
+Keys in the window: Esc quits, H shows the keys, I the plan, time, error and which rungs shade how many triangles; Space
+stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through the rungs, 1 to 9 are the first nine, 0
+is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2 shades); E lays the error map over the
+picture: how far each pixel is from light worked out at every pixel, in shades; Z magnifies what is under the mouse 16
+times, and the pixel there explains itself; K next kernel, P next palette, M next mapping of textures; L lights, O fog, T
+texture and D dither off and on; N shows the next INPUT and Shift-N the one before; S saves the picture, without the text
+over it, as a PNG in the current directory.
+An INPUT is loaded again when one of its files changes; what is wrong with it is said in the window.
+With no display one frame of each INPUT is saved as a PNG.";
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct Options {
-    #[arg(default_value = "torus", help = input::help())]
-    input: OsString,
+    #[arg(default_value = "torus", value_name = "INPUT", help = help_on_inputs())]
+    inputs: Vec<OsString>,
     #[command(flatten)]
     drawing: Drawing,
 }
 
-/// How long the title shows where a picture was saved, in seconds.
-const NOTICE: f64 = 3.0;
+/// What is said at first, and for how long, in seconds.
+const HINT: &str = "H help, I figures";
+const HINT_SECONDS: f64 = 3.0;
+/// How long it is said what a key has changed, and where a picture was saved.
+const NOTICE: f64 = 1.0;
+const SAVED: f64 = 3.0;
+
+/// For how long nothing changes in what stands still.
+const STILL: Duration = Duration::from_millis(500);
+/// For how long at most nothing is done but wait for the user: where all stands still, and where something moves so slowly
+/// that now and then two frames are the same.
+const STILL_REST: Duration = Duration::from_millis(100);
+const SHORT_REST: Duration = Duration::from_millis(14);
+
+fn help_on_inputs() -> String {
+    format!("{}. Of several the first is shown, and N goes to the next", input::help())
+}
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let mut demo = Demo::new(options)?;
+    let Options { inputs, drawing } = options.clone();
+    let inputs = Arc::new(Inputs { drawing, words: inputs });
+    let kernel = inputs.drawing.kernel()?;
+    let first = loader::load(&inputs, 0, &[]);
+    let loader = Loader::start(Arc::clone(&inputs), &first)?;
+    let mut demo = Demo::new(inputs, kernel);
+    demo.put_on(first)?;
     let mut window = match Window::open(&demo.name) {
         Ok(window) => window,
-        Err(no_display) => {
-            demo.draw()?;
-            let path = output::numbered_picture(demo.on_screen()).map_err(Failure::work)?;
-            eprintln!("mode13h: {no_display}; one frame is in {}", path.display());
-            return Ok(());
-        }
+        Err(no_display) => return demo.save_each(&no_display),
     };
-    let mut title = String::new();
+    let (mut title, mut shown) = (String::new(), Look::of(&Vga::new(), Sheet::new((0, 0))));
+    // When what is shown last changed.
+    let mut changed = 0.0;
     loop {
         let wish = demo.follow(window.input(), window.seconds())?;
+        if let Some(loading) = loader.loaded() {
+            demo.put_on(loading)?;
+        }
         demo.draw()?;
         match wish {
             Wish::Nothing => {}
             Wish::Picture => demo.save(),
+            Wish::Input(at) => loader.ask(at),
             Wish::End => return Ok(()),
         }
         let new = demo.title();
@@ -90,9 +119,32 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             window.set_title(&new);
             title = new;
         }
-        if window.show(demo.on_screen()).map_err(Failure::work)? == Flow::Close {
+        let sheet = demo.sheet(window.size());
+        let look = Look::of(demo.on_screen(), sheet);
+        let flow = if look == shown {
+            let is_still = window.seconds() - changed > STILL.as_secs_f64();
+            window.rest(if is_still { STILL_REST } else { SHORT_REST })
+        } else {
+            (shown, changed) = (look, window.seconds());
+            window.show_over(demo.on_screen(), |canvas| shown.sheet.draw(canvas))
+        };
+        if flow.map_err(Failure::work)? == Flow::Close {
             return Ok(());
         }
+    }
+}
+
+/// All that can be seen in the window.
+#[derive(PartialEq)]
+struct Look {
+    pixels: Vec<u8>,
+    palette: Palette,
+    sheet: Sheet,
+}
+
+impl Look {
+    fn of(vga: &Vga, sheet: Sheet) -> Look {
+        Look { pixels: vga.pixels().to_vec(), palette: vga.palette(), sheet }
     }
 }
 
@@ -101,21 +153,37 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 enum Wish {
     Nothing,
     Picture,
+    /// The input at this place in the list.
+    Input(usize),
     End,
 }
 
 struct Demo {
+    inputs: Arc<Inputs>,
+    /// The place of the input that is shown or being loaded.
+    at: usize,
+    /// Its name.
     name: String,
     triangles: usize,
+    /// What is shown; without objects until something could be loaded.
     stage: Stage,
+    /// Why what is shown is not what the files say.
+    wrong: Option<String>,
     renderer: Renderer,
     shading: Shading,
+    /// Whether a key chose it.
+    chose_shading: bool,
     kernels: Choice<Kernel>,
     palettes: Choice<(String, Colors)>,
+    /// Whether a key chose one.
+    chose_palette: bool,
     /// `None` leaves it to the plan.
     mappings: Choice<Option<Mapping>>,
     motion: Motion,
-    help: bool,
+    /// The keys.
+    help: Panel,
+    /// What is known of the picture.
+    figures: Panel,
     maps: bool,
     magnifies: bool,
     /// The pixel under the mouse, or the last that was.
@@ -132,48 +200,38 @@ struct Demo {
     /// Of making the plan, while it is shown.
     planning: Timing,
     stats: Option<Stats>,
-    /// What the title says besides, and until when.
+    /// Whether the last frame was drawn, and not the same as the one before.
+    is_redrawn: bool,
+    /// What is said at the lower edge, and until when.
     notice: Option<(String, f64)>,
+    /// An effect that a key has just switched, and whether it was on before.
+    switched: Option<(Switch, bool)>,
+    /// The effects that keys switched, and to what.
+    switches: Vec<(Switch, bool)>,
     seconds: f64,
 }
 
 impl Demo {
-    fn new(options: &Options) -> Result<Demo, Failure> {
-        let Options { input, drawing } = options;
-        let kernel = drawing.kernel()?;
-        let shown = input::input(input)?;
-        let name = shown.name().to_string();
-        let stage = drawing.stage(shown)?;
-        let rung = drawing.rung(stage.scene.wishes.rung);
-        let budget = drawing.max_error(stage.scene.wishes.max_error);
-        // A palette without ramps has no order of shades: what has no colours of its own is shown in such a one only if
-        // that was asked for.
-        let has_colors = stage.has_colors();
-        let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
-        let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::from(builtin.palette.clone())));
-        let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
-        // A scene that has none leaves the DAC alone.
-        let colors = stage.colors.clone().unwrap_or(Palette::default().into());
-        // Under its own name, if it has one, it does not stand twice in the list.
-        let usual = match &colors {
-            Colors::Auto => input::AUTO,
-            Colors::Palette(palette) => {
-                let same = builtin::ALL.iter().find(|builtin| builtin.palette.colors() == palette.colors());
-                same.map_or("the scene's", |builtin| builtin.name)
-            }
-        };
-        let palette = (drawing.palette_name().unwrap_or(usual.to_string()), colors);
-        Ok(Demo {
-            triangles: stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum(),
-            stage,
-            name,
+    /// With nothing to show yet.
+    fn new(inputs: Arc<Inputs>, kernel: Kernel) -> Demo {
+        let drawing = &inputs.drawing;
+        let stage = Stage::of_scene(Scene::new());
+        Demo {
+            at: 0,
+            name: inputs.name(0),
+            triangles: 0,
+            wrong: None,
             renderer: drawing.renderer(kernel),
-            shading: Shading::new(rung, budget),
+            shading: Shading::new(drawing.rung(None), drawing.max_error(None)),
+            chose_shading: false,
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
-            palettes: Choice::new(palettes, palette, |(a, _), (b, _)| a == b),
+            palettes: palettes(&stage, drawing),
+            chose_palette: false,
             mappings: Choice::new([None].into_iter().chain(Mapping::ALL.map(Some)), drawing.mapping(), |a, b| a == b),
+            stage,
             motion: Motion::new(),
-            help: false,
+            help: Panel::default(),
+            figures: Panel::default(),
             maps: false,
             magnifies: false,
             mouse: Pixel { x: Vga::WIDTH as u16 / 2, y: Vga::HEIGHT as u16 / 2 },
@@ -185,38 +243,181 @@ impl Demo {
             timing: Timing::default(),
             planning: Timing::default(),
             stats: None,
-            notice: None,
+            is_redrawn: false,
+            notice: Some((HINT.to_string(), HINT_SECONDS)),
+            switched: None,
+            switches: Vec::new(),
             seconds: 0.0,
-        })
+            inputs,
+        }
+    }
+
+    /// Shows what was loaded, unless something else has been asked for since. Loaded again, it keeps pose, time and what
+    /// keys have chosen. What could not be loaded leaves what is shown, or, the first time, an empty picture; that is a
+    /// failure if there is no other input.
+    fn put_on(&mut self, loading: Loading) -> Result<(), Failure> {
+        let Loading { at, is_again, result, .. } = loading;
+        if at != self.at {
+            return Ok(());
+        }
+        // A renderer of its own finds out whether the scene can be drawn; this one's plan is for what is shown.
+        let checked = result.and_then(|stage| {
+            let mut renderer = self.renderer.set_alike();
+            renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+            Ok(*stage)
+        });
+        let keeps = is_again && !self.stage.scene.objects().is_empty();
+        let stage = match checked {
+            Ok(stage) => {
+                self.wrong = None;
+                if is_again {
+                    self.say("loaded again".to_string());
+                } else if self.inputs.words.len() > 1 {
+                    self.say(format!("{} of {}: {}", at + 1, self.inputs.words.len(), self.inputs.name(at)));
+                }
+                stage
+            }
+            Err(failure) if self.inputs.words.len() == 1 && !is_again => return Err(failure),
+            Err(failure) => {
+                let wrong = failure.to_string();
+                if self.wrong.as_ref() != Some(&wrong) {
+                    eprintln!("mode13h: {wrong}");
+                }
+                self.notice = None;
+                self.wrong = Some(wrong);
+                if is_again {
+                    return Ok(());
+                }
+                Stage::of_scene(Scene::new())
+            }
+        };
+        self.set(stage, keeps)
+    }
+
+    /// Shows another stage, as what is shown has been changed by keys if it `keeps` that.
+    fn set(&mut self, stage: Stage, keeps: bool) -> Result<(), Failure> {
+        let drawing = &self.inputs.drawing;
+        self.name = self.inputs.name(self.at);
+        self.triangles = stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
+        self.stage = stage;
+        if !self.chose_shading {
+            let wishes = &self.stage.scene.wishes;
+            self.shading = Shading::new(drawing.rung(wishes.rung), drawing.max_error(wishes.max_error));
+        }
+        let before = std::mem::replace(&mut self.palettes, palettes(&self.stage, drawing));
+        if keeps && self.chose_palette && self.palettes.choose(|(name, _)| *name == before.chosen().0) {
+            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::work)?;
+        }
+        if keeps {
+            for &(switch, wanted) in &self.switches {
+                self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+                if switch.is_on(&self.renderer) != wanted {
+                    switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::work)?;
+                }
+            }
+        } else {
+            self.renderer = drawing.renderer(*self.kernels.chosen());
+            self.switches.clear();
+            self.chose_palette = false;
+            self.motion.begin_anew();
+        }
+        self.forget_times();
+        self.stats = None;
+        Ok(())
+    }
+
+    /// Goes to the next input, or back. Its place, if there is another.
+    fn leaf(&mut self, back: bool) -> Option<usize> {
+        let count = self.inputs.words.len();
+        if count == 1 {
+            self.say("there is no other input".to_string());
+            return None;
+        }
+        self.at = (self.at + if back { count - 1 } else { 1 }) % count;
+        self.notice =
+            Some((format!("{} of {count}: loading {}", self.at + 1, self.inputs.name(self.at)), f64::INFINITY));
+        Some(self.at)
+    }
+
+    /// Without a display: saves a picture of each input that can be loaded. The others are failures.
+    fn save_each(mut self, no_display: &WindowError) -> Result<(), Failure> {
+        let count = self.inputs.words.len();
+        let mut failed = 0;
+        for at in 0..count {
+            if at > 0 {
+                self.at = at;
+                self.put_on(loader::load(&self.inputs, at, &[]))?;
+            }
+            if self.wrong.take().is_some() {
+                failed += 1;
+                continue;
+            }
+            self.motion.go_to(self.stage.scene.picture);
+            self.draw()?;
+            let path = output::numbered_picture(self.on_screen()).map_err(Failure::work)?;
+            let of = if count == 1 { String::new() } else { format!(" of {}", self.name) };
+            eprintln!("mode13h: {no_display}; one frame{of} is in {}", path.display());
+        }
+        if failed > 0 {
+            return Err(Failure::work(format!("{failed} of {count} inputs could not be drawn")));
+        }
+        Ok(())
     }
 
     /// Does what the user asks for in the frame that shows the time `seconds`.
     fn follow(&mut self, input: &Input, seconds: f64) -> Result<Wish, Failure> {
         self.seconds = seconds;
         self.notice.take_if(|(_, until)| *until < seconds);
-        self.motion.follow(input, seconds);
-        self.shading.follow(input);
+        if self.motion.follow(input, seconds) {
+            self.say(self.motion.to_string());
+        }
+        if self.shading.follow(input) {
+            self.chose_shading = true;
+            self.forget_times();
+            self.say(self.shading.to_string());
+        }
         if input.pressed(Key::K) {
             self.kernels.go_round();
+            self.forget_times();
+            self.say(format!("kernel {}", self.kernels.chosen()));
         }
         if input.pressed(Key::P) {
             self.palettes.go_round();
+            self.chose_palette = true;
             self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::work)?;
+            self.say(format!("palette {}", self.palettes.chosen().0));
         }
         if input.pressed(Key::M) {
             self.mappings.go_round();
+            self.forget_times();
+            self.say(self.mapping());
         }
         for (key, switch) in Switch::KEYS {
             if input.pressed(key) {
-                switch.turn(&mut self.stage.scene, &mut self.renderer);
+                self.switched = Some((switch, switch.is_on(&self.renderer)));
+                self.forget_times();
+                switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::work)?;
             }
         }
-        for (key, shown) in [(Key::H, &mut self.help), (Key::E, &mut self.maps), (Key::Z, &mut self.magnifies)] {
-            *shown ^= input.pressed(key);
+        for (key, panel) in [(Key::H, &mut self.help), (Key::I, &mut self.figures)] {
+            if input.pressed(key) {
+                panel.press();
+            }
+        }
+        for (key, shown, name) in [(Key::E, &mut self.maps, "error map"), (Key::Z, &mut self.magnifies, "magnifier")] {
+            if input.pressed(key) {
+                *shown ^= true;
+                let state = if *shown { "on" } else { "off" };
+                self.notice = Some((format!("{name} {state}"), seconds + NOTICE));
+            }
         }
         self.mouse = input.mouse().and_then(Pixel::at).unwrap_or(self.mouse);
         Ok(if input.pressed(Key::Escape) {
             Wish::End
+        } else if input.pressed(Key::N)
+            && let Some(at) = self.leaf(input.pressed_with_shift(Key::N))
+        {
+            Wish::Input(at)
         } else if input.pressed(Key::S) {
             Wish::Picture
         } else {
@@ -224,15 +425,26 @@ impl Demo {
         })
     }
 
+    /// Something has changed that changes how long frames take.
+    fn forget_times(&mut self) {
+        (self.timing, self.planning) = (Timing::default(), Timing::default());
+    }
+
+    /// Says something for a moment.
+    fn say(&mut self, what: String) {
+        self.notice = Some((what, self.seconds + NOTICE));
+    }
+
     /// Draws the picture, and what the keys lay over it.
     fn draw(&mut self) -> Result<(), Failure> {
         self.draw_scene()?;
-        if !(self.help || self.maps || self.magnifies) {
-            return Ok(());
+        if let Some((switch, was_on)) = self.switched.take() {
+            let is_on = switch.is_on(&self.renderer);
+            self.say(switch.outcome(was_on, is_on));
+            self.switches.retain(|(other, _)| *other != switch);
+            self.switches.push((switch, is_on));
         }
-        // The picture itself stays as it is, for the next frame may be the same.
-        self.shown.clone_from(&self.vga);
-        if self.help || self.maps {
+        if self.figures.is_open || self.maps {
             let frame = || error_map::Frame {
                 number: self.number,
                 seconds: self.seconds,
@@ -241,6 +453,11 @@ impl Demo {
             };
             self.map.follow(self.number, frame)?;
         }
+        if !(self.maps || self.magnifies) {
+            return Ok(());
+        }
+        // The picture itself stays as it is, for the next frame may be the same.
+        self.shown.clone_from(&self.vga);
         if self.maps {
             self.map.lay_over(&mut self.shown);
         }
@@ -250,12 +467,27 @@ impl Demo {
         } else if self.maps {
             self.map.legend(&mut self.shown, self.number, self.seconds);
         }
-        if self.help {
-            let figures = self.figures();
-            overlay::write(&mut self.shown, Place::Top, &figures);
-            overlay::write(&mut self.shown, Place::Bottom, &figures::HELP);
-        }
         Ok(())
+    }
+
+    /// What is laid over the picture in a window of this size.
+    fn sheet(&mut self, size: (usize, usize)) -> Sheet {
+        let mut sheet = Sheet::new(size);
+        if let Some((notice, _)) = &self.notice {
+            sheet.message(overlay::TEXT, notice);
+        }
+        if let Some(wrong) = &self.wrong {
+            sheet.message(overlay::WRONG, wrong);
+        }
+        let is_alone = !(self.help.is_open && self.figures.is_open);
+        if self.figures.is_open {
+            let rows = self.figures();
+            self.figures.pages = sheet.panel(Side::Left, &rows, is_alone, self.figures.page, "I");
+        }
+        if self.help.is_open {
+            self.help.pages = sheet.panel(Side::Right, &figures::help(), is_alone, self.help.page, "H");
+        }
+        sheet
     }
 
     fn draw_scene(&mut self) -> Result<(), Failure> {
@@ -263,7 +495,8 @@ impl Demo {
         self.shading.set(&mut self.renderer);
         self.renderer.set_kernel(*self.kernels.chosen());
         self.renderer.set_mapping(*self.mappings.chosen());
-        if self.help {
+        // Of a picture that stands still the time for its plan stays, too.
+        if self.figures.is_open && (self.is_redrawn || self.planning.frame == 0.0) {
             let start = Instant::now();
             self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
             self.planning.add(Some(start.elapsed().as_secs_f64()), self.seconds);
@@ -271,6 +504,7 @@ impl Demo {
         let start = Instant::now();
         let stats = self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::work)?;
         let taken = start.elapsed().as_secs_f64();
+        self.is_redrawn = stats.redrawn;
         self.timing.add(stats.redrawn.then_some(taken), self.seconds);
         // What was counted is of the frame that is shown, if that was there already.
         if stats.redrawn || self.stats.is_none() {
@@ -297,21 +531,72 @@ impl Demo {
 
     /// What was drawn last.
     fn on_screen(&self) -> &Vga {
-        if self.help || self.maps || self.magnifies { &self.shown } else { &self.vga }
+        if self.maps || self.magnifies { &self.shown } else { &self.vga }
     }
 
-    /// Saves the picture as it is on the screen. A failure is shown and ends nothing.
+    /// Saves the picture as it is on the screen, without the text and the panels over it. A failure is shown and ends nothing.
     fn save(&mut self) {
         let notice = match output::numbered_picture(self.on_screen()) {
             Ok(path) => format!("saved {}", path.display()),
             Err(error) => error.to_string(),
         };
         eprintln!("mode13h: {notice}");
-        self.notice = Some((notice, self.seconds + NOTICE));
+        self.notice = Some((notice, self.seconds + SAVED));
     }
 
     fn title(&self) -> String {
-        let notice = self.notice.as_ref().map_or(String::new(), |(notice, _)| format!(" - {notice}"));
-        format!("{} - {} - {} - mode13h{notice}", self.name, self.shading, self.timing)
+        format!("{} - {} - {} - mode13h", self.name, self.shading, self.drawn())
+    }
+
+    /// How long the picture took to draw, and how often it is drawn.
+    fn drawn(&self) -> String {
+        let again = if self.is_redrawn { "" } else { ", not drawn again" };
+        format!("{}{again}", self.timing)
+    }
+
+    /// The mapping of textures that was chosen.
+    fn mapping(&self) -> String {
+        format!("mapping {}", self.mappings.chosen().map_or("by plan", |mapping| mapping.name()))
+    }
+}
+
+/// The palettes that P goes through, of which the stage's is chosen.
+fn palettes(stage: &Stage, drawing: &Drawing) -> Choice<(String, Colors)> {
+    // A palette without ramps has no order of shades: what has no colours of its own is shown in such a one only if that
+    // was asked for.
+    let has_colors = stage.has_colors();
+    let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
+    let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::from(builtin.palette.clone())));
+    let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
+    // A scene that has none leaves the DAC alone.
+    let colors = stage.colors.clone().unwrap_or(Palette::default().into());
+    // Under its own name, if it has one, it does not stand twice in the list.
+    let usual = match &colors {
+        Colors::Auto => input::AUTO,
+        Colors::Palette(palette) => {
+            let same = builtin::ALL.iter().find(|builtin| builtin.palette.colors() == palette.colors());
+            same.map_or("the scene's", |builtin| builtin.name)
+        }
+    };
+    let palette = (drawing.palette_name().unwrap_or(usual.to_string()), colors);
+    Choice::new(palettes, palette, |(a, _), (b, _)| a == b)
+}
+
+/// A panel that a key opens, leafs through and closes.
+#[derive(Default)]
+struct Panel {
+    is_open: bool,
+    page: usize,
+    /// How many pages there were when it was laid last.
+    pages: usize,
+}
+
+impl Panel {
+    fn press(&mut self) {
+        if self.is_open && self.page + 1 < self.pages {
+            self.page += 1;
+        } else {
+            *self = Panel { is_open: !self.is_open, page: 0, pages: 0 };
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! What moves, by the clock and by hand.
 
+use std::fmt;
+
 use mode13h::vga::Vga;
 use mode13h::window::{Input, Key};
 
@@ -19,6 +21,7 @@ const NOTCH: f64 = 1.1;
 const ZOOM: (f64, f64) = (0.25, 8.0);
 /// The longest time that a key counts as held for in one frame, in seconds: nothing is caught up with after a pause.
 const LONGEST_FRAME: f64 = 0.1;
+
 /// What moves: the scene's time, by the clock unless it is stopped, and what the user has turned.
 pub(super) struct Motion {
     /// The scene's time at the time `since`, in seconds.
@@ -27,14 +30,51 @@ pub(super) struct Motion {
     since: Option<f64>,
     pub(super) pose: Pose,
     now: f64,
+    /// What the user changed last.
+    changed: Changed,
+}
+
+enum Changed {
+    Clock,
+    Turn,
+    Zoom,
+}
+
+/// What the user changed last, in words.
+impl fmt::Display for Motion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Pose { turn, tilt, zoom } = self.pose;
+        match self.changed {
+            Changed::Clock => f.write_str(if self.since.is_some() { "goes on" } else { "stopped" }),
+            // Of what is turned on and on, what it comes to.
+            Changed::Turn => {
+                write!(f, "turned {:.0}°, tilted {:.0}°", turn.to_degrees() % 360.0, tilt.to_degrees() % 360.0)
+            }
+            Changed::Zoom => write!(f, "zoom {zoom:.2}"),
+        }
+    }
 }
 
 impl Motion {
     pub(super) fn new() -> Motion {
-        Motion { time: 0.0, since: Some(0.0), pose: Pose::FIRST, now: 0.0 }
+        Motion { time: 0.0, since: Some(0.0), pose: Pose::FIRST, now: 0.0, changed: Changed::Clock }
     }
 
-    pub(super) fn follow(&mut self, input: &Input, seconds: f64) {
+    /// At time 0, in the first pose; stopped if it is.
+    pub(super) fn begin_anew(&mut self) {
+        (self.time, self.pose) = (0.0, Pose::FIRST);
+        self.since = self.since.map(|_| self.now);
+    }
+
+    /// Puts the scene's time to `seconds`; it goes on from there.
+    pub(super) fn go_to(&mut self, seconds: f64) {
+        self.time = seconds;
+        self.since = self.since.map(|_| self.now);
+    }
+
+    /// Moves by what the user did until the time `seconds`. Whether a key changed something.
+    pub(super) fn follow(&mut self, input: &Input, seconds: f64) -> bool {
+        let was = (self.since.is_some(), self.pose);
         let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);
         self.now = seconds;
         if input.pressed(Key::Space) {
@@ -58,6 +98,16 @@ impl Motion {
             notches -= 1.0;
         }
         self.pose.zoom = (self.pose.zoom * NOTCH.powf(notches)).clamp(ZOOM.0, ZOOM.1);
+        self.changed = if self.since.is_some() != was.0 {
+            Changed::Clock
+        } else if notches != 0.0 {
+            Changed::Zoom
+        } else if self.pose != was.1 {
+            Changed::Turn
+        } else {
+            return false;
+        };
+        true
     }
 
     /// The scene's time at the time of the last [`follow`](Self::follow). It comes from the clock and not from the frames
@@ -75,7 +125,9 @@ mod tests {
     fn the_time_comes_from_the_clock_and_not_from_the_frames() {
         let time_after = |times: &[f64]| {
             let mut motion = Motion::new();
-            times.iter().for_each(|&seconds| motion.follow(&Input::default(), seconds));
+            for &seconds in times {
+                motion.follow(&Input::default(), seconds);
+            }
             (motion.seconds(), motion.pose)
         };
         let many: Vec<f64> = (0..=1_000_000).map(|i| f64::from(i) / 1000.0).collect();

@@ -77,10 +77,11 @@ impl Shading {
         Shading { rung, budget: budget.unwrap_or(USUAL), by_budget: budget.is_some() }
     }
 
-    pub(super) fn follow(&mut self, input: &Input) {
-        if let Some(wish) = wish(input) {
-            self.fulfil(wish);
-        }
+    /// Does what the user wishes. Whether they wished anything.
+    pub(super) fn follow(&mut self, input: &Input) -> bool {
+        let wish = wish(input);
+        wish.into_iter().for_each(|wish| self.fulfil(wish));
+        wish.is_some()
     }
 
     fn fulfil(&mut self, wish: Wish) {
@@ -123,7 +124,11 @@ impl Shading {
 
 impl fmt::Display for Shading {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.by_budget { write!(f, "budget {} shades", self.budget) } else { f.write_str(self.rung.name()) }
+        if self.by_budget {
+            write!(f, "budget {} {}", self.budget, if self.budget == 1.0 { "shade" } else { "shades" })
+        } else {
+            f.write_str(self.rung.name())
+        }
     }
 }
 
@@ -156,7 +161,8 @@ mod tests {
         assert_eq!(shading, Shading::new(Rung::Flat, Some(USUAL)));
         (0..9).for_each(|_| shading.fulfil(Wish::More));
         for budget in BUDGETS {
-            assert_eq!(shading.to_string(), format!("budget {budget} shades"));
+            let shades = if budget == 1.0 { "shade" } else { "shades" };
+            assert_eq!(shading.to_string(), format!("budget {budget} {shades}"));
             shading.fulfil(Wish::Less);
         }
         assert_eq!(shading.budget(), 0.5);
@@ -165,7 +171,7 @@ mod tests {
         shading.fulfil(Wish::Rung(Rung::Phong));
         assert_eq!(shading.to_string(), "phong");
         shading.fulfil(Wish::Budget);
-        assert_eq!(shading.to_string(), "budget 1 shades");
+        assert_eq!(shading.to_string(), "budget 1 shade");
         // One that is not in the list.
         let mut shading = Shading::new(Rung::Flat, Some(3.0));
         shading.fulfil(Wish::More);

@@ -11,22 +11,8 @@ use mode13h::palette::Rgb;
 use mode13h::raster::{Frame, Index};
 use mode13h::vga::Vga;
 
-/// Rows from one line of text to the next.
-const LINE: i32 = 10;
-/// The same in the small letters, 5 × 8.
+/// Rows from one line of the small letters, 5 × 8, to the next.
 pub(crate) const SMALL_LINE: i32 = 8;
-/// Pixels between the text and the frame's edge.
-const MARGIN: i32 = 4;
-
-/// Where text begins.
-#[derive(Clone, Copy)]
-pub(crate) enum Place {
-    /// In the top left corner, downwards.
-    Top,
-    /// So that it ends in the bottom left corner.
-    Bottom,
-}
-
 /// Which end of a line stands where it is put.
 #[derive(Clone, Copy)]
 pub(crate) enum Anchor {
@@ -44,21 +30,6 @@ fn style<'font>(vga: &Vga, font: &'font MonoFont<'font>) -> MonoTextStyle<'font,
         .text_color(Index(palette.nearest(Rgb::WHITE)))
         .background_color(Index(palette.nearest(Rgb::BLACK)))
         .build()
-}
-
-/// Writes `lines` in the palette's lightest on its darkest colour, over whatever is there. What does not fit is left
-/// out.
-pub(crate) fn write<Line: AsRef<str>>(vga: &mut Vga, place: Place, lines: &[Line]) {
-    // A dozen lines.
-    let height = LINE * lines.len() as i32;
-    let mut top = match place {
-        Place::Top => MARGIN,
-        Place::Bottom => Vga::HEIGHT as i32 - MARGIN - height,
-    };
-    for line in lines {
-        write_at(vga, (MARGIN, top), Anchor::Left, line.as_ref());
-        top += LINE;
-    }
 }
 
 /// Writes a line whose upper left or right corner is given.

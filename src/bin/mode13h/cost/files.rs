@@ -1,0 +1,55 @@
+//! The files of a study: checked before it is made, and not lost when they cannot be written after it.
+
+use std::path::{Path, PathBuf};
+use std::{env, fs, process};
+
+use mode13h::export;
+
+use crate::failure::Failure;
+use crate::{output, read_files};
+
+/// Their names.
+const NAMES: [&str; 4] = ["samples.csv", "cost.json", "chart.svg", "report.html"];
+
+/// That they can be written into a directory, which need not exist yet, and that none of them was read.
+pub(super) fn check(directory: &Path) -> Result<(), Failure> {
+    if directory.exists() && !directory.is_dir() {
+        return Err(Failure::work(format!("{}: is no directory", directory.display())));
+    }
+    if directory.is_dir() {
+        return NAMES.iter().try_for_each(|name| {
+            let path = directory.join(name);
+            read_files::spare(&path)?;
+            export::check_writable(&path).map_err(Failure::work)
+        });
+    }
+    // The first directory that is missing stands in one that exists.
+    let missing = directory.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
+    missing.last().map_or(Ok(()), export::check_writable).map_err(Failure::work)
+}
+
+/// Writes them, or where that fails, as on a disk that has become full, into a directory for temporary files. Returns where
+/// they are, if anywhere, and the failure.
+pub(super) fn write(
+    directory: &Path,
+    input: &str,
+    contents: &[String; NAMES.len()],
+) -> (Option<PathBuf>, Result<(), Failure>) {
+    let Err(failure) = write_into(directory, contents) else { return (Some(directory.to_path_buf()), Ok(())) };
+    let elsewhere = env::temp_dir().join(format!("mode13h-cost-{input}-{}", process::id()));
+    match write_into(&elsewhere, contents) {
+        Ok(()) => {
+            let failure = Failure::work(format!("{failure}; the study is in {}", elsewhere.display()));
+            (Some(elsewhere), Err(failure))
+        }
+        Err(_) => (None, Err(failure)),
+    }
+}
+
+fn write_into(directory: &Path, contents: &[String; NAMES.len()]) -> Result<(), Failure> {
+    fs::create_dir_all(directory).map_err(|error| Failure::work(format!("{}: {error}", directory.display())))?;
+    NAMES.iter().zip(contents).try_for_each(|(name, text)| {
+        let path = directory.join(name);
+        output::file(|| export::write_atomically(path, |out| out.write_all(text.as_bytes()))).map_err(Failure::work)
+    })
+}

@@ -1,0 +1,85 @@
+//! The files that were read. None of them is ever written over, by whatever name.
+
+use std::cell::RefCell;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use crate::failure::Failure;
+
+/// The files that were read so far, and the names that they were read by.
+static READ: Mutex<Vec<(Identity, PathBuf)>> = Mutex::new(Vec::new());
+
+/// A file itself, whatever name leads to it.
+#[derive(PartialEq, Eq)]
+enum Identity {
+    /// Device and number of the file: links of both kinds lead to the same.
+    #[cfg(unix)]
+    Node(u64, u64),
+    /// The path without links.
+    #[cfg(not(unix))]
+    Path(PathBuf),
+}
+
+impl Identity {
+    /// That of an ordinary file. A device or a pipe is not replaced by writing to it; what does not exist is lost by
+    /// nothing.
+    fn of(path: &Path) -> Option<Identity> {
+        let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt;
+            Some(Identity::Node(metadata.dev(), metadata.ino()))
+        }
+        #[cfg(not(unix))]
+        {
+            drop(metadata);
+            fs::canonicalize(path).ok().map(Identity::Path)
+        }
+    }
+}
+
+thread_local! {
+    /// The files that this thread reads or looks for, while somebody wants to know.
+    static NOTED: RefCell<Option<Vec<PathBuf>>> = const { RefCell::new(None) };
+}
+
+/// What `read` returns, and the files that this thread read or looked for meanwhile.
+pub(crate) fn noting<T>(read: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
+    let outer = NOTED.replace(Some(Vec::new()));
+    let result = read();
+    (result, NOTED.replace(outer).unwrap_or_default())
+}
+
+/// Keeps in mind that a file is read.
+pub(crate) fn add(path: &Path) {
+    NOTED.with_borrow_mut(|noted| noted.iter_mut().for_each(|noted| noted.push(path.to_path_buf())));
+    if let Some(identity) = Identity::of(path) {
+        let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+        if read.iter().all(|(other, _)| *other != identity) {
+            read.push((identity, path.to_path_buf()));
+        }
+    }
+}
+
+/// Keeps in mind that files are read.
+pub(crate) fn add_all(paths: &[PathBuf]) {
+    paths.iter().for_each(|path| add(path));
+}
+
+/// A failure if writing under this name would replace a file that was read. To be asked once all is read, and before
+/// much time is spent.
+pub(crate) fn spare(out: &Path) -> Result<(), Failure> {
+    let Some(identity) = Identity::of(out) else { return Ok(()) };
+    let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some((_, path)) = read.iter().find(|(other, _)| *other == identity) else { return Ok(()) };
+    let out_name = out.display();
+    let reason = match path == out {
+        true => format!("{out_name}: was read, and is not overwritten; give another name to write to"),
+        false => format!(
+            "{out_name}: is {}, which was read, and is not overwritten; give another name to write to",
+            path.display()
+        ),
+    };
+    Err(Failure::words(reason))
+}

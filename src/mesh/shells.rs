@@ -1,0 +1,172 @@
+//! The bodies that a closed mesh is made of, and which of them are inside out.
+//!
+//! A **shell** is a part of the surface that is closed by itself: faces are joined over edges of two faces; and at edges of
+//! more, those parts are joined of which more faces run through the edge in one direction than in the other. So two boxes
+//! that touch along an edge are two shells.
+//!
+//! A shell whose volume is negative is inside out, unless it is a **cavity**: unless the larger shells, once they are
+//! turned themselves, wind at least once round the place where it is. The place is a point of one of its faces, and what
+//! winds round it is counted along a ray from outside.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use super::sets::Sets;
+use super::topology::Edges;
+use super::wide::{Wide, cross, dot, scale, sub, widen};
+use super::winding::{between, cross_row};
+
+/// The shells that are inside out.
+pub(super) struct InsideOut {
+    /// For each triangle its shell.
+    shell_of: Vec<u32>,
+    /// For each shell whether it is to be turned.
+    turned: Vec<bool>,
+}
+
+impl InsideOut {
+    /// The shell of a triangle, if that is to be turned.
+    pub(super) fn shell(&self, triangle: usize) -> Option<usize> {
+        let shell = self.shell_of[triangle] as usize;
+        self.turned[shell].then_some(shell)
+    }
+
+    /// How many shells there are, to be turned or not.
+    pub(super) fn shells(&self) -> usize {
+        self.turned.len()
+    }
+
+    /// How many shells are to be turned.
+    pub(super) fn count(&self) -> usize {
+        self.turned.iter().filter(|&&turned| turned).count()
+    }
+}
+
+/// The shells of a closed mesh that are inside out; `None` if none is.
+pub(super) fn inside_out(positions: &[Vec3], triangles: &[[u32; 3]], edges: &Edges) -> Option<InsideOut> {
+    let (shell_of, count) = shells(triangles.len(), edges);
+    let volumes = volumes(positions, triangles, &shell_of, count);
+    let suspects: Vec<u32> = (0..).zip(&volumes).filter(|(_, volume)| **volume < 0.0).map(|(shell, _)| shell).collect();
+    if suspects.is_empty() {
+        return None;
+    }
+    let enclosing = enclosing(positions, triangles, &shell_of, &suspects, count);
+    // The larger first.
+    let compare = |a: u32, b: u32| {
+        let [a_size, b_size] = [a, b].map(|shell| volumes[shell as usize].abs());
+        b_size.total_cmp(&a_size).then(a.cmp(&b))
+    };
+    let mut order: Vec<usize> = (0..suspects.len()).collect();
+    order.sort_unstable_by(|&a, &b| compare(suspects[a], suspects[b]));
+    let mut turned = vec![false; count];
+    for suspect in order {
+        let shell = suspects[suspect];
+        let winds = enclosing[suspect].iter().filter(|(other, _)| compare(*other, shell).is_lt());
+        let winding: i32 = winds.map(|&(other, step)| if turned[other as usize] { -step } else { step }).sum();
+        turned[shell as usize] = winding <= 0;
+    }
+    let found = InsideOut { shell_of, turned };
+    (found.count() > 0).then_some(found)
+}
+
+/// For each triangle its shell, and how many shells there are.
+fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
+    // Triangles are counted in 32 bits, see `Mesh::MOST`.
+    let mut sets = Sets::new(triangles as u32);
+    let mut has_others = false;
+    for mut faces in edges.faces_by_edge() {
+        match (faces.next(), faces.next(), faces.next()) {
+            (Some((_, a)), Some((_, b)), None) => sets.join(a as u32 / 3, b as u32 / 3),
+            _ => has_others = true,
+        }
+    }
+    if has_others {
+        // Which parts do not balance where they meet others. What is joined then balances.
+        let mut joins = Vec::new();
+        let mut here: Vec<(u32, i32)> = Vec::new();
+        for faces in edges.faces_by_edge().filter(|faces| faces.clone().count() > 2) {
+            here.clear();
+            here.extend(faces.map(|(down, corner)| (sets.of(corner as u32 / 3), if down { -1 } else { 1 })));
+            here.sort_unstable();
+            let sum = |part: &[(u32, i32)]| part.iter().map(|(_, step)| step).sum::<i32>();
+            let mut unbalanced = here.chunk_by(|a, b| a.0 == b.0).filter(|part| sum(part) != 0).map(|part| part[0].0);
+            if let Some(first) = unbalanced.next() {
+                joins.extend(unbalanced.map(|other| (first, other)));
+            }
+        }
+        joins.into_iter().for_each(|(a, b)| sets.join(a, b));
+    }
+    // Numbered from 0 in the order of their first triangles, which stand for them.
+    let (mut numbers, mut count) = (vec![0; triangles], 0);
+    for triangle in 0..triangles {
+        let stands = sets.of(triangle as u32) as usize;
+        numbers[triangle] = if stands == triangle {
+            count += 1;
+            count - 1
+        } else {
+            numbers[stands]
+        };
+    }
+    (numbers, count as usize)
+}
+
+/// The volume of each shell; 0 of one that encloses none but for rounding.
+fn volumes(positions: &[Vec3], triangles: &[[u32; 3]], shell_of: &[u32], count: usize) -> Vec<f64> {
+    // Six volumes of the tetrahedra from the first vertex of each shell, their sum and that of their sizes.
+    let mut sums: Vec<(Option<Wide>, f64, f64)> = vec![(None, 0.0, 0.0); count];
+    for (triangle, &shell) in triangles.iter().zip(shell_of) {
+        let [a, b, c] = triangle.map(|vertex| widen(positions[vertex as usize]));
+        let (origin, sum, size) = &mut sums[shell as usize];
+        let origin = *origin.get_or_insert(a);
+        let six_volumes = dot(sub(a, origin), cross(sub(b, origin), sub(c, origin)));
+        *sum += six_volumes;
+        *size += six_volumes.abs();
+    }
+    // Of fewer than 2³¹ terms the sum is off by less than 2⁻²² of their sizes, and mostly by far less; a sheet whose two
+    // sides undo each other encloses nothing, and is not turned.
+    sums.into_iter().map(|(_, sum, size)| if sum.abs() > size * (1.0 / 4_194_304.0) { sum } else { 0.0 }).collect()
+}
+
+/// What winds round a place of each of the shells of `wanted`: other shells, with what their winding numbers there are
+/// made from, -1 or 1 for each of their faces before it along a ray.
+fn enclosing(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    shell_of: &[u32],
+    wanted: &[u32],
+    count: usize,
+) -> Vec<Vec<(u32, i32)>> {
+    // Rays run along z, so that the third coordinate is how far along, and the second one a ray's row.
+    let corners = |triangle: &[u32; 3]| triangle.map(|vertex| widen(positions[vertex as usize]));
+    // Through the middle of that face of the shell that is largest, seen along the rays.
+    let mut largest = vec![(0.0, [0.0; 3]); count];
+    for (triangle, &shell) in triangles.iter().zip(shell_of) {
+        let [a, b, c] = corners(triangle);
+        let size = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
+        let known = &mut largest[shell as usize];
+        if size > known.0 {
+            *known = (size, [0, 1, 2].map(|axis| scale(a, 1.0 / 3.0)[axis] + b[axis] / 3.0 + c[axis] / 3.0));
+        }
+    }
+    let mut rays: Vec<(f64, usize)> =
+        wanted.iter().enumerate().map(|(ray, &shell)| (largest[shell as usize].1[1], ray)).collect();
+    rays.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut enclosing = vec![Vec::new(); wanted.len()];
+    for (triangle, &shell) in triangles.iter().zip(shell_of) {
+        let corners = corners(triangle);
+        let rows = corners.map(|corner| corner[1]);
+        let (low, high) = (rows[0].min(rows[1]).min(rows[2]), rows[0].max(rows[1]).max(rows[2]));
+        let first = rays.partition_point(|&(row, _)| row <= low);
+        for &(row, ray) in rays[first..].iter().take_while(|&&(row, _)| row <= high) {
+            let own = wanted[ray];
+            let [column, _, place] = largest[own as usize].1;
+            let Some((from, to, step)) = cross_row(&corners, row).filter(|_| own != shell) else { continue };
+            if from[0] < column && column <= to[0] && between(from, to, column) < place {
+                enclosing[ray].push((shell, step));
+            }
+        }
+    }
+    enclosing
+}

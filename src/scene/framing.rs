@@ -1,0 +1,485 @@
+//! From where a picture holds everything, by hulls: no sphere about a body, and no trial pictures.
+//!
+//! The eye looks along −z from the depth d and the height c. A view whose half height is k at the distance 1 holds the
+//! point (x, y, z) if −k·(d − z) ≤ y − c ≤ k·(d − z). That is so for every point of a body if and only if
+//!
+//! ```text
+//! max(y + k·z) − k·d  ≤  c  ≤  k·d − max(−y + k·z)
+//! ```
+//!
+//! Some c fits if d ≥ (max(y + k·z) + max(−y + k·z)) / 2k. The width has the same inequality. So the least distance
+//! comes from the body's farthest points in four directions, in one pass over its vertices.
+//!
+//! A vertex of a body that turns about an axis sweeps a ring: of all its points that with the greatest product with n
+//! lies in the plane of n and the axis. It is r·|n⊥| + h·n∥, for the ring's radius r and its height h.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use super::{Camera, Object, Path, object};
+
+/// How much of the picture's width or height is filled, whichever is filled more.
+const FILL: f64 = 0.9;
+/// The picture's width to its height: that of the screens of 1994.
+const ASPECT: f64 = 4.0 / 3.0;
+/// The eye stays clear of what is nearest by at least so much of the depth of everything.
+const CLEARANCE: f64 = 1.0 / 64.0;
+/// Rounds until the picture is centred. Each comes closer quadratically; two or three are enough.
+const ROUNDS: usize = 8;
+
+type Row = [f64; 3];
+
+/// How an object turns.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Turning {
+    /// It does not.
+    Still,
+    /// About its own upward axis, which may be tilted.
+    Upright,
+    /// In another way: any direction may come to the front.
+    Anyhow,
+}
+
+/// What an object covers as it moves.
+pub(super) struct Swept {
+    path: Places,
+    shape: Shape,
+}
+
+/// Where the pivot goes.
+enum Places {
+    /// There, or between any two of these.
+    Points(Vec<Row>),
+    /// Round a centre, by way of two radii.
+    Round(Row, [Row; 2]),
+}
+
+/// What is covered about the pivot.
+enum Shape {
+    Points(Vec<Row>),
+    /// Rings about an axis: radius and height.
+    Rings(Row, Vec<[f64; 2]>),
+    /// A sphere of this radius.
+    Sphere(f64),
+}
+
+impl Swept {
+    /// What `object` covers, turning so, and going along `path` if there is one.
+    pub(super) fn new(object: &Object, turning: Turning, path: Option<&Path>) -> Self {
+        let shape = match turning {
+            Turning::Still => Shape::Points(points(object, object.angles())),
+            Turning::Upright => {
+                let [tilt, _, roll] = object.angles();
+                let axis = object::turn([tilt, 0.0, 0.0]).map(|row| row[1]);
+                let rings = points(object, [0.0, 0.0, roll]);
+                Shape::Rings(axis, rings.into_iter().map(|[x, y, z]| [libm::sqrt(x * x + z * z), y]).collect())
+            }
+            Turning::Anyhow => {
+                let squares = points(object, [0.0; 3]).into_iter().map(|p| dot(p, p));
+                Shape::Sphere(libm::sqrt(squares.fold(0.0, f64::max)))
+            }
+        };
+        let path = match path {
+            None => Places::Points(vec![widen(object.position)]),
+            Some(Path::Line { from, to, .. }) => Places::Points(vec![widen(*from), widen(*to)]),
+            Some(Path::Circle { centre, from, towards, .. }) => {
+                Places::Round(widen(*centre), [widen(*from), widen(*towards)])
+            }
+        };
+        Self { path, shape }
+    }
+
+    /// For each direction the point that is farthest in it.
+    fn farthest<const N: usize>(&self, directions: &[Row; N]) -> [Row; N] {
+        let offsets: [Row; N] = match &self.shape {
+            Shape::Points(points) => best(points, |point, i| dot(*point, directions[i])),
+            Shape::Rings(axis, rings) => {
+                let along = directions.map(|n| dot(n, *axis));
+                let across: [Row; N] = core::array::from_fn(|i| added(directions[i], *axis, -along[i]));
+                let lengths = across.map(|n| libm::sqrt(dot(n, n)));
+                let ring: [_; N] = best(rings, |[radius, height], i| radius * lengths[i] + height * along[i]);
+                core::array::from_fn(|i| {
+                    let [radius, height] = ring[i];
+                    // Seen along the axis every point of a ring is as far.
+                    let part = if lengths[i] > 0.0 { radius / lengths[i] } else { 0.0 };
+                    added(axis.map(|c| c * height), across[i], part)
+                })
+            }
+            Shape::Sphere(radius) => directions.map(|n| n.map(|c| c * radius / libm::sqrt(dot(n, n)))),
+        };
+        let places: [Row; N] = match &self.path {
+            Places::Points(points) => best(points, |point, i| dot(*point, directions[i])),
+            Places::Round(centre, radii) => directions.map(|n| {
+                let [a, b] = radii.map(|radius| dot(radius, n));
+                let length = libm::sqrt(a * a + b * b);
+                let part = |c: f64| if length > 0.0 { c / length } else { 0.0 };
+                added(added(*centre, radii[0], part(a)), radii[1], part(b))
+            }),
+        };
+        core::array::from_fn(|i| added(offsets[i], places[i], 1.0))
+    }
+}
+
+/// From which side, and how wide, everything is looked at.
+pub(super) struct Viewpoint {
+    /// Towards the eye, of any length but zero.
+    pub(super) direction: Vec3,
+    pub(super) up: Vec3,
+    /// In radians, from the picture's upper to its lower edge.
+    pub(super) field_of_view: f32,
+    /// The middle of the picture, if it is given.
+    pub(super) target: Option<Vec3>,
+}
+
+impl Viewpoint {
+    /// The nearest camera that has everything within [`FILL`] of its picture. Returns `None` if there is nothing, or if
+    /// it reaches farther than f32.
+    pub(super) fn camera(&self, everything: &[Swept]) -> Option<Camera> {
+        let towards = unit(widen(self.direction)).unwrap_or([0.0, 0.0, 1.0]);
+        let axes @ [right, up, towards] = axes(towards.map(|c| -c), widen(self.up))?;
+        let half = FILL * libm::tan(f64::from(self.field_of_view) / 2.0);
+        let edges = [(right, half * ASPECT), (up, half)];
+        let target = self.target.map(|target| axes.map(|axis| dot(axis, widen(target))));
+
+        let points = farthest(everything, &sides(towards, edges))?;
+        let [front, back] = farthest(everything, &[towards, towards.map(|c| -c)])?.map(|point| dot(point, towards));
+        let mut depth = front + CLEARANCE * (front - back);
+        for (i, (axis, k)) in edges.into_iter().enumerate() {
+            let [above, below] = [(points[2 * i], 1.0), (points[2 * i + 1], -1.0)]
+                .map(|(point, sign)| sign * dot(point, axis) + k * dot(point, towards));
+            depth = depth.max(match target {
+                None => (above + below) / (2.0 * k),
+                Some(target) => ((above - target[i]) / k).max((below + target[i]) / k),
+            });
+        }
+        let [x, y, z] = match target {
+            Some(target) => target,
+            None => {
+                let [x, y] = middle(everything, towards, edges, depth)?;
+                [x, y, (front + back) / 2.0]
+            }
+        };
+        let place = |depth: f64| [0, 1, 2].map(|i| right[i] * x + up[i] * y + towards[i] * depth);
+        let target = self.target.map_or(place(z), widen);
+        // So far that f32 tells the eye from what it looks at.
+        let least =
+            target.iter().fold(1024.0 * f64::from(f32::MIN_POSITIVE), |most, c| most.max(c.abs() / 1_048_576.0));
+        let distance = (depth - z).max(least);
+        let is_within = |c: &f64| c.abs() <= f64::from(f32::MAX);
+        if ![target, [front, back, 0.0]].iter().chain(&points).flatten().all(is_within) {
+            return None;
+        }
+        let near = f64::from(Camera::near_for(distance as f32)).min((z + distance - front) / 2.0);
+        Some(Camera {
+            eye: narrow(added(target, towards, distance)),
+            target: narrow(target),
+            up: self.up,
+            field_of_view: self.field_of_view,
+            near: (near as f32).max(f32::MIN_POSITIVE),
+        })
+    }
+}
+
+/// Where the middle of the picture lies to the right and up, for an eye at this depth: as much is seen to either side of
+/// it.
+///
+/// A view of half height k that touches an upper and a lower point has its middle between them. Of the points that are
+/// farthest for it, that k is taken next: Newton's method on a convex function, which the true k makes zero.
+fn middle(everything: &[Swept], towards: Row, edges: [(Row, f64); 2], depth: f64) -> Option<[f64; 2]> {
+    let (mut edges, mut middles) = (edges, [0.0; 2]);
+    for _ in 0..ROUNDS {
+        let points = farthest(everything, &sides(towards, edges))?;
+        let before = edges;
+        for (i, (axis, k)) in edges.iter_mut().enumerate() {
+            let [(high, upper), (low, lower)] =
+                [points[2 * i], points[2 * i + 1]].map(|point| (dot(point, *axis), depth - dot(point, towards)));
+            let width = upper + lower;
+            *k = if width > 0.0 { (high - low) / width } else { 0.0 };
+            middles[i] = (high + low - *k * (upper - lower)) / 2.0;
+        }
+        if edges == before {
+            break;
+        }
+    }
+    Some(middles)
+}
+
+/// Across each edge of a picture: right, left, up, down.
+fn sides(towards: Row, [(right, wide), (up, high)]: [(Row, f64); 2]) -> [Row; 4] {
+    let side = |axis: Row, k: f64, sign: f64| added(axis.map(|c| sign * c), towards, k);
+    [side(right, wide, 1.0), side(right, wide, -1.0), side(up, high, 1.0), side(up, high, -1.0)]
+}
+
+/// For each direction the farthest point of everything.
+fn farthest<const N: usize>(everything: &[Swept], directions: &[Row; N]) -> Option<[Row; N]> {
+    let each: Vec<[Row; N]> = everything.iter().map(|swept| swept.farthest(directions)).collect();
+    (!each.is_empty()).then(|| {
+        let of: [[Row; N]; N] = best(&each, |points, i| dot(points[i], directions[i]));
+        core::array::from_fn(|i| of[i][i])
+    })
+}
+
+/// For each of N the entry of a list, which is not empty, with the greatest value; of equals the first.
+fn best<T: Copy, const N: usize>(list: &[T], value: impl Fn(&T, usize) -> f64) -> [T; N] {
+    let mut best = [(list[0], f64::NEG_INFINITY); N];
+    for entry in list {
+        for (i, best) in best.iter_mut().enumerate() {
+            let value = value(entry, i);
+            if value > best.1 {
+                *best = (*entry, value);
+            }
+        }
+    }
+    best.map(|(entry, _)| entry)
+}
+
+/// The vertices that an object's triangles use, about its pivot, at these angles.
+fn points(object: &Object, angles: [f64; 3]) -> Vec<Row> {
+    let mesh = object.mesh();
+    let mut used = vec![false; mesh.positions().len()];
+    mesh.triangles().iter().flatten().for_each(|&i| used[i as usize] = true);
+    let scale = f64::from(object.scale);
+    let turn = object.turned_by(angles).map(|row| row.map(|c| c * scale));
+    let pivot = widen(object.pivot);
+    let places = mesh.positions().iter().zip(used).filter(|(_, used)| *used);
+    places.map(|(p, _)| turn.map(|row| dot(row, added(widen(*p), pivot, -1.0)))).collect()
+}
+
+/// Right, up and backwards, unit, of who looks in the unit direction `forward`. Returns `None` only if that is no
+/// direction.
+pub(crate) fn axes(forward: Row, up: Row) -> Option<[Row; 3]> {
+    // The axis that is farthest from the view serves where `up` lies along it. Within 10⁻⁶ of it the direction of the
+    // product is mostly rounding of the f32 that made it.
+    let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
+    let mut axis = [0.0; 3];
+    axis[least] = 1.0;
+    let right = unit(up)
+        .map(|up| cross(forward, up))
+        .filter(|right| dot(*right, *right) > 1e-12)
+        .and_then(unit)
+        .or_else(|| unit(cross(forward, axis)))?;
+    Some([right, cross(right, forward), forward.map(|c| -c)])
+}
+
+pub(crate) fn dot(a: Row, b: Row) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn cross(a: Row, b: Row) -> Row {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+pub(crate) fn widen(v: Vec3) -> Row {
+    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
+}
+
+/// Returns `None` for the zero vector. Finite f32 components can neither overflow nor vanish in f64.
+pub(crate) fn unit(v: Row) -> Option<Row> {
+    let length = libm::sqrt(dot(v, v));
+    (length > 0.0).then(|| v.map(|c| c / length))
+}
+
+/// `a` and so many times `b`.
+fn added(a: Row, b: Row, times: f64) -> Row {
+    [a[0] + b[0] * times, a[1] + b[1] * times, a[2] + b[2] * times]
+}
+
+/// To the nearest f32 that is finite.
+fn narrow(v: Row) -> Vec3 {
+    let [x, y, z] = v.map(|c| (c as f32).clamp(-f32::MAX, f32::MAX));
+    Vec3::new(x, y, z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Mesh, shapes};
+    use crate::scene::{Scene, UpAxis};
+    use core::f64::consts::TAU;
+
+    /// How many angles of a turn are looked at.
+    const ANGLES: u32 = 720;
+    /// Between two of them a vertex comes nearer to where it is farthest by at most 1 − cos(π / 720) of its radius,
+    /// 9.5·10⁻⁶; perspective makes up to 1.2 times that of it, as the eye is at least 2.3 radii away. The camera's numbers
+    /// are f32, of 2⁻²⁴ each.
+    const LEAST: f64 = FILL - 2e-5;
+    const MOST: f64 = FILL + 2e-6;
+
+    struct Random(u64);
+
+    impl Random {
+        /// 0 to 1.
+        fn unit(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(0x1405_7B7E_F767_814F);
+            (self.0 >> 11) as f64 / 9_007_199_254_740_992.0
+        }
+
+        fn within(&mut self, reach: f64) -> f64 {
+            (2.0 * self.unit() - 1.0) * reach
+        }
+    }
+
+    /// The parts of the picture that are reached over a turn, −1 to 1 from edge to edge, the slow way: every vertex at every
+    /// angle. To the left, right, below and above.
+    fn reached(object: &Object, camera: &Camera) -> [f64; 4] {
+        let towards = unit(added(widen(camera.eye), widen(camera.target), -1.0)).expect("a direction");
+        let [right, up, _] = axes(towards.map(|c| -c), widen(camera.up)).expect("a view");
+        let half = libm::tan(f64::from(camera.field_of_view) / 2.0);
+        let mut object = object.clone();
+        let [tilt, _, roll] = object.angles();
+        let mut reached = [0.0_f64; 4];
+        for step in 0..ANGLES {
+            object.set_angles([tilt, TAU * f64::from(step) / f64::from(ANGLES), roll]);
+            let turn = object.turn();
+            for &i in object.mesh().triangles().iter().flatten() {
+                let p = added(widen(object.mesh().positions()[i as usize]), widen(object.pivot), -1.0);
+                let p = turn.map(|row| dot(row, p) * f64::from(object.scale));
+                let from_eye = added(added(p, widen(object.position), 1.0), widen(camera.eye), -1.0);
+                let depth = -dot(from_eye, towards);
+                assert!(depth > f64::from(camera.near), "{depth} {camera:?}");
+                let [x, y] = [dot(from_eye, right) / (depth * half * ASPECT), dot(from_eye, up) / (depth * half)];
+                for (reached, value) in reached.iter_mut().zip([-x, x, -y, y]) {
+                    *reached = reached.max(value);
+                }
+            }
+        }
+        reached
+    }
+
+    fn check(what: &str, object: &Object, camera: &Camera) {
+        let reached = reached(object, camera);
+        let most = reached.into_iter().fold(0.0, f64::max);
+        assert!((LEAST..=MOST).contains(&most), "{what}: {reached:?}");
+        let [left, right, below, above] = reached;
+        assert!(
+            (left - right).abs() < 4e-5 && (below - above).abs() < 4e-5,
+            "{what} is not in the middle: {reached:?}"
+        );
+    }
+
+    /// So many corners in a box about a middle.
+    fn mesh(random: &mut Random, corners: u32, sizes: [f64; 3], middle: [f64; 3]) -> Mesh {
+        let place = |i: usize, random: &mut Random| (middle[i] + random.within(sizes[i])) as f32;
+        let positions = (0..corners).map(|_| Vec3::from_array(core::array::from_fn(|i| place(i, random)))).collect();
+        Mesh::new(positions, (2..corners).map(|i| [0, i - 1, i]).collect()).expect("a mesh")
+    }
+
+    #[test]
+    fn a_turning_mesh_fills_nine_tenths_of_the_picture() {
+        let mut random = Random(1);
+        for number in 0..120 {
+            let size = libm::pow(10.0, random.within(6.0));
+            let mut sizes = [(); 3].map(|()| size * (0.05 + random.unit()));
+            match number % 6 {
+                // Flat.
+                1 => sizes[number / 6 % 3] = 0.0,
+                // A needle, as far as the tilt lets it be seen.
+                2 => (sizes[number / 6 % 3], sizes[(number / 6 + 1) % 3]) = (size * 1e-4, size * 1e-4),
+                _ => {}
+            }
+            let middle = if number % 6 == 3 { [(); 3].map(|()| random.within(1000.0 * size)) } else { [0.0; 3] };
+            let corners = 3 + (random.unit() * 30.0) as u32;
+            let mut object = Object::new(mesh(&mut random, corners, sizes, middle));
+            object.up_axis = if number % 2 == 0 { UpAxis::Y } else { UpAxis::Z };
+            let scene = Scene::showing(object.clone());
+            check(&alloc::format!("mesh {number}"), &scene.objects()[0], &scene.camera);
+            // About another point, tilted otherwise, elsewhere and of another size.
+            object.pivot = object.mesh().bounds().centre + Vec3::splat(size as f32 * 0.5);
+            object.position = Vec3::new(random.within(size) as f32, size as f32, 0.0);
+            object.scale = 2.5;
+            object.set_angles([random.within(1.2), 1.0, random.within(3.0)]);
+            check(&alloc::format!("object {number}"), &object, &Camera::framing_turn(&object));
+        }
+        for name in shapes::NAMES {
+            let scene = Scene::showing(shapes::by_name(name).expect("listed"));
+            check(name, &scene.objects()[0], &scene.camera);
+        }
+    }
+
+    /// What triangles do not use is not seen.
+    #[test]
+    fn a_vertex_that_no_triangle_uses_does_not_count() {
+        let corners = vec![Vec3::X, Vec3::Y, Vec3::Z];
+        let far = [corners.clone(), vec![Vec3::splat(100.0)]].concat();
+        let [plain, with_more] = [corners, far]
+            .map(|positions| Scene::showing(Mesh::new(positions, vec![[0, 1, 2]]).expect("a mesh")).camera);
+        assert_eq!(plain, with_more);
+    }
+
+    /// Points, lines seen end on, the least and the greatest sizes: a camera that looks somewhere, with the mesh beyond
+    /// its near plane.
+    #[test]
+    fn what_has_no_size_or_too_much_has_a_legal_camera() {
+        let [point, far] = [Vec3::splat(7.0), Vec3::splat(f32::MAX)];
+        let meshes = [
+            vec![point; 3],
+            vec![Vec3::ZERO; 3],
+            vec![point, point * 2.0, point * 3.0],
+            vec![Vec3::ZERO, Vec3::Y, Vec3::NEG_Y],
+            vec![Vec3::ZERO, Vec3::Z, Vec3::NEG_Z],
+            vec![Vec3::ZERO, Vec3::X * f32::from_bits(1), Vec3::Y * f32::from_bits(1)],
+            vec![far, -far, Vec3::X],
+            vec![far * 0.4, far * -0.4, Vec3::X],
+        ];
+        for positions in meshes {
+            let mut object = Object::new(Mesh::new(positions.clone(), vec![[0, 1, 2]]).expect("a mesh")).centred();
+            for tilt in [0.0, 0.35, TAU / 4.0] {
+                for position in [Vec3::ZERO, Vec3::splat(1e6)] {
+                    object.set_angles([tilt, 0.0, 0.0]);
+                    object.position = position;
+                    let camera = Camera::framing_turn(&object);
+                    let made = crate::view::View::new(&camera, crate::view::Screen::MODE_13H);
+                    assert!(made.is_ok(), "{positions:?} {tilt}: {camera:?}");
+                    assert!(camera.near < camera.eye.z - camera.target.z, "{positions:?} {tilt}: {camera:?}");
+                }
+            }
+        }
+    }
+
+    /// What stands still is held by its points, whatever side it is seen from, and what turns anyhow by its sphere; along
+    /// paths, too.
+    #[test]
+    fn everything_is_in_the_picture_wherever_it_moves() {
+        let mut random = Random(2);
+        let mut fullest = [1.0_f64; 3];
+        for number in 0..60 {
+            let turning = [Turning::Still, Turning::Upright, Turning::Anyhow][number % 3];
+            let mut point = || Vec3::from_array([(); 3].map(|()| random.within(2.0) as f32));
+            let (direction, up, from, towards, centre, target) = (point(), point(), point(), point(), point(), point());
+            let path = match number / 3 % 3 {
+                0 => None,
+                1 => Some(Path::Line { from, to: towards, period: 1.0, back: false }),
+                _ => Some(Path::Circle { centre, from, towards, period: 1.0 }),
+            };
+            let mut object = Object::new(mesh(&mut random, 12, [1.0, 0.4, 0.7], [3.0, 0.0, 0.0])).centred();
+            object.set_angles([0.3, 1.0, 2.0]);
+            let target = (number % 2 == 1).then_some(target);
+            let viewpoint = Viewpoint { direction, up, field_of_view: 0.8, target };
+            let camera = viewpoint.camera(&[Swept::new(&object, turning, path.as_ref())]).expect("a camera");
+            let mut most = 0.0_f64;
+            for step in 0..300 {
+                object.position = path.map_or(Vec3::ZERO, |path| path.at(f64::from(step) / 100.0));
+                object.set_angles(match turning {
+                    Turning::Still => [0.3, 1.0, 2.0],
+                    Turning::Upright => [0.3, random.within(7.0), 2.0],
+                    Turning::Anyhow => [(); 3].map(|()| random.within(7.0)),
+                });
+                let view = crate::view::View::new(&camera, crate::view::Screen::MODE_13H).expect("a view");
+                let view = crate::view::ObjectView::new(&view, &object);
+                for p in object.mesh().positions() {
+                    let crate::view::Homogeneous { x, y, w } = view.homogeneous(*p);
+                    assert!(w > f64::from(camera.near), "{number}");
+                    most = most.max((x / w / 160.0).abs()).max((y / w / 100.0).abs());
+                }
+            }
+            assert!(most <= FILL + 1e-5, "{number}: {most}");
+            if target.is_none() && path.is_none() {
+                fullest[number % 3] = fullest[number % 3].min(most);
+            }
+        }
+        // A still one exactly; of the others not every angle was looked at.
+        assert!(fullest[0] > FILL - 1e-5 && fullest[1] > 0.88, "{fullest:?}");
+    }
+}

@@ -1,0 +1,201 @@
+//! The window's own pixels, to be drawn on over the picture.
+
+use super::fit::Area;
+use crate::palette::Rgb;
+
+/// The window's pixels after the picture was stretched to them. [`Window::show_over`](super::Window::show_over) lends
+/// one.
+///
+/// With the feature `embedded-graphics` it is a `DrawTarget` of `Rgb888`: text, lines and shapes at the window's own
+/// resolution. What reaches beyond the window is left out.
+#[derive(Debug)]
+pub struct Canvas<'a> {
+    pixels: &'a mut [u32],
+    width: usize,
+    height: usize,
+    picture: Area,
+}
+
+impl<'a> Canvas<'a> {
+    /// A canvas of its own, with a picture as large as fits, as in a window of this size. `None` unless there are
+    /// `width` × `height` pixels.
+    pub fn new(pixels: &'a mut [u32], width: usize, height: usize) -> Option<Canvas<'a>> {
+        (width.checked_mul(height) == Some(pixels.len())).then(|| Canvas {
+            pixels,
+            width,
+            height,
+            picture: Area::within(width, height),
+        })
+    }
+
+    /// The pixels of a picture that was stretched; as many as its size says.
+    pub(super) fn over(pixels: &'a mut [u32], (width, height): (usize, usize), picture: Area) -> Canvas<'a> {
+        Canvas { pixels, width, height, picture }
+    }
+
+    /// Its columns.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Its rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Where the picture stands on it.
+    pub fn picture(&self) -> Area {
+        self.picture
+    }
+
+    /// All pixels, 0x00RRGGBB, row by row.
+    pub fn pixels_mut(&mut self) -> &mut [u32] {
+        self.pixels
+    }
+
+    /// The pixels of a rectangle, as far as it lies on the canvas: of each row its number, counted from the rectangle's
+    /// top, and its pixels.
+    fn rows_mut(&mut self, area: Area) -> impl Iterator<Item = (usize, &mut [u32])> {
+        let across = area.left.min(self.width)..area.left.saturating_add(area.width).min(self.width);
+        let rows = self.pixels.chunks_exact_mut(self.width.max(1)).skip(area.top).take(area.height);
+        rows.enumerate().map(move |(y, row)| (y, &mut row[across.clone()]))
+    }
+
+    /// Fills a rectangle.
+    pub fn fill(&mut self, area: Area, color: Rgb) {
+        self.rows_mut(area).for_each(|(_, row)| row.fill(color.to_u32()));
+    }
+
+    /// Fills a rectangle so that what is under it shines through: `share` of 255 is the new colour.
+    pub fn blend(&mut self, area: Area, color: Rgb, share: u8) {
+        for pixel in self.rows_mut(area).flat_map(|(_, row)| row) {
+            *pixel = Rgb::from_u32(*pixel).mix(color, share).to_u32();
+        }
+    }
+
+    /// Stretches a picture of `columns` pixels a row over a rectangle. Each pixel shows the one of the picture that its
+    /// centre falls in.
+    pub fn stretch(&mut self, area: Area, colors: &[Rgb], columns: usize) {
+        let rows = colors.len().checked_div(columns).unwrap_or(0);
+        if rows == 0 {
+            return;
+        }
+        let source = |at: usize, to: usize, from: usize| (2 * at + 1) * from / (2 * to);
+        for (y, row) in self.rows_mut(area) {
+            let from = &colors[source(y, area.height, rows) * columns..][..columns];
+            for (x, pixel) in row.iter_mut().enumerate() {
+                *pixel = from[source(x, area.width, columns)].to_u32();
+            }
+        }
+    }
+}
+
+#[cfg(feature = "embedded-graphics")]
+mod draw_target {
+    use core::convert::Infallible;
+
+    use embedded_graphics::Pixel;
+    use embedded_graphics::draw_target::DrawTarget;
+    use embedded_graphics::geometry::{OriginDimensions, Point, Size};
+    use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
+    use embedded_graphics::primitives::Rectangle;
+
+    use super::{Area, Canvas};
+    use crate::palette::Rgb;
+
+    fn rgb(color: Rgb888) -> Rgb {
+        Rgb::new(color.r(), color.g(), color.b())
+    }
+
+    impl OriginDimensions for Canvas<'_> {
+        fn size(&self) -> Size {
+            // A window's sides are far below 2³².
+            Size::new(self.width as u32, self.height as u32)
+        }
+    }
+
+    impl DrawTarget for Canvas<'_> {
+        type Color = Rgb888;
+        type Error = Infallible;
+
+        /// Pixels outside of the canvas are left out.
+        fn draw_iter<I: IntoIterator<Item = Pixel<Rgb888>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+            for Pixel(at, color) in pixels {
+                let (Ok(x), Ok(y)) = (usize::try_from(at.x), usize::try_from(at.y)) else { continue };
+                if x < self.width && y < self.height {
+                    self.pixels[y * self.width + x] = rgb(color).to_u32();
+                }
+            }
+            Ok(())
+        }
+
+        fn fill_solid(&mut self, area: &Rectangle, color: Rgb888) -> Result<(), Infallible> {
+            let area = area.intersection(&Rectangle::new(Point::zero(), self.size()));
+            // Not negative: the area lies on the canvas.
+            let (left, top) = (area.top_left.x as usize, area.top_left.y as usize);
+            let (width, height) = (area.size.width as usize, area.size.height as usize);
+            self.fill(Area { left, top, width, height }, rgb(color));
+            Ok(())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: (usize, usize) = (7, 5);
+
+    /// What `draw` makes of a canvas of one colour, pixel by pixel.
+    fn drawn(draw: impl FnOnce(&mut Canvas<'_>)) -> Vec<u32> {
+        let mut pixels = vec![0x102030; SIZE.0 * SIZE.1];
+        draw(&mut Canvas::new(&mut pixels, SIZE.0, SIZE.1).expect("the right number of pixels"));
+        pixels
+    }
+
+    fn each(area: Area, inside: impl Fn(usize, usize) -> u32) -> Vec<u32> {
+        let at = |i: usize| (i % SIZE.0, i / SIZE.0);
+        let is_in = |x: usize, y: usize| {
+            (area.left..area.left + area.width).contains(&x) && (area.top..area.top + area.height).contains(&y)
+        };
+        let pixel = |(x, y): (usize, usize)| if is_in(x, y) { inside(x - area.left, y - area.top) } else { 0x102030 };
+        (0..SIZE.0 * SIZE.1).map(at).map(pixel).collect()
+    }
+
+    #[test]
+    fn rectangles_are_drawn_as_far_as_they_lie_on_the_canvas() {
+        let colors: Vec<Rgb> = (0..6).map(|i| Rgb::new(i, 2 * i, 3 * i)).collect();
+        let sides = [(2, 1, 3, 2), (0, 0, 7, 5), (5, 3, 9, 9), (7, 5, 1, 1), (9, 0, 2, 2), (1, 1, 0, 3), (3, 0, 4, 5)];
+        for (left, top, width, height) in sides {
+            let area = Area { left, top, width, height };
+            let color = Rgb::new(200, 100, 0);
+            assert_eq!(drawn(|canvas| canvas.fill(area, color)), each(area, |_, _| color.to_u32()), "{area:?}");
+            let mixed = Rgb::from_u32(0x102030).mix(color, 128).to_u32();
+            assert_eq!(drawn(|canvas| canvas.blend(area, color, 128)), each(area, |_, _| mixed), "{area:?}");
+            let stretched = each(area, |x, y| {
+                let centre = |at: usize, to: usize, from: usize| ((at as f64 + 0.5) / to as f64 * from as f64) as usize;
+                colors[centre(y, height, 2) * 3 + centre(x, width, 3)].to_u32()
+            });
+            assert_eq!(drawn(|canvas| canvas.stretch(area, &colors, 3)), stretched, "{area:?}");
+        }
+        assert_eq!(drawn(|canvas| canvas.stretch(Area::within(7, 5), &[], 3)), drawn(|_| ()));
+        assert!(Canvas::new(&mut [0; 6], 2, 2).is_none());
+    }
+
+    #[cfg(feature = "embedded-graphics")]
+    #[test]
+    fn what_reaches_beyond_the_canvas_is_left_out() {
+        use embedded_graphics::pixelcolor::Rgb888;
+        use embedded_graphics::prelude::*;
+        use embedded_graphics::primitives::{Line, PrimitiveStyle, Rectangle};
+
+        let corner = Rectangle::new(Point::new(-2, -3), Size::new(5, 5));
+        let corner = corner.into_styled(PrimitiveStyle::with_fill(Rgb888::RED));
+        let pixels = drawn(|canvas| corner.draw(canvas).expect("it cannot fail"));
+        assert_eq!(pixels, each(Area { left: 0, top: 0, width: 3, height: 2 }, |_, _| 0xFF_0000));
+        let line = Line::new(Point::new(-9, 2), Point::new(90, 2));
+        let line = line.into_styled(PrimitiveStyle::with_stroke(Rgb888::RED, 1));
+        let pixels = drawn(|canvas| line.draw(canvas).expect("it cannot fail"));
+        assert_eq!(pixels, each(Area { left: 0, top: 2, width: 7, height: 1 }, |_, _| 0xFF_0000));
+    }
+}
