@@ -1,6 +1,8 @@
 //! The program as its user meets it: what it writes, what it says, and how it ends.
 #![cfg(feature = "cli")]
 
+#[path = "cli/documents.rs"]
+mod documents;
 mod support;
 
 use std::ffi::OsStr;
@@ -472,16 +474,114 @@ fn a_film_shows_the_frames_of_the_row_of_pictures() {
     }
 }
 
+/// Films of every shipped scene, with a budget besides, drawn by 1, 2, 3 and 7 threads: the same bytes. Among them are fog,
+/// textures, and palettes that fade: what one thread has of a frame is in no other's.
 #[test]
-fn a_film_is_the_same_whatever_the_number_of_threads() {
+fn films_are_the_same_whatever_the_number_of_threads() {
+    const FRAMES: &str = "9";
+    let looks: Vec<(&str, &[&str])> = shipped::ALL
+        .iter()
+        .map(|scene| (scene.name, &[][..]))
+        .chain(["torus", "fog", "rgb"].map(|name| (name, &["--max-error", "4"][..])))
+        .collect();
+    let mut tried = Tried::new("films_are_the_same_whatever_the_number_of_threads", 3 * looks.len() as u64);
+    let (mut fades, mut textures, mut fogs) = (0, 0, 0);
+    for (name, look) in looks {
+        let directory = directory();
+        let [one, more @ ..] = ["1", "2", "3", "7"].map(|threads| {
+            let words =
+                [&[name, "-o", "x.gif", "--frames", FRAMES, "--scale", "1", "--threads", threads], look].concat();
+            let (_, film) = film(&directory, &words);
+            (film, read(&directory, "x.gif"))
+        });
+        for (threads, (_, bytes)) in ["2", "3", "7"].into_iter().zip(more) {
+            assert!(bytes == one.1, "{name} {look:?}: {threads} threads draw another film than one");
+            tried.add(1);
+        }
+        let scene = shipped::by_name(name).expect("shipped").load().expect("a scene").scene;
+        fades += u32::from(scene.palette_animation.is_some() && one.0.images.iter().any(|image| image.has_palette));
+        fogs += u32::from(scene.fog.is_some());
+        let textured = |object: &mode13h::scene::Object| object.materials.iter().any(|m| m.texture.is_some());
+        textures += u32::from(scene.objects().iter().any(textured));
+    }
+    assert!(fades >= 1 && fogs >= 2 && textures >= 1, "{fades} fade, {textures} have textures, {fogs} fog");
+}
+
+/// One film long enough that each thread draws many frames.
+#[test]
+fn a_long_film_is_the_same_whatever_the_number_of_threads() {
     let directory = directory();
-    let films = ["1", "2", "7"].map(|threads| {
-        let words = ["torus", "-o", "x.gif", "--frames", "61", "--scale", "1", "--threads", threads];
-        let (_, film) = film(&directory, &words);
-        assert_eq!(film.images.len(), 61);
+    let films = ["1", "7"].map(|threads| {
+        let words = ["fade", "-o", "x.gif", "--frames", "61", "--scale", "1", "--threads", threads];
+        film(&directory, &words);
         read(&directory, "x.gif")
     });
-    assert!(films.iter().all(|film| *film == films[0]));
+    assert!(films[0] == films[1]);
+}
+
+/// The most memory, in KiB, that the program has held while it wrote a film.
+#[cfg(target_os = "linux")]
+fn peak_of_a_film(frames: u32) -> u64 {
+    let directory = directory();
+    // Round it the camera goes: a small picture that changes.
+    let words = ["render", "cube", "-o", "x.gif", "--scale", "1", "--threads", "2", "--frames", &frames.to_string()];
+    let mut child = program(&directory).args(words).stdout(Stdio::null()).spawn().expect("started");
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0;
+    while child.try_wait().expect("a child").is_none() {
+        // Of one that has just ended there is none. It never falls, so the last one read is that of the whole film, but for
+        // the last moments.
+        let status = fs::read_to_string(&status).unwrap_or_default();
+        let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().split(' ').next()?.parse().ok());
+        peak = most.unwrap_or(0).max(peak);
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(child.wait().expect("a child").success());
+    // At 35 a second: what follows itself without a change is one image, and stays as long.
+    assert_eq!(hundredths_of(&read(&directory, "x.gif")), (100 * u64::from(frames)).div_ceil(35), "the film's length");
+    peak
+}
+
+/// How long a film is, in 1/100 s, read image by image.
+#[cfg(target_os = "linux")]
+fn hundredths_of(file: &[u8]) -> u64 {
+    let mut options = gif::DecodeOptions::new();
+    options.skip_frame_decoding(true);
+    let mut decoder = options.read_info(Cursor::new(file)).expect("a GIF");
+    let mut sum = 0;
+    while let Some(image) = decoder.next_frame_info().expect("an image") {
+        sum += u64::from(image.delay);
+    }
+    sum
+}
+
+/// A film of any length takes as much memory as a short one: the frames that wait are as many, 32 a thread, of 64,000 bytes
+/// and as much again in the making. So many frames more as are compared here would take ten times that.
+#[cfg(target_os = "linux")]
+fn films_of(tried: &mut Tried, frames: u32) {
+    const MIB: u64 = 1024;
+    let (short, long) = (peak_of_a_film(200), peak_of_a_film(frames));
+    tried.worst("MiB for the short film", short as f64 / 1024.0);
+    tried.worst("MiB for the long film", long as f64 / 1024.0);
+    assert!(short > MIB, "{short} KiB were read");
+    // The allocator keeps some of what was given back.
+    assert!(long <= short + 4 * MIB, "{short} KiB for 200 frames, {long} KiB for {frames}");
+    tried.add(frames.into());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_film_of_any_length_takes_as_much_memory() {
+    let mut tried = Tried::new("a_film_of_any_length_takes_as_much_memory", 2_000);
+    films_of(&mut tried, 2_000);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+#[ignore = "the long run: 100,000 frames"]
+fn film_long_of_a_hundred_thousand_frames() {
+    let mut tried = Tried::new("film_long_of_a_hundred_thousand_frames", 100_000);
+    films_of(&mut tried, 100_000);
 }
 
 /// The frames of an animated PNG as they are shown, in colours.

@@ -1,6 +1,8 @@
 //! `mode13h cost`, as its user meets it, and the study it makes.
 #![cfg(feature = "cli")]
 
+mod support;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::process::{Command, Output};
@@ -13,6 +15,7 @@ use mode13h::mesh::shapes;
 use mode13h::render::{Renderer, Rung};
 use mode13h::scene::{Object, Scene};
 use serde_json::Value;
+use support::tried::is_here;
 use tempfile::TempDir;
 
 fn program(directory: &TempDir) -> Command {
@@ -300,7 +303,7 @@ fn an_interrupted_study_leaves_nothing_behind() {
 /// Where valgrind is: each rung's instructions, and the times with the kernel that they were counted of.
 #[test]
 fn instructions_are_counted_where_valgrind_is() {
-    if Command::new("valgrind").arg("--version").output().is_err() {
+    if !is_here("valgrind", Command::new("valgrind").arg("--version").output().is_ok()) {
         return;
     }
     let directory = directory();

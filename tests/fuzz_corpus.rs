@@ -2,7 +2,7 @@
 //! targets check; the same with each file cut short, repeated and damaged.
 //!
 //! The fuzzers themselves are run by `.ci/fuzz_long`.
-#![cfg(all(feature = "obj", feature = "png", feature = "image", feature = "scene-files"))]
+#![cfg(all(feature = "obj", feature = "png", feature = "gif", feature = "image", feature = "scene-files"))]
 
 #[path = "fuzz_corpus/counted.rs"]
 mod counted;
@@ -41,7 +41,7 @@ fn check(check: fn(&[u8]), of: &Path, bytes: &[u8]) {
 
 #[test]
 fn f5_every_file_of_every_corpus() {
-    let mut tried = Tried::new("f5_every_file_of_every_corpus", 75);
+    let mut tried = Tried::new("f5_every_file_of_every_corpus", 95);
     for (name, property) in PROPERTIES {
         let files = corpus(name);
         assert!(files.len() >= 5, "{name} has {} files", files.len());

@@ -1,20 +1,21 @@
-//! T1, T2: rotation from absolute angles, and E1: nothing of a frame stays behind in the next.
+//! T1, T2: rotation from absolute angles, and E1 (`time/kept.rs`): nothing of a frame stays behind in the next.
 #![cfg(feature = "alloc")]
 
+#[path = "time/changes.rs"]
+mod changes;
+#[path = "time/kept.rs"]
+mod kept;
 mod support;
 
 use std::f64::consts::TAU;
 
-use mode13h::glam::{Mat3, Vec3};
+use mode13h::glam::Mat3;
 use mode13h::integer::{self, Angle};
-use mode13h::light::Light;
 use mode13h::mesh::shapes;
-use mode13h::palette::builtin;
 use mode13h::raster::Frame;
-use mode13h::render::{Renderer, Rung, VertexPath};
+use mode13h::render::{Renderer, VertexPath};
 use mode13h::scene::{Object, Scene, Shared};
 use mode13h::vga::Vga;
-use support::random::Random;
 use support::tried::Tried;
 
 fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
@@ -142,48 +143,4 @@ fn t2_any_step_is_defined() {
         tried.add(1);
     }
     tried.add(2);
-}
-
-#[test]
-fn e1_a_used_renderer_draws_as_a_fresh_one() {
-    let mut tried = Tried::new("e1_a_used_renderer_draws_as_a_fresh_one", 300);
-    let mut random = Random::named("e1");
-    let (mut used, mut other) = (Renderer::new(), Renderer::new());
-    let mut vga = [Vga::new(), Vga::new()];
-    let mut scene = support::scenes::framed(shapes::torus(16, 8));
-    while tried.more() {
-        // Whatever may change between two frames, in any order.
-        match random.within(0, 9) {
-            0 => scene.objects_mut()[0].rotate_y(random.unit()),
-            1 => scene.lights_mut()[0] = Light::sun([random.unit() as f32, 0.5, 1.0]),
-            2 => {
-                let name = random.one_of(&["grey", "copper", "materials-8x32"]);
-                scene.palette = builtin::by_name(name).map(|found| found.palette.clone());
-            }
-            3 => scene.background = random.within(0, 255) as u8,
-            4 => used.set_rung(random.one_of(&Rung::ALL)),
-            5 => {
-                let name = random.one_of(&["cube", "sphere", "wall", "cone"]);
-                scene = support::scenes::framed(shapes::by_name(name).expect("listed"));
-            }
-            6 => {
-                let mut object = Object::new(shapes::cube());
-                object.position = Vec3::new(0.5, 0.0, 0.0);
-                scene.add(object);
-            }
-            7 => vga[0].pixels_mut()[3000..9000].fill(random.within(0, 255) as u8),
-            8 => Frame::from(&mut vga[1]).clear(9),
-            _ => vga.swap(0, 1),
-        }
-        used.draw(&scene, &mut vga[0]).expect("a legal scene");
-        // Another renderer on the same machine, then the first on a second machine.
-        other.draw(&scene, &mut vga[1]).expect("a legal scene");
-        used.draw(&scene, &mut vga[1]).expect("a legal scene");
-        let mut fresh = Renderer::new();
-        fresh.set_rung(used.rung());
-        let expected = frame(&mut fresh, &scene);
-        assert_eq!(vga[0].pixels(), expected);
-        assert_eq!(vga[1].pixels(), expected);
-        assert_eq!(vga[0].palette(), vga[1].palette());
-    }
 }

@@ -7,7 +7,7 @@ mod support;
 use mode13h::span::Kernel;
 use mode13h::verify::{self, Frames, Group};
 use support::random::seed;
-use support::tried::Tried;
+use support::tried::{Tried, is_here};
 
 /// Every machine draws these frames. A change of the engine's bytes belongs into CHANGELOG.md; it is
 /// written here and in `src/verify/frames.rs`.
@@ -43,6 +43,20 @@ fn the_same_seed_tries_the_same_cases() {
         assert_eq!(group(5), group(5));
         tried.add(1);
     }
+}
+
+/// Levels that this machine lacks are tried by no test; the line of `.ci/not_tried` names them.
+#[cfg(all(feature = "asm", feature = "simd", target_arch = "x86_64"))]
+#[test]
+fn levels_that_are_missing_are_said() {
+    let mut tried = Tried::new("levels_that_are_missing_are_said", 6);
+    let all = ["asm", "asm-unrolled", "simd-arrays", "simd-sse2", "simd-avx2", "simd-avx512"];
+    for name in all {
+        is_here(name, Kernel::by_name(name).is_ok());
+        tried.add(1);
+    }
+    let known = |kernel: &Kernel| all.contains(&kernel.name()) || ["portable", "simd"].contains(&kernel.name());
+    assert!(Kernel::available().all(|kernel| known(&kernel)), "a kernel that is not in this list");
 }
 
 #[cfg(feature = "cli")]

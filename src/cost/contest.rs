@@ -4,8 +4,10 @@
 //! runs while the processor is warm, or after the same other one. A way that takes more than ten times as long as one
 //! before it sits out rounds, up to three of four: what waits for it would have few rounds. Nothing is subtracted. Every frame is drawn:
 //! that nothing has changed since the last, which would leave it as it is, is looked for by no renderer here
-//! ([`Effect::Transform`] is forced on).
+//! ([`Effect::Transform`] is forced on). So a budget's decisions are in its time, also of an object that stands still.
 
+use alloc::borrow::Cow;
+use alloc::format;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -58,6 +60,7 @@ impl Samples {
         let mut text = String::from("round,order,kind,name,frames,ns\n");
         for Sample { round, order, way, nanoseconds } in &self.list {
             let (kind, name) = &self.ways[*way];
+            let (kind, name) = (cell(kind), cell(name));
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{round},{order},{kind},{name},{},{nanoseconds:.0}", self.frames);
         }
@@ -77,6 +80,12 @@ impl Samples {
     pub(super) fn rounds(&self) -> usize {
         self.list.last().map_or(0, |sample| sample.round + 1)
     }
+}
+
+/// A cell of comma-separated values: a text that holds a comma stands in quotation marks (RFC 4180). No name holds one of
+/// these.
+fn cell(text: &str) -> Cow<'_, str> {
+    if text.contains(',') { Cow::Owned(format!("\"{text}\"")) } else { Cow::Borrowed(text) }
 }
 
 /// What drawing all frames comes to, whatever the time.
@@ -236,7 +245,33 @@ mod tests {
     use alloc::collections::BTreeSet;
 
     use super::*;
+    use crate::cost::Aspect;
     use crate::mesh::shapes;
+
+    #[test]
+    fn a_name_with_a_comma_is_one_cell() {
+        let sample = Sample { round: 3, order: 1, way: 0, nanoseconds: 70.4 };
+        let ways = vec![(Aspect::PortableRung.name(), String::from("flat"))];
+        let samples = Samples { ways, frames: 2, list: vec![sample] };
+        assert_eq!(samples.to_csv().lines().nth(1), Some("3,1,\"rung, portable kernel\",flat,2,70"));
+    }
+
+    /// Of a scene in which nothing moves every frame takes the vertices and, by a budget, the decisions.
+    #[test]
+    fn decisions_of_a_budget_are_made_in_every_frame() {
+        let mut scene = Scene::showing(shapes::torus(12, 6));
+        scene.add(crate::scene::Object::new(shapes::sphere(8, 5)));
+        let mut vga = Vga::new();
+        let mut decided = |mut renderer: Renderer| {
+            [(); 3].map(|()| renderer.draw(&scene, &mut vga).map(|stats| (stats.redrawn, stats.decided)))
+        };
+        let timed = decided(always_drawing(Way::budget(4.0).apply(Renderer::new())));
+        assert_eq!(timed, [(); 3].map(|()| Ok((true, 2))));
+        let kept = decided(Way::budget(4.0).apply(Renderer::new()));
+        assert_eq!(kept, [Ok((true, 2)), Ok((false, 0)), Ok((false, 0))]);
+        let without = decided(always_drawing(Way::rung(Rung::Phong).apply(Renderer::new())));
+        assert_eq!(without, [(); 3].map(|()| Ok((true, 0))));
+    }
 
     #[test]
     fn every_way_draws_every_frame_in_every_round() {

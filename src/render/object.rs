@@ -196,8 +196,11 @@ impl ObjectState {
         if !plan.is_on(Effect::Transform) && self.made_by == Some(on) {
             return false;
         }
-        // Made again by force they are what they were, and so is what was decided on.
-        let changed = self.stale || self.made_by != Some(on);
+        // Made again by force they are what they were. What was decided on is decided again, too, as it would be of an
+        // object that moves: force is there to do, and to measure, all the work.
+        let changed = self.stale
+            || self.made_by != Some(on)
+            || matches!(plan.decision(Effect::Transform).why, Why::Forced | Why::NotKept);
         (self.made_by, self.stale) = (Some(on), false);
         let Some(source) = &self.source else { return false };
         self.paints.clear();
@@ -290,6 +293,7 @@ impl ObjectState {
                 kernel,
             };
             if changed {
+                stats.decided += 1;
                 self.budget.renew(max_error, &lit, &mut self.decided);
             }
             self.budget.mark(&lit, &mut self.lit, &self.extras);

@@ -24,6 +24,8 @@ pub struct Stats {
     pub redrawn: bool,
     /// Objects whose vertices are last frame's.
     pub kept: u64,
+    /// Objects whose triangles an error budget was shared out among anew.
+    pub decided: u64,
     /// Bytes allocated for this frame.
     pub allocated: u64,
     /// Vertices transformed.
@@ -81,6 +83,7 @@ impl Stats {
             hidden_surfaces,
             redrawn: true,
             kept: 0,
+            decided: 0,
             allocated: 0,
             vertices: 0,
             lit: 0,

@@ -7,22 +7,25 @@ use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 use std::str::FromStr;
 
-use mode13h::export::{MAX_SIDE, Scale};
+use mode13h::export::{FrameRate, GifWriter, MAX_SIDE, Picture, PixelShape, Scale};
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::file::{self, FORMATS, Format, PaletteError, Place};
-use mode13h::palette::{Palette, builtin};
+use mode13h::palette::{Palette, Rgb, builtin};
+use mode13h::record::{Record, RecordErrorKind};
 use mode13h::render::{Renderer, Rung};
 use mode13h::scene::Scene;
 use mode13h::scene::file::{MOST_TRIANGLES, SceneErrorKind};
 use mode13h::span::Kernel;
+use mode13h::texture::{self, Texture};
+use mode13h::verify;
 use mode13h::vga::Vga;
 
 /// A parser's property: its name, which is that of its corpus and of its fuzz target, and the check.
 pub type Property = (&'static str, fn(&[u8]));
 
-pub const PROPERTIES: [Property; 8] = [
+pub const PROPERTIES: [Property; 11] = [
     ("obj", obj),
     ("mtl", mtl),
     ("palette_jasc", palette_jasc),
@@ -31,6 +34,9 @@ pub const PROPERTIES: [Property; 8] = [
     ("palette_binary", palette_binary),
     ("scene", scene),
     ("words", words),
+    ("record", record),
+    ("texture", texture),
+    ("gif", gif),
 ];
 
 /// Stands alone on a line between an OBJ file and the MTL file that it names, in one input.
@@ -377,6 +383,113 @@ pub fn words(bytes: &[u8]) {
     if let Some(format) = Format::of_file_name(&words) {
         let extension = words.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         assert!(format.extensions.contains(&extension.as_str()), "{words}");
+    }
+}
+
+/// A frame's record. What was read is written, and that is read as the same; a small one is drawn every way there is.
+pub fn record(bytes: &[u8]) {
+    match Record::read(bytes) {
+        Ok(record) => {
+            let mut file = Vec::new();
+            record.write(&mut file).expect("a vector takes all");
+            assert_eq!(Record::read(&file[..]).expect("what was written is well formed"), record);
+            if let Some(clip) = record.clip() {
+                assert!(clip.x1 <= record.width() && clip.y1 <= record.height());
+            }
+            let pixels = u64::from(record.width()) * u64::from(record.height());
+            if record.triangles.len() <= 8 && pixels <= 4096 {
+                let replay = verify::replay(&record);
+                assert!(!replay.comparisons.is_empty());
+                // Where triangles have no exact cover, methods that agree on others may differ.
+                let exact = record.triangles.iter().all(|(_, shading)| shading.has_exact_cover());
+                assert!(!exact || replay.failures.is_empty(), "{:?}", replay.failures);
+            }
+        }
+        Err(error) => {
+            assert_one_line(&error.to_string());
+            let lines = bytes.split(|byte| *byte == b'\n').count() as u64;
+            // One more where a line is missing.
+            assert!(error.line <= lines + 1, "{error}: of {lines} lines");
+            assert!(!matches!(error.kind, RecordErrorKind::Read(_)), "a slice can be read: {error}");
+        }
+    }
+}
+
+/// A picture for a texture.
+pub fn texture(bytes: &[u8]) {
+    match texture::decode(io::Cursor::new(bytes)) {
+        Ok(texture) => {
+            let is_side = |side: u32| side.is_power_of_two() && side <= Texture::MAX_SIDE;
+            assert!(is_side(texture.width()) && is_side(texture.height()));
+            assert_eq!(texture.texels().len() as u32, texture.width() * texture.height());
+            assert_eq!(texture.histogram().iter().sum::<u32>(), texture.width() * texture.height());
+        }
+        Err(error) => assert_one_line(&error.to_string()),
+    }
+}
+
+/// A film made of the bytes: its size, its rate, and frame by frame one of four palettes and the pixels. Read again, it shows
+/// the colours that were given, each as long as its rate says.
+pub fn gif(bytes: &[u8]) {
+    let [width, height, rate, pixels @ ..] = bytes else { return };
+    let [width, height] = [width, height].map(|side| 1 + usize::from(*side) % 12);
+    let rate = FrameRate::new(1.0 + f64::from(*rate) % 50.0).expect("1 to 50 a second");
+    let colors = |number: u8| -> [Rgb; 256] {
+        core::array::from_fn(|i| {
+            let i = i as u8;
+            // In two of them neighbours have one colour.
+            let i = if number.is_multiple_of(2) { i } else { i & !1 };
+            Rgb::new(i.wrapping_mul(number | 1), i.rotate_left(u32::from(number)), i)
+        })
+    };
+    let palettes = [0, 1, 2, 3].map(colors);
+    let frames: Vec<(&[Rgb; 256], &[u8])> = pixels
+        .chunks_exact(1 + width * height)
+        .take(40)
+        .filter_map(|frame| frame.split_first().map(|(palette, pixels)| (&palettes[usize::from(palette % 4)], pixels)))
+        .collect();
+    if frames.is_empty() {
+        return;
+    }
+    let mut film = GifWriter::new(Vec::new(), Scale::One, rate);
+    for (palette, pixels) in &frames {
+        let picture = Picture { pixels, width, height, pitch: width, palette, shape: PixelShape::SQUARE };
+        film.add(&picture).expect("a legal picture");
+    }
+    let (file, _) = film.finish().expect("a vector takes all");
+    // What is to be seen, and until when, in hundredths of a second; what stays is one.
+    let mut expected: Vec<(Vec<Rgb>, u64)> = Vec::new();
+    for (number, (palette, pixels)) in frames.iter().enumerate() {
+        let ends = (100.0 * (number + 1) as f64 / rate.frames_per_second()).ceil() as u64;
+        let shown = pixels.iter().map(|pixel| palette[usize::from(*pixel)]).collect();
+        put(&mut expected, shown, ends);
+    }
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::Indexed);
+    options.check_frame_consistency(true);
+    let mut decoder = options.read_info(&file[..]).expect("a GIF");
+    let table = |table: &[u8]| -> Vec<Rgb> { table.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect() };
+    let of_film = table(decoder.global_palette().expect("a palette of the film"));
+    let (mut canvas, mut ends) = (vec![Rgb::BLACK; width * height], 0);
+    let mut shown: Vec<(Vec<Rgb>, u64)> = Vec::new();
+    while let Some(frame) = decoder.read_next_frame().expect("an image") {
+        let own = frame.palette.as_deref().map(table);
+        let (left, top, columns) = (usize::from(frame.left), usize::from(frame.top), usize::from(frame.width));
+        for (at, index) in frame.buffer.iter().enumerate().filter(|(_, index)| Some(**index) != frame.transparent) {
+            canvas[(top + at / columns) * width + left + at % columns] =
+                own.as_ref().unwrap_or(&of_film)[usize::from(*index)];
+        }
+        assert_eq!(frame.dispose, gif::DisposalMethod::Keep);
+        ends += u64::from(frame.delay);
+        put(&mut shown, canvas.clone(), ends);
+    }
+    assert!(shown == expected, "{width} × {height}, {} frames a second", rate.frames_per_second());
+}
+
+fn put(list: &mut Vec<(Vec<Rgb>, u64)>, shown: Vec<Rgb>, until: u64) {
+    match list.last_mut() {
+        Some((last, ends)) if *last == shown => *ends = until,
+        _ => list.push((shown, until)),
     }
 }
 

@@ -24,6 +24,11 @@ impl Random {
         )
     }
 
+    /// From a number that another one gave: the same ever after, and nothing is printed.
+    pub fn again(number: u64) -> Self {
+        Self(number)
+    }
+
     pub fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

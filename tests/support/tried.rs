@@ -28,6 +28,11 @@ impl Tried {
         self.stated
     }
 
+    /// How many were tried so far.
+    pub fn cases(&self) -> u64 {
+        self.cases
+    }
+
     /// `cases` more have been tried.
     pub fn add(&mut self, cases: u64) {
         self.cases += cases;
@@ -80,6 +85,21 @@ impl Drop for Tried {
         assert!(self.cases > 0, "{}: no case was tried", self.test);
         assert!(self.cases >= self.stated, "{}: {} cases tried, {} stated", self.test, self.cases, self.stated);
     }
+}
+
+/// Whether a level or a tool is there, as the caller has found out. What is not is named in the line of `.ci/not_tried`: a
+/// test that then leaves something out is not silent.
+pub fn is_here(what: &str, here: bool) -> bool {
+    let missing = Path::new(env!("CARGO_TARGET_TMPDIR")).join("not_tried");
+    let file = missing.join(what);
+    if here {
+        // It may have been missing before.
+        let _ = fs::remove_file(&file);
+    } else {
+        println!("not tried here: {what}");
+        fs::create_dir_all(&missing).and_then(|()| fs::write(&file, "")).expect("a file in the target directory");
+    }
+    here
 }
 
 /// A count in full; anything else to four places, or to two digits if it is small.
