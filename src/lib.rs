@@ -16,15 +16,9 @@
 //! | [`mesh`] | vertices, faces, normals; shapes; OBJ models | `alloc` |
 //! | [`light`] | suns and lamps, materials, the intensity at a point | `alloc` |
 //! | [`scene`] | objects, camera, lights, fog, motion, what is asked for | `alloc` |
-//! | [`truth`] | what a picture should be: the same scene in f64, slow and plain | `alloc` |
 //! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
-//! | [`cost`] | what a renderer shows, face and shade of every pixel, to be measured against the truth | `alloc` |
-//! | [`explain`] | why a pixel has its byte; a row's intensity and slope | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
-//! | `show` | hard cases as pictures: the right way beside the fault | `png`, `embedded-graphics` |
-//! | [`record`] | a frame's triangles in a file, to be replayed | `std` |
-//! | [`verify`] | the hard cases on this machine; a recorded frame through every kernel and method | `std` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
 //!
 #![cfg_attr(feature = "png", doc = "```no_run")]
@@ -76,9 +70,7 @@ pub mod span;
 pub mod vga;
 
 #[cfg(feature = "alloc")]
-pub mod cost;
-#[cfg(feature = "alloc")]
-pub mod explain;
+pub mod hooks;
 #[cfg(feature = "alloc")]
 pub mod light;
 #[cfg(feature = "alloc")]
@@ -92,17 +84,9 @@ pub mod scene;
 #[cfg(feature = "alloc")]
 pub mod texture;
 #[cfg(feature = "alloc")]
-pub mod truth;
-#[cfg(feature = "alloc")]
 mod view;
 
 #[cfg(feature = "std")]
 pub mod export;
-#[cfg(feature = "std")]
-pub mod record;
-#[cfg(all(feature = "png", feature = "embedded-graphics"))]
-pub mod show;
-#[cfg(feature = "std")]
-pub mod verify;
 #[cfg(feature = "window")]
 pub mod window;

@@ -15,7 +15,7 @@
 mod decide;
 mod effect;
 mod hidden;
-mod why;
+pub(crate) mod why;
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -25,7 +25,6 @@ pub use why::Why;
 
 pub(crate) use decide::{Inputs, LEAST_TESSELLATION, Since, decide};
 pub(crate) use hidden::far_to_near;
-pub(crate) use why::name_of;
 
 use crate::raster::Rect;
 use crate::scene::{HiddenSurfaces, Rung, Scene};

@@ -244,7 +244,8 @@ impl Why {
 }
 
 /// The object's name, or its place.
-pub(crate) fn name_of(scene: &Scene, object: usize) -> String {
+#[must_use]
+pub fn name_of(scene: &Scene, object: usize) -> String {
     match scene.objects().get(object).map(|Object { name, .. }| name) {
         Some(name) if !name.is_empty() => name.clone(),
         _ => format!("object {object}"),

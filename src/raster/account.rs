@@ -34,7 +34,6 @@ impl Ratio {
 
 /// How a value runs along the row to a pixel.
 #[derive(Clone, Copy, PartialEq, Debug)]
-#[non_exhaustive]
 pub enum Way {
     /// One byte for the whole triangle.
     Flat(u8),
@@ -107,7 +106,7 @@ pub struct Account {
 impl Account {
     /// Of three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order of its
     /// vertices, at a pixel of `row`.
-    pub(crate) fn new(triangle: &Ordered, values: [i64; 3], shading: Shading, row: &Row, x: i32) -> Self {
+    pub fn new(triangle: &Ordered, values: [i64; 3], shading: Shading, row: &Row, x: i32) -> Self {
         let y = row.y;
         let plane = ShadePlane::of_values(triangle, values);
         let linear = Ratio { numerator: plane.numerator(x, y).into(), denominator: i128::from(plane.area().get()) };
@@ -182,14 +181,14 @@ fn on_face(plane: &HyperbolicPlane, x: i32, y: i32) -> Ratio {
 }
 
 /// The row of a pixel that a triangle draws in a frame of so many columns: by exact cover, or as `shading` covers.
-pub(crate) fn row_of(triangle: &Ordered, shading: Option<Shading>, width: u32, x: u32, y: u32) -> Option<Row> {
+pub fn row_of(triangle: &Ordered, shading: Option<Shading>, width: u32, x: u32, y: u32) -> Option<Row> {
     let mut found = None;
     each_row(triangle, shading, width, Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 }, |row| found = Some(row));
     found
 }
 
 /// All rows that it draws in a frame of so many columns and rows.
-pub(crate) fn rows_of(triangle: &Ordered, shading: Option<Shading>, width: u32, height: u32) -> Vec<Row> {
+pub fn rows_of(triangle: &Ordered, shading: Option<Shading>, width: u32, height: u32) -> Vec<Row> {
     let mut rows = Vec::new();
     each_row(triangle, shading, width, Rect { x0: 0, y0: 0, x1: width, y1: height }, |row| rows.push(row));
     rows

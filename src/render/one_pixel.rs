@@ -47,25 +47,25 @@ pub enum ShadedBy {
 
 /// What the stages of a face make of a pixel.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) struct Bytes {
-    pub(crate) shaded_by: ShadedBy,
-    pub(crate) exact_cover: bool,
+pub struct Bytes {
+    pub shaded_by: ShadedBy,
+    pub exact_cover: bool,
     /// One shade three times, or three channels.
-    pub(crate) shades: [u8; 3],
-    pub(crate) channels: bool,
-    pub(crate) texel: Option<u8>,
+    pub shades: [u8; 3],
+    pub channels: bool,
+    pub texel: Option<u8>,
     /// The level of its image that the texel is of; `None` of an image without levels.
-    pub(crate) level: Option<u8>,
+    pub level: Option<u8>,
     /// The threshold, and the byte.
-    pub(crate) dithered: Option<(u8, u8)>,
+    pub dithered: Option<(u8, u8)>,
     /// Of channels, each with the texel's.
-    pub(crate) textured: Option<[u8; 3]>,
-    pub(crate) mixed: Option<u8>,
+    pub textured: Option<[u8; 3]>,
+    pub mixed: Option<u8>,
     /// The level, and the byte.
-    pub(crate) fogged: Option<(u8, u8)>,
+    pub fogged: Option<(u8, u8)>,
     /// What is behind, and the byte.
-    pub(crate) blended: Option<(u8, u8)>,
-    pub(crate) byte: u8,
+    pub blended: Option<(u8, u8)>,
+    pub byte: u8,
 }
 
 /// A frame of which one pixel is drawn.

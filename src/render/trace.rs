@@ -20,26 +20,25 @@ use crate::scene::Scene;
 
 /// A triangle that covers the pixel, or whose edge runs through its centre.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Met {
-    pub(crate) object: usize,
+pub struct Met {
+    pub object: usize,
     /// Its place in the mesh, or in what splitting made of it; `None` where that is not known.
-    pub(crate) place: Option<usize>,
-    pub(crate) vertices: [Vertex; 3],
-    pub(crate) shading: Shading,
+    pub place: Option<usize>,
+    pub vertices: [Vertex; 3],
+    pub shading: Shading,
     /// Of a face with effects.
     pub(super) manner: Manner,
     /// Of a face with effects.
-    pub(crate) attributes: Option<[Attributes; 3]>,
+    pub attributes: Option<[Attributes; 3]>,
     pub(super) surface: Option<u16>,
-    pub(crate) depth: u32,
-    pub(crate) fate: Fate,
+    pub depth: u32,
+    pub fate: Fate,
     /// Of what is seen, what its stages make.
-    pub(crate) bytes: Option<Bytes>,
+    pub bytes: Option<Bytes>,
 }
 
 /// What becomes of a triangle at a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[non_exhaustive]
 pub enum Fate {
     /// It is seen.
     Seen,
@@ -56,11 +55,11 @@ pub enum Fate {
 
 /// Everything about a pixel.
 #[derive(Debug)]
-pub(crate) struct Trace {
-    pub(crate) stats: Stats,
+pub struct Trace {
+    pub stats: Stats,
     /// In the order of drawing; those that shine through last.
-    pub(crate) met: Vec<Met>,
-    pub(crate) byte: u8,
+    pub met: Vec<Met>,
+    pub byte: u8,
 }
 
 /// Keeps the faces that meet the pixel.

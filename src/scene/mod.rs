@@ -25,7 +25,7 @@ mod fog;
 pub(crate) mod framing;
 mod motion;
 mod names;
-mod object;
+pub(crate) mod object;
 #[cfg(feature = "scene-files")]
 pub mod shipped;
 mod wishes;
@@ -45,8 +45,6 @@ pub use fog::Fog;
 pub use motion::{Motion, Moving, Path};
 pub(crate) use names::named;
 pub(crate) use object::matrix_product;
-#[cfg(feature = "std")]
-pub(crate) use object::turn;
 pub use object::{Object, UpAxis};
 pub use wishes::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung, Wishes};
 

@@ -13,7 +13,6 @@ use crate::mesh::normals::face_normal;
 
 /// Which axis of a mesh points up.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-#[non_exhaustive]
 pub enum UpAxis {
     /// y, as in the scene.
     #[default]
@@ -262,7 +261,8 @@ fn is_faceted(mesh: &Mesh) -> bool {
 }
 
 /// The turn of angles about x, y and z, by rows: z first, then y, then x.
-pub(crate) fn turn(angles: [f64; 3]) -> [[f64; 3]; 3] {
+#[must_use]
+pub fn turn(angles: [f64; 3]) -> [[f64; 3]; 3] {
     let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
     let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
     let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];

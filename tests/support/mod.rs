@@ -1,5 +1,5 @@
 //! What several test files share.
-#![expect(dead_code, unreachable_pub, reason = "each test file is a program of its own and uses its part")]
+#![expect(dead_code, unreachable_pub, reason = "each test program uses its part")]
 
 pub mod display;
 #[cfg(feature = "gif")]
@@ -18,5 +18,16 @@ pub mod property;
 pub mod random;
 #[cfg(feature = "alloc")]
 pub mod scenes;
+#[cfg(feature = "scene-files")]
+pub mod shipped;
+#[cfg(all(feature = "alloc", not(feature = "scene-files")))]
+pub mod shipped {
+    pub fn scenes() -> impl Iterator<Item = (String, mode13h::scene::Scene)> {
+        core::iter::empty()
+    }
+}
 pub mod triangles;
 pub mod tried;
+pub mod workspace;
+
+pub use workspace::root;

@@ -99,6 +99,11 @@ pub struct Pixel {
     pub byte: u8,
 }
 
+/// `Shading::Float`, which is there with `alloc` alone.
+fn is_float(shading: Shading) -> bool {
+    shading.name() == "float"
+}
+
 /// How far a byte of a shading may be from its exact shade in a frame of so many columns, in 1/256 shade, as n / d; `None` where
 /// nothing is promised.
 pub fn bound(shading: Shading, width: i128) -> Option<(i128, i128)> {
@@ -110,8 +115,7 @@ pub fn bound(shading: Shading, width: i128) -> Option<(i128, i128)> {
         Shading::Gouraud1616 => Some((128 * 256 + width, 256)),
         Shading::GouraudHyperbolic => Some((128, 1)),
         // Less than 1/8,192 beside the half.
-        #[cfg(feature = "alloc")]
-        Shading::Float => Some((128 * 32 + 1, 32)),
+        _ if is_float(shading) => Some((128 * 32 + 1, 32)),
         _ => None,
     }
 }
@@ -160,8 +164,7 @@ impl Shades {
         match self.shading {
             // Weighted by the depths, which are 1/w.
             Shading::GouraudHyperbolic => self.on_face(p),
-            #[cfg(feature = "alloc")]
-            Shading::Float => self.on_face(p),
+            _ if is_float(self.shading) => self.on_face(p),
             _ => interpolate(self.triangle, self.values, p),
         }
     }
@@ -175,9 +178,6 @@ impl Shades {
     /// `last`; with dither, of this threshold.
     pub fn byte(&self, (first, last): (i32, i32), x: i32, y: i32, threshold: Option<u8>) -> u8 {
         let half = i128::from(threshold.unwrap_or(128));
-        // Asked for by `Float` alone.
-        #[cfg(not(feature = "alloc"))]
-        let _ = last;
         let byte = match self.shading {
             Shading::Flat(byte) => byte.into(),
             Shading::GouraudPeriod => (self.period(x, y) + i128::from(threshold.unwrap_or(0))) >> 8,
@@ -185,8 +185,7 @@ impl Shades {
                 let exact = self.exact(centre(x, y));
                 Ratio { n: exact.n + half * exact.d, d: 256 * exact.d }.floor()
             }
-            #[cfg(feature = "alloc")]
-            Shading::Float => {
+            _ if is_float(self.shading) => {
                 let shade = self.float(first, last, x, y);
                 match threshold {
                     // In f32, and then cut.
@@ -211,7 +210,6 @@ impl Shades {
     }
 
     /// shade/w and 1/w in f32, from the far end of the row.
-    #[cfg(feature = "alloc")]
     fn float(&self, first: i32, last: i32, x: i32, y: i32) -> f32 {
         let one = |i: usize| [0, 1, 2].map(|k| i128::from(k == i));
         let at = |values: [i128; 3], x: i32| interpolate(self.triangle, values, centre(x, y)).n;

@@ -93,26 +93,7 @@ pub fn random(random: &mut Random) -> Scene {
 
 /// Every scene under its name, those that are shipped too; together they call for every effect.
 pub fn all() -> Vec<(String, Scene)> {
-    small().into_iter().map(|(name, scene)| (name.to_string(), scene)).chain(shipped()).collect()
-}
-
-#[cfg(feature = "scene-files")]
-fn shipped() -> impl Iterator<Item = (String, Scene)> {
-    use mode13h::render::automatic;
-
-    mode13h::scene::shipped::ALL.iter().map(|shipped| {
-        let mut scene = shipped.load().expect("a scene that loads").scene;
-        if scene.wishes.auto_palette {
-            automatic(&scene).expect("a legal scene").apply(&mut scene);
-        }
-        scene.set_time(0.4 * scene.duration);
-        (format!("scene {}", shipped.name), scene)
-    })
-}
-
-#[cfg(not(feature = "scene-files"))]
-fn shipped() -> impl Iterator<Item = (String, Scene)> {
-    core::iter::empty()
+    small().into_iter().map(|(name, scene)| (name.to_string(), scene)).chain(super::shipped::scenes()).collect()
 }
 
 fn small() -> Vec<(&'static str, Scene)> {

@@ -1,0 +1,145 @@
+//! Instructions, counted by valgrind's callgrind: a figure without noise.
+//!
+//! The program runs itself under callgrind, with the same words and one more. There it draws each rung's frames in a
+//! call of [`draw_counted`], after it has drawn them once. Callgrind collects inside of that function only, and
+//! writes what it has collected before each call of [`rung_is_done`].
+
+use std::collections::BTreeMap;
+use std::hint::black_box;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs, process};
+
+use mode13h::plan::Effect;
+use mode13h::render::{Renderer, Rung};
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+use mode13h_lab::cost::Study;
+
+use crate::failure::Failure;
+use crate::output;
+
+/// The function that counts, as callgrind looks for it.
+const COUNTED: &str = "*draw_counted*";
+
+/// The function before which it writes what it has collected.
+const DONE: &str = "*rung_is_done*";
+
+/// Instructions of a frame, by rung.
+pub(super) struct Counts {
+    /// The kernel that ran, by the name that forces it.
+    pub(super) kernel: String,
+    of: BTreeMap<Rung, u64>,
+}
+
+impl Counts {
+    pub(super) fn write_into(&self, study: &mut Study) {
+        for row in &mut study.rungs {
+            row.instructions = self.of.get(&row.rung).copied();
+        }
+    }
+}
+
+/// Draws all frames by each rung, and says which kernel did: what callgrind looks at.
+pub(super) fn draw(frames: &[Scene], rungs: &[Rung], renderer: &dyn Fn() -> Renderer) -> Result<(), Failure> {
+    let mut vga = Vga::new();
+    let mut kernel = renderer().kernel();
+    for rung in rungs {
+        let mut renderer = renderer();
+        renderer.set_rung(*rung);
+        renderer.force(Effect::Transform, Some(true));
+        for scene in frames {
+            renderer.draw(scene, &mut vga).map_err(Failure::work)?;
+        }
+        draw_counted(frames, &mut renderer, &mut vga)?;
+        rung_is_done(rung);
+        kernel = renderer.kernel();
+    }
+    let level = if kernel.name() == "simd" { format!("simd-{}", kernel.level()) } else { kernel.name().to_string() };
+    output::print(&format!("{level}\n"))
+}
+
+#[inline(never)]
+fn draw_counted(frames: &[Scene], renderer: &mut Renderer, vga: &mut Vga) -> Result<(), Failure> {
+    for scene in frames {
+        black_box(renderer.draw(scene, vga).map_err(Failure::work)?);
+    }
+    Ok(())
+}
+
+#[inline(never)]
+fn rung_is_done(rung: &Rung) {
+    black_box(rung);
+}
+
+/// Counts the instructions of every rung, this program being run again with the words that it was run with.
+pub(super) fn count(rungs: &[Rung], frames: usize) -> Result<Counts, Failure> {
+    let directory = Temporary::new()?;
+    let program = env::current_exe().map_err(Failure::work)?;
+    let out = Command::new("valgrind")
+        .args(["--tool=callgrind", "--quiet", "--collect-atstart=no"])
+        .args([format!("--toggle-collect={COUNTED}"), format!("--dump-before={DONE}")])
+        .arg(format!("--callgrind-out-file={}", directory.0.join("counts").display()))
+        .arg(program)
+        .args(env::args_os().skip(1))
+        .arg("--counted")
+        .output();
+    let out = out.map_err(|error| match error.kind() {
+        ErrorKind::NotFound => Failure::work("--instructions needs valgrind, which is not there"),
+        _ => Failure::work(format!("valgrind: {error}")),
+    })?;
+    if !out.status.success() {
+        let said = String::from_utf8_lossy(&out.stderr);
+        let said = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it ended without a word");
+        return Err(Failure::work(format!("valgrind: {}", said.trim_start_matches("mode13h: "))));
+    }
+    let mut of = BTreeMap::new();
+    for (rung, number) in rungs.iter().zip(1..) {
+        // Numbered from 1.
+        let path = directory.0.join(format!("counts.{number}"));
+        let all = fs::read_to_string(&path).ok().and_then(|text| sum(&text));
+        let all =
+            all.ok_or_else(|| Failure::work("valgrind counted nothing: has the program been stripped of names?"))?;
+        of.insert(*rung, all / frames.max(1) as u64);
+    }
+    Ok(Counts { kernel: String::from_utf8_lossy(&out.stdout).trim().to_string(), of })
+}
+
+/// The instructions that a file of callgrind's comes to, if it has any.
+fn sum(text: &str) -> Option<u64> {
+    let of = |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.trim().parse().ok());
+    of("totals:").or_else(|| of("summary:")).filter(|sum| *sum > 0)
+}
+
+/// A directory that is removed when it is dropped.
+struct Temporary(PathBuf);
+
+impl Temporary {
+    fn new() -> Result<Temporary, Failure> {
+        let path = env::temp_dir().join(format!("mode13h-{}", process::id()));
+        fs::create_dir(&path).map_err(|error| Failure::work(format!("{}: {error}", path.display())))?;
+        Ok(Temporary(path))
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let directory: &Path = &self.0;
+        // What is left in the temporary directory hurts nobody.
+        let _ = fs::remove_dir_all(directory);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sum_is_read_where_callgrind_writes_it() {
+        assert_eq!(sum("events: Ir\nsummary: 12\n\nfn=(1) x\n3 4\n\ntotals: 12\n"), Some(12));
+        assert_eq!(sum("events: Ir\nsummary: 12\n"), Some(12));
+        assert_eq!(sum("totals: 0\n"), None);
+        assert_eq!(sum(""), None);
+    }
+}

@@ -1,0 +1,223 @@
+//! A study for programs.
+
+use std::collections::BTreeMap;
+
+use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, RungRow, Study, Verdict};
+use serde::Serialize;
+
+use crate::failure::Failure;
+
+#[derive(Serialize)]
+struct Json<'a> {
+    schema: u32,
+    input: &'a str,
+    host: Host<'a>,
+    kernel: &'a str,
+    frames: usize,
+    rounds: usize,
+    rungs: Vec<JsonRung>,
+    budget: Vec<JsonBudget>,
+    options: Vec<JsonOption<'a>>,
+    claims: Vec<JsonClaim<'a>>,
+    warnings: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Host<'a> {
+    processor: &'a str,
+    compiler: &'a str,
+    flags: &'a str,
+    clock: &'a str,
+    clock_step_ns: f64,
+}
+
+#[derive(Serialize)]
+struct JsonErrors {
+    max: f64,
+    mean: f64,
+    rms: f64,
+    off_by_one: f64,
+    rms_of_blocks: f64,
+}
+
+impl From<Errors> for JsonErrors {
+    fn from(errors: Errors) -> Self {
+        let Errors { max, mean, rms, off_by_one, rms_of_blocks } = errors;
+        Self { max, mean, rms, off_by_one, rms_of_blocks }
+    }
+}
+
+/// Where the time goes, in nanoseconds for a frame.
+#[derive(Serialize)]
+struct JsonSplit {
+    plan: f64,
+    vertices: f64,
+    setup: f64,
+    spans: f64,
+    scan_out: f64,
+}
+
+#[derive(Serialize)]
+struct JsonRung {
+    rung: &'static str,
+    ns_per_frame: f64,
+    ns_per_frame_quartiles: [f64; 2],
+    ns_per_pixel: f64,
+    ns_per_triangle: f64,
+    ratio: f64,
+    ratio_interval: [f64; 2],
+    split_ns: JsonSplit,
+    instructions_per_frame: Option<u64>,
+    error_gouraud: JsonErrors,
+    error_lit: JsonErrors,
+    error_palette: f64,
+    cover_errors: u64,
+    swim: f64,
+    efficient: bool,
+    as_fast_as: Vec<&'static str>,
+}
+
+#[derive(Serialize)]
+struct JsonBudget {
+    max_error: f64,
+    within: f64,
+    largest: f64,
+    rms: f64,
+    largest_patch: usize,
+    ns_per_frame: f64,
+    ns_per_frame_quartiles: [f64; 2],
+    best_single_rung: Option<&'static str>,
+    best_single_ns: Option<f64>,
+    ratio: Option<f64>,
+    ratio_interval: Option<[f64; 2]>,
+    triangles: BTreeMap<&'static str, u64>,
+}
+
+#[derive(Serialize)]
+struct JsonOption<'a> {
+    aspect: String,
+    name: &'a str,
+    ns_per_frame: f64,
+    ns_per_frame_quartiles: [f64; 2],
+    ratio: f64,
+    ratio_interval: [f64; 2],
+    error_gouraud_unrounded: JsonErrors,
+    cover_errors: u64,
+}
+
+#[derive(Serialize)]
+struct JsonClaim<'a> {
+    claim: &'a str,
+    measured: &'a str,
+    verdict: &'static str,
+}
+
+fn quartiles(time: &Nanoseconds) -> [f64; 2] {
+    [time.lower_quartile, time.upper_quartile]
+}
+
+fn interval((low, high): (f64, f64)) -> [f64; 2] {
+    [low, high]
+}
+
+impl From<&RungRow> for JsonRung {
+    fn from(row: &RungRow) -> Self {
+        let split = row.split;
+        Self {
+            rung: row.rung.name(),
+            ns_per_frame: row.per_frame.median,
+            ns_per_frame_quartiles: quartiles(&row.per_frame),
+            ns_per_pixel: row.per_pixel,
+            ns_per_triangle: row.per_triangle,
+            ratio: row.ratio,
+            ratio_interval: interval(row.ratio_interval),
+            split_ns: JsonSplit {
+                plan: split.plan,
+                vertices: split.vertices,
+                setup: split.setup,
+                spans: split.spans,
+                scan_out: split.scan_out,
+            },
+            instructions_per_frame: row.instructions,
+            error_gouraud: row.error_gouraud.into(),
+            error_lit: row.error_lit.into(),
+            error_palette: row.error_palette,
+            cover_errors: row.cover_errors,
+            swim: row.swim,
+            efficient: row.efficient,
+            as_fast_as: row.as_fast_as.iter().map(|rung| rung.name()).collect(),
+        }
+    }
+}
+
+impl From<&BudgetRow> for JsonBudget {
+    fn from(row: &BudgetRow) -> Self {
+        Self {
+            max_error: row.max_error,
+            within: row.within,
+            largest: row.largest,
+            rms: row.rms,
+            largest_patch: row.patch,
+            ns_per_frame: row.per_frame.median,
+            ns_per_frame_quartiles: quartiles(&row.per_frame),
+            best_single_rung: row.best_single_rung.map(|rung| rung.name()),
+            best_single_ns: row.best_single.map(|time| time.median),
+            ratio: row.ratio.map(|(ratio, _)| ratio),
+            ratio_interval: row.ratio.map(|(_, of)| interval(of)),
+            triangles: row.triangles.iter().map(|(rung, triangles)| (rung.name(), *triangles)).collect(),
+        }
+    }
+}
+
+impl<'a> From<&'a OptionRow> for JsonOption<'a> {
+    fn from(row: &'a OptionRow) -> Self {
+        let (ratio, of) = row.ratio;
+        Self {
+            aspect: row.aspect.to_string(),
+            name: &row.name,
+            ns_per_frame: row.per_frame.median,
+            ns_per_frame_quartiles: quartiles(&row.per_frame),
+            ratio,
+            ratio_interval: interval(of),
+            error_gouraud_unrounded: row.error.into(),
+            cover_errors: row.cover_errors,
+        }
+    }
+}
+
+impl<'a> From<&'a Claim> for JsonClaim<'a> {
+    fn from(claim: &'a Claim) -> Self {
+        let verdict = match claim.verdict {
+            Verdict::Holds => "holds",
+            Verdict::HoldsInPart => "holds in part",
+            Verdict::DoesNotHold => "does not hold",
+        };
+        Self { claim: &claim.claim, measured: &claim.measured, verdict }
+    }
+}
+
+/// The study as JSON, with a line end.
+pub(super) fn json(study: &Study, warnings: &[String]) -> Result<String, Failure> {
+    let host = &study.host;
+    let json = Json {
+        schema: 1,
+        input: &study.input,
+        host: Host {
+            processor: &host.processor,
+            compiler: &host.compiler,
+            flags: &host.flags,
+            clock: &host.clock,
+            clock_step_ns: host.clock_step,
+        },
+        kernel: &study.kernel,
+        frames: study.frames,
+        rounds: study.rounds,
+        rungs: study.rungs.iter().map(JsonRung::from).collect(),
+        budget: study.budget.iter().map(JsonBudget::from).collect(),
+        options: study.options.iter().map(JsonOption::from).collect(),
+        claims: study.claims.iter().map(JsonClaim::from).collect(),
+        warnings,
+    };
+    let text = serde_json::to_string_pretty(&json).map_err(Failure::work)?;
+    Ok(text + "\n")
+}

@@ -1,0 +1,183 @@
+//! `mode13h cost`: what accuracy costs in time.
+
+mod files;
+mod host;
+mod instructions;
+mod json;
+mod text;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use mode13h::render::Rung;
+use mode13h::scene::Scene;
+use mode13h::span::Kernel;
+use mode13h_lab::cost::{self, Settings, Step, Subject, report};
+
+use crate::failure::Failure;
+use crate::options::{Drawing, finite};
+use crate::stage::Stage;
+use crate::{input, output};
+
+/// Frames that follow each other 0.25° apart, for what swims.
+const STEPS: u32 = 5;
+
+#[derive(Args)]
+#[command(mut_arg("rung", |arg| arg.hide(true)), mut_arg("max_error", |arg| arg.hide(true)))]
+pub(crate) struct Options {
+    #[arg(help = input::help())]
+    input: OsString,
+    /// The directory to write into: report.html, chart.svg, cost.json, and samples.csv with every time that was taken
+    /// [default: cost-INPUT; none with --json]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// As JSON, for programs
+    #[arg(long)]
+    json: bool,
+    /// The rungs to be studied, with commas between [default: all]
+    #[arg(long, value_name = "RUNG,...", value_delimiter = ',')]
+    rungs: Vec<Rung>,
+    /// How many frames, all over one round: a model turns once, a scene moves for as long as it says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value_t = 8)]
+    frames: u32,
+    /// Count instructions too, by valgrind. It knows not every vector instruction: times are then taken with the
+    /// kernel that ran there
+    #[arg(long)]
+    instructions: bool,
+    /// Take times for at most so long, though for seven rounds in any case; fewer rounds make wider intervals [default:
+    /// about 10, up to 20 where a ratio is not known to 2 %]. Before that errors are found, which takes a second or two a
+    /// frame: --frames says how many
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    seconds: Option<f64>,
+    /// Draw what instructions are counted of, and nothing else
+    #[arg(long, hide = true)]
+    counted: bool,
+    #[command(flatten)]
+    drawing: Drawing,
+}
+
+/// A time on the command line.
+fn seconds(words: &str) -> Result<f64, String> {
+    match finite(words) {
+        Ok(seconds) if seconds >= 0.0 => Ok(seconds),
+        _ => Err("not a number of seconds, 0 or more".to_string()),
+    }
+}
+
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let Options { input, out, json, frames, instructions, seconds, counted, drawing, .. } = options;
+    if drawing.chooses_rung() {
+        return Err(Failure::words("cost compares rungs and budgets with each other: --rungs says which rungs"));
+    }
+    let rungs = if options.rungs.is_empty() { Rung::ALL.to_vec() } else { options.rungs.clone() };
+    let mut kernel = drawing.kernel()?;
+    let input = drawing.input(input)?;
+    let name = input.name().to_string();
+    let mut stage = drawing.stage(input)?;
+    let frames = turned(&mut stage, *frames, 360.0 / f64::from(*frames));
+    let steps = turned(&mut stage, STEPS, 0.25);
+    if *counted {
+        return instructions::draw(&frames, &rungs, &|| drawing.renderer(kernel));
+    }
+    let directory = match (out, json) {
+        (Some(directory), _) => Some(directory.clone()),
+        (None, true) => None,
+        (None, false) => Some(PathBuf::from(format!("cost-{name}"))),
+    };
+    // Before much time is spent.
+    directory.as_deref().map_or(Ok(()), files::check)?;
+    let counts = if *instructions { Some(instructions::count(&rungs, frames.len())?) } else { None };
+    if let Some(counts) = &counts {
+        kernel = Kernel::by_name(&counts.kernel).map_err(Failure::work)?;
+    }
+
+    let renderer = || drawing.renderer(kernel);
+    let subject = Subject { name: &name, frames: &frames, steps: &steps, renderer: &renderer };
+    let mut settings = Settings { rungs, host: host::host(), clock: host::clock(), ..Settings::default() };
+    if let Some(seconds) = *seconds {
+        (settings.seconds, settings.at_most) = (seconds, true);
+    }
+    let times = match *seconds {
+        Some(seconds) => format!("at most {seconds} s"),
+        None => format!("{} to {} s", settings.seconds, 2.0 * settings.seconds),
+    };
+    let compared = if frames.len() == 1 { "1 frame is".to_string() } else { format!("{} frames are", frames.len()) };
+    eprintln!("mode13h: {compared} compared with the truth; then times are taken, for {times}");
+    let progress = Progress::new();
+    let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
+    progress.bar.finish_and_clear();
+    let (mut study, samples) = measured.map_err(Failure::work)?;
+    if let Some(counts) = &counts {
+        counts.write_into(&mut study);
+    }
+    let warnings = cost::warnings(&study);
+    for warning in &warnings {
+        eprintln!("mode13h: {}", Failure::work(warning));
+    }
+    let as_json = json::json(&study, &warnings)?;
+    let (written, result) = match &directory {
+        None => (None, Ok(())),
+        Some(directory) => {
+            let contents = [samples.to_csv(), as_json.clone(), report::chart_svg(&study), report::html(&study)];
+            files::write(directory, &name, &contents)
+        }
+    };
+    // Whatever became of the files, what was found out is not lost.
+    output::print(&if *json { as_json } else { text::text(&study, written.as_deref()) })?;
+    result
+}
+
+/// So many frames of what is shown, each turned by so many degrees more than the one before it.
+fn turned(stage: &mut Stage, frames: u32, degrees: f64) -> Vec<Scene> {
+    let mut scenes = Vec::new();
+    for frame in 0..frames {
+        let (seconds, pose) = stage.turned(0.0, f64::from(frame) * degrees);
+        stage.show(seconds, pose);
+        scenes.push(stage.scene.clone());
+    }
+    scenes
+}
+
+/// A bar on standard error, if that is a terminal.
+struct Progress {
+    bar: ProgressBar,
+    step: Mutex<Option<Step>>,
+    begun: Instant,
+}
+
+impl Progress {
+    fn new() -> Progress {
+        let bar = ProgressBar::new(1000);
+        let bar = match ProgressStyle::with_template("{bar:40} {percent}% {msg}") {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        };
+        Progress { bar, step: Mutex::new(None), begun: Instant::now() }
+    }
+
+    fn show(&self, step: Step, share: f64) {
+        let mut last = self.step.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if *last != Some(step) {
+            *last = Some(step);
+            if step == Step::Errors {
+                // The first frame is done, and on every other processor nearly another.
+                let threads = std::thread::available_parallelism().map_or(1.0, |threads| threads.get() as f64);
+                let seconds = (self.begun.elapsed().as_secs_f64() / (share * threads)).ceil().max(1.0);
+                self.bar.suspend(|| eprintln!("mode13h: the comparison takes about {seconds} s"));
+            }
+            self.bar.set_message(match step {
+                Step::Errors => "frames compared with the truth",
+                Step::Times => "of the time, frames being timed side by side",
+                Step::Split => "of the time, frames being timed part by part",
+                Step::Claims => "of what the sources claim",
+                _ => "",
+            });
+        }
+        // 0 to 1.
+        self.bar.set_position((share * 1000.0) as u64);
+    }
+}

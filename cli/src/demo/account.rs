@@ -1,0 +1,80 @@
+//! What the pixel under the mouse says of itself.
+
+use mode13h::render::{Renderer, Screen};
+use mode13h::scene::Scene;
+use mode13h_lab::explain::{self, Edge, FaceHere, Seen};
+
+use super::magnifier::Pixel;
+use super::step::Traced;
+
+/// Letters of a line beyond which it is cut: more than any has.
+const LONGEST: usize = 200;
+
+/// The account of a pixel of the frame that `renderer`, as it is set, draws of `scene`: what became of its byte, then its
+/// edges, why it is shaded as it is, and the effects. And the triangle that is seen there, if one is.
+pub(super) fn lines(renderer: &mut Renderer, scene: &Scene, pixel: Pixel) -> (Vec<String>, Option<Traced>) {
+    let (x, y) = (u32::from(pixel.x), u32::from(pixel.y));
+    let account = match explain::pixel(renderer, scene, Screen::MODE_13H, x, y) {
+        Ok(account) => account,
+        Err(error) => return (vec![error.to_string()], None),
+    };
+    let mut lines = account.lines(LONGEST);
+    if let Some((face, seen)) = account.front() {
+        if seen.exact_cover {
+            lines.push(edges(face, x, y));
+        }
+        lines.extend(exact(seen));
+        lines.push(format!("rung: {}", account.rung_why));
+        lines.push(format!("on: {}", effects(seen)));
+    }
+    (lines, Traced::of(&account))
+}
+
+/// The three edges: what kind each is, and how far inside of it the centre lies.
+fn edges(face: &FaceHere, x: u32, y: u32) -> String {
+    let edge = |Edge { kind, value }: &Edge| match value {
+        0 => format!("{kind} 0 ({})", if kind.owns_ties() { "its own" } else { "not its own" }),
+        _ => format!("{kind} {value}"),
+    };
+    let edges = face.edges(x, y);
+    format!("edges: {}", edges.each_ref().map(edge).join(", "))
+}
+
+/// What linear shades, or exact quotients, would be without any rounding.
+fn exact(seen: &Seen) -> Option<String> {
+    let account = seen.accounts.first()?;
+    let shade = account.exact?.to_f64() / 256.0;
+    Some(format!("exact {shade:.4}: the byte is off by {:+.4}", f64::from(account.byte) - shade))
+}
+
+fn effects(seen: &Seen) -> String {
+    let names: Vec<String> = seen.effects.iter().map(|row| row.effect.to_string()).collect();
+    names.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mode13h::mesh::shapes;
+    use mode13h::render::Rung;
+
+    #[test]
+    fn an_account_begins_with_the_pixel() {
+        let scene = Scene::showing(shapes::torus(24, 12));
+        for rung in Rung::ALL {
+            let mut renderer = Renderer::new();
+            renderer.set_rung(rung);
+            let mut vga = mode13h::vga::Vga::new();
+            renderer.draw(&scene, &mut vga).expect("a legal scene");
+            for (x, y) in [(0, 0), (160, 60), (100, 100), (319, 199)] {
+                let (lines, seen) = lines(&mut renderer, &scene, Pixel { x, y });
+                let byte = vga.pixels()[usize::from(y) * 320 + usize::from(x)];
+                assert!(lines[0].starts_with(&format!("({x}, {y}) byte {byte} ")), "{lines:#?}");
+                assert!(lines.iter().all(|line| line.chars().count() < LONGEST), "{lines:#?}");
+                // Where there is a face it says more than its place.
+                assert_eq!(lines.len() > 4, byte != scene.background, "{lines:#?}");
+                assert_eq!(seen.is_some(), byte != scene.background, "{lines:#?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! `mode13h explain`: why a pixel has its byte; a row's intensity and its slope.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args};
+use mode13h::render::Screen;
+use mode13h_lab::explain::{self, Account, ExplainError, FaceHere, Fate, Pixel, Row, Seen, ShadedBy, Stage, Way};
+use mode13h_lab::truth::Standard;
+use serde_json::{Map, Value, json};
+
+use crate::failure::Failure;
+use crate::options::{Drawing, Moment};
+use crate::stage::Pose;
+use crate::{chart, input, output, read_files};
+
+#[derive(Args)]
+#[command(group(ArgGroup::new("what").required(true).args(["pixel", "row"])))]
+pub(crate) struct Options {
+    #[arg(help = input::help())]
+    input: OsString,
+    /// The pixel, counted from 0 at the upper left: which triangle it shows and why, its span and its sums, the exact
+    /// value, the truth, the stages of its byte
+    #[arg(long, value_name = "X,Y", value_parser = place)]
+    pixel: Option<(u32, u32)>,
+    /// The row, counted from 0 at the top: its intensity and the slope of that, drawn and true. Where the slope jumps the
+    /// eye sees a line, a Mach band
+    #[arg(long, value_name = "Y")]
+    row: Option<u32>,
+    /// Of a row: a chart, in a file whose name ends in .svg, in place of one in characters
+    #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
+    out: Option<PathBuf>,
+    /// As JSON, for programs
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    moment: Moment,
+    #[command(flatten)]
+    drawing: Drawing,
+}
+
+/// Two whole numbers with a comma between them.
+fn place(words: &str) -> Result<(u32, u32), String> {
+    let whole = |word: &str| word.trim().parse::<u32>().ok();
+    let place = words.split_once(',').and_then(|(x, y)| Some((whole(x)?, whole(y)?)));
+    place.ok_or_else(|| "not two whole numbers with a comma between them, such as 160,100".to_string())
+}
+
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let Options { input, pixel, row, out, json, moment, drawing } = options;
+    if out.is_some() && row.is_none() {
+        return Err(Failure::words("--out is for the chart of a --row"));
+    }
+    if let Some(out) = out
+        && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
+    {
+        return Err(Failure::words(format!("{}: a chart's name must end in .svg", out.display())));
+    }
+    let kernel = drawing.kernel()?;
+    let screen = Screen::MODE_13H;
+    // Before anything is loaded.
+    outside(*pixel, *row, screen).map_or(Ok(()), |error| Err(Failure::words(error)))?;
+    let input = drawing.input(input)?;
+    let name = input.name().to_string();
+    let mut stage = drawing.stage(input)?;
+    out.as_deref().map_or(Ok(()), read_files::spare)?;
+    let at = moment.of_picture(&stage.scene);
+    stage.show(at, Pose::FIRST);
+    let mut renderer = drawing.renderer(kernel);
+    if let Some((x, y)) = *pixel {
+        let pixel = explain::pixel(&mut renderer, &stage.scene, screen, x, y).map_err(Failure::work)?;
+        let text = if *json { pretty(&pixel_json(&name, at, &pixel))? } else { format!("{name} at {at} s, {pixel}") };
+        return output::print(&text);
+    }
+    let Some(y) = *row else { return Ok(()) };
+    let rung = drawing.rung(stage.scene.wishes.rung);
+    let row = explain::row(renderer, &stage.scene, screen, y).map_err(Failure::work)?;
+    let title = format!("{name} at {at} s, row {y}, {rung}");
+    match out {
+        Some(out) => output::file(|| chart::svg(&title, &row, out)).map_err(Failure::work),
+        None if *json => output::print(&pretty(&row_json(&name, at, &row))?),
+        None => output::print(&chart::text(&title, &row)),
+    }
+}
+
+/// What is not in the frame, if anything.
+fn outside(pixel: Option<(u32, u32)>, row: Option<u32>, screen: Screen) -> Option<ExplainError> {
+    let Screen { width, height, .. } = screen;
+    match (pixel, row) {
+        (Some((x, y)), _) if x >= width || y >= height => Some(ExplainError::OutsidePixel { x, y, width, height }),
+        (_, Some(y)) if y >= height => Some(ExplainError::OutsideRow { y, height }),
+        _ => None,
+    }
+}
+
+fn pretty(json: &Value) -> Result<String, Failure> {
+    Ok(serde_json::to_string_pretty(json).map_err(Failure::work)? + "\n")
+}
+
+fn pixel_json(name: &str, at: f64, pixel: &Pixel) -> Value {
+    let color = pixel.color;
+    json!({
+        "schema": 1,
+        "input": name,
+        "at": at,
+        "pixel": [pixel.x, pixel.y],
+        "byte": pixel.byte,
+        "rgb": [color.r, color.g, color.b],
+        "background": pixel.background,
+        "rung": pixel.rung.name(),
+        "rung_why": pixel.rung_why,
+        "max_error": pixel.max_error,
+        "vertex_path": pixel.vertex_path.name(),
+        "hidden_surfaces": pixel.hidden_surfaces.name(),
+        "hidden_surfaces_why": pixel.hidden_surfaces_why,
+        "faces": pixel.faces.iter().map(|face| face_json(pixel, face)).collect::<Vec<_>>(),
+        "seen": pixel.seen.iter().map(seen_json).collect::<Vec<_>>(),
+    })
+}
+
+fn face_json(pixel: &Pixel, face: &FaceHere) -> Value {
+    let corners = face.corners.iter().map(|corner| {
+        json!({
+            "x_256": corner.x().to_bits(),
+            "y_256": corner.y().to_bits(),
+            "shade_256": corner.shade().to_bits(),
+            "depth": corner.depth(),
+        })
+    });
+    let edges = face.edges(pixel.x, pixel.y);
+    let edges = edges
+        .iter()
+        .map(|edge| json!({ "kind": edge.kind.to_string(), "value": edge.value, "owns_ties": edge.kind.owns_ties() }));
+    let fate = match face.fate {
+        Fate::Seen => "seen",
+        Fate::SeenThrough => "seen-through",
+        Fate::Behind => "behind",
+        Fate::PaintedOver => "painted-over",
+        _ => "not-its-edge",
+    };
+    json!({
+        "object": pixel.objects.get(face.object),
+        "object_place": face.object,
+        "triangle": face.triangle,
+        "is_part": face.is_part,
+        "shading": face.shading.name(),
+        "corners": corners.collect::<Vec<_>>(),
+        "edges": edges.collect::<Vec<_>>(),
+        "depth": face.depth,
+        "fate": fate,
+    })
+}
+
+fn seen_json(seen: &Seen) -> Value {
+    let light = match seen.shaded_by {
+        ShadedBy::Light { normal, position, shades } => {
+            json!({ "normal": normal, "position": position, "shades_256": shades })
+        }
+        ShadedBy::BetweenLit { before, after } => json!({ "before_256": before, "after_256": after }),
+        ShadedBy::BetweenSix(corners) => json!({ "corners_and_middles_256": corners }),
+        _ => Value::Null,
+    };
+    let shaded_by = match seen.shaded_by {
+        ShadedBy::Corners => "corners",
+        ShadedBy::NormalTable => "normal-table",
+        ShadedBy::Light { .. } => "light",
+        ShadedBy::BetweenLit { .. } => "between-lit",
+        ShadedBy::BetweenSix(_) => "between-six",
+    };
+    let against = seen.against.iter().map(
+        |against| json!({ "standard": against.standard.name(), "shades": against.shades, "error": against.error }),
+    );
+    let effects =
+        seen.effects.iter().map(|row| json!({ "effect": row.effect.name(), "choice": row.choice, "why": row.why }));
+    json!({
+        "face": seen.face,
+        "ramp": [seen.ramp.first(), seen.ramp.last()],
+        "shaded_by": shaded_by,
+        "exact_cover": seen.exact_cover,
+        "light": light,
+        "accounts": seen.accounts.iter().map(account_json).collect::<Vec<_>>(),
+        "stages": seen.stages.iter().map(stage_json).collect::<Vec<_>>(),
+        "against": against.collect::<Vec<_>>(),
+        "effects": effects.collect::<Vec<_>>(),
+    })
+}
+
+fn account_json(account: &Account) -> Value {
+    let mut json = match account.way {
+        Way::Flat(_) => json!({ "way": "flat" }),
+        Way::Sums(sums) => json!({
+            "way": "sums",
+            "first": sums.first,
+            "start_at": sums.start_at,
+            "fraction_bits": sums.fraction_bits,
+            "half": sums.half,
+            "start": sums.start,
+            "step": sums.step,
+            "steps": sums.steps,
+            "sums": (0..=sums.steps).map(|k| sums.after(k)).collect::<Vec<_>>(),
+        }),
+        Way::Float { start, n, d, shade } => {
+            json!({ "way": "float", "start_at": start, "n": n, "d": d, "shade": shade })
+        }
+        _ => json!({ "way": "quotient" }),
+    };
+    if let Value::Object(map) = &mut json {
+        map.insert("byte".into(), account.byte.into());
+        // Numbers beyond 2^53, which many readers of JSON cut: as text.
+        let exact = account.exact.map(|exact| {
+            json!({
+                "numerator": exact.numerator.to_string(),
+                "denominator": exact.denominator.to_string(),
+                "shade": exact.to_f64() / 256.0,
+            })
+        });
+        map.insert("exact_256".into(), exact.unwrap_or_default());
+    }
+    json
+}
+
+fn stage_json(stage: &Stage) -> Value {
+    let mut json = Map::new();
+    let mut put = |name: &str, value: Value| json.insert(name.into(), value);
+    let name = match *stage {
+        Stage::Shade(_) => "shade",
+        Stage::Channels(channels) => {
+            put("channels", json!(channels));
+            "channels"
+        }
+        Stage::Dither { threshold, .. } => {
+            put("threshold", threshold.into());
+            "dither"
+        }
+        Stage::Texture { texel, level, .. } => {
+            put("texel", texel.into());
+            put("mipmap_level", json!(level));
+            "texture"
+        }
+        Stage::TextureChannels { texel, level, channels } => {
+            put("texel", texel.into());
+            put("mipmap_level", json!(level));
+            put("channels", json!(channels));
+            "texture"
+        }
+        Stage::Mix { threshold, .. } => {
+            put("threshold", json!(threshold));
+            "mix"
+        }
+        Stage::Fog { level, .. } => {
+            put("level", level.into());
+            "fog"
+        }
+        Stage::Blend { behind, .. } => {
+            put("behind", behind.into());
+            "blend"
+        }
+        _ => "other",
+    };
+    put("stage", name.into());
+    put("byte", json!(stage.byte()));
+    Value::Object(json)
+}
+
+fn row_json(name: &str, at: f64, row: &Row) -> Value {
+    let columns = row.columns.iter().map(|column| {
+        json!({
+            "face": column.face.map(|face| [face.object, face.triangle]),
+            "drawn": column.drawn,
+            Standard::Gouraud.name(): column.gouraud,
+            Standard::Lit.name(): column.lit,
+        })
+    });
+    json!({
+        "schema": 1,
+        "input": name,
+        "at": at,
+        "row": row.y,
+        "columns": columns.collect::<Vec<_>>(),
+        "slope": {
+            "drawn": row.slope(|column| column.drawn),
+            Standard::Gouraud.name(): row.slope(|column| column.gouraud),
+            Standard::Lit.name(): row.slope(|column| column.lit),
+        },
+    })
+}

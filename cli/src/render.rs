@@ -1,0 +1,260 @@
+//! `mode13h render`: one picture, a numbered row of them, or a film.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use mode13h::export::{FrameRate, Scale};
+use mode13h::render::{Renderer, Screen, Stats};
+use mode13h::vga::Vga;
+use mode13h_lab::record::Record;
+use rayon::ThreadPoolBuilder;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+
+use crate::artists::Artists;
+use crate::failure::Failure;
+use crate::film::{self, Film, Kind};
+use crate::names::{Names, number_in};
+use crate::options::{Drawing, Moment, finite};
+use crate::stage::{Pose, Stage};
+use crate::{input, output, read_files};
+
+#[derive(Args)]
+pub(crate) struct Options {
+    #[arg(help = input::help())]
+    input: OsString,
+    /// The picture: a name ending in .png; with --frames, one that holds %04d or the like for the number. A film: a name
+    /// ending in .gif or .apng, or - for ffmpeg: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p torus.mp4`. What
+    /// is piped is Y4M, as that says size and rate itself; its colours are rounded to YCbCr, those of .apng are exact
+    #[arg(short, long, value_name = "OUT")]
+    out: PathBuf,
+    /// How many frames, numbered from 0 [default: 1; a film, those of one round: four seconds, or what the scene says]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    frames: Option<u32>,
+    /// One frame: turn the model by so much. N frames: spread so much over them, frame i being turned by i/N of it;
+    /// 360 makes a seamless turn [default for a film: 360]. Of a scene that moves 360 are one round; round one that
+    /// does not the camera goes
+    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
+    turn: Option<f64>,
+    #[command(flatten)]
+    moment: Moment,
+    /// Frames a second: of a film, up to 50; of pictures, they say how much time passes from one to the next where
+    /// --turn does not [default: 35]
+    #[arg(long, value_name = "N", value_parser = rate)]
+    fps: Option<f64>,
+    #[command(flatten)]
+    drawing: Drawing,
+    /// Enlarge: 1, 2, 5x6 (exactly 4:3 in square pixels), or a width and height such as 640x480 [default: 1; 5x6 with
+    /// --rgb; a film, 640x480]
+    #[arg(long, value_name = "SCALE")]
+    scale: Option<Scale>,
+    /// True colour instead of a palette; PNG only
+    #[arg(long)]
+    rgb: bool,
+    /// How many frames are drawn at a time [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Keep the triangles of the picture as the raster gets them, for `verify --replay`; with --frames, a name that
+    /// holds %04d or the like
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Say on standard error what was drawn, and by which kernel, a line for each frame
+    #[arg(long)]
+    stats: bool,
+}
+
+fn rate(words: &str) -> Result<f64, String> {
+    match finite(words) {
+        Ok(number) if number > 0.0 && number <= 1e6 => Ok(number),
+        _ => Err("not a number above 0 and up to 1000000".to_string()),
+    }
+}
+
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let mut out = Out::new(options)?;
+    let stage = options.drawing.stage(options.drawing.input(&options.input)?)?;
+    out.lasts(stage.seconds());
+    let frames = out.frames();
+    let records = options.record.as_deref().map(|record| Names::new(record, frames, "records")).transpose()?;
+    out.spare()?;
+    records.as_ref().map_or(Ok(()), |records| records.spare(frames))?;
+    if options.record.as_ref() == Some(&options.out) {
+        return Err(Failure::words(format!("{}: one name for the picture and its record", options.out.display())));
+    }
+    let kernel = options.drawing.kernel()?;
+    let progress = progress(frames);
+    let motion = Motion::new(options, &out, &stage);
+    let make = || Artist { renderer: options.drawing.renderer(kernel), stage: stage.clone(), vga: Vga::new() };
+    let artists = Artists::new(make);
+    let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
+        let stats = artist.draw(&motion, number)?;
+        if let Some(records) = &records {
+            artist.record(&records.of(number))?;
+        }
+        if options.stats {
+            progress.suspend(|| eprintln!("mode13h: frame {number}: {stats}"));
+        }
+        Ok(())
+    };
+    let picture = |names: &Names, artist: &mut Artist, number| {
+        draw(artist, number)?;
+        output::picture(&artist.vga, &names.of(number), options.rgb, options.scale).map_err(Failure::work)?;
+        progress.inc(1);
+        Ok(())
+    };
+    let frame = |artist: &mut Artist, number| {
+        draw(artist, number)?;
+        Ok(film::Frame::of(&artist.vga))
+    };
+    let pool = || {
+        let threads = options.threads.map_or(0, usize::from);
+        ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::work)
+    };
+    let result = match &out {
+        Out::Pictures(names, 1) => artists.work(|artist| picture(names, artist, 0)),
+        Out::Pictures(names, frames) => pool()?.install(|| {
+            (0..*frames).into_par_iter().try_for_each(|n| artists.work(|artist| picture(names, artist, n)))
+        }),
+        Out::Film(film) => {
+            let fades = stage.scene.palette_animation.is_some();
+            pool()?.install(|| film.write(fades, &progress, &artists, frame))
+        }
+    };
+    progress.finish_and_clear();
+    result
+}
+
+/// What is written.
+enum Out {
+    /// So many pictures.
+    Pictures(Names, u32),
+    Film(Film),
+}
+
+impl Out {
+    fn new(options: &Options) -> Result<Out, Failure> {
+        let Options { out, frames, turn, fps, rgb, scale, .. } = options;
+        let wrong = |reason: &dyn std::fmt::Display| Failure::words(format!("{}: {reason}", out.display()));
+        let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
+        if ends_in("png") {
+            if turn.is_some() && fps.is_some() {
+                return Err(wrong(&"both --turn and --fps say how far the model turns between pictures: give one"));
+            }
+            let frames = frames.unwrap_or(1);
+            Ok(Out::Pictures(Names::new(out, frames, "pictures")?, frames))
+        } else if let Some(kind) = film_kind(out) {
+            if *rgb {
+                return Err(wrong(&"--rgb is for .png: a film has the colours that it needs"));
+            }
+            if kind != Kind::Stream && out.file_name().and_then(|name| number_in(name.to_str()?)).is_some() {
+                return Err(wrong(&"a film is one file: its name needs no number"));
+            }
+            let rate = fps.map_or(Ok(FrameRate::default()), FrameRate::new).map_err(|error| wrong(&error))?;
+            Ok(Out::Film(Film::new(kind, out, *frames, rate, *scale)))
+        } else {
+            Err(wrong(&"no kind of picture that can be written: the name must end in .png, .gif or .apng"))
+        }
+    }
+
+    /// A film of which nobody says how many frames it has lasts so many seconds.
+    fn lasts(&mut self, seconds: f64) {
+        if let Out::Film(film) = self {
+            film.lasts(seconds);
+        }
+    }
+
+    /// A failure if a file that was read would be overwritten.
+    fn spare(&self) -> Result<(), Failure> {
+        match self {
+            Out::Pictures(names, frames) => names.spare(*frames),
+            Out::Film(film) => film.file().map_or(Ok(()), read_files::spare),
+        }
+    }
+
+    fn frames(&self) -> u32 {
+        match self {
+            Out::Pictures(_, frames) => *frames,
+            Out::Film(film) => film.frames(),
+        }
+    }
+}
+
+/// What kind of film a name asks for, if it asks for one.
+fn film_kind(out: &Path) -> Option<Kind> {
+    let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
+    match () {
+        () if out == Path::new("-") => Some(Kind::Stream),
+        () if ends_in("gif") => Some(Kind::Gif),
+        () if ends_in("apng") => Some(Kind::Apng),
+        () => None,
+    }
+}
+
+/// What moves from frame to frame.
+struct Motion {
+    frames: u32,
+    /// Over all frames, in degrees.
+    turn: Option<f64>,
+    /// Of the first frame, in seconds.
+    at: f64,
+    /// Frames a second, where there is no `turn`.
+    rate: f64,
+}
+
+impl Motion {
+    fn new(options: &Options, out: &Out, stage: &Stage) -> Motion {
+        let frames = out.frames();
+        let whole_turn = (matches!(out, Out::Film(_)) && frames > 1).then_some(360.0);
+        let rate = options.fps.unwrap_or(FrameRate::default().frames_per_second());
+        let is_picture = frames == 1 && options.turn.is_none();
+        let at = if is_picture { options.moment.of_picture(&stage.scene) } else { options.moment.of_first() };
+        Motion { frames, turn: options.turn.or(whole_turn), at, rate }
+    }
+
+    /// The time and the pose in a frame. From the frame's number alone: nothing adds up.
+    fn of(&self, number: u32, stage: &Stage) -> (f64, Pose) {
+        let Motion { frames, turn, at, rate } = *self;
+        let number = f64::from(number);
+        match turn {
+            Some(degrees) if frames == 1 => stage.turned(at, degrees),
+            Some(degrees) => stage.turned(at, degrees * number / f64::from(frames)),
+            None => (at + number / rate, Pose::FIRST),
+        }
+    }
+}
+
+/// What draws frames, one after the other. Each is drawn from its own number alone, never from the frame before it: that
+/// is why the order, and the number of threads, change nothing.
+struct Artist {
+    renderer: Renderer,
+    stage: Stage,
+    vga: Vga,
+}
+
+impl Artist {
+    fn draw(&mut self, motion: &Motion, number: u32) -> Result<Stats, Failure> {
+        let (seconds, pose) = motion.of(number, &self.stage);
+        self.stage.show(seconds, pose);
+        self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::work)
+    }
+
+    /// Keeps the triangles of the frame that was drawn last.
+    fn record(&mut self, path: &Path) -> Result<(), Failure> {
+        let record =
+            Record::of_scene(&mut self.renderer, &self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+        output::file(|| record.save(path)).map_err(Failure::work)
+    }
+}
+
+/// A bar on standard error, if that is a terminal and there is more than one frame.
+fn progress(frames: u32) -> ProgressBar {
+    if frames == 1 {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(frames.into());
+    match ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {eta} left") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

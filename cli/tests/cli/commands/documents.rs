@@ -1,0 +1,258 @@
+//! What the documents name is what the program has: options, their values, keys of scenes and of the window, names of
+//! shadings and effects, files.
+
+use std::collections::BTreeSet;
+use std::process::Command;
+
+use mode13h::plan::Effect;
+use mode13h::render::{HiddenSurfaces, Mapping, Rung, VertexPath};
+use mode13h::scene::shipped;
+use mode13h::span::Kernel;
+
+use crate::support::tried::Tried;
+
+/// The documents that a user reads.
+const DOCUMENTS: [(&str, &str); 3] = [
+    ("README.md", include_str!("../../../../README.md")),
+    ("scenes/README.md", include_str!("../../../../scenes/README.md")),
+    ("CHANGELOG.md", include_str!("../../../../CHANGELOG.md")),
+];
+
+const README: &str = DOCUMENTS[0].1;
+const SCENES: &str = DOCUMENTS[1].1;
+
+/// Options of other programs than this one: of cargo, of the scripts in `.ci`, of the bench against peers.
+const OTHERS: [&str; 9] = [
+    "--bench",
+    "--ignored",
+    "--no-fail-fast",
+    "--profile",
+    "--rabbit",
+    "--release",
+    "--renew",
+    "--test",
+    "--test-threads",
+];
+
+fn help(words: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_mode13h")).args(words).arg("--help").output().expect("started");
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The options that a text names, such as `--rung`.
+fn options(text: &str) -> BTreeSet<&str> {
+    let starts = text.match_indices("--").map(|(at, _)| at);
+    let word = |at: usize| {
+        let rest = &text[at + 2..];
+        let end = rest.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(rest.len());
+        rest[..end].starts_with(|c: char| c.is_ascii_lowercase()).then_some(&text[at..at + 2 + end])
+    };
+    // Not within a word, nor within a rule of a table.
+    starts.filter(|at| !text[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '-')).filter_map(word).collect()
+}
+
+/// The program's commands, with the options that each has.
+fn commands() -> Vec<(String, BTreeSet<String>)> {
+    let all = help(&[]);
+    let listed = all.split("\nCommands:\n").nth(1).expect("commands").split("\n\n").next().expect("a list");
+    let names = listed.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+    let names = names.filter(|name| !name.is_empty() && *name != "help");
+    names
+        .map(|name| {
+            let help = help(&[name]);
+            (name.to_string(), options(&help).into_iter().map(String::from).collect())
+        })
+        .collect()
+}
+
+/// What stands between two backticks, in all paragraphs that are no block of code.
+fn quoted(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter(|line| !line.starts_with("    ")).flat_map(|line| line.split('`').skip(1).step_by(2))
+}
+
+#[test]
+fn documents_name_options_that_the_program_has() {
+    let mut tried = Tried::new("documents_name_options_that_the_program_has", 40);
+    let commands = commands();
+    assert!(commands.len() >= 9, "{commands:?}");
+    let every: BTreeSet<&str> = commands.iter().flat_map(|(_, options)| options).map(String::as_str).collect();
+    for (document, text) in DOCUMENTS {
+        for option in options(text) {
+            let known = every.contains(option) || OTHERS.contains(&option);
+            assert!(known, "{document}: {option} is no option of the program");
+            tried.add(1);
+        }
+        // A line to be typed: the options of its own command.
+        for line in text.lines() {
+            let Some((_, words)) = line.split_once("run --release -- ").or_else(|| line.split_once("mode13h ")) else {
+                continue;
+            };
+            let words = words.split('#').next().unwrap_or_default();
+            let Some((command, own)) = commands.iter().find(|(name, _)| words.split(' ').next() == Some(name)) else {
+                continue;
+            };
+            let typed = words.split('`').next().unwrap_or_default();
+            for option in options(typed) {
+                assert!(own.contains(option), "{document}: {command} has no {option}: {line}");
+                tried.add(1);
+            }
+        }
+    }
+}
+
+/// Of `--rung phong` the second word.
+#[test]
+fn documents_give_options_values_that_they_take() {
+    let mut tried = Tried::new("documents_give_options_values_that_they_take", 15);
+    for (document, text) in DOCUMENTS {
+        for quote in quoted(text) {
+            let words: Vec<&str> = quote.split(' ').collect();
+            for pair in words.windows(2) {
+                // A placeholder, or more than one word.
+                let value = pair[1];
+                if !value.starts_with(|c: char| c.is_ascii_lowercase()) {
+                    continue;
+                }
+                let known = match pair[0] {
+                    "--rung" => value.parse::<Rung>().is_ok(),
+                    "--hidden" => value.parse::<HiddenSurfaces>().is_ok(),
+                    "--mapping" => value.parse::<Mapping>().is_ok(),
+                    "--vertex-path" => value.parse::<VertexPath>().is_ok(),
+                    "--palette" => value == "auto" || mode13h::palette::builtin::by_name(value).is_some(),
+                    _ => continue,
+                };
+                assert!(known, "{document}: {} takes no {value}", pair[0]);
+                tried.add(1);
+            }
+        }
+    }
+}
+
+/// The cell of a row of `scenes/README.md` that says what a key takes.
+fn values_of(key: &str) -> Vec<&'static str> {
+    let row = SCENES.lines().find(|line| line.starts_with(&format!("| `{key}` |"))).expect(key);
+    let cell = row.split('|').nth(2).expect("a value");
+    cell.split('"').skip(1).step_by(2).collect()
+}
+
+#[test]
+fn documents_list_every_shading_and_every_way() {
+    let mut tried = Tried::new("documents_list_every_shading_and_every_way", 4);
+    assert_eq!(values_of("rung"), Rung::ALL.map(Rung::name));
+    assert_eq!(values_of("hidden-surfaces"), HiddenSurfaces::ALL.map(HiddenSurfaces::name));
+    assert_eq!(values_of("mapping"), Mapping::ALL.map(Mapping::name));
+    let table = README.split("| rung | what |").nth(1).expect("the table of rungs").split("\n\n").next().expect("rows");
+    let rows = table.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
+    assert_eq!(rows.collect::<Vec<_>>(), Rung::ALL.map(Rung::name));
+    tried.add(4);
+}
+
+/// Names of several words, such as `depth-buffer` or `max-error`: of shadings, effects, ways, mappings, kernels, palettes,
+/// scenes, features, or keys of a scene.
+#[test]
+fn documents_name_what_there_is() {
+    let mut tried = Tried::new("documents_name_what_there_is", 30);
+    let mut known: BTreeSet<&str> = Rung::ALL.map(Rung::name).into();
+    known.extend(Effect::ALL.map(Effect::name));
+    known.extend(HiddenSurfaces::ALL.map(HiddenSurfaces::name));
+    known.extend(Mapping::ALL.map(Mapping::name));
+    known.extend(mode13h::palette::builtin::ALL.iter().map(|palette| palette.name));
+    known.extend(shipped::ALL.iter().map(|scene| scene.name));
+    // The error lists those that this machine lacks, too.
+    known.extend(["asm-unrolled", "simd-arrays", "simd-sse2", "simd-avx2", "simd-avx512"]);
+    assert!(Kernel::available().all(|kernel| known.contains(kernel.name()) || !kernel.name().contains('-')));
+    let features = include_str!("../../../../Cargo.toml").split("[features]").nth(1).expect("features");
+    known.extend(features.split("\n[").next().expect("features").lines().filter_map(|line| line.split(" = ").next()));
+    // That its keys are the parser's another test says (tests/scene_files.rs).
+    let keys: BTreeSet<&str> =
+        SCENES.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` |").map(|(key, _)| key)).collect();
+    known.extend(&keys);
+    let is_name = |word: &&str| {
+        let legal = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-.".contains(c);
+        word.contains('-') && word.starts_with(|c: char| c.is_ascii_lowercase()) && word.chars().all(legal)
+    };
+    for (document, text) in DOCUMENTS {
+        for word in quoted(text).map(|word| word.trim_matches('"')).filter(is_name) {
+            assert!(known.contains(word), "{document}: `{word}` is the name of nothing");
+            tried.add(1);
+        }
+    }
+}
+
+/// Capital letters that stand alone, each the name of a key, but for the article A; Esc, Space, digits and signs.
+fn keys_of(text: &str) -> BTreeSet<&str> {
+    let is_key = |word: &&str| {
+        let letter = word.len() == 1 && word.chars().all(|c| c.is_ascii_uppercase()) && *word != "A";
+        letter || ["Esc", "Space", "0", "1", "9", "[", "]", "+"].contains(word)
+    };
+    text.split(|c: char| c.is_whitespace() || "`,;:.()".contains(c)).filter(is_key).collect()
+}
+
+#[test]
+fn documents_name_the_keys_of_the_window() {
+    let mut tried = Tried::new("documents_name_the_keys_of_the_window", 18);
+    let paragraph = README.split("\nIn the window: ").nth(1).expect("keys").split("\n\n").next().expect("a paragraph");
+    let readme = keys_of(paragraph);
+    let help = help(&[]);
+    let help = help.split("Keys in the window: ").nth(1).expect("keys");
+    assert_eq!(readme, keys_of(help), "README.md and --help");
+    // What the program asks for.
+    let sources = crate::support::root().join("src/bin/mode13h");
+    let mut asked = BTreeSet::new();
+    let mut folders = vec![sources];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).expect("text");
+            // Its tests ask for others.
+            let text = text.split("#[cfg(test)]").next().expect("a program");
+            for (at, start) in text.match_indices("Key::") {
+                let name: String = text[at + start.len()..].chars().take_while(char::is_ascii_alphanumeric).collect();
+                if name.len() == 1 {
+                    asked.insert(name);
+                }
+            }
+        }
+    }
+    let letters: BTreeSet<String> =
+        readme.iter().filter(|key| key.chars().all(|c| c.is_ascii_uppercase())).map(ToString::to_string).collect();
+    assert_eq!(letters, asked, "README.md and the program");
+    tried.add(readme.len() as u64);
+}
+
+/// Files that a document names, and variables of the environment.
+#[test]
+fn documents_name_files_that_are_there() {
+    let mut tried = Tried::new("documents_name_files_that_are_there", 30);
+    let root = crate::support::root();
+    for (document, text) in DOCUMENTS {
+        let folder = root.join(document).parent().expect("a folder").to_path_buf();
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        let pictures = text.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        for link in links.chain(pictures).filter(|link| !link.contains("://") && !link.starts_with('#')) {
+            assert!(folder.join(link).exists(), "{document}: there is no {link}");
+            tried.add(1);
+        }
+        let folders = [".ci/", "tests/", "src/", "asm/", "examples/", "benches/", "fuzz/", "palettes/", "docs/"];
+        for path in quoted(text).filter_map(|quote| quote.split(' ').next()) {
+            if folders.iter().any(|folder| path.starts_with(folder)) {
+                assert!(root.join(path).exists(), "{document}: there is no {path}");
+                tried.add(1);
+            }
+        }
+    }
+}
+
+/// The reading itself.
+#[test]
+fn options_and_keys_are_found_in_a_text() {
+    let text = "|---|---| `--rung flat`, cargo -- --max-error 2; a--b, ---, --N, --at=1 ";
+    assert_eq!(options(text), BTreeSet::from(["--at", "--max-error", "--rung"]));
+    let keys = "A key: Esc quits, `[` `]` step; B makes it smaller and Shift-B greater. H, A4 and `+` `-`; 1 to 9";
+    assert_eq!(keys_of(keys), BTreeSet::from(["+", "1", "9", "B", "Esc", "H", "[", "]"]));
+}

@@ -1,0 +1,318 @@
+//! `mode13h cost`, as its user meets it, and the study it makes.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::process::{Command, Output};
+use std::thread::sleep;
+use std::time::Duration;
+
+use crate::support::tried::is_here;
+use mode13h::light::Material;
+use mode13h::mesh::shapes;
+use mode13h::render::{Renderer, Rung};
+use mode13h::scene::{Object, Scene};
+use mode13h_lab::cost::{BUDGETS, Settings, Subject, measure};
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn program(directory: &TempDir) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
+    command.current_dir(directory).env_remove("MODE13H_KERNEL");
+    command
+}
+
+fn run(directory: &TempDir, words: &[&str]) -> Output {
+    program(directory).arg("cost").args(words).output().expect("started")
+}
+
+fn directory() -> TempDir {
+    tempfile::tempdir().expect("a directory")
+}
+
+/// That it failed with this status and one line that holds `says`, and left nothing behind.
+#[track_caller]
+fn assert_fails(directory: &TempDir, output: &Output, status: i32, says: &str) {
+    let line = String::from_utf8(output.stderr.clone()).expect("text");
+    assert_eq!(output.status.code(), Some(status), "{line}");
+    assert!(line.starts_with("mode13h: ") && line.contains(says), "{line}\nhas not: {says}");
+    assert_eq!(line.lines().count(), 1, "{line}");
+    assert!(output.stdout.is_empty() && fs::read_dir(directory).expect("a directory").next().is_none());
+}
+
+#[track_caller]
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[track_caller]
+fn assert_errors(errors: &Value) {
+    let [max, mean, rms, share] = ["max", "mean", "rms", "off_by_one"].map(|key| number(&errors[key]));
+    assert!(0.0 <= mean && mean <= rms && rms <= max && max <= 255.0 && (0.0..=1.0).contains(&share), "{errors}");
+}
+
+/// The median lies between the quartiles, and a ratio in its interval.
+#[track_caller]
+fn assert_time(row: &Value) {
+    let (time, quartiles) = (number(&row["ns_per_frame"]), &row["ns_per_frame_quartiles"]);
+    assert!(0.0 < number(&quartiles[0]) && number(&quartiles[0]) <= time && time <= number(&quartiles[1]), "{row}");
+    if let Some(ratio) = row["ratio"].as_f64() {
+        let [low, high] = [0, 1].map(|i| number(&row["ratio_interval"][i]));
+        assert!(0.0 < low && low <= ratio && ratio <= high, "{row}");
+    }
+}
+
+#[test]
+fn everything_is_measured_and_written() {
+    let directory = directory();
+    let words = ["torus", "--frames", "3", "--seconds", "0", "--json", "-o", "out"];
+    let output = run(&directory, &words);
+    assert!(output.status.success(), "{output:?}");
+    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!((&json["schema"], &json["input"], &json["frames"]), (&1.into(), &"torus".into(), &3.into()));
+    for named in [&json["kernel"], &json["host"]["processor"], &json["host"]["flags"], &json["host"]["clock"]] {
+        assert!(named.as_str().is_some_and(|name| !name.is_empty()), "{json}");
+    }
+    assert!(json["host"]["compiler"].as_str().is_some_and(|compiler| compiler.contains("rustc ")), "{json}");
+    assert!(number(&json["host"]["clock_step_ns"]) > 0.0);
+
+    let rungs = json["rungs"].as_array().expect("a list");
+    assert!(rungs.iter().map(|row| row["rung"].as_str()).eq(Rung::ALL.map(|rung| Some(rung.name()))));
+    for row in rungs {
+        assert_time(row);
+        assert_errors(&row["error_gouraud"]);
+        assert_errors(&row["error_lit"]);
+        // A ramp of 256.
+        assert_eq!(number(&row["error_palette"]), 0.0);
+        assert!(number(&row["swim"]) > 0.0 && row["cover_errors"].is_u64() && row["instructions_per_frame"].is_null());
+        let parts = ["plan", "vertices", "setup", "spans", "scan_out"].map(|part| number(&row["split_ns"][part]));
+        assert!(parts.iter().all(|part| *part >= 0.0), "{row}");
+        assert!(number(&row["ns_per_pixel"]) < number(&row["ns_per_triangle"]), "some 20 pixels each: {row}");
+        let itself = row["rung"] == "gouraud-8.8";
+        assert_eq!(itself, row["ratio"] == 1.0 && row["ratio_interval"][0] == 1.0 && row["ratio_interval"][1] == 1.0);
+    }
+    let of = |rung: Rung| &rungs[Rung::ALL.iter().position(|of| *of == rung).expect("listed")];
+    // What the rungs promise, and what they do not.
+    assert!(number(&of(Rung::Gouraud88Reseeded)["error_gouraud"]["max"]) < 1.0);
+    assert!(number(&of(Rung::Phong)["error_lit"]["rms"]) < number(&of(Rung::Flat)["error_lit"]["rms"]));
+    // Where cover is exact, only depths that are equal but for rounding show another face than the truth has: in the same
+    // pixels, however they are shaded.
+    let cover_errors = |rung| of(rung)["cover_errors"].as_u64().expect("a count");
+    for rung in [Rung::Gouraud88Reseeded, Rung::Gouraud1616, Rung::GouraudHyperbolic, Rung::Phong, Rung::Float] {
+        assert_eq!(cover_errors(rung), cover_errors(Rung::Gouraud88), "{rung}");
+    }
+    assert!(cover_errors(Rung::GouraudPeriod) > 1_000 * cover_errors(Rung::Gouraud88).max(1));
+    // None is nearer to `lit`.
+    assert_eq!(of(Rung::Phong)["efficient"], true);
+
+    let budgets = json["budget"].as_array().expect("a list");
+    assert!(budgets.iter().map(|row| number(&row["max_error"])).eq(BUDGETS));
+    for row in budgets {
+        assert_time(row);
+        assert!((0.0..=1.0).contains(&number(&row["within"])) && number(&row["largest"]) > 0.0, "{row}");
+        let triangles = row["triangles"].as_object().expect("numbers by rung");
+        assert!(!triangles.is_empty() && triangles.values().all(|count| count.as_u64() > Some(0)), "{row}");
+        // Phong is within a shade of its own model.
+        assert!(row["best_single_rung"].is_string() && number(&row["best_single_ns"]) > 0.0, "{row}");
+    }
+
+    let options = json["options"].as_array().expect("a list");
+    options.iter().for_each(assert_time);
+    options.iter().for_each(|row| assert_errors(&row["error_gouraud_unrounded"]));
+    let aspects: BTreeSet<&str> = options.iter().filter_map(|row| row["aspect"].as_str()).collect();
+    assert!(
+        aspects.iter().eq([
+            "dither",
+            "hidden surfaces",
+            "kernel",
+            "rung, portable kernel",
+            "vertex path",
+            "vertex rounding"
+        ]
+        .iter())
+    );
+    let option = |name: &str| options.iter().find(|row| row["name"] == name).expect("a choice");
+    let rms = |name: &str, of: &str| number(&option(name)["error_gouraud_unrounded"][of]);
+    assert!(rms("whole pixels", "rms") > rms("1/256 pixel", "rms"));
+    // Where dither earns its keep.
+    assert!(rms("ordered", "rms_of_blocks") < rms("none", "rms_of_blocks"));
+    assert!(option("back-faces")["cover_errors"].as_u64() > option("scan-line")["cover_errors"].as_u64());
+
+    let claims = json["claims"].as_array().expect("a list");
+    assert_eq!(claims.len(), 6);
+    for claim in claims {
+        assert!(["holds", "holds in part", "does not hold"].iter().any(|verdict| claim["verdict"] == *verdict));
+        assert!(claim["measured"].as_str().is_some_and(|text| text.contains(|c: char| c.is_ascii_digit())), "{claim}");
+    }
+
+    let written = |name: &str| fs::read_to_string(directory.path().join("out").join(name)).expect("a file");
+    assert_eq!(written("cost.json").as_bytes(), output.stdout);
+    let mut names: Vec<_> = fs::read_dir(directory.path().join("out"))
+        .expect("a directory")
+        .map(|file| file.expect("a file").file_name())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["chart.svg", "cost.json", "report.html", "samples.csv"]);
+    let samples = written("samples.csv");
+    let mut lines = samples.lines();
+    assert_eq!(lines.next(), Some("round,order,kind,name,frames,ns"));
+    let rounds = json["rounds"].as_u64().expect("a number");
+    let times = |kind: &str, name: &str| {
+        samples.lines().filter(|line| line.contains(&format!(",{kind},{name},3,"))).count() as u64
+    };
+    assert!(rounds >= 7 && times("rung", "gouraud-8.8") == rounds && times("budget", "4") == rounds, "{rounds}");
+    // What is slow sits out rounds, not all of them.
+    assert!((rounds / 4..=rounds).contains(&times("rung", "gouraud-tessellated")));
+    assert!(
+        lines.all(|line| line.rsplit(',').next().is_some_and(|time| time.parse::<u64>().is_ok_and(|time| time > 0)))
+    );
+}
+
+#[test]
+fn rungs_that_are_asked_for_are_the_rungs_there_are() {
+    let directory = directory();
+    let output = run(&directory, &["cube", "--frames", "1", "--seconds", "0", "--json", "--rungs", "phong,flat"]);
+    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let rungs: Vec<&Value> = json["rungs"].as_array().expect("a list").iter().map(|row| &row["rung"]).collect();
+    assert_eq!(rungs, ["flat", "phong"]);
+    assert!(number(&json["rungs"][1]["ratio"]) > 1.0, "to gouraud-8.8, which was drawn all the same");
+    assert!(fs::read_dir(&directory).expect("a directory").next().is_none(), "without -o nothing is written");
+}
+
+/// Light from everywhere: one shade, which every rung has.
+#[test]
+fn where_the_picture_is_the_truth_nothing_is_off() {
+    let mut scene = Scene::new();
+    let mut wall = Object::new(shapes::wall(3, 2));
+    // A fifth of full intensity is the shade 51; 0.2 in f32 is off by 3·10⁻⁹.
+    wall.materials = vec![Material { ambient: 0.2, ..Material::default() }];
+    scene.add(wall);
+    scene.ambient = 1.0;
+    let (frames, steps) = ([scene.clone()], [scene.clone(), scene]);
+    let subject = Subject { name: "wall", frames: &frames, steps: &steps, renderer: &Renderer::new };
+    let mut settings = Settings::default();
+    (settings.choices, settings.claims, settings.seconds) = (false, false, 0.0);
+    let (study, samples) = measure(&subject, &settings, &|_, _| {}).expect("a legal scene");
+    assert_eq!((study.rungs.len(), study.budget.len()), (Rung::ALL.len(), BUDGETS.len()));
+    for row in &study.rungs {
+        assert!(row.error_gouraud.max < 1e-6 && row.error_lit.max < 1e-6 && row.swim < 1e-6, "{}", row.rung);
+        assert_eq!(row.error_palette, 0.0);
+        assert!(!row.rung.has_exact_cover() || row.cover_errors == 0, "{}", row.rung);
+        assert!(row.picture.contains(&51) && row.picture.iter().all(|byte| [0, 51].contains(byte)));
+        assert_eq!((row.picture.len(), row.error_map.len()), (64_000, 64_000));
+    }
+    let exact = study.rungs.iter().filter(|row| row.rung.has_exact_cover());
+    let cheapest = exact.min_by(|a, b| a.per_frame.median.total_cmp(&b.per_frame.median)).expect("there are some");
+    for row in &study.budget {
+        assert!(row.within == 1.0 && row.patch == 0 && row.largest < 1e-6, "{row:?}");
+        assert_eq!(row.best_single_rung, Some(cheapest.rung), "all keep it");
+    }
+    let (samples, all) = (samples.to_csv().lines().count() - 1, study.rounds * (Rung::ALL.len() + BUDGETS.len()));
+    assert!((all / 4..=all).contains(&samples), "{samples} of {all}");
+}
+
+/// A study that cannot be written when it is made, though it could be when it began, is kept elsewhere.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_study_is_not_lost_when_it_cannot_be_written() {
+    let (directory, elsewhere) = (directory(), directory());
+    fs::create_dir(directory.path().join("out")).expect("made");
+    let mut child = program(&directory);
+    let child =
+        child.args(["cost", "cube", "--frames", "2", "--seconds", "0", "-o", "out"]).env("TMPDIR", elsewhere.path());
+    let child =
+        child.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().expect("started");
+    sleep(Duration::from_millis(300));
+    // A file takes the directory's place.
+    fs::remove_dir(directory.path().join("out")).expect("removed");
+    fs::write(directory.path().join("out"), "in the way").expect("written");
+    let output = child.wait_with_output().expect("it ends");
+    let lines = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(1), "{lines}");
+    let kept = elsewhere.path().join(format!(
+        "mode13h-cost-cube-{}",
+        fs::read_dir(&elsewhere)
+            .expect("a directory")
+            .next()
+            .expect("kept")
+            .expect("kept")
+            .file_name()
+            .to_string_lossy()
+            .rsplit('-')
+            .next()
+            .expect("a number")
+    ));
+    assert!(
+        lines.lines().last().is_some_and(
+            |line| line.contains("out: ") && line.ends_with(&format!("the study is in {}", kept.display()))
+        ),
+        "{lines}"
+    );
+    assert!(fs::read_to_string(kept.join("cost.json")).expect("read").contains("\"schema\": 1"));
+    let table = String::from_utf8(output.stdout).expect("text");
+    assert!(
+        table.contains("gouraud-8.8-reseeded") && table.contains(&format!("written to {}", kept.display())),
+        "{table}"
+    );
+}
+
+#[test]
+fn what_is_wrong_is_said_in_one_line() {
+    let directory = directory();
+    for (words, status, says) in [
+        (&["torus", "--rungs", "flat,best"][..], 2, "unknown rung"),
+        (&["torus", "--rung", "flat"], 2, "--rungs says which"),
+        (&["torus", "--max-error", "2"], 2, "--rungs says which"),
+        (&["torus", "--frames", "0"], 2, "--frames"),
+        (&["nothing.toml"], 1, "nothing.toml"),
+        (&["torus", "-o", "/dev/null"], 1, "/dev/null: is no directory"),
+        // Before anything is measured.
+        #[cfg(target_os = "linux")]
+        (&["torus", "-o", "/proc/a/b"], 1, "/proc/a: no file can be made in the directory /proc"),
+        (&["torus", "--seconds", "-1"], 2, "--seconds"),
+    ] {
+        assert_fails(&directory, &run(&directory, words), status, says);
+    }
+    let without =
+        program(&directory).args(["cost", "torus", "--instructions"]).env("PATH", "").output().expect("started");
+    assert_fails(&directory, &without, 1, "needs valgrind, which is not there");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_study_leaves_nothing_behind() {
+    let directory = directory();
+    let mut child = program(&directory);
+    let child = child.args(["cost", "torus", "--seconds", "600"]).stdout(std::process::Stdio::piped());
+    let child = child.stderr(std::process::Stdio::piped()).spawn().expect("started");
+    sleep(Duration::from_secs(2));
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("started");
+    let output = child.wait_with_output().expect("it ends");
+    let lines = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(130), "{lines}");
+    assert!(
+        lines.lines().next().is_some_and(|line| line.ends_with("then times are taken, for at most 600 s")),
+        "{lines}"
+    );
+    assert_eq!(lines.lines().last(), Some("mode13h: interrupted"));
+    assert!(output.stdout.is_empty() && fs::read_dir(&directory).expect("a directory").next().is_none());
+}
+
+/// Where valgrind is: each rung's instructions, and the times with the kernel that they were counted of.
+#[test]
+fn instructions_are_counted_where_valgrind_is() {
+    if !is_here("valgrind", Command::new("valgrind").arg("--version").output().is_ok()) {
+        return;
+    }
+    let directory = directory();
+    let words = ["cube", "--frames", "2", "--seconds", "0", "--json", "--instructions", "--rungs", "gouraud-8.8,phong"];
+    let output = run(&directory, &words);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
+    let of = |rung: usize| json["rungs"][rung]["instructions_per_frame"].as_u64().expect("a count");
+    // 64,000 bytes are cleared, by 64 at a time at most; Phong has a square root and more at each of its pixels.
+    assert!(of(0) > 1000 && of(1) > 4 * of(0), "{json}");
+    let kernel = json["kernel"].as_str().expect("a name");
+    assert!(!kernel.contains("avx512") && kernel != "simd", "{kernel}");
+    let again: Value = serde_json::from_slice(&run(&directory, &words).stdout).expect("JSON");
+    let off = again["rungs"][1]["instructions_per_frame"].as_u64().expect("a count").abs_diff(of(1));
+    assert!(off * 1000 <= of(1), "without noise: {off} of {}", of(1));
+}

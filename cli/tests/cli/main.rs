@@ -1,0 +1,10 @@
+//! The program `mode13h`: its words, its files, its documents.
+
+mod support;
+
+mod commands;
+mod cost;
+mod files;
+mod record;
+mod show;
+mod verify;

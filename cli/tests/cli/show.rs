@@ -1,0 +1,74 @@
+//! `mode13h show`.
+
+use std::process::{Command, Output};
+
+use mode13h_lab::show::{CASES, by_id};
+
+fn run(directory: &tempfile::TempDir, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mode13h")).current_dir(directory).args(words).output().expect("started")
+}
+
+fn names_in(directory: &tempfile::TempDir) -> Vec<String> {
+    let entries = std::fs::read_dir(directory).expect("a directory");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn show_without_an_id_lists_the_cases_and_writes_nothing() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let output = run(&directory, &["show"]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    let list = String::from_utf8(output.stdout).expect("text");
+    assert_eq!(list.lines().count(), CASES.len());
+    for (line, case) in list.lines().zip(CASES) {
+        assert!(line.starts_with(case.id) && line.contains(case.sentence), "{line}");
+    }
+    assert!(names_in(&directory).is_empty());
+}
+
+#[test]
+fn show_writes_where_it_is_told_in_silence() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let output = run(&directory, &["show", "d1", "-o", "circle.png"]);
+    assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty(), "{output:?}");
+    let case = by_id("D1").expect("a case");
+    let written = std::fs::read(directory.path().join("circle.png")).expect("written");
+    assert_eq!(written, case.png().expect("memory"));
+    assert_eq!(names_in(&directory), ["circle.png"]);
+}
+
+#[test]
+fn show_without_a_name_says_where_and_overwrites_nothing() {
+    let directory = tempfile::tempdir().expect("a directory");
+    std::fs::write(directory.path().join("R5.png"), "mine").expect("written");
+    for name in ["R5-0002.png", "R5-0003.png"] {
+        let output = run(&directory, &["show", "r5"]);
+        assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+        assert!(String::from_utf8_lossy(&output.stdout).starts_with(&format!("{name}: ")), "{output:?}");
+    }
+    assert_eq!(names_in(&directory), ["R5-0002.png", "R5-0003.png", "R5.png"]);
+    assert_eq!(std::fs::read(directory.path().join("R5.png")).expect("there"), b"mine");
+}
+
+#[test]
+fn show_of_wrong_words_is_one_line_and_status_2() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let cases: [(&[&str], i32, &str); 5] = [
+        (&["show", "R99"], 2, "there are R1, R2"),
+        (&["show", "S4"], 2, "no picture of 'S4'"),
+        (&["show", "R5", "-o", "r5.gif"], 2, "r5.gif"),
+        (&["show", "-o", "r5.png"], 2, "<ID>"),
+        (&["show", "R5", "-o", "no/such/place.png"], 1, "place.png"),
+    ];
+    for (words, status, says) in cases {
+        let output = run(&directory, words);
+        let line = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(status), "{words:?}: {line}");
+        assert!(line.starts_with("mode13h: ") && line.contains(says), "{words:?}: {line}");
+        assert_eq!(line.lines().count(), 1, "{words:?}: {line}");
+        assert!(output.stdout.is_empty() && names_in(&directory).is_empty(), "{words:?}");
+    }
+}

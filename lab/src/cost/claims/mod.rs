@@ -1,0 +1,151 @@
+//! What the old texts claim, each measured on scenes made for it, so whatever the input is.
+//!
+//! A claim is a sentence; to measure it one has to say what its words mean. That is said in numbers in `verdict`, and
+//! nothing else decides: the verdicts are worked out from the figures.
+//!
+//! | file | what |
+//! |---|---|
+//! | `scenes` | spheres of few and of many faces, a torus, a floor that runs away from the eye |
+//! | `figures` | everything that is measured, and the words for it |
+//! | `verdict` | what the words of a claim come to in numbers |
+
+mod figures;
+mod scenes;
+mod verdict;
+
+use alloc::vec::Vec;
+
+use self::figures::{Figures, Sphere};
+use self::scenes::SLICES;
+use super::contest::{Outcome, Spent, contest};
+use super::judge::{against, between};
+use super::statistics::{Chance, Ratio, quartiles};
+use super::way::Way;
+use super::{Claim, CostError};
+use crate::truth::Standard;
+use mode13h::render::{Renderer, Rung};
+use mode13h::scene::Scene;
+
+/// What is drawn by what.
+struct Entrants {
+    scenes: Vec<Vec<Scene>>,
+    /// A way, and the number of a scene.
+    list: Vec<(Rung, usize)>,
+}
+
+impl Entrants {
+    /// Every scene by the rungs that a claim about it needs.
+    fn new() -> Self {
+        use Rung::{Flat, Float, Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Phong, PhongTable};
+        let mut entrants = Self { scenes: Vec::new(), list: Vec::new() };
+        let all = [Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Flat, Float, Phong, PhongTable];
+        entrants.add(scenes::torus(), &all);
+        for slices in SLICES {
+            entrants.add(scenes::sphere(slices, true), &[Flat, Gouraud88, Gouraud88Reseeded, Phong, PhongTable]);
+        }
+        entrants
+    }
+
+    fn add(&mut self, frames: Vec<Scene>, rungs: &[Rung]) {
+        self.list.extend(rungs.iter().map(|rung| (*rung, self.scenes.len())));
+        self.scenes.push(frames);
+    }
+}
+
+/// The number of the torus among the scenes; the spheres follow it.
+const TORUS: usize = 0;
+
+/// Times of all entrants.
+struct Times {
+    list: Vec<(Rung, usize)>,
+    /// For a frame, round by round.
+    times: Vec<Vec<f64>>,
+    seed: u64,
+}
+
+impl Times {
+    fn place(&self, rung: Rung, scene: usize) -> usize {
+        // Whoever asks has had it drawn.
+        self.list.iter().position(|entrant| *entrant == (rung, scene)).unwrap_or(0)
+    }
+
+    fn ratio(&self, rung: Rung, to: Rung, scene: usize) -> f64 {
+        let (one, other) = (self.place(rung, scene), self.place(to, scene));
+        Ratio::new(&self.times[one], &self.times[other], &mut Chance::new(self.seed)).median
+    }
+
+    fn median(&self, rung: Rung, scene: usize) -> f64 {
+        quartiles(&self.times[self.place(rung, scene)]).median
+    }
+}
+
+/// Measures all claims, for about as long as `spent` says, errors aside. `progress` is told the share that is done.
+pub(super) fn claims(
+    base: &(dyn Fn() -> Renderer + Sync),
+    spent: &Spent,
+    progress: &dyn Fn(f64),
+) -> Result<Vec<Claim>, CostError> {
+    let Entrants { scenes, list } = Entrants::new();
+    let ways: Vec<Way<'_>> = list.iter().map(|(rung, _)| Way::rung(*rung)).collect();
+    let entrants: Vec<(&Way<'_>, &[Scene])> =
+        ways.iter().zip(&list).map(|(way, (_, scene))| (way, scenes[*scene].as_slice())).collect();
+    let Outcome { samples, .. } = contest(&entrants, base, spent, &|share| progress(share / 2.0))?;
+    let times = Times { times: (0..list.len()).map(|way| samples.of(way)).collect(), list, seed: spent.seed };
+
+    let mut spheres = Vec::new();
+    for (number, slices) in SLICES.into_iter().enumerate() {
+        progress(0.5 + number as f64 / (2 * SLICES.len()) as f64);
+        spheres.push(sphere(slices, TORUS + 1 + number, &scenes, &times, base)?);
+    }
+    let floor = scenes::floor();
+    let (torus, default) = (&scenes[TORUS], Way::rung(Rung::Gouraud88Reseeded));
+    let (shortest, wide, float) = (Way::rung(Rung::Gouraud88), Way::rung(Rung::Gouraud1616), Way::rung(Rung::Float));
+    let everywhere: Vec<Scene> = torus.iter().chain(&floor).cloned().collect();
+    let fixed = against(Standard::Gouraud, &everywhere, &[&shortest, &default, &wide], base)?;
+    let float = against(Standard::GouraudPerspective, &everywhere, &[&float], base)?;
+    let linear = [Standard::Gouraud, Standard::GouraudPerspective];
+    let figures = Figures {
+        spheres,
+        fixed: [0, 1, 2].map(|i| fixed[i].errors()),
+        float: float[0].errors(),
+        of_default: [Rung::Gouraud88, Rung::Gouraud1616, Rung::Float]
+            .map(|rung| times.ratio(rung, Rung::Gouraud88Reseeded, TORUS)),
+        linear_on_torus: between(linear, torus)?,
+        linear_on_floor: between(linear, &floor)?,
+        hyperbolic_to_linear: times.ratio(Rung::GouraudHyperbolic, Rung::Gouraud88Reseeded, TORUS),
+    };
+    Ok(figures.claims())
+}
+
+/// All about one sphere.
+fn sphere(
+    slices: u32,
+    scene: usize,
+    scenes: &[Vec<Scene>],
+    times: &Times,
+    base: &dyn Fn() -> Renderer,
+) -> Result<Sphere, CostError> {
+    let (matt, shiny) = (scenes::sphere(slices, false), &scenes[scene]);
+    let (linear, phong) = (Way::rung(Rung::Gouraud88Reseeded), Way::rung(Rung::Phong));
+    let rounded = Way::rung(Rung::Gouraud88Reseeded).with_vertex_bits(0);
+    let off = against(Standard::GouraudUnrounded, &matt, &[&linear, &rounded], base)?;
+    let model = against(Standard::Lit, shiny, &[&linear, &phong], base)?;
+    let triangles = matt[0].objects()[0].mesh().triangles().len();
+    let seen = (off[0].pixels() + off[0].cover_errors) as f64 / matt.len() as f64;
+    let share = |of: usize| off[of].cover_errors as f64 / (off[of].pixels() + off[of].cover_errors).max(1) as f64;
+    Ok(Sphere {
+        triangles,
+        // Half of a closed body's faces look at the eye.
+        pixels_of_each: seen / (triangles as f64 / 2.0),
+        fine: off[0].errors(),
+        whole: off[1].errors(),
+        wrong_faces: [share(0), share(1)],
+        linear: model[0].errors(),
+        phong: model[1].errors(),
+        linear_time: times.median(Rung::Gouraud88Reseeded, scene),
+        phong_time: times.median(Rung::Phong, scene),
+        to_flat: times.ratio(Rung::Gouraud88, Rung::Flat, scene),
+        phong_to_linear: times.ratio(Rung::Phong, Rung::Gouraud88, scene),
+        table_to_linear: times.ratio(Rung::PhongTable, Rung::Gouraud88, scene),
+    })
+}

@@ -1,0 +1,65 @@
+//! What claims are measured on.
+
+use alloc::vec::Vec;
+use core::f64::consts::TAU;
+
+use mode13h::glam::Vec3;
+
+use mode13h::light::Light;
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::scene::{Camera, Object, Scene};
+
+/// Spheres, from coarse to fine: so many slices, and half as many stacks.
+pub(super) const SLICES: [u32; 6] = [8, 16, 32, 64, 128, 256];
+
+/// Frames of each.
+const FRAMES: u32 = 2;
+
+/// A mesh, turned from frame to frame so that no edge keeps its place among the pixels.
+fn turned(mesh: Mesh, shiny: bool) -> Vec<Scene> {
+    let mut scene = Scene::showing(mesh);
+    // By its sphere, as it is turned about two axes.
+    scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
+    for object in scene.objects_mut() {
+        let materials = object.materials.iter_mut();
+        if shiny {
+            materials.for_each(|material| {
+                (material.ambient, material.diffuse) = (0.1, 0.6);
+                (material.specular, material.shininess) = (0.3, 20.0);
+            });
+        }
+    }
+    let frame = |frame: u32| {
+        let angle = TAU * f64::from(frame) / f64::from(FRAMES) + 0.2;
+        scene.objects_mut().iter_mut().for_each(|object| object.set_angles([0.35, angle, 0.1]));
+        scene.clone()
+    };
+    (0..FRAMES).map(frame).collect()
+}
+
+/// A sphere that fills the picture, matt or with a highlight.
+pub(super) fn sphere(slices: u32, shiny: bool) -> Vec<Scene> {
+    turned(shapes::sphere(slices, slices / 2), shiny)
+}
+
+/// The torus of 2,304 faces.
+pub(super) fn torus() -> Vec<Scene> {
+    turned(shapes::torus(48, 24), false)
+}
+
+/// A floor of two faces that runs away from the eye, with a lamp over its near end: faces that are as deep as they are
+/// large, and shades that differ as much as they can.
+pub(super) fn floor() -> Vec<Scene> {
+    let mut scene = Scene::new();
+    let mut floor = Object::new(shapes::wall(1, 1));
+    floor.scale = 4.0;
+    floor.set_angles([-TAU / 4.0, 0.0, 0.0]);
+    scene.add(floor);
+    scene.add_light(Light::lamp([-1.5, 1.0, 2.5], 8.0));
+    let frame = |frame: u32| {
+        let eye = Vec3::new(0.3 * frame as f32, 0.6, 3.4);
+        scene.camera = Camera { eye, target: Vec3::ZERO, near: 0.1, ..Camera::framing(Vec3::ZERO, 1.0) };
+        scene.clone()
+    };
+    (0..FRAMES).map(frame).collect()
+}

@@ -1,0 +1,307 @@
+//! Times: all ways to draw side by side, round after round.
+//!
+//! A round draws all frames by every way, in an order that is shuffled anew for each round, so that no way always
+//! runs while the processor is warm, or after the same other one. A way that takes more than ten times as long as one
+//! before it sits out rounds, up to three of four: what waits for it would have few rounds. Nothing is subtracted. Every frame is drawn:
+//! that nothing has changed since the last, which would leave it as it is, is looked for by no renderer here
+//! ([`Effect::Transform`] is forced on). So a budget's decisions are in its time, also of an object that stands still.
+
+use alloc::borrow::Cow;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt::Write as _;
+use core::hint::black_box;
+use core::mem::size_of;
+use std::time::Instant;
+
+use super::clock::Clock;
+use super::statistics::{Chance, Ratio};
+use super::way::{Kind, Way};
+use mode13h::plan::Effect;
+use mode13h::render::{RenderError, Renderer, Rung, Shares};
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+
+/// The fewest rounds, where time allows that at all, the fewest of all, and the most.
+const ROUNDS: (usize, usize, usize) = (25, 7, 2001);
+
+/// Ratios whose intervals are wider than this share of them get twice the time.
+const NARROW: f64 = 0.02;
+
+/// One time.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Sample {
+    round: usize,
+    /// Its place in the round, from 0.
+    order: usize,
+    way: usize,
+    /// For all frames of the round.
+    nanoseconds: f64,
+}
+
+/// All times of a study, in the order in which they were taken.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Samples {
+    /// Kind and name of each way.
+    ways: Vec<(&'static str, String)>,
+    frames: usize,
+    list: Vec<Sample>,
+}
+
+const _: () = assert!(size_of::<Sample>() <= 32, "a long study keeps some 100,000");
+
+impl Samples {
+    /// As comma-separated values with a line of headings: the number of the round, the place in the round, what was
+    /// drawn by, the number of frames, and the time for all of them in nanoseconds.
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        let mut text = String::from("round,order,kind,name,frames,ns\n");
+        for Sample { round, order, way, nanoseconds } in &self.list {
+            let (kind, name) = &self.ways[*way];
+            let (kind, name) = (cell(kind), cell(name));
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{round},{order},{kind},{name},{},{nanoseconds:.0}", self.frames);
+        }
+        text
+    }
+
+    /// The times of one way for a frame, round by round; NaN where it sat out.
+    pub(super) fn of(&self, way: usize) -> Vec<f64> {
+        let mut times = vec![f64::NAN; self.rounds()];
+        for sample in self.list.iter().filter(|sample| sample.way == way) {
+            times[sample.round] = sample.nanoseconds / self.frames.max(1) as f64;
+        }
+        times
+    }
+
+    /// How many rounds there are.
+    pub(super) fn rounds(&self) -> usize {
+        self.list.last().map_or(0, |sample| sample.round + 1)
+    }
+}
+
+/// A cell of comma-separated values: a text that holds a comma stands in quotation marks (RFC 4180). No name holds one of
+/// these.
+fn cell(text: &str) -> Cow<'_, str> {
+    if text.contains(',') { Cow::Owned(format!("\"{text}\"")) } else { Cow::Borrowed(text) }
+}
+
+/// What drawing all frames comes to, whatever the time.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(super) struct Work {
+    pub(super) triangles: u64,
+    pub(super) pixels: u64,
+    pub(super) shares: [u64; Rung::ALL.len()],
+}
+
+impl Work {
+    fn add_shares(&mut self, shares: &Shares) {
+        for (count, rung) in self.shares.iter_mut().zip(Rung::ALL) {
+            *count += shares.of(rung);
+        }
+    }
+}
+
+/// One way, ready to draw.
+struct Contender<'a> {
+    renderer: Renderer,
+    scenes: &'a [Scene],
+    work: Work,
+    /// It draws in every round whose number this divides.
+    every: usize,
+}
+
+impl Contender<'_> {
+    /// Draws all frames; the time in nanoseconds.
+    fn draw(&mut self, vga: &mut Vga, clock: Clock) -> Result<f64, RenderError> {
+        let (time, result) = clock.time(|| {
+            self.scenes.iter().try_for_each(|scene| {
+                black_box(self.renderer.draw(scene, vga)?);
+                Ok(())
+            })
+        });
+        result.map(|()| time)
+    }
+
+    /// The same, counting the work.
+    fn count(&mut self, vga: &mut Vga) -> Result<(), RenderError> {
+        self.work = Work::default();
+        for scene in self.scenes {
+            let stats = self.renderer.draw(scene, vga)?;
+            debug_assert!(stats.redrawn, "every frame is drawn");
+            self.work.triangles += stats.drawn;
+            self.work.pixels += u64::from(stats.raster.pixels);
+            self.work.add_shares(&stats.shares);
+        }
+        Ok(())
+    }
+}
+
+/// A renderer that draws every frame, changed or not.
+pub(super) fn always_drawing(mut renderer: Renderer) -> Renderer {
+    renderer.force(Effect::Transform, Some(true));
+    renderer
+}
+
+/// What times are taken with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spent {
+    pub(super) clock: Clock,
+    /// About how long.
+    pub(super) seconds: f64,
+    /// Whether that is the most, and not what ratios that are not known well enough may prolong.
+    pub(super) at_most: bool,
+    /// Of the order.
+    pub(super) seed: u64,
+}
+
+/// What a contest found out.
+pub(super) struct Outcome {
+    pub(super) samples: Samples,
+    /// One for each way.
+    pub(super) work: Vec<Work>,
+}
+
+/// Times all ways on their frames (all of one number), about as long as `spent` says: longer where fewer than 25 rounds would
+/// fit in, up to four times as long, and twice as long as long as a rung's or a budget's ratio to the first way is not
+/// known to 2 %. Where `spent` says at most, as long as it says, or for seven rounds. `progress` is told the share of the time that is over.
+pub(super) fn contest(
+    ways: &[(&Way<'_>, &[Scene])],
+    base: &dyn Fn() -> Renderer,
+    spent: &Spent,
+    progress: &dyn Fn(f64),
+) -> Result<Outcome, RenderError> {
+    let mut chance = Chance::new(spent.seed);
+    let seconds = spent.seconds;
+    // One machine for all, so that none has its memory in a better place.
+    let mut vga = Vga::new();
+    let mut contenders: Vec<Contender<'_>> = ways
+        .iter()
+        .map(|(way, scenes)| Contender {
+            renderer: always_drawing(way.apply(base())),
+            scenes,
+            work: Work::default(),
+            every: 1,
+        })
+        .collect();
+    // Warm: tables are made, memory is there, and the caches have been filled.
+    let mut least = f64::INFINITY;
+    for contender in &mut contenders {
+        contender.count(&mut vga)?;
+        // What comes between once does not come three times.
+        let mut time = f64::INFINITY;
+        for _ in 0..3 {
+            time = time.min(contender.draw(&mut vga, spent.clock)?);
+        }
+        least = least.min(time);
+        // At most 4.
+        contender.every = (time / least / 10.0).clamp(1.0, 4.0) as usize;
+    }
+    let mut samples = Samples {
+        ways: ways.iter().map(|(way, _)| (way.kind.name(), way.name.clone())).collect(),
+        frames: ways.first().map_or(0, |(_, scenes)| scenes.len()),
+        list: Vec::new(),
+    };
+    let mut order: Vec<usize> = (0..contenders.len()).collect();
+    let start = Instant::now();
+    for round in 0..ROUNDS.2 {
+        let elapsed = start.elapsed().as_secs_f64();
+        progress((elapsed / seconds).min(1.0));
+        let enough = match round {
+            round if round < ROUNDS.1 => false,
+            _ if spent.at_most => elapsed >= seconds,
+            round if round < ROUNDS.0 => elapsed >= 4.0 * seconds,
+            _ => {
+                elapsed >= 2.0 * seconds
+                    || (elapsed >= seconds && round.is_multiple_of(8) && is_narrow(ways, &samples, spent.seed))
+            }
+        };
+        if enough {
+            break;
+        }
+        chance.shuffle(&mut order);
+        let draws = order.iter().filter(|way| round.is_multiple_of(contenders[**way].every));
+        for (place, way) in draws.copied().collect::<Vec<usize>>().into_iter().enumerate() {
+            let nanoseconds = contenders[way].draw(&mut vga, spent.clock)?;
+            samples.list.push(Sample { round, order: place, way, nanoseconds });
+        }
+    }
+    Ok(Outcome { samples, work: contenders.iter().map(|contender| contender.work).collect() })
+}
+
+/// Whether all ratios that are asked for are known well enough.
+fn is_narrow(ways: &[(&Way<'_>, &[Scene])], samples: &Samples, seed: u64) -> bool {
+    let mut chance = Chance::new(seed);
+    let first = samples.of(0);
+    ways.iter().enumerate().all(|(i, (way, _))| {
+        matches!(way.kind, Kind::Choice(_)) || Ratio::new(&samples.of(i), &first, &mut chance).spread() <= NARROW
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::collections::BTreeSet;
+
+    use super::*;
+    use crate::cost::Aspect;
+    use mode13h::mesh::shapes;
+
+    #[test]
+    fn a_name_with_a_comma_is_one_cell() {
+        let sample = Sample { round: 3, order: 1, way: 0, nanoseconds: 70.4 };
+        let ways = vec![(Aspect::PortableRung.name(), String::from("flat"))];
+        let samples = Samples { ways, frames: 2, list: vec![sample] };
+        assert_eq!(samples.to_csv().lines().nth(1), Some("3,1,\"rung, portable kernel\",flat,2,70"));
+    }
+
+    /// Of a scene in which nothing moves every frame takes the vertices and, by a budget, the decisions.
+    #[test]
+    fn decisions_of_a_budget_are_made_in_every_frame() {
+        let mut scene = Scene::showing(shapes::torus(12, 6));
+        scene.add(mode13h::scene::Object::new(shapes::sphere(8, 5)));
+        let mut vga = Vga::new();
+        let mut decided = |mut renderer: Renderer| {
+            [(); 3].map(|()| renderer.draw(&scene, &mut vga).map(|stats| (stats.redrawn, stats.decided)))
+        };
+        let timed = decided(always_drawing(Way::budget(4.0).apply(Renderer::new())));
+        assert_eq!(timed, [(); 3].map(|()| Ok((true, 2))));
+        let kept = decided(Way::budget(4.0).apply(Renderer::new()));
+        assert_eq!(kept, [Ok((true, 2)), Ok((false, 0)), Ok((false, 0))]);
+        let without = decided(always_drawing(Way::rung(Rung::Phong).apply(Renderer::new())));
+        assert_eq!(without, [(); 3].map(|()| Ok((true, 0))));
+    }
+
+    #[test]
+    fn every_way_draws_every_frame_in_every_round() {
+        let frames = [Scene::showing(shapes::torus(12, 6)), Scene::showing(shapes::torus(12, 6))];
+        let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong), Way::budget(4.0)];
+        let ways: Vec<(&Way<'_>, &[Scene])> = ways.iter().map(|way| (way, &frames[..])).collect();
+        let Ok(Outcome { samples, work }) = contest(
+            &ways,
+            &Renderer::new,
+            &Spent { clock: Clock::WALL, seconds: 0.001, at_most: false, seed: 1 },
+            &|_| {},
+        ) else {
+            unreachable!("a scene that can be drawn")
+        };
+        let rounds = samples.rounds();
+        assert!(rounds >= 7, "{rounds}");
+        for round in samples.list.chunk_by(|a, b| a.round == b.round) {
+            let drawn: BTreeSet<usize> = round.iter().map(|sample| sample.way).collect();
+            // A slow one may sit out.
+            assert!(drawn.len() == round.len() && drawn.contains(&0), "{round:?}");
+            assert!(round.iter().map(|sample| sample.order).eq(0..round.len()));
+        }
+        assert!((0..3).all(|way| samples.of(way).iter().all(|time| *time > 0.0 || time.is_nan())));
+        let rounds = samples.list.chunk_by(|a, b| a.round == b.round);
+        let orders: BTreeSet<Vec<usize>> =
+            rounds.map(|round| round.iter().map(|sample| sample.way).collect()).collect();
+        assert!(orders.len() > 1, "shuffled");
+        assert!(work.iter().all(|work| work.triangles > 0 && work.shares.iter().sum::<u64>() == work.triangles));
+        let csv = samples.to_csv();
+        assert_eq!(csv.lines().count(), 1 + samples.list.len());
+        assert!(csv.lines().any(|line| line.contains(",rung,gouraud-8.8,2,")), "{csv}");
+    }
+}

@@ -1,0 +1,301 @@
+//! Errors: what each way to draw shows, against each standard of truth.
+//!
+//! The truth of a frame is drawn once for all ways. Frames are judged on all processors; what is found does not depend
+//! on who found it.
+
+use alloc::vec::Vec;
+use core::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Mutex;
+use std::thread;
+
+use super::entries::Entries;
+use super::way::{BUDGETS, Kind, Way};
+use super::{CostError, Errors, Probe};
+use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth};
+use mode13h::render::{Renderer, Screen};
+use mode13h::scene::Scene;
+
+/// Errors over many frames, pixel by pixel and over blocks.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Against {
+    pixels: Figures,
+    blocks: Figures,
+    pub(super) cover_errors: u64,
+}
+
+impl Against {
+    fn count(&mut self, map: &ErrorMap) {
+        self.pixels.add(&map.figures());
+        self.blocks.add(&map.block_figures());
+        self.cover_errors += map.cover_errors() as u64;
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.pixels.add(&other.pixels);
+        self.blocks.add(&other.blocks);
+        self.cover_errors += other.cover_errors;
+    }
+
+    /// Pixels that were compared.
+    pub(super) fn pixels(&self) -> u64 {
+        self.pixels.count
+    }
+
+    pub(super) fn errors(&self) -> Errors {
+        Errors {
+            max: self.pixels.max,
+            mean: self.pixels.mean(),
+            rms: self.pixels.rms(),
+            off_by_one: self.pixels.share_by_one(),
+            rms_of_blocks: self.blocks.rms(),
+        }
+    }
+}
+
+/// How one way keeps a bound.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct Kept {
+    /// Pixels within it.
+    pub(super) within: u64,
+    /// The pixels of the largest patch beyond it.
+    pub(super) patch: usize,
+}
+
+/// What is found of one way over many frames.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Findings {
+    gouraud: Against,
+    unrounded: Against,
+    lit: Against,
+    /// For each of [`BUDGETS`].
+    pub(super) kept: [Kept; BUDGETS.len()],
+    entries: Entries,
+    swim: Swim,
+    /// Of the first frame: its shades, and its errors against `lit`.
+    pub(super) picture: Vec<u8>,
+    pub(super) error_map: Vec<f32>,
+}
+
+impl Findings {
+    pub(super) fn gouraud(&self) -> Errors {
+        self.gouraud.errors()
+    }
+
+    pub(super) fn lit(&self) -> Errors {
+        self.lit.errors()
+    }
+
+    pub(super) fn unrounded(&self) -> Errors {
+        self.unrounded.errors()
+    }
+
+    /// Pixels that show another face than they should, vertices rounded alike.
+    pub(super) fn cover_errors(&self) -> u64 {
+        self.gouraud.cover_errors
+    }
+
+    /// The same, vertices unrounded.
+    pub(super) fn cover_errors_unrounded(&self) -> u64 {
+        self.unrounded.cover_errors
+    }
+
+    /// The share of pixels within a bound of [`BUDGETS`] of `lit`; 1 if none was compared.
+    pub(super) fn within(&self, bound: usize) -> f64 {
+        let all = self.lit.pixels.count;
+        // Below 2⁵³: pixels.
+        if all == 0 { 1.0 } else { self.kept[bound].within as f64 / all as f64 }
+    }
+
+    pub(super) fn palette(&self) -> f64 {
+        self.entries.error()
+    }
+
+    pub(super) fn swim(&self) -> f64 {
+        self.swim.rms()
+    }
+
+    fn add(&mut self, other: Self) {
+        self.gouraud.add(&other.gouraud);
+        self.unrounded.add(&other.unrounded);
+        self.lit.add(&other.lit);
+        for (kept, other) in self.kept.iter_mut().zip(other.kept) {
+            kept.within += other.within;
+            kept.patch = kept.patch.max(other.patch);
+        }
+        self.entries.add(other.entries);
+        self.swim.join(&other.swim);
+        if self.picture.is_empty() {
+            (self.picture, self.error_map) = (other.picture, other.error_map);
+        }
+    }
+}
+
+/// What is found of all ways on one frame.
+type Judged = Result<Vec<Findings>, CostError>;
+
+/// What is judged.
+pub(super) struct Court<'a> {
+    pub(super) ways: &'a [Way<'a>],
+    pub(super) base: &'a (dyn Fn() -> Renderer + Sync),
+    /// Frames all over the round.
+    pub(super) frames: &'a [Scene],
+    /// Frames 0.25° apart, for what swims.
+    pub(super) steps: &'a [Scene],
+}
+
+impl Court<'_> {
+    /// Judges all ways; `progress` is told the share that is done.
+    pub(super) fn judge(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Findings>, CostError> {
+        // A frame each, and each pair of steps.
+        let items = self.frames.len() + self.steps.len().saturating_sub(1);
+        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let found: Mutex<Vec<(usize, Judged)>> = Mutex::new(Vec::new());
+        let work = || {
+            let mut probe = Probe::new((self.base)());
+            loop {
+                let item = next.fetch_add(1, Ordering::Relaxed);
+                if item >= items {
+                    return;
+                }
+                let findings = match item.checked_sub(self.frames.len()) {
+                    None => self.frame(item, &mut probe),
+                    Some(step) => self.step(step, &mut probe),
+                };
+                if findings.is_err() {
+                    // Nobody begins another.
+                    next.store(items, Ordering::Relaxed);
+                }
+                found.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((item, findings));
+                progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / items as f64);
+            }
+        };
+        let threads = thread::available_parallelism().map_or(1, usize::from).min(items);
+        thread::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(work);
+            }
+            work();
+        });
+        let mut found = found.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // Sums of floats depend on their order.
+        found.sort_by_key(|(item, _)| *item);
+        let mut all: Vec<Findings> = self.ways.iter().map(|_| Findings::default()).collect();
+        for (_, findings) in found {
+            for (all, findings) in all.iter_mut().zip(findings?) {
+                all.add(findings);
+            }
+        }
+        Ok(all)
+    }
+
+    fn look(&self, way: &Way<'_>, scene: &Scene, probe: &mut Probe) -> Result<Shown, CostError> {
+        *probe.renderer() = way.apply((self.base)());
+        probe.dither(way.dither);
+        Ok(probe.look(scene, Screen::MODE_13H)?)
+    }
+
+    fn frame(&self, index: usize, probe: &mut Probe) -> Result<Vec<Findings>, CostError> {
+        let scene = &self.frames[index];
+        let truth = Truth::new(scene, Screen::MODE_13H)?;
+        let (gouraud, lit) = (truth.draw(Standard::Gouraud), truth.draw(Standard::Lit));
+        let choices = self.ways.iter().any(|way| matches!(way.kind, Kind::Choice(_)));
+        let unrounded = choices.then(|| truth.draw(Standard::GouraudUnrounded));
+        let judged = |way: &Way<'_>| {
+            let shown = self.look(way, scene, probe)?;
+            let mut findings = Findings::default();
+            if let Kind::Choice(_) = way.kind {
+                if let Some(map) = unrounded.as_ref().and_then(|truth| ErrorMap::new(truth, &shown)) {
+                    findings.unrounded.count(&map);
+                }
+                return Ok(findings);
+            }
+            // All are of one size.
+            let (Some(numeric), Some(model)) = (ErrorMap::new(&gouraud, &shown), ErrorMap::new(&lit, &shown)) else {
+                return Ok(findings);
+            };
+            findings.gouraud.count(&numeric);
+            findings.lit.count(&model);
+            for (kept, bound) in findings.kept.iter_mut().zip(BUDGETS) {
+                kept.within = model.errors().flatten().filter(|error| *error <= bound).count() as u64;
+                kept.patch = model.largest_patch(bound);
+            }
+            findings.entries.count(scene, &shown, probe.renderer());
+            if index == 0 {
+                findings.picture = picture(&shown);
+                findings.error_map = model.errors().map(|error| error.map_or(f32::NAN, |error| error as f32)).collect();
+            }
+            Ok(findings)
+        };
+        self.ways.iter().map(judged).collect()
+    }
+
+    /// From one step to the next.
+    fn step(&self, index: usize, probe: &mut Probe) -> Result<Vec<Findings>, CostError> {
+        let scenes = &self.steps[index..index + 2];
+        let mut truths = Vec::new();
+        for scene in scenes {
+            truths.push(Truth::new(scene, Screen::MODE_13H)?.draw(Standard::Lit));
+        }
+        let mut all = Vec::new();
+        for way in self.ways {
+            let mut findings = Findings::default();
+            if let Kind::Rung(_) = way.kind {
+                let mut maps = Vec::new();
+                for (scene, truth) in scenes.iter().zip(&truths) {
+                    maps.extend(ErrorMap::new(truth, &self.look(way, scene, probe)?));
+                }
+                if let [before, now] = &maps[..] {
+                    findings.swim.add(before, now);
+                }
+            }
+            all.push(findings);
+        }
+        Ok(all)
+    }
+}
+
+/// How far frames drawn by some ways are from a standard, way by way.
+pub(super) fn against(
+    standard: Standard,
+    frames: &[Scene],
+    ways: &[&Way<'_>],
+    base: &dyn Fn() -> Renderer,
+) -> Result<Vec<Against>, CostError> {
+    let mut all = alloc::vec![Against::default(); ways.len()];
+    let mut probe = Probe::new(base());
+    for scene in frames {
+        let truth = Truth::new(scene, Screen::MODE_13H)?.draw(standard);
+        for (against, way) in all.iter_mut().zip(ways) {
+            *probe.renderer() = way.apply(base());
+            let shown = probe.look(scene, Screen::MODE_13H)?;
+            if let Some(map) = ErrorMap::new(&truth, &shown) {
+                against.count(&map);
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// How far two standards are from each other, over all frames.
+pub(super) fn between(standards: [Standard; 2], frames: &[Scene]) -> Result<Errors, CostError> {
+    let mut all = Against::default();
+    for scene in frames {
+        let truth = Truth::new(scene, Screen::MODE_13H)?;
+        let [one, other] = standards.map(|standard| truth.draw(standard));
+        let faces = other.pixels.iter().map(|pixel| pixel.map(|pixel| pixel.face)).collect();
+        let shades = other.pixels.iter().map(|p| p.map_or([0.0; 3], |p| p.intensity.map(|i| i * 255.0))).collect();
+        let shown = Shown { width: other.width, height: other.height, faces, shades };
+        if let Some(map) = ErrorMap::new(&one, &shown) {
+            all.count(&map);
+        }
+    }
+    Ok(all.errors())
+}
+
+/// Shades as entries of a ramp of 256; of three channels the brightest; black where there is no face.
+fn picture(shown: &Shown) -> Vec<u8> {
+    let brightest = |shades: &[f64; 3]| shades.iter().copied().fold(0.0, f64::max);
+    // Bytes.
+    let entry = |(shades, face): (&[f64; 3], &Option<_>)| if face.is_some() { brightest(shades) as u8 } else { 0 };
+    shown.shades.iter().zip(&shown.faces).map(entry).collect()
+}

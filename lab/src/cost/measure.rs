@@ -1,0 +1,516 @@
+//! A study: errors, times and what follows from both.
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::claims::claims;
+use super::clock::Clock;
+use super::contest::{Outcome, Samples, Spent, contest};
+use super::judge::{Court, Findings};
+use super::split::split;
+use super::statistics::{Chance, Ratio, quartiles};
+use super::way::{BUDGETS, Kind, REFERENCE, Way};
+use super::{Aspect, BudgetRow, Host, OptionRow, ProbeError, RungRow, Split, Study};
+use crate::truth::TruthError;
+use mode13h::plan::Effect;
+use mode13h::render::{RenderError, Renderer, Rung, Screen};
+use mode13h::scene::Scene;
+
+/// The share of pixels that a budget, and a rung that is compared with it, must keep within the bound.
+const PROMISE: f64 = 0.999;
+
+/// What a study is made of.
+pub struct Subject<'a> {
+    /// What to call it.
+    pub name: &'a str,
+    /// Frames all over one round of it: at least one.
+    pub frames: &'a [Scene],
+    /// Frames 0.25° of a turn apart, for what swims; there may be none.
+    pub steps: &'a [Scene],
+    /// Makes renderers that are set as everything is to be drawn, but for the rung: kernel, vertex path and the like.
+    pub renderer: &'a (dyn Fn() -> Renderer + Sync),
+}
+
+/// How a study is made.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The rungs that are studied. `gouraud-8.8` is drawn in any case, as ratios are to it.
+    pub rungs: Vec<Rung>,
+    /// Whether vertex path, vertex rounding, kernels, dither and the ways to visible surfaces are compared, too.
+    pub choices: bool,
+    /// Whether the sources' claims are measured, on scenes of their own.
+    pub claims: bool,
+    /// What times are read from.
+    pub clock: Clock,
+    /// About how long times are taken; up to twice as long where ratios are not known well enough.
+    pub seconds: f64,
+    /// Whether that is the most. Fewer rounds are drawn then, but seven in any case.
+    pub at_most: bool,
+    /// What the order of drawing, and resampling, are made from.
+    pub seed: u64,
+    /// The machine and the program, as they are to be named. The clock is named here.
+    pub host: Host,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            rungs: Rung::ALL.to_vec(),
+            choices: true,
+            claims: true,
+            clock: Clock::WALL,
+            seconds: 10.0,
+            at_most: false,
+            seed: 13,
+            host: Host::default(),
+        }
+    }
+}
+
+/// What a study is doing.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Step {
+    /// Comparing frames with the truth.
+    Errors,
+    /// Timing frames.
+    Times,
+    /// Finding out where the time goes.
+    Split,
+    /// Measuring what the sources claim.
+    Claims,
+}
+
+/// Why nothing could be found out.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum CostError {
+    /// The scene cannot be drawn.
+    Scene(RenderError),
+    /// What it shows cannot be looked at.
+    Probe(ProbeError),
+    /// There is no truth about it.
+    Truth(TruthError),
+    /// There is no frame.
+    NoFrames,
+}
+
+impl fmt::Display for CostError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scene(error) => error.fmt(f),
+            Self::Probe(error) => error.fmt(f),
+            Self::Truth(error) => error.fmt(f),
+            Self::NoFrames => f.write_str("there is no frame to be drawn"),
+        }
+    }
+}
+
+impl core::error::Error for CostError {}
+
+impl From<RenderError> for CostError {
+    fn from(error: RenderError) -> Self {
+        Self::Scene(error)
+    }
+}
+
+impl From<ProbeError> for CostError {
+    fn from(error: ProbeError) -> Self {
+        Self::Probe(error)
+    }
+}
+
+impl From<TruthError> for CostError {
+    fn from(error: TruthError) -> Self {
+        Self::Truth(error)
+    }
+}
+
+/// Measures what accuracy costs. `progress` is told what is being done, and the share of that, 0 to 1; by several
+/// threads at once.
+///
+/// Errors are found first, on all processors; then times are taken, on one.
+///
+/// ```no_run
+/// use mode13h_lab::cost::{Settings, Subject, measure};
+/// use mode13h::mesh::shapes;
+/// use mode13h::render::Renderer;
+/// use mode13h::scene::Scene;
+///
+/// let frames = [Scene::showing(shapes::torus(48, 24))];
+/// let subject = Subject { name: "torus", frames: &frames, steps: &[], renderer: &Renderer::new };
+/// let (study, _) = measure(&subject, &Settings::default(), &|_, _| {})?;
+/// for row in &study.rungs {
+///     println!("{}: {:.0} ns, off by {:.2} at most", row.rung, row.per_frame.median, row.error_lit.max);
+/// }
+/// # Ok::<(), mode13h_lab::cost::CostError>(())
+/// ```
+///
+/// # Errors
+/// A scene that cannot be drawn or looked at; no frame.
+pub fn measure(
+    subject: &Subject<'_>,
+    settings: &Settings,
+    progress: &(dyn Fn(Step, f64) + Sync),
+) -> Result<(Study, Samples), CostError> {
+    let Subject { name, frames, steps, renderer } = *subject;
+    let Settings { rungs, choices: with_choices, claims: with_claims, clock, seconds, at_most, seed, host } = settings;
+    if frames.is_empty() {
+        return Err(CostError::NoFrames);
+    }
+    let spent = |share: f64| Spent { clock: *clock, seconds: share * seconds, at_most: *at_most, seed: *seed };
+    let mut ways = Way::rungs_and_budgets(rungs);
+    if *with_choices {
+        ways.extend(choices(frames, renderer, rungs)?);
+    }
+    let court = Court { ways: &ways, base: renderer, frames, steps };
+    let findings = court.judge(&|share| progress(Step::Errors, share))?;
+
+    let dithered = [false, true].map(|dither| with_dither(frames, dither));
+    let entrants: Vec<(&Way<'_>, &[Scene])> =
+        ways.iter().map(|way| (way, way.dither.map_or(frames, |dither| &dithered[usize::from(dither)]))).collect();
+    let outcome = contest(&entrants, renderer, &spent(0.5), &|share| progress(Step::Times, share))?;
+    let of_rungs: Vec<&Way<'_>> = ways.iter().filter(|way| matches!(way.kind, Kind::Rung(_))).collect();
+    let splits = split(&of_rungs, frames, renderer, &spent(0.25), &|share| progress(Step::Split, share))?;
+
+    let claims =
+        if *with_claims { claims(renderer, &spent(0.25), &|share| progress(Step::Claims, share))? } else { Vec::new() };
+
+    let rows = Rows { ways: &ways, times: times(&ways, &outcome.samples), findings, outcome: &outcome, seed: *seed };
+    let mut of_rungs = rows.rungs(&splits, frames.len());
+    let budget = rows.budgets();
+    of_rungs.retain(|row| rungs.contains(&row.rung));
+    let study = Study {
+        input: name.to_string(),
+        host: Host { clock: clock.name.to_string(), clock_step: clock.step(), ..host.clone() },
+        kernel: renderer().kernel().to_string(),
+        frames: frames.len(),
+        rounds: outcome.samples.rounds(),
+        rungs: of_rungs,
+        budget,
+        options: rows.choices(),
+        claims,
+    };
+    Ok((study, outcome.samples))
+}
+
+/// The choices that this scene can be drawn by.
+fn choices(frames: &[Scene], base: &dyn Fn() -> Renderer, rungs: &[Rung]) -> Result<Vec<Way<'static>>, CostError> {
+    let mut ways = Vec::new();
+    for way in Way::choices(rungs) {
+        let mut renderer = way.apply(base());
+        let mut drawable = true;
+        for scene in frames {
+            match renderer.for_each_triangle(scene, Screen::MODE_13H, |_, _| {}) {
+                Ok(_) => {}
+                // What 16.16 cannot hold, f32 can.
+                Err(_) if way.kind == Kind::Choice(Aspect::VertexPath) => drawable = false,
+                Err(error) => return Err(error.into()),
+            }
+            // On three channels dither is not that of a ramp.
+            drawable &= way.dither.is_none() || !renderer.plan().is_on_anywhere(Effect::RgbChannels);
+        }
+        if drawable {
+            ways.push(way);
+        }
+    }
+    Ok(ways)
+}
+
+/// The frames with dither, or without.
+fn with_dither(frames: &[Scene], dither: bool) -> Vec<Scene> {
+    let mut frames = frames.to_vec();
+    frames.iter_mut().for_each(|scene| scene.wishes.dither = dither);
+    frames
+}
+
+fn times(ways: &[Way<'_>], samples: &Samples) -> Vec<Vec<f64>> {
+    (0..ways.len()).map(|way| samples.of(way)).collect()
+}
+
+/// All that was found out, way by way.
+struct Rows<'a> {
+    ways: &'a [Way<'a>],
+    /// For a frame, round by round.
+    times: Vec<Vec<f64>>,
+    findings: Vec<Findings>,
+    outcome: &'a Outcome,
+    seed: u64,
+}
+
+impl Rows<'_> {
+    fn ratio(&self, way: usize, to: usize) -> Ratio {
+        Ratio::new(&self.times[way], &self.times[to], &mut Chance::new(self.seed))
+    }
+
+    /// The rungs' places and names.
+    fn each_rung(&self) -> impl Iterator<Item = (usize, Rung)> {
+        self.ways.iter().enumerate().filter_map(|(i, way)| match way.kind {
+            Kind::Rung(rung) => Some((i, rung)),
+            _ => None,
+        })
+    }
+
+    /// All rungs that were drawn.
+    fn rungs(&self, splits: &[Split], frames: usize) -> Vec<RungRow> {
+        // It is always drawn.
+        let reference = self.each_rung().find(|(_, rung)| *rung == REFERENCE).map_or(0, |(place, _)| place);
+        let mut rows = Vec::new();
+        for ((place, rung), split) in self.each_rung().zip(splits) {
+            let findings = &self.findings[place];
+            let per_frame = quartiles(&self.times[place]);
+            let work = &self.outcome.work[place];
+            // Below 2⁵³: pixels and triangles of some frames.
+            let of_each = |count: u64| per_frame.median * frames as f64 / count.max(1) as f64;
+            let ratio = self.ratio(place, reference);
+            let as_fast = |(other, name): (usize, Rung)| {
+                (other != place && self.ratio(place, other).cannot_be_told()).then_some(name)
+            };
+            rows.push(RungRow {
+                rung,
+                per_frame,
+                per_pixel: of_each(work.pixels),
+                per_triangle: of_each(work.triangles),
+                ratio: ratio.median,
+                ratio_interval: ratio.interval,
+                split: *split,
+                instructions: None,
+                error_gouraud: findings.gouraud(),
+                error_lit: findings.lit(),
+                error_palette: findings.palette(),
+                cover_errors: findings.cover_errors(),
+                swim: findings.swim(),
+                efficient: true,
+                as_fast_as: self.each_rung().filter_map(as_fast).collect(),
+                picture: findings.picture.clone(),
+                error_map: findings.error_map.clone(),
+            });
+        }
+        mark_efficient(&mut rows);
+        rows
+    }
+
+    fn budgets(&self) -> Vec<BudgetRow> {
+        let budgets = self.ways.iter().enumerate().filter_map(|(i, way)| match way.kind {
+            Kind::Budget(shades) => Some((i, shades)),
+            _ => None,
+        });
+        let row = |(bound, (place, max_error)): (usize, (usize, f64))| {
+            let findings = &self.findings[place];
+            let keeps = |&(other, rung): &(usize, Rung)| {
+                rung.has_exact_cover() && self.findings[other].within(bound) >= PROMISE
+            };
+            let median = |&(other, _): &(usize, Rung)| quartiles(&self.times[other]).median;
+            let best = self.each_rung().filter(keeps).min_by(|a, b| median(a).total_cmp(&median(b)));
+            let shares = Rung::ALL.into_iter().zip(self.outcome.work[place].shares);
+            BudgetRow {
+                max_error,
+                within: findings.within(bound),
+                largest: findings.lit().max,
+                rms: findings.lit().rms,
+                patch: findings.kept[bound].patch,
+                per_frame: quartiles(&self.times[place]),
+                best_single_rung: best.map(|(_, rung)| rung),
+                best_single: best.map(|(other, _)| quartiles(&self.times[other])),
+                ratio: best.map(|(other, _)| {
+                    let ratio = self.ratio(place, other);
+                    (ratio.median, ratio.interval)
+                }),
+                triangles: shares.filter(|(_, triangles)| *triangles > 0).collect(),
+            }
+        };
+        (0..BUDGETS.len()).zip(budgets).map(row).collect()
+    }
+
+    fn choices(&self) -> Vec<OptionRow> {
+        let chosen: Vec<(usize, Aspect)> = self
+            .ways
+            .iter()
+            .enumerate()
+            .filter_map(|(i, way)| match way.kind {
+                Kind::Choice(aspect) => Some((i, aspect)),
+                _ => None,
+            })
+            .collect();
+        let row = |&(place, aspect): &(usize, Aspect)| {
+            let first = chosen.iter().find(|(_, of)| *of == aspect).map_or(place, |(first, _)| *first);
+            let ratio = self.ratio(place, first);
+            OptionRow {
+                aspect,
+                name: self.ways[place].name.clone(),
+                per_frame: quartiles(&self.times[place]),
+                ratio: (ratio.median, ratio.interval),
+                error: self.findings[place].unrounded(),
+                cover_errors: self.findings[place].cover_errors_unrounded(),
+            }
+        };
+        chosen.iter().map(row).collect()
+    }
+}
+
+/// A rung is efficient if none is both faster and as near to `lit` or nearer in the root mean square. One whose time
+/// cannot be told from its own is not faster: what cannot be told from the best is among the best.
+fn mark_efficient(rows: &mut [RungRow]) {
+    let beats = |a: &RungRow, b: &RungRow| {
+        let tied = b.as_fast_as.contains(&a.rung);
+        !tied && a.per_frame.median < b.per_frame.median && a.error_lit.rms <= b.error_lit.rms
+    };
+    let beaten: Vec<bool> = rows.iter().map(|row| rows.iter().any(|other| beats(other, row))).collect();
+    for (row, beaten) in rows.iter_mut().zip(beaten) {
+        row.efficient = !beaten;
+    }
+}
+
+/// What is to be warned of, a line each: neighbours in time that cannot be told apart, and budgets that have not kept what
+/// they promise.
+#[must_use]
+pub fn warnings(study: &Study) -> Vec<String> {
+    let mut rows: Vec<&RungRow> = study.rungs.iter().collect();
+    rows.sort_by(|a, b| a.per_frame.median.total_cmp(&b.per_frame.median));
+    let tied = rows.windows(2).filter(|pair| pair[1].as_fast_as.contains(&pair[0].rung));
+    let tied =
+        tied.map(|pair| alloc::format!("{} and {} cannot be told apart by their times", pair[0].rung, pair[1].rung));
+    let broken = study.budget.iter().filter(|row| row.within < PROMISE).map(|row| {
+        let (share, promise) = (100.0 * row.within, 100.0 * PROMISE);
+        let error = row.max_error;
+        alloc::format!("the budget of {error} keeps {share:.2} % of the pixels within {error} shades, not {promise} %")
+    });
+    tied.chain(broken).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cost::{Errors, Nanoseconds};
+
+    fn row(rung: Rung, time: f64, rms: f64, tied: &[Rung]) -> RungRow {
+        RungRow {
+            rung,
+            per_frame: Nanoseconds { median: time, ..Nanoseconds::default() },
+            per_pixel: 0.0,
+            per_triangle: 0.0,
+            ratio: 1.0,
+            ratio_interval: (1.0, 1.0),
+            split: Split::default(),
+            instructions: None,
+            error_gouraud: Errors::default(),
+            error_lit: Errors { rms, ..Errors::default() },
+            error_palette: 0.0,
+            cover_errors: 0,
+            swim: 0.0,
+            efficient: true,
+            as_fast_as: tied.to_vec(),
+            picture: Vec::new(),
+            error_map: Vec::new(),
+        }
+    }
+
+    /// Nanoseconds of six ways that draw the same frame by the same instructions, each row of one round: `mode13h cost torus
+    /// --frames 1 --seconds 50` in release, beside other work on all processors.
+    const RECORDED: &str = include_str!("../../../tests/data/cost_times.csv");
+
+    /// Rounds of a study.
+    const ROUNDS: usize = 232;
+
+    /// What a study says of two rungs, one of which takes `slower` times as long as the other: their ratio, and whether
+    /// they can be told apart. Each of its rounds is one of those recorded, and in it the rungs take the times of two of
+    /// the six, chosen by chance: the noise that there is, and no difference but the one that is planted.
+    fn told(recorded: &[Vec<f64>], slower: f64, chance: &mut Chance) -> (f64, bool) {
+        let mut times = alloc::vec![Vec::new(), Vec::new()];
+        for _ in 0..ROUNDS {
+            let round = &recorded[chance.below(recorded.len())];
+            let one = chance.below(round.len());
+            let other = (one + 1 + chance.below(round.len() - 1)) % round.len();
+            times[0].push(round[one]);
+            times[1].push(round[other] * slower);
+        }
+        let ways = [Way::rung(REFERENCE), Way::rung(Rung::Gouraud1616)];
+        let outcome = Outcome { samples: Samples::default(), work: alloc::vec![Default::default(); 2] };
+        // Below 2⁶³.
+        let seed = chance.below(usize::MAX) as u64;
+        let rows = Rows { ways: &ways, times, findings: alloc::vec![Findings::default(); 2], outcome: &outcome, seed };
+        let rungs = rows.rungs(&[Split::default(); 2], 1);
+        let study = Study {
+            input: String::new(),
+            host: Host::default(),
+            kernel: String::new(),
+            frames: 1,
+            rounds: ROUNDS,
+            rungs,
+            budget: Vec::new(),
+            options: Vec::new(),
+            claims: Vec::new(),
+        };
+        (study.rungs[1].ratio, warnings(&study).is_empty())
+    }
+
+    fn recorded() -> Vec<Vec<f64>> {
+        let numbers = |line: &str| line.split(',').map(|time| time.parse().expect("a time")).collect();
+        RECORDED.lines().skip(1).map(numbers).collect()
+    }
+
+    #[test]
+    fn a_slowdown_of_a_twentieth_is_found() {
+        let (recorded, mut chance) = (recorded(), Chance::new(13));
+        let found = (0..100).filter(|_| {
+            let (ratio, told) = told(&recorded, 1.05, &mut chance);
+            told && ratio > 1.0
+        });
+        let found = found.count();
+        assert!(found >= 95, "in {found} of 100 studies");
+    }
+
+    /// In 95 of 100 studies none is said to be slower: of 1,000 in 950 by chance, with a standard deviation of
+    /// √(1000 · 0.95 · 0.05) = 6.9, so in 929 to 971, three of them off. An interval of 90 % would hold in 900.
+    #[test]
+    fn what_takes_the_same_time_is_said_to_be_slower_as_seldom_as_is_promised() {
+        let (recorded, mut chance) = (recorded(), Chance::new(14));
+        let tied = (0..1000).filter(|_| !told(&recorded, 1.0, &mut chance).1).count();
+        assert!((929..=971).contains(&tied), "in {tied} of 1000 studies");
+    }
+
+    #[test]
+    fn a_broken_promise_is_a_warning() {
+        let row = |max_error, within| BudgetRow {
+            max_error,
+            within,
+            largest: 0.0,
+            rms: 0.0,
+            patch: 0,
+            per_frame: Nanoseconds::default(),
+            best_single_rung: None,
+            best_single: None,
+            ratio: None,
+            triangles: Vec::new(),
+        };
+        let study = Study {
+            input: String::new(),
+            host: Host::default(),
+            kernel: String::new(),
+            frames: 1,
+            rounds: 25,
+            rungs: alloc::vec![self::row(Rung::Flat, 1.0, 1.0, &[])],
+            budget: alloc::vec![row(16.0, 1.0), row(8.0, PROMISE), row(0.5, 0.9956)],
+            options: Vec::new(),
+            claims: Vec::new(),
+        };
+        assert_eq!(warnings(&study), ["the budget of 0.5 keeps 99.56 % of the pixels within 0.5 shades, not 99.9 %"]);
+    }
+
+    #[test]
+    fn a_rung_is_efficient_that_none_beats() {
+        use Rung::{Flat, Float, Gouraud88, Gouraud1616, Phong};
+        let mut rows = [
+            row(Flat, 10.0, 9.0, &[]),
+            row(Gouraud88, 20.0, 5.0, &[Gouraud1616]),
+            // Nearer, and by chance a little slower: which of the two is better cannot be told.
+            row(Gouraud1616, 21.0, 4.5, &[Gouraud88]),
+            row(Phong, 90.0, 0.3, &[]),
+            // As near as another, and slower.
+            row(Float, 95.0, 4.5, &[]),
+        ];
+        mark_efficient(&mut rows);
+        assert_eq!(rows.each_ref().map(|row| row.efficient), [true, true, true, true, false]);
+    }
+}

@@ -1,0 +1,271 @@
+//! What a renderer shows, pixel by pixel: which face, and which shade before anything is made of it.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt;
+
+use crate::truth::{Face, Shown};
+use mode13h::hooks;
+use mode13h::light::{Blend, Material, RampChoice};
+use mode13h::mesh::{Mesh, Surface};
+use mode13h::palette::Ramp;
+use mode13h::plan::Effect;
+use mode13h::raster::{Frame, FrameError};
+use mode13h::render::{RenderError, Renderer, Rung, Screen};
+use mode13h::scene::{Object, Scene, Shared};
+
+/// Finds out what a renderer shows, by nothing but drawing with it.
+///
+/// The **shades** are the bytes of the scene on a ramp of all 256 entries, without texture, mirror, fog and
+/// dither, and with bodies that shine through made opaque: what every rung does is before all of these. Where
+/// light or material is coloured each channel is drawn by itself.
+///
+/// The **faces** are drawn, too: every triangle is numbered, and the scene is drawn once for each digit of the
+/// numbers, every triangle in its digit in place of shades. So cover, clipping, splitting and visibility
+/// are the renderer's own, and nothing of it knows that it is watched.
+///
+/// ```
+/// use mode13h_lab::cost::Probe;
+/// use mode13h::render::{Renderer, Screen};
+/// use mode13h::mesh::shapes;
+/// use mode13h::scene::Scene;
+/// use mode13h_lab::truth::{ErrorMap, Standard, Truth};
+///
+/// let scene = Scene::showing(shapes::torus(48, 24));
+/// let shown = Probe::new(Renderer::new()).look(&scene, Screen::MODE_13H)?;
+/// let truth = Truth::new(&scene, Screen::MODE_13H)?.draw(Standard::Gouraud);
+/// let errors = ErrorMap::new(&truth, &shown).expect("of one size");
+/// assert!(errors.figures().max < 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Probe {
+    renderer: Renderer,
+    numbered: Numbered,
+    /// Whether shades are dithered, on a ramp of few entries then in any case.
+    dither: Option<bool>,
+}
+
+/// The ramp that dither is judged on.
+const COARSE: u16 = 32;
+
+impl Probe {
+    /// Watches this renderer, as it is set: rung, kernel, vertex path and all.
+    #[must_use]
+    pub fn new(renderer: Renderer) -> Self {
+        Self { renderer, numbered: Numbered::default(), dither: None }
+    }
+
+    /// The renderer, to be set otherwise.
+    pub fn renderer(&mut self) -> &mut Renderer {
+        &mut self.renderer
+    }
+
+    /// Whether shades are dithered, and on a ramp of 32 entries either way, which stand for shades 8.2 apart; with `None`
+    /// they are not, on one of 256.
+    pub(super) fn dither(&mut self, dither: Option<bool>) {
+        self.dither = dither;
+    }
+
+    /// What the renderer shows of a scene.
+    ///
+    /// # Errors
+    /// A scene that cannot be drawn; a screen that no [`Frame`] is as large as; an object of more than 32,768
+    /// surfaces, whose triangles cannot be numbered.
+    pub fn look(&mut self, scene: &Scene, screen: Screen) -> Result<Shown, ProbeError> {
+        let mut scene = scene.clone();
+        scene.fog = None;
+        scene.wishes.dither = self.dither == Some(true);
+        let ramp = if self.dither.is_some() { Ramp::new(0, COARSE).unwrap_or(Ramp::WHOLE) } else { Ramp::WHOLE };
+        for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
+            let ramp = RampChoice::Entries(ramp);
+            *material = Material { ramp, texture: None, environment: None, blend: Blend::Opaque, ..material.clone() };
+        }
+        let mut shades = self.shades(&scene, screen)?;
+        if self.dither.is_some() && !self.renderer.plan().is_on_anywhere(Effect::RgbChannels) {
+            let step = 255.0 / f64::from(ramp.entries() - 1);
+            shades.iter_mut().for_each(|shades| *shades = shades.map(|entry| entry * step));
+        }
+        scene.wishes.dither = false;
+        let faces = self.faces(scene, screen)?;
+        Ok(Shown { width: screen.width, height: screen.height, faces, shades })
+    }
+
+    /// The shades of each pixel.
+    fn shades(&mut self, scene: &Scene, screen: Screen) -> Result<Vec<[f64; 3]>, ProbeError> {
+        let red = self.channel(0, scene, screen)?;
+        if !self.renderer.plan().is_on_anywhere(Effect::RgbChannels) {
+            return Ok(red.into_iter().map(|shade| [f64::from(shade); 3]).collect());
+        }
+        let (green, blue) = (self.channel(1, scene, screen)?, self.channel(2, scene, screen)?);
+        Ok(red.into_iter().zip(green).zip(blue).map(|((r, g), b)| [r, g, b].map(f64::from)).collect())
+    }
+
+    fn channel(&mut self, channel: usize, scene: &Scene, screen: Screen) -> Result<Vec<u8>, ProbeError> {
+        hooks::show_channel(&mut self.renderer, Some(channel));
+        let bytes = self.draw(scene, screen);
+        hooks::show_channel(&mut self.renderer, None);
+        bytes
+    }
+
+    /// The face of each pixel.
+    fn faces(&mut self, mut scene: Scene, screen: Screen) -> Result<Vec<Option<Face>>, ProbeError> {
+        self.numbered.renew(&scene)?;
+        scene.background = 0;
+        // Channels are mixed, and their mixture has no ramp. In white light of the same brightness faces are split
+        // as in coloured.
+        for light in scene.lights_mut() {
+            *light = light.with_color([1.0; 3]).with_intensity(light.brightness());
+        }
+        // Making a table for every digit would take long.
+        let needs_tables = hooks::rung_for(&self.renderer, &scene) == Rung::PhongTable;
+        let replaced = needs_tables.then(|| hooks::replace_rung(&mut self.renderer, Some(Rung::Phong)));
+        let numbers = self.numbers(scene, screen);
+        if let Some(rung) = replaced {
+            hooks::replace_rung(&mut self.renderer, rung);
+        }
+        Ok(numbers?.into_iter().map(|number| self.numbered.face(number)).collect())
+    }
+
+    /// The number of each pixel's face, drawn digit by digit.
+    fn numbers(&mut self, mut scene: Scene, screen: Screen) -> Result<Vec<usize>, ProbeError> {
+        let mut numbers = vec![0; screen.width as usize * screen.height as usize];
+        let mut unit = 1;
+        for digit in 0..self.numbered.digits.len() {
+            for (object, mesh) in scene.objects_mut().iter_mut().zip(&self.numbered.digits[digit]) {
+                *object = self.numbered.object(object, mesh);
+            }
+            for (number, byte) in numbers.iter_mut().zip(self.draw(&scene, screen)?) {
+                *number += unit * usize::from(byte);
+            }
+            unit *= self.numbered.base;
+        }
+        Ok(numbers)
+    }
+
+    fn draw(&mut self, scene: &Scene, screen: Screen) -> Result<Vec<u8>, ProbeError> {
+        let Screen { width, height, pixel_aspect } = screen;
+        if width.max(height) > Frame::MAX_SIDE {
+            return Err(ProbeError::Screen(FrameError::Size { width, height }));
+        }
+        let mut bytes = vec![0; width as usize * height as usize];
+        let frame = Frame::new(&mut bytes, width, height, width as usize).map_err(ProbeError::Screen)?;
+        self.renderer.draw_frame(scene, frame, pixel_aspect).map_err(ProbeError::Scene)?;
+        Ok(bytes)
+    }
+}
+
+/// Why nothing could be found out.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum ProbeError {
+    /// The scene cannot be drawn.
+    Scene(RenderError),
+    /// There is no frame of the screen's size.
+    Screen(FrameError),
+    /// An object has so many surfaces that its triangles cannot be numbered.
+    Surfaces(usize),
+}
+
+impl fmt::Display for ProbeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scene(error) => error.fmt(f),
+            Self::Screen(error) => error.fmt(f),
+            Self::Surfaces(count) => write!(f, "triangles of {count} surfaces cannot be numbered"),
+        }
+    }
+}
+
+impl core::error::Error for ProbeError {}
+
+/// A scene's meshes with their triangles numbered, from 1 through all objects; 0 is the background. Kept as
+/// long as the meshes are the same.
+#[derive(Debug, Default)]
+struct Numbered {
+    meshes: Vec<Shared<Mesh>>,
+    /// How many numbers a digit tells apart.
+    base: usize,
+    /// For each digit, the lowest first, every mesh with a surface for each of its own and each value of the
+    /// digit. Its own count still, because how a face is split depends on its material.
+    digits: Vec<Vec<Shared<Mesh>>>,
+}
+
+impl Numbered {
+    /// Takes on a scene's meshes.
+    fn renew(&mut self, scene: &Scene) -> Result<(), ProbeError> {
+        let objects = scene.objects();
+        let same = |(mesh, object): (&Shared<Mesh>, &Object)| Shared::ptr_eq(mesh, hooks::shared_mesh(object));
+        if self.meshes.len() == objects.len() && self.meshes.iter().zip(objects).all(same) {
+            return Ok(());
+        }
+        let surfaces = objects.iter().map(|object| object.mesh().surfaces().len()).max().unwrap_or(1);
+        // Surfaces are counted in 16 bits.
+        let base = (65_536 / surfaces.max(1)).min(256);
+        if base < 2 {
+            return Err(ProbeError::Surfaces(surfaces));
+        }
+        let triangles: usize = objects.iter().map(|object| object.mesh().triangles().len()).sum();
+        let mut digits = Vec::new();
+        let mut unit = 1;
+        while unit <= triangles {
+            let mut first = 1;
+            let mut meshes = Vec::new();
+            for object in objects {
+                let mesh = object.mesh();
+                let place = |(number, &surface): (usize, &u16)| {
+                    // Below 2¹⁶.
+                    (usize::from(surface) * base + number / unit % base) as u16
+                };
+                let places = (first..).zip(mesh.triangle_surfaces()).map(place).collect();
+                let surfaces = vec![Surface::default(); mesh.surfaces().len() * base];
+                let numbered = mesh.clone().with_surfaces(surfaces, places);
+                let numbered = numbered.map_err(|_| ProbeError::Surfaces(mesh.surfaces().len()))?;
+                meshes.push(Shared::new(numbered.with_one_surface_a_vertex()));
+                first += mesh.triangles().len();
+            }
+            digits.push(meshes);
+            unit *= base;
+        }
+        let meshes = objects.iter().map(|object| Shared::clone(hooks::shared_mesh(object))).collect();
+        *self = Self { meshes, base, digits };
+        Ok(())
+    }
+
+    /// An object with another mesh, each of its materials once for every digit, which it shows whatever the
+    /// light.
+    fn object(&self, like: &Object, mesh: &Shared<Mesh>) -> Object {
+        let mut object = Object::new(Shared::clone(mesh));
+        let digits = |material: &Material| {
+            let mut digits = vec![material.clone(); self.base];
+            for (digit, material) in digits.iter_mut().enumerate() {
+                // The base is at most 256.
+                material.ramp = RampChoice::Entries(Ramp::single(digit as u8));
+                // A coloured highlight takes three channels, too.
+                (material.color, material.highlight) = ([1.0; 3], [1.0; 3]);
+            }
+            digits
+        };
+        let surfaces = mesh.surfaces().len() / self.base;
+        object.materials = like.materials.iter().take(surfaces).flat_map(digits).collect();
+        object.pivot = like.pivot;
+        object.position = like.position;
+        object.scale = like.scale;
+        object.up_axis = like.up_axis;
+        object.set_angles(like.angles());
+        object
+    }
+
+    /// The triangle of a number.
+    fn face(&self, number: usize) -> Option<Face> {
+        let mut triangle = number.checked_sub(1)?;
+        for (object, mesh) in self.meshes.iter().enumerate() {
+            let triangles = mesh.triangles().len();
+            if triangle < triangles {
+                return Some(Face { object, triangle });
+            }
+            triangle -= triangles;
+        }
+        None
+    }
+}

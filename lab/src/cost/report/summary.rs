@@ -1,0 +1,110 @@
+//! A study in two sentences.
+
+use super::figures::{at_most, counted_shades, ratio, time};
+use crate::cost::{RungRow, Study};
+use mode13h::render::Rung;
+
+/// Below this many shades a difference between two largest errors is none that anyone sees.
+const NOTHING: f64 = 0.05;
+
+/// What a study comes to, in two sentences, whatever it found: what 8.8 arithmetic costs and what it is off by, and
+/// what light at every pixel removes of the rest. Of other rungs the fastest and the nearest, if there is no 8.8.
+/// Bounds are rounded up.
+#[must_use]
+pub fn summary(study: &Study) -> [String; 2] {
+    let find = |rung: Rung| study.rungs.iter().find(|row| row.rung == rung);
+    let Some(linear) = find(Rung::Gouraud88).or_else(|| find(Rung::Gouraud88Reseeded)) else {
+        return of_others(study);
+    };
+    [arithmetic(&study.input, linear, find(Rung::GouraudPeriod)), model(linear, find(Rung::Phong))]
+}
+
+/// The numeric error of linear shades, and their price against the loop of the period.
+fn arithmetic(input: &str, linear: &RungRow, period: Option<&RungRow>) -> String {
+    let error = match linear.error_gouraud.max {
+        error if !error.is_finite() => "has an error that is not known".to_string(),
+        0.0 => "is exact".to_string(),
+        error => format!("is off from exact Gouraud shading by at most {}", of_shades(error)),
+    };
+    let price = match period {
+        Some(period) => takes(linear, period, "the loop of the period"),
+        None if linear.per_frame.median.is_finite() => format!("takes {} a frame", time(linear.per_frame.median)),
+        None => "takes a time that is not known".to_string(),
+    };
+    let name = if linear.rung == Rung::Gouraud88 { "8.8" } else { "8.8, reseeded," };
+    format!("On {input} {name} {error} and {price}.")
+}
+
+/// The error of the model, and what removing it costs.
+fn model(linear: &RungRow, phong: Option<&RungRow>) -> String {
+    let left = linear.error_lit.max;
+    let Some(phong) = phong else {
+        return match left {
+            left if left.is_finite() => format!("From light at every pixel it is off by up to {}.", of_shades(left)),
+            _ => "How far it is from light at every pixel is not known.".to_string(),
+        };
+    };
+    let rest = phong.error_lit.max;
+    let price = takes(phong, linear, "8.8");
+    if !left.is_finite() || !rest.is_finite() {
+        format!("How far either is from light at every pixel is not known; Phong {price}.")
+    } else if left <= NOTHING {
+        format!("No error remains that Phong could remove; it {price}.")
+    } else if rest >= left + NOTHING {
+        format!(
+            "Phong is no nearer to light at every pixel, off by up to {} against {}, and {price}.",
+            of_shades(rest),
+            at_most(left)
+        )
+    } else if rest > left - NOTHING {
+        format!("Phong removes nothing of the remaining {} and {price}.", of_shades(left))
+    } else if rest <= NOTHING {
+        format!("Phong removes the remaining {} and {price}.", of_shades(left))
+    } else {
+        format!("Phong removes the remaining {} but for {} and {price}.", of_shades(left), at_most(rest))
+    }
+}
+
+/// Without 8.8: the fastest and the nearest.
+fn of_others(study: &Study) -> [String; 2] {
+    let known = || study.rungs.iter().filter(|row| row.per_frame.median.is_finite() && row.error_lit.max.is_finite());
+    let fastest = known().min_by(|a, b| a.per_frame.median.total_cmp(&b.per_frame.median));
+    let nearest = known().min_by(|a, b| a.error_lit.max.total_cmp(&b.error_lit.max));
+    let (Some(fastest), Some(nearest)) = (fastest, nearest) else {
+        return [format!("On {} no rung was measured.", study.input), "So there is nothing to compare.".to_string()];
+    };
+    let first = format!(
+        "On {} the fastest rung measured is {}: off from light at every pixel by at most {}, in {} a frame.",
+        study.input,
+        fastest.rung,
+        of_shades(fastest.error_lit.max),
+        time(fastest.per_frame.median)
+    );
+    let second = if nearest.rung == fastest.rung {
+        "No other rung measured is nearer.".to_string()
+    } else {
+        format!(
+            "The nearest is {}: off by at most {}; it {}.",
+            nearest.rung,
+            of_shades(nearest.error_lit.max),
+            takes(nearest, fastest, "that")
+        )
+    };
+    [first, second]
+}
+
+/// What `row` takes of the time of `other`, called `name`.
+fn takes(row: &RungRow, other: &RungRow, name: &str) -> String {
+    let times = row.ratio / other.ratio;
+    if row.as_fast_as.contains(&other.rung) || other.as_fast_as.contains(&row.rung) {
+        format!("takes as long as {name}, as far as can be told")
+    } else if !times.is_finite() || times <= 0.0 {
+        "takes a time that is not known".to_string()
+    } else {
+        format!("takes {} times as long as {name}", ratio(times))
+    }
+}
+
+fn of_shades(error: f64) -> String {
+    counted_shades(&at_most(error))
+}

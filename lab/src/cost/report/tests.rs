@@ -1,0 +1,270 @@
+//! Reports of studies made by hand.
+
+use std::collections::HashSet;
+
+use super::{budget_svg, budgets::verdict, chart_svg, html, summary};
+use crate::cost::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, RungRow, Split, Study, Verdict};
+use mode13h::render::Rung;
+
+fn time(median: f64) -> Nanoseconds {
+    Nanoseconds { median, lower_quartile: 0.98 * median, upper_quartile: 1.05 * median }
+}
+
+fn errors(max: f64) -> Errors {
+    Errors { max, mean: max / 8.0, rms: max / 5.0, off_by_one: 0.25, rms_of_blocks: max / 9.0 }
+}
+
+/// A rung whose time is a ratio to 100 µs, and its largest errors.
+fn rung(rung: Rung, ratio: f64, gouraud: f64, lit: f64) -> RungRow {
+    RungRow {
+        rung,
+        per_frame: time(1e5 * ratio),
+        per_pixel: 5.0 * ratio,
+        per_triangle: 90.0 * ratio,
+        ratio,
+        ratio_interval: (0.97 * ratio, 1.04 * ratio),
+        split: Split { plan: 1e3, vertices: 2e4, setup: 3e4, spans: 4e4, scan_out: 1.6e4 },
+        instructions: None,
+        error_gouraud: errors(gouraud),
+        error_lit: errors(lit),
+        error_palette: 1.5,
+        cover_errors: 0,
+        swim: 0.4,
+        efficient: true,
+        as_fast_as: Vec::new(),
+        picture: (0..64_000).map(|i| (i % 320 * 4 / 5) as u8).collect(),
+        error_map: (0..64_000).map(|i| if i % 320 < 20 { f32::NAN } else { (i % 320) as f32 / 16.0 }).collect(),
+    }
+}
+
+fn budget(max_error: f64, within: f64, best: Option<(Rung, f64)>) -> BudgetRow {
+    BudgetRow {
+        max_error,
+        within,
+        largest: 1.1 * max_error,
+        rms: 0.2 * max_error,
+        patch: 12,
+        per_frame: time(1.2e5),
+        best_single_rung: best.map(|(rung, _)| rung),
+        best_single: best.map(|(_, ratio)| time(1.2e5 / ratio)),
+        ratio: best.map(|(_, ratio)| (ratio, (0.98 * ratio, 1.02 * ratio))),
+        triangles: vec![(Rung::Flat, 120), (Rung::Phong, 1_380)],
+    }
+}
+
+fn study(rungs: Vec<RungRow>) -> Study {
+    Study {
+        input: "torus".to_string(),
+        host: Host { processor: "a processor".to_string(), ..Host::default() },
+        kernel: "portable".to_string(),
+        frames: 8,
+        rounds: 101,
+        rungs,
+        budget: Vec::new(),
+        options: Vec::new(),
+        claims: Vec::new(),
+    }
+}
+
+/// Everything that a study may hold.
+fn whole() -> Study {
+    let rungs = Rung::ALL.into_iter().zip(1_u8..).map(|(of, i)| rung(of, f64::from(i), 0.7, 20.0 / f64::from(i)));
+    let mut study = study(rungs.collect());
+    study.input = "<torus & \"cone\">'s".to_string();
+    study.rungs[2].as_fast_as = vec![Rung::Flat, Rung::Float];
+    study.rungs[3].efficient = false;
+    study.budget = vec![budget(8.0, 1.0, Some((Rung::Phong, 0.5))), budget(1.0, 0.93, None)];
+    let option = |aspect, name: &str| OptionRow {
+        aspect,
+        name: name.to_string(),
+        per_frame: time(1e5),
+        ratio: (1.0, (0.9, 1.1)),
+        error: errors(0.5),
+        cover_errors: 12_345,
+    };
+    study.options = vec![option(Aspect::VertexPath, "f32"), option(Aspect::VertexPath, "16.16")];
+    let claim = |verdict| Claim { claim: "It <is> so.".to_string(), measured: "3 & 4".to_string(), verdict };
+    study.claims = [Verdict::Holds, Verdict::HoldsInPart, Verdict::DoesNotHold].map(claim).to_vec();
+    study
+}
+
+/// As XML, but for what HTML writes otherwise: the first line, and elements that have no end.
+fn as_xml(page: &str) -> String {
+    let mut text = page
+        .strip_prefix("<!DOCTYPE html>")
+        .expect("an HTML file")
+        .replace("<noscript>", "")
+        .replace("</noscript>", "");
+    for name in ["<meta", "<img", "<input"] {
+        let mut parts = text.split(name);
+        let mut closed = parts.next().unwrap_or_default().to_string();
+        for part in parts {
+            // Attributes hold no `>` unescaped.
+            let (attributes, rest) = part.split_once('>').expect("an end");
+            closed += &format!("{name}{attributes}/>{rest}");
+        }
+        text = closed;
+    }
+    text
+}
+
+fn parsed(text: &str) -> roxmltree::Document<'_> {
+    roxmltree::Document::parse(text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn a_report_is_well_formed_and_says_everything() {
+    let study = whole();
+    let page = html(&study);
+    let xml = as_xml(&page);
+    let document = parsed(&xml);
+    let rows: HashSet<&str> =
+        document.descendants().filter(|n| n.has_tag_name("th")).filter_map(|n| n.text()).collect();
+    let alternatives: Vec<&str> = document.descendants().filter_map(|n| n.attribute("alt")).collect();
+    for rung in Rung::ALL {
+        assert!(rows.contains(rung.name()), "{rung}");
+        assert!(alternatives.contains(&format!("frame of {rung}").as_str()), "{rung}");
+        assert!(alternatives.contains(&format!("error map of {rung}").as_str()), "{rung}");
+    }
+    let title = document.descendants().find(|n| n.has_tag_name("h1")).and_then(|n| n.text());
+    assert_eq!(title, Some("What accuracy costs: <torus & \"cone\">'s"));
+    let text: String = document.descendants().filter(|n| n.is_text()).filter_map(|n| n.text()).collect();
+    for part in [
+        "time limit is void",
+        "Cannot be told apart",
+        "flat and float",
+        "holds in part",
+        "does not hold",
+        "It <is> so.",
+        "a processor",
+    ] {
+        assert!(text.contains(part), "{part}");
+    }
+    assert!(text.contains(&summary(&study).join(" ")));
+}
+
+#[test]
+fn a_report_loads_nothing() {
+    let page = html(&whole());
+    let own = page.replace("http://www.w3.org/2000/svg", "");
+    for foreign in ["http", "//", "@import", "<script", "<link", "url("] {
+        // Base 64 has slashes.
+        let outside = own.split('"').filter(|part| !part.starts_with("data:image/png;base64,"));
+        assert!(outside.into_iter().all(|part| !part.contains(foreign)), "{foreign}");
+    }
+}
+
+#[test]
+fn charts_name_every_point() {
+    let study = whole();
+    let chart = chart_svg(&study);
+    let texts = |svg: &str| -> Vec<String> {
+        let document = parsed(svg);
+        let text = document.descendants().filter(|n| n.has_tag_name("text"));
+        text.filter_map(|n| n.text()).map(|text| text.trim().to_string()).collect()
+    };
+    let names = texts(&chart);
+    for row in &study.rungs {
+        assert!(names.contains(&row.rung.to_string()), "{} in {names:?}", row.rung);
+    }
+    assert!(names.contains(&"≤ 8".to_string()) && names.contains(&"≤ 1".to_string()), "{names:?}");
+    assert!(!names.iter().any(|name| name.contains("drawn at")), "no error is below the floor");
+    assert!(texts(&budget_svg(&study)).contains(&"phong".to_string()));
+    // An error of 0 has a place, and the axis says so.
+    let exact = self::study(vec![rung(Rung::Phong, 1.0, 0.0, 0.0)]);
+    assert!(texts(&chart_svg(&exact)).iter().any(|name| name.contains("below 0.01 drawn at 0.01")));
+}
+
+#[test]
+fn nothing_and_no_number_are_reported_too() {
+    let empty = study(Vec::new());
+    let mut nan = rung(Rung::Gouraud88, f64::NAN, f64::NAN, f64::NAN);
+    (nan.picture, nan.error_map) = (Vec::new(), vec![f32::NAN; 3]);
+    nan.split = Split { plan: f64::NAN, ..Split::default() };
+    let mut strange = study(vec![nan, rung(Rung::Phong, 0.0, f64::INFINITY, -1.0)]);
+    strange.budget = vec![budget(f64::NAN, f64::NAN, Some((Rung::Flat, f64::NAN))), budget(0.0, 0.0, None)];
+    strange.budget[1].triangles.clear();
+    for study in [empty, strange] {
+        let page = html(&study);
+        parsed(&as_xml(&page));
+        parsed(&chart_svg(&study));
+        parsed(&budget_svg(&study));
+        assert!(!page.contains("NaN") && !page.contains("inf "));
+    }
+}
+
+#[test]
+fn a_summary_is_true_of_any_figures() {
+    use Rung::{Flat, Gouraud88, Gouraud88Reseeded, GouraudPeriod, Phong};
+    let tied = |mut row: RungRow, with: Rung| {
+        row.as_fast_as = vec![with];
+        row
+    };
+    let linear = || rung(Gouraud88, 1.0, 0.7, 11.5);
+    let cases: Vec<(Vec<RungRow>, &str)> = vec![
+        (
+            vec![rung(GouraudPeriod, 1.0 / 1.02, 9.0, 12.0), linear(), rung(Phong, 4.3, 0.0, 0.52)],
+            "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes 1.02 times as long as the \
+             loop of the period. Phong removes the remaining 11.5 shades but for 0.52 and takes 4.30 times as long as 8.8.",
+        ),
+        (
+            vec![rung(GouraudPeriod, 1.25, 9.0, 12.0), linear(), rung(Phong, 0.9, 0.0, 0.0)],
+            "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes 0.80 times as long as the \
+             loop of the period. Phong removes the remaining 11.5 shades and takes 0.90 times as long as 8.8.",
+        ),
+        (
+            vec![tied(rung(GouraudPeriod, 1.01, 9.0, 12.0), Gouraud88), linear()],
+            "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes as long as the loop of the \
+             period, as far as can be told. From light at every pixel it is off by up to 11.5 shades.",
+        ),
+        (
+            vec![rung(Gouraud88, 1.0, 0.0, 0.0), rung(Phong, 5.0, 0.0, 0.0)],
+            "On torus 8.8 is exact and takes 100 µs a frame. No error remains that Phong could remove; it takes 5.00 \
+             times as long as 8.8.",
+        ),
+        (
+            vec![rung(Gouraud88Reseeded, 1.1, 0.991, 0.5), rung(Phong, 5.5, 0.0, 0.51)],
+            "On torus 8.8, reseeded, is off from exact Gouraud shading by at most 1 shade and takes 110 µs a frame. \
+             Phong removes nothing of the remaining 0.5 shades and takes 5.00 times as long as 8.8.",
+        ),
+        (
+            vec![linear(), rung(Phong, 2.0, 0.0, 14.03)],
+            "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes 100 µs a frame. Phong is no \
+             nearer to light at every pixel, off by up to 14.1 shades against 11.5, and takes 2.00 times as long as 8.8.",
+        ),
+        (
+            vec![rung(Gouraud88, f64::NAN, f64::NAN, f64::NAN), rung(Phong, 2.0, 0.0, 1.0)],
+            "On torus 8.8 has an error that is not known and takes a time that is not known. How far either is from \
+             light at every pixel is not known; Phong takes a time that is not known.",
+        ),
+        (
+            vec![rung(Flat, 1.0, 9.0, 28.0), rung(Phong, 5.0, 0.0, 0.5)],
+            "On torus the fastest rung measured is flat: off from light at every pixel by at most 28 shades, in 100 µs \
+             a frame. The nearest is phong: off by at most 0.5 shades; it takes 5.00 times as long as that.",
+        ),
+        (
+            vec![rung(Flat, 1.0, 9.0, 28.0)],
+            "On torus the fastest rung measured is flat: off from light at every pixel by at most 28 shades, in 100 µs \
+             a frame. No other rung measured is nearer.",
+        ),
+        (Vec::new(), "On torus no rung was measured. So there is nothing to compare."),
+    ];
+    for (rungs, text) in cases {
+        assert_eq!(summary(&study(rungs)).join(" "), text);
+    }
+}
+
+#[test]
+fn a_verdict_speaks_of_accuracy_and_of_time() {
+    let phong = |ratio| Some((Rung::Phong, ratio));
+    for (within, best, text) in [
+        (1.0, phong(0.7), "accuracy kept; time limit kept"),
+        (0.998_9, phong(1.05), "accuracy not kept; time limit kept"),
+        (0.999, phong(1.06), "accuracy kept; time limit not kept, by no more than chance may do"),
+        (1.0, phong(1.2), "accuracy kept; time limit not kept"),
+        (1.0, None, "accuracy kept; no single rung keeps it, so the time limit is void"),
+        (f64::NAN, phong(f64::NAN), "accuracy not kept; time limit not measured"),
+    ] {
+        assert_eq!(verdict(&budget(4.0, within, best)), text);
+    }
+}

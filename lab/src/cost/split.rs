@@ -1,0 +1,179 @@
+//! Where the time of a frame goes.
+//!
+//! | part | how |
+//! |---|---|
+//! | plan | [`Renderer::make_plan`] alone |
+//! | vertices | plan and vertices without any face, less the plan |
+//! | spans | what grows with the number of pixels: a frame twice as wide, less the frame |
+//! | set-up | the frame, less all of the above |
+//! | scan-out | [`Vga::scan_out`] alone |
+//!
+//! A frame of 640 × 200 pixels that are half as wide shows the same: as many vertices, triangles and rows of
+//! triangles, each row twice as long. So what it takes longer is what 320 × 200 pixels take, by whatever
+//! loop: nothing has to be left out of the loops, or played back without what surrounds them. What a loop takes before
+//! its first pixel and after its last counts as set-up; and a row that is so short that it
+//! covers no pixel in one of the frames blurs the border between the two, by as much as faces are small.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::hint::black_box;
+use std::time::Instant;
+
+use super::Split;
+use super::clock::Clock;
+use super::contest::{Spent, always_drawing};
+use super::statistics::{Chance, median};
+use super::way::Way;
+use mode13h::hooks;
+use mode13h::raster::Frame;
+use mode13h::render::{RenderError, Renderer, Screen};
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+
+/// As [`Screen::MODE_13H`], each pixel cut in two.
+const WIDE: Screen = Screen { width: 640, height: 200, pixel_aspect: (5, 12) };
+
+/// The fewest and the most rounds.
+const ROUNDS: (usize, usize) = (3, 301);
+
+/// Frames that are drawn of those there are, at most.
+const FRAMES: usize = 4;
+
+/// What is measured of a frame.
+#[derive(Clone, Copy)]
+enum Part {
+    Plan,
+    Vertices,
+    Frame,
+    WideFrame,
+}
+
+const PARTS: [Part; 4] = [Part::Plan, Part::Vertices, Part::Frame, Part::WideFrame];
+
+impl Part {
+    fn of(self, renderer: &mut Renderer, scene: &Scene, bytes: &mut [u8]) -> Result<(), RenderError> {
+        match self {
+            Self::Plan => renderer.make_plan(scene, Screen::MODE_13H).map(|plan| {
+                black_box(plan);
+            }),
+            Self::Vertices => hooks::make_vertices(renderer, scene, Screen::MODE_13H),
+            Self::Frame => draw_into(renderer, scene, Screen::MODE_13H, bytes),
+            Self::WideFrame => draw_into(renderer, scene, WIDE, bytes),
+        }
+    }
+}
+
+/// Splits the time of each way's frames, for about as long as `spent` says. Rounds are shuffled, as in a
+/// [contest](super::contest); of each part the median counts.
+pub(super) fn split(
+    ways: &[&Way<'_>],
+    frames: &[Scene],
+    base: &dyn Fn() -> Renderer,
+    spent: &Spent,
+    progress: &dyn Fn(f64),
+) -> Result<Vec<Split>, RenderError> {
+    let mut chance = Chance::new(spent.seed);
+    let frames: Vec<&Scene> = frames.iter().step_by(frames.len().div_ceil(FRAMES)).collect();
+    let mut renderers: Vec<[Renderer; 4]> =
+        ways.iter().map(|way| PARTS.map(|_| always_drawing(way.apply(base())))).collect();
+    let mut bytes = vec![0; (WIDE.width * WIDE.height) as usize];
+    let mut order: Vec<(usize, usize)> =
+        (0..ways.len()).flat_map(|way| (0..PARTS.len()).map(move |part| (way, part))).collect();
+    let mut times: Vec<[Vec<f64>; 4]> = vec![Default::default(); ways.len()];
+    let mut draw = |renderer: &mut Renderer, part: Part| -> Result<f64, RenderError> {
+        let (time, result) =
+            spent.clock.time(|| frames.iter().try_for_each(|scene| part.of(renderer, scene, &mut bytes)));
+        result.map(|()| time / frames.len().max(1) as f64)
+    };
+    // Warm.
+    for &(way, part) in &order {
+        draw(&mut renderers[way][part], PARTS[part])?;
+    }
+    let start = Instant::now();
+    for round in 0..ROUNDS.1 {
+        let elapsed = start.elapsed().as_secs_f64();
+        progress((elapsed / spent.seconds).min(1.0));
+        if round >= ROUNDS.0 && elapsed >= spent.seconds {
+            break;
+        }
+        chance.shuffle(&mut order);
+        for &(way, part) in &order {
+            let time = draw(&mut renderers[way][part], PARTS[part])?;
+            times[way][part].push(time);
+        }
+    }
+    let scan_out = scan_out(spent.clock);
+    Ok(times
+        .iter()
+        .map(|times| {
+            let [plan, vertices, frame, wide] = [0, 1, 2, 3].map(|part: usize| median(&times[part]));
+            let spans = (wide - frame).clamp(0.0, (frame - vertices).max(0.0));
+            Split {
+                plan,
+                vertices: (vertices - plan).max(0.0),
+                setup: (frame - vertices - spans).max(0.0),
+                spans,
+                scan_out,
+            }
+        })
+        .collect())
+}
+
+fn draw_into(renderer: &mut Renderer, scene: &Scene, screen: Screen, bytes: &mut [u8]) -> Result<(), RenderError> {
+    // No side is above 4,096, and there are as many bytes as the wider frame has.
+    if let Ok(frame) = Frame::new(bytes, screen.width, screen.height, screen.width as usize) {
+        black_box(renderer.draw_frame(scene, frame, screen.pixel_aspect)?);
+    }
+    Ok(())
+}
+
+/// The time of a scan-out: the median of 51.
+fn scan_out(clock: Clock) -> f64 {
+    let (vga, mut colors) = (Vga::new(), vec![0; Vga::SHOWN]);
+    let times: Vec<f64> = (0..51).map(|_| clock.time(|| vga.scan_out(black_box(&mut colors))).0).collect();
+    median(&times)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mode13h::mesh::shapes;
+    use mode13h::render::Rung;
+
+    #[test]
+    fn the_parts_are_those_of_the_frame() {
+        let frames = [Scene::showing(shapes::sphere(24, 12))];
+        let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong)];
+        let ways: Vec<&Way<'_>> = ways.iter().collect();
+        let Ok(split) = split(
+            &ways,
+            &frames,
+            &Renderer::new,
+            &Spent { clock: Clock::WALL, seconds: 0.3, at_most: false, seed: 1 },
+            &|_| {},
+        ) else {
+            unreachable!("a scene that can be drawn")
+        };
+        assert_eq!(split.len(), 2);
+        for Split { plan, vertices, spans, setup, scan_out } in &split {
+            assert!([plan, vertices, scan_out].iter().all(|time| **time > 0.0), "{split:?}");
+            assert!(setup + spans > 0.0, "{split:?}");
+        }
+        // Light at every pixel of a sphere as large as the screen: hundreds of times the work of an addition.
+        assert!(split[1].spans > 2.0 * split[0].spans, "{split:?}");
+    }
+
+    #[test]
+    fn the_wide_frame_shows_the_same() {
+        let scene = Scene::showing(shapes::torus(48, 24));
+        let pixels = |screen: Screen| {
+            let mut bytes = vec![0; (screen.width * screen.height) as usize];
+            draw_into(&mut Renderer::new(), &scene, screen, &mut bytes).expect("a legal scene");
+            bytes
+        };
+        let (narrow, wide) = (pixels(Screen::MODE_13H), pixels(WIDE));
+        let covered = |bytes: &[u8]| bytes.iter().filter(|byte| **byte > 0).count() as f64;
+        // Twice as many, to the pixels at the rim: each row has at most four ends.
+        assert!((covered(&wide) - 2.0 * covered(&narrow)).abs() < 4.0 * 200.0);
+    }
+}

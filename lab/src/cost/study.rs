@@ -1,0 +1,230 @@
+//! What a study found out, in numbers. Times are in nanoseconds, errors in shades of 1/255 of full intensity.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use mode13h::render::Rung;
+
+/// The cost of accuracy on one scene or model.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub struct Study {
+    /// What was measured, by name.
+    pub input: String,
+    /// The machine and the program.
+    pub host: Host,
+    /// The name of the span kernel that drew.
+    pub kernel: String,
+    /// Frames in a round.
+    pub frames: usize,
+    /// Rounds that were measured, each of all rungs in shuffled order.
+    pub rounds: usize,
+    /// A rung each, in the order of [`Rung::ALL`].
+    pub rungs: Vec<RungRow>,
+    /// A budget each, the greatest error first.
+    pub budget: Vec<BudgetRow>,
+    /// What else may be chosen, grouped by aspect.
+    pub options: Vec<OptionRow>,
+    /// What the sources claim.
+    pub claims: Vec<Claim>,
+}
+
+/// Where and how a study was made.
+#[derive(Clone, PartialEq, Debug, Default)]
+#[non_exhaustive]
+pub struct Host {
+    /// The processor's name, as it says itself.
+    pub processor: String,
+    /// The compiler and its version.
+    pub compiler: String,
+    /// Profile, target and features that the program was built with.
+    pub flags: String,
+    /// The clock that times were read from.
+    pub clock: String,
+    /// How long a step of it is seen to be.
+    pub clock_step: f64,
+}
+
+/// A time over many samples.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Nanoseconds {
+    /// The median.
+    pub median: f64,
+    /// A quarter of the samples are less.
+    pub lower_quartile: f64,
+    /// A quarter of the samples are more.
+    pub upper_quartile: f64,
+}
+
+/// Where the time of a frame goes; medians.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Split {
+    /// Deciding which effects are on.
+    pub plan: f64,
+    /// Transforming, projecting and lighting vertices.
+    pub vertices: f64,
+    /// From three vertices to the ends of spans and their first shades.
+    pub setup: f64,
+    /// The pixel loops.
+    pub spans: f64,
+    /// From indices to red, green and blue.
+    pub scan_out: f64,
+}
+
+/// How far frames are from a standard of truth.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Errors {
+    /// The largest.
+    pub max: f64,
+    /// The mean.
+    pub mean: f64,
+    /// The root mean square.
+    pub rms: f64,
+    /// The share of pixels off by one shade or more, 0 to 1.
+    pub off_by_one: f64,
+    /// The root mean square of the means over blocks of 4 × 4 pixels.
+    pub rms_of_blocks: f64,
+}
+
+/// One rung.
+#[derive(Clone, PartialEq, Debug)]
+pub struct RungRow {
+    /// Which.
+    pub rung: Rung,
+    /// For a frame, scan-out left out.
+    pub per_frame: Nanoseconds,
+    /// For a pixel written.
+    pub per_pixel: f64,
+    /// For a triangle drawn.
+    pub per_triangle: f64,
+    /// The time as a ratio to that of `gouraud-8.8`.
+    pub ratio: f64,
+    /// Its 95 % interval, by bootstrap.
+    pub ratio_interval: (f64, f64),
+    /// Where the time goes.
+    pub split: Split,
+    /// Instructions for a frame, where they were counted.
+    pub instructions: Option<u64>,
+    /// Against `gouraud`.
+    pub error_gouraud: Errors,
+    /// Against `lit`.
+    pub error_lit: Errors,
+    /// What the nearest entry of the scene's own ramp or palette adds, at most.
+    pub error_palette: f64,
+    /// Pixels that show another face than they should, over all frames, vertices rounded alike.
+    pub cover_errors: u64,
+    /// How much errors change from a frame to the next, root mean square.
+    pub swim: f64,
+    /// Whether no other rung is as near to `lit` and faster, as far as times can be told apart.
+    pub efficient: bool,
+    /// Rungs whose time cannot be told from this one's.
+    pub as_fast_as: Vec<Rung>,
+    /// The first frame: indices of a ramp of 256 greys, row-major.
+    pub picture: Vec<u8>,
+    /// Its error against `lit` at each pixel; NaN where none was taken.
+    pub error_map: Vec<f32>,
+}
+
+/// One budget.
+#[derive(Clone, PartialEq, Debug)]
+pub struct BudgetRow {
+    /// Shades of error that are accepted.
+    pub max_error: f64,
+    /// The share of covered pixels within it, against `lit`, 0 to 1.
+    pub within: f64,
+    /// The largest error.
+    pub largest: f64,
+    /// The root mean square of the errors.
+    pub rms: f64,
+    /// The pixels of the largest connected patch beyond it.
+    pub patch: usize,
+    /// For a frame.
+    pub per_frame: Nanoseconds,
+    /// The cheapest rung with exact cover that keeps 99.9 % of the pixels within; none may.
+    pub best_single_rung: Option<Rung>,
+    /// Its time for a frame, measured beside the budget's.
+    pub best_single: Option<Nanoseconds>,
+    /// The budget's time as a ratio to that, and the ratio's 95 % interval.
+    pub ratio: Option<(f64, (f64, f64))>,
+    /// Triangles of all frames that each rung drew, those of none left out.
+    pub triangles: Vec<(Rung, u64)>,
+}
+
+/// What may be chosen beside the rung.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+#[non_exhaustive]
+pub enum Aspect {
+    /// f32 or 16.16.
+    VertexPath,
+    /// How far projected vertices are rounded.
+    VertexRounding,
+    /// The span kernel.
+    Kernel,
+    /// Dither or none. Errors are those on a ramp of 32 entries, which stand for shades 8.2 apart; times those in the
+    /// scene's own palette.
+    Dither,
+    /// The way to visible surfaces.
+    HiddenSurfaces,
+    /// Each rung by the portable kernel.
+    PortableRung,
+}
+
+impl Aspect {
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::VertexPath => "vertex path",
+            Self::VertexRounding => "vertex rounding",
+            Self::Kernel => "kernel",
+            Self::Dither => "dither",
+            Self::HiddenSurfaces => "hidden surfaces",
+            Self::PortableRung => "rung, portable kernel",
+        }
+    }
+}
+
+impl core::fmt::Display for Aspect {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// One choice of an aspect, all else as by default.
+#[derive(Clone, PartialEq, Debug)]
+pub struct OptionRow {
+    /// What is chosen.
+    pub aspect: Aspect,
+    /// Its name.
+    pub name: String,
+    /// For a frame.
+    pub per_frame: Nanoseconds,
+    /// The time as a ratio to that of the aspect's first row, and its 95 % interval.
+    pub ratio: (f64, (f64, f64)),
+    /// Against `gouraud-unrounded`.
+    pub error: Errors,
+    /// Pixels that show another face than they should, vertices unrounded.
+    pub cover_errors: u64,
+}
+
+/// What measuring says to a claim.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Verdict {
+    /// It holds.
+    Holds,
+    /// It holds within limits, which the text names.
+    HoldsInPart,
+    /// It does not hold.
+    DoesNotHold,
+}
+
+/// A claim that an old text makes, and what was measured.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Claim {
+    /// What is claimed.
+    pub claim: String,
+    /// What was measured, with figures.
+    pub measured: String,
+    /// What that says.
+    pub verdict: Verdict,
+}

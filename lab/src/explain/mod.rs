@@ -1,0 +1,105 @@
+//! Why a pixel has its byte: the whole way from three corners to an entry of the palette, in numbers.
+//!
+//! | file | what |
+//! |---|---|
+//! | `face` | a triangle at the pixel: its corners, its edges, who owns a tie, what became of it |
+//! | `pixel` | [`pixel()`]: everything about one |
+//! | `text`, `span_text` | the same in words |
+//! | `walk` | [`Walk`]: a triangle pixel by pixel, and the registers of the loop of 1994 at each |
+//! | `row` | [`row()`]: a row's intensity and its slope, drawn and true |
+//!
+//! The bytes are the raster's own: every face is drawn again, clipped to the one pixel, and every stage's byte is what
+//! is drawn with the stages after it left out. Starts, steps and sums come from the planes that the loops start from
+//! ([`raster::account`](mode13h::raster::account)). So an account agrees with the frame for every rung, kernel, way to hidden surfaces and
+//! effect.
+//!
+//! ```
+//! use mode13h_lab::explain;
+//! use mode13h::mesh::shapes;
+//! use mode13h::render::{Renderer, Screen};
+//! use mode13h::scene::Scene;
+//!
+//! let scene = Scene::showing(shapes::torus(48, 24));
+//! let pixel = explain::pixel(&mut Renderer::new(), &scene, Screen::MODE_13H, 120, 60)?;
+//! println!("{pixel}");
+//! let seen = pixel.seen.first().expect("the torus is there");
+//! assert_eq!(seen.stages.last().and_then(|stage| stage.byte()), Some(pixel.byte));
+//! # Ok::<(), explain::ExplainError>(())
+//! ```
+
+mod face;
+mod pixel;
+mod row;
+mod span_text;
+mod text;
+mod walk;
+
+use core::fmt;
+
+use crate::cost::ProbeError;
+use crate::truth::TruthError;
+pub use face::{Edge, EdgeKind, FaceHere};
+pub use mode13h::hooks::{Account, Ratio, Sums, Way};
+use mode13h::raster::Frame;
+pub use mode13h::render::{Fate, ShadedBy};
+use mode13h::render::{RenderError, Screen};
+pub use pixel::{Against, Pixel, Seen, Stage, pixel};
+pub use row::{Column, Row, row};
+pub use walk::{Registers, Step, Walk};
+
+/// Why there is nothing to explain.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum ExplainError {
+    /// The pixel lies outside of the frame.
+    OutsidePixel {
+        /// Its column.
+        x: u32,
+        /// Its row.
+        y: u32,
+        /// Columns of the frame.
+        width: u32,
+        /// Rows of the frame.
+        height: u32,
+    },
+    /// The row lies outside of the frame.
+    OutsideRow {
+        /// The row.
+        y: u32,
+        /// Rows of the frame.
+        height: u32,
+    },
+    /// There is no frame of that size.
+    Screen,
+    /// The scene cannot be drawn.
+    Scene(RenderError),
+    /// The truth cannot be drawn.
+    Truth(TruthError),
+    /// What is shown cannot be found out.
+    Probe(ProbeError),
+}
+
+impl fmt::Display for ExplainError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutsidePixel { x, y, width, height } => {
+                write!(f, "there is no pixel ({x}, {y}) in a frame of {width} x {height}, counted from 0")
+            }
+            Self::OutsideRow { y, height } => {
+                write!(f, "there is no row {y} in a frame of {height} rows, counted from 0")
+            }
+            Self::Screen => write!(f, "a frame's sides must be 1 to {} pixels", Frame::MAX_SIDE),
+            Self::Scene(error) => error.fmt(f),
+            Self::Truth(error) => error.fmt(f),
+            Self::Probe(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for ExplainError {}
+
+/// Whether there is a frame of that size.
+fn check(screen: Screen) -> Result<(), ExplainError> {
+    let side = 1..=Frame::MAX_SIDE;
+    if side.contains(&screen.width) && side.contains(&screen.height) { Ok(()) } else { Err(ExplainError::Screen) }
+}

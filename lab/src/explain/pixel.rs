@@ -1,0 +1,367 @@
+//! Everything about one pixel.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use super::face::{FaceHere, clockwise};
+use super::{ExplainError, check};
+use crate::truth::{Face, Standard, Truth};
+use mode13h::hooks;
+use mode13h::hooks::Bytes;
+use mode13h::hooks::Met;
+use mode13h::hooks::{Account, row_of};
+use mode13h::palette::{Ramp, Rgb};
+use mode13h::plan::{self, Effect};
+use mode13h::raster::cover::Ordered;
+use mode13h::raster::effects::Attributes;
+use mode13h::raster::{Shading, Vertex};
+use mode13h::render::{Fate, HiddenSurfaces, Renderer, Rung, Screen, ShadedBy, VertexPath};
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+
+/// One pixel's account of itself. Shown as text it fits a screen of 100 columns.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub struct Pixel {
+    /// Its column.
+    pub x: u32,
+    /// Its row.
+    pub y: u32,
+    /// The frame's byte: an entry of the palette.
+    pub byte: u8,
+    /// That entry's colour, at the scene's time.
+    pub color: Rgb,
+    /// What the frame was cleared to.
+    pub background: u8,
+    /// How hidden surfaces are left out.
+    pub hidden_surfaces: HiddenSurfaces,
+    /// Why so, in words; empty where there is no object.
+    pub hidden_surfaces_why: String,
+    /// The technique of shading.
+    pub rung: Rung,
+    /// Why so, in words.
+    pub rung_why: String,
+    /// The budget that chooses a technique for each face in place of `rung`, in shades, if there is one.
+    pub max_error: Option<f32>,
+    /// The numbers that the vertices were made in.
+    pub vertex_path: VertexPath,
+    /// The names of the scene's objects.
+    pub objects: Vec<String>,
+    /// Every triangle that covers the pixel, or whose edge runs through its centre, in the order of drawing; those that
+    /// shine through last.
+    pub faces: Vec<FaceHere>,
+    /// Those that are seen: one that hides what is behind it, if there is one, then those that shine through, far to
+    /// near. None where the background shows.
+    pub seen: Vec<Seen>,
+}
+
+/// A triangle that is seen, and how it came to its byte.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub struct Seen {
+    /// Its place in [`Pixel::faces`].
+    pub face: usize,
+    /// The palette entries that its shades lie in.
+    pub ramp: Ramp,
+    /// Where its shades come from.
+    pub shaded_by: ShadedBy,
+    /// Whether it covers the pixels whose centres are in it, and no others.
+    pub exact_cover: bool,
+    /// How each of its values came here: of shades from corners one, or three of red, green and blue; of a table of
+    /// normals two, the normal's column and row in it; of light at the pixel none.
+    pub accounts: Vec<Account>,
+    /// What each stage made of the pixel, in their order. The last one's byte is what the face leaves in the frame.
+    pub stages: Vec<Stage>,
+    /// How far the shade is from the truth, by several standards; fewer where truth has no such face here.
+    pub against: Vec<Against>,
+    /// The effects that are on for its object, with their reasons.
+    pub effects: Vec<plan::Row>,
+}
+
+/// What a stage made of the pixel.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Stage {
+    /// The shade.
+    Shade(u8),
+    /// The shades of red, green and blue.
+    Channels([u8; 3]),
+    /// A threshold took the place of the half that is else added to a shade.
+    Dither {
+        /// The threshold.
+        threshold: u8,
+        /// What came of it.
+        byte: u8,
+    },
+    /// Shade and texel were looked up in a table.
+    Texture {
+        /// The texel.
+        texel: u8,
+        /// The level of the image that it is of; `None` of an image without smaller copies.
+        level: Option<u8>,
+        /// What came of it.
+        byte: u8,
+    },
+    /// Each channel was multiplied with the texel's.
+    TextureChannels {
+        /// The texel.
+        texel: u8,
+        /// The level of the image that it is of; `None` of an image without smaller copies.
+        level: Option<u8>,
+        /// What came of it.
+        channels: [u8; 3],
+    },
+    /// The channels were mixed to an entry of the palette.
+    Mix {
+        /// The threshold of dither, if it is on.
+        threshold: Option<u8>,
+        /// What came of it.
+        byte: u8,
+    },
+    /// A level of fog was looked up with the byte.
+    Fog {
+        /// How thick it is, 0 to 255.
+        level: u8,
+        /// What came of it.
+        byte: u8,
+    },
+    /// The byte was looked up with the one behind it.
+    Blend {
+        /// What the frame held.
+        behind: u8,
+        /// What came of it.
+        byte: u8,
+    },
+}
+
+impl Stage {
+    /// The byte that came of it; `None` of three channels.
+    #[must_use]
+    pub const fn byte(self) -> Option<u8> {
+        match self {
+            Self::Shade(byte)
+            | Self::Dither { byte, .. }
+            | Self::Texture { byte, .. }
+            | Self::Mix { byte, .. }
+            | Self::Fog { byte, .. }
+            | Self::Blend { byte, .. } => Some(byte),
+            Self::Channels(_) | Self::TextureChannels { .. } => None,
+        }
+    }
+}
+
+/// The shade against a standard of truth.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Against {
+    /// The standard.
+    pub standard: Standard,
+    /// What is right, in shades of 1/255 of full intensity: of three channels, or three times the same.
+    pub shades: [f64; 3],
+    /// What is shown less that, before texture, fog and dither, in the same unit; of three channels the one that is
+    /// farthest off.
+    pub error: f64,
+}
+
+/// The account of the pixel in column `x` of row `y` of the frame that `renderer`, as it is set, draws of `scene`.
+///
+/// The renderer draws nothing, but makes its vertices as for a frame; the frames that it draws after it are those that
+/// it would have drawn anyway.
+///
+/// # Errors
+/// A pixel outside of the screen; a scene or a screen that cannot be drawn.
+pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: u32) -> Result<Pixel, ExplainError> {
+    check(screen)?;
+    let Screen { width, height, .. } = screen;
+    if x >= width || y >= height {
+        return Err(ExplainError::OutsidePixel { x, y, width, height });
+    }
+    let trace = hooks::trace(renderer, scene, screen, x, y).map_err(ExplainError::Scene)?;
+    let truth = Truth::new(scene, screen).map_err(ExplainError::Truth)?;
+    let rows = renderer.plan().rows(scene);
+    let faces: Vec<FaceHere> = trace.met.iter().map(|met| here(renderer, &truth, met, x, y)).collect();
+    let inputs = Inputs { renderer, scene, screen, truth: &truth, rows: &rows, x, y };
+    let seen = trace.met.iter().zip(&faces).enumerate();
+    let seen = seen.filter_map(|(i, (met, face))| Some(inputs.seen(i, face, met, met.bytes.as_ref()?))).collect();
+    let hidden = rows.iter().find(|row| row.effect == Effect::HiddenSurfaces);
+    Ok(Pixel {
+        x,
+        y,
+        byte: trace.byte,
+        color: color(renderer, scene, trace.byte),
+        background: scene.background,
+        hidden_surfaces: trace.stats.hidden_surfaces,
+        hidden_surfaces_why: hidden.map(|row| row.why.clone()).unwrap_or_default(),
+        rung: trace.stats.rung,
+        rung_why: rung_why(renderer, scene, trace.stats.rung),
+        max_error: renderer.max_error(scene),
+        vertex_path: trace.stats.vertex_path,
+        objects: (0..scene.objects().len()).map(|object| hooks::name_of(scene, object)).collect(),
+        faces,
+        seen,
+    })
+}
+
+/// The colour of an entry as the DAC has it.
+fn color(renderer: &Renderer, scene: &Scene, entry: u8) -> Rgb {
+    let mut vga = Vga::new();
+    if renderer.plan().is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
+        scene.load_palette(&mut vga);
+    } else if let Some(palette) = &scene.palette {
+        vga.set_palette(palette);
+    }
+    vga.palette().colors()[usize::from(entry)]
+}
+
+fn rung_why(renderer: &Renderer, scene: &Scene, drawn: Rung) -> String {
+    let wanted = hooks::rung_for(renderer, scene);
+    if wanted != drawn {
+        return format!("16.16 vertices have no {wanted}");
+    }
+    if hooks::has_own_rung(renderer) {
+        "asked for".into()
+    } else if scene.wishes.rung.is_some() {
+        "the scene asks for it".into()
+    } else {
+        "the default".into()
+    }
+}
+
+/// A triangle, with its place in the mesh.
+fn here(renderer: &Renderer, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> FaceHere {
+    let is_part = hooks::is_split(renderer, met.object);
+    let triangle = if is_part || met.place.is_none() { nearest(truth, met, x, y) } else { met.place };
+    FaceHere {
+        object: met.object,
+        triangle,
+        is_part,
+        shading: met.shading,
+        corners: clockwise(met.vertices),
+        depth: met.depth,
+        fate: met.fate,
+    }
+}
+
+/// Of an object's triangles the one that truth finds at the pixel nearest to a depth: where the renderer's own
+/// triangles are not the mesh's.
+fn nearest(truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> Option<usize> {
+    let apart = |triangle: usize| {
+        let face = Face { object: met.object, triangle };
+        let w = truth.of_face_at(Standard::Gouraud, face, x, y)?.w;
+        // d = 2³⁰·near / w.
+        let depth = f64::from(1 << 30) * truth.near() / w;
+        Some((triangle, (depth - f64::from(met.depth)).abs()))
+    };
+    let all = (0..truth.triangles(met.object)).filter_map(apart);
+    all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(triangle, _)| triangle)
+}
+
+/// What a seen face is explained from.
+struct Inputs<'a> {
+    renderer: &'a Renderer,
+    scene: &'a Scene,
+    screen: Screen,
+    truth: &'a Truth<'a>,
+    rows: &'a [plan::Row],
+    x: u32,
+    y: u32,
+}
+
+impl Inputs<'_> {
+    fn seen(&self, place: usize, face: &FaceHere, met: &Met, bytes: &Bytes) -> Seen {
+        let of_mesh =
+            |triangle: usize| self.scene.objects().get(met.object)?.mesh().triangle_surfaces().get(triangle).copied();
+        let surface = face.triangle.and_then(of_mesh).unwrap_or_default();
+        let ramp = hooks::ramp_of(self.renderer, self.scene, met.object, surface);
+        let of_object = |row: &&plan::Row| row.on && row.place == met.object;
+        Seen {
+            face: place,
+            ramp,
+            shaded_by: bytes.shaded_by,
+            exact_cover: bytes.exact_cover,
+            accounts: self.accounts(met, bytes).unwrap_or_default(),
+            stages: stages(bytes),
+            against: face.triangle.map(|t| self.against(met, t, bytes.shades, ramp)).unwrap_or_default(),
+            effects: self.rows.iter().filter(of_object).cloned().collect(),
+        }
+    }
+
+    fn accounts(&self, met: &Met, bytes: &Bytes) -> Option<Vec<Account>> {
+        let triangle = Ordered::new(&met.vertices);
+        let covers = (!bytes.exact_cover).then_some(met.shading);
+        let row = row_of(&triangle, covers, self.screen.width, self.x, self.y)?;
+        // A column.
+        let x = self.x as i32;
+        let values = |value: &dyn Fn(&Attributes) -> u16| {
+            let attributes = met.attributes.as_ref()?;
+            let of_corner = |corner: &Vertex| {
+                let same = |v: &Vertex| v.x() == corner.x() && v.y() == corner.y();
+                i64::from(value(&attributes[met.vertices.iter().position(same).unwrap_or(0)]))
+            };
+            Some(triangle.vertices.each_ref().map(of_corner))
+        };
+        let account = |values, shading| Account::new(&triangle, values, shading, &row, x);
+        Some(match bytes.shaded_by {
+            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_) => Vec::new(),
+            ShadedBy::NormalTable => [0, 1]
+                .iter()
+                .filter_map(|&i| Some(account(values(&|a| a.slope[i].to_bits())?, Shading::default())))
+                .collect(),
+            ShadedBy::Corners if bytes.channels => [0, 1, 2]
+                .iter()
+                .filter_map(|&i| Some(account(values(&|a| a.channels[i].to_bits())?, met.shading)))
+                .collect(),
+            ShadedBy::Corners => [account(triangle.shades(), met.shading)].into(),
+        })
+    }
+
+    fn against(&self, met: &Met, triangle: usize, shown: [u8; 3], ramp: Ramp) -> Vec<Against> {
+        let Some(steps) = ramp.entries().checked_sub(1).filter(|steps| *steps > 0) else { return Vec::new() };
+        let shown = shown.map(|byte| 255.0 * (f64::from(byte) - f64::from(ramp.first())) / f64::from(steps));
+        let on_face = matches!(met.shading, Shading::GouraudHyperbolic | Shading::Float);
+        let standards = [Standard::Gouraud, Standard::GouraudPerspective, Standard::Lit];
+        let wanted = standards.into_iter().filter(|s| *s != Standard::GouraudPerspective || on_face);
+        let face = Face { object: met.object, triangle };
+        let against = |standard| {
+            let shades = self.truth.of_face_at(standard, face, self.x, self.y)?.intensity.map(|i| 255.0 * i);
+            let off = [0, 1, 2].map(|i| shown[i] - shades[i]);
+            let error = off.into_iter().fold(0.0, |most: f64, off| if off.abs() > most.abs() { off } else { most });
+            Some(Against { standard, shades, error })
+        };
+        wanted.filter_map(against).collect()
+    }
+}
+
+fn stages(bytes: &Bytes) -> Vec<Stage> {
+    let Bytes { shades, channels, texel, level, dithered, textured, mixed, fogged, blended, .. } = *bytes;
+    let texel = texel.unwrap_or_default();
+    let first = if channels { Stage::Channels(shades) } else { Stage::Shade(shades[0]) };
+    [
+        Some(first),
+        dithered.filter(|_| !channels).map(|(threshold, byte)| Stage::Dither { threshold, byte }),
+        textured.map(|values| match channels {
+            true => Stage::TextureChannels { texel, level, channels: values },
+            false => Stage::Texture { texel, level, byte: values[0] },
+        }),
+        mixed.map(|byte| Stage::Mix { threshold: dithered.map(|(threshold, _)| threshold), byte }),
+        fogged.map(|(level, byte)| Stage::Fog { level, byte }),
+        blended.map(|(behind, byte)| Stage::Blend { behind, byte }),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+impl Pixel {
+    /// The face that is in front, and its account.
+    #[must_use]
+    pub fn front(&self) -> Option<(&FaceHere, &Seen)> {
+        let seen = self.seen.last()?;
+        Some((self.faces.get(seen.face)?, seen))
+    }
+
+    /// Triangles that the pixel would show if they were not hidden.
+    pub fn losers(&self) -> impl Iterator<Item = &FaceHere> {
+        self.faces.iter().filter(|face| matches!(face.fate, Fate::Behind | Fate::PaintedOver))
+    }
+}

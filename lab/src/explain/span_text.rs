@@ -1,0 +1,112 @@
+//! The account of a span in words: start, step, sums, and how far the byte is from exact.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use super::text::Text;
+use mode13h::hooks::{Account, Ratio, Sums, Way};
+
+/// Sums that are shown of either end of a span.
+const ENDS: i32 = 5;
+
+/// A sum as its register shows it, in hexadecimal.
+fn hex(sums: &Sums, sum: u32) -> String {
+    if sums.fraction_bits == 16 { format!("{sum:06x}") } else { format!("{sum:04x}") }
+}
+
+fn in_units(sums: &Sums, value: f64) -> f64 {
+    value / f64::from(1_u32 << sums.fraction_bits)
+}
+
+/// A step as the loop adds it: modulo the size of its register.
+fn step_in_hex(sums: &Sums) -> String {
+    // Of the register's bits.
+    if sums.fraction_bits == 16 { format!("{:#010x}", sums.step as u32) } else { format!("{:#06x}", sums.step as u16) }
+}
+
+pub(super) fn short_account(account: &Account) -> Option<String> {
+    Some(match account.way {
+        Way::Flat(byte) => format!("one shade for the face: {byte}"),
+        Way::Sums(sums) => {
+            let Sums { start_at, start, steps, .. } = sums;
+            let step = in_units(&sums, sums.step as f64);
+            let start = hex(&sums, start);
+            format!("{start} at {start_at} + {steps} x {step:+.3} = {}", hex(&sums, sums.sum()))
+        }
+        Way::Quotient => format!("exact quotient {:.4}", account.exact?.to_f64() / 256.0),
+        Way::Float { shade, .. } => format!("quotient in f32: {shade:.4}"),
+    })
+}
+
+pub(super) fn say_account(text: &mut Text, account: &Account, x: u32) {
+    match account.way {
+        Way::Flat(byte) => text.say("span", &format!("one byte for the whole face, {byte}: a plain fill")),
+        Way::Sums(sums) => say_sums(text, &sums, x),
+        Way::Quotient => text.say(
+            "quotient",
+            "at every pixel exactly: the corners' shades weighted by their areas and depths (which stand for 1/w); the \
+             byte is the nearest shade",
+        ),
+        Way::Float { start, n: [n, dn], d: [d, dd], shade } => {
+            let k = i64::from(x) - i64::from(start);
+            let words = format!(
+                "k = {k} pixels from column {start}, the row's far end: ({n:e} + k x {dn:e}) / ({d:e} + k x {dd:e}) = \
+                 {shade:.6}, nearest byte {}",
+                account.byte
+            );
+            text.say("f32", &words);
+        }
+    }
+    if let Some(exact @ Ratio { numerator, denominator }) = account.exact {
+        let shade = exact.to_f64() / 256.0;
+        let off = f64::from(account.byte) - shade;
+        let cut = match account.way {
+            Way::Sums(sums) => {
+                let held = in_units(&sums, f64::from(sums.sum()) - f64::from(sums.half));
+                format!(": {:+.4} by start and steps, {:+.4} by rounding", held - shade, f64::from(account.byte) - held)
+            }
+            _ => String::new(),
+        };
+        text.say(
+            "exact",
+            &format!("{numerator} / {denominator} / 256 = {shade:.4}; the byte is off by {off:+.4}{cut}"),
+        );
+    }
+}
+
+fn say_sums(text: &mut Text, sums: &Sums, x: u32) {
+    let Sums { first, start_at, start, steps, half, .. } = *sums;
+    let anew = if start_at == first { String::new() } else { format!(", and anew every 64 pixels: at {start_at}") };
+    let half_words = if half > 0 { ", half a shade added to make the byte the nearest" } else { ", no half added" };
+    let back = match sums.step {
+        0 => "cut",
+        step if step < 0 => "rounded up, back to where it falls from",
+        _ => "rounded down, back to where it rises from",
+    };
+    let back = if half > 0 { format!("the exact shade there {back}") } else { "its left edge's shade".into() };
+    text.say("span", &format!("begins at column f = {first}{anew}; this is column {x}"));
+    let in_shades = in_units(sums, f64::from(start));
+    text.say("start", &format!("0x{} = {in_shades:.3}: {back}{half_words}", hex(sums, start)));
+    let sum = sums.sum();
+    let byte = sum >> sums.fraction_bits;
+    let whole = format!(
+        "0x{} = {:.3}, whose whole part is the byte {byte} ({byte:#04x})",
+        hex(sums, sum),
+        in_units(sums, f64::from(sum))
+    );
+    if sums.step == 0 {
+        return text.say("step", &format!("0: the shade is the same all along the row, {whole}"));
+    }
+    let step = in_units(sums, sums.step as f64);
+    text.say("step", &format!("{} = {step:+.4} a pixel: the slope, cut toward zero", step_in_hex(sums)));
+    // Of many the first and the last few.
+    let ends = |k: &i32| steps < 2 * ENDS || *k < ENDS || *k > steps - ENDS;
+    let mut shown: Vec<String> = (0..=steps).filter(ends).map(|k| hex(sums, sums.after(k))).collect();
+    if steps >= 2 * ENDS {
+        // A small number.
+        shown.insert(ENDS as usize, "...".into());
+    }
+    let after = if steps == 1 { "1 step".into() } else { format!("{steps} steps") };
+    text.say("sums", &format!("{}; after {after} {whole}", shown.join(" ")));
+}

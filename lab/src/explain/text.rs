@@ -1,0 +1,357 @@
+//! The account of a pixel in words.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::face::{EdgeKind, FaceHere};
+use super::pixel::{Pixel, Seen, Stage};
+use super::span_text::{say_account, short_account};
+use mode13h::plan::Effect;
+use mode13h::raster::Shading;
+use mode13h::render::{Fate, Rung, ShadedBy};
+
+/// Columns of text.
+const WIDTH: usize = 100;
+
+/// Columns of what stands before it.
+const LABEL: usize = 10;
+
+/// Triangles that are listed, at most.
+const LISTED: usize = 6;
+
+/// Lines that begin with a label and go on below it.
+pub(super) struct Text(String);
+
+impl Text {
+    /// A paragraph, wrapped.
+    pub(super) fn say(&mut self, label: &str, words: &str) {
+        let mut line = format!("  {label:LABEL$}");
+        let mut empty = true;
+        for word in words.split_whitespace() {
+            if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+                self.line(&line);
+                line = " ".repeat(LABEL + 2);
+                empty = true;
+            }
+            if !empty {
+                line.push(' ');
+            }
+            line += word;
+            empty = false;
+        }
+        self.line(&line);
+    }
+
+    /// One line as it is.
+    fn line(&mut self, line: &str) {
+        self.0 += line.trim_end();
+        self.0.push('\n');
+    }
+
+    /// A line behind a label, as it is.
+    fn row(&mut self, label: &str, row: &str) {
+        self.line(&format!("  {label:LABEL$}{row}"));
+    }
+}
+
+impl fmt::Display for Pixel {
+    /// Lines of at most 100 columns.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut text = Text(String::new());
+        let Self { x, y, byte, color, .. } = self;
+        let in_hex = color.to_u32();
+        text.line(&format!("pixel ({x}, {y}): byte {byte} ({byte:#04x}), which the palette shows as #{in_hex:06x}"));
+        if self.seen.is_empty() {
+            let words =
+                format!("the background: no triangle covers its centre; the frame was cleared to {}", self.background);
+            text.say("seen", &words);
+        }
+        let front = self.seen.len().saturating_sub(1);
+        for (i, seen) in self.seen.iter().enumerate() {
+            match self.faces.get(seen.face) {
+                Some(face) if i == front => self.say_seen(&mut text, face, seen),
+                Some(face) => self.say_behind(&mut text, face, seen),
+                None => {}
+            }
+        }
+        self.say_others(&mut text);
+        f.write_str(&text.0)
+    }
+}
+
+impl Pixel {
+    /// The same in a few short lines, for where there is little room: at most six, each of at most `width` characters
+    /// (what is longer is cut).
+    #[must_use]
+    pub fn lines(&self, width: usize) -> Vec<String> {
+        let Self { x, y, byte, color, .. } = self;
+        let mut lines = Vec::from([format!("({x}, {y}) byte {byte} #{:06x}", color.to_u32())]);
+        match self.front() {
+            None => lines.push("background: no face is here".into()),
+            Some((face, seen)) => {
+                let losers = self.losers().count();
+                let others = if losers > 0 { format!(", {losers} behind") } else { String::new() };
+                lines.push(format!("{}{others}", self.name(face)));
+                let edge = if seen.exact_cover { short_edges(face, *x, *y) } else { String::new() };
+                lines.push(format!("{}{edge}", self.shading_of(face, seen)));
+                lines.extend(seen.accounts.first().and_then(short_account));
+                if let ShadedBy::Light { shades: [shade, ..], .. } = seen.shaded_by {
+                    lines.push(format!("light here {:.2}", f64::from(shade) / 256.0));
+                }
+                let errors = seen.against.iter().map(|a| format!("{} {:+.2}", a.standard, a.error));
+                let errors = errors.collect::<Vec<_>>().join(", ");
+                lines.extend((!errors.is_empty()).then(|| format!("off {errors}")));
+                lines.extend((seen.stages.len() > 1).then(|| stages(seen, false)));
+            }
+        }
+        lines.truncate(6);
+        lines.iter().map(|line| line.chars().take(width).collect()).collect()
+    }
+
+    /// An object and a triangle of it.
+    fn name(&self, face: &FaceHere) -> String {
+        let object = self.objects.get(face.object).map_or("", String::as_str);
+        match face.triangle {
+            Some(triangle) if face.is_part => format!("{object}, a part of triangle {triangle}"),
+            Some(triangle) => format!("{object}, triangle {triangle}"),
+            None => object.to_string(),
+        }
+    }
+
+    /// The technique that a face is shaded by, whatever was asked for.
+    fn shading_of(&self, face: &FaceHere, seen: &Seen) -> Rung {
+        let by_shading = match face.shading {
+            Shading::Flat(_) => Rung::Flat,
+            Shading::GouraudPeriod => Rung::GouraudPeriod,
+            Shading::Gouraud => Rung::Gouraud88,
+            Shading::GouraudReseeded => Rung::Gouraud88Reseeded,
+            Shading::Gouraud1616 => Rung::Gouraud1616,
+            Shading::GouraudHyperbolic => Rung::GouraudHyperbolic,
+            Shading::Float => Rung::Float,
+            _ => self.rung,
+        };
+        match seen.shaded_by {
+            ShadedBy::NormalTable => Rung::PhongTable,
+            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_) => Rung::Phong,
+            ShadedBy::Corners if face.is_part && by_shading == Rung::Gouraud88Reseeded => Rung::GouraudTessellated,
+            ShadedBy::Corners if self.rung == Rung::Flat => Rung::Flat,
+            ShadedBy::Corners => by_shading,
+        }
+    }
+
+    /// A face that is seen through another, in short.
+    fn say_behind(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
+        let account =
+            seen.accounts.first().and_then(short_account).map(|account| format!("{account}; ")).unwrap_or_default();
+        let words = format!("{}, {}: {account}{}", self.name(face), self.shading_of(face, seen), stages(seen, false));
+        text.say("through", &words);
+    }
+
+    fn say_seen(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
+        let through = if face.fate == Fate::SeenThrough { ", which shines through" } else { "" };
+        text.say("seen", &format!("{}{through}", self.name(face)));
+        self.say_corners(text, face, seen);
+        self.say_rung(text, face, seen);
+        match (&seen.shaded_by, seen.accounts.as_slice()) {
+            (ShadedBy::Light { normal, position, shades }, _) => {
+                let point = |p: &[f32; 3]| format!("({:.4}, {:.4}, {:.4})", p[0], p[1], p[2]);
+                let words = format!(
+                    "normal {}, not yet of unit length, at {} in the object's own space: interpolated \
+                     perspective-correctly from the corners' and lit by the whole model: {}",
+                    point(normal),
+                    point(position),
+                    in_shades(seen, shades),
+                );
+                text.say("light", &words);
+            }
+            (ShadedBy::BetweenLit { before, after }, _) => {
+                let words = format!(
+                    "linear between two pixels of its row, at most 16 apart, that are lit by the whole model: {} and {}",
+                    in_shades(seen, before),
+                    in_shades(seen, after),
+                );
+                text.say("light", &words);
+            }
+            (ShadedBy::BetweenSix(corners), _) => {
+                let shades = |first: usize| corners.map(|of| format!("{:.2}", of[first] / 256.0)).join(", ");
+                let words = format!(
+                    "quadratic on the screen through light at six points: {} at the corners, {} at the middles of the \
+                     edges opposite to them, where light above 1 or below the horizon goes on and is cut off here",
+                    shades(0),
+                    shades(3),
+                );
+                text.say("light", &words);
+            }
+            (ShadedBy::NormalTable, [across, down]) => {
+                let words = format!(
+                    "column {} and row {} of a table of 256 x 256 normals: x and y as the eye sees them, linear from \
+                     corner to corner as shades are",
+                    across.byte, down.byte
+                );
+                text.say("normal", &words);
+            }
+            (_, [only]) => say_account(text, only, self.x),
+            (_, all) => {
+                for (name, account) in ["red", "green", "blue"].iter().zip(all) {
+                    text.say(name, &short_account(account).unwrap_or_else(|| account.byte.to_string()));
+                }
+            }
+        }
+        let errors: Vec<String> = seen
+            .against
+            .iter()
+            .map(|a| {
+                let shades = match a.shades {
+                    [r, g, b] if r == g && g == b => format!("{r:.3}"),
+                    [r, g, b] => format!("{r:.2} {g:.2} {b:.2}"),
+                };
+                format!("{} {shades} (off {:+.3})", a.standard, a.error)
+            })
+            .collect();
+        if !errors.is_empty() {
+            let shown = match (seen.stages.first(), seen.ramp.entries()) {
+                (Some(Stage::Shade(shade)), entries @ 2..256) => {
+                    // A shade lies in its ramp.
+                    let (step, steps) = (f64::from(*shade) - f64::from(seen.ramp.first()), f64::from(entries - 1));
+                    format!("; the byte is step {step} of the ramp's {steps}: {:.3}", 255.0 * step / steps)
+                }
+                _ => String::new(),
+            };
+            text.say("truth", &format!("{}, of 255 shades{shown}", errors.join(", ")));
+        }
+        text.say("stages", &stages(seen, true));
+        let effects: Vec<String> = seen
+            .effects
+            .iter()
+            .map(|row| match row.choice {
+                "" => row.effect.to_string(),
+                choice => format!("{} ({choice})", row.effect),
+            })
+            .collect();
+        text.say("effects", &format!("on: {}", effects.join(", ")));
+    }
+
+    /// The corners, and the edges between them.
+    fn say_corners(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
+        let flat = matches!(face.shading, Shading::Flat(_));
+        let has_shades = seen.shaded_by == ShadedBy::Corners && seen.accounts.len() == 1 && !flat;
+        text.row("corners", "     x/256     y/256          in pixels     shade (8.8)         depth");
+        for (name, corner) in ["A", "B", "C"].iter().zip(&face.corners) {
+            let (x, y) = (corner.x().to_bits(), corner.y().to_bits());
+            let at = format!("({:.3}, {:.3})", f64::from(x) / 256.0, f64::from(y) / 256.0);
+            let bits = corner.shade().to_bits();
+            let shade = if has_shades { format!("{bits:#06x} {:7.3}", f64::from(bits) / 256.0) } else { "-".into() };
+            text.row("", &format!("{name} {x:>8}  {y:>8}  {at:>20}  {shade:>14}  {:>12}", corner.depth()));
+        }
+        if !seen.exact_cover {
+            let words = "on whole pixels, from Ax to the last before Bx in each row: no edge functions, no exact cover";
+            return text.say("cover", words);
+        }
+        for (name, edge) in ["A to B", "B to C", "C to A"].iter().zip(face.edges(self.x, self.y)) {
+            let label = if *name == "A to B" { "edges" } else { "" };
+            let inside = match edge.value {
+                0 => format!("the centre is on this {} edge, {}", edge.kind, owner(edge.kind)),
+                _ => format!("inside (a {} edge)", edge.kind),
+            };
+            text.row(label, &format!("{name} {:>16}  {inside}", edge.value));
+        }
+    }
+
+    fn say_rung(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
+        let drawn = self.shading_of(face, seen);
+        let runs = seen.effects.iter().any(|row| row.effect == Effect::Gouraud);
+        let words = if let Some(shades) = self.max_error {
+            format!("{drawn}: chosen for this face by the budget of {shades} shades")
+        } else if drawn == self.rung {
+            format!("{drawn}: {}", self.rung_why)
+        } else if drawn == Rung::Flat && !runs {
+            format!("{drawn}: its corners have one shade (else {}: {})", self.rung, self.rung_why)
+        } else {
+            format!("{drawn}, where {} is on ({})", self.rung, self.rung_why)
+        };
+        text.say("rung", &words);
+    }
+
+    /// What else meets the pixel.
+    fn say_others(&self, text: &mut Text) {
+        let others: Vec<&FaceHere> =
+            self.faces.iter().filter(|face| !matches!(face.fate, Fate::Seen | Fate::SeenThrough)).collect();
+        let method = format!("hidden surfaces by {}", self.hidden_surfaces);
+        let method = match self.hidden_surfaces_why.as_str() {
+            "" => method,
+            why => format!("{method}: {why}"),
+        };
+        let seen: Vec<String> =
+            self.seen.iter().filter_map(|s| Some(self.faces.get(s.face)?.depth.to_string())).collect();
+        let depth = match seen.as_slice() {
+            [] => String::new(),
+            depths => format!("; depth here {} (greater is nearer)", depths.join(", ")),
+        };
+        text.say(
+            "depth",
+            &format!("{method}{depth}{}", if others.is_empty() { "; no other face is here" } else { "" }),
+        );
+        for face in others.iter().take(LISTED) {
+            let fate = match face.fate {
+                Fate::Behind => "behind",
+                Fate::PaintedOver => "painted over",
+                Fate::NotItsEdge => "its right or bottom edge: not its pixel",
+                Fate::Seen | Fate::SeenThrough => "seen",
+            };
+            text.row("", &format!("{:>12}  {fate}: {}", face.depth, self.name(face)));
+        }
+        if others.len() > LISTED {
+            text.row("", &format!("{:>12}  and {} more", "", others.len() - LISTED));
+        }
+    }
+}
+
+fn owner(kind: EdgeKind) -> &'static str {
+    if kind.owns_ties() { "which owns it" } else { "which the neighbour owns" }
+}
+
+fn short_edges(face: &FaceHere, x: u32, y: u32) -> String {
+    match face.edges(x, y).iter().find(|edge| edge.value == 0) {
+        Some(edge) => format!(", on a {} edge", edge.kind),
+        None => String::new(),
+    }
+}
+
+/// A shade in light, of one channel or of three.
+fn in_shades(seen: &Seen, shades: &[u16; 3]) -> String {
+    let [r, g, b] = shades.map(|shade| f64::from(shade) / 256.0);
+    if matches!(seen.stages.first(), Some(Stage::Channels(_))) {
+        format!("red {r:.3}, green {g:.3}, blue {b:.3}")
+    } else {
+        format!("shade {r:.3} ({:#06x})", shades[0])
+    }
+}
+
+/// The level that a texel is of, behind its number.
+fn of_level(level: Option<u8>) -> String {
+    level.map_or(String::new(), |level| format!(" of level {level}"))
+}
+
+/// The way of the byte through the stages.
+fn stages(seen: &Seen, whole: bool) -> String {
+    if whole && let [Stage::Shade(byte)] = seen.stages.as_slice() {
+        let (first, last) = (seen.ramp.first(), seen.ramp.last());
+        return format!("the shade is the byte: entry {byte} of the palette, in the ramp of entries {first} to {last}");
+    }
+    let words = seen.stages.iter().map(|stage| match *stage {
+        Stage::Shade(shade) => format!("shade {shade}"),
+        Stage::Channels([r, g, b]) => format!("rgb {r} {g} {b}"),
+        Stage::Dither { threshold, byte } => format!("dither by {threshold}: {byte}"),
+        Stage::Texture { texel, level, byte } => format!("texel {texel}{}: {byte}", of_level(level)),
+        Stage::TextureChannels { texel, level, channels: [r, g, b] } => {
+            format!("texel {texel}{}: {r} {g} {b}", of_level(level))
+        }
+        Stage::Mix { threshold: Some(threshold), byte } => format!("mix, dither by {threshold}: {byte}"),
+        Stage::Mix { threshold: None, byte } => format!("mix: {byte}"),
+        Stage::Fog { level, byte } => format!("fog of {level}: {byte}"),
+        Stage::Blend { behind, byte } => format!("over {behind}: {byte}"),
+    });
+    words.collect::<Vec<_>>().join(" > ")
+}

@@ -1,0 +1,171 @@
+//! A triangle pixel by pixel: what the loop of 1994 holds in its registers as it comes to each.
+
+use alloc::vec::Vec;
+
+use mode13h::hooks::{Account, Way, rows_of};
+use mode13h::raster::cover::{Ordered, Row};
+use mode13h::raster::shade::RESEED;
+use mode13h::raster::{Shading, Vertex};
+use mode13h::render::Screen;
+
+/// What the registers hold when the loop comes to `mov [edi], ah`.
+///
+/// In 16.16 the shade and its step are 32 bits wide, and the byte is the third of EAX.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
+pub struct Registers {
+    /// Where the byte goes, in bytes from the frame's first: of mode 13h an offset in video memory.
+    pub edi: u32,
+    /// The running shade, what is added for rounding included: AX, or in 16.16 EAX.
+    pub eax: u32,
+    /// The step, which the loop adds to it: BX, or in 16.16 EBX.
+    pub ebx: u32,
+    /// Pixels left, this one included. It is 1 at the last one before the loop ends, or is started anew.
+    pub cx: u32,
+}
+
+/// A pixel of a triangle.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
+pub struct Step {
+    /// Its column.
+    pub x: u32,
+    /// Its row.
+    pub y: u32,
+    /// Which of the triangle's rows this is, from 0.
+    pub row: usize,
+    /// Which of the row's pixels this is, from 0.
+    pub column: usize,
+    /// How many pixels the row has.
+    pub columns: usize,
+    /// Where the loop was last started in this row: its first pixel, or so many times 64 after it.
+    pub start: u32,
+    /// Its value, the byte among others.
+    pub account: Account,
+    /// The registers; `None` where no sum is kept, of one shade a face or a quotient a pixel.
+    pub registers: Option<Registers>,
+}
+
+/// The pixels of a triangle in a frame, in the order in which the loop writes them: row by row, from left to right.
+///
+/// Those that another triangle hides are among them.
+///
+/// ```
+/// use mode13h_lab::explain::Walk;
+/// use mode13h::fixed::{I24F8, U8F8};
+/// use mode13h::raster::{Shading, Vertex};
+/// use mode13h::render::Screen;
+///
+/// let corner = |x, y, shade| {
+///     Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(shade), 1)
+/// };
+/// let triangle = [corner(0, 0, 40)?, corner(8, 0, 200)?, corner(0, 4, 40)?];
+/// let walk = Walk::new(&triangle, Shading::Gouraud, true, Screen::MODE_13H);
+/// let registers = walk.step(2).and_then(|step| step.registers).expect("the loop's");
+/// // From 50 in the first pixel, and a half, by 20 a pixel.
+/// assert_eq!((registers.edi, registers.eax, registers.ebx, registers.cx), (2, 0x5A80, 0x1400, 5));
+/// # Ok::<(), mode13h::raster::VertexError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Walk {
+    triangle: Ordered,
+    shading: Shading,
+    width: u32,
+    rows: Vec<Row>,
+    /// Pixels before each row.
+    before: Vec<usize>,
+    pixels: usize,
+}
+
+impl Walk {
+    /// The pixels of a triangle that is shaded from its corners: those whose centres it covers or, without
+    /// `exact_cover`, those that `shading` covers.
+    #[must_use]
+    pub fn new(triangle: &[Vertex; 3], shading: Shading, exact_cover: bool, screen: Screen) -> Self {
+        let triangle = Ordered::new(triangle);
+        let rows = rows_of(&triangle, (!exact_cover).then_some(shading), screen.width, screen.height);
+        let mut pixels = 0;
+        let mut before = Vec::with_capacity(rows.len());
+        for row in &rows {
+            before.push(pixels);
+            pixels += row.range().len();
+        }
+        Self { triangle, shading, width: screen.width, rows, before, pixels }
+    }
+
+    /// How many pixels there are.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.pixels
+    }
+
+    /// How many rows have pixels.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The number of the pixel in column `x` of row `y`.
+    #[must_use]
+    pub fn number(&self, x: u32, y: u32) -> Option<usize> {
+        let row = self.rows.iter().position(|row| u32::try_from(row.y) == Ok(y))?;
+        let range = self.rows[row].range();
+        range.contains(&(x as usize)).then(|| self.before[row] + x as usize - range.start)
+    }
+
+    /// The number of the first pixel in the triangle's row `row`, from 0.
+    #[must_use]
+    pub fn first_in(&self, row: usize) -> Option<usize> {
+        self.before.get(row).copied()
+    }
+
+    /// The pixel of a number, from 0.
+    #[must_use]
+    pub fn step(&self, number: usize) -> Option<Step> {
+        if number >= self.pixels {
+            return None;
+        }
+        let place = self.before.partition_point(|&before| before <= number).checked_sub(1)?;
+        let (row, column) = (self.rows[place], number - self.before[place]);
+        // A column of a frame.
+        let x = row.x0 + column as i32;
+        let account = Account::new(&self.triangle, self.triangle.shades(), self.shading, &row, x);
+        let (mut start, mut registers) = (row.x0, None);
+        if let Way::Sums(sums) = account.way {
+            let reseeds = self.shading == Shading::GouraudReseeded;
+            start = if reseeds { sums.start_at } else { row.x0 };
+            let end = if reseeds { row.x1.min(start + RESEED) } else { row.x1 };
+            // The step is added modulo the register's size.
+            let ebx = if sums.fraction_bits == 8 { (sums.step as u16).into() } else { sums.step as u32 };
+            registers = Some(Registers {
+                // Not negative: within the frame.
+                edi: row.y as u32 * self.width + x as u32,
+                eax: sums.sum(),
+                ebx,
+                cx: (end - x) as u32,
+            });
+        }
+        Some(Step {
+            x: x as u32,
+            y: row.y as u32,
+            row: place,
+            column,
+            columns: row.range().len(),
+            start: start as u32,
+            account,
+            registers,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_is_nothing_to_walk_over_without_a_pixel() {
+        let walk = Walk::new(&[Vertex::default(); 3], Shading::Gouraud, true, Screen::MODE_13H);
+        assert_eq!((walk.pixels(), walk.rows(), walk.first_in(0), walk.number(0, 0)), (0, 0, None, None));
+        assert_eq!(walk.step(0), None);
+    }
+}

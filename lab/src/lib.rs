@@ -1,0 +1,19 @@
+//! The laboratory of [mode13h](::mode13h): what measures, checks and explains the engine.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`truth`] | what a picture should be: the scene in f64, slow and plain |
+//! | [`cost`] | accuracy against time: the study, its statistics and its report |
+//! | [`explain`] | why a pixel has its byte; a row's intensity and slope |
+//! | [`show`] | hard cases as pictures: the right way beside the fault |
+//! | [`record`] | a frame's triangles in a file, to be replayed |
+//! | [`verify`] | the hard cases on this machine; a recorded frame through every kernel and method |
+
+extern crate alloc;
+
+pub mod cost;
+pub mod explain;
+pub mod record;
+pub mod show;
+pub mod truth;
+pub mod verify;

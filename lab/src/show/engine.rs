@@ -1,0 +1,114 @@
+//! The right side of a picture: the engine's own calls and nothing else.
+
+use super::face::{Face, Segment};
+use super::panel::Panel;
+use mode13h::raster::{Frame, Raster, Shading, Vertex};
+use mode13h::render::{Renderer, Screen};
+use mode13h::scene::Scene;
+
+/// A triangle as the raster is given it.
+pub type Triangle = ([Vertex; 3], Shading);
+
+/// Bytes that drawing begins on. Twice, so that what was drawn can be told from what was there.
+const EMPTY: [u8; 2] = [0x00, 0xFF];
+
+/// What [`Raster::triangle`] draws of these triangles, one after the other, each counted for itself;
+/// with a depth buffer, all into one frame.
+pub(super) fn draw(size: (usize, usize), triangles: &[Triangle], depth_tested: bool) -> Panel {
+    let mut panel = Panel::new(size);
+    if depth_tested {
+        let [a, b] = EMPTY.map(|empty| bytes(size, triangles, true, empty));
+        panel.write_where_equal(&a, &b);
+    } else {
+        for triangle in triangles {
+            let [a, b] = EMPTY.map(|empty| bytes(size, std::slice::from_ref(triangle), false, empty));
+            panel.write_where_equal(&a, &b);
+        }
+    }
+    panel
+}
+
+/// The same without a depth buffer, in bands of this many rows, each a frame of its own.
+pub(super) fn draw_in_bands((width, height): (usize, usize), triangles: &[Triangle], rows: usize) -> Panel {
+    let [a, b] = EMPTY.map(|empty| {
+        let mut bytes = vec![empty; width * height];
+        if let Ok(mut frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
+            for band in frame.bands(rows as u32) {
+                let mut raster = Raster::new(band);
+                triangles.iter().for_each(|(vertices, shading)| {
+                    raster.triangle(vertices, *shading);
+                });
+            }
+        }
+        bytes
+    });
+    let mut panel = Panel::new((width, height));
+    panel.write_where_equal(&a, &b);
+    panel
+}
+
+/// The same, of faces.
+pub(super) fn draw_faces(size: (usize, usize), faces: &[Face], depth_tested: bool) -> Panel {
+    draw(size, &triangles(faces), depth_tested)
+}
+
+/// As the raster is given them.
+pub(super) fn triangles(faces: &[Face]) -> Vec<Triangle> {
+    faces.iter().map(Face::for_raster).collect()
+}
+
+fn bytes((width, height): (usize, usize), triangles: &[Triangle], depth_tested: bool, empty: u8) -> Vec<u8> {
+    let mut bytes = vec![empty; width * height];
+    let mut depths: Vec<u32> = Vec::new();
+    // Some dozen pixels a side: no frame is refused.
+    if let Ok(frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
+        let raster = Raster::new(frame);
+        if depth_tested {
+            let mut raster = raster.with_cleared_depth(&mut depths);
+            triangles.iter().for_each(|(vertices, shading)| {
+                raster.triangle(vertices, *shading);
+            });
+        } else {
+            let mut raster = raster;
+            triangles.iter().for_each(|(vertices, shading)| {
+                raster.triangle(vertices, *shading);
+            });
+        }
+    }
+    bytes
+}
+
+/// What [`Renderer::draw_frame`] draws of a scene on square pixels, and the triangles that it hands to
+/// the raster. Empty if the scene is refused; no case has such a scene.
+pub(super) fn draw_scene(size: (usize, usize), scene: &Scene) -> (Panel, Vec<Triangle>) {
+    let (width, height) = (size.0 as u32, size.1 as u32);
+    let mut renderer = Renderer::new();
+    let [a, b] = EMPTY.map(|empty| {
+        let mut scene = scene.clone();
+        scene.background = empty;
+        let mut bytes = vec![empty; size.0 * size.1];
+        if let Ok(frame) = Frame::new(&mut bytes, width, height, size.0) {
+            let _ = renderer.draw_frame(&scene, frame, (1, 1));
+        }
+        bytes
+    });
+    let mut panel = Panel::new(size);
+    panel.write_where_equal(&a, &b);
+    let mut triangles = Vec::new();
+    let screen = Screen { width, height, pixel_aspect: (1, 1) };
+    let _ = renderer.for_each_triangle(scene, screen, |vertices, shading| triangles.push((*vertices, shading)));
+    (panel, triangles)
+}
+
+/// The edges of triangles, in pixels.
+pub(super) fn outline(triangles: &[Triangle]) -> Vec<Segment> {
+    let point = |v: &Vertex| (f64::from(v.x().to_bits()) / 256.0, f64::from(v.y().to_bits()) / 256.0);
+    let edges = |[a, b, c]: [(f64, f64); 3]| [[a, b], [b, c], [c, a]];
+    triangles.iter().flat_map(|(vertices, _)| edges(vertices.each_ref().map(point))).collect()
+}
+
+/// Of edges, those that belong to one triangle alone: the silhouette of a ball.
+pub(super) fn silhouette(edges: &[Segment]) -> Vec<Segment> {
+    let shared = |[a, b]: &Segment| edges.contains(&[*b, *a]);
+    edges.iter().filter(|edge| !shared(edge)).copied().collect()
+}

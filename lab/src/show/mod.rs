@@ -1,0 +1,95 @@
+//! Hard cases as pictures: the right way beside the fault that it guards against, enlarged 16 times, with
+//! pixel centres and true edges.
+//!
+//! | file | what |
+//! |---|---|
+//! | [`CASES`], `cases/` | the table of cases: a row for each, and what it draws |
+//! | `engine` | the right side: the engine's own calls |
+//! | `fault/` | the wrong side: small implementations of the faults, used here alone |
+//! | `face`, [`Panel`] | what both get, and what comes out: bytes, counts of writes, marks |
+//! | [`Enlarged`] | pixels enlarged, with centres and edges |
+//! | `sheet` | the two side by side as a picture, with words |
+//!
+//! ```
+//! let case = mode13h_lab::show::by_id("r5").ok_or("no such case")?;
+//! let comparison = case.draw();
+//! assert!(comparison.right.writes().iter().all(|writes| *writes <= 1));
+//! assert_ne!(comparison.fault, comparison.right);
+//! let png: Vec<u8> = case.png()?;
+//! # assert!(!png.is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod cases;
+mod engine;
+mod enlarged;
+mod face;
+mod fault;
+mod panel;
+mod sheet;
+
+pub use cases::CASES;
+pub use engine::Triangle;
+pub use enlarged::Enlarged;
+pub use face::Segment;
+pub use panel::{Mark, Panel};
+
+use mode13h::export::PictureError;
+use mode13h::palette::Palette;
+
+/// A hard case with a picture.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Case {
+    /// As in the list of hard cases, such as `R5`.
+    pub id: &'static str,
+    /// What is hard, in a few words.
+    pub title: &'static str,
+    /// What one sees, in one sentence.
+    pub sentence: &'static str,
+    /// What the left side does wrong.
+    pub wrong: &'static str,
+    /// What the engine does instead.
+    pub right: &'static str,
+    build: fn() -> Comparison,
+}
+
+/// Both sides of a picture.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Comparison {
+    /// Drawn wrong, and marked where.
+    pub fault: Panel,
+    /// Drawn by the engine.
+    pub right: Panel,
+    /// What the engine's raster was given, in this order.
+    pub triangles: Vec<Triangle>,
+    /// Whether faces may hide each other: whether depth decides which has a pixel.
+    pub depth_tested: bool,
+    /// The true edges.
+    pub outline: Vec<Segment>,
+    /// The colours of the bytes.
+    pub palette: &'static Palette,
+}
+
+impl Case {
+    /// Draws both sides.
+    #[must_use]
+    pub fn draw(&self) -> Comparison {
+        (self.build)()
+    }
+
+    /// The picture, as the bytes of an indexed PNG.
+    ///
+    /// # Errors
+    /// There is no memory for it.
+    pub fn png(&self) -> Result<Vec<u8>, PictureError> {
+        sheet::png(self, &self.draw())
+    }
+}
+
+/// The case of this id, in capital or small letters.
+#[must_use]
+pub fn by_id(id: &str) -> Option<&'static Case> {
+    CASES.iter().find(|case| case.id.eq_ignore_ascii_case(id))
+}

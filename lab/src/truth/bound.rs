@@ -1,0 +1,69 @@
+//! How far a rung may be from what is right for it.
+
+use super::Standard;
+use mode13h::scene::Rung;
+
+/// How far a rung's shades may be from a standard.
+///
+/// | rung | standard | off by at most, in shades | of which beyond the byte's ½ and the vertices' 1/512 |
+/// |---|---|---|---|
+/// | `flat` | – | – | one shade of its own: see below |
+/// | `gouraud-period` | – | – | other vertices, other cover |
+/// | `gouraud-8.8` | `gouraud` | ½ + 1/512 + w/256 in a frame of w columns: 1.75 of 320 | start and steps, each less than 1/256 |
+/// | `gouraud-8.8-reseeded` | `gouraud` | ½ + 1/512 + ¼ | the same over 64 pixels |
+/// | `gouraud-16.16` | `gouraud` | ½ + 1/512 + w/65,536 | start and steps, each less than 1/65,536 |
+/// | `gouraud-hyperbolic` | `gouraud-perspective` | ½ + 1/512 + 1/256 | depths rounded to 2⁻³⁰ of the nearest |
+/// | `gouraud-tessellated` | – | – | edges are split by an estimate, six times at most; faces inside by none |
+/// | `phong-table` | – | – | normals linear on the screen and in 256 steps, lamps as suns, the eye far away |
+/// | `phong` | `lit` | ½ + 1/512 + 1/100 | f32 of normals and positions |
+/// | `float` | `gouraud-perspective` | ½ + 1/512 + 1/256 + 1/8,192 | and f32 |
+///
+/// A vertex's shade is rounded to 1/256, so by 1/512; what is made from it is a mean of three, and no farther off. The
+/// rest is what the raster adds ([`Shading`](mode13h::raster::Shading)). A depth is rounded to half of 2⁻³⁰·near/w's unit: of
+/// w up to 4,096 times the near distance that is 2⁻¹⁹ of it, either way, and a quotient of sums that are off by so
+/// much is off by 2⁻¹⁸ of 255 shades: 1/1,000, and less than 1/256 up to 10,000 times.
+///
+/// That is of the vertices as the truth has them. The engine's vertices come from f32, so that one coordinate of a hundred
+/// is rounded to the unit of 1/256 pixel beside the right one, and where a face is clipped new corners are rounded: a
+/// pixel of such a face may be off by what the face's shades change over 1/256 pixel more.
+///
+/// A flat face has the model's shade at its middle, by its own normal, to ½ + 1/512 + 1/100; from what its corners have it
+/// may be any shade away. What else claims no bound is measured.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Bound {
+    /// What is right for it.
+    pub standard: Standard,
+    /// How far a shade may be off.
+    pub shades: f64,
+}
+
+impl Bound {
+    /// Of a rung in a frame of so many columns; `None` of one that claims none.
+    ///
+    /// ```
+    /// use mode13h::scene::Rung;
+    /// use mode13h_lab::truth::{Bound, Standard};
+    ///
+    /// let bound = Bound::of(Rung::Gouraud88Reseeded, 320).expect("it claims one");
+    /// assert!(bound.standard == Standard::Gouraud && bound.shades < 1.0);
+    /// assert_eq!(Bound::of(Rung::GouraudPeriod, 320), None);
+    /// ```
+    #[must_use]
+    pub fn of(rung: Rung, width: u32) -> Option<Self> {
+        const ROUNDING: f64 = 0.5 + 1.0 / 512.0;
+        const DEPTHS: f64 = 1.0 / 256.0;
+
+        let width = f64::from(width);
+        let (standard, more) = match rung {
+            Rung::Gouraud88 => (Standard::Gouraud, width / 256.0),
+            Rung::Gouraud88Reseeded => (Standard::Gouraud, 0.25),
+            Rung::Gouraud1616 => (Standard::Gouraud, width / 65_536.0),
+            Rung::GouraudHyperbolic => (Standard::GouraudPerspective, DEPTHS),
+            Rung::Float => (Standard::GouraudPerspective, DEPTHS + 1.0 / 8_192.0),
+            Rung::Phong => (Standard::Lit, 0.01),
+            // The others claim none.
+            _ => return None,
+        };
+        Some(Self { standard, shades: ROUNDING + more })
+    }
+}

@@ -1,0 +1,78 @@
+//! The lighting model at one point.
+//!
+//! ```text
+//! I = ka·Ia + Σ over lights of (kd·max(0, n·l) + ks·max(0, r·v)^s) · Id · fall-off
+//! ```
+//!
+//! Of three channels the first two terms take on the body's colour, the last one the highlight's. r = 2·(n·l)·n − l. A light that n points away from adds nothing. A lamp at the distance d falls off as
+//! (1 − d²/R²)² within its range R.
+
+use super::vector::{Vector, dot, sub, times, unit, wide};
+use mode13h::light::{Light, Material};
+use mode13h::scene::Scene;
+
+/// Red, green and blue of what a point shows, clamped once, after the sum: 0 to 1. `normal` is unit, or
+/// zero where there is none: there only ambient light counts. Unless `in_color`, all three are the one
+/// channel.
+pub(super) fn intensity(
+    scene: &Scene,
+    material: &Material,
+    in_color: bool,
+    (at, normal): (Vector, Vector),
+    eye: Vector,
+) -> [f64; 3] {
+    let to_eye = unit(sub(eye, at));
+    let mut body = [f64::from(material.ambient) * f64::from(scene.ambient); 3];
+    let mut mirrored = [0.0; 3];
+    for light in scene.lights() {
+        let Some((l, fall_off)) = reaching(light, at) else { continue };
+        let cosine = dot(normal, l);
+        if cosine <= 0.0 {
+            continue;
+        }
+        let mut highlight = 0.0;
+        if let Some(v) = to_eye.filter(|_| material.is_specular()) {
+            let r = sub(times(normal, 2.0 * cosine), l);
+            let along = dot(r, v);
+            if along > 0.0 {
+                // A power below 0 counts as 0.
+                highlight = f64::from(material.specular) * libm::pow(along, f64::from(material.shininess).max(0.0));
+            }
+        }
+        for (channel, id) in strength(light, in_color).into_iter().enumerate() {
+            body[channel] += f64::from(material.diffuse) * cosine * id * fall_off;
+            mirrored[channel] += highlight * id * fall_off;
+        }
+    }
+    // Each has its own colour.
+    let (own, of_highlight) = if in_color { (material.color, material.highlight) } else { ([1.0; 3], [1.0; 3]) };
+    [0, 1, 2].map(|i| (body[i] * f64::from(own[i]) + mirrored[i] * f64::from(of_highlight[i])).clamp(0.0, 1.0))
+}
+
+/// The direction to a light, and how much of it is left at a point; `None` if nothing is. A lamp at the
+/// point itself lights no side of it.
+fn reaching(light: &Light, at: Vector) -> Option<(Vector, f64)> {
+    match *light {
+        Light::Sun { direction, .. } => Some((unit(wide(direction))?, 1.0)),
+        Light::Lamp { position, range, .. } => {
+            let to_lamp = sub(wide(position), at);
+            let part = dot(to_lamp, to_lamp) / (f64::from(range) * f64::from(range));
+            let left = 1.0 - part;
+            if left > 0.0 { Some((unit(to_lamp)?, left * left)) } else { None }
+        }
+        // A kind of light that came after this laboratory.
+        _ => None,
+    }
+}
+
+/// Id of each channel; on one channel, of a coloured light the luminance after ITU-R BT.601.
+fn strength(light: &Light, in_color: bool) -> [f64; 3] {
+    let color = light.color().map(f64::from);
+    let [red, green, blue] = color;
+    let color = match (in_color, light.is_colored()) {
+        (true, _) => color,
+        (false, true) => [0.299 * red + 0.587 * green + 0.114 * blue; 3],
+        (false, false) => [red; 3],
+    };
+    times(color, f64::from(light.intensity()))
+}

@@ -1,0 +1,497 @@
+//! The account of a pixel against the frame that it is of, and against the definitions.
+
+use crate::support::oracle::{self, Shades};
+use crate::support::random::Random;
+use crate::support::scenes;
+use crate::support::triangles;
+use mode13h::glam::Vec3;
+use mode13h::light::Light;
+use mode13h::mesh::Mesh;
+use mode13h::raster::{Frame, Shading};
+use mode13h::render::{HiddenSurfaces, Renderer, Rung, Screen, VertexPath};
+use mode13h::scene::{Camera, Object, Scene};
+use mode13h_lab::cost::Probe;
+use mode13h_lab::explain::{self, Account, Column, EdgeKind, ExplainError, Fate, Pixel, ShadedBy, Stage, Walk, Way};
+use mode13h_lab::truth::{Face, Standard, Truth};
+
+const SCREEN: Screen = Screen::MODE_13H;
+
+fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
+    let mut bytes = vec![0; 64_000];
+    let frame = Frame::new(&mut bytes, 320, 200, 320).expect("a frame");
+    renderer.draw_frame(scene, frame, SCREEN.pixel_aspect).expect("a legal scene");
+    bytes
+}
+
+fn explain(renderer: &mut Renderer, scene: &Scene, x: u32, y: u32) -> Pixel {
+    explain::pixel(renderer, scene, SCREEN, x, y).expect("a pixel of a legal scene")
+}
+
+/// Pixels worth asking for: some anywhere, and some with a face, found in a frame.
+fn some_pixels(bytes: &[u8], background: u8, count: usize, random: &mut Random) -> Vec<(u32, u32)> {
+    let covered: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i] != background).collect();
+    (0..count)
+        .map(|i| {
+            let place = if i % 4 == 0 || covered.is_empty() {
+                (random.unit() * bytes.len() as f64) as usize
+            } else {
+                covered[(random.unit() * covered.len() as f64) as usize]
+            };
+            (place as u32 % 320, place as u32 / 320)
+        })
+        .collect()
+}
+
+/// That what the account says of the front face is what the definitions say. Returns whether there was anything to say.
+fn check_front(pixel: &Pixel, what: &str) -> bool {
+    let Some((face, seen)) = pixel.front() else {
+        assert_eq!(pixel.byte, pixel.background, "{what}");
+        return false;
+    };
+    assert_eq!(seen.stages.last().and_then(|stage| stage.byte()), Some(pixel.byte), "{what}");
+    let (x, y) = (pixel.x as i32, pixel.y as i32);
+    let triangle = face.corners.each_ref().map(oracle::point);
+    if seen.exact_cover {
+        assert!(oracle::covers(triangle, oracle::centre(x, y)), "{what}");
+        for (edge, (from, to)) in face.edges(pixel.x, pixel.y).iter().zip([(0, 1), (1, 2), (2, 0)]) {
+            let value = oracle::edge(triangle[from], triangle[to], oracle::centre(x, y));
+            assert_eq!(i128::from(edge.value), value, "{what}");
+            assert!(value > 0 || (value == 0 && edge.kind.owns_ties()), "{what}");
+        }
+        assert_eq!(face.depth, oracle::depth_at(&face.corners, x, y), "{what}");
+    }
+    match (&seen.shaded_by, seen.accounts.as_slice(), seen.stages[0]) {
+        (ShadedBy::Light { shades, .. }, [], Stage::Shade(byte)) => {
+            assert_eq!((shades[0] + 128) >> 8, u16::from(byte), "{what}");
+        }
+        (ShadedBy::Light { shades, .. }, [], Stage::Channels(bytes)) => {
+            assert_eq!(shades.map(|shade| (shade + 128) >> 8), bytes.map(u16::from), "{what}");
+        }
+        (ShadedBy::NormalTable, [_, _], Stage::Shade(_)) => {}
+        (ShadedBy::Corners, [account], Stage::Shade(byte)) => {
+            assert_eq!(account.byte, byte, "{what}");
+            check_account(account, face, seen.exact_cover, x, y, what);
+        }
+        (ShadedBy::Corners, [red, green, blue], Stage::Channels(bytes)) => {
+            assert_eq!([red.byte, green.byte, blue.byte], bytes, "{what}");
+        }
+        other => panic!("{what}: {other:?}"),
+    }
+    true
+}
+
+/// A fraction in its lowest terms.
+fn reduced(n: i128, d: i128) -> (i128, i128) {
+    let (mut a, mut b) = (n.abs(), d);
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    (n / a, d / a)
+}
+
+/// An account of shades from corners against the definition of the shading.
+fn check_account(account: &Account, face: &explain::FaceHere, exact_cover: bool, x: i32, y: i32, what: &str) {
+    let shades = Shades::of_vertices(&face.corners, face.shading);
+    let byte = if exact_cover {
+        let triangle = face.corners.each_ref().map(oracle::point);
+        let row: Vec<i32> = (0..320).filter(|&x| oracle::covers(triangle, oracle::centre(x, y))).collect();
+        shades.byte((row[0], row[row.len() - 1]), x, y, None)
+    } else {
+        let all = oracle::pixels(&face.corners, face.shading, 320, 200);
+        all.iter().find(|pixel| (pixel.x, pixel.y) == (x, y)).expect("covered").byte
+    };
+    assert_eq!(account.byte, byte, "{what}");
+    if let Some(exact) = account.exact {
+        let right = oracle::exact_shade(&face.corners, face.shading, oracle::centre(x, y));
+        assert_eq!(reduced(exact.numerator, exact.denominator), reduced(right.n, right.d), "{what}");
+        if let Some((n, d)) = oracle::bound(face.shading, 320) {
+            assert!(right.is_within(i128::from(account.byte) * 256, n, d), "{what}");
+        }
+    } else {
+        assert!(matches!(account.way, Way::Flat(_)), "{what}");
+    }
+    if let Way::Sums(sums) = account.way {
+        assert!(face.shading == Shading::GouraudPeriod || sums.start_at + sums.steps == x, "{what}");
+        assert_eq!(sums.sum() >> sums.fraction_bits, u32::from(account.byte), "{what}");
+    }
+}
+
+/// What an account ends with is the frame's byte: every scene by every rung, pixels here and there.
+#[test]
+fn an_account_ends_with_the_byte_of_the_frame() {
+    let mut random = Random::new(0x5EED);
+    let (mut with_face, mut all) = (0, 0);
+    for (name, scene) in scenes::all() {
+        for rung in Rung::ALL {
+            let mut renderer = Renderer::new();
+            renderer.set_rung(rung);
+            let bytes = frame(&mut renderer, &scene);
+            for (x, y) in some_pixels(&bytes, scene.background, 7, &mut random) {
+                let what = format!("{name} by {rung} at ({x}, {y})");
+                let pixel = explain(&mut renderer, &scene, x, y);
+                assert_eq!(pixel.byte, bytes[y as usize * 320 + x as usize], "{what}:\n{pixel}");
+                with_face += usize::from(check_front(&pixel, &what));
+                all += 1;
+                let text = pixel.to_string();
+                assert!(text.lines().all(|line| line.chars().count() <= 100), "{what}:\n{text}");
+                assert!(text.lines().count() <= 40, "{what}:\n{text}");
+                let lines = pixel.lines(40);
+                assert!(lines.len() <= 6 && lines.iter().all(|line| line.chars().count() <= 40), "{lines:?}");
+            }
+        }
+    }
+    assert!(all > scenes::all().len() * 50 && with_face * 2 > all, "{with_face} of {all}");
+}
+
+/// The same for every way to hidden surfaces and both vertex paths.
+#[test]
+fn an_account_follows_the_way_to_hidden_surfaces() {
+    let mut random = Random::new(0x5EED);
+    let mut losers = 0;
+    for (name, scene) in scenes::all() {
+        for way in HiddenSurfaces::ALL {
+            for path in VertexPath::ALL {
+                let mut renderer = Renderer::new();
+                renderer.set_hidden_surfaces(Some(way));
+                renderer.set_vertex_path(path);
+                if random.unit() < 0.3 {
+                    renderer.set_rung(Rung::GouraudPeriod);
+                }
+                let bytes = frame(&mut renderer, &scene);
+                for (x, y) in some_pixels(&bytes, scene.background, 9, &mut random) {
+                    let pixel = explain(&mut renderer, &scene, x, y);
+                    let what = format!("{name} by {way}, {path}, at ({x}, {y}):\n{pixel}");
+                    assert_eq!(pixel.byte, bytes[y as usize * 320 + x as usize], "{what}");
+                    let front = pixel.seen.first().map(|seen| pixel.faces[seen.face]);
+                    for loser in pixel.losers() {
+                        losers += 1;
+                        let tests =
+                            matches!(pixel.hidden_surfaces, HiddenSurfaces::DepthBuffer | HiddenSurfaces::ScanLine);
+                        let front = front.expect("what hides it").depth;
+                        assert!(!tests || loser.depth <= front, "{what}");
+                    }
+                }
+            }
+        }
+    }
+    // The shipped scenes, which are files, have most of the overlaps.
+    assert!(losers > 300, "{losers}");
+}
+
+/// The frames after an account are those without it.
+#[test]
+fn an_account_leaves_the_renderer_as_it_was() {
+    let mut scene = scenes::showing("torus");
+    let (mut one, mut other) = (Renderer::new(), Renderer::new());
+    for turn in 0..4 {
+        scene.objects_mut()[0].set_angles([0.3, 0.2 * f64::from(turn), 0.0]);
+        explain(&mut one, &scene, 160, 100);
+        assert!(frame(&mut one, &scene) == frame(&mut other, &scene));
+        explain(&mut one, &scenes::showing("cube"), 160, 100);
+    }
+}
+
+/// A square of two triangles, its corners on these pixels, seen straight on from a distance at which a unit is a pixel down
+/// and 6/5 of one across.
+fn square(x: [f32; 2], y: [f32; 2]) -> Scene {
+    let at = |x: f32, y: f32| Vec3::new((x - 160.0) / 1.2, 100.0 - y, 0.0);
+    let corners = vec![at(x[0], y[0]), at(x[0], y[1]), at(x[1], y[1]), at(x[1], y[0])];
+    let mesh = Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]]).expect("a square");
+    let (eye, target, up) = (Vec3::new(0.0, 0.0, 100.0), Vec3::ZERO, Vec3::Y);
+    let mut scene = Scene::new();
+    scene.add(Object::new(mesh).named("square"));
+    scene.add_light(Light::sun([0.0, 0.0, 1.0]));
+    scene.camera = Camera { eye, target, up, field_of_view: std::f32::consts::FRAC_PI_2, near: 1.0 };
+    scene
+}
+
+/// Corners on whole pixels, so that the diagonal runs through centres: those are the right triangle's, whose left edge it
+/// is, and the other says that they are not its own. Every value by hand.
+#[test]
+fn a_tie_on_a_shared_edge_is_the_left_edges() {
+    let scene = square([100.0, 132.0], [60.0, 92.0]);
+    let renderer = &mut Renderer::new();
+    for k in 0..32 {
+        let pixel = explain(renderer, &scene, 100 + k, 60 + k);
+        assert_eq!(pixel.faces.len(), 2, "{pixel}");
+        let (lower, upper) = (pixel.faces[0], pixel.faces[1]);
+        assert_eq!((lower.triangle, lower.fate), (Some(0), Fate::NotItsEdge), "{pixel}");
+        assert_eq!((upper.triangle, upper.fate), (Some(1), Fate::Seen), "{pixel}");
+        // Clockwise from the upper left corner: to the right, down, and back along the diagonal.
+        let corners = upper.corners.map(|corner| (corner.x().to_bits(), corner.y().to_bits()));
+        assert_eq!(corners, [(100, 60), (132, 60), (132, 92)].map(|(x, y)| (x * 256, y * 256)));
+        let edges = upper.edges(pixel.x, pixel.y);
+        // 32 · 256 long, and k + ½ pixels below; 32 · 256, and 32 − k − ½ pixels to the left; on the diagonal.
+        let (down, left) = (i64::from(k) * 256 + 128, i64::from(31 - k) * 256 + 128);
+        assert_eq!(edges.map(|edge| edge.value), [8192 * down, 8192 * left, 0]);
+        assert_eq!(edges.map(|edge| edge.kind), [EdgeKind::Top, EdgeKind::Right, EdgeKind::Left]);
+        let tie = lower.edges(pixel.x, pixel.y).into_iter().find(|edge| edge.value == 0).expect("the diagonal");
+        assert_eq!((tie.kind, tie.kind.owns_ties()), (EdgeKind::Right, false));
+        // Full light on the default ramp.
+        assert_eq!(pixel.byte, 255, "{pixel}");
+    }
+    // Just outside on each side, by the upper edge and the left one, which are the square's, and just inside.
+    for (x, y, is_in) in [(99, 70, false), (100, 70, true), (110, 59, false), (110, 60, true), (132, 70, false)] {
+        assert_eq!(!explain(renderer, &scene, x, y).seen.is_empty(), is_in, "({x}, {y})");
+    }
+    // With corners on centres a row and a column are the square's, and one of each is not.
+    let scene = square([100.5, 132.5], [60.5, 92.5]);
+    for (x, y, is_in) in [(100, 60, true), (110, 60, true), (100, 70, true), (132, 70, false), (110, 92, false)] {
+        let pixel = explain(renderer, &scene, x, y);
+        assert_eq!(!pixel.seen.is_empty(), is_in, "({x}, {y})");
+        let fate = if is_in { Fate::Seen } else { Fate::NotItsEdge };
+        assert!(pixel.faces.iter().any(|face| face.fate == fate), "{pixel}");
+    }
+}
+
+/// Every pixel of a long row, in which spans start anew, by every rung; and of two bodies in one place, whose depths are
+/// equal everywhere, by every way to hidden surfaces.
+#[test]
+fn every_pixel_of_a_long_row_and_of_equal_depths() {
+    let mut scene = square([8.0, 312.0], [40.0, 160.0]);
+    scene.add_light(Light::lamp([-60.0, 30.0, 40.0], 200.0));
+    *scene.lights_mut() = scene.lights()[1..].to_vec();
+    let mut twins = scene.clone();
+    let mut twin = twins.objects()[0].clone().named("twin");
+    twin.materials[0].diffuse *= 0.5;
+    twins.add(twin);
+    for rung in Rung::ALL {
+        for way in HiddenSurfaces::ALL {
+            let mut renderer = Renderer::new();
+            renderer.set_rung(rung);
+            renderer.set_hidden_surfaces(Some(way));
+            let bytes = frame(&mut renderer, &twins);
+            for x in (0..320).step_by(5) {
+                let pixel = explain(&mut renderer, &twins, x, 90);
+                assert_eq!(pixel.byte, bytes[90 * 320 + x as usize], "{rung}, {way}:\n{pixel}");
+            }
+        }
+        let mut renderer = Renderer::new();
+        renderer.set_rung(rung);
+        let bytes = frame(&mut renderer, &scene);
+        let mut anew = 0;
+        for x in 0..320 {
+            let pixel = explain(&mut renderer, &scene, x, 90);
+            assert_eq!(pixel.byte, bytes[90 * 320 + x as usize], "{pixel}");
+            check_front(&pixel, &format!("{rung} at {x}"));
+            let account = pixel.front().and_then(|(_, seen)| seen.accounts.first().copied());
+            if let Some(Account { way: Way::Sums(sums), .. }) = account {
+                anew += usize::from(sums.start_at != sums.first);
+                assert!(rung != Rung::Gouraud88Reseeded || sums.steps < 64, "{pixel}");
+            }
+        }
+        assert!(rung != Rung::Gouraud88Reseeded || anew > 100, "{anew}");
+    }
+}
+
+/// The triangle that is named is the one that truth finds, and the shade as far from it as the rung may be.
+#[test]
+fn the_face_and_the_errors_are_those_against_the_truth() {
+    let mut random = Random::named("explain truth");
+    for (name, bound) in [("torus", 0.75), ("cone", 0.75), ("teapot", 0.75)] {
+        let scene = scenes::showing(name);
+        let truth = Truth::new(&scene, SCREEN).expect("legal").draw(Standard::Gouraud);
+        let mut renderer = Renderer::new();
+        let bytes = frame(&mut renderer, &scene);
+        let mut compared = 0;
+        for (x, y) in some_pixels(&bytes, scene.background, 200, &mut random) {
+            let pixel = explain(&mut renderer, &scene, x, y);
+            let (Some((face, seen)), Some(right)) = (pixel.front(), truth.at(x, y)) else { continue };
+            if (Some(right.face.triangle), right.face.object) != (face.triangle, face.object) {
+                // Two that meet in depth at an edge, at most.
+                assert!(pixel.faces.iter().any(|other| other.triangle == Some(right.face.triangle)), "{pixel}");
+                continue;
+            }
+            let gouraud = seen.against.iter().find(|a| a.standard == Standard::Gouraud).expect("a ramp of 256");
+            assert_eq!(gouraud.shades[0], 255.0 * right.intensity[0]);
+            // What the rung promises, a rounding of each corner's shade, and f32 before it.
+            assert!(gouraud.error.abs() <= bound + 1.0 / 512.0 + 0.01, "{pixel}");
+            compared += 1;
+        }
+        assert!(compared > 100, "{name}: {compared}");
+    }
+}
+
+/// A row of the frame is what single pixels say.
+#[test]
+fn a_row_is_its_pixels() {
+    let scene = scenes::showing("cone");
+    let row = explain::row(Renderer::new(), &scene, SCREEN, 120).expect("a row");
+    assert_eq!(row.columns.len(), 320);
+    let mut renderer = Renderer::new();
+    let mut with_face = 0;
+    for (x, column) in (0..).zip(&row.columns) {
+        let pixel = explain(&mut renderer, &scene, x, 120);
+        let Some((face, seen)) = pixel.front() else {
+            assert_eq!((column.face, column.drawn), (None, None));
+            continue;
+        };
+        with_face += 1;
+        assert_eq!(column.face.map(|face| (face.object, Some(face.triangle))), Some((face.object, face.triangle)));
+        assert_eq!(column.drawn.map(|shade| Stage::Shade(shade as u8)), Some(seen.stages[0]));
+        for against in &seen.against {
+            let shades = if against.standard == Standard::Lit { column.lit } else { column.gouraud };
+            // The mean of three alike, and 255 times it, in another order: some roundings of f64.
+            let mean = against.shades.iter().sum::<f64>() / 3.0;
+            assert!((shades.expect("the same face") - mean).abs() < 1e-12 * 255.0);
+        }
+    }
+    assert!(with_face > 50);
+    // The slope of 10, 30, 40, nothing.
+    let columns = [10.0, 30.0, 40.0].map(|drawn| Column { drawn: Some(drawn), ..Column::default() });
+    let row = explain::Row { y: 0, columns: [columns.as_slice(), &[Column::default()]].concat() };
+    assert_eq!(row.slope(|column| column.drawn), [None, Some(15.0), None, None]);
+}
+
+/// The short form, word for word: a byte, its face, its sums, its errors, its stages.
+#[test]
+fn the_short_form_fits_beside_a_picture() {
+    let scene = square([100.0, 132.0], [60.0, 92.0]);
+    let pixel = explain(&mut Renderer::new(), &scene, 110, 65);
+    let lines = ["(110, 65) byte 255 #ffffff", "square, triangle 1", "gouraud-8.8-reseeded"];
+    // The sun is straight on, so that all shades are 255.0, with the half 0xff80. The row begins on the diagonal.
+    let sums = ["ff80 at 105 + 5 x +0.000 = ff80", "off gouraud +0.00, lit +0.00"];
+    assert_eq!(pixel.lines(40), [lines.as_slice(), sums.as_slice()].concat());
+    assert_eq!(pixel.lines(6)[1], "square");
+    let tie = explain(&mut Renderer::new(), &scene, 110, 70);
+    assert_eq!(tie.lines(40)[2], "gouraud-8.8-reseeded, on a left edge");
+    let none = explain(&mut Renderer::new(), &scene, 10, 70);
+    assert_eq!(none.lines(40), ["(10, 70) byte 0 #000000", "background: no face is here"]);
+}
+
+#[test]
+fn what_is_not_in_the_frame_is_refused() {
+    let scene = scenes::showing("cube");
+    for (x, y) in [(320, 0), (0, 200), (u32::MAX, u32::MAX)] {
+        let error = explain::pixel(&mut Renderer::new(), &scene, SCREEN, x, y).expect_err("outside");
+        assert_eq!(error, ExplainError::OutsidePixel { x, y, width: 320, height: 200 });
+        assert!(error.to_string().contains("320 x 200"));
+    }
+    let error = explain::row(Renderer::new(), &scene, SCREEN, 200).expect_err("outside");
+    assert_eq!(error, ExplainError::OutsideRow { y: 200, height: 200 });
+    let none = Screen { width: 0, ..SCREEN };
+    assert_eq!(explain::pixel(&mut Renderer::new(), &scene, none, 0, 0).expect_err("none"), ExplainError::Screen);
+}
+
+/// The shadings whose loop keeps a sum, and how many bits of it are its fraction.
+const LOOPS: [(Shading, u32); 4] =
+    [(Shading::Gouraud, 8), (Shading::GouraudReseeded, 8), (Shading::Gouraud1616, 16), (Shading::GouraudPeriod, 8)];
+
+/// Walks over a triangle as the loop would: what it writes, by its registers alone. Every stretch of it begins with what
+/// the walk says and goes on by additions.
+fn run_the_loop(walk: &Walk, bits: u32, pixels: &mut [Option<u8>], what: &str) {
+    let mask = if bits == 8 { 0xFFFF } else { 0xFF_FFFF };
+    let mut left = None;
+    let mut at = (0_u32, 0_u32, 0_u32);
+    for number in 0..walk.pixels() {
+        let step = walk.step(number).expect("a pixel");
+        let registers = step.registers.expect("a sum");
+        assert_eq!(registers.edi, 320 * step.y + step.x, "{what}");
+        assert_eq!(walk.number(step.x, step.y), Some(number), "{what}");
+        match left {
+            Some(count) => {
+                let [edi, eax, ebx]: [u32; 3] = [at.0 + 1, at.1.wrapping_add(at.2), at.2];
+                let sums = [registers.edi, registers.eax & mask, registers.ebx & mask, registers.cx];
+                assert_eq!(sums, [edi, eax & mask, ebx & mask, count - 1], "{what}: pixel {number}");
+            }
+            // The loop begins: in a new row, or 64 pixels on.
+            None => assert!(step.x == step.start && (step.column == 0 || step.column.is_multiple_of(64)), "{what}"),
+        }
+        at = (registers.edi, registers.eax, registers.ebx);
+        left = (registers.cx > 1).then_some(registers.cx);
+        assert!(pixels[registers.edi as usize].is_none(), "{what}: pixel {number} is written twice");
+        // AH, or the third byte of EAX.
+        pixels[registers.edi as usize] = Some((registers.eax >> bits) as u8);
+        assert_eq!(step.account.byte, (registers.eax >> bits) as u8, "{what}");
+    }
+    assert_eq!(left, None, "{what}: the last count is 1");
+}
+
+#[test]
+fn a_walk_writes_what_the_raster_does() {
+    let mut random = Random::named("walk");
+    let mut tried = [0; 4];
+    for i in 0..400 {
+        let triangle = triangles::triangle(&mut random, 320, 200);
+        for ((shading, bits), tried) in LOOPS.into_iter().zip(&mut tried) {
+            let what = format!("triangle {i} by {shading:?}: {triangle:?}");
+            // Whatever a byte is, one of the two frames shows that it was written.
+            let [zeros, ones] = [0, 255].map(|empty| triangles::draw(&triangle, shading, 320, 200, None, empty));
+            let walk = Walk::new(&triangle, shading, shading.has_exact_cover(), SCREEN);
+            let mut walked = vec![None; 64_000];
+            run_the_loop(&walk, bits, &mut walked, &what);
+            for (place, walked) in walked.into_iter().enumerate() {
+                let drawn = (zeros[place] == ones[place]).then_some(zeros[place]);
+                assert_eq!(walked, drawn, "{what} at ({}, {})", place % 320, place / 320);
+            }
+            *tried += walk.pixels();
+        }
+    }
+    assert!(tried.into_iter().all(|pixels| pixels > 100_000), "{tried:?}");
+}
+
+#[test]
+fn a_walk_over_what_is_seen_has_the_frames_bytes() {
+    let loops = [Rung::Gouraud88, Rung::Gouraud88Reseeded, Rung::Gouraud1616, Rung::GouraudPeriod];
+    let mut random = Random::named("walk of scenes");
+    for (shape, rung) in ["torus", "cube", "cone", "teapot"].into_iter().flat_map(|s| loops.map(|rung| (s, rung))) {
+        let scene = scenes::showing(shape);
+        let mut renderer = Renderer::new();
+        renderer.set_rung(rung);
+        let bytes = frame(&mut renderer, &scene);
+        let shown = Probe::new(renderer.set_alike()).look(&scene, SCREEN).expect("a legal scene");
+        let mut seen = 0;
+        for (x, y) in some_pixels(&bytes, scene.background, 12, &mut random) {
+            let pixel = explain(&mut renderer, &scene, x, y);
+            let Some((face, of_face)) = pixel.front() else { continue };
+            let walk = Walk::new(&face.corners, face.shading, of_face.exact_cover, SCREEN);
+            let asked = walk.number(x, y).and_then(|number| walk.step(number)).expect("it covers the pixel");
+            assert_eq!(vec![asked.account], of_face.accounts, "{shape} by {rung} at ({x}, {y})");
+            let name = face.triangle.map(|triangle| Face { object: face.object, triangle });
+            for step in (0..walk.pixels()).filter_map(|number| walk.step(number)) {
+                let place = (320 * step.y + step.x) as usize;
+                if shown.faces[place] == name {
+                    assert_eq!(step.account.byte, bytes[place], "{shape} by {rung} at ({}, {})", step.x, step.y);
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 12, "{shape} by {rung}: {seen}");
+    }
+}
+
+#[test]
+fn what_keeps_no_sum_has_no_registers() {
+    let triangle = triangles::triangle(&mut Random::named("no registers"), 320, 200);
+    for shading in [Shading::Flat(9), Shading::GouraudHyperbolic, Shading::Float] {
+        let walk = Walk::new(&triangle, shading, true, SCREEN);
+        assert!((0..walk.pixels()).all(|i| walk.step(i).is_some_and(|step| step.registers.is_none())));
+    }
+}
+
+/// The level of a texel is the one that is chosen: taken from far and near rows of a floor, it rises with the distance, and
+/// of an image without levels there is none.
+#[test]
+fn the_level_of_a_texel_is_named() {
+    let scene = scenes::floor("bricks", 24.0);
+    let level = |mipmaps: bool, y: u32| {
+        let mut renderer = Renderer::new();
+        renderer.set_mipmaps(Some(mipmaps));
+        let bytes = frame(&mut renderer, &scene);
+        let pixel = explain(&mut renderer, &scene, 160, y);
+        assert_eq!(pixel.byte, bytes[y as usize * 320 + 160]);
+        let (_, seen) = pixel.front().expect("the floor");
+        let text = pixel.to_string();
+        seen.stages.iter().find_map(|stage| match *stage {
+            Stage::Texture { level, .. } => {
+                assert_eq!(text.contains(" of level "), level.is_some(), "{text}");
+                Some(level)
+            }
+            _ => None,
+        })
+    };
+    let rows = [100, 120, 150, 199];
+    let levels = rows.map(|y| level(true, y).expect("it has a texture").expect("it has levels"));
+    assert!(levels.is_sorted_by(|far, near| far >= near) && levels[0] > levels[3], "{levels:?}");
+    assert_eq!(rows.map(|y| level(false, y)), [Some(None); 4]);
+}

@@ -1,0 +1,498 @@
+//! What holds of every parser, whatever it is given. One function a parser, for the fuzzer
+//! (`fuzz/fuzz_targets`) and for the corpora (`tests/fuzz_corpus.rs`) alike; each panics where it does not hold.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::io::{self, BufRead, BufReader};
+use std::path::Path;
+use std::str::FromStr;
+
+use mode13h::export::{FrameRate, GifWriter, MAX_SIDE, Picture, PixelShape, Scale};
+use mode13h::glam::{Vec2, Vec3};
+use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::palette::file::{self, FORMATS, Format, PaletteError, Place};
+use mode13h::palette::{Palette, Rgb, builtin};
+use mode13h::render::{Renderer, Rung};
+use mode13h::scene::Scene;
+use mode13h::scene::file::{MOST_TRIANGLES, SceneErrorKind};
+use mode13h::span::Kernel;
+use mode13h::texture::{self, Texture};
+use mode13h::vga::Vga;
+use mode13h_lab::record::{Record, RecordErrorKind};
+use mode13h_lab::verify;
+
+/// A parser's property: its name, which is that of its corpus and of its fuzz target, and the check.
+pub type Property = (&'static str, fn(&[u8]));
+
+pub const PROPERTIES: [Property; 11] = [
+    ("obj", obj),
+    ("mtl", mtl),
+    ("palette_jasc", palette_jasc),
+    ("palette_gimp", palette_gimp),
+    ("palette_hex", palette_hex),
+    ("palette_binary", palette_binary),
+    ("scene", scene),
+    ("words", words),
+    ("record", record),
+    ("texture", texture),
+    ("gif", gif),
+];
+
+/// Stands alone on a line between an OBJ file and the MTL file that it names, in one input.
+const MATERIALS: &[u8] = b"\n---\n";
+
+/// An OBJ file, and what stands behind a line of `---` as the MTL file `a.mtl`. Every other MTL file is missing.
+pub fn obj(bytes: &[u8]) {
+    let (model, materials) = match bytes.windows(MATERIALS.len()).position(|window| window == MATERIALS) {
+        Some(at) => (&bytes[..=at], Some(&bytes[at + MATERIALS.len()..])),
+        None => (bytes, None),
+    };
+    let library = |path: &Path| match materials {
+        Some(materials) if path == Path::new("a.mtl") => Ok(materials.to_vec()),
+        _ => Err(io::ErrorKind::NotFound.into()),
+    };
+    let result = obj::parse(model, "model.obj", library);
+    check_obj(&result, model, materials.unwrap_or_default());
+
+    // However the reader hands the bytes out.
+    let dribbled = obj::parse(BufReader::with_capacity(1, model), "model.obj", library);
+    assert_eq!(outcome(&dribbled), outcome(&result), "read byte by byte");
+    // Whatever ends the lines.
+    if !model.contains(&b'\r') {
+        for end in ["\r\n", "\r"] {
+            let ended = model.split(|&byte| byte == b'\n').collect::<Vec<_>>().join(end.as_bytes());
+            let ended = obj::parse(&ended[..], "model.obj", library);
+            assert_eq!(outcome(&ended), outcome(&result), "lines end with {end:?}");
+        }
+    }
+    if let Ok(Loaded { mesh, .. }) = &result {
+        check_written_again(mesh);
+    }
+}
+
+/// An MTL file, of a model that uses the first materials it names.
+pub fn mtl(bytes: &[u8]) {
+    let mut model = String::from("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    let mut names = Vec::new();
+    for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')) {
+        let Some(name) = line.trim_ascii().strip_prefix(b"newmtl ") else { continue };
+        let Ok(name) = str::from_utf8(name.trim_ascii()) else { continue };
+        // A name that ends in a backslash goes on in the next line.
+        if names.len() < 8 && !name.contains('\\') && !names.contains(&name) {
+            names.push(name);
+            writeln!(model, "usemtl {name}\nf 1 2 3").expect("a string takes all");
+        }
+    }
+    // One that there is not, unless the fuzzer thought of its name too.
+    if !names.contains(&"none of them") {
+        names.push("none of them");
+        model.push_str("usemtl none of them\nf 3 2 1\n");
+    }
+    let library = |path: &Path| match path == Path::new("a.mtl") {
+        true => Ok(bytes.to_vec()),
+        false => Err(io::ErrorKind::NotFound.into()),
+    };
+    let result = obj::parse(model.as_bytes(), "model.obj", library);
+    check_obj(&result, model.as_bytes(), bytes);
+    if let Ok(Loaded { mesh, .. }) = result {
+        let found: Vec<&str> = mesh.surfaces().iter().map(|surface| surface.name.as_str()).collect();
+        assert_eq!(found, names);
+    }
+}
+
+/// What two ways of reading the same must agree in.
+fn outcome(result: &Result<Loaded, ObjError>) -> Result<&Loaded, String> {
+    result.as_ref().map_err(ToString::to_string)
+}
+
+fn check_obj(result: &Result<Loaded, ObjError>, model: &[u8], materials: &[u8]) {
+    match result {
+        Ok(Loaded { mesh, warnings, .. }) => {
+            check_mesh(mesh);
+            for warning in warnings {
+                assert!(!warning.contains(['\n', '\r']), "a warning of more than one line: {warning:?}");
+            }
+        }
+        Err(error) => {
+            let text = if error.path == Path::new("model.obj") { model } else { materials };
+            if let Some(line) = error.line {
+                assert!(line >= 1 && line <= lines_in(text) as u64, "{error}: of {} lines", lines_in(text));
+            }
+            let whole_file = matches!(
+                error.kind,
+                ObjErrorKind::NoFaces | ObjErrorKind::NoArea | ObjErrorKind::TooLarge("more than 65,536 materials")
+            );
+            assert_eq!(error.line.is_none(), whole_file, "{error}");
+            let said = error.to_string();
+            assert!(!said.contains(char::is_control) && said.len() < 300, "{said:?}");
+        }
+    }
+}
+
+/// LF, CR LF and CR end a line; an end of line at the end of the text begins no further line.
+fn lines_in(text: &[u8]) -> usize {
+    let mut lines = 0;
+    let mut before = b'\n';
+    for &byte in text {
+        let begins = matches!(before, b'\n' | b'\r') && !(before == b'\r' && byte == b'\n');
+        lines += usize::from(begins);
+        before = byte;
+    }
+    lines
+}
+
+/// What holds of every mesh that a file gives.
+fn check_mesh(mesh: &Mesh) {
+    let (positions, normals) = (mesh.positions(), mesh.normals());
+    assert!(!mesh.triangles().is_empty());
+    assert_eq!(positions.len(), normals.len());
+    assert!(positions.iter().all(|p| p.is_finite()));
+    for normal in normals {
+        let squares = normal.to_array().map(|x| f64::from(x) * f64::from(x));
+        let length = (squares[0] + squares[1] + squares[2]).sqrt();
+        // Each component is rounded once, by 2⁻²⁵ of a number up to 1: √3 · 2⁻²⁵ at most.
+        assert!((length - 1.0).abs() < 2f64.powi(-23), "a normal of length {length}");
+    }
+    let mut used = vec![false; positions.len()];
+    for &index in mesh.triangles().as_flattened() {
+        used[index as usize] = true;
+    }
+    assert!(used.iter().all(|&used| used), "a vertex that no triangle uses");
+    if let Some(texcoords) = mesh.texcoords() {
+        assert_eq!(texcoords.len(), positions.len());
+        assert!(texcoords.iter().all(|t| t.is_finite()));
+    }
+    assert_eq!(mesh.triangle_surfaces().len(), mesh.triangles().len());
+    assert!(mesh.triangle_surfaces().iter().all(|&surface| usize::from(surface) < mesh.surfaces().len()));
+    for surface in mesh.surfaces() {
+        assert!(surface.diffuse.iter().chain(&surface.specular).all(|x| x.is_finite()));
+        assert!(surface.shininess.is_finite());
+    }
+    let bounds = mesh.bounds();
+    assert!(bounds.centre.is_finite() && bounds.radius.is_finite() && bounds.radius >= 0.0);
+    assert!(positions.iter().all(|p| p.cmpge(bounds.min).all() && p.cmple(bounds.max).all()));
+    assert!(!mesh.is_convex() || mesh.is_closed());
+}
+
+/// A mesh written as OBJ, with all that it has, and read again: the same corners, in the same order.
+fn check_written_again(mesh: &Mesh) {
+    let mut text = String::new();
+    for p in mesh.positions() {
+        writeln!(text, "v {} {} {}", p.x, p.y, p.z).expect("a string takes all");
+    }
+    for n in mesh.normals() {
+        writeln!(text, "vn {} {} {}", n.x, n.y, n.z).expect("a string takes all");
+    }
+    for t in mesh.texcoords().unwrap_or_default() {
+        writeln!(text, "vt {} {}", t.x, t.y).expect("a string takes all");
+    }
+    for (triangle, surface) in mesh.triangles().iter().zip(mesh.triangle_surfaces()) {
+        let [a, b, c] = triangle.map(|i| i + 1);
+        let face = match mesh.texcoords() {
+            Some(_) => format!("f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}"),
+            None => format!("f {a}//{a} {b}//{b} {c}//{c}"),
+        };
+        writeln!(text, "usemtl {surface}\n{face}").expect("a string takes all");
+    }
+    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    let again = obj::parse(text.as_bytes(), "again.obj", none).expect("what was written is well formed").mesh;
+    check_mesh(&again);
+    assert_eq!(again.triangles().len(), mesh.triangles().len());
+    let bits = |p: Vec3| p.to_array().map(f32::to_bits);
+    let texcoord = |mesh: &Mesh, i: u32| mesh.texcoords().map(|t: &[Vec2]| t[i as usize].to_array().map(f32::to_bits));
+    let mut names = HashMap::new();
+    for (t, (&old, &new)) in mesh.triangles().iter().zip(again.triangles()).enumerate() {
+        for (old, new) in old.into_iter().zip(new) {
+            assert_eq!(bits(mesh.positions()[old as usize]), bits(again.positions()[new as usize]));
+            assert_eq!(texcoord(mesh, old), texcoord(&again, new));
+            let (old, new) = (mesh.normals()[old as usize], again.normals()[new as usize]);
+            // Each was made unit once more: a length off by 2⁻²⁴, and a rounding of 2⁻²⁵, in each component.
+            assert!((old - new).abs().max_element() <= 2f32.powi(-23), "{old} {new}");
+        }
+        let surface = again.triangle_surfaces()[t];
+        assert_eq!(*names.entry(mesh.triangle_surfaces()[t]).or_insert(surface), surface);
+    }
+    assert_eq!((again.is_closed(), again.is_convex()), (mesh.is_closed(), mesh.is_convex()));
+}
+
+pub fn palette_jasc(bytes: &[u8]) {
+    palette(bytes, &["jasc"], &["a.pal", "A.PAL"]);
+}
+
+pub fn palette_gimp(bytes: &[u8]) {
+    palette(bytes, &["gimp"], &["a.gpl"]);
+}
+
+pub fn palette_hex(bytes: &[u8]) {
+    palette(bytes, &["hex"], &["a.hex"]);
+}
+
+pub fn palette_binary(bytes: &[u8]) {
+    palette(bytes, &["vga", "act", "act-772"], &["a.vga", "a.raw", "a.col", "a.lmp", "a.act", "a.pal"]);
+}
+
+/// A palette file, read as these formats, under these names, and under none.
+fn palette(bytes: &[u8], formats: &[&str], names: &[&str]) {
+    let mut results: Vec<Result<Palette, PaletteError>> = Vec::new();
+    for name in formats {
+        results.push(Format::by_name(name).expect("a format").read(bytes));
+    }
+    for name in names {
+        results.push(file::parse_named(name, bytes));
+    }
+    results.push(file::parse_named("a", bytes));
+    results.push(file::parse(bytes));
+    assert_eq!(results[results.len() - 1], results[results.len() - 2], "an extension that is missing says nothing");
+    for (i, result) in results.iter().enumerate() {
+        match result {
+            // Most are the same.
+            Ok(_) if results[..i].contains(result) => {}
+            Ok(palette) => check_palette(palette),
+            Err(error) => check_palette_error(error, bytes),
+        }
+    }
+}
+
+/// Written in any format and read again it is the same.
+fn check_palette(palette: &Palette) {
+    for format in &FORMATS {
+        let written = format.write(palette, "a name\nof two lines");
+        let expected = as_written(format, palette);
+        let read = format.read(&written).expect("what was written is well formed");
+        assert_eq!(read.colors(), expected.colors(), "{}", format.name);
+        assert_eq!(read, expected, "{}", format.name);
+        assert_eq!(format.write(&read, "a name\nof two lines"), written, "{}", format.name);
+        let recognized = Format::of_bytes(&written).map(|format| format.name);
+        match format.name {
+            // The bytes do not say what they are; and the colours of a binary file may spell a text.
+            "act" => {}
+            "vga" | "act-772" if matches!(recognized, Some("jasc" | "gimp" | "hex")) => {}
+            name => {
+                assert_eq!(recognized, Some(name));
+                assert_eq!(file::parse(&written).expect("recognised"), expected, "{name}");
+            }
+        }
+        let name = format!("a.{}", format.extensions[0]);
+        assert_eq!(file::parse_named(&name, &written).expect("read by name"), expected, "{}", format.name);
+    }
+}
+
+/// A raw file of colours below 64 that the DAC does not have is rounded down to six bits; nothing else is.
+fn as_written(format: &Format, palette: &Palette) -> Palette {
+    let dark = palette.colors().iter().all(|c| c.r.max(c.g).max(c.b) < 64);
+    // A file says nothing of ramps: they are looked for when it is read.
+    Palette::from_colors(if format.name == "vga" && dark { *palette.on_dac().colors() } else { *palette.colors() })
+}
+
+fn check_palette_error(error: &PaletteError, bytes: &[u8]) {
+    match error.place {
+        Place::Line(line) => {
+            let lines = lines_in(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes));
+            // One more where a line is missing.
+            assert!((1..=lines + 1).contains(&line), "{error}: of {lines} lines");
+        }
+        Place::Offset(offset) => assert!(offset <= bytes.len(), "{error}: of {} bytes", bytes.len()),
+    }
+    let said = error.to_string();
+    assert!(said.is_ascii() && !said.contains(char::is_control) && said.len() < 150, "{said:?}");
+}
+
+/// A scene file. Beside it lie a model, a palette and a texture.
+pub fn scene(bytes: &[u8]) {
+    // A texture of one black texel, as PNG.
+    const TEXEL: &[u8] = &[
+        0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
+        0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00, 0x00, 0x3a, 0x7e, 0x9b, 0x55, 0x00, 0x00, 0x00,
+        0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0x60, 0x00, 0x00, 0x00, 0x02, 0x00, 0x01, 0xe5, 0x27, 0xde,
+        0xfc, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82,
+    ];
+    let open = |path: &Path| -> io::Result<Box<dyn BufRead>> {
+        let file: &[u8] = match path.to_str() {
+            Some("a.obj") => {
+                b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl tin\nf 1/1 2/2 3/3\nusemtl oak\nf 3 2 1\n"
+            }
+            Some("a.hex") => b"000000\nff8000\nffffff\n",
+            Some("a.png") => TEXEL,
+            _ => return Err(io::ErrorKind::NotFound.into()),
+        };
+        Ok(Box::new(file))
+    };
+    match Scene::from_toml_bytes(bytes, "scene.toml", open) {
+        Ok(loaded) => {
+            loaded.warnings.iter().for_each(|warning| assert_one_line(warning));
+            check_scene(loaded.scene);
+        }
+        Err(error) => {
+            let said = error.to_string();
+            assert!(said.starts_with("scene.toml:") && said.len() < 10_000, "{said:?}");
+            assert_one_line(&said);
+            if let Some(place) = error.place {
+                let text = String::from_utf8_lossy(bytes);
+                let line = text.split('\n').nth(place.line - 1).expect("a line of the file");
+                // One more than there are: at the end of the line.
+                assert!((1..=line.chars().count() + 1).contains(&place.column), "{said}");
+            }
+            if matches!(*error.kind, SceneErrorKind::UnknownKey { .. } | SceneErrorKind::MissingKey) {
+                assert!(error.key.is_some(), "{said}");
+            }
+        }
+    }
+}
+
+/// What holds of every scene that a file gives: its numbers are legal, at any time, so that it can be drawn.
+fn check_scene(mut scene: Scene) {
+    assert!(!scene.objects().is_empty() && scene.duration > 0.0 && scene.duration <= 3600.0);
+    let triangles: usize = scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
+    assert!(triangles as u64 <= MOST_TRIANGLES + 2 * scene.objects().len() as u64);
+    for seconds in [0.0, 0.3 * scene.duration, 1e9, -1.0] {
+        scene.set_time(seconds);
+        // What is still too large for f32, a camera that comes to its target, or a sun to zero, is refused when it is
+        // drawn. Great scenes take long.
+        if triangles < 500 && scene.objects().len() < 20 && scene.wishes.tessellation.is_none() {
+            let _ = Renderer::new().draw(&scene, &mut Vga::new());
+        }
+    }
+}
+
+/// Words of the command line that the library reads.
+pub fn words(bytes: &[u8]) {
+    let words = String::from_utf8_lossy(bytes);
+    match Scale::from_str(&words) {
+        Ok(scale) => {
+            let (width, height) = scale.size(320, 200);
+            let sides = 1..=usize::from(MAX_SIDE);
+            assert!(sides.contains(&width) && sides.contains(&height), "{scale}");
+            assert_eq!(scale.to_string().parse(), Ok(scale));
+        }
+        Err(error) => assert_one_line(&error.to_string()),
+    }
+    match Rung::from_str(&words) {
+        Ok(rung) => assert_eq!(rung.name(), words),
+        Err(error) => assert_one_line(&error.to_string()),
+    }
+    match Kernel::by_name(&words) {
+        Ok(kernel) => assert_eq!(kernel.name(), words),
+        Err(error) => assert_one_line(&error.to_string()),
+    }
+    assert_eq!(shapes::by_name(&words).is_some(), shapes::NAMES.contains(&&*words));
+    assert_eq!(
+        builtin::by_name(&words).map(|builtin| builtin.name),
+        builtin::ALL.iter().map(|b| b.name).find(|n| *n == words)
+    );
+    if let Some(format) = Format::of_file_name(&words) {
+        let extension = words.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+        assert!(format.extensions.contains(&extension.as_str()), "{words}");
+    }
+}
+
+/// A frame's record. What was read is written, and that is read as the same; a small one is drawn every way there is.
+pub fn record(bytes: &[u8]) {
+    match Record::read(bytes) {
+        Ok(record) => {
+            let mut file = Vec::new();
+            record.write(&mut file).expect("a vector takes all");
+            assert_eq!(Record::read(&file[..]).expect("what was written is well formed"), record);
+            if let Some(clip) = record.clip() {
+                assert!(clip.x1 <= record.width() && clip.y1 <= record.height());
+            }
+            let pixels = u64::from(record.width()) * u64::from(record.height());
+            if record.triangles.len() <= 8 && pixels <= 4096 {
+                let replay = verify::replay(&record);
+                assert!(!replay.comparisons.is_empty());
+                // Where triangles have no exact cover, methods that agree on others may differ.
+                let exact = record.triangles.iter().all(|(_, shading)| shading.has_exact_cover());
+                assert!(!exact || replay.failures.is_empty(), "{:?}", replay.failures);
+            }
+        }
+        Err(error) => {
+            assert_one_line(&error.to_string());
+            let lines = bytes.split(|byte| *byte == b'\n').count() as u64;
+            // One more where a line is missing.
+            assert!(error.line <= lines + 1, "{error}: of {lines} lines");
+            assert!(!matches!(error.kind, RecordErrorKind::Read(_)), "a slice can be read: {error}");
+        }
+    }
+}
+
+/// A picture for a texture.
+pub fn texture(bytes: &[u8]) {
+    match texture::decode(io::Cursor::new(bytes)) {
+        Ok(texture) => {
+            let is_side = |side: u32| side.is_power_of_two() && side <= Texture::MAX_SIDE;
+            assert!(is_side(texture.width()) && is_side(texture.height()));
+            assert_eq!(texture.texels().len() as u32, texture.width() * texture.height());
+            assert_eq!(texture.histogram().iter().sum::<u32>(), texture.width() * texture.height());
+        }
+        Err(error) => assert_one_line(&error.to_string()),
+    }
+}
+
+/// A film made of the bytes: its size, its rate, and frame by frame one of four palettes and the pixels. Read again, it shows
+/// the colours that were given, each as long as its rate says.
+pub fn gif(bytes: &[u8]) {
+    let [width, height, rate, pixels @ ..] = bytes else { return };
+    let [width, height] = [width, height].map(|side| 1 + usize::from(*side) % 12);
+    let rate = FrameRate::new(1.0 + f64::from(*rate) % 50.0).expect("1 to 50 a second");
+    let colors = |number: u8| -> [Rgb; 256] {
+        core::array::from_fn(|i| {
+            let i = i as u8;
+            // In two of them neighbours have one colour.
+            let i = if number.is_multiple_of(2) { i } else { i & !1 };
+            Rgb::new(i.wrapping_mul(number | 1), i.rotate_left(u32::from(number)), i)
+        })
+    };
+    let palettes = [0, 1, 2, 3].map(colors);
+    let frames: Vec<(&[Rgb; 256], &[u8])> = pixels
+        .chunks_exact(1 + width * height)
+        .take(40)
+        .filter_map(|frame| frame.split_first().map(|(palette, pixels)| (&palettes[usize::from(palette % 4)], pixels)))
+        .collect();
+    if frames.is_empty() {
+        return;
+    }
+    let mut film = GifWriter::new(Vec::new(), Scale::One, rate);
+    for (palette, pixels) in &frames {
+        let picture = Picture { pixels, width, height, pitch: width, palette, shape: PixelShape::SQUARE };
+        film.add(&picture).expect("a legal picture");
+    }
+    let (file, _) = film.finish().expect("a vector takes all");
+    // What is to be seen, and until when, in hundredths of a second; what stays is one.
+    let mut expected: Vec<(Vec<Rgb>, u64)> = Vec::new();
+    for (number, (palette, pixels)) in frames.iter().enumerate() {
+        let ends = (100.0 * (number + 1) as f64 / rate.frames_per_second()).ceil() as u64;
+        let shown = pixels.iter().map(|pixel| palette[usize::from(*pixel)]).collect();
+        put(&mut expected, shown, ends);
+    }
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::Indexed);
+    options.check_frame_consistency(true);
+    let mut decoder = options.read_info(&file[..]).expect("a GIF");
+    let table = |table: &[u8]| -> Vec<Rgb> { table.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect() };
+    let of_film = table(decoder.global_palette().expect("a palette of the film"));
+    let (mut canvas, mut ends) = (vec![Rgb::BLACK; width * height], 0);
+    let mut shown: Vec<(Vec<Rgb>, u64)> = Vec::new();
+    while let Some(frame) = decoder.read_next_frame().expect("an image") {
+        let own = frame.palette.as_deref().map(table);
+        let (left, top, columns) = (usize::from(frame.left), usize::from(frame.top), usize::from(frame.width));
+        for (at, index) in frame.buffer.iter().enumerate().filter(|(_, index)| Some(**index) != frame.transparent) {
+            canvas[(top + at / columns) * width + left + at % columns] =
+                own.as_ref().unwrap_or(&of_film)[usize::from(*index)];
+        }
+        assert_eq!(frame.dispose, gif::DisposalMethod::Keep);
+        ends += u64::from(frame.delay);
+        put(&mut shown, canvas.clone(), ends);
+    }
+    assert!(shown == expected, "{width} × {height}, {} frames a second", rate.frames_per_second());
+}
+
+fn put(list: &mut Vec<(Vec<Rgb>, u64)>, shown: Vec<Rgb>, until: u64) {
+    match list.last_mut() {
+        Some((last, ends)) if *last == shown => *ends = until,
+        _ => list.push((shown, until)),
+    }
+}
+
+fn assert_one_line(said: &str) {
+    assert!(!said.is_empty() && !said.contains(char::is_control), "{said:?}");
+}

@@ -1,0 +1,223 @@
+//! R9: every float that a public structure of a scene has, from one list, which is compared with the sources.
+
+use std::fs;
+use std::path::Path;
+
+use mode13h::glam::Vec3;
+use mode13h::light::{Light, Material};
+use mode13h::mesh::{Mesh, Surface};
+use mode13h::palette::{BIOS, Rgb};
+use mode13h::render::Renderer;
+use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Scene};
+use mode13h::vga::Vga;
+
+use crate::support::scenes::framed;
+use crate::support::tried::Tried;
+
+/// Puts a number into a scene, as one of so many components.
+type Put = fn(&mut Scene, f32, usize);
+
+/// A field, its number of components, how a number comes into it, and with what the refusal begins, or [`BEGINS`].
+type Row = (&'static str, usize, Put, &'static str);
+
+fn lamp(scene: &mut Scene) -> (&mut Vec3, &mut f32, &mut f32, &mut [f32; 3]) {
+    match &mut scene.lights_mut()[1] {
+        Light::Lamp { position, intensity, range, color } => (position, intensity, range, color),
+        _ => panic!("a lamp"),
+    }
+}
+
+fn sun(scene: &mut Scene) -> (&mut Vec3, &mut f32, &mut [f32; 3]) {
+    match &mut scene.lights_mut()[0] {
+        Light::Sun { direction, intensity, color } => (direction, intensity, color),
+        _ => panic!("a sun"),
+    }
+}
+
+fn material(scene: &mut Scene) -> &mut Material {
+    &mut scene.objects_mut()[0].materials[0]
+}
+
+fn moved(scene: &mut Scene, path: mode13h::scene::Path) {
+    let what = Moving::Object(scene.add(Object::new(mode13h::mesh::shapes::cube())));
+    scene.motions = vec![Motion::Path { what, path }];
+    scene.set_time(1.0);
+}
+
+fn line(scene: &mut Scene, change: impl FnOnce((&mut Vec3, &mut Vec3, &mut f64))) {
+    let (mut from, mut to, mut period) = (Vec3::ZERO, Vec3::X, 4.0);
+    change((&mut from, &mut to, &mut period));
+    moved(scene, mode13h::scene::Path::Line { from, to, period, back: false });
+}
+
+fn circle(scene: &mut Scene, change: impl FnOnce((&mut Vec3, &mut Vec3, &mut Vec3, &mut f64))) {
+    let (mut centre, mut from, mut towards, mut period) = (Vec3::ZERO, Vec3::X, Vec3::Y, 4.0);
+    change((&mut centre, &mut from, &mut towards, &mut period));
+    moved(scene, mode13h::scene::Path::Circle { centre, from, towards, period });
+}
+
+fn spun(scene: &mut Scene, start: [f64; 3], turns: [f64; 3]) {
+    let object = scene.add(Object::new(mode13h::mesh::shapes::cube()));
+    scene.motions = vec![Motion::Spin { object, start, turns }];
+    scene.set_time(1.0);
+}
+
+fn one(bad: f32, i: usize) -> [f64; 3] {
+    [0, 1, 2].map(|k| if k == i { f64::from(bad) } else { 0.5 })
+}
+
+/// A scene of a mesh with this surface.
+fn surface(scene: &mut Scene, change: impl FnOnce(&mut Surface)) {
+    let mut surface = Surface::default();
+    change(&mut surface);
+    let mesh = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]).expect("a mesh");
+    scene.objects_mut()[0] = Object::new(mesh.with_surfaces(vec![surface], vec![0]).expect("a surface"));
+}
+
+/// What is said of motions: they stay where they begin, as with 0 in place of the number.
+const BEGINS: &str = "is drawn as it begins";
+
+const FLOATS: &[Row] = &[
+    ("Camera.eye", 3, |s, bad, i| s.camera.eye[i] = bad, "camera"),
+    ("Camera.target", 3, |s, bad, i| s.camera.target[i] = bad, "camera"),
+    ("Camera.up", 3, |s, bad, i| s.camera.up[i] = bad, "camera"),
+    ("Camera.field_of_view", 1, |s, bad, _| s.camera.field_of_view = bad, "camera"),
+    ("Camera.near", 1, |s, bad, _| s.camera.near = bad, "camera"),
+    ("Fog.start", 1, |s, bad, _| s.fog = Some(Fog { color: Rgb::BLACK, start: bad, end: 9.0 }), "fog"),
+    ("Fog.end", 1, |s, bad, _| s.fog = Some(Fog { color: Rgb::BLACK, start: 1.0, end: bad }), "fog"),
+    ("Light::Sun.direction", 3, |s, bad, i| sun(s).0[i] = bad, "light 0"),
+    ("Light::Sun.intensity", 1, |s, bad, _| *sun(s).1 = bad, "light 0"),
+    ("Light::Sun.color", 3, |s, bad, i| sun(s).2[i] = bad, "light 0"),
+    ("Light::Lamp.position", 3, |s, bad, i| lamp(s).0[i] = bad, "light 1"),
+    ("Light::Lamp.intensity", 1, |s, bad, _| *lamp(s).1 = bad, "light 1"),
+    ("Light::Lamp.range", 1, |s, bad, _| *lamp(s).2 = bad, "light 1"),
+    ("Light::Lamp.color", 3, |s, bad, i| lamp(s).3[i] = bad, "light 1"),
+    ("Material.ambient", 1, |s, bad, _| material(s).ambient = bad, "object 0"),
+    ("Material.diffuse", 1, |s, bad, _| material(s).diffuse = bad, "object 0"),
+    ("Material.specular", 1, |s, bad, _| material(s).specular = bad, "object 0"),
+    ("Material.shininess", 1, |s, bad, _| material(s).shininess = bad, "object 0"),
+    ("Material.color", 3, |s, bad, i| material(s).color[i] = bad, "object 0"),
+    ("Material.highlight", 3, |s, bad, i| material(s).highlight[i] = bad, "object 0"),
+    ("Motion::Spin.start", 3, |s, bad, i| spun(s, one(bad, i), [0.0; 3]), "object 1"),
+    ("Motion::Spin.turns", 3, |s, bad, i| spun(s, [0.0; 3], one(bad, i)), BEGINS),
+    ("Object.pivot", 3, |s, bad, i| s.objects_mut()[0].pivot[i] = bad, "object 0"),
+    ("Object.position", 3, |s, bad, i| s.objects_mut()[0].position[i] = bad, "object 0"),
+    ("Object.scale", 1, |s, bad, _| s.objects_mut()[0].scale = bad, "object 0"),
+    ("Object.angles", 3, |s, bad, i| s.objects_mut()[0].set_angles(one(bad, i)), "object 0"),
+    (
+        "PaletteAnimation::Fade.period",
+        1,
+        |s, bad, _| s.palette_animation = Some(PaletteAnimation::Fade { to: BIOS.clone(), period: bad.into() }),
+        "palette animation",
+    ),
+    (
+        "PaletteAnimation::Cycle.period",
+        1,
+        |s, bad, _| s.palette_animation = Some(PaletteAnimation::Cycle { range: 1..=9, period: bad.into() }),
+        "palette animation",
+    ),
+    ("Path::Line.from", 3, |s, bad, i| line(s, |(from, ..)| from[i] = bad), "object 1"),
+    ("Path::Line.to", 3, |s, bad, i| line(s, |(_, to, _)| to[i] = bad), "object 1"),
+    ("Path::Line.period", 1, |s, bad, _| line(s, |(_, _, period)| *period = bad.into()), BEGINS),
+    ("Path::Circle.centre", 3, |s, bad, i| circle(s, |(centre, ..)| centre[i] = bad), "object 1"),
+    ("Path::Circle.from", 3, |s, bad, i| circle(s, |(_, from, ..)| from[i] = bad), "object 1"),
+    ("Path::Circle.towards", 3, |s, bad, i| circle(s, |(_, _, towards, _)| towards[i] = bad), "object 1"),
+    ("Path::Circle.period", 1, |s, bad, _| circle(s, |(_, _, _, period)| *period = bad.into()), BEGINS),
+    ("Scene.ambient", 1, |s, bad, _| s.ambient = bad, "the ambient light"),
+    ("Surface.diffuse", 3, |s, bad, i| surface(s, |surface| surface.diffuse[i] = bad), "object 0"),
+    ("Surface.specular", 3, |s, bad, i| surface(s, |surface| surface.specular[i] = bad), "object 0"),
+    ("Surface.shininess", 1, |s, bad, _| surface(s, |surface| surface.shininess = bad), "object 0"),
+    ("Wishes.max_error", 1, |s, bad, _| s.wishes.max_error = Some(bad), "wishes"),
+    ("Wishes.tessellation", 1, |s, bad, _| s.wishes.tessellation = Some(bad), "wishes"),
+];
+
+/// Those that no frame is made from, and where they are tried.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("Bounds.centre", "worked out from positions"),
+    ("Bounds.max", "worked out from positions"),
+    ("Bounds.min", "worked out from positions"),
+    ("Bounds.radius", "worked out from positions"),
+    ("Mesh.normals", "tests/mesh_normals.rs"),
+    ("Mesh.positions", "tests/mesh_normals.rs"),
+    ("Mesh.texcoords", "tests/mesh_normals.rs"),
+    ("Object.longest_edges", "worked out from positions"),
+    ("Object.steepest_texcoords", "worked out from positions and texture coordinates"),
+    ("Scene.duration", "the length of a film, not a number of a frame: tests/scene_files.rs"),
+    ("Scene.picture", "a moment, which motions make nothing of if it is none"),
+    ("Scene.time", "in what it has moved"),
+];
+
+/// The fields of public structures and enums below a folder whose types have floats in them.
+fn floats(folder: &Path, fields: &mut Vec<String>) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            // Scenes as text, and models, have numbers of their own kinds, which are checked where they are read.
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("a source");
+        let (mut of, mut variant) = (None, None);
+        for line in text.lines() {
+            let words = line.trim();
+            if let Some(rest) = line.strip_prefix("pub struct ").or_else(|| line.strip_prefix("pub enum ")) {
+                of = rest.split(|c: char| !c.is_alphanumeric()).next().filter(|_| line.ends_with('{'));
+                variant = None;
+            } else if line == "}" {
+                of = None;
+            } else if let (Some(_), Some(name)) = (of, words.strip_suffix(" {")) {
+                variant = Some(name.to_owned());
+            }
+            let (Some(of), Some((name, kind))) = (of, words.split_once(": ")) else { continue };
+            let is_float = kind
+                .split(|c: char| !c.is_alphanumeric())
+                .any(|word| ["f32", "f64", "Vec2", "Vec3", "Mat3"].contains(&word));
+            if is_float && !words.starts_with("//") {
+                let name = name.trim_start_matches("pub ");
+                let variant = variant.as_ref().map_or(String::new(), |variant| format!("::{variant}"));
+                fields.push(format!("{of}{variant}.{name}"));
+            }
+        }
+    }
+}
+
+pub(crate) fn every_float_is_refused(mut tried: Tried) {
+    let mut fields = Vec::new();
+    for folder in ["src/scene", "src/light", "src/mesh"] {
+        floats(&crate::support::root().join(folder), &mut fields);
+    }
+    fields.sort_unstable();
+    let mut listed: Vec<&str> = FLOATS.iter().map(|row| row.0).chain(ELSEWHERE.iter().map(|row| row.0)).collect();
+    listed.sort_unstable();
+    assert_eq!(fields, listed, "the floats of the sources, and those of the list");
+
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for (name, components, put, what) in FLOATS {
+            for i in 0..*components {
+                let mut scene = framed(mode13h::mesh::shapes::cube());
+                scene.add_light(Light::lamp([1.0, 2.0, 3.0], 9.0));
+                let mut begins = scene.clone();
+                let mut vga = Vga::new();
+                assert!(Renderer::new().draw(&scene, &mut vga).is_ok(), "{name} before");
+                put(&mut scene, bad, i);
+                vga.pixels_mut().fill(7);
+                let palette = vga.palette();
+                let drawn = Renderer::new().draw(&scene, &mut vga);
+                if *what == BEGINS {
+                    put(&mut begins, 0.0, i);
+                    let mut first = Vga::new();
+                    assert!(
+                        Renderer::new().draw(&begins, &mut first).is_ok() && drawn.is_ok(),
+                        "{name} [{i}] is {bad}"
+                    );
+                    assert!(vga.pixels() == first.pixels(), "{name} [{i}] is {bad}: another picture");
+                } else {
+                    let text = drawn.map(|_| ()).expect_err(&format!("{name} [{i}] is {bad}")).to_string();
+                    assert!(text.starts_with(what), "{name} [{i}] is {bad}: {text}");
+                    let is_left = vga.pixels().iter().all(|&byte| byte == 7) && vga.palette() == palette;
+                    assert!(is_left, "{name} [{i}] is {bad}: left as it was");
+                }
+                tried.add(1);
+            }
+        }
+    }
+}

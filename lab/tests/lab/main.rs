@@ -1,0 +1,15 @@
+//! The laboratory: truth, the study, explanations, hard cases, state kept between frames, the parsers' corpora.
+
+mod support;
+
+mod budget;
+mod explain;
+mod fuzz_corpus;
+mod light;
+mod record;
+mod report;
+mod show;
+mod time;
+mod truth;
+mod truth_engine;
+mod verify;

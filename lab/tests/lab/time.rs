@@ -1,0 +1,142 @@
+//! T1, T2: rotation from absolute angles, and E1 (`time/kept.rs`): nothing of a frame stays behind in the next.
+
+mod changes;
+mod kept;
+
+use std::f64::consts::TAU;
+
+use crate::support::tried::Tried;
+use mode13h::glam::Mat3;
+use mode13h::integer::{self, Angle};
+use mode13h::mesh::shapes;
+use mode13h::raster::Frame;
+use mode13h::render::{Renderer, VertexPath};
+use mode13h::scene::{Object, Scene, Shared};
+use mode13h::vga::Vga;
+
+fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
+    let mut vga = Vga::new();
+    renderer.draw(scene, &mut vga).expect("a legal scene");
+    vga.pixels().to_vec()
+}
+
+/// The steps of a frame about x and y, in radians. f64 adds them without rounding, a million times and
+/// more: after n frames the angles are n times the steps, to the bit.
+const STEPS: [f64; 2] = [5.0 / 1024.0, 7.0 / 512.0];
+
+/// The farthest that an entry of M·Mᵀ is from that of the unit matrix.
+fn from_orthonormal(matrix: Mat3) -> f32 {
+    let product = (matrix * matrix.transpose()).to_cols_array();
+    product
+        .into_iter()
+        .zip(Mat3::IDENTITY.to_cols_array())
+        .fold(0.0, |most, (is, should)| (is - should).abs().max(most))
+}
+
+/// The matrix of the integer path, whose angles are the nearest 65,536ths of a turn. A number of 16.16
+/// up to 1 is an f32.
+fn turn_in_16_16(angles: [f64; 3]) -> Mat3 {
+    let steps = angles.map(|angle| Angle::from_bits(((angle / TAU).rem_euclid(1.0) * 65_536.0).round() as u32 as u16));
+    Mat3::from_cols_array_2d(&integer::turn(steps).map(|row| row.map(|c| c.to_bits() as f32 / 65_536.0)))
+}
+
+/// Frames of a mesh that is turned on by steps, drawn one after another by one renderer; and each of
+/// them at once: by a renderer, from a scene and over bytes that have seen no other frame.
+fn rotation(tried: &mut Tried, path: VertexPath) {
+    const WIDTH: u32 = 64;
+    const HEIGHT: u32 = 40;
+    fn draw(renderer: &mut Renderer, scene: &Scene, bytes: &mut [u8]) {
+        let frame = Frame::new(bytes, WIDTH, HEIGHT, WIDTH as usize).expect("a legal frame");
+        renderer.draw_frame(scene, frame, (5, 6)).expect("a legal scene");
+    }
+    let fresh = || {
+        let mut renderer = Renderer::new();
+        renderer.set_vertex_path(path);
+        renderer
+    };
+    let mesh = Shared::new(shapes::torus(8, 6));
+    let (mut renderer, mut scene) = (fresh(), crate::support::scenes::framed(mesh.clone()));
+    let mut bytes = [0; (WIDTH * HEIGHT) as usize];
+    // A step as any other: its sums are rounded.
+    let step = 0.013_7;
+    let mut drifting = Object::new(shapes::cube());
+    let (mut n, mut moved) = (0_u32, 0_u32);
+    while tried.more() {
+        n += 1;
+        scene.objects_mut()[0].rotate_x(STEPS[0]);
+        scene.objects_mut()[0].rotate_y(STEPS[1]);
+        let before = bytes;
+        draw(&mut renderer, &scene, &mut bytes);
+        moved += u32::from(bytes != before);
+
+        let mut at_once = crate::support::scenes::framed(mesh.clone());
+        at_once.objects_mut()[0].set_angles([f64::from(n) * STEPS[0], f64::from(n) * STEPS[1], 0.0]);
+        let mut expected = [n as u8; (WIDTH * HEIGHT) as usize];
+        draw(&mut fresh(), &at_once, &mut expected);
+        let differ = bytes.iter().zip(&expected).filter(|(is, should)| is != should).count();
+        tried.worst("bytes that differ", differ as f64);
+        assert_eq!(differ, 0, "bytes of frame {n} that differ, {path}");
+
+        let (off, limit) = match path {
+            VertexPath::Float => (from_orthonormal(scene.objects()[0].rotation()), 1e-6),
+            _ => (from_orthonormal(turn_in_16_16(scene.objects()[0].angles())), f32::powi(2.0, -13)),
+        };
+        tried.worst("from orthonormal", f64::from(off));
+        assert!(off <= limit, "frame {n}, {path}: {off:e} from orthonormal");
+
+        // Each of n additions is rounded to half a unit in the last place of a number below 2¹⁴: 2⁻⁴⁰.
+        drifting.rotate_y(step);
+        let drift = (drifting.angles()[1] - f64::from(n) * step).abs();
+        tried.worst("radians of drift", drift);
+        assert!(drift <= f64::from(n) * f64::powi(2.0, -40), "frame {n}: {drift:e} radians");
+    }
+    assert!(moved > n / 10 * 9, "{moved} of {n} frames are unlike those before them");
+}
+
+#[test]
+fn t1_many_steps_are_one_angle() {
+    let mut tried = Tried::new("t1_many_steps_are_one_angle", 2000);
+    rotation(&mut tried, VertexPath::Float);
+}
+
+#[test]
+fn t1_many_steps_on_the_integer_path() {
+    let mut tried = Tried::new("t1_many_steps_on_the_integer_path", 2000);
+    rotation(&mut tried, VertexPath::Integer);
+}
+
+#[test]
+#[ignore = "the long run: a million frames"]
+fn t1_long_a_million_frames() {
+    let mut tried = Tried::new("t1_long_a_million_frames", 1_000_000);
+    rotation(&mut tried, VertexPath::Float);
+}
+
+#[test]
+#[ignore = "the long run: a million frames"]
+fn t1_long_a_million_frames_on_the_integer_path() {
+    let mut tried = Tried::new("t1_long_a_million_frames_on_the_integer_path", 1_000_000);
+    rotation(&mut tried, VertexPath::Integer);
+}
+
+#[test]
+fn t2_any_step_is_defined() {
+    let mut tried = Tried::new("t2_any_step_is_defined", 12);
+    let turned = |angle: f64| {
+        let mut scene = crate::support::scenes::framed(shapes::cube());
+        scene.objects_mut()[0].rotate_y(angle);
+        frame(&mut Renderer::new(), &scene)
+    };
+    assert_eq!(turned(0.0), turned(-0.0));
+    // An hour at 90° a second is 900 whole turns.
+    let hour = 3600.0 * std::f64::consts::FRAC_PI_2;
+    let mut scene = crate::support::scenes::framed(shapes::cube());
+    scene.objects_mut()[0].rotate_y(hour);
+    scene.objects_mut()[0].rotate_y(-hour);
+    assert_eq!(frame(&mut Renderer::new(), &scene), turned(0.0), "there and back");
+    for angle in [-1.0, 1e-300, 3600.0, -3600.0, 1e9, -1e9, 1e15, 1e300, f64::MAX, f64::MIN_POSITIVE] {
+        assert!(turned(angle).iter().any(|&byte| byte != 0), "{angle:e}");
+        tried.add(1);
+    }
+    tried.add(2);
+}

@@ -1,0 +1,836 @@
+//! What a caller may change between two frames: one list, held to what the sources have.
+
+use std::fs;
+use std::ops::Range;
+use std::sync::LazyLock;
+
+use mode13h::glam::Vec3;
+use mode13h::light::{Blend, Light, Material, RampChoice};
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::palette::{Palette, Ramp, Rgb, builtin};
+use mode13h::plan::Effect;
+use mode13h::raster::{Frame, Shading, Vertex};
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, Screen, VertexPath};
+use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
+use mode13h::span::Kernel;
+use mode13h::texture::Texture;
+use mode13h::vga::Vga;
+use mode13h_lab::explain;
+
+use crate::support::random::Random;
+
+/// How a renderer is set: what a fresh one is given, so that it draws the same frame.
+#[derive(Clone, Debug)]
+pub(super) struct Settings {
+    rung: Option<Rung>,
+    max_error: Option<f32>,
+    mapping: Option<Mapping>,
+    mipmaps: Option<bool>,
+    vertex_path: VertexPath,
+    kernel: Kernel,
+    hidden_surfaces: Option<HiddenSurfaces>,
+    /// For one object or for every object, in the order in which they were forced.
+    forced: Vec<(Option<usize>, Effect, Option<bool>)>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            rung: None,
+            max_error: None,
+            mapping: None,
+            mipmaps: None,
+            vertex_path: VertexPath::default(),
+            kernel: Kernel::fastest(),
+            hidden_surfaces: None,
+            forced: Vec::new(),
+        }
+    }
+}
+
+impl Settings {
+    /// A fresh renderer that is set so.
+    pub(super) fn renderer(&self) -> Renderer {
+        let Self { rung, max_error, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
+        let mut renderer = Renderer::new();
+        if let Some(rung) = rung {
+            renderer.set_rung(*rung);
+        }
+        if max_error.is_some() {
+            renderer.set_max_error(*max_error);
+        }
+        renderer.set_mapping(*mapping);
+        renderer.set_mipmaps(*mipmaps);
+        renderer.set_vertex_path(*vertex_path);
+        renderer.set_kernel(*kernel);
+        renderer.set_hidden_surfaces(*hidden_surfaces);
+        for (object, effect, on) in forced {
+            match object {
+                Some(object) => renderer.force_for(*object, *effect, *on),
+                None => renderer.force(*effect, *on),
+            }
+        }
+        renderer
+    }
+}
+
+/// A scene, the renderer that is kept, and the machines that it draws on: the first is drawn on next.
+pub(super) struct World {
+    pub(super) scene: Scene,
+    pub(super) settings: Settings,
+    pub(super) kept: Renderer,
+    pub(super) machines: [Box<Vga>; 2],
+}
+
+/// One thing that a caller may do between two frames.
+pub(super) struct Change {
+    /// The field, variant or method, as [`in_the_sources`] names it; or, of the caller's own doing, what it is.
+    pub(super) name: &'static str,
+    /// Whether it is to be seen in some frame.
+    pub(super) is_seen: bool,
+    pub(super) apply: fn(&mut World, &mut Random),
+}
+
+const fn seen(name: &'static str, apply: fn(&mut World, &mut Random)) -> Change {
+    Change { name, is_seen: true, apply }
+}
+
+const fn unseen(name: &'static str, apply: fn(&mut World, &mut Random)) -> Change {
+    Change { name, is_seen: false, apply }
+}
+
+/// What no frame depends on, and what is no state of a scene.
+pub(super) const EXEMPT: [(&str, &str); 2] =
+    [("Shipped.name", "of a file that is compiled in"), ("Shipped.text", "a file that is compiled in")];
+
+/// All of them.
+pub(super) const CHANGES: &[Change] = &[
+    // Scene
+    unseen("Scene.name", |w, r| w.scene.name = text(r)),
+    seen("Scene.camera", |w, r| w.scene.camera.eye = eye(r)),
+    seen("Scene.ambient", |w, r| w.scene.ambient = between(r, 0.0, 2.0)),
+    seen("Scene.background", |w, r| w.scene.background = byte(r)),
+    unseen("Scene.background_color", |w, r| w.scene.background_color = sometimes(r, color)),
+    seen("Scene.palette", |w, r| w.scene.palette = sometimes(r, palette)),
+    seen("Scene.palette_animation", |w, r| w.scene.palette_animation = sometimes(r, |r| fade(r, palette))),
+    seen("Scene.fog", |w, r| w.scene.fog = sometimes(r, fog)),
+    seen("Scene.wishes", |w, _| w.scene.wishes = Default::default()),
+    unseen("Scene.motions", |w, r| w.scene.motions.truncate(r.within(0, 1) as usize)),
+    // When a picture is taken of it, which the program asks for.
+    unseen("Scene.picture", |w, r| w.scene.picture = r.unit()),
+    unseen("Scene.duration", |w, r| w.scene.duration = 1.0 + r.unit()),
+    seen("Scene::add", |w, r| {
+        if w.scene.objects().len() < 5 {
+            let object = object(r);
+            w.scene.add(object);
+        }
+    }),
+    seen("Scene::add_light", |w, r| {
+        if w.scene.lights().len() < 4 {
+            let light = light(r);
+            w.scene.add_light(light);
+        }
+    }),
+    seen("Scene::objects_mut", |w, r| *one_object(w, r) = object(r)),
+    seen("Scene::lights_mut", |w, r| {
+        let lights = w.scene.lights_mut();
+        match r.within(0, 2) {
+            0 => lights.clear(),
+            1 => lights.truncate(1),
+            // The order of their sum.
+            _ => lights.reverse(),
+        }
+    }),
+    seen("Scene::set_time", |w, r| {
+        with_motion(w, r, |r| Motion::Path { what: Moving::Eye, path: line(r) });
+        let seconds = r.unit() * 5.0;
+        w.scene.set_time(seconds);
+    }),
+    // Camera
+    seen("Camera.eye", |w, r| w.scene.camera.eye = eye(r)),
+    seen("Camera.target", |w, r| w.scene.camera.target = place(r, 0.4)),
+    seen("Camera.up", |w, r| w.scene.camera.up = place(r, 1.0)),
+    seen("Camera.field_of_view", |w, r| w.scene.camera.field_of_view = between(r, 0.3, 2.0)),
+    seen("Camera.near", |w, r| w.scene.camera.near = between(r, 0.02, 2.5)),
+    // Fog
+    seen("Fog.color", |w, r| one_fog(w, r).color = color(r)),
+    seen("Fog.start", |w, r| {
+        let start = between(r, 0.0, 3.0);
+        let fog = one_fog(w, r);
+        (fog.start, fog.end) = (start, fog.end.max(start + 0.1));
+    }),
+    seen("Fog.end", |w, r| {
+        let length = between(r, 0.1, 4.0);
+        let fog = one_fog(w, r);
+        fog.end = fog.start + length;
+    }),
+    // Palette animation
+    seen("PaletteAnimation::Fade.to", |w, r| animate(w, r, |r| fade(r, palette))),
+    seen("PaletteAnimation::Fade.period", |w, r| animate(w, r, |r| fade(r, |_| named_palette("copper")))),
+    seen("PaletteAnimation::Cycle.range", |w, r| {
+        animate(w, r, |r| PaletteAnimation::Cycle { range: r.within(0, 99) as u8..=255, period: 2.0 });
+    }),
+    seen("PaletteAnimation::Cycle.period", |w, r| {
+        animate(w, r, |r| PaletteAnimation::Cycle { range: 1..=255, period: 0.5 + r.unit() });
+    }),
+    // Wishes
+    seen("Wishes.rung", |w, r| w.scene.wishes.rung = sometimes(r, |r| r.one_of(&Rung::ALL))),
+    seen("Wishes.hidden_surfaces", |w, r| {
+        w.scene.wishes.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
+    }),
+    seen("Wishes.mapping", |w, r| {
+        textured(w, r);
+        w.scene.wishes.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
+    }),
+    seen("Wishes.mipmaps", |w, r| {
+        textured(w, r);
+        w.scene.wishes.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
+    }),
+    seen("Wishes.tessellation", |w, r| w.scene.wishes.tessellation = sometimes(r, |r| between(r, 0.5, 4.0))),
+    seen("Wishes.dither", |w, r| w.scene.wishes.dither = r.within(0, 1) == 1),
+    seen("Wishes.max_error", |w, r| w.scene.wishes.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
+    // The program makes it, no renderer.
+    unseen("Wishes.auto_palette", |w, r| w.scene.wishes.auto_palette = r.within(0, 1) == 1),
+    // Motions
+    seen("Motion::Spin.object", |w, r| spin(w, r, [0.0, 0.3, 0.0], [0.0, 0.2, 0.0])),
+    seen("Motion::Spin.start", |w, r| {
+        let start = angles(r);
+        spin(w, r, start, [0.0; 3]);
+    }),
+    seen("Motion::Spin.turns", |w, r| {
+        let turns = angles(r);
+        spin(w, r, [0.0; 3], turns);
+    }),
+    seen("Motion::Path.what", |w, r| {
+        with_motion(w, r, |r| Motion::Path { what: Moving::Target, path: line(r) });
+        w.scene.set_time(0.7);
+    }),
+    seen("Motion::Path.path", |w, r| {
+        with_motion(w, r, |r| Motion::Path { what: Moving::Eye, path: circle(r) });
+        w.scene.set_time(0.7);
+    }),
+    seen("Moving::Object", |w, r| {
+        let id = w.scene.add(object(r));
+        with_motion(w, r, |r| Motion::Path { what: Moving::Object(id), path: line(r) });
+        w.scene.set_time(0.6);
+        fewer_objects(w);
+    }),
+    seen("Moving::Light", |w, r| {
+        with_motion(w, r, |r| Motion::Path { what: Moving::Light(0), path: circle(r) });
+        w.scene.set_time(0.6);
+    }),
+    seen("Moving::Eye", |w, r| {
+        with_motion(w, r, |r| Motion::Path { what: Moving::Eye, path: line(r) });
+        w.scene.set_time(0.6);
+    }),
+    seen("Moving::Target", |w, r| {
+        with_motion(w, r, |r| Motion::Path { what: Moving::Target, path: circle(r) });
+        w.scene.set_time(0.6);
+    }),
+    seen("Path::Line.from", |w, r| along(w, r, |r| straight(place(r, 0.5), Vec3::X * 0.3, 2.0, false))),
+    seen("Path::Line.to", |w, r| along(w, r, |r| straight(Vec3::X * 0.3, place(r, 0.5), 2.0, false))),
+    seen("Path::Line.period", |w, r| along(w, r, |r| straight(Vec3::X, Vec3::ZERO, 0.4 + r.unit(), false))),
+    seen("Path::Line.back", |w, r| along(w, r, |r| straight(Vec3::X, Vec3::ZERO, 2.0, r.within(0, 1) == 1))),
+    seen("Path::Circle.centre", |w, r| along(w, r, |r| round(place(r, 0.5), Vec3::X * 0.2, Vec3::Y * 0.2, 2.0))),
+    seen("Path::Circle.from", |w, r| along(w, r, |r| round(Vec3::ZERO, place(r, 0.5), Vec3::Y * 0.2, 2.0))),
+    seen("Path::Circle.towards", |w, r| along(w, r, |r| round(Vec3::ZERO, Vec3::X * 0.2, place(r, 0.5), 2.0))),
+    seen("Path::Circle.period", |w, r| along(w, r, |r| round(Vec3::ZERO, Vec3::X, Vec3::Y, 0.4 + r.unit()))),
+    // Object
+    unseen("Object.name", |w, r| one_object(w, r).name = text(r)),
+    seen("Object.materials", |w, r| {
+        let material = material(r);
+        one_object(w, r).materials[0] = material;
+    }),
+    seen("Object.pivot", |w, r| one_object(w, r).pivot = place(r, 0.5)),
+    seen("Object.position", |w, r| one_object(w, r).position = place(r, 0.9)),
+    seen("Object.scale", |w, r| one_object(w, r).scale = between(r, 0.2, 1.4)),
+    seen("Object.up_axis", |w, r| {
+        let object = one_object(w, r);
+        object.up_axis = if object.up_axis == UpAxis::Y { UpAxis::Z } else { UpAxis::Y };
+    }),
+    seen("UpAxis::Y", |w, r| one_object(w, r).up_axis = UpAxis::Y),
+    seen("UpAxis::Z", |w, r| one_object(w, r).up_axis = UpAxis::Z),
+    seen("Object::rotate_x", |w, r| one_object(w, r).rotate_x(r.unit())),
+    seen("Object::rotate_y", |w, r| one_object(w, r).rotate_y(r.unit())),
+    seen("Object::rotate_z", |w, r| one_object(w, r).rotate_z(r.unit())),
+    seen("Object::set_angles", |w, r| one_object(w, r).set_angles(angles(r))),
+    // Material
+    unseen("Material.name", |w, r| one_material(w, r).name = text(r)),
+    seen("Material.ambient", |w, r| one_material(w, r).ambient = between(r, 0.0, 0.6)),
+    seen("Material.diffuse", |w, r| one_material(w, r).diffuse = between(r, 0.0, 1.0)),
+    seen("Material.specular", |w, r| {
+        one_material(w, r).specular = sometimes(r, |r| between(r, 0.1, 1.0)).unwrap_or(0.0)
+    }),
+    seen("Material.shininess", |w, r| {
+        let shininess = between(r, 1.0, 30.0).round();
+        shiny(w, r, |material| material.shininess = shininess);
+    }),
+    seen("Material.ramp", |w, r| one_material(w, r).ramp = RampChoice::Number(r.within(0, 7) as u16)),
+    seen("RampChoice::Number", |w, r| {
+        w.scene.palette = Some(named_palette("materials-8x32"));
+        drawn(w);
+        one_material(w, r).ramp = RampChoice::Number(r.within(0, 7) as u16);
+    }),
+    seen("RampChoice::Entries", |w, r| {
+        one_material(w, r).ramp = RampChoice::Entries(Ramp::new(r.within(0, 128) as u8, 64).expect("within 256"));
+    }),
+    seen("RampChoice::Nearest", |w, r| one_material(w, r).ramp = RampChoice::Nearest),
+    seen("Material.color", |w, r| one_material(w, r).color = channels(r)),
+    seen("Material.highlight", |w, r| {
+        let color = channels(r);
+        shiny(w, r, |material| material.highlight = color);
+    }),
+    seen("Material.texture", |w, r| one_material(w, r).texture = sometimes(r, texture)),
+    seen("Material.environment", |w, r| {
+        let material = one_material(w, r);
+        (material.texture, material.environment) = (None, sometimes(r, texture));
+    }),
+    seen("Material.blend", |w, r| one_material(w, r).blend = Blend::Mix(r.one_of(&[60, 190]))),
+    seen("Blend::Opaque", |w, r| one_material(w, r).blend = Blend::Opaque),
+    seen("Blend::Mix", |w, r| one_material(w, r).blend = Blend::Mix(r.one_of(&[60, 190]))),
+    seen("Blend::Add", |w, r| one_material(w, r).blend = Blend::Add),
+    // Lights
+    seen("Light::Sun.direction", |w, r| sun(w, r, |r, to, _, _| *to = place(r, 1.0))),
+    seen("Light::Sun.intensity", |w, r| sun(w, r, |r, _, intensity, _| *intensity = between(r, 0.2, 1.2))),
+    seen("Light::Sun.color", |w, r| sun(w, r, |r, _, _, color| *color = channels(r))),
+    seen("Light::Lamp.position", |w, r| lamp(w, r, |r, at, _, _, _| *at = place(r, 1.2))),
+    seen("Light::Lamp.intensity", |w, r| lamp(w, r, |r, _, intensity, _, _| *intensity = between(r, 0.2, 1.5))),
+    seen("Light::Lamp.range", |w, r| lamp(w, r, |r, _, _, range, _| *range = between(r, 0.5, 4.0))),
+    seen("Light::Lamp.color", |w, r| lamp(w, r, |r, _, _, _, color| *color = channels(r))),
+    // The renderer
+    seen("Renderer::set_rung", |w, r| {
+        let rung = r.one_of(&Rung::ALL);
+        (w.settings.rung, w.settings.max_error) = (Some(rung), None);
+        w.kept.set_rung(rung);
+    }),
+    seen("Renderer::set_max_error", |w, r| {
+        let shades = sometimes(r, |r| between(r, 0.5, 16.0));
+        w.settings.max_error = shades;
+        if shades.is_some() {
+            w.settings.rung = None;
+        }
+        w.kept.set_max_error(shades);
+    }),
+    seen("Renderer::set_mapping", |w, r| {
+        textured(w, r);
+        w.settings.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
+        w.kept.set_mapping(w.settings.mapping);
+    }),
+    seen("Renderer::set_mipmaps", |w, r| {
+        textured(w, r);
+        w.settings.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
+        w.kept.set_mipmaps(w.settings.mipmaps);
+    }),
+    seen("Renderer::set_vertex_path", |w, r| {
+        w.settings.vertex_path = r.one_of(&VertexPath::ALL);
+        w.kept.set_vertex_path(w.settings.vertex_path);
+    }),
+    unseen("Renderer::set_kernel", |w, r| {
+        w.settings.kernel = r.one_of(&Kernel::available().collect::<Vec<_>>());
+        w.kept.set_kernel(w.settings.kernel);
+    }),
+    seen("Renderer::set_hidden_surfaces", |w, r| {
+        w.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
+        w.kept.set_hidden_surfaces(w.settings.hidden_surfaces);
+    }),
+    seen("Renderer::force", |w, r| {
+        let (effect, on) = forced(r);
+        w.settings.forced.push((None, effect, on));
+        w.kept.force(effect, on);
+    }),
+    seen("Renderer::force_for", |w, r| {
+        let (effect, on) = forced(r);
+        let object = r.within(0, 2) as usize;
+        w.settings.forced.push((Some(object), effect, on));
+        w.kept.force_for(object, effect, on);
+    }),
+    unseen("Renderer::make_plan", |w, r| {
+        let screen = r.one_of(&[Screen::MODE_13H, Screen { width: 200, height: 320, pixel_aspect: (1, 1) }]);
+        w.kept.make_plan(&w.scene, screen).expect("a legal scene");
+    }),
+    // Another picture on the same machine by the same renderer.
+    unseen("Renderer::draw", |w, r| {
+        let scene = start(r);
+        w.kept.draw(&scene, &mut w.machines[0]).map(drop).unwrap_or_default();
+    }),
+    unseen("Renderer::draw_frame", |w, r| {
+        let screen = (r.within(1, 90) as u32, r.within(1, 60) as u32);
+        let first = r.within(0, i64::from(screen.1) - 1) as u32;
+        let rows = r.one_of(&[0, first])..screen.1;
+        let [kept, fresh] = [&mut w.kept, &mut w.settings.renderer()].map(|renderer| {
+            let mut bytes = vec![7; (screen.0 * screen.1) as usize];
+            let frame = Frame::band(&mut bytes, screen.0, screen.1, screen.0 as usize, rows.clone()).expect("a band");
+            let drawn = renderer.draw_frame(&w.scene, frame, (1, 1)).map(drop);
+            (drawn, bytes)
+        });
+        assert!(kept == fresh, "a frame of {screen:?}, rows {rows:?}");
+    }),
+    unseen("Renderer::for_each_triangle", |w, _| {
+        let [kept, fresh] = [&mut w.kept, &mut w.settings.renderer()].map(|renderer| {
+            let mut all: Vec<([Vertex; 3], Shading)> = Vec::new();
+            let drawn = renderer.for_each_triangle(&w.scene, Screen::MODE_13H, |v, shading| all.push((*v, shading)));
+            (drawn.map(drop), all)
+        });
+        assert!(kept == fresh, "the triangles");
+    }),
+    // The machine
+    unseen("Vga::memory_mut", |w, r| w.machines[0].memory_mut()[300..65_000].fill(byte(r))),
+    unseen("Vga::poke", |w, r| w.machines[0].poke(r.within(0, 70_000) as u32, byte(r))),
+    unseen("Vga::pixels_mut", |w, r| {
+        let rows: Range<usize> = 320 * r.within(0, 99) as usize..320 * r.within(100, 200) as usize;
+        w.machines[0].pixels_mut()[rows].fill(byte(r));
+    }),
+    // Without a palette of the scene's the picture is made for what the machine shows.
+    seen("Vga::write_port", |w, r| {
+        w.scene.palette = None;
+        let port = r.one_of(&[0x3C6, 0x3C7, 0x3C8, 0x3C9, 0x3C9, 0x3C9]);
+        w.machines[0].write_port(port, if port == 0x3C6 { r.one_of(&[0x3F, 0xFF]) } else { byte(r) });
+    }),
+    unseen("Vga::read_port", |w, r| {
+        w.machines[0].read_port(r.one_of(&[0x3C7, 0x3C9, 0x3DA]));
+    }),
+    unseen("Vga::advance", |w, r| w.machines[0].advance(r.next_u64() >> 40)),
+    seen("Vga::set_palette", |w, r| {
+        w.scene.palette = sometimes(r, |_| w.scene.palette.clone()).flatten();
+        w.machines[0].set_palette(&palette(r));
+    }),
+    seen("Vga::fade", |w, r| {
+        w.scene.palette = None;
+        w.machines[0].fade(&palette(r), &palette(r), r.within(0, 256) as u16);
+    }),
+    seen("Vga::cycle", |w, r| {
+        w.scene.palette = None;
+        w.machines[0].cycle(1..=255, r.within(1, 200) as i32);
+    }),
+    // The caller's own doing
+    seen("another scene", |w, r| w.scene = start(r)),
+    seen("another mesh for the same object", |w, r| {
+        let mesh = mesh(r);
+        replace_mesh(one_object(w, r), mesh);
+    }),
+    unseen("an equal mesh at another address", |w, r| {
+        let object = one_object(w, r);
+        let mesh = object.mesh().clone();
+        replace_mesh(object, mesh);
+    }),
+    seen("another machine", |w, _| w.machines.swap(0, 1)),
+    unseen("a copy of the machine", |w, _| w.machines[1] = w.machines[0].clone()),
+    unseen("a second renderer on the same machine", |w, r| {
+        Renderer::new().draw(&start(r), &mut w.machines[0]).map(drop).unwrap_or_default();
+    }),
+    unseen("one set alike draws the same", |w, _| {
+        let [alike, fresh] = [w.kept.set_alike(), w.settings.renderer()].map(|mut renderer| {
+            let mut vga = w.machines[0].clone();
+            vga.pixels_mut().fill(3);
+            (renderer.draw(&w.scene, &mut vga).map(drop), vga.pixels().to_vec())
+        });
+        assert!(alike == fresh, "one set alike");
+    }),
+    unseen("nothing", |_, _| {}),
+    unseen("a line within a rectangle of the frame", |w, r| {
+        let mut frame = Frame::from(&mut *w.machines[0]);
+        let y = r.within(0, 199) as u32;
+        frame.row_mut(y).expect("a row")[40..280].fill(byte(r));
+    }),
+    unseen("an account of a pixel", |w, r| {
+        let (x, y) = (r.within(0, 319) as u32, r.within(0, 199) as u32);
+        // There is none on the 16.16 path.
+        explain::pixel(&mut w.kept, &w.scene, Screen::MODE_13H, x, y).map(drop).unwrap_or_default();
+    }),
+    unseen("a scene that is refused", |w, r| {
+        let legal = w.scene.clone();
+        match r.within(0, 5) {
+            0 => w.scene.camera.eye.x = f32::NAN,
+            1 => w.scene.ambient = f32::INFINITY,
+            2 => one_object(w, r).position.y = f32::NAN,
+            3 => one_material(w, r).shininess = f32::NAN,
+            4 => w.scene.wishes.max_error = Some(-1.0),
+            _ => w.scene.fog = Some(Fog { color: Rgb::BLACK, start: 2.0, end: 1.0 }),
+        }
+        let fresh = w.settings.renderer().draw(&w.scene, &mut w.machines[0].clone());
+        let before = w.machines[0].pixels().to_vec();
+        let kept = w.kept.draw(&w.scene, &mut w.machines[0]);
+        assert_eq!(kept.map(drop), fresh.map(drop));
+        assert!(w.machines[0].pixels() == before, "the machine is left as it was");
+        w.scene = legal;
+    }),
+];
+
+/// A scene to begin with: of each kind that the engine draws in a way of its own.
+pub(super) fn start(random: &mut Random) -> Scene {
+    let mut scene = Scene::new();
+    scene.camera.eye = eye(random);
+    scene.camera.near = 0.1;
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]).with_intensity(0.8));
+    match random.within(0, 3) {
+        // A matt body in one sun.
+        0 => drop(scene.add(Object::new(mesh(random)))),
+        // Matt bodies that need a depth buffer.
+        1 => {
+            for _ in 0..3 {
+                let mut object = Object::new(mesh(random));
+                object.position = place(random, 0.6);
+                object.scale = 0.6;
+                object.set_angles(angles(random));
+                scene.add(object);
+            }
+        }
+        // A little of everything.
+        2 => {
+            scene.add_light(Light::lamp([0.5, 0.4, 1.2], 4.0));
+            scene.fog = Some(fog(random));
+            for _ in 0..3 {
+                scene.add(object(random));
+            }
+        }
+        _ => {
+            scene.palette = Some(named_palette("cube"));
+            scene.add_light(Light::lamp([-0.5, 0.4, 1.2], 4.0).with_color([1.0, 0.4, 0.2]));
+            scene.add(object(random));
+            scene.add(Object::new(mesh(random)));
+        }
+    }
+    scene
+}
+
+// Values
+
+fn between(random: &mut Random, low: f64, high: f64) -> f32 {
+    (low + (high - low) * random.unit()) as f32
+}
+
+fn byte(random: &mut Random) -> u8 {
+    random.within(0, 255) as u8
+}
+
+fn text(random: &mut Random) -> String {
+    random.next_u64().to_string()
+}
+
+/// Two times of three.
+fn sometimes<T>(random: &mut Random, value: impl FnOnce(&mut Random) -> T) -> Option<T> {
+    (random.within(0, 2) > 0).then(|| value(random))
+}
+
+fn place(random: &mut Random, far: f64) -> Vec3 {
+    Vec3::new(between(random, -far, far), between(random, -far, far), between(random, -far, far))
+}
+
+/// Before the bodies, or among them.
+fn eye(random: &mut Random) -> Vec3 {
+    let away = random.one_of(&[0.7, 2.5, 3.0, 4.0]);
+    Vec3::new(between(random, -0.5, 0.5), between(random, -0.5, 0.5), away)
+}
+
+fn angles(random: &mut Random) -> [f64; 3] {
+    [(); 3].map(|()| random.unit() * 6.3)
+}
+
+fn color(random: &mut Random) -> Rgb {
+    Rgb::new(byte(random), byte(random), byte(random))
+}
+
+fn channels(random: &mut Random) -> [f32; 3] {
+    [(); 3].map(|()| between(random, 0.0, 1.0))
+}
+
+fn named_palette(name: &str) -> Palette {
+    builtin::by_name(name).expect("built in").palette.clone()
+}
+
+fn palette(random: &mut Random) -> Palette {
+    builtin::ALL[random.within(0, builtin::ALL.len() as i64 - 1) as usize].palette.clone()
+}
+
+fn fog(random: &mut Random) -> Fog {
+    let start = between(random, 0.0, 2.5);
+    Fog { color: color(random), start, end: start + between(random, 0.5, 4.0) }
+}
+
+fn fade(random: &mut Random, to: impl FnOnce(&mut Random) -> Palette) -> PaletteAnimation {
+    PaletteAnimation::Fade { to: to(random), period: 0.5 + random.unit() }
+}
+
+fn line(random: &mut Random) -> Path {
+    straight(eye(random), eye(random), 1.0 + random.unit(), random.within(0, 1) == 1)
+}
+
+fn straight(from: Vec3, to: Vec3, period: f64, back: bool) -> Path {
+    Path::Line { from, to, period, back }
+}
+
+fn circle(random: &mut Random) -> Path {
+    round(eye(random), place(random, 0.3), place(random, 0.3), 1.0 + random.unit())
+}
+
+fn round(centre: Vec3, from: Vec3, towards: Vec3, period: f64) -> Path {
+    Path::Circle { centre, from, towards, period }
+}
+
+/// Of few faces: a frame takes some microseconds.
+fn mesh(random: &mut Random) -> Mesh {
+    match random.within(0, 4) {
+        0 => shapes::cube(),
+        1 => shapes::wall(2, 2),
+        2 => shapes::sphere(8, 5),
+        3 => shapes::torus(9, 6),
+        _ => shapes::cone(random.within(3, 9) as u32, 2),
+    }
+}
+
+fn object(random: &mut Random) -> Object {
+    let mut object = Object::new(mesh(random));
+    object.position = place(random, 0.7);
+    object.scale = between(random, 0.4, 1.0);
+    object.set_angles(angles(random));
+    object.materials[0] = material(random);
+    object
+}
+
+fn material(random: &mut Random) -> Material {
+    let mut material = Material { ambient: 0.2, diffuse: 0.6, ..Material::white() };
+    match random.within(0, 5) {
+        0 => (material.specular, material.shininess) = (0.5, 8.0),
+        1 => material.texture = Some(texture(random)),
+        2 => material.environment = Some(texture(random)),
+        3 => material.blend = Blend::Mix(120),
+        4 => material.color = channels(random),
+        _ => {}
+    }
+    material
+}
+
+static TEXTURES: LazyLock<Vec<Shared<Texture>>> = LazyLock::new(|| {
+    let small = |bits: u32| {
+        let texels = (0..1 << (2 * bits)).map(|i| (i * 37 % 251) as u8).collect();
+        let colors = std::array::from_fn(|i| Rgb::new(i as u8, (i * 7) as u8, 255 - i as u8));
+        Texture::new(1 << bits, 1 << bits, texels, colors).expect("powers of two")
+    };
+    let plain = Texture::plain(Rgb::new(200, 100, 30));
+    // The last is large beside what it covers on the screen.
+    [small(2), small(5), plain, small(8)].into_iter().map(Shared::new).collect()
+});
+
+/// One of three, or one that looks like it at another address.
+fn texture(random: &mut Random) -> Shared<Texture> {
+    let texture = &TEXTURES[random.within(0, TEXTURES.len() as i64 - 1) as usize];
+    if random.within(0, 5) == 0 { Shared::new((**texture).clone()) } else { Shared::clone(texture) }
+}
+
+fn light(random: &mut Random) -> Light {
+    match random.within(0, 1) {
+        0 => Light::sun(place(random, 1.0).to_array()).with_intensity(0.5),
+        _ => Light::lamp(place(random, 1.0).to_array(), between(random, 1.0, 4.0)),
+    }
+}
+
+/// An effect switched on, off, or left to the plan; vertices are not kept by force, which is to draw what is old.
+fn forced(random: &mut Random) -> (Effect, Option<bool>) {
+    let on = random.one_of(&[None, Some(false), Some(true)]);
+    match random.one_of(&Effect::ALL) {
+        Effect::Transform => (Effect::Transform, on.filter(|on| *on)),
+        effect => (effect, on),
+    }
+}
+
+// Where things are
+
+fn one_object<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Object {
+    let objects = world.scene.objects_mut();
+    let last = objects.len() as i64 - 1;
+    &mut objects[random.within(0, last) as usize]
+}
+
+fn one_material<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Material {
+    &mut one_object(world, random).materials[0]
+}
+
+/// Changes a material that has a highlight.
+fn shiny(world: &mut World, random: &mut Random, change: impl Fn(&mut Material)) {
+    let last = world.scene.objects().len() as i64 - 1;
+    let which = random.within(0, last) as usize;
+    let specular = &mut world.scene.objects_mut()[which].materials[0].specular;
+    *specular = specular.max(0.4);
+    drawn(world);
+    change(&mut world.scene.objects_mut()[which].materials[0]);
+}
+
+/// Draws a frame, so that the next one differs from it by nothing but what is changed now.
+fn drawn(world: &mut World) {
+    world.kept.draw(&world.scene, &mut world.machines[0]).map(drop).unwrap_or_default();
+}
+
+/// Sees to it that there is a texture on a face that is seen at an angle.
+fn textured(world: &mut World, random: &mut Random) {
+    let object = one_object(world, random);
+    if object.mesh().texcoords().is_none() {
+        replace_mesh(object, shapes::wall(1, 1));
+        object.set_angles([0.2, 0.9, 0.1]);
+        object.scale = 1.0;
+    }
+    if object.materials[0].texture.is_none() {
+        object.materials[0].texture = Some(Shared::clone(&TEXTURES[3]));
+    }
+    drawn(world);
+}
+
+fn one_fog<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Fog {
+    if world.scene.fog.is_none() {
+        world.scene.fog = Some(fog(random));
+        drawn(world);
+    }
+    world.scene.fog.as_mut().expect("fog")
+}
+
+fn animate(world: &mut World, random: &mut Random, animation: impl FnOnce(&mut Random) -> PaletteAnimation) {
+    world.scene.palette.get_or_insert_with(|| named_palette("grey"));
+    world.scene.palette_animation = Some(animation(random));
+    // Motions have their own.
+    let motions = std::mem::take(&mut world.scene.motions);
+    world.scene.set_time(0.3);
+    world.scene.motions = motions;
+}
+
+fn with_motion(world: &mut World, random: &mut Random, motion: impl FnOnce(&mut Random) -> Motion) {
+    if world.scene.motions.len() > 1 {
+        world.scene.motions.clear();
+    }
+    world.scene.motions.push(motion(random));
+}
+
+fn spin(world: &mut World, random: &mut Random, start: [f64; 3], turns: [f64; 3]) {
+    let id = world.scene.add(object(random));
+    with_motion(world, random, |_| Motion::Spin { object: id, start, turns });
+    world.scene.set_time(0.6);
+    fewer_objects(world);
+}
+
+/// The target goes along a path.
+fn along(world: &mut World, random: &mut Random, path: impl FnOnce(&mut Random) -> Path) {
+    with_motion(world, random, |random| Motion::Path { what: Moving::Target, path: path(random) });
+    world.scene.set_time(1.3);
+}
+
+/// The object with another mesh, all else as it was.
+fn replace_mesh(object: &mut Object, mesh: Mesh) {
+    let mut new = Object::new(mesh);
+    new.set_angles(object.angles());
+    let old = std::mem::replace(object, new);
+    (object.name, object.materials, object.pivot) = (old.name, old.materials, old.pivot);
+    (object.position, object.scale, object.up_axis) = (old.position, old.scale, old.up_axis);
+}
+
+/// A scene gives no object back: one of many begins anew with the last three.
+fn fewer_objects(world: &mut World) {
+    let objects = world.scene.objects().to_vec();
+    if objects.len() <= 5 {
+        return;
+    }
+    let old = std::mem::take(&mut world.scene);
+    let mut scene = Scene::new();
+    (scene.camera, scene.ambient, scene.background) = (old.camera, old.ambient, old.background);
+    (scene.palette, scene.fog, scene.wishes) = (old.palette.clone(), old.fog, old.wishes);
+    *scene.lights_mut() = old.lights().to_vec();
+    for object in objects.into_iter().rev().take(3) {
+        scene.add(object);
+    }
+    world.scene = scene;
+}
+
+/// Changes one sun: its direction, intensity and colour. Where there is none, one is put in.
+fn sun(world: &mut World, random: &mut Random, change: impl Fn(&mut Random, &mut Vec3, &mut f32, &mut [f32; 3])) {
+    if !world.scene.lights().iter().any(|light| matches!(light, Light::Sun { .. })) {
+        world.scene.add_light(Light::sun([0.1, 0.2, 1.0]));
+        drawn(world);
+    }
+    for light in world.scene.lights_mut() {
+        if let Light::Sun { direction, intensity, color } = light {
+            return change(random, direction, intensity, color);
+        }
+    }
+}
+
+type ChangeLamp = fn(&mut Random, &mut Vec3, &mut f32, &mut f32, &mut [f32; 3]);
+
+/// The same with a lamp: its position, intensity, range and colour.
+fn lamp(world: &mut World, random: &mut Random, change: ChangeLamp) {
+    if !world.scene.lights().iter().any(|light| matches!(light, Light::Lamp { .. })) {
+        world.scene.add_light(Light::lamp([0.4, 0.5, 1.3], 3.0));
+        drawn(world);
+    }
+    for light in world.scene.lights_mut() {
+        if let Light::Lamp { position, intensity, range, color } = light {
+            return change(random, position, intensity, range, color);
+        }
+    }
+}
+
+// What the sources have
+
+/// Every public field of a struct (`Fog.start`), every variant of an enum with its fields (`Blend::Mix`,
+/// `Light::Sun.color`) and every public method that takes `&mut self` (`Scene::add`), of the modules that hold what a
+/// frame is drawn from.
+pub(super) fn in_the_sources() -> Vec<String> {
+    let root = crate::support::root().join("src");
+    let mut paths = vec![root.join("render/mod.rs"), root.join("vga/mod.rs")];
+    for folder in ["scene", "light"] {
+        let entries = fs::read_dir(root.join(folder)).expect("a folder").map(|entry| entry.expect("an entry").path());
+        paths.extend(entries.filter(|path| path.extension().is_some_and(|extension| extension == "rs")));
+    }
+    let mut names: Vec<String> =
+        paths.iter().flat_map(|path| names_in(&fs::read_to_string(path).expect("a file"))).collect();
+    names.sort();
+    names
+}
+
+/// The same of one file, laid out as rustfmt does it.
+pub(super) fn names_in(source: &str) -> Vec<String> {
+    let word = |text: &str| -> String { text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect() };
+    let mut names = Vec::new();
+    let mut lines = source.lines();
+    while let Some(line) = lines.next() {
+        let (kind, rest) = match ["pub struct ", "pub enum ", "impl "].iter().find(|start| line.starts_with(**start)) {
+            Some(start) if line.ends_with(" {") => (*start, &line[start.len()..]),
+            _ => continue,
+        };
+        let of = word(rest);
+        // Of a trait, or of a type with parameters.
+        if rest != format!("{of} {{") {
+            continue;
+        }
+        let body: Vec<&str> = lines.by_ref().take_while(|line| *line != "}").collect();
+        let mut variant = String::new();
+        for (i, line) in body.iter().enumerate() {
+            let (depth, text) = (line.len() - line.trim_start().len(), line.trim_start());
+            if !text.starts_with(|c: char| c.is_alphabetic()) {
+                continue;
+            }
+            match (kind, depth) {
+                ("pub struct ", 4) => {
+                    if let Some(field) = text.strip_prefix("pub ") {
+                        names.push(format!("{of}.{}", word(field)));
+                    }
+                }
+                ("pub enum ", 4) => {
+                    variant = word(text);
+                    if !text.ends_with('{') {
+                        names.push(format!("{of}::{variant}"));
+                    }
+                }
+                ("pub enum ", 8) => names.push(format!("{of}::{variant}.{}", word(text))),
+                ("impl ", 4) => {
+                    let Some((_, method)) = text.split_once("fn ").filter(|_| text.starts_with("pub ")) else {
+                        continue;
+                    };
+                    let signature =
+                        if text.ends_with('(') { body.get(i + 1).map_or("", |next| next.trim()) } else { text };
+                    if signature.contains("&mut self") {
+                        names.push(format!("{of}::{}", word(method)));
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    names
+}

@@ -1,0 +1,237 @@
+//! E1 as a state machine: whatever a caller does between frames, in any order, a renderer that is kept draws what a
+//! fresh one draws, and shows it in the same colours.
+//!
+//! A run begins with a scene and makes one change after the other, each with a frame behind it. A run that fails is
+//! shrunk to the fewest changes that still fail, and printed.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use mode13h::palette::Palette;
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+
+use super::changes::{CHANGES, EXEMPT, Settings, World, in_the_sources, names_in, start};
+use crate::support::random::Random;
+use crate::support::tried::Tried;
+
+/// Changes in a run.
+const STEPS: usize = 40;
+
+/// One change: its place in the list, and the number that its values come from.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    change: usize,
+    values: u64,
+}
+
+/// A run: the number that its first scene comes from, and its changes.
+#[derive(Clone, Debug)]
+struct Run {
+    first: u64,
+    steps: Vec<Step>,
+}
+
+/// What a machine shows.
+type Shown = (Vec<u8>, Palette);
+
+impl World {
+    fn new(scene: Scene) -> Self {
+        let settings = Settings::default();
+        Self { scene, kept: settings.renderer(), settings, machines: [Box::new(Vga::new()), Box::new(Vga::new())] }
+    }
+
+    /// Draws by the kept renderer and by a fresh one, over other bytes; what both show, or how they differ.
+    fn draw(&mut self) -> Result<Shown, String> {
+        let vga = &mut self.machines[0];
+        let before = vga.pixels().to_vec();
+        let mut other = vga.clone();
+        other.pixels_mut().fill(0xA5);
+        let kept = self.kept.draw(&self.scene, vga).map(drop);
+        let fresh = self.settings.renderer().draw(&self.scene, &mut other).map(drop);
+        if kept != fresh {
+            return Err(format!("{kept:?}, and by a fresh renderer {fresh:?}"));
+        }
+        if kept.is_err() {
+            let as_it_was = vga.pixels() == before;
+            return if as_it_was {
+                Ok((before, vga.palette()))
+            } else {
+                Err("an error, and pixels changed".to_string())
+            };
+        }
+        let differ = vga.pixels().iter().zip(other.pixels()).filter(|(a, b)| a != b).count();
+        if differ > 0 {
+            return Err(format!("{differ} pixels are not those of a fresh renderer"));
+        }
+        if vga.palette() != other.palette() {
+            return Err("the colours are not those of a fresh renderer".to_string());
+        }
+        Ok((vga.pixels().to_vec(), vga.palette()))
+    }
+}
+
+/// Makes a run. `seen` is told of each change whether the picture became another one.
+fn play(run: &Run, mut seen: impl FnMut(usize, bool)) -> Result<(), String> {
+    let mut world = World::new(start(&mut Random::again(run.first)));
+    let mut last = world.draw().map_err(|what| format!("at first: {what}"))?;
+    for (number, step) in run.steps.iter().enumerate() {
+        let change = &CHANGES[step.change];
+        let told = |what| format!("after step {number}, {}: {what}", change.name);
+        let frame = catch_unwind(AssertUnwindSafe(|| {
+            (change.apply)(&mut world, &mut Random::again(step.values));
+            world.draw()
+        }));
+        let shown = match frame {
+            Ok(drawn) => drawn.map_err(told)?,
+            Err(panic) => return Err(told(format!("a panic: {}", said(&*panic)))),
+        };
+        seen(step.change, shown != last);
+        last = shown;
+    }
+    Ok(())
+}
+
+fn said(panic: &dyn std::any::Any) -> String {
+    let text = panic.downcast_ref::<&str>().map(ToString::to_string);
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default()
+}
+
+/// The fewest changes of a run that still fail, and how: pieces are left out as long as it fails without them.
+fn shrunk(mut run: Run, mut why: String) -> (Run, String) {
+    let mut piece = run.steps.len();
+    while piece > 0 {
+        let mut at = 0;
+        while at < run.steps.len() {
+            let mut less = run.clone();
+            less.steps.drain(at..(at + piece).min(run.steps.len()));
+            match play(&less, |_, _| {}) {
+                Err(still) => (run, why) = (less, still),
+                Ok(()) => at += piece,
+            }
+        }
+        piece /= 2;
+    }
+    (run, why)
+}
+
+/// Tries runs until as many frames as stated were compared. Changes are dealt as cards are, so that each comes as often as
+/// any other. Returns of each change how often it was made, and how often the picture became another one.
+fn run_all(tried: &mut Tried) -> BTreeMap<&'static str, (u64, u64)> {
+    let mut random = Random::named("e1 kept");
+    let mut counts: BTreeMap<&'static str, (u64, u64)> = BTreeMap::new();
+    let mut cards: Vec<usize> = Vec::new();
+    let mut deal = |random: &mut Random| {
+        if cards.is_empty() {
+            cards.extend(0..CHANGES.len());
+            for last in (1..cards.len()).rev() {
+                cards.swap(last, random.within(0, last as i64) as usize);
+            }
+        }
+        cards.pop().expect("changes")
+    };
+    while tried.stated() > tried.cases() {
+        let first = random.next_u64();
+        let steps = (0..STEPS).map(|_| Step { change: deal(&mut random), values: random.next_u64() }).collect();
+        let run = Run { first, steps };
+        let outcome = play(&run, |change, differs| {
+            let count = counts.entry(CHANGES[change].name).or_default();
+            *count = (count.0 + 1, count.1 + u64::from(differs));
+        });
+        if let Err(why) = outcome {
+            let (run, why) = shrunk(run, why);
+            let names: Vec<&str> = run.steps.iter().map(|step| CHANGES[step.change].name).collect();
+            panic!("{why}\nthe changes: {names:#?}\n{run:?}");
+        }
+        tried.add(STEPS as u64);
+    }
+    counts
+}
+
+#[test]
+fn e1_any_change_in_any_order() {
+    let mut tried = Tried::new("e1_any_change_in_any_order", 30 * STEPS as u64);
+    let counts = run_all(&mut tried);
+    assert_eq!(counts.len(), CHANGES.len(), "each is made");
+}
+
+#[test]
+#[ignore = "the long run: 500 runs of 40 changes"]
+fn e1_long_any_change_in_any_order() {
+    let mut tried = Tried::new("e1_long_any_change_in_any_order", 500 * STEPS as u64);
+    let counts = run_all(&mut tried);
+    let never: Vec<&str> = CHANGES
+        .iter()
+        .filter(|change| change.is_seen && counts.get(change.name).is_none_or(|(_, seen)| *seen == 0))
+        .map(|change| change.name)
+        .collect();
+    assert_eq!(never, [""; 0], "of {counts:?}: a change that no picture shows tests nothing");
+}
+
+/// What can be changed is what is changed.
+#[test]
+fn e1_every_public_field_is_changed() {
+    let mut tried = Tried::new("e1_every_public_field_is_changed", 90);
+    let exempt = |name: &str| EXEMPT.iter().any(|(of, _)| *of == name);
+    let sources = in_the_sources();
+    for name in &sources {
+        let changes = CHANGES.iter().filter(|change| change.name == name).count();
+        assert_eq!(changes, usize::from(!exempt(name)), "{name}: a change for it belongs into tests/time/changes.rs");
+        tried.add(1);
+    }
+    // What is of a type of the sources is there.
+    let of_a_type = CHANGES.iter().filter(|change| change.name.contains("::") || change.name.contains('.'));
+    for name in of_a_type.map(|change| change.name).chain(EXEMPT.map(|(name, _)| name)) {
+        assert!(sources.iter().any(|source| source == name), "{name} is in no source");
+    }
+}
+
+#[test]
+fn fields_variants_and_methods_are_found_in_a_source() {
+    let source = "\
+pub struct Camera {
+    /// Where.
+    pub eye: Vec3,
+    #[cfg(feature = \"std\")]
+    pub near: f32,
+    kept: u8,
+    pub(crate) seen: u8,
+}
+
+pub struct Id(usize);
+
+#[derive(Clone)]
+pub enum Light {
+    /// Far.
+    Sun {
+        direction: Vec3,
+        color: [f32; 3],
+    },
+    #[default]
+    None,
+    Lamp(Vec3),
+}
+
+impl Camera {
+    pub fn eye(&self) -> Vec3 {
+        fn inner(&mut self) {}
+    }
+
+    pub fn set_eye(&mut self, eye: Vec3) {}
+
+    pub const fn look(
+        &mut self,
+        at: Vec3,
+    ) {
+    }
+
+    pub(crate) fn hide(&mut self) {}
+}
+
+impl<T> Other for Camera {
+    pub fn set_nothing(&mut self) {}
+}
+";
+    let names = "Camera.eye Camera.near Light::Sun.direction Light::Sun.color Light::None Light::Lamp Camera::set_eye Camera::look";
+    assert_eq!(names_in(source), names.split(' ').collect::<Vec<_>>());
+}

@@ -1,0 +1,372 @@
+//! Batches of triangles: each kernel against the oracle, and against the same triangles drawn one by one.
+
+mod against_the_oracle;
+mod shapes;
+
+use crate::support::oracle;
+use crate::support::random::Random;
+use crate::support::triangles::{triangle, vertex};
+use crate::support::tried::Tried;
+use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
+use mode13h::raster::{Batch, DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::span::Kernel;
+
+/// Shadings that a batch takes.
+fn shading(random: &mut Random) -> Shading {
+    match random.within(0, 2) {
+        0 => Shading::Flat(random.within(0, 255) as u8),
+        1 => Shading::Gouraud,
+        _ => Shading::GouraudReseeded,
+    }
+}
+
+/// A triangle of at most `reach` units about somewhere in or near the frame; one in four on whole or half pixels.
+fn small(random: &mut Random, width: i64, height: i64, reach: i64) -> [Vertex; 3] {
+    let (cx, cy) = (random.within(-300, width * 256 + 300), random.within(-300, height * 256 + 300));
+    let snap = random.one_of(&[1, 1, 1, 128]);
+    // Of equal depths the first has to stay.
+    let level = random.one_of(&[None, None, Some(9), Some(10)]);
+    let mut place = || {
+        let shade = random.one_of(&[0, 0xFF00, -1, -1, -1]);
+        let shade = if shade < 0 { random.within(0, 0xFF00) } else { shade };
+        let (x, y) = (cx + random.within(-reach, reach), cy + random.within(-reach, reach));
+        vertex(x / snap * snap, y / snap * snap, shade, level.unwrap_or(random.log_uniform(30) as i64))
+    };
+    [place(), place(), place()]
+}
+
+/// Anything from smaller than a pixel to larger than what batches draw themselves, and what `support` has.
+fn any(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
+    match random.within(0, 9) {
+        0 => triangle(random, width, height),
+        _ => {
+            let reach = random.log_uniform(16) as i64;
+            small(random, width, height, reach)
+        }
+    }
+}
+
+/// What batches are compared with.
+fn one_by_one(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Shading)]) -> Drawn {
+    let mut sum = Drawn::default();
+    triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
+    sum
+}
+
+/// `triangles` of them for each kernel.
+fn per_kernel(triangles: u64) -> u64 {
+    triangles * Kernel::available().count() as u64
+}
+
+#[test]
+fn r4_batches_against_the_oracle() {
+    batches_against_the_oracle(Tried::new("r4_batches_against_the_oracle", per_kernel(200_000)));
+}
+
+#[test]
+fn r6_order_and_winding_make_no_difference_in_batches() {
+    orders_and_windings(Tried::new("r6_order_and_winding_make_no_difference_in_batches", 300));
+}
+
+#[test]
+#[ignore = "the long run: ten million triangles by each kernel"]
+fn r4_long_batches_against_the_oracle() {
+    batches_against_the_oracle(Tried::new("r4_long_batches_against_the_oracle", per_kernel(10_000_000)));
+}
+
+#[test]
+fn small_triangles_are_the_oracles_with_every_kernel() {
+    const SIDE: i32 = 24;
+    let mut random = Random::named("batches against the oracle");
+    let mut pixels = 0;
+    for _ in 0..20_000 {
+        let reach = random.one_of(&[100, 300, 900, 2_000]);
+        let vertices = small(&mut random, SIDE.into(), SIDE.into(), reach);
+        let shading = shading(&mut random);
+        let mut expected = vec![None; (SIDE * SIDE) as usize];
+        for pixel in oracle::pixels(&vertices, shading, SIDE, SIDE) {
+            expected[(pixel.y * SIDE + pixel.x) as usize] = Some(pixel.byte);
+            pixels += 1;
+        }
+        let mut batch = Batch::new();
+        assert!(batch.push(&vertices, shading));
+        for kernel in Kernel::available() {
+            let on = |empty: u8| {
+                let mut bytes = vec![empty; (SIDE * SIDE) as usize];
+                let frame = Frame::new(&mut bytes, SIDE as u32, SIDE as u32, SIDE as usize).expect("legal");
+                Raster::new(frame).with_kernel(kernel).batch(&batch);
+                bytes
+            };
+            let drawn: Vec<Option<u8>> =
+                on(0).into_iter().zip(on(1)).map(|(on_0, on_1)| (on_0 == on_1).then_some(on_0)).collect();
+            assert_eq!(drawn, expected, "{kernel}, {shading:?}, {vertices:?}");
+        }
+    }
+    assert!(pixels > 50_000, "{pixels}");
+}
+
+/// Where a test draws.
+struct Place {
+    width: u32,
+    height: u32,
+    pitch: usize,
+    clip: Option<Rect>,
+    band: std::ops::Range<u32>,
+    depth: bool,
+}
+
+/// The bytes, the depths and the counts of drawing with `draw`.
+fn drawn(
+    place: &Place,
+    kernel: Kernel,
+    mut plain: impl FnMut(&mut Raster<'_>) -> Drawn,
+    mut deep: impl FnMut(&mut Raster<'_, u32>) -> Drawn,
+) -> (Vec<u8>, Vec<u32>, Drawn) {
+    let mut bytes = vec![99; place.pitch * (place.band.end - place.band.start) as usize];
+    let mut depths = Vec::new();
+    let frame = Frame::band(&mut bytes, place.width, place.height, place.pitch, place.band.clone()).expect("legal");
+    let mut raster = Raster::new(frame).with_kernel(kernel);
+    if let Some(clip) = place.clip {
+        raster = raster.with_clip(clip);
+    }
+    let drawn = if place.depth { deep(&mut raster.with_cleared_depth(&mut depths)) } else { plain(&mut raster) };
+    (bytes, depths, drawn)
+}
+
+#[test]
+fn batches_draw_what_single_triangles_do() {
+    let mut random = Random::named("batches against single triangles");
+    let mut total = Drawn::default();
+    for round in 0..600 {
+        let (width, height) = random.one_of(&[(320, 200), (97, 40), (9, 300), (1, 1), (700, 3)]);
+        let mut some_rect = |most_x: i64, most_y: i64| {
+            let mut side = |most| {
+                let (a, b) = (random.within(0, most) as u32, random.within(0, most) as u32);
+                (a.min(b), a.max(b))
+            };
+            let ((x0, x1), (y0, y1)) = (side(most_x), side(most_y));
+            Rect { x0, y0, x1, y1 }
+        };
+        let (clip, band) = (some_rect(width, height), some_rect(1, height - 1));
+        let place = Place {
+            width: width as u32,
+            height: height as u32,
+            pitch: width as usize + random.one_of(&[0, 0, 3]),
+            clip: (round % 3 == 0).then_some(clip),
+            band: if round % 4 == 0 { band.y0..band.y1 + 1 } else { 0..height as u32 },
+            depth: round % 2 == 0,
+        };
+        let count = random.within(0, Batch::CAPACITY as i64);
+        let triangles: Vec<([Vertex; 3], Shading)> =
+            (0..count).map(|_| (any(&mut random, width, height), shading(&mut random))).collect();
+        let mut batch = Batch::new();
+        assert!(triangles.iter().all(|(vertices, shading)| batch.push(vertices, *shading)));
+        let expected = drawn(
+            &place,
+            Kernel::PORTABLE,
+            |raster| one_by_one(raster, &triangles),
+            |raster| one_by_one(raster, &triangles),
+        );
+        for kernel in Kernel::available() {
+            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
+            assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
+        }
+        total += expected.2;
+    }
+    assert!(total.pixels > 100_000, "{total:?}");
+}
+
+/// Triangles of about the same size lie in groups that go the same way: of one row each, of two, of four, of eight and of
+/// more. Many lie one upon another, and at the frame's edges, where no pixel is behind the last.
+#[test]
+fn triangles_of_one_size_are_drawn_as_one_by_one() {
+    let mut random = Random::named("batches of small triangles of one size");
+    let mut total = Drawn::default();
+    for round in 0..600 {
+        let (width, height) = random.one_of(&[(40, 30), (17, 9), (9, 40), (64, 64), (130, 5)]);
+        let place = Place {
+            width: width as u32,
+            height: height as u32,
+            pitch: width as usize + random.one_of(&[0, 0, 7]),
+            clip: None,
+            band: 0..height as u32,
+            depth: round % 3 > 0,
+        };
+        // Units across and down.
+        let (across, down) =
+            random.one_of(&[(200, 200), (300, 200), (700, 260), (700, 700), (1_500, 1_500), (3_000, 3_500)]);
+        let (across, down) = (across.min(width * 256), down.min(height * 256));
+        let level = random.one_of(&[None, None, Some(9)]);
+        let some = random.within(1, Batch::CAPACITY as i64);
+        let count = random.one_of(&[Batch::CAPACITY as i64, some]);
+        let mut batch = Batch::new();
+        let mut triangles = Vec::new();
+        for _ in 0..count {
+            let corner = |most: i64, random: &mut Random| {
+                let at = random.within(0, most);
+                random.one_of(&[at, at, at, 0, most])
+            };
+            let (left, top) = (corner(width * 256 - across, &mut random), corner(height * 256 - down, &mut random));
+            let vertices = [0; 3].map(|_| {
+                let (x, y) = (left + random.within(0, across), top + random.within(0, down));
+                vertex(x, y, random.within(0, 0xFF00), level.unwrap_or(random.log_uniform(30) as i64))
+            });
+            let shading = shading(&mut random);
+            assert!(batch.push(&vertices, shading));
+            triangles.push((vertices, shading));
+        }
+        let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
+        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
+        for kernel in Kernel::available() {
+            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
+            assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
+        }
+        total += expected.2;
+    }
+    assert!(total.tested > 50_000 && total.pixels > 50_000, "{total:?}");
+}
+
+/// A corner anywhere in a frame, one in three coordinates at an end, with a depth if there is one.
+fn corner(random: &mut Random, width: i64, height: i64, level: Option<i64>) -> Vertex {
+    let mut along = |side: i64| {
+        let at = random.within(0, side * 256);
+        random.one_of(&[at, at, at, at, 0, side * 256])
+    };
+    let (x, y) = (along(width), along(height));
+    let shade = random.within(0, 0xFF00);
+    vertex(x, y, random.one_of(&[0, 0xFF00, shade, shade]), level.unwrap_or(random.log_uniform(30) as i64))
+}
+
+#[test]
+fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
+    let mut random = Random::named("batches of large triangles");
+    // The largest that batches draw themselves, and a little more, in each direction.
+    let frames = [(320, 200), (640, 400), (512, 512), (520, 515), (1_024, 256), (1_030, 200), (63, 4_096), (65, 4_096)];
+    let mut total = Drawn::default();
+    for round in 0..160 {
+        let (width, height) = frames[round % frames.len()];
+        let place = Place {
+            width: width as u32,
+            height: height as u32,
+            pitch: width as usize + random.one_of(&[0, 5]),
+            clip: None,
+            band: 0..height as u32,
+            depth: round / frames.len() % 2 == 0,
+        };
+        let mut batch = Batch::new();
+        let mut triangles = Vec::new();
+        for _ in 0..random.within(1, 12) {
+            let level = random.one_of(&[None, None, Some(9), Some(10)]);
+            let vertices = [0; 3].map(|_| corner(&mut random, width, height, level));
+            let shading = shading(&mut random);
+            assert!(batch.push(&vertices, shading));
+            triangles.push((vertices, shading));
+        }
+        let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
+        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
+        for kernel in Kernel::available() {
+            // None reaches beyond the frame.
+            let clips = random.within(0, 1) == 0;
+            let draw = |raster: &mut Raster<'_>| if clips { raster.batch(&batch) } else { raster.batch_inside(&batch) };
+            let batched = drawn(&place, kernel, draw, draw);
+            assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
+        }
+        total += expected.2;
+    }
+    assert!(total.pixels > 10_000_000 && total.tested > 10_000_000, "{total:?}");
+}
+
+/// Where set-up in f64 is at the end of its digits: what is larger is drawn by single triangles.
+#[test]
+fn r4_large_triangles_of_batches_start_exactly() {
+    let mut tried = Tried::new("r4_large_triangles_of_batches_start_exactly", per_kernel(320));
+    let mut random = Random::named("exact starts");
+    let place = Place {
+        width: shapes::SIDE as u32,
+        height: shapes::SIDE as u32,
+        pitch: shapes::SIDE as usize,
+        clip: None,
+        band: 0..shapes::SIDE as u32,
+        depth: false,
+    };
+    // By their number of squares of a batch.
+    let (mut larger, mut smaller) = (0, 0);
+    for _ in 0..320 {
+        let shading = random.one_of(&[Shading::Gouraud, Shading::GouraudReseeded]);
+        let triangle = (shapes::with_exact_starts(&mut random), shading);
+        let [columns, rows] = [Vertex::x, Vertex::y].map(|of| {
+            let along = triangle.0.each_ref().map(|v| of(v).to_bits());
+            (along.iter().max().expect("three") - along.iter().min().expect("three")) / 256
+        });
+        *if columns * rows > 1 << 18 { &mut larger } else { &mut smaller } += 1;
+        let mut batch = Batch::new();
+        assert!(batch.push(&triangle.0, shading));
+        let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &[triangle]);
+        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, |_| Drawn::default());
+        // The bytes of the first pixels of rows, from the oracle.
+        let points = triangle.0.each_ref().map(oracle::point);
+        let shades = oracle::Shades::of_vertices(&triangle.0, shading);
+        for y in (0..shapes::SIDE as i32).step_by(61) {
+            let covers = |x: &i32| oracle::covers(points, oracle::centre(*x, y));
+            if let Some(x) = (0..shapes::SIDE as i32).find(covers) {
+                let byte = expected.0[(y * shapes::SIDE as i32 + x) as usize];
+                assert_eq!(byte, shades.byte((x, x), x, y, None), "({x}, {y}) of {triangle:?}");
+            }
+        }
+        for kernel in Kernel::available() {
+            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |_| Drawn::default());
+            assert!(batched == expected, "{kernel}: {:?} and {:?} of {triangle:?}", batched.2, expected.2);
+            tried.add(1);
+        }
+    }
+    assert!(larger > 60 && smaller > 20, "{larger} are larger than what a batch draws, {smaller} are not");
+}
+
+/// A depth buffer laid over other rows than the frame's: those that it lacks are not drawn, as one by one.
+#[test]
+fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
+    const WIDTH: u32 = 32;
+    let mut random = Random::named("batches and other rows' depths");
+    let (mut missed, mut written) = (0, 0);
+    for (rows, held) in [(0..8, 8..16), (8..16, 0..8), (0..8, 3..11), (3..11, 0..8), (0..8, 0..5), (0..5, 0..8)] {
+        for _ in 0..50 {
+            let (mut batch, mut triangles) = (Batch::new(), Vec::new());
+            for _ in 0..50 {
+                let (vertices, shading) = (small(&mut random, WIDTH.into(), 16, 900), shading(&mut random));
+                assert!(batch.push(&vertices, shading));
+                triangles.push((vertices, shading));
+            }
+            let on = |kernel: Kernel, draw: &dyn Fn(&mut Raster<'_>) -> Drawn| {
+                let (mut bytes, mut depths) = ([99; 8 * WIDTH as usize], [5; 8 * WIDTH as usize]);
+                let mut other = bytes;
+                let other = Frame::band(&mut other, WIDTH, 16, WIDTH as usize, held.clone()).expect("legal");
+                let frame = Frame::band(&mut bytes, WIDTH, 16, WIDTH as usize, rows.clone()).expect("legal");
+                let depth = DepthBuffer::new(&mut depths, &other).expect("long enough");
+                let drawn = draw(&mut Raster::new(frame).with_kernel(kernel).with_depth(depth));
+                (bytes, depths, drawn)
+            };
+            let expected = on(Kernel::PORTABLE, &|raster| one_by_one(raster, &triangles));
+            missed += expected.2.covered - expected.2.tested;
+            written += expected.2.pixels;
+            for kernel in Kernel::available() {
+                let batched = on(kernel, &|raster| raster.batch(&batch));
+                assert!(batched == expected, "{kernel}, {rows:?} and {held:?}: {:?}, {:?}", batched.2, expected.2);
+            }
+        }
+    }
+    assert!(missed > 5_000 && written > 5_000, "{missed} pixels missed, {written} written");
+}
+
+#[test]
+fn a_batch_takes_what_it_has_room_for() {
+    let vertices = [vertex(0, 0, 0, 0), vertex(512, 0, 0, 0), vertex(0, 512, 0, 0)];
+    let mut batch = Batch::default();
+    assert!(!batch.push(&vertices, Shading::GouraudHyperbolic) && batch.is_empty());
+    for _ in 0..Batch::CAPACITY {
+        assert!(!batch.is_full() && batch.push(&vertices, Shading::Flat(3)));
+    }
+    assert!(batch.is_full() && !batch.push(&vertices, Shading::Flat(3)));
+    assert_eq!(batch.len(), Batch::CAPACITY);
+    batch.clear();
+    assert!(batch.is_empty());
+}

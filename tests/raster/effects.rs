@@ -1,0 +1,749 @@
+//! Triangles with effects against a naive oracle, which takes every pixel for itself and every stage by
+//! the letter of its definition; and what must change nothing: order, winding, clip rectangle, bands,
+//! kernel.
+
+use crate::support::oracle::{self, Point, Ratio};
+use crate::support::random::Random;
+use crate::support::triangles;
+use crate::support::tried::Tried;
+use mode13h::fixed::{I24F8, U8F8};
+use mode13h::raster::effects::{Apart, Attributes, Lighting, Limits, Look, Mix, Source, TextureLook, TextureMapping};
+use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::span::Kernel;
+use mode13h::span::channels::{mix_cube_portable, mix_nearest};
+use mode13h::span::depth::Cell;
+use mode13h::span::dither::BAYER;
+use mode13h::span::lit::{Lanes, Points};
+use mode13h::span::texture::{Levels, Texels};
+use num_bigint::BigInt;
+use num_traits::Signed;
+
+const WIDTH: i32 = 150;
+const HEIGHT: i32 = 60;
+/// What the frame holds before.
+const BEFORE: u8 = 77;
+
+/// Tables and an image, all random.
+struct Stock {
+    tables: Vec<Box<[u8; 65_536]>>,
+    map: Box<[u8; 32_768]>,
+    texels: Vec<u8>,
+    /// Of all levels from 1 on.
+    levels: Vec<u8>,
+}
+
+impl Stock {
+    fn new(random: &mut Random) -> Self {
+        let mut bytes = |length: usize| (0..length).map(|_| random.within(0, 255) as u8).collect::<Vec<u8>>();
+        let table = |bytes: Vec<u8>| bytes.into_boxed_slice().try_into().expect("64 KiB");
+        Self {
+            tables: (0..6).map(|_| table(bytes(65_536))).collect(),
+            map: bytes(32_768).into_boxed_slice().try_into().expect("32 KiB"),
+            texels: bytes(65_536),
+            levels: bytes(21_845),
+        }
+    }
+}
+
+/// Light that is exact in f64: the sum of the first three values, held in range.
+#[derive(Debug)]
+struct Sum;
+
+impl Sum {
+    fn of([a, b, c]: [f32; 3]) -> u16 {
+        (a + b + c).clamp(0.0, 65_280.0) as u16
+    }
+}
+
+impl Lighting for Sum {
+    fn shades(&self, points: &Points) -> Lanes<u16> {
+        core::array::from_fn(|lane| Self::of([0, 1, 2].map(|i| points[i][lane])))
+    }
+
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
+        let shades = self.shades(points);
+        [0, 1, 2].map(|i| shades.map(|shade| shade >> i))
+    }
+}
+
+fn attributes(random: &mut Random) -> [Attributes; 3] {
+    core::array::from_fn(|_| {
+        let mut shade = || U8F8::from_bits(random.within(0, 0xFF00) as u16);
+        let (fog, channels, slope) = (shade(), [shade(), shade(), shade()], [shade(), shade()]);
+        let reach = random.log_uniform(30) as i64;
+        let texture = core::array::from_fn(|_| random.within(-reach, reach) as i32);
+        let lit = core::array::from_fn(|_| random.within(0, 20_000) as f32);
+        Attributes { texture, fog, channels, slope, lit }
+    })
+}
+
+/// Any two, seldom so that the least is above the greatest; shades beyond 255, too, which count as that.
+fn limits(random: &mut Random) -> Limits {
+    let [a, b] = [0, 1].map(|_| random.within(0, 0xFFFF) as u16);
+    let (least, most) = if random.within(0, 9) == 0 { (a, b) } else { (a.min(b) / 4, a.max(b)) };
+    Limits { least: U8F8::from_bits(least), most: U8F8::from_bits(most) }
+}
+
+fn look<'a>(random: &mut Random, stock: &'a Stock) -> Look<'a> {
+    let mut maybe = |n: i64| random.within(0, n) == 0;
+    let (channels, dither, texture, fog, blend) = (maybe(3), maybe(2), maybe(1), maybe(2), maybe(3));
+    let (ubits, vbits) = (random.within(0, 8) as u32, random.within(0, 8) as u32);
+    Look {
+        source: match random.within(0, 10) {
+            10 => Source::Curved([0, 1, 2].map(|_| limits(random))),
+            0 => Source::NormalTable(&stock.tables[0]),
+            1 => Source::Lit(&Sum),
+            2 => Source::LitEvery(random.one_of(&Apart::ALL), &Sum),
+            3 => Source::Shaded(Shading::Flat(random.within(0, 255) as u8)),
+            _ => Source::Shaded(random.one_of(Shading::INTERPOLATED)),
+        },
+        channels: channels.then(|| match random.within(0, 1) {
+            0 => Mix::Cube,
+            _ => Mix::Nearest { map: &stock.map, spread: random.within(0, 255) as u8 },
+        }),
+        dither: dither.then_some(&BAYER),
+        texture: texture.then(|| TextureLook {
+            texels: Texels::new(&stock.texels[..1 << (ubits + vbits)], ubits, vbits).expect("as many texels"),
+            levels: (random.within(0, 1) == 0).then(|| {
+                let levels = &stock.levels[..Levels::length(ubits, vbits)];
+                Levels::new(levels, ubits, vbits).expect("as many texels")
+            }),
+            mapping: random.one_of(&[TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective]),
+            tables: [&stock.tables[1], &stock.tables[2], &stock.tables[3]],
+        }),
+        fog: fog.then_some(&stock.tables[4]),
+        blend: blend.then_some(&stock.tables[5]),
+        keeps_depth: random.within(0, 1) == 0,
+    }
+}
+
+/// One triangle, by definition.
+struct Naive<'a> {
+    corners: [Point; 3],
+    vertices: &'a [Vertex; 3],
+    attributes: &'a [Attributes; 3],
+    look: &'a Look<'a>,
+    /// The shades of the corners, or each of their channels.
+    shades: Vec<oracle::Shades>,
+}
+
+impl<'a> Naive<'a> {
+    fn new(vertices: &'a [Vertex; 3], attributes: &'a [Attributes; 3], look: &'a Look<'a>) -> Self {
+        // Of what is not shaded the channels are linear.
+        let shading = if let Source::Shaded(shading) = look.source { shading } else { Shading::default() };
+        let channels = [0, 1, 2].map(|i| attributes.each_ref().map(|a| a.channels[i].to_bits()));
+        let shades = match look.channels {
+            Some(_) => channels.map(|values| oracle::Shades::new(vertices, values, shading)).into(),
+            None => vec![oracle::Shades::of_vertices(vertices, shading)],
+        };
+        Self { corners: vertices.each_ref().map(oracle::point), vertices, attributes, look, shades }
+    }
+
+    /// A value that is linear on the screen, in 8.8, without the half: exact at `seed`, then in steps.
+    fn linear(&self, values: [u16; 3], seed: i32, x: i32, y: i32) -> i128 {
+        let values = values.map(i128::from);
+        let exact = oracle::interpolate(self.corners, values, oracle::centre(seed, y));
+        let step = oracle::per_pixel(self.corners, values);
+        let start = if step.n < 0 { exact.ceil() } else { exact.floor() };
+        start + step.truncate() * i128::from(x - seed)
+    }
+
+    fn depths(&self) -> [i128; 3] {
+        self.vertices.each_ref().map(|v| i128::from(v.depth().max(1)))
+    }
+
+    /// A value that is linear on the face.
+    fn on_face(&self, values: [i128; 3], x: i32, y: i32) -> Ratio {
+        let depths = self.depths();
+        let products = [0, 1, 2].map(|i| depths[i] * values[i]);
+        let at = oracle::centre(x, y);
+        Ratio {
+            n: oracle::interpolate(self.corners, products, at).n,
+            d: oracle::interpolate(self.corners, depths, at).n,
+        }
+    }
+
+    /// A shade that is quadratic on the screen, as it is defined: by the basis of six functions, each 1 at one of the points
+    /// and 0 at the others. All are whole numbers over the square of the area.
+    fn quadratic(&self, channel: usize, x: i32, y: i32) -> Ratio {
+        let weight = |corner: usize| {
+            let one = [0, 1, 2].map(|i| i128::from(i == corner));
+            oracle::interpolate(self.corners, one, oracle::centre(x, y))
+        };
+        let [a, b, c] = [weight(0), weight(1), weight(2)];
+        let area = a.d;
+        let at = |corner: usize, value: usize| self.attributes[corner].lit[value] as i128;
+        let own = |corner: usize, weight: Ratio| at(corner, channel) * weight.n * (2 * weight.n - area);
+        let between = |opposite: usize, from: Ratio, to: Ratio| 4 * at(opposite, channel + 3) * from.n * to.n;
+        let sum = own(0, a) + own(1, b) + own(2, c) + between(0, b, c) + between(1, c, a) + between(2, a, b);
+        Ratio { n: sum, d: area * area }
+    }
+
+    /// The byte of it within its limits. One that is half-way between two counts as the even one.
+    fn quadratic_byte(&self, limits: Limits, channel: usize, x: i32, y: i32, threshold: u8) -> u8 {
+        let exact = self.quadratic(channel, x, y);
+        let nearest = Ratio { n: 2 * exact.n + exact.d, d: 2 * exact.d }.floor();
+        let [least, most] = [limits.least, limits.most].map(|limit| i128::from(limit.to_bits().min(0xFF00)));
+        ((nearest.max(least).min(most) + i128::from(threshold)) >> 8) as u8
+    }
+
+    /// The level of a mipmap at a pixel: of the coordinates' exact derivatives, with the depth in whole sixteenths.
+    fn level(&self, mapping: TextureMapping, last: u32, x: i32, y: i32) -> u32 {
+        let depths = if mapping == TextureMapping::Affine { [1; 3] } else { self.depths() };
+        let at = |values: [i128; 3], x, y| oracle::interpolate(self.corners, values, oracle::centre(x, y)).n;
+        // By the quotient's rule, times the divisor's square.
+        let derivative = |of: usize, dx: i32, dy: i32| {
+            let products = [0, 1, 2].map(|i| depths[i] * i128::from(self.attributes[i].texture[of]));
+            let (n, d) = (at(products, x, y), at(depths, x, y));
+            let (dn, dd) = (at(products, x + dx, y + dy) - n, at(depths, x + dx, y + dy) - d);
+            (BigInt::from(dn) * d - BigInt::from(n) * dd).abs()
+        };
+        let length = |dx: i32, dy: i32| -> BigInt {
+            let (u, v) = (derivative(0, dx, dy), derivative(1, dx, dy));
+            2 * u.clone().max(v.clone()) + u.min(v)
+        };
+        let doubled = length(1, 0).max(length(0, 1));
+        let depth = oracle::interpolate(self.corners, depths, oracle::centre(x, y));
+        let sixteenths = Ratio { n: 16 * depth.n, d: depth.d }.floor();
+        let square = BigInt::from(sixteenths * depth.d).pow(2);
+        // doubled / 2 / (square / 256) / 65,536 is at most 181/128 texels of the level.
+        (0..last).find(|level| &doubled * 64 <= ((&square * 181) << level) * 256).unwrap_or(last)
+    }
+
+    fn texel(&self, texture: &TextureLook<'_>, seed: i32, last: i32, x: i32, y: i32) -> (u32, u8) {
+        let from = seed + (x - seed) / 16 * 16;
+        let middle = (from + 8).min(last).max(from);
+        let level = texture.levels.map_or(0, |levels| self.level(texture.mapping, levels.last(), middle, y));
+        let size = 1 << level;
+        let of_level = |exact: Ratio| Ratio { d: exact.d * size, ..exact };
+        let [u, v] = [0, 1].map(|i| {
+            let values = self.attributes.each_ref().map(|a| i128::from(a.texture[i]));
+            let on_face = |x: i32| of_level(self.on_face(values, x, y)).floor();
+            match texture.mapping {
+                TextureMapping::Affine => {
+                    let exact = of_level(oracle::interpolate(self.corners, values, oracle::centre(seed, y)));
+                    let step = of_level(oracle::per_pixel(self.corners, values));
+                    let start = if step.n < 0 { exact.ceil() } else { exact.floor() };
+                    start + step.truncate() * i128::from(x - seed)
+                }
+                TextureMapping::Perspective => on_face(x),
+                TextureMapping::Every16 => {
+                    let to = (from + 16).min(last).max(from);
+                    let (a, b) = (on_face(from), on_face(to));
+                    let step = if to == from { 0 } else { (b - a) / i128::from(to - from) };
+                    a + step * i128::from(x - from)
+                }
+            }
+        });
+        let texels = match texture.levels {
+            Some(levels) if level > 0 => levels.get(level).expect("a level"),
+            _ => texture.texels,
+        };
+        let whole = |c: i128, size: usize| c.div_euclid(65_536).rem_euclid(size as i128) as u32 * 65_536;
+        (level, texels.at(whole(u, texels.width()), whole(v, texels.height())))
+    }
+
+    /// The byte of a pixel in a row whose first and last covered pixels inside the frame are `first` and
+    /// `last`.
+    fn byte(&self, first: i32, last: i32, x: i32, y: i32, before: u8) -> u8 {
+        let seed = first + (x - first) / 64 * 64;
+        let threshold = self.look.dither.map_or(128, |matrix| matrix[(y & 7) as usize][(x & 7) as usize]);
+        let lookup = |table: &[u8; 65_536], high: u8, low: u8| table[usize::from(high) << 8 | usize::from(low)];
+        let byte_of = |sum: i128, threshold: u8| ((sum + i128::from(threshold)) >> 8) as u8;
+        let linear = |value: fn(&Attributes) -> U8F8, threshold: u8| {
+            let values = self.attributes.each_ref().map(|a| value(a).to_bits());
+            byte_of(self.linear(values, seed, x, y), threshold)
+        };
+        let lit_at = |x: i32| {
+            // Whole numbers below 2¹⁵ times depths below 2³⁰ times areas: the sum's nearest f64 is off by
+            // some parts in 2⁵¹, the f32 by one in 2²⁴.
+            let point = [0, 1, 2].map(|i| {
+                let exact = self.on_face(self.attributes.each_ref().map(|a| a.lit[i] as i128), x, y);
+                (exact.n as f64 / exact.d as f64) as f32
+            });
+            Sum::of(point)
+        };
+        // The shift of a channel, before what is between the lit pixels is made of it.
+        let lit = |shift: usize| match self.look.source {
+            Source::LitEvery(apart, _) => {
+                let apart = apart.pixels() as i32;
+                let from = seed + (x - seed) / apart * apart;
+                let to = (from + apart).min(last).max(from);
+                let [a, b] = [from, to].map(|x| i128::from(lit_at(x) >> shift));
+                let step = if to == from { 0 } else { (b - a) * 256 / i128::from(to - from) };
+                a + (step * i128::from(x - from)).div_euclid(256)
+            }
+            _ => i128::from(lit_at(x) >> shift),
+        };
+        let textured = self.look.texture.as_ref().map(|texture| (texture, self.texel(texture, seed, last, x, y).1));
+        let mut byte = if let Some(mix) = &self.look.channels {
+            let mut channels = match self.look.source {
+                Source::Lit(_) | Source::LitEvery(..) => [0, 1, 2].map(|i| byte_of(lit(i), 128)),
+                Source::Curved(limits) => [0, 1, 2].map(|i| self.quadratic_byte(limits[i], i, x, y, 128)),
+                _ => [0, 1, 2].map(|i| self.shades[i].byte((first, last), x, y, None)),
+            };
+            if let Some((texture, texel)) = textured {
+                channels = [0, 1, 2].map(|i| lookup(texture.tables[i], channels[i], texel));
+            }
+            let ([r, g, b], mut byte) = (channels, [0]);
+            match mix {
+                Mix::Nearest { map, spread } => {
+                    mix_nearest(&mut byte, &[r], &[g], &[b], &[threshold; 8], 0, *spread, map);
+                }
+                _ => mix_cube_portable(&mut byte, &[r], &[g], &[b], &[threshold; 8], 0),
+            }
+            byte[0]
+        } else {
+            let shade = match self.look.source {
+                Source::Shaded(_) => self.shades[0].byte((first, last), x, y, self.look.dither.map(|_| threshold)),
+                Source::NormalTable(table) => lookup(table, linear(|a| a.slope[1], 128), linear(|a| a.slope[0], 128)),
+                Source::Lit(_) | Source::LitEvery(..) => byte_of(lit(0), threshold),
+                Source::Curved(limits) => self.quadratic_byte(limits[0], 0, x, y, threshold),
+                _ => unreachable!("all sources are tried"),
+            };
+            match textured {
+                Some((texture, texel)) => lookup(texture.tables[0], shade, texel),
+                None => shade,
+            }
+        };
+        if let Some(table) = self.look.fog {
+            byte = lookup(table, linear(|a| a.fog, 128), byte);
+        }
+        if let Some(table) = self.look.blend {
+            byte = lookup(table, byte, before);
+        }
+        byte
+    }
+
+    /// The frame: bytes, and which pixels are covered.
+    fn frame(&self) -> (Vec<u8>, Vec<bool>) {
+        let mut bytes = vec![BEFORE; (WIDTH * HEIGHT) as usize];
+        let mut covered = vec![false; bytes.len()];
+        for y in 0..HEIGHT {
+            let row: Vec<i32> = (0..WIDTH).filter(|&x| oracle::covers(self.corners, oracle::centre(x, y))).collect();
+            let (Some(&first), Some(&last)) = (row.first(), row.last()) else { continue };
+            for x in row {
+                let place = (y * WIDTH + x) as usize;
+                covered[place] = true;
+                bytes[place] = self.byte(first, last, x, y, BEFORE);
+            }
+        }
+        (bytes, covered)
+    }
+}
+
+/// What the raster draws.
+fn draw(
+    vertices: &[Vertex; 3],
+    attributes: &[Attributes; 3],
+    look: &Look<'_>,
+    clip: Option<Rect>,
+    kernel: Kernel,
+) -> Vec<u8> {
+    let mut bytes = vec![BEFORE; (WIDTH * HEIGHT) as usize];
+    let frame = Frame::new(&mut bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+    let mut raster = Raster::new(frame).with_kernel(kernel);
+    if let Some(clip) = clip {
+        raster = raster.with_clip(clip);
+    }
+    raster.triangle_with_effects(vertices, attributes, look);
+    bytes
+}
+
+fn sum_is_exact(look: &Look<'_>) -> bool {
+    !matches!(look.source, Source::Lit(_) | Source::LitEvery(..) | Source::Curved(_))
+}
+
+#[test]
+fn triangles_with_effects_are_the_oracles() {
+    let mut tried = Tried::new("triangles_with_effects_are_the_oracles", 1500);
+    let mut random = Random::named("effects");
+    let stock = Stock::new(&mut random);
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let (mut pixels, mut inside) = (0_u64, 0);
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let attributes = attributes(&mut random);
+        let look = look(&mut random, &stock);
+        let naive = Naive::new(&vertices, &attributes, &look);
+        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+            assert!(draw(&vertices, &attributes, &look, None, kernels[0]).iter().all(|byte| *byte == BEFORE));
+            continue;
+        }
+        let (expected, covered) = naive.frame();
+        let bytes = draw(&vertices, &attributes, &look, None, random.one_of(&kernels));
+        let count = covered.iter().filter(|covered| **covered).count() as u64;
+        pixels += count;
+        for (place, (is, should)) in bytes.iter().zip(&expected).enumerate() {
+            // Light in floats may fall to either side of a step; elsewhere every byte is exact.
+            let off_screen = !covered[place];
+            assert!(
+                is == should || (!sum_is_exact(&look) && !off_screen),
+                "pixel {place}: {is}, not {should}: {vertices:?}, {attributes:?}, {look:?}"
+            );
+        }
+        if !sum_is_exact(&look) {
+            let differ = bytes.iter().zip(&expected).filter(|(a, b)| a != b).count() as u64;
+            assert!(differ * 50 <= count.max(50), "{differ} of {count}: {vertices:?}, {attributes:?}, {look:?}");
+        }
+        // R6: whatever the order of the corners.
+        let [a, b, c] = vertices;
+        let [p, q, r] = attributes;
+        for (vertices, attributes) in [([b, c, a], [q, r, p]), ([b, a, c], [q, p, r]), ([c, b, a], [r, q, p])] {
+            assert_eq!(draw(&vertices, &attributes, &look, None, kernels[0]), bytes, "{vertices:?}");
+        }
+        // R8: a clip rectangle changes no byte inside it.
+        let (x, y) = (random.within(0, WIDTH.into()) as u32, random.within(0, HEIGHT.into()) as u32);
+        let clip = Rect { x0: x / 2, y0: y / 2, x1: x, y1: y };
+        let clipped = draw(&vertices, &attributes, &look, Some(clip), kernels[0]);
+        for place in 0..bytes.len() {
+            let (x, y) = ((place as i32 % WIDTH) as u32, (place as i32 / WIDTH) as u32);
+            let inside = (clip.x0..clip.x1).contains(&x) && (clip.y0..clip.y1).contains(&y);
+            assert_eq!(clipped[place], if inside { bytes[place] } else { BEFORE }, "({x}, {y}) in {clip:?}");
+        }
+        // Wholly inside the frame it is the same without a look at the frame's edges.
+        let within = |bits: i32, side: i32| (0..=side * 256).contains(&bits);
+        if vertices.iter().all(|v| within(v.x().to_bits(), WIDTH) && within(v.y().to_bits(), HEIGHT)) {
+            let mut unclipped = vec![BEFORE; (WIDTH * HEIGHT) as usize];
+            let frame = Frame::new(&mut unclipped, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+            Raster::new(frame).triangle_with_effects_inside(&vertices, &attributes, &look);
+            assert_eq!(unclipped, bytes, "{vertices:?}");
+            inside += usize::from(bytes.iter().any(|byte| *byte != BEFORE));
+        }
+    }
+    assert!(pixels > 300_000, "{pixels} pixels were compared");
+    assert!(inside > 80, "{inside} drawn as lying inside the frame");
+}
+
+/// With a depth buffer a pixel is drawn where it is nearer, and the depth is kept if the look says so.
+#[test]
+fn effects_keep_to_the_depth_buffer() {
+    let mut tried = Tried::new("effects_keep_to_the_depth_buffer", 400);
+    let mut random = Random::named("effects, depth");
+    let stock = Stock::new(&mut random);
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let attributes = attributes(&mut random);
+        let look = look(&mut random, &stock);
+        let whole = draw(&vertices, &attributes, &look, None, Kernel::PORTABLE);
+        let corners = vertices.each_ref().map(oracle::point);
+        let has_area = oracle::edge(corners[0], corners[1], corners[2]) != 0;
+        let before: Vec<u32> = (0..WIDTH * HEIGHT).map(|_| random.log_uniform(30) as u32).collect();
+        let (mut depths, mut bytes) = (before.clone(), vec![BEFORE; (WIDTH * HEIGHT) as usize]);
+        let frame = Frame::new(&mut bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+        let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+        let drawn = Raster::new(frame).with_depth(buffer).triangle_with_effects(&vertices, &attributes, &look);
+        let mut written = 0;
+        for y in 0..HEIGHT {
+            for x in 0..WIDTH {
+                let place = (y * WIDTH + x) as usize;
+                let covered = has_area && oracle::covers(corners, oracle::centre(x, y));
+                let depth = if covered { oracle::depth_at(&vertices, x, y) } else { 0 };
+                let nearer = covered && depth > before[place];
+                written += u32::from(nearer);
+                assert_eq!(bytes[place], if nearer { whole[place] } else { BEFORE }, "({x}, {y}) of {vertices:?}");
+                let kept = if nearer && look.keeps_depth { depth } else { before[place] };
+                assert_eq!(depths[place], kept, "({x}, {y}) of {vertices:?}");
+            }
+        }
+        assert_eq!((drawn.pixels, drawn.tested), (written, drawn.covered));
+    }
+}
+
+/// Whatever the order of the corners, with a depth buffer of either kind.
+#[test]
+fn r6_order_and_winding_make_no_difference_with_effects() {
+    let mut tried = Tried::new("r6_order_and_winding_make_no_difference_with_effects", 400);
+    let mut random = Random::named("r6 effects");
+    let stock = Stock::new(&mut random);
+    let size = (WIDTH * HEIGHT) as usize;
+    let mut pixels = 0;
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let attributes = attributes(&mut random);
+        let look = look(&mut random, &stock);
+        let before: Vec<u32> = (0..size).map(|_| random.log_uniform(30) as u32).collect();
+        let on = |order: [usize; 3]| {
+            let (vertices, attributes) = (order.map(|i| vertices[i]), order.map(|i| attributes[i]));
+            let (mut wide, mut narrow) = (before.clone(), before.iter().map(|&d| u16::of_depth(d)).collect::<Vec<_>>());
+            let (mut bytes, mut second) = (vec![BEFORE; size], vec![BEFORE; size]);
+            let mut like = vec![0; size];
+            let frame = |bytes| Frame::new(bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+            let like = frame(&mut like);
+            let deep = DepthBuffer::new(&mut wide, &like).expect("long enough");
+            let shallow = DepthBuffer::new(&mut narrow, &like).expect("long enough");
+            let drawn = [
+                Raster::new(frame(&mut bytes)).with_depth(deep).triangle_with_effects(&vertices, &attributes, &look),
+                Raster::new(frame(&mut second)).with_depth(shallow).triangle_with_effects(
+                    &vertices,
+                    &attributes,
+                    &look,
+                ),
+            ];
+            (bytes, second, wide, narrow, drawn)
+        };
+        let expected = on([0, 1, 2]);
+        for order in [[0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+            assert!(on(order) == expected, "{order:?} of {vertices:?}, {attributes:?}, {look:?}");
+        }
+        pixels += expected.4[0].pixels;
+    }
+    assert!(pixels > 30_000, "{pixels} pixels");
+}
+
+/// Small triangles that are lit at every pixel take light for several rows at once: bytes, depths and counts are those of
+/// rows that are lit one by one, as they are where another stage follows, such as blending that leaves all as it is.
+#[test]
+fn small_triangles_that_are_lit_are_those_of_their_rows() {
+    let mut tried = Tried::new("small_triangles_that_are_lit_are_those_of_their_rows", 4000);
+    let mut random = Random::named("effects, small");
+    let own: Box<[u8; 65_536]> = (0..=255).flat_map(|own| [own; 256]).collect::<Vec<u8>>().try_into().expect("64 KiB");
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let before: Vec<u32> = (0..WIDTH * HEIGHT).map(|_| random.log_uniform(30) as u32).collect();
+    let (mut pixels, mut tall) = (0, 0);
+    while tried.more() {
+        // Up to 9 pixels across, some of them over the frame's edges, and some of many rows.
+        let high = random.one_of(&[3, 9, 40]);
+        let (left, top) = (random.within(-4, i64::from(WIDTH)), random.within(-4, i64::from(HEIGHT)));
+        let vertices = [0; 3].map(|_| {
+            let (x, y) = (left * 256 + random.within(0, 9 * 256), top * 256 + random.within(0, high * 256));
+            let shade = U8F8::from_bits(random.within(0, 0xFF00) as u16);
+            let (x, y) = (I24F8::from_bits(x as i32), I24F8::from_bits(y as i32));
+            Vertex::new(x, y, shade, random.log_uniform(30) as u32).expect("in range")
+        });
+        let attributes = attributes(&mut random);
+        let plain = Look {
+            source: Source::Lit(&Sum),
+            dither: (random.within(0, 1) == 0).then_some(&BAYER),
+            keeps_depth: random.within(0, 1) == 0,
+            ..Look::PLAIN
+        };
+        let (x, y) = (random.within(0, WIDTH.into()) as u32, random.within(0, HEIGHT.into()) as u32);
+        let clip = random.one_of(&[None, Some(Rect { x0: x / 2, y0: y / 2, x1: x, y1: y })]);
+        let (has_depth, kernel) = (random.within(0, 1) == 0, random.one_of(&kernels));
+        let draw = |look: &Look<'_>| {
+            let (mut depths, mut bytes) = (before.clone(), vec![BEFORE; (WIDTH * HEIGHT) as usize]);
+            let frame = Frame::new(&mut bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+            let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+            let mut raster = Raster::new(frame).with_kernel(kernel);
+            if let Some(clip) = clip {
+                raster = raster.with_clip(clip);
+            }
+            let drawn = if has_depth {
+                raster.with_depth(buffer).triangle_with_effects(&vertices, &attributes, look)
+            } else {
+                raster.triangle_with_effects(&vertices, &attributes, look)
+            };
+            (drawn, bytes, depths)
+        };
+        let (drawn, bytes, depths) = draw(&plain);
+        let (mut by_rows, expected, expected_depths) = draw(&Look { blend: Some(&own), ..plain });
+        assert_eq!(by_rows.blended, by_rows.covered);
+        by_rows.blended = 0;
+        assert!((drawn, &bytes, &depths) == (by_rows, &expected, &expected_depths), "{vertices:?}, {attributes:?}");
+        pixels += drawn.covered;
+        tall += u32::from(drawn.spans > 8);
+    }
+    assert!(pixels > 10_000 && tall > 200, "{pixels} pixels, {tall} of more rows than are lit together");
+}
+
+/// Shades of either sign, more than can be shown among them, on triangles of every kind: each byte is that of the exact
+/// number or of one that is off by no more than f32 is, and all kernels agree.
+#[test]
+fn quadratic_shades_are_the_definition() {
+    let mut tried = Tried::new("quadratic_shades_are_the_definition", 3_000);
+    let mut random = Random::named("quadratic shades");
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let (mut pixels, mut held) = (0_u64, 0_u64);
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let reach = 1 << random.within(4, 17);
+        let mut attributes = attributes(&mut random);
+        for corner in &mut attributes {
+            corner.lit = core::array::from_fn(|_| random.within(-reach, reach) as f32);
+        }
+        let (channel, limits) = (random.within(0, 2) as usize, [0, 1, 2].map(|_| limits(&mut random)));
+        let channels = (random.within(0, 1) == 0).then_some(Mix::Only(channel));
+        let channel = if channels.is_some() { channel } else { 0 };
+        let look = Look { source: Source::Curved(limits), channels, ..Look::PLAIN };
+        let naive = Naive::new(&vertices, &attributes, &look);
+        let bytes = draw(&vertices, &attributes, &look, None, kernels[0]);
+        for kernel in &kernels[1..] {
+            assert_eq!(
+                draw(&vertices, &attributes, &look, None, *kernel),
+                bytes,
+                "{kernel}: {vertices:?} {attributes:?}"
+            );
+        }
+        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+            continue;
+        }
+        // Terms of up to 8 · 5/3 of the greatest shade, each off by 2^-24 of it, six of them; rounding to whole numbers by a
+        // half, which is what the exact byte has, too.
+        let off = (f64::from(1_i32 << 17) * 8.0 * 5.0 / 3.0 * 6.0 / f64::from(1 << 24)).max(0.01);
+        let [least, most] = [limits[channel].least, limits[channel].most].map(|of| f64::from(of.to_bits().min(0xFF00)));
+        for (place, byte) in bytes.iter().enumerate() {
+            let (x, y) = (place as i32 % WIDTH, place as i32 / WIDTH);
+            if !oracle::covers(naive.corners, oracle::centre(x, y)) {
+                assert_eq!(*byte, BEFORE);
+                continue;
+            }
+            let exact = naive.quadratic(channel, x, y);
+            let exact = exact.n as f64 / exact.d as f64;
+            let end = |value: f64| (((value.max(least).min(most)).round() as i64 + 128) >> 8) as u8;
+            let (low, high) = (end(exact - off), end(exact + off));
+            assert!(
+                (low..=high).contains(byte),
+                "({x}, {y}): {byte}, not {low} to {high} for {exact}: {vertices:?}, {attributes:?}, {look:?}"
+            );
+            pixels += 1;
+            held += u64::from(exact < least || exact > most);
+        }
+    }
+    assert!(pixels > 300_000 && held > 30_000, "{pixels} pixels, {held} held");
+}
+
+/// What is no number, too large or too small to be worked with: bytes stay within the limits, and every kernel has the same.
+#[test]
+fn quadratic_shades_of_any_numbers_stay_within() {
+    let mut tried = Tried::new("quadratic_shades_of_any_numbers_stay_within", 1_000);
+    let mut random = Random::named("quadratic shades of anything");
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let odd = [f32::MAX, f32::MIN, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 1e-40, -0.0, 65_280.0, -1.0, 1e10];
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let mut attributes = attributes(&mut random);
+        attributes.iter_mut().flat_map(|corner| &mut corner.lit).for_each(|lit| {
+            if random.within(0, 2) > 0 {
+                *lit = random.one_of(&odd);
+            }
+        });
+        let limits = limits(&mut random);
+        let look = Look { source: Source::Curved([limits; 3]), ..Look::PLAIN };
+        let bytes = draw(&vertices, &attributes, &look, None, kernels[0]);
+        for kernel in &kernels[1..] {
+            assert_eq!(
+                draw(&vertices, &attributes, &look, None, *kernel),
+                bytes,
+                "{kernel}: {vertices:?} {attributes:?}"
+            );
+        }
+        let corners = vertices.each_ref().map(oracle::point);
+        let [least, most] =
+            [limits.least, limits.most].map(|of| ((u32::from(of.to_bits().min(0xFF00)) + 128) >> 8) as u8);
+        for (place, byte) in bytes.iter().enumerate() {
+            let at = oracle::centre(place as i32 % WIDTH, place as i32 / WIDTH);
+            if oracle::covers(corners, at) {
+                assert!(
+                    (least.min(most)..=most).contains(byte),
+                    "{byte} in {least} to {most}: {vertices:?}, {attributes:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Every level is chosen for many pixels, by every mapping: texels are the numbers of their levels, and each is the
+/// oracle's, with every kernel, whole or in bands.
+#[test]
+fn levels_are_the_definition() {
+    let mut tried = Tried::new("levels_are_the_definition", 600);
+    let mut random = Random::named("levels");
+    let (ubits, vbits) = (8_u32, 7_u32);
+    let zeros = vec![0; 1 << (ubits + vbits)];
+    let mut numbers = Vec::new();
+    for level in 1..=8_u32 {
+        let bits = ubits.saturating_sub(level) + vbits.saturating_sub(level);
+        numbers.extend(vec![level as u8; 1 << bits]);
+    }
+    let levels = Levels::new(&numbers, ubits, vbits).expect("as many texels");
+    let texel: Box<[u8; 65_536]> = (0..=255).flat_map(|_| 0..=255).collect::<Vec<u8>>().try_into().expect("64 KiB");
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let mappings = [TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective];
+    let mut pixels = [[0_u32; 9]; 3];
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let reach = 1 << random.within(20, 30);
+        let attributes = [0; 3].map(|_| Attributes {
+            texture: [0; 2].map(|_| random.within(-reach, reach) as i32),
+            ..Attributes::default()
+        });
+        let i = random.within(0, 2) as usize;
+        let texture = TextureLook {
+            texels: Texels::new(&zeros, ubits, vbits).expect("as many texels"),
+            levels: Some(levels),
+            mapping: mappings[i],
+            tables: [&texel; 3],
+        };
+        let look = Look { texture: Some(texture), ..Look::PLAIN };
+        let naive = Naive::new(&vertices, &attributes, &look);
+        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+            continue;
+        }
+        let bytes = draw(&vertices, &attributes, &look, None, kernels[0]);
+        for kernel in &kernels[1..] {
+            assert_eq!(draw(&vertices, &attributes, &look, None, *kernel), bytes, "{kernel}: {vertices:?}");
+        }
+        let cut = random.within(1, i64::from(HEIGHT) - 1) as u32;
+        let mut bands = vec![BEFORE; (WIDTH * HEIGHT) as usize];
+        for rows in [0..cut, cut..HEIGHT as u32] {
+            let band = &mut bands[(rows.start as usize * WIDTH as usize)..(rows.end as usize * WIDTH as usize)];
+            let frame = Frame::band(band, WIDTH as u32, HEIGHT as u32, WIDTH as usize, rows).expect("a legal band");
+            Raster::new(frame).triangle_with_effects(&vertices, &attributes, &look);
+        }
+        assert_eq!(bands, bytes, "{vertices:?}, in bands");
+        for y in 0..HEIGHT {
+            let row: Vec<i32> = (0..WIDTH).filter(|&x| oracle::covers(naive.corners, oracle::centre(x, y))).collect();
+            let (Some(&first), Some(&last)) = (row.first(), row.last()) else { continue };
+            for x in row {
+                let (level, _) = naive.texel(&texture, first + (x - first) / 64 * 64, last, x, y);
+                let is = bytes[(y * WIDTH + x) as usize];
+                assert_eq!(u32::from(is), level, "({x}, {y}): {vertices:?}, {attributes:?}, {:?}", mappings[i]);
+                pixels[i][level as usize] += 1;
+            }
+        }
+    }
+    assert!(pixels.iter().flatten().all(|&count| count > 0), "{pixels:?}");
+}
+
+/// The level is right by what it is for: between the pixel chosen for and the next in either direction coordinates are no
+/// farther apart than √2 texels of the level, as an exact length, and the level before would not do, but for the 12 % that
+/// a length may be taken too long. On triangles that face the eye, whose coordinates change alike everywhere.
+#[test]
+fn a_level_is_the_least_whose_texels_are_as_large_as_pixels() {
+    let mut tried = Tried::new("a_level_is_the_least_whose_texels_are_as_large_as_pixels", 2_000);
+    let mut random = Random::named("levels, lengths");
+    let numbers: Vec<u8> = (1..=8_u8).flat_map(|level| vec![level; 1 << (2 * (8 - u32::from(level)))]).collect();
+    let zeros = vec![0; 65_536];
+    let texel: Box<[u8; 65_536]> = (0..=255).flat_map(|_| 0..=255).collect::<Vec<u8>>().try_into().expect("64 KiB");
+    let depth = 1 << 20;
+    let at = |x: i32, y: i32| Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::default(), depth);
+    let vertices = [at(0, 0), at(40 * 256, 0), at(0, 40 * 256)].map(|vertex| vertex.expect("in range"));
+    while tried.more() {
+        let mapping = random.one_of(&[TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective]);
+        // Texels to a pixel, some turn of the image, and a shear.
+        let reach = 0.05 * 2_f64.powf(13.0 * random.unit());
+        let [across, down] = [0, 1].map(|_| {
+            let (sin, cos) = (6.3 * random.unit()).sin_cos();
+            [reach * cos, reach * random.unit() * sin]
+        });
+        let corner = |part: f64, step: [f64; 2]| step.map(|texels| (40.0 * part * texels * 65_536.0).round() as i32);
+        let attributes = [[0; 2], corner(1.0, across), corner(1.0, down)]
+            .map(|texture| Attributes { texture, ..Attributes::default() });
+        let look = Look {
+            texture: Some(TextureLook {
+                texels: Texels::new(&zeros, 8, 8).expect("as many texels"),
+                levels: Some(Levels::new(&numbers, 8, 8).expect("as many texels")),
+                mapping,
+                tables: [&texel; 3],
+            }),
+            ..Look::PLAIN
+        };
+        let level = draw(&vertices, &attributes, &look, None, Kernel::PORTABLE)[0];
+        let longest = across[0].hypot(across[1]).max(down[0].hypot(down[1]));
+        // 181/128 is √2 but for 1 part in 10⁴; coordinates are rounded to a part in 2²¹ of a texel a pixel.
+        let (most, slack) = (std::f64::consts::SQRT_2 * f64::from(1 << level), 1.001);
+        assert!(level == 8 || longest <= most * slack, "{longest} texels to a pixel, level {level}");
+        assert!(level == 0 || 1.119 * longest * slack > most / 2.0, "{longest} texels to a pixel, level {level}");
+    }
+}

@@ -1,0 +1,187 @@
+//! R5: triangles that share edges draw each pixel inside exactly once and none outside.
+
+use crate::support::oracle::{self, Point};
+use crate::support::random::Random;
+use crate::support::triangles::vertex;
+use crate::support::tried::Tried;
+use mode13h::raster::cover::Ordered;
+use mode13h::raster::{Rect, Vertex};
+
+const WIDTH: i32 = 80;
+const HEIGHT: i32 = 60;
+
+/// A polygon, and triangles that part it.
+struct Parted {
+    outline: Vec<(i64, i64)>,
+    triangles: Vec<[(i64, i64); 3]>,
+}
+
+/// Counts how often each pixel is drawn, and compares with the outline.
+fn check(parted: &Parted, tried: &mut Tried) {
+    let mut counts = vec![0_u32; (WIDTH * HEIGHT) as usize];
+    let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
+    for corners in &parted.triangles {
+        let vertices: [Vertex; 3] = corners.map(|(x, y)| vertex(x, y, 0, 0));
+        Ordered::new(&vertices).rows(WIDTH as u32, clip, |row| {
+            assert!(row.x0 < row.x1, "a row without a pixel: {row:?} of {corners:?}");
+            for x in row.x0..row.x1 {
+                counts[(row.y * WIDTH + x) as usize] += 1;
+            }
+        });
+    }
+    let outline: Vec<Point> = parted.outline.iter().map(|&(x, y)| (i128::from(x), i128::from(y))).collect();
+    let (mut holes, mut doubles, mut outside, mut first) = (0_u32, 0_u32, 0_u32, None);
+    for y in 0..HEIGHT {
+        for x in 0..WIDTH {
+            let inside = oracle::polygon_covers(&outline, oracle::centre(x, y));
+            let times = counts[(y * WIDTH + x) as usize];
+            if times != u32::from(inside) {
+                first.get_or_insert((x, y));
+                holes += u32::from(inside && times == 0);
+                doubles += u32::from(times > 1);
+                outside += u32::from(!inside);
+            }
+        }
+    }
+    tried.worst("holes", f64::from(holes));
+    tried.worst("double pixels", f64::from(doubles));
+    tried.worst("pixels outside", f64::from(outside));
+    assert_eq!(first, None, "a pixel that is not as it should be, triangles {:?}", parted.triangles);
+}
+
+fn place(random: &mut Random) -> (i64, i64) {
+    let snap = random.one_of(&[1, 1, 16, 128, 256]);
+    (random.within(-2000, 22_000) / snap * snap, random.within(-2000, 17_000) / snap * snap)
+}
+
+fn doubled_area(a: (i64, i64), b: (i64, i64), c: (i64, i64)) -> i64 {
+    (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
+}
+
+/// A star-shaped polygon, parted as a fan round its centre.
+fn fan(random: &mut Random) -> Option<Parted> {
+    let centre = place(random);
+    let mut ring: Vec<(i64, i64)> = (0..random.within(3, 40)).map(|_| place(random)).collect();
+    let angle = |p: &(i64, i64)| f64::atan2((p.1 - centre.1) as f64, (p.0 - centre.0) as f64);
+    ring.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+    let triangles: Vec<_> = (0..ring.len()).map(|i| [centre, ring[i], ring[(i + 1) % ring.len()]]).collect();
+    // The centre must see every edge from the same side, in exact arithmetic.
+    triangles.iter().all(|&[a, b, c]| doubled_area(a, b, c) > 0).then_some(Parted { outline: ring, triangles })
+}
+
+/// A strip between two chains, the upper one everywhere above the lower one.
+fn strip(random: &mut Random) -> Option<Parted> {
+    let columns = random.within(1, 20);
+    let mut x = random.within(-3000, 5000);
+    let (mut upper, mut lower) = (Vec::new(), Vec::new());
+    for _ in 0..=columns {
+        let y = random.within(-1000, 9000);
+        upper.push((x, y));
+        lower.push((x, y + random.log_uniform(13) as i64));
+        x += random.log_uniform(12) as i64;
+    }
+    let mut triangles = Vec::new();
+    for i in 0..columns as usize {
+        triangles.push([upper[i], upper[i + 1], lower[i]]);
+        triangles.push([upper[i + 1], lower[i + 1], lower[i]]);
+    }
+    // Where the chain leans so far that a triangle turns over, they overlap.
+    let turned = triangles.iter().any(|&[a, b, c]| doubled_area(a, b, c) <= 0);
+    lower.reverse();
+    upper.extend(lower);
+    (!turned).then_some(Parted { outline: upper, triangles })
+}
+
+/// A grid of quads whose inner corners are moved about, each split along one diagonal.
+fn grid(random: &mut Random) -> Option<Parted> {
+    let (columns, rows) = (random.within(1, 12), random.within(1, 12));
+    let (x0, y0) = place(random);
+    let (w, h) = (random.log_uniform(12) as i64 + 3, random.log_uniform(12) as i64 + 3);
+    let mut corner = vec![vec![(0, 0); columns as usize + 1]; rows as usize + 1];
+    for (r, line) in corner.iter_mut().enumerate() {
+        for (c, at) in line.iter_mut().enumerate() {
+            let (r, c) = (r as i64, c as i64);
+            let inner = r > 0 && r < rows && c > 0 && c < columns;
+            let mut jitter = |size: i64| if inner { random.within(-size / 3, size / 3) } else { 0 };
+            *at = (x0 + c * w + jitter(w), y0 + r * h + jitter(h));
+        }
+    }
+    let mut triangles = Vec::new();
+    for r in 0..rows as usize {
+        for c in 0..columns as usize {
+            let (a, b, d, e) = (corner[r][c], corner[r][c + 1], corner[r + 1][c], corner[r + 1][c + 1]);
+            if random.within(0, 1) == 0 {
+                triangles.extend([[a, b, d], [b, e, d]]);
+            } else {
+                triangles.extend([[a, b, e], [a, e, d]]);
+            }
+        }
+    }
+    let (right, below) = (x0 + columns * w, y0 + rows * h);
+    let outline = vec![(x0, y0), (right, y0), (right, below), (x0, below)];
+    let turned = triangles.iter().any(|&[a, b, c]| doubled_area(a, b, c) <= 0);
+    (!turned).then_some(Parted { outline, triangles })
+}
+
+/// A triangle, parted again and again at random points inside it, some diagonals then flipped.
+fn split(random: &mut Random) -> Option<Parted> {
+    let outline = [place(random), place(random), place(random)];
+    let [a, b, c] = outline;
+    let first = if doubled_area(a, b, c) > 0 { [a, b, c] } else { [a, c, b] };
+    if doubled_area(a, b, c) == 0 {
+        return None;
+    }
+    let mut triangles = vec![first];
+    for _ in 0..random.within(1, 30) {
+        let chosen = random.within(0, triangles.len() as i64 - 1) as usize;
+        let [a, b, c] = triangles[chosen];
+        let (mut s, mut t) = (random.unit(), random.unit());
+        if s + t > 1.0 {
+            (s, t) = (1.0 - s, 1.0 - t);
+        }
+        let inner = |a: i64, b: i64, c: i64| a + ((b - a) as f64 * s) as i64 + ((c - a) as f64 * t) as i64;
+        let p = (inner(a.0, b.0, c.0), inner(a.1, b.1, c.1));
+        let parts = [[a, b, p], [b, c, p], [c, a, p]];
+        if parts.iter().all(|&[a, b, c]| doubled_area(a, b, c) > 0) {
+            triangles[chosen] = parts[0];
+            triangles.extend(&parts[1..]);
+        }
+    }
+    // Flip: two triangles a b p and b a q (sharing a–b) become p q b and q p a, if these are legal.
+    for _ in 0..20 {
+        let one = random.within(0, triangles.len() as i64 - 1) as usize;
+        let [a, b, p] = triangles[one];
+        let other = triangles.iter().position(|t| (0..3).any(|i| (t[i], t[(i + 1) % 3]) == (b, a)));
+        let Some(other) = other else { continue };
+        let q = triangles[other].into_iter().find(|v| *v != a && *v != b).expect("a third corner");
+        if doubled_area(p, q, b) > 0 && doubled_area(q, p, a) > 0 {
+            (triangles[one], triangles[other]) = ([p, q, b], [q, p, a]);
+        }
+    }
+    Some(Parted { outline: outline.to_vec(), triangles })
+}
+
+fn shared_edges(mut tried: Tried, at_least: u64) {
+    let mut random = Random::named("r5");
+    let mut kinds = [0_u64; 4];
+    while kinds.iter().sum::<u64>() < at_least {
+        let kind = random.within(0, 3) as usize;
+        let made = [fan, strip, grid, split][kind](&mut random);
+        let Some(parted) = made else { continue };
+        check(&parted, &mut tried);
+        kinds[kind] += parted.triangles.len() as u64;
+    }
+    tried.add(kinds.iter().sum());
+    assert!(kinds.iter().all(|&triangles| triangles > at_least / 50), "every kind was tried: {kinds:?}");
+}
+
+#[test]
+fn r5_shared_edges() {
+    shared_edges(Tried::new("r5_shared_edges", 20_000), 20_000);
+}
+
+#[test]
+#[ignore = "the long run: 10,000,000 triangles"]
+fn r5_long_shared_edges() {
+    shared_edges(Tried::new("r5_long_shared_edges", 10_000_000), 10_000_000);
+}

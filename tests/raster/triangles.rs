@@ -1,0 +1,544 @@
+//! Single triangles against the oracle: cover, range, shades, clip rectangles, bands, depth.
+
+use crate::support::oracle;
+use crate::support::random::Random;
+use crate::support::triangles::{draw, edge_beside, triangle, vertex};
+use crate::support::tried::Tried;
+use mode13h::fixed::{I24F8, U8F8};
+use mode13h::raster::cover::Ordered;
+use mode13h::raster::depth::DepthPlane;
+use mode13h::raster::{DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex, VertexError};
+
+const WIDTH: u32 = 96;
+const HEIGHT: u32 = 24;
+
+/// The shadings with exact cover, and what a report calls the farthest that a byte of theirs was off.
+const EXACT: &[(Shading, &str)] = &[
+    (Shading::Gouraud, "shades off in gouraud-8.8"),
+    (Shading::GouraudReseeded, "in gouraud-8.8-reseeded"),
+    (Shading::Gouraud1616, "in gouraud-16.16"),
+    (Shading::GouraudHyperbolic, "in gouraud-hyperbolic"),
+    #[cfg(feature = "alloc")]
+    (Shading::Float, "in float"),
+];
+
+/// All shadings.
+fn shadings() -> impl Iterator<Item = Shading> {
+    Shading::INTERPOLATED.iter().copied().chain([Shading::Flat(9)])
+}
+
+#[test]
+fn every_shading_with_exact_cover_is_looked_at() {
+    let exact: Vec<Shading> =
+        Shading::INTERPOLATED.iter().copied().filter(|shading| shading.has_exact_cover()).collect();
+    assert_eq!(EXACT.iter().map(|(shading, _)| *shading).collect::<Vec<_>>(), exact);
+    let mut names: Vec<&str> = shadings().map(Shading::name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), Shading::INTERPOLATED.len() + 1, "each has a name of its own");
+}
+
+/// The pixels that one triangle covers, with its cover, bytes, range and error checked.
+fn check(vertices: &[Vertex; 3]) -> u32 {
+    measure(vertices, WIDTH, HEIGHT).covered
+}
+
+/// What a triangle comes to.
+#[derive(Default)]
+struct Measured {
+    covered: u32,
+    /// Bytes that are not those of the definition, or not drawn where it draws.
+    differ: u32,
+    /// The farthest from the exact shade, of each of `EXACT`.
+    off: Vec<f64>,
+}
+
+impl Measured {
+    fn report(&self, tried: &mut Tried) {
+        tried.worst("bytes that differ", f64::from(self.differ));
+        for ((_, measure), off) in EXACT.iter().zip(&self.off) {
+            tried.worst(measure, *off);
+        }
+    }
+}
+
+/// Cover, bytes, range and error of one triangle in all shadings with exact cover, and flat.
+fn measure(vertices: &[Vertex; 3], width: u32, height: u32) -> Measured {
+    let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
+    let (low, high) = (*shades.iter().min().expect("three"), *shades.iter().max().expect("three"));
+    let mut measured = Measured { off: vec![0.0; EXACT.len()], ..Measured::default() };
+    for ((shading, _), worst) in EXACT.iter().copied().zip(&mut measured.off) {
+        let mut expected = vec![None; (width * height) as usize];
+        for pixel in oracle::pixels(vertices, shading, width as i32, height as i32) {
+            expected[pixel.y as usize * width as usize + pixel.x as usize] = Some(pixel.byte);
+        }
+        let (bound_n, bound_d) = oracle::bound(shading, width.into()).expect("a bound");
+        // Two backgrounds tell a byte that is drawn from one that is left alone.
+        let on = |empty| draw(vertices, shading, width, height, None, empty);
+        let (on_0, on_1) = (on(0), on(1));
+        measured.covered = 0;
+        for y in 0..height as usize {
+            for x in 0..width as usize {
+                let place = y * width as usize + x;
+                let drawn = (on_0[place] == on_1[place]).then_some(on_0[place]);
+                measured.differ += u32::from(drawn != expected[place]);
+                assert_eq!(drawn, expected[place], "{shading:?} at ({x}, {y}) of {vertices:?}");
+                let Some(byte) = drawn.map(i128::from) else { continue };
+                measured.covered += 1;
+                assert!((low + 128) >> 8 <= byte && byte <= (high + 128) >> 8, "range at ({x}, {y}) of {vertices:?}");
+                let exact = oracle::exact_shade(vertices, shading, oracle::centre(x as i32, y as i32));
+                assert!(
+                    exact.is_within(byte * 256, bound_n, bound_d),
+                    "{shading:?}, error at ({x}, {y}) of {vertices:?}"
+                );
+                // Rounded only in the quotient.
+                *worst = worst.max((exact.n - byte * 256 * exact.d).abs() as f64 / exact.d as f64 / 256.0);
+            }
+        }
+    }
+    let flat = draw(vertices, Shading::Flat(7), width, height, None, 0);
+    assert_eq!(flat.iter().filter(|&&byte| byte == 7).count() as u32, measured.covered, "flat covers the same");
+    measured
+}
+
+#[test]
+fn r1_zero_area_draws_nothing() {
+    let mut tried = Tried::new("r1_zero_area_draws_nothing", 2000);
+    let mut random = Random::named("r1");
+    while tried.more() {
+        let (x, y) = (random.within(-500, 30_000), random.within(-500, 8_000));
+        let (dx, dy) = (random.within(-40, 40), random.within(-40, 40));
+        let at = |k: i64| vertex(x + k * dx, y + k * dy, 0x8000, 5);
+        let k = random.within(-100, 100);
+        for vertices in [[at(0), at(1), at(k)], [at(k), at(0), at(0)], [at(0), at(0), at(0)]] {
+            assert_eq!(check(&vertices), 0, "{vertices:?}");
+        }
+    }
+}
+
+/// A sliver a hundred pixels long and at most 1/256 pixel wide that covers this pixel, and what its shades change by from
+/// one pixel to the next.
+fn sliver_through(random: &mut Random, (x, y): (i64, i64)) -> Option<([Vertex; 3], oracle::Ratio)> {
+    let turn = random.unit() * std::f64::consts::TAU;
+    let along = ((turn.cos() * 25_600.0) as i64, (turn.sin() * 25_600.0) as i64);
+    let centre = (x * 256 + 128, y * 256 + 128);
+    let side = random.one_of(&[-1, 1]);
+    let [a, b] = edge_beside(centre, along, side);
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    if dx.pow(2) + dy.pow(2) < 25_000_i64.pow(2) {
+        return None;
+    }
+    // The third corner is up to so many times as far from the edge as the centre; 25,600 times is a unit.
+    let times = random.log_uniform(14) as i64 + 1;
+    // And lies between the edge's ends.
+    let part = -(times * ((centre.0 - a.0) * dx + (centre.1 - a.1) * dy)).div_euclid(dx.pow(2) + dy.pow(2));
+    let c = (a.0 + (centre.0 - a.0) * times + part * dx, a.1 + (centre.1 - a.1) * times + part * dy);
+    let shades = random.one_of(&[[0, 0, 0xFF00], [0xFF00, 0xFF00, 0], [0, 0xFF00, 0x1234], [0x00FF, 0, 0xFF00]]);
+    let depths = [random.log_uniform(30) as i64, 2, 3];
+    let vertices = [0, 1, 2].map(|i| vertex([a, b, c][i].0, [a, b, c][i].1, shades[i], depths[i]));
+    let points = vertices.each_ref().map(oracle::point);
+    oracle::covers(points, oracle::centre(x as i32, y as i32))
+        .then(|| (vertices, oracle::per_pixel(points, shades.map(i128::from))))
+}
+
+#[test]
+fn r2_slivers() {
+    let mut tried = Tried::new("r2_slivers", 1_000);
+    let mut random = Random::named("r2");
+    let (mut beyond, mut most) = (0, 0);
+    while tried.stated() > beyond {
+        let pixel = (random.within(0, i64::from(WIDTH) - 1), random.within(0, i64::from(HEIGHT) - 1));
+        let Some((vertices, slope)) = sliver_through(&mut random, pixel) else { continue };
+        let covered = check(&vertices);
+        // So thin a sliver covers the one pixel, and seldom others.
+        assert!(covered >= 1, "{pixel:?} of {vertices:?}");
+        most = most.max(covered);
+        // A change in 16.16, whose whole part has 16 bits with the sign: 2¹⁵ shades, 2²³ of their 256ths.
+        let is_beyond = slope.n.abs() >= slope.d << 23;
+        beyond += u64::from(is_beyond);
+        tried.add(u64::from(is_beyond));
+        tried.worst("shades a pixel", slope.n.abs() as f64 / slope.d as f64 / 256.0);
+    }
+    tried.worst("pixels of a sliver", most.into());
+    assert!(most > 1, "{most} pixels of a sliver at most");
+}
+
+#[test]
+fn r3_smaller_than_a_pixel() {
+    let mut tried = Tried::new("r3_smaller_than_a_pixel", 3000);
+    let mut random = Random::named("r3");
+    let mut drawn = 0;
+    while tried.more() {
+        let (x, y) = (random.within(0, 20_000), random.within(0, 5_000));
+        let mut corner = || vertex(x + random.within(0, 255), y + random.within(0, 255), random.within(0, 0xFF00), 9);
+        let vertices = [corner(), corner(), corner()];
+        let pixels = check(&vertices);
+        assert!(pixels <= 1, "{vertices:?}");
+        drawn += pixels;
+    }
+    assert!(drawn > 100, "some held a centre: {drawn}");
+}
+
+#[test]
+fn r4_every_sixteenth_of_a_pixel() {
+    let mut tried = Tried::new("r4_every_sixteenth_of_a_pixel", 256 * 12);
+    let mut random = Random::named("r4");
+    for place in 0..256 {
+        for corner in 0..3 {
+            for _ in 0..4 {
+                // The other corners on centres, so that edges pass through centres too.
+                let mut corners =
+                    [(0, 0); 3].map(|_| (random.within(0, 40) * 256 + 128, random.within(0, 20) * 256 + 128));
+                let (x, y) = (random.within(0, 40) * 256, random.within(0, 20) * 256);
+                corners[corner] = (x + place % 16 * 16, y + place / 16 * 16);
+                check(&corners.map(|(x, y)| vertex(x, y, (x * 7 + y) % 0xFF01, 1)));
+                tried.add(1);
+            }
+        }
+    }
+}
+
+#[test]
+fn r6_order_and_winding_make_no_difference() {
+    let mut tried = Tried::new("r6_order_and_winding_make_no_difference", 1500);
+    let mut random = Random::named("r6");
+    while tried.more() {
+        let [a, b, c] = triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT));
+        for shading in shadings() {
+            let first = draw(&[a, b, c], shading, WIDTH, HEIGHT, None, 0);
+            let deep = draw_with_depth(&[a, b, c], shading);
+            for order in [[a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]] {
+                assert_eq!(draw(&order, shading, WIDTH, HEIGHT, None, 0), first, "{order:?}");
+                assert!(draw_with_depth(&order, shading) == deep, "with depths, {shading:?} of {order:?}");
+            }
+        }
+    }
+}
+
+/// Bytes and depths of 32 bits and of 16 of a triangle before a half that is near and one that is far.
+fn draw_with_depth(vertices: &[Vertex; 3], shading: Shading) -> (Vec<u8>, Vec<u32>, Vec<u16>) {
+    const SIZE: usize = (WIDTH * HEIGHT) as usize;
+    let (mut bytes, mut wide) = (vec![0; 2 * SIZE], vec![1_u32; SIZE]);
+    let mut narrow = vec![1_u16; SIZE];
+    wide[SIZE / 2..].fill(1 << 20);
+    narrow[SIZE / 2..].fill(1 << 6);
+    let (first, second) = bytes.split_at_mut(SIZE);
+    let mut like = vec![0; SIZE];
+    let like = Frame::new(&mut like, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
+    let on = |bytes| Raster::new(Frame::new(bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal"));
+    on(first).with_depth(DepthBuffer::new(&mut wide, &like).expect("enough")).triangle(vertices, shading);
+    on(second).with_depth(DepthBuffer::new(&mut narrow, &like).expect("enough")).triangle(vertices, shading);
+    (bytes, wide, narrow)
+}
+
+#[test]
+fn r8_a_clip_rectangle_changes_no_byte_inside_it() {
+    let mut tried = Tried::new("r8_a_clip_rectangle_changes_no_byte_inside_it", 1500);
+    let mut random = Random::named("r8");
+    // Wide enough for a third start.
+    const WIDE: u32 = 200;
+    while tried.more() {
+        let vertices = triangle(&mut random, i64::from(WIDE), i64::from(HEIGHT));
+        let mut ends = |size: u32| {
+            let (a, b) = (random.within(0, size.into()) as u32, random.within(0, size.into()) as u32);
+            (a.min(b), a.max(b))
+        };
+        let ((x0, x1), (y0, y1)) = (ends(WIDE), ends(HEIGHT));
+        let clip = Rect { x0, y0, x1, y1 };
+        for shading in shadings() {
+            let mut expected = draw(&vertices, shading, WIDE, HEIGHT, None, 0);
+            for (place, byte) in expected.iter_mut().enumerate() {
+                let (x, y) = (place as u32 % WIDE, place as u32 / WIDE);
+                if !((x0..x1).contains(&x) && (y0..y1).contains(&y)) {
+                    *byte = 0;
+                }
+            }
+            assert_eq!(draw(&vertices, shading, WIDE, HEIGHT, Some(clip), 0), expected, "{clip:?} {vertices:?}");
+        }
+    }
+}
+
+#[test]
+fn r8_bands_give_the_bytes_of_the_whole() {
+    let mut tried = Tried::new("r8_bands_give_the_bytes_of_the_whole", 60);
+    let mut random = Random::named("r8 bands");
+    let (size, pitch) = ((WIDTH * HEIGHT) as usize, WIDTH as usize + 5);
+    while tried.more() {
+        let triangles: Vec<_> = (0..20).map(|_| triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT))).collect();
+        let rows_each = random.within(1, i64::from(HEIGHT)) as u32;
+        for (with_depth, only) in [false, true].into_iter().flat_map(|with| shadings().map(move |only| (with, only))) {
+            let mut paint = |frame: Frame<'_>| {
+                let mut depths = vec![0; size];
+                let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+                let mut raster = Raster::new(frame);
+                if with_depth {
+                    raster = raster.with_depth(depth);
+                }
+                for vertices in &triangles {
+                    raster.triangle(vertices, only);
+                }
+            };
+            let (mut whole, mut bands) = (vec![3; pitch * HEIGHT as usize], vec![3; pitch * HEIGHT as usize]);
+            paint(Frame::new(&mut whole, WIDTH, HEIGHT, pitch).expect("legal"));
+            Frame::new(&mut bands, WIDTH, HEIGHT, pitch).expect("legal").bands(rows_each).for_each(&mut paint);
+            assert_eq!(whole, bands, "{only:?} in bands of {rows_each}, depth {with_depth}");
+            assert!(whole.chunks(pitch).all(|row| row[WIDTH as usize..] == [3; 5]), "bytes between rows stay");
+        }
+    }
+}
+
+#[test]
+fn r11_moved_by_whole_pixels() {
+    let mut tried = Tried::new("r11_moved_by_whole_pixels", 1500);
+    let mut random = Random::named("r11");
+    let (width, height) = (i64::from(WIDTH), i64::from(HEIGHT));
+    while tried.more() {
+        let mut corner = || (random.within(0, 40 * 256), random.within(0, 12 * 256), random.within(0, 0xFF00));
+        let corners = [corner(), corner(), corner()];
+        let at = |dx: i64, dy: i64| corners.map(|(x, y, shade)| vertex(x + dx * 256, y + dy * 256, shade, 1));
+        let (dx, dy) = (random.within(0, width - 41), random.within(0, height - 13));
+        for shading in shadings() {
+            let still = draw(&at(0, 0), shading, WIDTH, HEIGHT, None, 0);
+            let mut moved = draw(&at(dx, dy), shading, WIDTH, HEIGHT, None, 0);
+            moved.rotate_left((dy * width + dx) as usize);
+            assert_eq!(still, moved, "{shading:?} moved by ({dx}, {dy}): {corners:?}");
+        }
+    }
+}
+
+#[test]
+fn r14_shades_at_both_ends() {
+    let mut tried = Tried::new("r14_shades_at_both_ends", 800);
+    let mut random = Random::named("r14");
+    while tried.more() {
+        let vertices = triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT));
+        let ends = vertices.map(|v| {
+            let shade = random.one_of(&[0, 0, 1, 0x7F, 0x80, 0xFE80, 0xFEFF, 0xFF00, 0xFF00]);
+            vertex(v.x().to_bits().into(), v.y().to_bits().into(), shade, 1)
+        });
+        check(&ends);
+    }
+    for above in 0xFF01..=0xFFFF {
+        let shade = U8F8::from_bits(above);
+        let refused = Vertex::new(I24F8::from_pixels(1), I24F8::from_pixels(1), shade, 0);
+        assert_eq!(refused, Err(VertexError::ShadeAbove255 { shade }));
+    }
+}
+
+#[test]
+fn r7_outside_the_guard_band_is_refused() {
+    let mut tried = Tried::new("r7_outside_the_guard_band_is_refused", 12);
+    // 4,096 pixels, as is stated, in which all of the raster's sums are proved to fit.
+    let (zero, edge) = (I24F8::from_bits(0), 4096 * 256);
+    assert_eq!(Vertex::GUARD_BAND, edge);
+    for (bits, legal) in
+        [(edge, true), (-edge, true), (edge + 1, false), (-edge - 1, false), (i32::MAX, false), (i32::MIN, false)]
+    {
+        let far = I24F8::from_bits(bits);
+        for (x, y) in [(far, zero), (zero, far)] {
+            let made = Vertex::new(x, y, U8F8::from_bits(0), 0);
+            let expected = if legal { Ok((x, y)) } else { Err(VertexError::OutsideGuardBand { x, y }) };
+            assert_eq!(made.map(|v| (v.x(), v.y())), expected);
+            tried.add(1);
+        }
+    }
+}
+
+#[test]
+fn a_refusal_says_what_was_refused() {
+    let (x, y) = (I24F8::from_bits(-1_048_577), I24F8::from_bits(3));
+    let outside = Vertex::new(x, y, U8F8::from_bits(0), 0).expect_err("outside").to_string();
+    assert_eq!(outside, "vertex at (-1048577, 3) / 256 pixels lies outside the guard band of 4,096 pixels");
+    let above = Vertex::new(y, y, U8F8::from_bits(0xFF01), 0).expect_err("too bright").to_string();
+    assert_eq!(above, "vertex shade 0xff01 is above 0xff00 (255.0)");
+}
+
+/// No row is compared with the frame's edges, and nothing changes.
+#[test]
+fn triangles_inside_the_frame_need_no_edges() {
+    let mut random = Random::named("triangles inside the frame");
+    let mut pixels = 0;
+    for _ in 0..1_000 {
+        let vertices = [(); 3].map(|()| {
+            let (x, y) = (random.within(0, i64::from(WIDTH) * 256), random.within(0, i64::from(HEIGHT) * 256));
+            vertex(x, y, random.within(0, 0xFF00), random.log_uniform(30) as i64)
+        });
+        for shading in shadings() {
+            let on = |inside: bool| {
+                let mut bytes = vec![99; (WIDTH * HEIGHT) as usize];
+                let mut raster = Raster::new(Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal"));
+                let draw = if inside { Raster::triangle_inside } else { Raster::triangle };
+                (draw(&mut raster, &vertices, shading), bytes)
+            };
+            let expected = on(false);
+            assert!(on(true) == expected, "{shading:?} of {vertices:?}");
+            pixels += expected.0.pixels;
+        }
+    }
+    assert!(pixels > 500_000, "{pixels}");
+}
+
+#[test]
+fn r4_random_triangles_against_the_oracle() {
+    against_the_oracle(Tried::new("r4_random_triangles_against_the_oracle", 3000));
+}
+
+#[test]
+#[ignore = "the long run: a million triangles, pixel by pixel"]
+fn r4_long_random_triangles_against_the_oracle() {
+    against_the_oracle(Tried::new("r4_long_random_triangles_against_the_oracle", 1_000_000));
+}
+
+fn against_the_oracle(mut tried: Tried) {
+    let mut random = Random::named("r*");
+    while tried.more() {
+        measure(&triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT)), WIDTH, HEIGHT).report(&mut tried);
+    }
+}
+
+/// Rows from end to end, in mode 13h and in the widest frame: where sums drift the farthest, and where what
+/// is near and what is far are the farthest apart.
+#[test]
+fn whole_rows_keep_to_the_bounds() {
+    let mut tried = Tried::new("whole_rows_keep_to_the_bounds", 60);
+    let mut random = Random::named("whole rows");
+    while tried.more() {
+        let (width, height) = random.one_of(&[(320, 3), (320, 3), (320, 3), (4096, 1)]);
+        let mut corner = |x: i64| {
+            // Shades of any size, so that steps of less than 1/256 are among them.
+            let shade = (random.log_uniform(16) as i64 - 1).min(0xFF00);
+            let shade = if random.within(0, 1) == 0 { shade } else { 0xFF00 - shade };
+            vertex(x * 256, random.within(-40 * 256, 40 * 256), shade, random.log_uniform(32) as i64)
+        };
+        let (left, right) = (corner(-100), corner(i64::from(width).min(4_000) + 90));
+        // Beyond the upper or the lower edge, so that all rows are covered more often than not.
+        let third = corner(i64::from(width) / 2);
+        let y = if random.within(0, 1) == 0 { -3_000 } else { 3_000 };
+        let third = vertex(third.x().to_bits().into(), y * 256, third.shade().to_bits().into(), third.depth().into());
+        measure(&[left, right, third], width, height).report(&mut tried);
+    }
+}
+
+#[test]
+fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
+    let mut tried = Tried::new("d3_depth_is_as_defined_and_the_first_of_equals_stays", 400);
+    let mut random = Random::named("d*");
+    let mut replaced = 0;
+    while tried.more() {
+        let shading =
+            random.one_of(&[Shading::GouraudReseeded, Shading::Gouraud, Shading::GouraudHyperbolic, Shading::Flat(7)]);
+        let triangles: Vec<_> = (0..6).map(|_| triangle(&mut random, WIDTH.into(), HEIGHT.into())).collect();
+        // The last is the first again with other shades: of equal depths the first submitted wins.
+        let twin = triangles[0].map(|v| vertex(v.x().to_bits().into(), v.y().to_bits().into(), 0, v.depth().into()));
+        let all: Vec<_> = triangles.iter().copied().chain([twin]).collect();
+        let (mut expected, mut nearest) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
+        let (mut covered, mut written) = (0, 0);
+        for vertices in &all {
+            for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, shading, WIDTH as i32, HEIGHT as i32) {
+                let depth = oracle::depth_at(vertices, x, y);
+                assert_eq!(DepthPlane::new(&Ordered::new(vertices)).at(x, y), depth, "({x}, {y}) of {vertices:?}");
+                let (low, high) =
+                    vertices.iter().fold((u32::MAX, 0), |(low, high), v| (low.min(v.depth()), high.max(v.depth())));
+                assert!((low..=high).contains(&depth), "depth within the vertices' at ({x}, {y}) of {vertices:?}");
+                let place = y as usize * WIDTH as usize + x as usize;
+                covered += 1;
+                if depth > nearest[place] {
+                    written += 1;
+                    replaced += u32::from(nearest[place] != 0);
+                    (nearest[place], expected[place]) = (depth, byte);
+                }
+            }
+        }
+        let (mut bytes, mut depths) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
+        let frame = Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
+        let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+        let mut raster = Raster::new(frame).with_depth(depth);
+        let mut drawn = Drawn::default();
+        for vertices in &all {
+            drawn += raster.triangle(vertices, shading);
+        }
+        assert_eq!((drawn.covered, drawn.pixels), (covered, written), "{all:?}");
+        assert_eq!(bytes, expected, "{all:?}");
+        assert_eq!(depths, nearest, "{all:?}");
+    }
+    assert!(replaced > 1000, "triangles hid each other: {replaced}");
+}
+
+#[test]
+fn depth_buffers_hold_what_their_frame_holds() {
+    let mut bytes = [0; 8 * 6];
+    let mut frame = Frame::new(&mut bytes, 8, 6, 8).expect("legal");
+    let band = frame.bands(2).nth(1).expect("three bands");
+    let error = DepthBuffer::new(&mut [0_u32; 15], &band).map(|_| ()).expect_err("two rows of eight");
+    assert_eq!(error.to_string(), "15 depths given for a frame that needs 16");
+    let mut depths = [7_u32; 17];
+    let mut depth = DepthBuffer::new(&mut depths, &band).expect("enough");
+    for (y, there) in [(0, false), (1, false), (2, true), (3, true), (4, false), (u32::MAX, false)] {
+        assert_eq!(depth.row_mut(y).map(|row| row.to_vec()), there.then(|| vec![7; 8]), "row {y}");
+    }
+    depth.row_mut(3).expect("its last row").fill(9);
+    assert_eq!(depths[8..], [9, 9, 9, 9, 9, 9, 9, 9, 7]);
+    DepthBuffer::new(&mut depths, &band).expect("enough").clear();
+    assert_eq!(depths, [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
+}
+
+/// The shadings that are linear on the face, and how far they are off beside the half for the byte.
+const ON_THE_FACE: &[(Shading, f64)] = &[
+    (Shading::GouraudHyperbolic, 0.0),
+    #[cfg(feature = "alloc")]
+    (Shading::Float, 1.0 / 8192.0),
+];
+
+/// C5: w from 1 to 10⁴ within one triangle. Truth is the shade that is linear on the face, at the
+/// rounded vertices, from unrounded w.
+fn perspective_correct_shades(mut tried: Tried) {
+    let mut random = Random::named("c5");
+    let mut pixels = 0_u64;
+    while tried.more() {
+        let corners = triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        // The first vertex on the near plane, so that the depths span the most there is.
+        let w = [1.0, f64::powf(10.0, random.unit() * 4.0), f64::powf(10.0, random.unit() * 4.0)];
+        let vertices = [0, 1, 2].map(|i| {
+            let depth = (f64::powi(2.0, 30) / w[i]).round() as i64;
+            let v = corners[i];
+            vertex(v.x().to_bits().into(), v.y().to_bits().into(), v.shade().to_bits().into(), depth)
+        });
+        let points = vertices.each_ref().map(oracle::point);
+        let (low, high) = vertices
+            .iter()
+            .fold((u16::MAX, 0), |(low, high), v| (low.min(v.shade().to_bits()), high.max(v.shade().to_bits())));
+        // Of the shadings that are linear on the face, in turn.
+        let (shading, more) = random.one_of(ON_THE_FACE);
+        let on = |empty| draw(&vertices, shading, WIDTH, HEIGHT, None, empty);
+        let (on_0, on_1) = (on(0), on(1));
+        for place in (0..on_0.len()).filter(|&place| on_0[place] == on_1[place]) {
+            let byte = on_0[place];
+            assert!((u32::from(low) + 128) >> 8 <= byte.into() && u32::from(byte) <= (u32::from(high) + 128) >> 8);
+            let p = oracle::centre(place as i32 % WIDTH as i32, place as i32 / WIDTH as i32);
+            let [a, b, c] = points;
+            // Areas within the triangle, all of one sign: exact in f64 up to 2⁵³, and their sums lose nothing.
+            let weights = [oracle::edge(b, c, p), oracle::edge(c, a, p), oracle::edge(a, b, p)];
+            let weighted = [0, 1, 2].map(|i| weights[i] as f64 / w[i]);
+            let shade = [0, 1, 2].map(|i| weighted[i] * f64::from(vertices[i].shade().to_bits()) / 256.0);
+            let truth = (shade[0] + shade[1] + shade[2]) / (weighted[0] + weighted[1] + weighted[2]);
+            // A depth is off by ½ of at least 2³⁰/10⁴, which is 4.7 parts in 10⁶; the mean of shades
+            // by at most twice that of 255: 0.0024. The byte is the nearest, in f32 to 1/8,192.
+            let off = (f64::from(byte) - truth).abs();
+            tried.worst("shades off", off);
+            assert!(off <= 0.5 + 0.0024 + more, "{shading:?}: {off} shades at {p:?} of {vertices:?}, w {w:?}");
+            pixels += 1;
+        }
+    }
+    assert!(pixels > 30 * tried.stated(), "{pixels} pixels");
+}
+
+#[test]
+fn c5_perspective_correct_shades() {
+    perspective_correct_shades(Tried::new("c5_perspective_correct_shades", 3000));
+}
+
+#[test]
+#[ignore = "the long run: 300,000 triangles"]
+fn c5_long_perspective_correct_shades() {
+    perspective_correct_shades(Tried::new("c5_long_perspective_correct_shades", 300_000));
+}

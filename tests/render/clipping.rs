@@ -1,0 +1,480 @@
+//! What the camera sees when geometry reaches behind it or beyond the guard band.
+
+mod far;
+
+use crate::support::near_plane::{cuts_on_the_near_plane, lit, normal};
+use crate::support::odd_views::odd_views;
+use crate::support::random::Random;
+use crate::support::tried::Tried;
+use mode13h::glam::Vec3;
+use mode13h::light::Light;
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::raster::cover::Ordered;
+use mode13h::raster::{Rect, Vertex};
+use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats, VertexPath};
+use mode13h::scene::{Camera, Object, Scene};
+use mode13h::vga::Vga;
+use num_rational::BigRational;
+use num_traits::ToPrimitive;
+
+const WIDTH: usize = 320;
+const HEIGHT: usize = 200;
+
+/// How often each pixel is covered.
+fn counts(scene: &Scene) -> (Vec<u32>, Stats) {
+    counts_by(&mut Renderer::new(), scene)
+}
+
+fn counts_by(renderer: &mut Renderer, scene: &Scene) -> (Vec<u32>, Stats) {
+    let mut counts = vec![0; WIDTH * HEIGHT];
+    let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
+    let stats = renderer
+        .for_each_triangle(scene, Screen::MODE_13H, |vertices, _| {
+            Ordered::new(vertices).rows(WIDTH as u32, clip, |row| {
+                for x in row.x0..row.x1 {
+                    counts[row.y as usize * WIDTH + x as usize] += 1;
+                }
+            });
+        })
+        .expect("a legal scene");
+    (counts, stats)
+}
+
+/// An eye at the origin that looks along −z.
+fn scene(mesh: Mesh) -> Scene {
+    let mut scene = Scene::new();
+    scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, field_of_view: 1.0, near: 0.25 };
+    scene.add(Object::new(mesh));
+    scene
+}
+
+/// A floor one below the eye, `reach` to all sides, of `n × n` squares of two triangles.
+fn floor(reach: f32, n: u32) -> Mesh {
+    let at = |i: u32| reach * (i as f32 / n as f32 * 2.0 - 1.0);
+    let positions = (0..=n).flat_map(|z| (0..=n).map(move |x| Vec3::new(at(x), -1.0, at(z)))).collect();
+    let corner = |x, z| z * (n + 1) + x;
+    let triangles = (0..n * n)
+        .flat_map(|i| {
+            let (x, z) = (i % n, i / n);
+            let (a, b, c, d) = (corner(x, z), corner(x + 1, z), corner(x, z + 1), corner(x + 1, z + 1));
+            if (x + z) % 2 == 0 { [[a, c, b], [b, c, d]] } else { [[a, c, d], [a, d, b]] }
+        })
+        .collect();
+    Mesh::new(positions, triangles).expect("a mesh")
+}
+
+#[test]
+fn r7_a_floor_of_any_size_is_closed_to_the_horizon() {
+    let mut tried = Tried::new("r7_a_floor_of_any_size_is_closed_to_the_horizon", 36);
+    for reach in [1e4_f32, 1e6, 1e12, 1e20, 1e30, f32::MAX / 2.0] {
+        for n in [1, 2, 3, 5, 8, 13] {
+            // The far edge is projected fy / reach below the horizon: less than half a pixel. So the
+            // rows from the horizon down, from 100 to 199, are all floor, and no other is. (The floor
+            // begins under the eye: the picture's lower edge is nearer than the far edge by far.)
+            let (counts, stats) = counts(&scene(floor(reach, n)));
+            for (place, &times) in counts.iter().enumerate() {
+                let inside = place / WIDTH >= HEIGHT / 2;
+                assert_eq!(
+                    times,
+                    u32::from(inside),
+                    "({}, {}) of a floor of {reach:e}, {n} squares a side",
+                    place % WIDTH,
+                    place / WIDTH
+                );
+            }
+            assert!(stats.clipped > 0, "{stats}");
+            tried.add(1);
+        }
+    }
+}
+
+#[test]
+fn r7_faces_up_to_the_greatest_number() {
+    far::faces_up_to_the_greatest_number(Tried::new("r7_faces_up_to_the_greatest_number", 80_000));
+}
+
+#[test]
+fn r7_floors_up_to_the_greatest_number() {
+    far::floors_up_to_the_greatest_number(Tried::new("r7_floors_up_to_the_greatest_number", 20_000));
+}
+
+/// Two faces share an edge through the whole picture, which they fill. The edge begins in the last half
+/// pixel before the guard band's limit, which is only for rounding: the one face is drawn as it is, the
+/// other, whose third corner lies beyond the limit, is clipped. If it were clipped there too its edge
+/// would be another.
+#[test]
+fn r7_a_corner_within_rounding_of_the_limit() {
+    let mut tried = Tried::new("r7_a_corner_within_rounding_of_the_limit", 1000);
+    let mut random = Random::named("r7 limit");
+    let fy = 100.0 / f64::tan(0.5);
+    let fx = fy * 6.0 / 5.0;
+    let mut clipped = [0_u64; 2];
+    while tried.more() {
+        // Along x or along y, with the corner at either end.
+        let (across, turned) = (random.within(0, 1) == 0, random.within(0, 1) == 0);
+        let point = |random: &mut Random, along: f64, other: f64| {
+            let (along, other) = if turned { (-along, -other) } else { (along, other) };
+            let (x, y) = if across { (along, other) } else { (other, along) };
+            let depth = 0.5 + random.unit() * 4.0;
+            Vec3::new(((x - 160.0) / fx * depth) as f32, (-(y - 100.0) / fy * depth) as f32, -depth as f32)
+        };
+        let (from, to) = (4095.0 + random.unit() * 0.5, -1000.0 - random.unit() * 3000.0);
+        let mut across_at = || random.unit() * 400.0 - 200.0;
+        let (p_at, q_at) = (across_at(), across_at());
+        let (p, q) = (point(&mut random, from, p_at), point(&mut random, to, q_at));
+        let (r, s) = (point(&mut random, 160.0, -4000.0), point(&mut random, 160.0, 6000.0));
+        let mesh = Mesh::new(vec![p, q, r, s], vec![[0, 1, 2], [1, 0, 3]]).expect("a mesh");
+        for (path, clipped) in VertexPath::ALL.into_iter().zip(&mut clipped) {
+            let mut renderer = Renderer::new();
+            renderer.set_vertex_path(path);
+            let (counts, stats) = counts_by(&mut renderer, &scene(mesh.clone()));
+            *clipped += u64::from(stats.clipped == 1);
+            let holes = counts.iter().filter(|&&times| times == 0).count();
+            let doubles = counts.iter().filter(|&&times| times > 1).count();
+            tried.worst("holes", holes as f64);
+            tried.worst("double pixels", doubles as f64);
+            assert_eq!((holes, doubles), (0, 0), "{path}: {p} {q} {r} {s}");
+        }
+    }
+    assert!(clipped.iter().all(|&clipped| clipped > 700), "one face is clipped, the other is not: {clipped:?}");
+}
+
+/// There is no far plane: with every method a wall is seen from a hundred thousand million times the
+/// near distance.
+#[test]
+fn c3_what_is_very_far_is_drawn() {
+    let mut tried = Tried::new("c3_what_is_very_far_is_drawn", 4);
+    for way in HiddenSurfaces::ALL {
+        let mut scene = scene(shapes::wall(2, 2));
+        scene.objects_mut()[0].position.z = -2.5e10;
+        scene.objects_mut()[0].scale = 1e10;
+        scene.add_light(Light::sun([0.0, 0.0, 1.0]));
+        let mut renderer = Renderer::new();
+        renderer.set_hidden_surfaces(Some(way));
+        let mut vga = Vga::new();
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        let lit = vga.pixels().iter().filter(|&&byte| byte != 0).count();
+        assert!(lit > 5000, "{way}: {lit} pixels");
+        tried.add(1);
+    }
+}
+
+#[test]
+fn c1_corners_behind_the_eye_on_the_near_plane_at_w_0() {
+    corners_about_the_near_plane(Tried::new("c1_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000));
+}
+
+#[test]
+#[ignore = "the long run: a million faces through the near plane"]
+fn c1_long_a_million_faces_through_the_near_plane() {
+    corners_about_the_near_plane(Tried::new("c1_long_a_million_faces_through_the_near_plane", 1_000_000));
+}
+
+fn corners_about_the_near_plane(mut tried: Tried) {
+    let mut random = Random::named("c1");
+    let (mut drawn, mut hidden, mut cuts) = (0_u64, 0_u64, 0_u64);
+    while tried.more() {
+        let mut corner = || {
+            let z = random.one_of(&[-0.25, -0.0, 0.0, 0.25, 1.0, -1.0, -0.250_000_03, -0.249_999_99, -5.0]);
+            Vec3::new(random.unit() as f32 * 4.0 - 2.0, random.unit() as f32 * 4.0 - 2.0, z)
+        };
+        let corners = [corner(), corner(), corner()];
+        let visible = corners.iter().any(|p| -p.z >= 0.25);
+        let intensities = [0; 3].map(|_| random.unit());
+        let normals = intensities.map(normal).to_vec();
+        let Ok(mesh) = Mesh::with_normals(corners.to_vec(), normals, vec![[0, 1, 2]]) else { panic!("{corners:?}") };
+        let scene = lit(scene(mesh));
+        let (counts, _) = counts(&scene);
+        let (once, twice) = counts.iter().fold((0, 0), |(once, twice), &times| match times {
+            0 => (once, twice),
+            1 => (once + 1, twice),
+            _ => (once, twice + 1),
+        });
+        let out_of_sight = if visible { 0 } else { once + twice };
+        tried.worst("double pixels", f64::from(twice));
+        tried.worst("pixels out of sight", f64::from(out_of_sight));
+        assert_eq!(out_of_sight, 0, "nothing of {corners:?} is in sight");
+        assert_eq!(twice, 0, "{corners:?} is cut into parts that overlap");
+        drawn += u64::from(once > 0);
+        hidden += u64::from(!visible);
+        cuts += cuts_on_the_near_plane(&mut Renderer::new(), &scene, corners, intensities, 1.0);
+    }
+    let stated = tried.stated();
+    tried.worst("faces in sight", drawn as f64);
+    tried.worst("cuts with their shades", cuts as f64);
+    // Of the nine distances three are before the near plane, as is the near plane itself: of 19 faces in 27 a corner is in
+    // sight or on the plane, and of half of them at least the screen shows something.
+    assert!(drawn * 4 > stated && hidden * 10 > stated, "of {stated} faces {drawn} in sight, {hidden} before the eye");
+    assert!(cuts * 4 > stated, "{cuts} cuts");
+}
+
+#[test]
+fn c1_the_visible_part_is_what_a_ray_hits() {
+    let mut tried = Tried::new("c1_the_visible_part_is_what_a_ray_hits", 300);
+    let mut random = Random::named("c1 rays");
+    let fy = 100.0 / f64::tan(0.5);
+    let fx = fy * 6.0 / 5.0;
+    let mut hits = 0;
+    while tried.more() {
+        // In front of the eye, behind it, to the sides; beyond the guard band too.
+        let size = f64::from(random.log_uniform(10) as u32);
+        let mut corner = || [0; 3].map(|_| (random.unit() * 2.0 - 1.0) * size).map(|c| f64::from(c as f32));
+        let [a, b, c] = [corner(), corner(), corner()];
+        let narrow = |p: [f64; 3]| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32);
+        let Ok(mesh) = Mesh::new(vec![narrow(a), narrow(b), narrow(c)], vec![[0, 1, 2]]) else { continue };
+        let (counts, _) = counts(&scene(mesh));
+        for y in 0..HEIGHT {
+            for x in 0..WIDTH {
+                let centre = (x as f64 + 0.5, y as f64 + 0.5);
+                let ray = |dx: f64, dy: f64| [(centre.0 + dx - 160.0) / fx, -(centre.1 + dy - 100.0) / fy, -1.0];
+                // Within 1/64 pixel of an edge rounding may decide: the vertices are rounded to half of
+                // 1/256 both ways, an f32 vertex is off by less than that, and cuts by 1/128.
+                let near_edge = |dx: f64, dy: f64| hit(a, b, c, ray(dx, dy));
+                let middle = near_edge(0.0, 0.0);
+                let e = 1.0 / 64.0;
+                if [(e, e), (e, -e), (-e, e), (-e, -e)].iter().any(|&(dx, dy)| near_edge(dx, dy) != middle) {
+                    continue;
+                }
+                assert_eq!(counts[y * WIDTH + x], u32::from(middle), "({x}, {y}) of {a:?} {b:?} {c:?}");
+                hits += u32::from(middle);
+            }
+        }
+    }
+    assert!(hits > 100_000, "faces were hit: {hits}");
+}
+
+/// Whether the ray from the origin meets the triangle beyond the near plane. `ray`'s z is −1, so its
+/// parameter is the distance along the view.
+fn hit(a: [f64; 3], b: [f64; 3], c: [f64; 3], ray: [f64; 3]) -> bool {
+    let sub = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    let cross =
+        |p: [f64; 3], q: [f64; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    let (u, v, w) = (dot(ray, cross(a, b)), dot(ray, cross(b, c)), dot(ray, cross(c, a)));
+    let normal = cross(sub(b, a), sub(c, a));
+    let along = dot(normal, a) / dot(normal, ray);
+    ((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0)) && along > 0.25
+}
+
+#[test]
+fn c4_odd_views_are_quiet() {
+    odd_views(Tried::new("c4_odd_views_are_quiet", 500), VertexPath::Float);
+}
+
+type Line = [(BigRational, BigRational); 2];
+
+/// The edges of the polygon that these triangles make up: those that one of them alone has, as
+/// (from, to) in 1/256 pixel.
+fn outline(parts: &[[Vertex; 3]]) -> Vec<[(i32, i32); 2]> {
+    let at = |v: &Vertex| (v.x().to_bits(), v.y().to_bits());
+    let edges: Vec<[(i32, i32); 2]> =
+        parts.iter().flat_map(|p| [0, 1, 2].map(|i| [at(&p[i]), at(&p[(i + 1) % 3])])).collect();
+    edges.iter().copied().filter(|&[a, b]| !edges.contains(&[b, a])).collect()
+}
+
+/// The part of a segment that lies on the screen, in pixels; `None` if none does.
+fn on_screen([a, b]: [(i32, i32); 2]) -> Option<[(f64, f64); 2]> {
+    let pixels = |(x, y): (i32, i32)| (f64::from(x) / 256.0, f64::from(y) / 256.0);
+    let (a, b) = (pixels(a), pixels(b));
+    let (mut t0, mut t1) = (0.0_f64, 1.0_f64);
+    for (p, q) in
+        [(a.0 - b.0, a.0), (b.0 - a.0, WIDTH as f64 - a.0), (a.1 - b.1, a.1), (b.1 - a.1, HEIGHT as f64 - a.1)]
+    {
+        // Inside where p·t ≤ q.
+        if p == 0.0 && q < 0.0 {
+            return None;
+        } else if p < 0.0 {
+            t0 = t0.max(q / p);
+        } else if p > 0.0 {
+            t1 = t1.min(q / p);
+        }
+    }
+    let point = |t: f64| (a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
+    (t0 < t1).then(|| [point(t0), point(t1)])
+}
+
+/// How far a point is from a line, in pixels. The product is exact; only its root and the quotient
+/// are rounded.
+fn distance((x, y): (f64, f64), [a, b]: &Line) -> f64 {
+    let exact = |x: f64| BigRational::from_float(x).expect("finite");
+    let (dx, dy) = (&b.0 - &a.0, &b.1 - &a.1);
+    let product = &dx * (exact(y) - &a.1) - &dy * (exact(x) - &a.0);
+    let squared = &product * &product / (&dx * &dx + &dy * &dy);
+    squared.to_f64().expect("a distance").sqrt()
+}
+
+#[test]
+fn r7_edges_of_far_triangles_are_where_they_belong() {
+    edges_of_far_triangles(Tried::new("r7_edges_of_far_triangles_are_where_they_belong", 1000));
+}
+
+#[test]
+#[ignore = "the long run: 50,000 far triangles"]
+fn r7_long_edges_of_far_triangles() {
+    edges_of_far_triangles(Tried::new("r7_long_edges_of_far_triangles", 50_000));
+}
+
+/// For corners up to 2⁴⁰ pixels away the edges on the screen lie within 1/128 pixel of the exact ones.
+/// Each end of a drawn edge is off by at most half of 1/256 in x and in y, 0.0028 pixel; a corner's
+/// f32 coordinates turn the edge by 2⁻²³, 0.0005 over 4,096 pixels.
+fn edges_of_far_triangles(mut tried: Tried) {
+    let mut random = Random::named("r7 edges");
+    // What the engine works out from the field of view: tan of f64 is within an ulp of this.
+    let fy = 100.0 / f64::tan(f64::from(1.0_f32) / 2.0);
+    let fx = fy * 6.0 / 5.0;
+    let mut edges = 0_u32;
+    while tried.more() {
+        let mut corner = || {
+            let depth = (0.3 + random.unit() * 4.0) as f32;
+            let mut away = |focal: f64| {
+                let pixels = f64::powf(2.0, random.unit() * 40.0) * if random.within(0, 1) == 0 { 1.0 } else { -1.0 };
+                (pixels * f64::from(depth) / focal) as f32
+            };
+            Vec3::new(away(fx), away(fy), -depth)
+        };
+        let corners = [corner(), corner(), corner()];
+        let exact = |x: f64| BigRational::from_float(x).expect("finite");
+        let projected: [(BigRational, BigRational); 3] = corners.map(|p| {
+            let w = exact(f64::from(-p.z));
+            let x = exact(fx) * exact(f64::from(p.x)) / &w + exact(160.0);
+            let y = exact(-fy) * exact(f64::from(p.y)) / &w + exact(100.0);
+            (x, y)
+        });
+        let lines: [Line; 3] = [0, 1, 2].map(|i| [projected[i].clone(), projected[(i + 1) % 3].clone()]);
+        let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).expect("a mesh");
+        let mut parts = Vec::new();
+        Renderer::new()
+            .for_each_triangle(&scene(mesh), Screen::MODE_13H, |vertices, _| parts.push(*vertices))
+            .expect("a legal scene");
+        for ends in outline(&parts).into_iter().filter_map(on_screen) {
+            // One of the three lines is near both ends.
+            let off = lines.iter().map(|line| distance(ends[0], line).max(distance(ends[1], line)));
+            let nearest = off.fold(f64::INFINITY, f64::min);
+            tried.worst("pixels off", nearest);
+            assert!(nearest <= 1.0 / 128.0, "{nearest} pixels off: {corners:?}");
+            edges += 1;
+        }
+    }
+    assert!(edges > 300, "edges were on the screen: {edges}");
+}
+
+/// How far a point is from the nearest of these segments, in pixels.
+fn nearest(edges: &[[(i32, i32); 2]], (x, y): (f64, f64)) -> f64 {
+    let pixels = |(x, y): (i32, i32)| (f64::from(x) / 256.0, f64::from(y) / 256.0);
+    edges.iter().fold(f64::INFINITY, |least, &[a, b]| {
+        let (a, b) = (pixels(a), pixels(b));
+        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+        let t = (((x - a.0) * dx + (y - a.1) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+        least.min(f64::hypot(x - a.0 - t * dx, y - a.1 - t * dy))
+    })
+}
+
+/// A corner passes slowly through the near plane: nothing pops. The truth here is the shade that is
+/// linear along the face in space, at the point where the pixel's ray meets it.
+#[test]
+fn c2_a_corner_passing_through_the_near_plane() {
+    let mut tried = Tried::new("c2_a_corner_passing_through_the_near_plane", 1000);
+    let fy = 100.0 / f64::tan(0.5);
+    let fx = fy * 6.0 / 5.0;
+    let still = [[-0.9, -0.6, -2.0], [0.8, -0.9, -2.5]];
+    let normals = [Vec3::new(0.0, 0.6, 0.8), Vec3::new(0.0, 0.0, 1.0), Vec3::new(0.0, -0.6, 0.8)];
+    let mut before: Option<Step> = None;
+    let mut compared = 0_u64;
+    for step in 0..=1000 {
+        let moving = [0.1, 0.15, -0.75 + 0.001 * f64::from(step)];
+        let corners = [still[0], still[1], moving];
+        let narrow = |p: [f64; 3]| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32);
+        let mesh = Mesh::with_normals(corners.map(narrow).to_vec(), normals.to_vec(), vec![[0, 1, 2]]);
+        let mut scene = scene(mesh.expect("a mesh"));
+        scene.add_light(Light::sun([0.0, 0.3, 1.0]));
+        let mut vga = Vga::new();
+        let mut renderer = Renderer::new();
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        let mut parts = Vec::new();
+        renderer
+            .for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| parts.push(*vertices))
+            .expect("a legal scene");
+        // The light at the corners: ka·Ia + kd·n·l.
+        let material = &scene.objects()[0].materials[0];
+        let shades = normals.map(|normal| {
+            // Towards the sun: (0, 0.3, 1).
+            let [x, y, z] = normal.to_array().map(f64::from);
+            let length = (x * x + y * y + z * z).sqrt() * (0.3_f64.powi(2) + 1.0).sqrt();
+            let cosine = (0.3 * y + z) / length;
+            let ambient = f64::from(material.ambient) * f64::from(scene.ambient);
+            255.0 * (ambient + f64::from(material.diffuse) * cosine.max(0.0)).clamp(0.0, 1.0)
+        });
+        for part in &parts {
+            // At the corners that are not cut the engine has these, to the rounding of a shade.
+            let drawn = part.each_ref().map(|v: &Vertex| f64::from(v.shade().to_bits()) / 256.0);
+            let (low, high) = shades.iter().fold((255.0, 0.0), |(low, high), &s| (s.min(low), s.max(high)));
+            assert!(drawn.iter().all(|shade| (low - 0.01..=high + 0.01).contains(shade)), "{drawn:?} of {shades:?}");
+        }
+        let truth = |x: f64, y: f64| {
+            let ray = [(x - 160.0) / fx, -(y - 100.0) / fy, -1.0];
+            let cross = |p: [f64; 3], q: [f64; 3]| {
+                [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+            };
+            let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+            let [a, b, c] = corners;
+            let weights = [dot(ray, cross(b, c)), dot(ray, cross(c, a)), dot(ray, cross(a, b))];
+            (weights[0] * shades[0] + weights[1] * shades[1] + weights[2] * shades[2])
+                / (weights[0] + weights[1] + weights[2])
+        };
+        let truth = (0..WIDTH * HEIGHT).map(|i| truth((i % WIDTH) as f64 + 0.5, (i / WIDTH) as f64 + 0.5)).collect();
+        let now = Step { bytes: vga.pixels().to_vec(), edges: outline(&parts), truth };
+        if let Some(before) = &before {
+            compared += now.compare(before, step);
+            tried.add(1);
+        }
+        before = Some(now);
+    }
+    assert!(compared > 1_000_000, "{compared} pixels compared");
+}
+
+struct Step {
+    bytes: Vec<u8>,
+    edges: Vec<[(i32, i32); 2]>,
+    truth: Vec<f64>,
+}
+
+impl Step {
+    /// How far the outlines are apart: of points along each the farthest from the other.
+    fn movement(&self, other: &Self) -> f64 {
+        let reach = |from: &Self, to: &Self| {
+            let mut farthest = 0.0_f64;
+            for [a, b] in from.edges.iter().filter_map(|&edge| on_screen(edge)) {
+                for i in 0..=64 {
+                    let t = f64::from(i) / 64.0;
+                    farthest = farthest.max(nearest(&to.edges, (a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t)));
+                }
+            }
+            farthest
+        };
+        reach(self, other).max(reach(other, self))
+    }
+
+    /// Pixels away from all edges change by no more than the truth does there, and one shade.
+    fn compare(&self, before: &Self, step: i32) -> u64 {
+        let margin = self.movement(before) + 1.0;
+        let mut compared = 0;
+        for i in 0..WIDTH * HEIGHT {
+            let change = f64::from(self.bytes[i].abs_diff(before.bytes[i]));
+            if self.bytes[i] == 0 && before.bytes[i] == 0 {
+                continue;
+            }
+            compared += 1;
+            // The cheap bound first: a change of one shade is always allowed.
+            if change <= 1.0 || change <= (self.truth[i] - before.truth[i]).abs() + 1.0 {
+                continue;
+            }
+            let centre = ((i % WIDTH) as f64 + 0.5, (i / WIDTH) as f64 + 0.5);
+            let edge = nearest(&self.edges, centre).min(nearest(&before.edges, centre));
+            assert!(
+                edge <= margin,
+                "step {step}: {centre:?} changed by {change}, {edge} pixels from an edge, margin {margin}"
+            );
+        }
+        compared
+    }
+}

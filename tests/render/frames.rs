@@ -1,0 +1,139 @@
+//! Whole frames against the oracle: the triangles as handed to the raster, drawn again in i128,
+//! pixel by pixel, must give the same bytes.
+//!
+//! `MODE13H_MODEL=model.obj cargo test --test frames` tries a model of your own as well.
+
+use crate::support::oracle;
+use crate::support::tried::Tried;
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::raster::{Shading, Vertex};
+use mode13h::render::{HiddenSurfaces, Renderer, Rung, Screen};
+use mode13h::scene::Scene;
+use mode13h::span::Kernel;
+use mode13h::vga::Vga;
+
+const WIDTH: i32 = Vga::WIDTH as i32;
+const HEIGHT: i32 = Vga::HEIGHT as i32;
+
+/// Draws the scene twice, once by the oracle; returns how many pixels are not background.
+fn check(scene: &Scene, rung: Rung) -> usize {
+    let mut renderer = Renderer::new();
+    renderer.set_rung(rung);
+    let mut triangles: Vec<([Vertex; 3], Shading)> = Vec::new();
+    let stats = renderer
+        .for_each_triangle(scene, Screen::MODE_13H, |v, shading| triangles.push((*v, shading)))
+        .expect("a legal scene");
+    // Of faces that are not compared the last is seen. With exact cover no two share a pixel then.
+    let compares = stats.hidden_surfaces == HiddenSurfaces::DepthBuffer;
+
+    let mut expected = vec![scene.background; (WIDTH * HEIGHT) as usize];
+    let mut nearest = vec![0; expected.len()];
+    let mut covered = 0;
+    let mut shown = vec![false; expected.len()];
+    for (vertices, shading) in &triangles {
+        for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, *shading, WIDTH, HEIGHT) {
+            covered += 1;
+            if let Some((n, d)) = oracle::bound(*shading, WIDTH.into()) {
+                let exact = oracle::exact_shade(vertices, *shading, oracle::centre(x, y));
+                assert!(exact.is_within(i128::from(byte) * 256, n, d), "({x}, {y}) of {vertices:?}");
+            }
+            let place = (y * WIDTH + x) as usize;
+            shown[place] = true;
+            let depth = match shading.has_exact_cover() {
+                true => oracle::depth_at(vertices, x, y),
+                false => oracle::depth_beyond(vertices, x, y),
+            };
+            if !compares || depth > nearest[place] {
+                (nearest[place], expected[place]) = (depth, byte);
+            }
+        }
+    }
+    for kernel in Kernel::available() {
+        let mut vga = Vga::new();
+        renderer.set_kernel(kernel);
+        let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
+        let differs = vga.pixels().iter().zip(&expected).position(|(is, should)| is != should);
+        assert_eq!(differs, None, "kernel {}", kernel.name());
+        assert_eq!(stats.kernel, kernel.name());
+        assert_eq!(stats.drawn, triangles.len() as u64);
+        assert_eq!(stats.raster.covered, covered);
+    }
+    shown.into_iter().filter(|&shown| shown).count()
+}
+
+fn turned(mesh: Mesh, degrees: f64) -> Scene {
+    let mut scene = crate::support::scenes::framed(mesh);
+    scene.objects_mut()[0].set_angles([0.4, degrees.to_radians(), 0.1]);
+    scene
+}
+
+#[test]
+fn every_shape_on_every_rung_is_the_oracles_frame() {
+    let mut tried = Tried::new("every_shape_on_every_rung_is_the_oracles_frame", 7 * 8);
+    for name in shapes::NAMES {
+        for rung in Rung::ALL.into_iter().filter(|rung| !rung.lights_pixels()) {
+            let pixels = check(&turned(shapes::by_name(name).expect("listed"), 33.0), rung);
+            assert!(pixels > 5000, "{name} is in the picture: {pixels} pixels");
+            tried.add(1);
+        }
+    }
+}
+
+#[test]
+fn close_up_the_clipped_frame_is_the_oracles() {
+    let mut tried = Tried::new("close_up_the_clipped_frame_is_the_oracles", 12);
+    for step in 0..12_u8 {
+        // From before the torus to within it, faces pass the near plane and the guard band.
+        let mut scene = turned(shapes::torus(24, 12), f64::from(step) * 10.0);
+        scene.camera.near = 0.3;
+        scene.camera.eye.z = 1.4 - 0.1 * f32::from(step);
+        scene.camera.target.z = scene.camera.eye.z - 1.0;
+        let mut renderer = Renderer::new();
+        let stats = renderer.for_each_triangle(&scene, Screen::MODE_13H, |_, _| ()).expect("a legal scene");
+        assert!(step < 6 || stats.clipped > 0, "faces are clipped: {stats}");
+        check(&scene, Rung::Gouraud88Reseeded);
+        tried.add(1);
+    }
+}
+
+#[cfg(feature = "obj")]
+#[test]
+fn a_model_of_your_own() {
+    let Ok(path) = std::env::var("MODE13H_MODEL") else {
+        println!("MODE13H_MODEL names no model: none tried");
+        return;
+    };
+    let mut tried = Tried::new("a_model_of_your_own", 4);
+    let mesh = mode13h::mesh::obj::load(&path).expect("a model").mesh;
+    for quarter in 0..4 {
+        let pixels = check(&turned(mesh.clone(), f64::from(quarter) * 90.0), Rung::Gouraud88Reseeded);
+        assert!(pixels > 1000, "{path} is in the picture: {pixels} pixels");
+        tried.add(1);
+    }
+}
+
+/// A closed convex body seen from outside: what its front faces cover is the whole silhouette, with
+/// no hole and no pixel twice, so the depth buffer has nothing to decide.
+#[test]
+fn d4_back_faces_alone_give_the_depth_buffers_frame() {
+    let mut tried = Tried::new("d4_back_faces_alone_give_the_depth_buffers_frame", 3 * 12);
+    for name in ["cube", "sphere", "cylinder"] {
+        for step in 0..12 {
+            let mut alone = turned(shapes::by_name(name).expect("listed"), f64::from(step) * 30.0);
+            let (mut first, mut second) = (Vga::new(), Vga::new());
+            let mut renderer = Renderer::new();
+            let stats = renderer.draw(&alone, &mut first).expect("legal");
+            assert_eq!(stats.hidden_surfaces, HiddenSurfaces::BackFaces, "{name}");
+            let covered = stats.raster.covered;
+            // A speck far outside the picture makes it two objects.
+            let mut speck = mode13h::scene::Object::new(shapes::cube());
+            speck.position.x = 50.0;
+            alone.add(speck);
+            let stats = renderer.draw(&alone, &mut second).expect("legal");
+            assert_eq!(stats.hidden_surfaces, HiddenSurfaces::DepthBuffer);
+            assert_eq!(first.pixels(), second.pixels(), "{name}");
+            assert_eq!(stats.raster.pixels, covered, "{name}: no pixel is covered by two front faces");
+            tried.add(1);
+        }
+    }
+}

@@ -1,0 +1,537 @@
+//! Whole scenes through the integer vertex path: against the f32 path, clipped, over a full turn.
+
+use std::f64::consts::TAU;
+
+use crate::support::near_plane::{cuts_on_the_near_plane, lit, normal};
+use crate::support::odd_views::odd_views;
+use crate::support::oracle;
+use crate::support::random::Random;
+use crate::support::tried::Tried;
+use mode13h::glam::Vec3;
+use mode13h::light::Light;
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::plan::Effect;
+use mode13h::raster::cover::Ordered;
+use mode13h::raster::{Frame, Rect, Vertex};
+use mode13h::render::{RenderError, Renderer, Rung, Screen, Stats, VertexPath};
+use mode13h::scene::{Camera, Object, Scene, UpAxis};
+use mode13h::vga::Vga;
+
+const WIDTH: usize = 320;
+const HEIGHT: usize = 200;
+
+fn renderer(path: VertexPath) -> Renderer {
+    let mut renderer = Renderer::new();
+    renderer.set_vertex_path(path);
+    renderer
+}
+
+fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
+    let mut vga = Vga::new();
+    let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
+    assert_eq!(stats.vertex_path, renderer.vertex_path());
+    vga.pixels().to_vec()
+}
+
+/// An angle that both paths have exactly, in 65,536ths of a turn.
+fn steps(steps: i64) -> f64 {
+    steps as f64 * TAU / 65_536.0
+}
+
+/// The distance of a point from a line segment.
+fn distance(p: (f64, f64), a: (f64, f64), b: (f64, f64)) -> f64 {
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let square = dx * dx + dy * dy;
+    let t = if square > 0.0 { (((p.0 - a.0) * dx + (p.1 - a.1) * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (p.0 - a.0 - t * dx).hypot(p.1 - a.1 - t * dy)
+}
+
+/// How far apart the two paths' vertices may be on the screen, either way, in pixels, in a scene made by
+/// [`framed`](crate::support::scenes::framed) whose angles both have exactly.
+///
+/// An entry of the 16.16 matrix is off by half a unit and a hair of what the scale's mantissa makes of 1, so a
+/// vertex at r or nearer to the pivot by 0.51 · √3 · r / 65,536 along each axis, all else by less than
+/// 2⁻²⁴ of the scene. In f32 seven roundings of 2⁻²⁴ of what they reach, r and the eye's distance d,
+/// come to less than 2⁻²¹ · (r + d). Then each is rounded to 1/256 pixel.
+fn vertex_bound(scene: &Scene) -> f64 {
+    let radius = f64::from(scene.objects()[0].mesh().bounds().radius);
+    let eye = f64::from(scene.camera.eye.z);
+    let off = 0.51 * 3.0_f64.sqrt() * radius / 65_536.0 + (radius + eye) * (2.0_f64.powi(-21) + 2.0_f64.powi(-24));
+    let focal = 100.0 / f64::tan(f64::from(scene.camera.field_of_view) / 2.0) * 6.0 / 5.0;
+    // All of it lies in the picture's height, so |X| / W and |Y| / W are below the tangent of 40°/2.
+    let screen = focal * off * (1.0 + f64::tan(f64::from(scene.camera.field_of_view) / 2.0)) / (eye - radius);
+    screen + 1.0 / 256.0
+}
+
+/// Compares the frames of both paths; returns how many pixels were compared, and how many differ at all.
+fn compare(scene: &Scene, name: &str) -> (u64, u64) {
+    let off = vertex_bound(scene);
+    assert!(off < 2.0 / 256.0, "{name}: 1/128 pixel is the bound: {off}");
+    let mut triangles: Vec<[Vertex; 3]> = Vec::new();
+    let screen = Screen::MODE_13H;
+    renderer(VertexPath::Float).for_each_triangle(scene, screen, |v, _| triangles.push(*v)).expect("a legal scene");
+    let (float, integer) =
+        (frame(&mut renderer(VertexPath::Float), scene), frame(&mut renderer(VertexPath::Integer), scene));
+
+    // Of every pixel: whether an edge is so near that rounding may decide, and the nearest two depths,
+    // with how far the depth, and the shade, may be off.
+    let mut undecided = vec![false; WIDTH * HEIGHT];
+    let mut seen = vec![Vec::<(f64, f64, f64)>::new(); WIDTH * HEIGHT];
+    for vertices in &triangles {
+        let at = vertices.map(|v| (f64::from(v.x().to_bits()) / 256.0, f64::from(v.y().to_bits()) / 256.0));
+        let range = |get: fn(&(f64, f64)) -> f64, size: usize| {
+            let low = at.iter().map(get).fold(f64::MAX, f64::min) - 1.0;
+            let high = at.iter().map(get).fold(f64::MIN, f64::max) + 1.0;
+            low.max(0.0) as usize..(high.max(0.0) as usize + 1).min(size)
+        };
+        let points = vertices.each_ref().map(oracle::point);
+        for y in range(|p| p.1, HEIGHT) {
+            for x in range(|p| p.0, WIDTH) {
+                let place = y * WIDTH + x;
+                let centre = (x as f64 + 0.5, y as f64 + 0.5);
+                // Vertices that move by `off` along both axes move an edge by at most √2 of it.
+                let edges = [(0, 1), (1, 2), (2, 0)];
+                if edges.iter().any(|&(a, b)| distance(centre, at[a], at[b]) <= off * 2.0_f64.sqrt()) {
+                    undecided[place] = true;
+                    continue;
+                }
+                if !oracle::covers(points, oracle::centre(x as i32, y as i32)) {
+                    continue;
+                }
+                // The value, and how much it changes from here to a pixel further along x and y.
+                let plane = |values: [i128; 3]| {
+                    let value = |dx: i32, dy: i32| {
+                        let ratio = oracle::interpolate(points, values, oracle::centre(x as i32 + dx, y as i32 + dy));
+                        ratio.n as f64 / ratio.d as f64
+                    };
+                    let here = value(0, 0);
+                    (here, (value(1, 0) - here).abs() + (value(0, 1) - here).abs())
+                };
+                let (depth, depth_slope) = plane(vertices.each_ref().map(|v| i128::from(v.depth())));
+                let (_, shade_slope) = plane(vertices.each_ref().map(|v| i128::from(v.shade().to_bits())));
+                // Depths themselves by as much as w: less than 2⁻¹⁶ of them, and rounding.
+                seen[place].push((depth, depth_slope * off + depth / 65_536.0 + 2.0, shade_slope * off / 256.0));
+            }
+        }
+    }
+
+    let (mut compared, mut differ) = (0, 0);
+    for (place, mut seen) in seen.into_iter().enumerate() {
+        let (a, b) = (float[place], integer[place]);
+        differ += u64::from(a != b);
+        if undecided[place] {
+            continue;
+        }
+        compared += 1;
+        let at = (place % WIDTH, place / WIDTH);
+        assert_eq!(a != scene.background, b != scene.background, "{name}, {at:?}: cover");
+        seen.sort_by(|p, q| q.0.total_cmp(&p.0));
+        let Some(&(nearest, off, shade)) = seen.first() else { continue };
+        if seen.get(1).is_some_and(|&(next, next_off, _)| nearest - next < off + next_off) {
+            continue;
+        }
+        // Normal and direction of the light are off by half a unit of 2⁻¹⁶ along each axis, and so by
+        // √3/2, their product is rounded, and shades are to 1/256 on either path: less than 1/32 shade.
+        // The 8.8 steps drift by less than 65/256 on either. Nearest bytes of values so far apart:
+        let bound = (shade + 1.0 / 32.0 + 65.0 / 256.0).floor() + 1.0;
+        assert!(f64::from(a.abs_diff(b)) <= bound, "{name}, {at:?}: shades {a} and {b}, {bound} allowed");
+    }
+    (compared, differ)
+}
+
+#[test]
+fn both_paths_draw_the_same_picture() {
+    let mut tried = Tried::new("both_paths_draw_the_same_picture", 7 * 24);
+    let mut random = Random::named("both paths");
+    let (mut compared, mut differ) = (0, 0);
+    for name in shapes::NAMES {
+        let mut scene = crate::support::scenes::framed(shapes::by_name(name).expect("listed"));
+        scene.add_light(Light::sun([-1.0, 0.3, 0.2]).with_intensity(0.5));
+        for _ in 0..24 {
+            let angles = [0; 3].map(|_| steps(random.within(-70_000, 70_000)));
+            scene.objects_mut()[0].set_angles(angles);
+            let (pixels, others) = compare(&scene, name);
+            (compared, differ) = (compared + pixels, differ + others);
+            tried.add(1);
+        }
+    }
+    let all = 7 * 24 * WIDTH * HEIGHT;
+    println!("{compared} of {all} pixels compared, {differ} differ at all");
+    assert!(compared > all as u64 * 9 / 10, "few pixels lie so near to an edge");
+    assert!(differ < all as u64 / 200, "few bytes differ: {differ}");
+}
+
+/// Of a rung that a path lacks the plan names the one that is drawn instead.
+#[test]
+fn the_plan_names_the_rung_that_is_drawn() {
+    let mut tried = Tried::new("the_plan_names_the_rung_that_is_drawn", 2 * 10);
+    let scene = crate::support::scenes::framed(shapes::torus(12, 8));
+    for path in VertexPath::ALL {
+        for rung in Rung::ALL {
+            let drawn = if path == VertexPath::Integer { rung.in_integers() } else { rung };
+            let mut renderer = renderer(path);
+            renderer.set_rung(rung);
+            let mut shadings = Vec::new();
+            let stats = renderer
+                .for_each_triangle(&scene, Screen::MODE_13H, |_, shading| shadings.push(shading))
+                .expect("a legal scene");
+            assert_eq!(stats.rung, drawn);
+            let decision = renderer.plan().objects()[0].decision(Effect::Gouraud);
+            let shades_run = drawn != Rung::Flat && !drawn.lights_pixels();
+            assert_eq!(decision.on, shades_run, "{path}, {rung}");
+            if shades_run {
+                assert_eq!(decision.choice, drawn.name(), "{path}, {rung}");
+                assert!(shadings.iter().all(|shading| *shading == drawn.shading()), "{path}, {rung}");
+            }
+            tried.add(1);
+        }
+    }
+}
+
+#[test]
+fn every_rung_and_odd_scene_is_drawn_and_counted_alike() {
+    let mut tried = Tried::new("every_rung_and_odd_scene_is_drawn_and_counted_alike", 5 * 4);
+    // Vertices that the paths have a unit apart may be a whole pixel apart on `gouraud-period`.
+    let known = |rung: &Rung| rung.in_integers() == *rung && rung.has_exact_cover();
+    for rung in Rung::ALL.into_iter().filter(known) {
+        // A size and place of its own, the pivot aside, the mesh laid back; three materials.
+        for (scale, place) in [(1.0_f32, 0.0_f32), (1e-5, 1e-6), (3.7e8, -2e9), (0.001, 5.0)] {
+            let mut scene = Scene::new();
+            let mut object = Object::new(shapes::torus(24, 12));
+            (object.scale, object.pivot, object.up_axis) = (scale, Vec3::new(0.3, 2.0, -0.1), UpAxis::Z);
+            object.position = Vec3::splat(place);
+            object.set_angles([steps(1000), steps(20_000), steps(-300)]);
+            scene.add(object);
+            scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+            scene.camera = Camera::framing(Vec3::splat(place) - Vec3::Y * 2.0 * scale, 2.0 * scale);
+            let [float, integer] = VertexPath::ALL.map(|path| {
+                let mut renderer = renderer(path);
+                renderer.set_rung(rung);
+                let mut vga = Vga::new();
+                let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
+                (vga.pixels().to_vec(), stats)
+            });
+            let (f, i) = (float.1, integer.1);
+            assert_eq!((f.vertices, f.faces, f.hidden_surfaces), (i.vertices, i.faces, i.hidden_surfaces));
+            assert_eq!((i.clipped, i.culled + i.drawn), (0, i.faces));
+            assert_eq!(i.lit, if rung == Rung::Flat { i.drawn } else { i.vertices });
+            // A face seen on its edge may count as turned away on one path and not on the other.
+            assert!(f.culled.abs_diff(i.culled) <= 4, "{f}; {i}");
+            let differ = float.0.iter().zip(&integer.0).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+            let drawn = float.0.iter().filter(|b| **b != 0).count();
+            assert!(drawn > 1000, "{rung}, {scale}: {drawn}");
+            assert!(differ < 100, "{rung}, {scale}: {differ} of {drawn}");
+            tried.add(1);
+        }
+    }
+}
+
+#[test]
+fn t3_a_full_turn_returns_to_the_picture() {
+    let mut tried = Tried::new("t3_a_full_turn_returns_to_the_picture", 3 * 300);
+    let mut random = Random::named("t3");
+    let mut renderer = renderer(VertexPath::Integer);
+    let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
+    let mut different = std::collections::HashSet::new();
+    for axis in 0..3 {
+        for _ in 0..300 {
+            let n = random.within(0, 65_535);
+            let mut turned = |n: i64| {
+                let mut angles = [0.1, 0.2, 0.3];
+                angles[axis] = steps(n);
+                scene.objects_mut()[0].set_angles(angles);
+                frame(&mut renderer, &scene)
+            };
+            let once = turned(n);
+            for turns in [1, -1, 1000] {
+                assert!(turned(n + turns * 65_536) == once, "step {n} about axis {axis}, {turns} turns later");
+            }
+            different.insert(once);
+            tried.add(1);
+        }
+    }
+    assert!(different.len() > 700, "a turn is seen: {} pictures", different.len());
+}
+
+#[test]
+fn t2_steps_of_any_size() {
+    let mut tried = Tried::new("t2_steps_of_any_size", 9);
+    let mut renderer = renderer(VertexPath::Integer);
+    let mut scene = crate::support::scenes::framed(shapes::cube());
+    let id = 0;
+    let first = frame(&mut renderer, &scene);
+    for step in [0.0, -0.0, 0.1, -0.1, 3600.0, -3600.0, 86_400.0, 1e9] {
+        scene.objects_mut()[id].rotate_y(step);
+        let there = frame(&mut renderer, &scene);
+        assert_eq!(there == first, step == 0.0, "a step of {step}");
+        scene.objects_mut()[id].set_angles([0.0; 3]);
+        assert!(frame(&mut renderer, &scene) == first, "and back");
+        tried.add(1);
+    }
+    // Beyond what f64 can count turns in it is some angle.
+    scene.objects_mut()[id].set_angles([f64::MAX, -1e300, f64::MIN_POSITIVE]);
+    frame(&mut renderer, &scene);
+    tried.add(1);
+}
+
+#[test]
+fn t1_frame_n_after_n_frames_is_frame_n_at_once() {
+    let mut tried = Tried::new("t1_frame_n_after_n_frames_is_frame_n_at_once", 500);
+    let mut renderer = renderer(VertexPath::Integer);
+    let mut scene = crate::support::scenes::framed(shapes::torus(12, 8));
+    for n in 0..500 {
+        scene.objects_mut()[0].set_angles([steps(3 * n), steps(131 * n), steps(-7 * n)]);
+        let after_all_before = frame(&mut renderer, &scene);
+        assert!(after_all_before == frame(&mut self::renderer(VertexPath::Integer), &scene), "frame {n}");
+        tried.add(1);
+    }
+}
+
+#[test]
+fn e1_a_changed_mesh_is_converted_anew() {
+    let mut tried = Tried::new("e1_a_changed_mesh_is_converted_anew", 40);
+    let mut kept = renderer(VertexPath::Integer);
+    let mut random = Random::named("e1 integer");
+    let mut scene = crate::support::scenes::framed(shapes::cube());
+    while tried.more() {
+        // A mesh that is dropped leaves its address to the next.
+        let mesh = match random.within(0, 3) {
+            0 => shapes::cube(),
+            1 => shapes::torus(random.within(3, 20) as u32, 6),
+            2 => shapes::cone(random.within(3, 20) as u32, 2),
+            _ => Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y * random.unit() as f32], vec![[0, 1, 2]]).expect("sound"),
+        };
+        let object = &mut scene.objects_mut()[0];
+        *object = Object::new(mesh).centred();
+        let mut compare = |scene: &Scene| {
+            assert!(frame(&mut kept, scene) == frame(&mut renderer(VertexPath::Integer), scene));
+        };
+        compare(&scene);
+        scene.objects_mut()[0].pivot.x += 0.25;
+        compare(&scene);
+        scene.objects_mut()[0].up_axis = UpAxis::Z;
+        compare(&scene);
+    }
+}
+
+#[test]
+fn r8_bands_on_the_integer_path_give_the_bytes_of_the_whole() {
+    let mut tried = Tried::new("r8_bands_on_the_integer_path_give_the_bytes_of_the_whole", 25);
+    let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
+    scene.objects_mut()[0].set_angles([steps(5000), steps(900), 0.0]);
+    let mut renderer = renderer(VertexPath::Integer);
+    let whole = frame(&mut renderer, &scene);
+    let mut band = [0; WIDTH * 8];
+    for first in (0..HEIGHT).step_by(8) {
+        let rows = first as u32..first as u32 + 8;
+        let frame = Frame::band(&mut band, WIDTH as u32, HEIGHT as u32, WIDTH, rows).expect("a band");
+        renderer.draw_frame(&scene, frame, (5, 6)).expect("a legal scene");
+        assert!(band == whole[first * WIDTH..(first + 8) * WIDTH], "rows {first} on");
+        tried.add(1);
+    }
+}
+
+// ------------------------------------------------------------------ clipping
+
+/// How often each pixel is covered.
+fn counts(scene: &Scene) -> (Vec<u32>, Stats) {
+    let mut counts = vec![0; WIDTH * HEIGHT];
+    let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
+    let stats = renderer(VertexPath::Integer)
+        .for_each_triangle(scene, Screen::MODE_13H, |vertices, _| {
+            Ordered::new(vertices).rows(WIDTH as u32, clip, |row| {
+                for x in row.x0..row.x1 {
+                    counts[row.y as usize * WIDTH + x as usize] += 1;
+                }
+            });
+        })
+        .expect("a legal scene");
+    (counts, stats)
+}
+
+/// An eye at the origin that looks along −z.
+fn scene(mesh: Mesh) -> Scene {
+    let mut scene = Scene::new();
+    scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, field_of_view: 1.0, near: 0.25 };
+    scene.add(Object::new(mesh));
+    scene
+}
+
+/// A floor one below the eye, `reach` to all sides, of `n × n` squares of two triangles.
+fn floor(reach: f32, n: u32) -> Mesh {
+    let at = |i: u32| reach * (i as f32 / n as f32 * 2.0 - 1.0);
+    let positions = (0..=n).flat_map(|z| (0..=n).map(move |x| Vec3::new(at(x), -1.0, at(z)))).collect();
+    let corner = |x, z| z * (n + 1) + x;
+    let triangles = (0..n * n)
+        .flat_map(|i| {
+            let (x, z) = (i % n, i / n);
+            let (a, b, c, d) = (corner(x, z), corner(x + 1, z), corner(x, z + 1), corner(x + 1, z + 1));
+            if (x + z) % 2 == 0 { [[a, c, b], [b, c, d]] } else { [[a, c, d], [a, d, b]] }
+        })
+        .collect();
+    Mesh::new(positions, triangles).expect("a mesh")
+}
+
+#[test]
+fn r7_a_floor_on_the_integer_path_is_closed_to_the_horizon() {
+    let mut tried = Tried::new("r7_a_floor_on_the_integer_path_is_closed_to_the_horizon", 20);
+    for reach in [500.0_f32, 2e3, 1e4, 3e4, 6e4] {
+        for n in [1, 2, 3, 8] {
+            // The far edge is projected fy / reach below the horizon: less than half a pixel.
+            let (counts, stats) = counts(&scene(floor(reach, n)));
+            for (place, &times) in counts.iter().enumerate() {
+                let inside = place / WIDTH >= HEIGHT / 2;
+                let at = (place % WIDTH, place / WIDTH);
+                assert_eq!(times, u32::from(inside), "{at:?} of a floor of {reach:e}, {n} squares a side");
+            }
+            assert!(stats.clipped > 0, "{stats}");
+            tried.add(1);
+        }
+    }
+}
+
+#[test]
+fn c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0() {
+    let mut tried = Tried::new("c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000);
+    let mut random = Random::named("c1 integer");
+    let (mut drawn, mut cuts) = (0_u64, 0_u64);
+    while tried.more() {
+        let mut corner = || {
+            let z = random.one_of(&[-0.25, -0.0, 0.0, 0.25, 1.0, -1.0, -0.250_000_03, -0.249_999_99, -5.0]);
+            Vec3::new(random.unit() as f32 * 4.0 - 2.0, random.unit() as f32 * 4.0 - 2.0, z)
+        };
+        let corners = [corner(), corner(), corner()];
+        // In 16.16 a corner a hair nearer than the near plane may lie on it.
+        let visible = corners.iter().any(|p| -p.z >= 0.249_999);
+        let intensities = [0; 3].map(|_| random.unit());
+        let normals = intensities.map(normal).to_vec();
+        let Ok(mesh) = Mesh::with_normals(corners.to_vec(), normals, vec![[0, 1, 2]]) else { panic!("{corners:?}") };
+        let scene = lit(scene(mesh));
+        let (counts, _) = counts(&scene);
+        // Normals and cosines are in 16.16: each is off by a unit or two, which is as many 256ths of a shade.
+        let renderer = &mut renderer(VertexPath::Integer);
+        cuts += cuts_on_the_near_plane(renderer, &scene, corners, intensities, 6.0);
+        assert!(visible || counts.iter().all(|&times| times == 0), "nothing of {corners:?} is in sight");
+        assert!(counts.iter().all(|&times| times <= 1), "{corners:?} is cut into parts that overlap");
+        drawn += u64::from(counts.contains(&1));
+    }
+    tried.worst("faces in sight", drawn as f64);
+    tried.worst("cuts with their shades", cuts as f64);
+    let stated = tried.stated();
+    assert!(drawn * 4 > stated && cuts * 4 > stated, "{drawn} of {stated} in sight, {cuts} cuts");
+}
+
+#[test]
+fn c1_on_the_integer_path_the_visible_part_is_what_a_ray_hits() {
+    let mut tried = Tried::new("c1_on_the_integer_path_the_visible_part_is_what_a_ray_hits", 200);
+    let mut random = Random::named("c1 integer rays");
+    let fy = 100.0 / f64::tan(0.5);
+    let fx = fy * 6.0 / 5.0;
+    let mut hits = 0;
+    while tried.more() {
+        let size = f64::from(random.log_uniform(10) as u32);
+        let mut corner = || [0; 3].map(|_| (random.unit() * 2.0 - 1.0) * size).map(|c| f64::from(c as f32));
+        let [a, b, c] = [corner(), corner(), corner()];
+        let narrow = |p: [f64; 3]| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32);
+        let Ok(mesh) = Mesh::new(vec![narrow(a), narrow(b), narrow(c)], vec![[0, 1, 2]]) else { continue };
+        let (counts, _) = counts(&scene(mesh));
+        for y in 0..HEIGHT {
+            for x in 0..WIDTH {
+                let ray =
+                    |dx: f64, dy: f64| [(x as f64 + 0.5 + dx - 160.0) / fx, -(y as f64 + 0.5 + dy - 100.0) / fy, -1.0];
+                // Within 1/64 pixel of an edge rounding may decide: vertices and cuts are rounded to half
+                // of 1/256. The matrix is exact here, and vertices have 30 bits: near the eye, at 1/4 of
+                // up to 1,024 units, 2⁻¹⁹ of the distance, which is 2⁻¹⁰ pixel.
+                let middle = hit(a, b, c, ray(0.0, 0.0));
+                let e = 1.0 / 64.0;
+                if [(e, e), (e, -e), (-e, e), (-e, -e)].iter().any(|&(dx, dy)| hit(a, b, c, ray(dx, dy)) != middle) {
+                    continue;
+                }
+                assert_eq!(counts[y * WIDTH + x], u32::from(middle), "({x}, {y}) of {a:?} {b:?} {c:?}");
+                hits += u32::from(middle);
+            }
+        }
+    }
+    assert!(hits > 100_000, "faces were hit: {hits}");
+}
+
+/// Whether the ray from the origin meets the triangle beyond the near plane. `ray`'s z is −1, so its
+/// parameter is the distance along the view.
+fn hit(a: [f64; 3], b: [f64; 3], c: [f64; 3], ray: [f64; 3]) -> bool {
+    let sub = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    let cross =
+        |p: [f64; 3], q: [f64; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    let (u, v, w) = (dot(ray, cross(a, b)), dot(ray, cross(b, c)), dot(ray, cross(c, a)));
+    let normal = cross(sub(b, a), sub(c, a));
+    let along = dot(normal, a) / dot(normal, ray);
+    ((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0)) && along > 0.25
+}
+
+// ------------------------------------------------------------------ what is refused
+
+#[test]
+fn c4_odd_views_on_the_integer_path_are_quiet() {
+    odd_views(Tried::new("c4_odd_views_on_the_integer_path_are_quiet", 500), VertexPath::Integer);
+}
+
+#[test]
+fn scenes_that_16_16_cannot_hold_are_refused_and_others_drawn() {
+    let mut tried = Tried::new("scenes_that_16_16_cannot_hold_are_refused_and_others_drawn", 12);
+    let mut check = |change: fn(&mut Scene), expected: fn(&Result<Stats, RenderError>) -> bool| {
+        let mut scene = crate::support::scenes::framed(shapes::cube());
+        change(&mut scene);
+        let mut vga = Vga::new();
+        vga.poke(0, 99);
+        let result = renderer(VertexPath::Integer).draw(&scene, &mut vga);
+        assert!(expected(&result), "{result:?}");
+        assert!(result.is_ok() || vga.peek(0) == 99, "the machine is left as it was");
+        tried.add(1);
+    };
+    check(|_| (), |r| r.is_ok());
+    check(|scene| scene.camera.near *= 1e-4, |r| matches!(r, Err(RenderError::Camera(_))));
+    check(|scene| scene.objects_mut()[0].position.x = 1e9, |r| matches!(r, Err(RenderError::Camera(_))));
+    check(|scene| scene.objects_mut()[0].position.x = 1e3, |r| r.is_ok());
+    check(|scene| scene.camera.field_of_view = 0.001, |r| matches!(r, Err(RenderError::Camera(_))));
+    check(|scene| scene.camera.near = f32::MAX, |r| r.is_ok());
+    check(|scene| scene.objects_mut()[0].scale = 0.0, |r| r.is_ok());
+    check(|scene| scene.objects_mut()[0].scale = f32::MIN_POSITIVE / 8.0, |r| r.is_ok());
+    check(|scene| scene.objects_mut()[0].scale = 1e5, |r| matches!(r, Err(RenderError::Camera(_))));
+    check(
+        |scene| scene.add_light(Light::sun([0.0, 0.0, 1.0]).with_intensity(4e4)),
+        |r| matches!(r, Err(RenderError::Light { index: 1, .. })),
+    );
+    check(
+        |scene| scene.objects_mut()[0].materials[0].diffuse = 1e9,
+        |r| matches!(r, Err(RenderError::Object { index: 0, .. })),
+    );
+    check(
+        |scene| (0..4096).for_each(|_| scene.add_light(Light::sun([0.0, f32::MIN_POSITIVE / 4.0, 0.0]))),
+        |r| matches!(r, Err(RenderError::Light { index: 4096, .. })),
+    );
+}
+
+#[test]
+fn r10_denormal_and_huge_scenes_are_scaled_into_range() {
+    let mut tried = Tried::new("r10_denormal_and_huge_scenes_are_scaled_into_range", 9);
+    // The same scene at any power of two is the same picture: scaling is exact.
+    let picture = |exponent: i32| {
+        let size = (f64::from(exponent)).exp2() as f32;
+        let cube = shapes::cube();
+        let positions = cube.positions().iter().map(|&p| p * size).collect();
+        let mesh = Mesh::with_normals(positions, cube.normals().to_vec(), cube.triangles().to_vec()).expect("sound");
+        let mut scene = Scene::new();
+        let mut object = Object::new(mesh);
+        object.set_angles([0.4, 0.5, 0.6]);
+        scene.add(object);
+        scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+        let framed = Camera::framing(Vec3::ZERO, 1.0);
+        scene.camera = Camera { eye: framed.eye * size, near: framed.near * size, ..framed };
+        frame(&mut renderer(VertexPath::Integer), &scene)
+    };
+    let expected = picture(0);
+    for exponent in [-90, -60, -20, -1, 1, 10, 30, 90, 120] {
+        assert!(picture(exponent) == expected, "2^{exponent}");
+        tried.add(1);
+    }
+}

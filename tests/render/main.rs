@@ -1,0 +1,24 @@
+//! The renderer: golden frames, clipping, hidden surfaces, the integer path, the plan.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+#[cfg(feature = "scene-files")]
+mod allocation;
+#[cfg(feature = "alloc")]
+mod clipping;
+#[cfg(feature = "alloc")]
+mod frames;
+#[cfg(feature = "png")]
+mod golden;
+mod hard_cases;
+#[cfg(feature = "alloc")]
+mod hidden_scenes;
+#[cfg(feature = "alloc")]
+mod integer_frames;
+#[cfg(feature = "alloc")]
+mod integer_path;
+#[cfg(feature = "alloc")]
+mod plan;
+#[cfg(feature = "alloc")]
+mod tessellation;

@@ -1,0 +1,569 @@
+//! The plan: only what a scene calls for is computed, and that changes no picture.
+
+use crate::support::scenes;
+use crate::support::tried::Tried;
+use mode13h::plan::{Class, Effect};
+use mode13h::raster::Frame;
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, Screen, Stats};
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+
+/// The frame of a new renderer, prepared by `prepare`.
+fn draw(scene: &Scene, prepare: impl FnOnce(&mut Renderer)) -> (Vec<u8>, Stats, Renderer) {
+    let mut renderer = Renderer::new();
+    prepare(&mut renderer);
+    let mut vga = Vga::new();
+    let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
+    (vga.pixels().to_vec(), stats, renderer)
+}
+
+fn differing(a: &[u8], b: &[u8]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
+}
+
+/// Which effects a scene's objects call for.
+fn called_for(renderer: &Renderer, effect: Effect) -> bool {
+    renderer.plan().is_on_anywhere(effect)
+}
+
+#[test]
+fn every_effect_is_called_for_by_a_scene_and_not_by_another() {
+    let mut tried = Tried::new("every_effect_is_called_for_by_a_scene_and_not_by_another", 20);
+    let plans: Vec<_> = scenes::all().iter().map(|(_, scene)| draw(scene, |_| ()).2).collect();
+    for effect in Effect::ALL {
+        let on = plans.iter().filter(|renderer| called_for(renderer, effect)).count();
+        if effect == Effect::Transform {
+            assert_eq!(on, plans.len(), "every first frame is transformed");
+        } else {
+            assert!(on > 0 && on < plans.len(), "{effect}: on in {on} of {} scenes", plans.len());
+        }
+        tried.add(1);
+    }
+}
+
+/// Proof (a) for effects that save work: always doing the full work changes no byte.
+#[test]
+fn the_full_work_gives_the_same_bytes() {
+    let mut tried = Tried::new("the_full_work_gives_the_same_bytes", 200);
+    for (name, scene) in scenes::all() {
+        let (expected, stats, chosen) = draw(&scene, |_| ());
+        // What saves work by being on: culling, and hidden surfaces without depths.
+        let (full, _, _) = draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
+        let covered_twice = differing(&expected, &full);
+        assert!(covered_twice == 0, "{name}, depth buffer: {covered_twice} pixels differ");
+        for effect in Effect::ALL {
+            if effect.class() != Class::SavesWork {
+                continue;
+            }
+            let on = effect != Effect::BackFaceCulling;
+            if !on && called_for(&chosen, Effect::NearClipping) {
+                // The near plane cuts the body open, and its inside, which is never drawn, would show.
+                continue;
+            }
+            let (bytes, forced, renderer) = draw(&scene, |renderer| {
+                renderer.force(effect, Some(on));
+                if !on {
+                    renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+                }
+            });
+            assert!(
+                renderer.plan().objects().iter().all(|plan| plan.is_on(effect) == on),
+                "{name}: {effect} is forced"
+            );
+            let differ = differing(&expected, &bytes);
+            // Neither side of a face that is seen on its edge to within rounding is nearer: of equal depths
+            // the first submitted is drawn, and a back face may be that.
+            let allowed = if on { 0 } else { forced.faces as usize / 100 };
+            assert!(differ <= allowed, "{name}, {effect} forced: {differ} pixels differ");
+            tried.add(1);
+        }
+        assert_eq!(stats.hidden_surfaces, chosen.plan().hidden_surfaces());
+    }
+}
+
+/// Proof (a) for effects that change the picture: on neutral input they change no byte.
+#[test]
+fn neutral_input_gives_the_same_bytes() {
+    let mut tried = Tried::new("neutral_input_gives_the_same_bytes", 80);
+    for (name, scene) in scenes::all() {
+        let (expected, _, chosen) = draw(&scene, |_| ());
+        for effect in
+            [Effect::Texture, Effect::EnvironmentMap, Effect::Transparency, Effect::Dither, Effect::PaletteAnimation]
+        {
+            if called_for(&chosen, effect) {
+                continue;
+            }
+            let (bytes, stats, renderer) = draw(&scene, |renderer| renderer.force(effect, Some(true)));
+            assert!(called_for(&renderer, effect), "{name}: {effect} is forced");
+            let differ = differing(&expected, &bytes);
+            assert!(differ == 0, "{name}, {effect} on neutral input: {differ} pixels differ");
+            let ran = match effect {
+                // An image that is mixed from channels is the channels themselves.
+                Effect::Texture | Effect::EnvironmentMap => stats.raster.textured + stats.raster.mixed,
+                Effect::Transparency => stats.raster.blended,
+                Effect::Dither => stats.raster.dithered,
+                _ => 1,
+            };
+            assert!(ran > 0, "{name}, {effect}: it ran");
+            tried.add(1);
+        }
+    }
+}
+
+/// Proof (b): the counters of what is off are zero, and those of what is on are not.
+#[test]
+fn counters_of_what_is_off_are_zero() {
+    let mut tried = Tried::new("counters_of_what_is_off_are_zero", 20);
+    for (name, scene) in scenes::all() {
+        let (_, stats, renderer) = draw(&scene, |_| ());
+        let raster = stats.raster;
+        let on = |effect| called_for(&renderer, effect);
+        let counters = [
+            (Effect::Transform, stats.vertices),
+            (Effect::Texture, if on(Effect::EnvironmentMap) { 0 } else { u64::from(raster.textured) }),
+            (Effect::EnvironmentMap, if on(Effect::Texture) { 0 } else { u64::from(raster.textured) }),
+            (Effect::Mipmaps, u64::from(raster.mipmapped)),
+            (Effect::Fog, u64::from(raster.fogged)),
+            (Effect::Transparency, u64::from(raster.blended)),
+            (Effect::RgbChannels, u64::from(raster.mixed)),
+            (Effect::Dither, u64::from(raster.dithered)),
+            (Effect::Phong, u64::from(raster.lit)),
+        ];
+        for (effect, count) in counters {
+            assert_eq!(count > 0, on(effect), "{name}, {effect}: {count}, in {stats}");
+        }
+        let depth = renderer.plan().hidden_surfaces() == HiddenSurfaces::DepthBuffer;
+        assert_eq!(raster.tested > 0, depth, "{name}: {stats}");
+        if !on(Effect::Lighting) {
+            assert_eq!(stats.lit, 0, "{name}: {stats}");
+        }
+        if !on(Effect::NearClipping) && !on(Effect::ScreenClipping) {
+            assert_eq!(stats.clipped, 0, "{name}: {stats}");
+        }
+        tried.add(1);
+    }
+}
+
+/// Proof (d): where an effect that changes the picture is called for, leaving it out changes the picture.
+#[test]
+fn leaving_out_what_is_called_for_changes_the_picture() {
+    let mut tried = Tried::new("leaving_out_what_is_called_for_changes_the_picture", 15);
+    let mut changed = [false; Effect::COUNT];
+    for (name, mut scene) in scenes::all() {
+        // Of a cycle, a moment at which it has moved.
+        scene.set_time(0.3);
+        let frame = |force: Option<Effect>| {
+            let mut renderer = Renderer::new();
+            if let Some(effect) = force {
+                renderer.force(effect, Some(effect == Effect::BackFaceCulling));
+            }
+            let mut vga = Vga::new();
+            renderer.draw(&scene, &mut vga).expect("a legal scene");
+            let called = Effect::ALL.map(|effect| called_for(&renderer, effect));
+            (vga.pixels().to_vec(), vga.palette(), called)
+        };
+        let (bytes, palette, called) = frame(None);
+        for (i, effect) in Effect::ALL.into_iter().enumerate() {
+            let needed = if effect == Effect::BackFaceCulling { !called[i] } else { called[i] };
+            if needed && !matches!(effect, Effect::Transform | Effect::HiddenSurfaces | Effect::NearClipping) {
+                let (without, other_palette, _) = frame(Some(effect));
+                changed[i] |= differing(&bytes, &without) > 0 || palette != other_palette;
+                tried.add(1);
+            }
+        }
+        let _ = name;
+    }
+    for (i, effect) in Effect::ALL.into_iter().enumerate() {
+        // These three are shown in their own tests: what is kept, what is hidden, what lies behind the eye.
+        let elsewhere = matches!(effect, Effect::Transform | Effect::HiddenSurfaces | Effect::NearClipping);
+        assert!(changed[i] || elsewhere, "no scene needs {effect}");
+    }
+}
+
+/// D1: the plan never picks painter's order where objects overlap in depth.
+#[test]
+fn d1_the_plan_never_picks_painters_order_for_what_overlaps() {
+    let mut tried = Tried::new("d1_the_plan_never_picks_painters_order_for_what_overlaps", 20);
+    for (name, scene) in scenes::all() {
+        let (_, stats, _) = draw(&scene, |_| ());
+        if stats.hidden_surfaces == HiddenSurfaces::PainterOrder {
+            let (depth, _, _) =
+                draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
+            assert_eq!(differing(&draw(&scene, |_| ()).0, &depth), 0, "{name}");
+        }
+        tried.add(1);
+    }
+}
+
+/// E1: where nothing changes nothing is drawn, and whatever changes is.
+#[test]
+fn e1_what_stays_is_not_drawn_again() {
+    let mut tried = Tried::new("e1_what_stays_is_not_drawn_again", 40);
+    for (name, mut scene) in scenes::all() {
+        let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+        let first = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        let bytes = vga.pixels().to_vec();
+        let second = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert!(first.redrawn && !second.redrawn, "{name}: {second}");
+        assert_eq!((second.vertices, second.raster.pixels, second.allocated), (0, 0, 0), "{name}");
+        // Somebody touches the frame.
+        vga.pixels_mut()[5000] ^= 1;
+        let third = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert!(third.redrawn && third.vertices == 0, "{name}: the vertices are kept: {third}");
+        assert_eq!(vga.pixels(), bytes, "{name}");
+        // Something moves.
+        scene.objects_mut()[0].rotate_y(0.3);
+        let moved = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert!(moved.redrawn && moved.vertices > 0, "{name}: {moved}");
+        assert_eq!(vga.pixels(), draw(&scene, |_| ()).0, "{name}: as a new renderer draws it");
+        tried.add(2);
+    }
+}
+
+/// A plan that is made and not drawn is the plan of the next frame, and leaves that frame as it would have been.
+#[test]
+fn a_plan_alone_is_that_of_the_next_frame() {
+    let mut tried = Tried::new("a_plan_alone_is_that_of_the_next_frame", 60);
+    for (name, mut scene) in scenes::all() {
+        let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+        let (mut plain, mut plain_vga) = (Renderer::new(), Vga::new());
+        // The first frame, one that moves, and one that stays.
+        for turn in [0.0, 0.1, 0.0] {
+            scene.objects_mut()[0].rotate_y(turn);
+            for _ in 0..2 {
+                renderer.make_plan(&scene, Screen::MODE_13H).expect("a legal scene");
+            }
+            let plan = renderer.plan().clone();
+            let mut stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
+            let plain_stats = plain.draw(&scene, &mut plain_vga).expect("a legal scene");
+            assert_eq!(&plan, plain.plan(), "{name}");
+            assert_eq!(renderer.plan(), plain.plan(), "{name}");
+            // Memory that the plan takes was taken before.
+            stats.allocated = plain_stats.allocated;
+            assert_eq!(stats, plain_stats, "{name}");
+            assert_eq!(differing(vga.pixels(), plain_vga.pixels()), 0, "{name}");
+            tried.add(1);
+        }
+    }
+}
+
+/// Vertices that were kept by force while the object moved are made as soon as nobody forces that.
+#[test]
+fn vertices_that_were_kept_by_force_are_made_when_they_are_let_go() {
+    let mut tried = Tried::new("vertices_that_were_kept_by_force_are_made_when_they_are_let_go", 20);
+    for (name, mut scene) in scenes::all() {
+        let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        let before = vga.pixels().to_vec();
+        scene.objects_mut()[0].rotate_y(0.01);
+        renderer.force(Effect::Transform, Some(false));
+        let kept = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert_eq!(kept.vertices, 0, "{name}");
+        assert_eq!(differing(vga.pixels(), &before), 0, "{name}");
+        renderer.force(Effect::Transform, None);
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert_eq!(differing(vga.pixels(), &draw(&scene, |_| ()).0), 0, "{name}");
+        tried.add(1);
+    }
+}
+
+#[test]
+fn an_effect_is_switched_for_one_object_or_for_all() {
+    let scenes = scenes::all();
+    let (_, scene) = scenes.iter().find(|(name, _)| *name == "fog").expect("listed");
+    let is_on = |prepare: &dyn Fn(&mut Renderer)| -> Vec<bool> {
+        let (_, _, renderer) = draw(scene, prepare);
+        renderer.plan().objects().iter().map(|plan| plan.is_on(Effect::Fog)).collect()
+    };
+    assert_eq!(is_on(&|_| ()), [true; 5]);
+    assert_eq!(is_on(&|r| r.force_for(2, Effect::Fog, Some(false))), [true, true, false, true, true]);
+    let one_of_all = |r: &mut Renderer| {
+        r.force(Effect::Fog, Some(false));
+        r.force_for(2, Effect::Fog, Some(true));
+    };
+    assert_eq!(is_on(&one_of_all), [false, false, true, false, false]);
+    let taken_back = |r: &mut Renderer| {
+        one_of_all(r);
+        r.force_for(2, Effect::Fog, None);
+        r.force_for(1, Effect::Dither, Some(true));
+    };
+    assert_eq!(is_on(&taken_back), [false; 5]);
+}
+
+/// The plan's words are there for every decision, and the same every time.
+#[test]
+fn every_decision_has_a_reason() {
+    let mut tried = Tried::new("every_decision_has_a_reason", 300);
+    for (name, scene) in scenes::all() {
+        let rows = draw(&scene, |_| ()).2.plan().rows(&scene);
+        assert_eq!(rows, draw(&scene, |_| ()).2.plan().rows(&scene), "{name}");
+        assert_eq!(rows.len(), scene.objects().len() * Effect::COUNT);
+        for row in rows {
+            assert!(!row.why.is_empty() && !row.why.contains('\n') && !row.object.is_empty(), "{name}: {row:?}");
+            tried.add(1);
+        }
+    }
+}
+
+/// Proof (a) for light at every pixel and for splitting: switched on, they change no pixel by more than the
+/// error that the plan printed.
+#[test]
+fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
+    // The shipped scenes are files.
+    let stated = if cfg!(feature = "scene-files") { 40 } else { 24 };
+    let mut tried = Tried::new("light_at_every_pixel_changes_no_more_than_the_plan_says", stated);
+    let mut bounds = Vec::new();
+    for (name, scene) in scenes::all() {
+        let (expected, _, chosen) = draw(&scene, |_| ());
+        // Bytes are shades only where nothing is made of them afterwards.
+        let more = [
+            Effect::Texture,
+            Effect::EnvironmentMap,
+            Effect::Fog,
+            Effect::RgbChannels,
+            Effect::Transparency,
+            Effect::Dither,
+            Effect::Phong,
+            Effect::Tessellation,
+        ];
+        if more.iter().any(|effect| called_for(&chosen, *effect)) {
+            continue;
+        }
+        let Some(bound) = (0..scene.objects().len())
+            .map(|object| chosen.linear_error(&scene, object))
+            .try_fold(0.0_f64, |most, error| Some(most.max(error?)))
+        else {
+            continue;
+        };
+        let printed = chosen.rows(&scene);
+        assert!(printed.iter().any(|row| row.why.contains("linear shades are off by at most")), "{name}");
+        // A linear shade is off by three quarters, or over a row by 1.75, light at a pixel by a half, in
+        // entries of the ramp; of which there are no more than 256.
+        let allowed = bound + 1.75 + 0.5;
+        for (effect, rung) in [(Effect::Phong, Some(Rung::Phong)), (Effect::Tessellation, None)] {
+            let (bytes, stats, _) = draw(&scene, |renderer| match rung {
+                Some(rung) => renderer.set_rung(rung),
+                None => renderer.force(effect, Some(true)),
+            });
+            assert!(rung.is_none() || stats.raster.lit > 0 || stats.lit == 0, "{name}: {stats}");
+            // A vertex that splitting makes is rounded to 1/256 pixel itself: along an outline a pixel may come or go.
+            let shows = |byte: u8| byte != scene.background;
+            let (both, one): (Vec<_>, Vec<_>) =
+                expected.iter().zip(&bytes).filter(|(a, b)| a != b).partition(|(a, b)| shows(**a) && shows(**b));
+            assert!(one.len() <= if effect == Effect::Tessellation { 8 } else { 0 }, "{name}, {effect}: {one:?}");
+            let off = both.iter().map(|(a, b)| a.abs_diff(**b)).max().unwrap_or(0);
+            assert!(f64::from(off) <= allowed, "{name}, {effect}: off by {off}, {bound:.2} printed");
+            bounds.push((bound, off));
+            tried.add(1);
+        }
+    }
+    let useful = bounds.iter().filter(|(bound, _)| *bound < 64.0).count();
+    assert!(useful * 2 > bounds.len(), "most bounds say something: {bounds:?}");
+}
+
+/// Proof (a) for the perspective of textures: switched on, it moves no texel farther than the plan printed.
+#[test]
+fn perspective_moves_no_texel_farther_than_the_plan_says() {
+    let mut tried = Tried::new("perspective_moves_no_texel_farther_than_the_plan_says", 30);
+    // Column u of the image is grey 4·u, which the card shows as its level u.
+    let colors = core::array::from_fn(|i| mode13h::palette::Rgb::from_dac([(i % 64) as u8; 3]));
+    let texture = mode13h::texture::Texture::new(64, 1, (0..64).collect(), colors).expect("sound");
+    let texture = mode13h::scene::Shared::new(texture);
+    let mut random = crate::support::random::Random::named("perspective");
+    while tried.more() {
+        let pieces = random.within(1, 24) as u32;
+        let mut scene = crate::support::scenes::framed(mode13h::mesh::shapes::wall(pieces, pieces));
+        let object = &mut scene.objects_mut()[0];
+        object.set_angles([random.unit() - 0.5, 2.4 * random.unit() - 1.2, random.unit()]);
+        let material = &mut object.materials[0];
+        (material.ambient, material.diffuse) = (1.0, 0.0);
+        material.texture = Some(mode13h::scene::Shared::clone(&texture));
+        let frame = |on| draw(&scene, |renderer| renderer.force(Effect::Perspective, Some(on)));
+        let (affine, _, renderer) = frame(false);
+        let (perspective, _, _) = frame(true);
+        let free = draw(&scene, |_| ()).2;
+        let mode13h::plan::Why::AffineError { texels } = free.plan().objects()[0].decision(Effect::Perspective).why
+        else {
+            panic!("the plan prints the error");
+        };
+        assert!(!called_for(&renderer, Effect::Perspective));
+        assert_eq!(called_for(&free, Effect::Perspective), texels > 0.5);
+        for (a, b) in affine.iter().zip(&perspective).filter(|(a, b)| (**a, **b) != (0, 0)) {
+            // Four entries of the palette are shown as one level. The image's far end repeats at its near one.
+            let apart = (a >> 2).abs_diff(b >> 2);
+            let apart = f64::from(apart.min(64 - apart));
+            // The coordinates are apart by so much; the texels that they lie in by less than one more.
+            assert!(apart < texels + 1.0, "{apart} texels apart, {texels:.3} printed");
+        }
+    }
+}
+
+/// Proof (a) for mipmaps: where no more than a texel goes to a pixel they change no byte, though levels are chosen.
+#[test]
+fn mipmaps_change_nothing_of_what_is_near() {
+    let mut tried = Tried::new("mipmaps_change_nothing_of_what_is_near", 60);
+    for name in mode13h::texture::Texture::NAMES {
+        let texture = mode13h::scene::Shared::new(mode13h::texture::Texture::by_name(name).expect("listed"));
+        for (angle, mapping) in
+            [0.0, 0.3, -0.6].into_iter().flat_map(|angle| Mapping::ALL.map(|mapping| (angle, mapping)))
+        {
+            for channels in [false, true] {
+                let mut scene = crate::support::scenes::framed(mode13h::mesh::shapes::wall(3, 3));
+                let object = &mut scene.objects_mut()[0];
+                object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
+                object.set_angles([angle, angle, angle]);
+                // 128 texels on √2 units: even the far corners of the tilted wall have fewer than √2 to a pixel.
+                scene.camera.eye = mode13h::glam::Vec3::new(0.0, 0.0, 0.8);
+                if channels {
+                    scene.add_light(mode13h::light::Light::sun([1.0, 0.2, 1.0]).with_color([1.0, 0.5, 0.2]));
+                }
+                let frame = |mipmaps| {
+                    draw(&scene, |renderer| {
+                        renderer.set_mapping(Some(mapping));
+                        renderer.set_mipmaps(Some(mipmaps));
+                    })
+                };
+                let ((without, off, _), (with, on, _)) = (frame(false), frame(true));
+                assert!(off.raster.mipmapped == 0 && on.raster.mipmapped == on.raster.textured, "{name}: {on}");
+                assert!(on.raster.textured > 10_000, "{name}: {on}");
+                assert_eq!(differing(&with, &without), 0, "{name}, turned by {angle}, {mapping}");
+                tried.add(1);
+            }
+        }
+    }
+}
+
+/// The plan's figure against what is drawn: of a wall that is parallel to the screen every level 0 is seen as long as it
+/// is below √2, and none where it is above.
+#[test]
+fn mipmaps_are_called_for_by_texels_to_a_pixel() {
+    let mut tried = Tried::new("mipmaps_are_called_for_by_texels_to_a_pixel", 40);
+    let texture = mode13h::scene::Shared::new(mode13h::texture::Texture::by_name("bricks").expect("listed"));
+    for step in 0..40 {
+        let mut scene = crate::support::scenes::framed(mode13h::mesh::shapes::wall(1, 1));
+        let object = &mut scene.objects_mut()[0];
+        object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
+        let distance = 0.4 * 1.12_f32.powi(step);
+        scene.camera.eye = mode13h::glam::Vec3::new(0.0, 0.0, distance);
+        let (bytes, _, renderer) = draw(&scene, |_| ());
+        let decision = *renderer.plan().objects()[0].decision(Effect::Mipmaps);
+        let mode13h::plan::Why::TexelsToPixel { texels } = decision.why else { panic!("the plan says how many") };
+        // 128 texels on √2 units; a pixel is higher than it is wide, and half of the screen's rows lie within half the angle.
+        let expected =
+            8192.0_f64.sqrt() * f64::from(distance) * (f64::from(scene.camera.field_of_view) / 2.0).tan() / 100.0;
+        assert!((expected..expected * 1.01).contains(&texels), "{texels} texels to a pixel, not {expected}");
+        assert_eq!(decision.on, texels > core::f64::consts::FRAC_1_SQRT_2);
+        let without = draw(&scene, |renderer| renderer.set_mipmaps(Some(false))).0;
+        // The corners' coordinates and places are rounded.
+        if texels < 1.40 {
+            assert_eq!(differing(&bytes, &without), 0, "{texels} texels to a pixel");
+        } else if texels > 1.44 {
+            assert!(differing(&bytes, &without) > 0, "{texels} texels to a pixel");
+        }
+        tried.add(1);
+    }
+}
+
+/// What is asked for has the last word, the renderer's before the scene's; where there is no texture there is nothing.
+#[test]
+fn mipmaps_are_asked_for() {
+    let mut floor = scenes::floor("bricks", 8.0);
+    let is_on = |scene: &Scene, asked| {
+        let (_, _, renderer) = draw(scene, |renderer| renderer.set_mipmaps(asked));
+        called_for(&renderer, Effect::Mipmaps)
+    };
+    assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [true, true, false]);
+    floor.wishes.mipmaps = Some(false);
+    assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [false, true, false]);
+    let mut plain = scenes::showing("torus");
+    plain.wishes.mipmaps = Some(true);
+    assert!(!is_on(&plain, Some(true)));
+    let why = draw(&floor, |_| ()).2.plan().rows(&floor);
+    let why = why.iter().find(|row| row.effect == Effect::Mipmaps).expect("a row");
+    assert_eq!((why.on, why.why.as_str()), (false, "asked for"));
+}
+
+/// Red, green and blue of each pixel.
+type Picture = Vec<[f64; 3]>;
+
+/// The colours of a frame as the card shows them.
+fn shown(scene: &Scene, bytes: &[u8]) -> Picture {
+    let palette = scene.palette.as_ref().unwrap_or(&mode13h::palette::BIOS).on_dac();
+    let color = |byte: &u8| palette.color(*byte);
+    bytes.iter().map(color).map(|c| [c.r, c.g, c.b].map(f64::from)).collect()
+}
+
+/// How far two pictures are apart: the root of the mean square over the pixels and their channels.
+fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    let squares: f64 = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b) * (a - b)).sum();
+    (squares / (3 * a.len()) as f64).sqrt()
+}
+
+/// What mipmaps are for. Right is the mean of what is drawn, in perspective, where each pixel is 16 × 16 smaller ones. Over
+/// small steps of the camera every frame is nearer to that with mipmaps than without, and so is its change from the frame
+/// before: it sparkles less. By how much is printed.
+#[test]
+fn mipmaps_lessen_sparkle_on_every_frame() {
+    const SIZE: (usize, usize) = (128, 80);
+    const PART: usize = 16;
+    const FRAMES: u8 = 4;
+    let mut tried = Tried::new("mipmaps_lessen_sparkle_on_every_frame", 4 * 3 * u64::from(FRAMES));
+    let grey = |scene: &mut Scene| {
+        let ramp = core::array::from_fn(|i| mode13h::palette::Rgb::from_dac([(i / 4) as u8; 3]));
+        scene.palette = Some(mode13h::palette::Palette::from_colors(ramp));
+    };
+    let cube = |scene: &mut Scene| {
+        scene.palette = Some(mode13h::palette::builtin::by_name("cube").expect("built in").palette.clone());
+    };
+    let palettes: [&dyn Fn(&mut Scene); 2] = [&grey, &cube];
+    let picture = |scene: &Scene, part: usize, mapping: Mapping, mipmaps: bool| {
+        let (width, height) = (SIZE.0 * part, SIZE.1 * part);
+        let mut bytes = vec![0; width * height];
+        let frame = Frame::new(&mut bytes, width as u32, height as u32, width).expect("a legal frame");
+        let mut renderer = Renderer::new();
+        renderer.set_mapping(Some(mapping));
+        renderer.set_mipmaps(Some(mipmaps));
+        renderer.draw_frame(scene, frame, (5, 6)).expect("a legal scene");
+        shown(scene, &bytes)
+    };
+    for (image, paint) in ["checker", "bricks"].into_iter().flat_map(|image| palettes.map(|paint| (image, paint))) {
+        let mut scene = scenes::floor(image, 24.0);
+        paint(&mut scene);
+        let (mut errors, mut sparkles) = ([[0.0; 2]; 3], [[0.0; 2]; 3]);
+        // What is right, and for each mapping what is drawn without and with.
+        let mut before: Option<(Picture, [[Picture; 2]; 3])> = None;
+        for frame in 0..FRAMES {
+            let moved = f32::from(frame) * 0.01;
+            scene.camera.eye.x = moved;
+            scene.camera.target.x = moved;
+            let fine = picture(&scene, PART, Mapping::Perspective, false);
+            let mean = |i: usize| {
+                let (x, y) = (i % SIZE.0 * PART, i / SIZE.0 * PART);
+                let rows = (y..y + PART).flat_map(|y| &fine[y * SIZE.0 * PART + x..][..PART]);
+                let sums = rows.fold([0.0; 3], |sums, color| [0, 1, 2].map(|i| sums[i] + color[i]));
+                sums.map(|sum| sum / (PART * PART) as f64)
+            };
+            let right: Picture = (0..SIZE.0 * SIZE.1).map(mean).collect();
+            let drawn = Mapping::ALL.map(|mapping| [false, true].map(|on| picture(&scene, 1, mapping, on)));
+            for (i, mapping) in Mapping::ALL.into_iter().enumerate() {
+                let error = drawn[i].each_ref().map(|picture| apart(picture, &right));
+                assert!(error[1] < error[0], "{image}, {mapping}, frame {frame}: {error:?}");
+                errors[i] = [0, 1].map(|on| errors[i][on] + error[on] / f64::from(FRAMES));
+                if let Some((old_right, old_drawn)) = &before {
+                    let change = |new: &[[f64; 3]], old: &[[f64; 3]]| -> Picture {
+                        new.iter().zip(old).map(|(new, old)| [0, 1, 2].map(|i| new[i] - old[i])).collect()
+                    };
+                    let right = change(&right, old_right);
+                    let sparkle = [0, 1].map(|on| apart(&change(&drawn[i][on], &old_drawn[i][on]), &right));
+                    assert!(sparkle[1] < sparkle[0], "{image}, {mapping}, frame {frame}: {sparkle:?}");
+                    sparkles[i] = [0, 1].map(|on| sparkles[i][on] + sparkle[on] / f64::from(FRAMES - 1));
+                }
+                tried.add(1);
+            }
+            before = Some((right, drawn));
+        }
+        for (i, mapping) in Mapping::ALL.into_iter().enumerate() {
+            println!("{image}, {mapping}: error {:.1?}, sparkle {:.1?}", errors[i], sparkles[i]);
+        }
+    }
+}

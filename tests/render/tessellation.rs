@@ -1,0 +1,254 @@
+//! R12 and N7: faces that are split where light bends.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::support::oracle::{self, Point};
+use crate::support::random::Random;
+use crate::support::tried::Tried;
+use mode13h::glam::Vec3;
+use mode13h::light::{Light, Material};
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::raster::{Shading, Vertex};
+use mode13h::render::{Renderer, Rung, Screen};
+use mode13h::scene::{Object, Scene};
+use mode13h::vga::Vga;
+
+/// The triangles that the raster gets.
+fn triangles(scene: &Scene) -> (Vec<[Vertex; 3]>, u64) {
+    let mut triangles = Vec::new();
+    let stats = Renderer::new()
+        .for_each_triangle(scene, Screen::MODE_13H, |vertices, _| triangles.push(*vertices))
+        .expect("a legal scene");
+    (triangles, stats.clipped)
+}
+
+/// In 1/256 pixel.
+type Place = (i32, i32);
+
+fn point(v: &Vertex) -> Place {
+    (v.x().to_bits(), v.y().to_bits())
+}
+
+/// The outline of triangles that turn the same way: the edges that no neighbour runs through the other
+/// way, as loops.
+fn outlines(triangles: &[[Vertex; 3]]) -> Vec<Vec<Point>> {
+    let mut edges: HashMap<(Place, Place), i32> = HashMap::new();
+    for [a, b, c] in triangles {
+        for (a, b) in [(a, b), (b, c), (c, a)] {
+            let (a, b) = (point(a), point(b));
+            if a != b {
+                *edges.entry((a, b)).or_default() += 1;
+                *edges.entry((b, a)).or_default() -= 1;
+            }
+        }
+    }
+    let mut next: HashMap<Place, Vec<Place>> = HashMap::new();
+    for ((a, b), times) in edges {
+        (0..times).for_each(|_| next.entry(a).or_default().push(b));
+    }
+    let mut loops = Vec::new();
+    while let Some(&start) = next.keys().min() {
+        let (mut at, mut outline) = (start, Vec::new());
+        while let Some(ends) = next.get_mut(&at) {
+            let end = ends.pop().expect("a place that is left has an edge");
+            if ends.is_empty() {
+                next.remove(&at);
+            }
+            outline.push((i128::from(at.0), i128::from(at.1)));
+            at = end;
+        }
+        loops.push(outline);
+    }
+    loops
+}
+
+/// A wall somewhere before the eye, with a lamp somewhere near it.
+fn wall(random: &mut Random) -> Scene {
+    let mut scene = Scene::new();
+    let mut object = Object::new(shapes::wall(random.within(1, 4) as u32, random.within(1, 4) as u32));
+    object.scale = 0.3 * (1.0 + 20.0 * random.unit() as f32 * random.unit() as f32);
+    object.set_angles([random.unit() * 1.2 - 0.6, random.unit() * 2.4 - 1.2, random.unit() * 6.0]);
+    // The eye is three and a half units away.
+    let z = 3.5 * (random.unit() * random.unit()) as f32;
+    object.position = Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, z);
+    if random.within(0, 2) == 0 {
+        // A highlight too.
+        object.materials[0].specular = 0.5;
+        object.materials[0].shininess = 1.0 + 30.0 * random.unit() as f32;
+    }
+    scene.add(object);
+    for _ in 0..random.within(1, 3) {
+        let mut coordinate = || 2.0 * random.unit() as f32 - 1.0;
+        let place = [coordinate(), coordinate(), 0.3 * coordinate()];
+        scene.add_light(Light::lamp(place, 0.2 + 3.0 * random.unit() as f32));
+    }
+    scene.wishes.tessellation = Some(random.one_of(&[0.5, 1.0, 2.0, 8.0]));
+    scene
+}
+
+/// Neighbours that are split differently leave no hole and draw no pixel twice: what is left of the
+/// wall's faces has one outline, and each pixel inside it is covered once.
+#[test]
+fn r12_walls_that_are_split_are_closed() {
+    let mut tried = Tried::new("r12_walls_that_are_split_are_closed", 150);
+    let mut random = Random::named("r12");
+    let (mut split, mut clipped) = (0, 0);
+    while tried.more() {
+        let scene = wall(&mut random);
+        let (parts, cut) = triangles(&scene);
+        split += usize::from(parts.len() > scene.objects()[0].mesh().triangles().len());
+        clipped += usize::from(cut > 0);
+        let loops = outlines(&parts);
+        assert!(loops.len() <= 1, "{} outlines of {} triangles", loops.len(), parts.len());
+        let mut counts = vec![0_u32; Vga::SHOWN];
+        for corners in &parts {
+            let clip = mode13h::raster::Rect { x0: 0, y0: 0, x1: 320, y1: 200 };
+            mode13h::raster::cover::Ordered::new(corners).rows(320, clip, |row| {
+                (row.x0..row.x1).for_each(|x| counts[(row.y * 320 + x) as usize] += 1);
+            });
+        }
+        let outline = loops.first().cloned().unwrap_or_default();
+        for y in 0..200 {
+            for x in 0..320 {
+                let inside = outline.len() > 2 && oracle::polygon_covers(&outline, oracle::centre(x, y));
+                assert_eq!(counts[(y * 320 + x) as usize], u32::from(inside), "pixel ({x}, {y})");
+            }
+        }
+    }
+    assert!(split > 75 && clipped > 10, "{split} were split, {clipped} clipped");
+}
+
+/// The same of a mesh with creases, whose faces have vertices of their own there: each edge is split in
+/// one place, or not at all, whichever face is asked.
+#[test]
+fn r12_creases_are_split_alike_from_both_sides() {
+    let mut tried = Tried::new("r12_creases_are_split_alike_from_both_sides", 60);
+    let mut random = Random::named("r12 creases");
+    while tried.more() {
+        let mut scene = Scene::new();
+        let mut cube = Object::new(shapes::cube());
+        cube.set_angles([random.unit() * 6.0, random.unit() * 6.0, 0.0]);
+        scene.add(cube);
+        let mut coordinate = || 2.4 * random.unit() as f32 - 1.2;
+        scene.add_light(Light::lamp([coordinate(), coordinate(), coordinate()], 2.0));
+        scene.wishes.tessellation = Some(1.0);
+        let (parts, _) = triangles(&scene);
+        // Convex: what is seen of it has one outline, unless rounding turned a face over.
+        let outlines = outlines(&parts);
+        assert_eq!(outlines.len(), 1, "{} triangles", parts.len());
+        let corners: HashSet<_> = parts.iter().flatten().map(point).collect();
+        assert!(corners.len() > 8, "it is split");
+    }
+}
+
+/// A wall of two triangles with a highlight in its middle.
+fn highlight() -> Scene {
+    let mut scene = crate::support::scenes::framed(shapes::wall(1, 1));
+    *scene.lights_mut() = vec![Light::sun([0.0, 0.0, 1.0])];
+    scene.ambient = 0.0;
+    let material = Material { diffuse: 0.2, specular: 0.8, shininess: 120.0, ..Material::white() };
+    scene.objects_mut()[0].materials = vec![material];
+    scene
+}
+
+fn middle(scene: &Scene, rung: Rung) -> u8 {
+    let mut renderer = Renderer::new();
+    renderer.set_rung(rung);
+    let mut vga = Vga::new();
+    renderer.draw(scene, &mut vga).expect("a legal scene");
+    vga.pixels()[100 * 320 + 160]
+}
+
+#[test]
+fn n7_a_highlight_inside_a_face() {
+    let mut tried = Tried::new("n7_a_highlight_inside_a_face", 9);
+    let scene = highlight();
+    // Straight before the eye the light is mirrored into it: 0.2 + 0.8 of 255.
+    let misses = |rung: &Rung| !rung.lights_pixels() && *rung != Rung::GouraudTessellated;
+    for rung in Rung::ALL.into_iter().filter(misses) {
+        let shade = middle(&scene, rung);
+        // A face's one shade is that of its own middle, off the highlight.
+        assert!(shade < 200, "{rung} misses it: {shade}");
+        tried.add(1);
+    }
+    for rung in [Rung::GouraudTessellated, Rung::Phong] {
+        let shade = middle(&scene, rung);
+        assert!(shade >= 253, "{rung} shows it: {shade}");
+        tried.add(1);
+    }
+}
+
+/// N3: normals that point apart at the two ends of an edge.
+#[test]
+fn n3_opposite_normals_at_two_ends_of_an_edge() {
+    // Of none of the ramp's entries.
+    const BACKGROUND: u8 = 7;
+    let mut tried = Tried::new("n3_opposite_normals_at_two_ends_of_an_edge", 6 * 40);
+    let mut random = Random::named("n3");
+    let positions = vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
+    for _ in 0..40 {
+        let axis = Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, random.unit() as f32 - 0.5);
+        let normals = vec![axis, -axis, if random.within(0, 1) == 0 { axis } else { -axis }];
+        let mesh = Mesh::with_normals(positions.clone(), normals, vec![[0, 1, 2]]).expect("sound");
+        let mut scene = crate::support::scenes::framed(mesh);
+        scene.background = BACKGROUND;
+        scene.palette = mode13h::palette::builtin::by_name("materials-4x64").map(|found| found.palette.clone());
+        let material = &mut scene.objects_mut()[0].materials[0];
+        (material.specular, material.shininess) = (0.7, 10.0);
+        material.ramp = mode13h::light::RampChoice::Number(2);
+        for rung in [Rung::PhongTable, Rung::Phong, Rung::GouraudTessellated] {
+            for dither in [false, true] {
+                scene.wishes.dither = dither;
+                let mut renderer = Renderer::new();
+                renderer.set_rung(rung);
+                let mut vga = Vga::new();
+                renderer.draw(&scene, &mut vga).expect("a legal scene");
+                // Every pixel that the face covers is in the ramp, whatever its byte, and no other is drawn.
+                let mut covered = vec![false; vga.pixels().len()];
+                renderer
+                    .for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| {
+                        for pixel in oracle::pixels(vertices, Shading::Flat(0), 320, 200) {
+                            covered[(pixel.y * 320 + pixel.x) as usize] = true;
+                        }
+                    })
+                    .expect("a legal scene");
+                assert!(covered.iter().filter(|covered| **covered).count() > 5000, "{rung}: it is drawn");
+                for (place, (&byte, &covered)) in vga.pixels().iter().zip(&covered).enumerate() {
+                    let is_right = if covered { (128..192).contains(&byte) } else { byte == BACKGROUND };
+                    assert!(is_right, "{rung}, dither {dither}: {byte} at pixel {place}, {axis}");
+                }
+                tried.add(1);
+            }
+        }
+    }
+}
+
+/// P2: with dither no index of another ramp, whatever the rung and the ramp.
+#[test]
+fn p2_dither_keeps_to_its_ramp() {
+    let mut tried = Tried::new("p2_dither_keeps_to_its_ramp", 10 * 25);
+    for rung in Rung::ALL {
+        for (first, entries) in
+            [(1, 1_u16), (7, 2), (64, 64), (192, 64), (255, 1)].into_iter().flat_map(|ramp| [ramp; 5])
+        {
+            let mut scene = crate::support::scenes::framed(shapes::torus(12, 8));
+            scene.wishes.dither = true;
+            scene.wishes.rung = Some(rung);
+            scene.objects_mut()[0].set_angles([0.3, tried_angle(first, entries), 0.2]);
+            let ramp = mode13h::palette::Ramp::new(first, entries).expect("a ramp");
+            let material = &mut scene.objects_mut()[0].materials[0];
+            material.ramp = mode13h::light::RampChoice::Entries(ramp);
+            (material.specular, material.shininess) = (1.0, 5.0);
+            let mut vga = Vga::new();
+            let stats = Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
+            // A table of normals holds whole shades: there is nothing between two entries.
+            assert_eq!(stats.raster.dithered > 1000, rung != Rung::PhongTable, "{rung}");
+            assert!(vga.pixels().iter().all(|byte| *byte == 0 || ramp.contains(*byte)), "{rung}, {ramp:?}");
+            tried.add(1);
+        }
+    }
+}
+
+fn tried_angle(first: u8, entries: u16) -> f64 {
+    f64::from(first) * 0.37 + f64::from(entries) * 0.11
+}

@@ -1,0 +1,378 @@
+//! Pictures on disk: what is in them, read back by a decoder, and that files are whole or not there (hard case F4).
+
+use std::fs;
+use std::io::{self, Cursor, Write};
+use std::path::Path;
+
+use crate::support::tried::Tried;
+use mode13h::export::{
+    self, ExportErrorKind, MAX_SIDE, Picture, PictureError, PixelShape, Scale, encode_png, encode_rgb_png,
+    write_atomically,
+};
+use mode13h::palette::{Palette, Rgb, builtin};
+use mode13h::vga::Vga;
+use png::{BitDepth, ColorType, Decoder, Transformations, Unit};
+
+/// A PNG file as its decoder reads it.
+struct Decoded {
+    width: usize,
+    height: usize,
+    color: ColorType,
+    palette: Vec<u8>,
+    /// Pixels per unit, across and down; the unit is unspecified.
+    density: Option<(u32, u32)>,
+    data: Vec<u8>,
+}
+
+fn decode(file: &[u8]) -> Decoded {
+    let mut decoder = Decoder::new(Cursor::new(file));
+    decoder.set_transformations(Transformations::IDENTITY);
+    let mut reader = decoder.read_info().expect("a PNG");
+    let mut data = vec![0; reader.output_buffer_size().expect("a size")];
+    reader.next_frame(&mut data).expect("its pixels");
+    reader.finish().expect("its end");
+    let info = reader.info();
+    assert_eq!(info.bit_depth, BitDepth::Eight);
+    Decoded {
+        width: info.width as usize,
+        height: info.height as usize,
+        color: info.color_type,
+        palette: info.palette.as_deref().unwrap_or_default().to_vec(),
+        density: info.pixel_dims.map(|dims| {
+            assert!(matches!(dims.unit, Unit::Unspecified));
+            (dims.xppu, dims.yppu)
+        }),
+        data,
+    }
+}
+
+fn bytes_of(colors: &[Rgb]) -> Vec<u8> {
+    colors.iter().flat_map(|c| [c.r, c.g, c.b]).collect()
+}
+
+/// A machine whose pixels differ from their neighbours, with every index in use.
+fn patterned() -> Vga {
+    let mut vga = Vga::new();
+    vga.set_palette(builtin::by_name("copper").expect("a built-in").palette);
+    for (i, byte) in vga.pixels_mut().iter_mut().enumerate() {
+        *byte = (i * 7 + i / 320 * 13) as u8;
+    }
+    vga
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().into_string().expect("a name"))
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_frame_is_an_indexed_png_of_its_own_bytes_and_colors() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("frame.png");
+    let vga = patterned();
+    export::png(&vga, &path).expect("written");
+
+    let file = fs::read(&path).expect("read");
+    let decoded = decode(&file);
+    assert_eq!((decoded.width, decoded.height, decoded.color), (320, 200, ColorType::Indexed));
+    assert_eq!(decoded.palette, bytes_of(vga.palette().colors()));
+    assert_eq!(decoded.data, vga.pixels());
+    assert_eq!(decoded.density, Some((6, 5)));
+
+    let palette = vga.palette();
+    let picture = Picture::mode_13h(vga.pixels(), &palette);
+    assert_eq!(encode_png(&picture, Scale::One).expect("encoded"), file);
+}
+
+#[test]
+fn enlarged_pictures_stay_indexed_and_keep_their_shape() {
+    let vga = patterned();
+    let palette = vga.palette();
+    let picture = Picture::mode_13h(vga.pixels(), &palette);
+    for (scale, (width, height), density) in [
+        (Scale::One, (320, 200), (6, 5)),
+        (Scale::Double, (640, 400), (6, 5)),
+        (Scale::FiveBySix, (1600, 1200), (1, 1)),
+        (Scale::To { width: 640, height: 480 }, (640, 480), (1, 1)),
+        (Scale::To { width: 333, height: 77 }, (333, 77), (999, 308)),
+        (Scale::To { width: 1, height: 1 }, (1, 1), (3, 4)),
+        (Scale::To { width: 3, height: 16_384 }, (3, 16_384), (9, 65_536)),
+    ] {
+        // The pixel of the frame under the centre of each pixel of the result.
+        let under = |at: usize, of: usize, frame: usize| (2 * at + 1) * frame / (2 * of);
+        let expected: Vec<u8> = (0..height)
+            .flat_map(|y| (0..width).map(move |x| (x, y)))
+            .map(|(x, y)| vga.pixels()[under(y, height, 200) * 320 + under(x, width, 320)])
+            .collect();
+
+        let indexed = decode(&encode_png(&picture, scale).expect("encoded"));
+        assert_eq!((indexed.width, indexed.height), (width, height), "{scale}");
+        assert_eq!(indexed.color, ColorType::Indexed, "{scale}");
+        assert_eq!(indexed.palette, bytes_of(palette.colors()), "{scale}");
+        assert!(indexed.data == expected, "{scale}");
+        assert_eq!(indexed.density, Some(density), "{scale}");
+
+        let rgb = decode(&encode_rgb_png(&picture, scale).expect("encoded"));
+        assert_eq!((rgb.width, rgb.height), (width, height), "{scale}");
+        assert_eq!(rgb.color, ColorType::Rgb, "{scale}");
+        let colors: Vec<Rgb> = expected.iter().map(|&index| palette.color(index)).collect();
+        assert!(rgb.data == bytes_of(&colors), "{scale}");
+        assert_eq!(rgb.density, Some(density), "{scale}");
+    }
+}
+
+#[test]
+fn five_by_six_makes_blocks() {
+    let vga = patterned();
+    let palette = vga.palette();
+    let decoded = decode(&encode_png(&Picture::mode_13h(vga.pixels(), &palette), Scale::FiveBySix).expect("encoded"));
+    assert_eq!(decoded.data.len(), 1600 * 1200);
+    for (i, &index) in decoded.data.iter().enumerate() {
+        let (x, y) = (i % 1600, i / 1600);
+        assert_eq!(index, vga.pixels()[y / 6 * 320 + x / 5], "{x}, {y}");
+    }
+}
+
+#[test]
+fn rgb_png_looks_right_where_pixels_are_square() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("frame.png");
+    export::rgb_png(&patterned(), &path).expect("written");
+    let decoded = decode(&fs::read(&path).expect("read"));
+    assert_eq!((decoded.width, decoded.height, decoded.color), (1600, 1200, ColorType::Rgb));
+    assert_eq!(decoded.density, Some((1, 1)));
+}
+
+#[test]
+fn a_part_of_a_larger_frame_is_exported_by_its_pitch() {
+    let bytes: Vec<u8> = (0..=255).collect();
+    let palette = Palette::default();
+    let picture = Picture {
+        pixels: &bytes[17..],
+        width: 3,
+        height: 2,
+        pitch: 16,
+        palette: palette.colors(),
+        shape: PixelShape::SQUARE,
+    };
+    let decoded = decode(&encode_png(&picture, Scale::One).expect("encoded"));
+    assert_eq!(decoded.data, [17, 18, 19, 33, 34, 35]);
+    assert_eq!(decoded.density, Some((1, 1)));
+}
+
+#[test]
+fn pictures_whose_sizes_do_not_fit_are_refused() {
+    let palette = Palette::default();
+    let pixels = [0; 100];
+    let good = Picture {
+        pixels: &pixels,
+        width: 10,
+        height: 10,
+        pitch: 10,
+        palette: palette.colors(),
+        shape: PixelShape::MODE_13H,
+    };
+    assert!(encode_png(&good, Scale::One).is_ok());
+    let side = usize::from(MAX_SIDE) + 1;
+    for (what, picture) in [
+        ("no width", Picture { width: 0, ..good }),
+        ("no height", Picture { height: 0, ..good }),
+        ("too wide", Picture { width: side, pitch: side, ..good }),
+        ("too high", Picture { height: side, pitch: 0, ..good }),
+        ("no pixel width", Picture { shape: PixelShape { width: 0, height: 1 }, ..good }),
+        ("no pixel height", Picture { shape: PixelShape { width: 1, height: 0 }, ..good }),
+    ] {
+        assert!(matches!(encode_png(&picture, Scale::One), Err(PictureError::Size { .. })), "{what}");
+        assert!(matches!(encode_rgb_png(&picture, Scale::One), Err(PictureError::Size { .. })), "{what}");
+    }
+    for (what, picture) in [
+        ("a byte short", Picture { pixels: &pixels[1..], ..good }),
+        ("rows overlap", Picture { pitch: 9, ..good }),
+        ("a pitch beyond memory", Picture { pitch: usize::MAX, ..good }),
+    ] {
+        assert!(matches!(encode_png(&picture, Scale::One), Err(PictureError::Bytes { .. })), "{what}");
+    }
+    let large = Picture { width: 10_000, height: 1, pitch: 10_000, pixels: &[0; 10_000], ..good };
+    assert!(matches!(encode_png(&large, Scale::Double), Err(PictureError::Size { width: 20_000, height: 2 })));
+}
+
+#[test]
+fn scales_are_read_from_words() {
+    for (words, scale) in [
+        ("1", Scale::One),
+        ("2", Scale::Double),
+        ("5x6", Scale::FiveBySix),
+        ("640x480", Scale::To { width: 640, height: 480 }),
+        ("1x1", Scale::To { width: 1, height: 1 }),
+        ("16384x16384", Scale::To { width: MAX_SIDE, height: MAX_SIDE }),
+    ] {
+        assert_eq!(words.parse(), Ok(scale));
+        assert_eq!(scale.to_string(), words);
+    }
+    for words in [
+        "",
+        "0",
+        "3",
+        "x",
+        "1x",
+        "x1",
+        "0x1",
+        "1x0",
+        "16385x1",
+        "1x16385",
+        "99999x99999",
+        "-1x1",
+        "+1x1",
+        "1x1x1",
+        " 1",
+        "1 x 1",
+        "1X1",
+        "5*6",
+    ] {
+        assert!(words.parse::<Scale>().is_err(), "{words:?}");
+    }
+}
+
+#[test]
+fn f4_a_file_that_fails_half_way_leaves_the_old_one_whole() {
+    let mut tried = Tried::new("f4_a_file_that_fails_half_way_leaves_the_old_one_whole", 15);
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("frame.png");
+    fs::write(&path, "what stood there").expect("written");
+    for kind in [io::ErrorKind::StorageFull, io::ErrorKind::Interrupted, io::ErrorKind::Other] {
+        let result = write_atomically(&path, |out| {
+            out.write_all(&[1; 100_000])?;
+            out.flush()?;
+            assert_eq!(names_in(folder.path()).len(), 2, "written beside its name");
+            tried.add(1);
+            Err(kind.into())
+        });
+        let error = result.expect_err("failed");
+        assert_eq!(error.path(), path);
+        tried.add(1);
+        assert_eq!(matches!(error.kind(), ExportErrorKind::DiskFull), kind == io::ErrorKind::StorageFull);
+        tried.add(1);
+        assert_eq!(fs::read(&path).expect("read"), b"what stood there");
+        tried.add(1);
+        assert_eq!(names_in(folder.path()), ["frame.png"]);
+        tried.add(1);
+    }
+}
+
+#[test]
+fn f4_a_writer_that_panics_leaves_the_old_one_whole() {
+    let mut tried = Tried::new("f4_a_writer_that_panics_leaves_the_old_one_whole", 3);
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("frame.png");
+    fs::write(&path, "what stood there").expect("written");
+    let panic = std::panic::catch_unwind(|| {
+        write_atomically(&path, |out| {
+            out.write_all(&[1; 100_000])?;
+            std::panic::panic_any("half-way");
+        })
+    });
+    assert!(panic.is_err());
+    tried.add(1);
+    assert_eq!(fs::read(&path).expect("read"), b"what stood there");
+    tried.add(1);
+    assert_eq!(names_in(folder.path()), ["frame.png"]);
+    tried.add(1);
+}
+
+#[test]
+fn f4_each_reason_has_its_own_error_with_the_path() {
+    let mut tried = Tried::new("f4_each_reason_has_its_own_error_with_the_path", 13);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("file");
+    fs::write(&file, "a file").expect("written");
+    let nothing = |_: &mut dyn Write| Ok(());
+
+    for (path, says, kind) in [
+        (folder.path().join("none").join("frame.png"), "none does not exist", ExportErrorKind::MissingDirectory),
+        (file.join("frame.png"), "file is no directory", ExportErrorKind::NotADirectory),
+    ] {
+        let error = write_atomically(&path, nothing).expect_err("no such folder");
+        assert_eq!(core::mem::discriminant(error.kind()), core::mem::discriminant(&kind), "{error}");
+        tried.add(1);
+        assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
+        tried.add(1);
+        assert!(error.to_string().ends_with(says), "{error}");
+        tried.add(1);
+    }
+    for path in [folder.path().to_path_buf(), folder.path().join(".."), folder.path().join("new/"), "".into()] {
+        let error = write_atomically(&path, nothing).expect_err("a folder");
+        assert!(matches!(error.kind(), ExportErrorKind::IsDirectory), "{error}");
+        tried.add(1);
+    }
+
+    let mut permissions = fs::metadata(&file).expect("metadata").permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&file, permissions).expect("set");
+    let error = write_atomically(&file, nothing).expect_err("read-only");
+    assert!(matches!(error.kind(), ExportErrorKind::NotPermitted), "{error}");
+    tried.add(1);
+    assert_eq!(fs::read(&file).expect("read"), b"a file");
+    tried.add(1);
+    assert_eq!(names_in(folder.path()), ["file"]);
+    tried.add(1);
+}
+
+#[test]
+fn f4_a_picture_that_cannot_be_written_names_the_file() {
+    let mut tried = Tried::new("f4_a_picture_that_cannot_be_written_names_the_file", 2);
+    let palette = Palette::default();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("frame.png");
+    let error = export::picture_png(&Picture::mode_13h(&[], &palette), Scale::One, &path).expect_err("no bytes");
+    assert!(matches!(error.kind(), ExportErrorKind::Picture(PictureError::Bytes { .. })), "{error}");
+    tried.add(1);
+    assert!(names_in(folder.path()).is_empty());
+    tried.add(1);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn f4_a_full_disk_is_an_error() {
+    let mut tried = Tried::new("f4_a_full_disk_is_an_error", 3);
+    // A device that is always full. It is written to and not replaced.
+    let error = export::png(&patterned(), "/dev/full").expect_err("full");
+    assert!(matches!(error.kind(), ExportErrorKind::DiskFull), "{error}");
+    tried.add(1);
+    assert_eq!(error.to_string(), "/dev/full: the disk is full");
+    tried.add(1);
+    export::png(&patterned(), "/dev/null").expect("written");
+    assert!(!fs::metadata("/dev/null").expect("metadata").is_file());
+    tried.add(1);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_is_followed_and_permissions_are_kept() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::create_dir(folder.path().join("far")).expect("made");
+    let target = folder.path().join("far").join("target");
+    let link = folder.path().join("link");
+    fs::write(&target, "old").expect("written");
+    fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).expect("set");
+    symlink(&target, &link).expect("linked");
+
+    write_atomically(&link, |out| out.write_all(b"new")).expect("written");
+    assert!(link.is_symlink());
+    assert_eq!(fs::read(&target).expect("read"), b"new");
+    assert_eq!(fs::metadata(&target).expect("metadata").permissions().mode() & 0o777, 0o640);
+    assert_eq!(names_in(&folder.path().join("far")), ["target"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn the_longest_name_there_is_can_be_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("n".repeat(255));
+    write_atomically(&path, |out| out.write_all(b"whole")).expect("written");
+    assert_eq!(fs::read(&path).expect("read"), b"whole");
+}

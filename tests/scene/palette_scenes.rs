@@ -1,0 +1,378 @@
+//! Palettes made for scenes: whether what is shown has the colours that light, materials, fog and glass give it.
+//!
+//! The scenes are of walls that face the eye more or less, each with one normal, under one sun: so each has one colour,
+//! which is worked out here by the formulas alone.
+
+use crate::support::random::Random;
+use crate::support::tried::Tried;
+use mode13h::glam::Vec3;
+use mode13h::light::{Blend, Light, Material, RampChoice};
+use mode13h::mesh::{Surface, shapes};
+use mode13h::palette::auto::Entries;
+use mode13h::palette::cube::CUBE;
+use mode13h::palette::{Palette, Ramp, Rgb};
+use mode13h::render::{AutomaticPalette, Renderer, automatic};
+use mode13h::scene::{Fog, Object, Scene, Shared};
+use mode13h::texture::Texture;
+use mode13h::vga::Vga;
+
+/// Towards the sun.
+const SUN: [f32; 3] = [0.3, 0.5, 0.9];
+
+/// Rounding to 8 bits, and twice to the card's 6: a colour's, and an entry's.
+const ROUNDING: f64 = 0.5 + 2.0 * 2.03;
+
+type Color = [f64; 3];
+
+/// Twelve walls beside each other, in these materials, turned by chance.
+fn walls(random: &mut Random, mut material: impl FnMut(&mut Random) -> Material) -> Scene {
+    let mut scene = Scene::new();
+    scene.camera.eye = Vec3::new(0.0, 0.0, 10.0);
+    for i in 0..12_u8 {
+        let mut wall = Object::new(shapes::wall(1, 1));
+        wall.position = Vec3::new(f32::from(i % 4) * 2.0 - 3.0, f32::from(i / 4) * 2.0 - 2.0, 0.0);
+        wall.scale = 0.9;
+        let mut angle = || random.unit() - 0.5;
+        wall.set_angles([angle(), angle(), 0.0]);
+        wall.materials = vec![material(random)];
+        scene.add(wall);
+    }
+    scene.add_light(Light::sun(SUN));
+    scene
+}
+
+fn random_material(random: &mut Random) -> Material {
+    let mut share = |least: f64, most: f64| (least + (most - least) * random.unit()) as f32;
+    Material {
+        ambient: share(0.05, 0.3),
+        diffuse: share(0.3, 0.7),
+        color: [share(0.1, 1.0), share(0.1, 1.0), share(0.0, 1.0)],
+        ..Material::white()
+    }
+}
+
+/// n·l of a wall.
+fn cosine(wall: &Object) -> f64 {
+    f64::from((wall.rotation() * Vec3::Z).dot(Vec3::from_array(SUN).normalize()).max(0.0))
+}
+
+/// What a matt wall shows, 0 to 255.
+fn lit(wall: &Object, light: [f32; 3]) -> Color {
+    let Material { ambient, diffuse, color, .. } = wall.materials[0];
+    [0, 1, 2].map(|i| {
+        let body = f64::from(ambient) + f64::from(diffuse) * cosine(wall) * f64::from(light[i]);
+        (f64::from(color[i]) * body).min(1.0) * 255.0
+    })
+}
+
+fn mixed(a: Color, b: Color, share: f64) -> Color {
+    [0, 1, 2].map(|i| a[i] * (1.0 - share) + b[i] * share)
+}
+
+fn off(a: Color, b: Rgb) -> f64 {
+    let b = [b.r, b.g, b.b].map(f64::from);
+    (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max)
+}
+
+/// What is shown, and for each pixel which object it shows, if any.
+fn shown(scene: &Scene) -> (Vec<Rgb>, Vec<Option<usize>>) {
+    let mut vga = Vga::new();
+    Renderer::new().draw(scene, &mut vga).expect("a legal scene");
+    let palette = vga.palette();
+    let colors = vga.pixels().iter().map(|&index| palette.color(index)).collect();
+    let mut numbered = scene.clone();
+    numbered.lights_mut().clear();
+    (numbered.fog, numbered.palette, numbered.background) = (None, None, 0);
+    for (number, object) in (1..).zip(numbered.objects_mut()) {
+        let ramp = RampChoice::Entries(Ramp::single(number));
+        object.materials.fill(Material { ramp, ..Material::white() });
+    }
+    Renderer::new().draw(&numbered, &mut vga).expect("a legal scene");
+    (colors, vga.pixels().iter().map(|&number| usize::from(number).checked_sub(1)).collect())
+}
+
+/// With the palette that is made for it.
+fn made(scene: &mut Scene) -> AutomaticPalette {
+    let made = automatic(scene).expect("a legal scene");
+    made.apply(scene);
+    made
+}
+
+/// That every pixel of object i is within `allowed(i)` of `expected(i)`. Returns how many there are, and the farthest.
+#[track_caller]
+fn assert_shown(
+    scene: &Scene,
+    expected: impl Fn(usize) -> Option<Color>,
+    allowed: impl Fn(usize) -> f64,
+) -> (u64, f64) {
+    let (colors, objects) = shown(scene);
+    let (mut count, mut worst) = (0, 0.0_f64);
+    for (place, (&color, object)) in colors.iter().zip(objects).enumerate() {
+        let Some((object, expected)) = object.and_then(|object| Some((object, expected(object)?))) else { continue };
+        let (off, allowed) = (off(expected, color), allowed(object));
+        assert!(off <= allowed, "object {object} at {place}: {color:?}, expected {expected:?}, off {off}, {allowed}");
+        (count, worst) = (count + 1, worst.max(off));
+    }
+    (count, worst)
+}
+
+/// Half a step of the ramp, on the channel with the widest, and rounding.
+fn half_a_step(palette: &Palette, entries: Entries) -> f64 {
+    let Entries::Ramp { ramp, .. } = entries else { panic!("{entries:?}") };
+    let Rgb { r, g, b } = palette.color(ramp.last());
+    f64::from(r.max(g).max(b)) / f64::from(ramp.entries() - 1) / 2.0 + ROUNDING
+}
+
+#[test]
+fn materials_are_shown_in_their_colours() {
+    let mut tried = Tried::new("materials_are_shown_in_their_colours", 100_000);
+    let mut random = Random::named("materials");
+    while tried.more() {
+        let mut scene = walls(&mut random, random_material);
+        let expected: Vec<Color> = scene.objects().iter().map(|wall| lit(wall, [1.0; 3])).collect();
+        let made = made(&mut scene);
+        let allowed = |i: usize| half_a_step(&made.palette, made.entries[i][0]);
+        let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), allowed);
+        tried.add(count);
+        tried.worst("off, in 255ths of a channel", worst);
+        assert!(scene.objects().iter().all(|wall| !wall.materials[0].takes_channels()));
+    }
+}
+
+/// The model of an MTL file: no material says a colour, the surfaces do.
+#[test]
+fn surfaces_are_shown_in_their_colours() {
+    let mut tried = Tried::new("surfaces_are_shown_in_their_colours", 50_000);
+    let mut random = Random::named("surfaces");
+    while tried.more() {
+        let mut scene = walls(&mut random, random_material);
+        let mut expected = Vec::new();
+        for wall in scene.objects_mut() {
+            let surface = Surface { diffuse: wall.materials[0].color, ..Surface::default() };
+            let body = 0.15 + 0.85 * cosine(wall);
+            expected.push(surface.diffuse.map(|channel| f64::from(channel) * body * 255.0));
+            let mesh = wall.mesh().clone().with_surfaces(vec![surface], vec![0; 2]).expect("one surface");
+            let mut new = Object::new(mesh);
+            (new.position, new.scale) = (wall.position, wall.scale);
+            new.set_angles(wall.angles());
+            *wall = new;
+        }
+        let mut own = scene.clone();
+        let made = made(&mut scene);
+        let allowed = |i: usize| half_a_step(&made.palette, made.entries[i][0]);
+        tried.add(assert_shown(&scene, |i| Some(expected[i]), allowed).0);
+
+        // In a palette without ramps the nearest that it has: the cube's channels are 51 apart.
+        own.palette = Some(CUBE.clone());
+        for wall in own.objects_mut() {
+            wall.materials = vec![wall.materials[0].in_own_colors(&wall.mesh().surfaces()[0])];
+        }
+        tried.add(assert_shown(&own, |i| Some(expected[i]), |_| 25.5 + 1.0).0);
+    }
+}
+
+/// Textures of one texel: 16 brightnesses of each of twelve have room, so each has its entry.
+#[test]
+fn textures_are_shown_in_their_colours() {
+    let mut tried = Tried::new("textures_are_shown_in_their_colours", 20_000);
+    let mut random = Random::named("textures");
+    while tried.more() {
+        let mut scene = walls(&mut random, random_material);
+        let mut expected = Vec::new();
+        for wall in scene.objects_mut() {
+            let texel = Rgb::new(random.within(100, 255) as u8, random.within(100, 255) as u8, 200);
+            let [r, g, b] = lit(wall, [1.0; 3]);
+            expected.push([r * f64::from(texel.r), g * f64::from(texel.g), b * f64::from(texel.b)].map(|c| c / 255.0));
+            wall.materials[0].texture = Some(Shared::new(Texture::plain(texel)));
+        }
+        let made = made(&mut scene);
+        assert!(made.entries.iter().all(|own| matches!(own[..], [Entries::Textures { .. }])));
+        // A wall that has one brightness gets entries over a quarter of full light. The tint is rounded to 8 bits.
+        let half_a_step = 0.25 * 255.0 / 15.0 / 2.0;
+        let allowed = |_| 3.0_f64.sqrt() * (half_a_step + ROUNDING + 0.5);
+        let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), allowed);
+        tried.add(count);
+        tried.worst("off, in 255ths of a channel", worst);
+    }
+}
+
+/// Rounding to 8 bits and to the card's 6, of each of the parts of a mixture and of itself; the parts of a sum count in
+/// full.
+fn rounded(parts: u32) -> f64 {
+    f64::from(parts + 1) * (0.5 + 2.03)
+}
+
+/// That the palette has each of these colours, as near as rounding lets it.
+#[track_caller]
+fn assert_has(palette: &Palette, expected: &[Color], rounding: f64) {
+    for &color in expected {
+        let off = palette.colors().iter().map(|&entry| off(color, entry)).fold(f64::INFINITY, f64::min);
+        assert!(off <= rounding, "{color:?}: the nearest entry is off by {off}");
+    }
+}
+
+/// How far a pixel may be off whose colour is mixed from others that are off by `parts`, of a palette that has the
+/// mixture but for `rounding`: the entry taken is no farther from what the parts' own entries mix to than the right one
+/// is.
+fn nearest_to_mixture(parts: f64, rounding: f64) -> f64 {
+    3.0_f64.sqrt() * (rounding + parts) + parts
+}
+
+#[test]
+fn fog_is_shown_in_its_colours() {
+    let mut tried = Tried::new("fog_is_shown_in_its_colours", 50_000);
+    let mut random = Random::named("fog");
+    while tried.more() {
+        let mut scene = walls(&mut random, random_material);
+        let haze = Rgb::from_u32(random.next_u64() as u32);
+        let fog = Fog { color: haze, start: 8.0, end: 20.0 };
+        (scene.fog, scene.background_color) = (Some(fog), Some(haze));
+        let mut expected = Vec::new();
+        for wall in scene.objects_mut() {
+            // One distance for all of it.
+            wall.set_angles([0.0; 3]);
+            wall.position.z = (random.unit() * 9.0 - 8.0) as f32;
+            let level = fog.level(10.0 - f64::from(wall.position.z));
+            expected.push(mixed(lit(wall, [1.0; 3]), [haze.r, haze.g, haze.b].map(f64::from), level));
+        }
+        let made = made(&mut scene);
+        assert_has(&made.palette, &expected, rounded(1));
+        assert_eq!(made.palette.color(scene.background), haze.nearest_on_dac());
+        let allowed = |i: usize| nearest_to_mixture(half_a_step(&made.palette, made.entries[i][0]), rounded(1));
+        let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), allowed);
+        tried.add(count);
+        tried.worst("off, in 255ths of a channel", worst);
+    }
+}
+
+#[test]
+fn what_shines_through_is_shown_in_its_colours() {
+    let mut tried = Tried::new("what_shines_through_is_shown_in_its_colours", 50_000);
+    let mut random = Random::named("glass");
+    while tried.more() {
+        let mut scene = walls(&mut random, random_material);
+        let mut expected = Vec::new();
+        let walls: Vec<Object> = scene.objects().to_vec();
+        for (i, mut pane) in walls.into_iter().enumerate() {
+            scene.objects_mut()[i].set_angles([0.0; 3]);
+            let wall = &scene.objects()[i];
+            // Before the middle of the wall.
+            pane.set_angles([0.0; 3]);
+            (pane.scale, pane.position) = (0.4, wall.position * 0.99 + Vec3::Z * 0.1);
+            let opacity = random.within(64, 192) as u8;
+            let blend = if i % 2 == 0 { Blend::Mix(opacity) } else { Blend::Add };
+            pane.materials = vec![Material { blend, ..random_material(&mut random) }];
+            let (behind, own) = (lit(wall, [1.0; 3]), lit(&pane, [1.0; 3]));
+            expected.push(match blend {
+                Blend::Mix(opacity) => mixed(behind, own, f64::from(opacity) / 255.0),
+                _ => [0, 1, 2].map(|i| (behind[i] + own[i]).min(255.0)),
+            });
+            scene.add(pane);
+        }
+        let made = made(&mut scene);
+        assert_has(&made.palette, &expected, rounded(2));
+        let half_a_step = |i: usize| half_a_step(&made.palette, made.entries[i][0]);
+        // Of the panes alone; of a sum both parts count in full.
+        let allowed = |i: usize| nearest_to_mixture(half_a_step(i) + half_a_step(i - 12), rounded(2));
+        let of = |i: usize| i.checked_sub(12).map(|pane| expected[pane]);
+        let (count, worst) = assert_shown(&scene, of, allowed);
+        tried.add(count);
+        tried.worst("off, in 255ths of a channel", worst);
+    }
+}
+
+#[test]
+fn colored_light_is_shown_in_its_colours() {
+    let mut tried = Tried::new("colored_light_is_shown_in_its_colours", 50_000);
+    let mut random = Random::named("light");
+    while tried.more() {
+        let mut scene = walls(&mut random, random_material);
+        let light = [random.unit() as f32, random.unit() as f32, 0.5];
+        scene.lights_mut()[0] = Light::sun(SUN).with_color(light);
+        let expected: Vec<Color> = scene.objects().iter().map(|wall| lit(wall, light)).collect();
+        let made = made(&mut scene);
+        assert_has(&made.palette, &expected, rounded(0));
+        for (own, wall) in made.entries.iter().zip(scene.objects()) {
+            assert!(matches!(own[..], [Entries::Textures { .. }]));
+            assert_eq!(wall.materials[0].ramp, RampChoice::Nearest);
+        }
+        // The nearest of a box of 8 in each channel: within half of one.
+        let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), |_| nearest_to_mixture(4.0 + 1.0, rounded(0)));
+        tried.add(count);
+        tried.worst("off, in 255ths of a channel", worst);
+    }
+}
+
+/// The sun behind the eye, mirrored into it: ambient, diffuse and specular light are all full.
+#[test]
+fn highlights_are_shown_in_their_colours() {
+    let mut tried = Tried::new("highlights_are_shown_in_their_colours", 200);
+    let mut random = Random::named("highlights");
+    while tried.more() {
+        let mut scene = walls(&mut random, |random| Material {
+            specular: 0.1 + 0.4 * random.unit() as f32,
+            shininess: 8.0,
+            highlight: [1.0, random.unit() as f32, random.unit() as f32],
+            ..random_material(random)
+        });
+        // Where it is seen, it is seen straight on.
+        scene.lights_mut()[0] = Light::sun([0.0, 0.0, 1.0]);
+        scene.objects_mut()[0].set_angles([0.0; 3]);
+        scene.objects_mut()[0].position = Vec3::Z;
+        let material = scene.objects()[0].materials[0].clone();
+        let expected = [0, 1, 2].map(|i| {
+            let body = material.color[i] * (material.ambient + material.diffuse);
+            f64::from((body + material.highlight[i] * material.specular).min(1.0)) * 255.0
+        });
+        scene.wishes.rung = Some(mode13h::render::Rung::Phong);
+        let middle = 100 * Vga::WIDTH + 160;
+        let mut own = scene.clone();
+        let made = made(&mut scene);
+        let (colors, objects) = shown(&scene);
+        assert_eq!(objects[middle], Some(0));
+        // The pixel's centre is half a pixel away from where the light is full; by 8 times the square of that it fades.
+        let allowed = half_a_step(&made.palette, made.entries[0][0]) + 1.0;
+        assert!(off(expected, colors[middle]) <= allowed, "{:?}, expected {expected:?}", colors[middle]);
+        own.palette = Some(CUBE.clone());
+        let (colors, _) = shown(&own);
+        assert!(off(expected, colors[middle]) <= 25.5 + 2.0, "{:?}, expected {expected:?}", colors[middle]);
+    }
+}
+
+/// What nobody sees of a round is not measured; what is seen later in it is.
+#[test]
+fn a_round_is_seen_and_not_its_beginning() {
+    let mut random = Random::named("round");
+    let mut scene = walls(&mut random, random_material);
+    let id = scene.add(Object::new(shapes::sphere(16, 8)));
+    scene[id].position = Vec3::new(0.0, 100.0, 0.0);
+    let unseen = mode13h::render::seen(&scene).expect("a scene");
+    assert_eq!(unseen[12][0].area, 0.0);
+    let path = mode13h::scene::Path::Line { from: Vec3::Y * 100.0, to: Vec3::ZERO, period: 4.0, back: true };
+    scene.motions.push(mode13h::scene::Motion::Path { what: mode13h::scene::Moving::Object(id), path });
+    let seen = mode13h::render::seen(&scene).expect("a scene");
+    assert!(seen[12][0].area > 0.01 && seen[12][0].brightest > 0.9, "{:?}", seen[12]);
+    let all: f32 = seen.iter().flatten().map(|seen| seen.area).sum();
+    assert!((all - 1.0).abs() < 1e-5);
+}
+
+/// An image of two colours that is far away has their mean, and so has the palette that is made for it.
+#[test]
+fn an_automatic_palette_has_the_colours_of_mipmaps() {
+    use mode13h::scene::Shared;
+    use mode13h::texture::Texture;
+
+    let (red, green) = (Rgb::new(255, 0, 0), Rgb::new(0, 255, 0));
+    let texture = Texture::from_rgb(2, 2, &[red, green, green, red]).expect("a texture");
+    let mut scene = crate::support::scenes::floor("checker", 24.0 * 32.0);
+    scene.objects_mut()[0].materials[0].texture = Some(Shared::new(texture));
+    let farthest = |scene: &Scene| {
+        let palette = automatic(scene).expect("a legal scene").palette.on_dac();
+        let mean = Rgb::new(128, 128, 0);
+        palette.color(palette.nearest(mean)).distance_squared(mean)
+    };
+    // A level of the DAC is 4 units, of which three are off.
+    assert!(farthest(&scene) <= 3 * 16, "{}", farthest(&scene));
+    scene.wishes.mipmaps = Some(false);
+    assert!(farthest(&scene) > 3 * 64 * 64, "{}", farthest(&scene));
+}

@@ -1,0 +1,650 @@
+//! Hard cases S1 to S6: every kernel of this machine against a naive oracle.
+//!
+//! One table of cases and one property, stamped onto every kernel. The long run:
+//!
+//! ```text
+//! cargo test --release --test span_kernels -- --ignored --nocapture
+//! ```
+
+use crate::support::naive_span::naive_span;
+use crate::support::random::Random;
+use crate::support::tried::Tried;
+#[cfg(all(feature = "asm", feature = "simd", target_arch = "x86_64"))]
+use crate::support::tried::is_here;
+use mode13h::span::Kernel;
+use mode13h::span::hyperbolic::fill_quotients;
+use mode13h::span::list::{Depths, Listed};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use std::fmt;
+
+/// Bytes before and behind the row that have to stay as they were.
+const GUARD: usize = 64;
+/// Three blocks of 64 less one: at least two of the widest blocks, and every tail.
+const EXHAUSTIVE_LENGTH: usize = 191;
+
+/// A span at an address that lies `alignment` bytes beyond a multiple of 64.
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    length: usize,
+    alignment: usize,
+    shade: u16,
+    step: u16,
+}
+
+/// Memory to draw in, reused from case to case.
+struct Canvas {
+    bytes: Vec<u8>,
+}
+
+/// What the guard bytes are: no constant, so that bytes moved or copied show too.
+fn guard_byte(i: usize) -> u8 {
+    0xA5 ^ (i as u8)
+}
+
+impl Canvas {
+    fn new(longest: usize) -> Self {
+        Self { bytes: (0..longest + 64 + 63 + 2 * GUARD).map(guard_byte).collect() }
+    }
+
+    /// The property: the row's bytes are `expected`, and no other byte has changed.
+    fn check(&mut self, kernel: Kernel, case: Case, expected: &[u8]) -> Result<(), Failure> {
+        let address = self.bytes.as_ptr().addr();
+        let start = address.next_multiple_of(64) - address + GUARD + case.alignment;
+        let end = start + case.length;
+        kernel.fill(&mut self.bytes[start..end], case.shade, case.step);
+        let row_differs = self.bytes[start..end].iter().zip(expected).position(|(a, b)| a != b);
+        let guards = (start - GUARD..start).chain(end..end + GUARD);
+        let guard_differs = guards.clone().find(|&i| self.bytes[i] != guard_byte(i));
+        let failure = match (row_differs, guard_differs) {
+            (Some(k), _) => Some((k as isize, self.bytes[start + k], expected[k])),
+            (None, Some(i)) => Some((i as isize - start as isize, self.bytes[i], guard_byte(i))),
+            (None, None) => None,
+        };
+        for (i, byte) in self.bytes[start - GUARD..end + GUARD].iter_mut().enumerate() {
+            *byte = guard_byte(start - GUARD + i);
+        }
+        match failure {
+            Some((pixel, is, should)) => Err(Failure { kernel, case, pixel, is, should }),
+            None => Ok(()),
+        }
+    }
+
+    fn check_naively(&mut self, kernel: Kernel, case: Case) -> Result<(), Failure> {
+        self.check(kernel, case, &naive_span(case.length, case.shade, case.step))
+    }
+}
+
+/// The first wrong byte of a span.
+#[derive(Debug)]
+struct Failure {
+    kernel: Kernel,
+    case: Case,
+    /// Counted from the row's first; below 0 or beyond the length it is a guard byte.
+    pixel: isize,
+    is: u8,
+    should: u8,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Case { length, alignment, shade, step } = self.case;
+        write!(
+            f,
+            "{}: shade {shade:#06x} step {step:#06x} length {length} alignment {alignment}: pixel {} is {:#04x}, not {:#04x}",
+            self.kernel, self.pixel, self.is, self.should
+        )
+    }
+}
+
+/// Shades and steps at which something changes its sign, carries or is as large as can be.
+const EDGES: [u16; 16] =
+    [0, 1, 2, 0x7F, 0x80, 0xFF, 0x100, 0x101, 0x7FFF, 0x8000, 0x8001, 0xFEFF, 0xFF00, 0xFF01, 0xFFFE, 0xFFFF];
+
+/// Tries every case on `kernel` and counts them under `test`.
+fn try_all(test: &str, kernel: Kernel, cases: impl Iterator<Item = Case>) {
+    let mut tried = Tried::new(format!("{test} {}", kernel.name()), 1);
+    let mut canvas = Canvas::new(131_073);
+    for case in cases {
+        if let Err(failure) = canvas.check_naively(kernel, case) {
+            panic!("{failure}");
+        }
+        tried.add(1);
+    }
+    tried.done();
+}
+
+/// S1: nothing is written.
+fn s1_no_pixels(kernel: Kernel) {
+    kernel.fill(&mut [], 0x1234, 0x0101); // a pointer to nothing at all
+    let cases = (0..64).flat_map(|alignment| {
+        EDGES
+            .into_iter()
+            .flat_map(move |shade| EDGES.into_iter().map(move |step| Case { length: 0, alignment, shade, step }))
+    });
+    try_all("s1_no_pixels", kernel, cases);
+}
+
+/// S2: the start shade is written, whatever the step.
+fn s2_one_pixel(kernel: Kernel) {
+    let mut tried = Tried::new(format!("s2_one_pixel {}", kernel.name()), 65_536 * 16);
+    let mut canvas = Canvas::new(1);
+    for step in EDGES {
+        for shade in 0..=u16::MAX {
+            let case = Case { length: 1, alignment: usize::from(shade % 64), shade, step };
+            if let Err(failure) = canvas.check(kernel, case, &[(shade >> 8) as u8]) {
+                panic!("{failure}");
+            }
+            tried.add(1);
+        }
+    }
+    tried.done();
+}
+
+/// S3: from any whole shade to any other within two pixels; 0 to 255 and back among them.
+fn s3_two_pixels(kernel: Kernel) {
+    let mut tried = Tried::new(format!("s3_two_pixels {}", kernel.name()), 65_536);
+    let mut canvas = Canvas::new(2);
+    for first in 0..=255_u8 {
+        for second in 0..=255_u8 {
+            let shade = i32::from(first) * 256;
+            let step = i32::from(second) * 256 - shade; // −65,280 to 65,280: 17 bits
+            assert!((0..65_536).contains(&(shade + step)), "no wrap");
+            let case = Case { length: 2, alignment: 63, shade: shade as u16, step: step as u16 };
+            if let Err(failure) = canvas.check(kernel, case, &[first, second]) {
+                panic!("{failure}");
+            }
+            tried.add(1);
+        }
+    }
+    tried.done();
+}
+
+/// S4 in small: starts and steps at random and at the edges, at the length of the long run.
+fn s4_starts_and_steps(kernel: Kernel) {
+    let mut random = Random::new(4);
+    let edges = EDGES.into_iter().flat_map(|shade| EDGES.into_iter().map(move |step| (shade, step)));
+    let drawn = (0..20_000).map(|_| random.next_u64()).map(|bits| (bits as u16, (bits >> 16) as u16));
+    let cases = edges.chain(drawn).map(|(shade, step)| Case { length: EXHAUSTIVE_LENGTH, alignment: 1, shade, step });
+    try_all("s4_starts_and_steps", kernel, cases);
+}
+
+/// S5: every length of a screen row and the lengths around the 16-bit count, at every alignment.
+fn s5_lengths_and_alignments(kernel: Kernel) {
+    let mut random = Random::new(5);
+    let lengths = (0..=320).chain([65_535, 65_536, 65_537, 131_073]);
+    let cases = lengths.flat_map(|length| (0..64).map(move |alignment| (length, alignment)));
+    let cases = cases.map(|(length, alignment)| {
+        let bits = random.next_u64();
+        Case { length, alignment, shade: bits as u16, step: (bits >> 16) as u16 }
+    });
+    try_all("s5_lengths_and_alignments", kernel, cases);
+}
+
+/// S6: a row of 320 whose exact slope is just short of a step, rising and falling.
+///
+/// Unit of all sums: 1/256 shade. With a start rounded toward where the shades come from, and a step
+/// rounded toward zero, a sum lags behind the exact value by less than 1 for the start and less than
+/// 1 for each step: after 319 steps less than 320, which is 1.25 shades; started anew after every 64
+/// pixels, less than 64, which is ¼.
+fn s6_drift(kernel: Kernel) {
+    let mut tried = Tried::new(format!("s6_drift {}", kernel.name()), 6 * 6 * 2 * 2 * 320);
+    let mut random = Random::new(6);
+    // Slopes numerator/denominator: steps of 0 and ±1, with all the drift that truncation leaves and with none.
+    for denominator in [1_i64, 2, 3, 320, 65_521, (random.next_u64() % 10_000 + 2) as i64] {
+        for numerator in [0, 1, denominator - 1, denominator, denominator + 1, 2 * denominator - 1] {
+            for direction in [1, -1] {
+                for reseed in [320, 64] {
+                    let slope = direction * numerator;
+                    // The exact value at pixel k, times the denominator; from mid-range, with a fraction.
+                    let exact = |k: i64| 0x7F80 * denominator + denominator / 3 + slope * k;
+                    let step = slope / denominator; // toward zero
+                    let mut row = [0; 320];
+                    let mut sums = Vec::new();
+                    for (piece, pixels) in row.chunks_mut(reseed).enumerate() {
+                        let at_start = exact((piece * reseed) as i64);
+                        let down = at_start.div_euclid(denominator);
+                        let up = -(-at_start).div_euclid(denominator);
+                        let start = if slope >= 0 { down } else { up };
+                        sums.extend((0..pixels.len() as i64).map(|k| start + k * step));
+                        kernel.fill(pixels, (start + 128) as u16, step as u16);
+                    }
+                    let bound = if reseed == 320 { 320 } else { 64 };
+                    for (k, (&byte, &sum)) in row.iter().zip(&sums).enumerate() {
+                        let behind = exact(k as i64) - sum * denominator;
+                        let lag = if slope >= 0 { behind } else { -behind };
+                        let place = format!("{kernel}: slope {slope}/{denominator}, anew every {reseed}, pixel {k}");
+                        let measure = if reseed == 320 { "shades behind" } else { "reseeded" };
+                        tried.worst(measure, lag as f64 / denominator as f64 / 256.0);
+                        assert!((0..bound * denominator).contains(&lag), "{place}: lag {lag}/{denominator}");
+                        assert_eq!(i64::from(byte), (sum + 128) / 256, "{place}");
+                        tried.add(1);
+                    }
+                }
+            }
+        }
+    }
+    tried.done();
+}
+
+/// S6: rows of shades I and of shades 255 − I add up to 255, pixel by pixel.
+///
+/// Their sums in 1/256 shade, s and 65,280 − s, do so exactly, since truncation toward zero treats a
+/// slope and its negative alike. The bytes (s + 128) >> 8 then add up to 255, but to 256 where s lies half-way
+/// between two shades, as both are rounded up there.
+fn s6_complement(kernel: Kernel) {
+    let mut tried = Tried::new(format!("s6_complement {}", kernel.name()), 100_000);
+    let mut random = Random::new(66);
+    let corners = [(0, 255), (255, 0), (0, 0), (127, 128), (128, 127), (0, 1), (254, 255)];
+    let drawn = (0..600).map(|_| ((random.next_u64() % 256) as i64, (random.next_u64() % 256) as i64));
+    for (from, to) in corners.into_iter().chain(drawn.collect::<Vec<_>>()) {
+        for pixels in [2_i64, 3, 64, 319, 320] {
+            let span = |from: i64, to: i64| {
+                let (start, step) = (from * 256, (to - from) * 256 / (pixels - 1));
+                let mut row = vec![0; pixels as usize];
+                kernel.fill(&mut row, (start + 128) as u16, step as u16);
+                (0..pixels).map(|k| start + k * step).zip(row).collect::<Vec<_>>()
+            };
+            let (row, complement) = (span(from, to), span(255 - from, 255 - to));
+            for (k, (&(sum, byte), &(other_sum, other_byte))) in row.iter().zip(&complement).enumerate() {
+                let place = format!("{kernel}: {from} to {to} over {pixels} pixels, pixel {k}");
+                assert_eq!(sum + other_sum, 65_280, "{place}");
+                assert_eq!(i64::from(byte), (sum + 128) / 256, "{place}");
+                let half_way = u16::from(sum % 256 == 128);
+                assert_eq!(u16::from(byte) + u16::from(other_byte), 255 + half_way, "{place}");
+                tried.add(1);
+            }
+        }
+    }
+    tried.done();
+}
+
+/// The property on anything, shrunk when it fails.
+fn any_span(kernel: Kernel) {
+    let mut seed = [0; 32];
+    seed[..8].copy_from_slice(&crate::support::random::seed().to_le_bytes());
+    println!("MODE13H_SEED={}", crate::support::random::seed());
+    let config = Config { cases: 2_000, failure_persistence: None, ..Config::default() };
+    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
+    let edge = || prop_oneof![any::<u16>(), proptest::sample::select(&EDGES[..])];
+    let length = prop_oneof![0_usize..=320, 0_usize..=5_000];
+    let spans = (length, 0_usize..64, edge(), edge());
+    let mut tried = Tried::new(format!("any_span {}", kernel.name()), 2_000);
+    let result = runner.run(&spans, |(length, alignment, shade, step)| {
+        let case = Case { length, alignment, shade, step };
+        Canvas::new(length).check_naively(kernel, case).map_err(|failure| TestCaseError::fail(failure.to_string()))
+    });
+    if let Err(error) = result {
+        panic!("{error}");
+    }
+    tried.add(2_000);
+    tried.done();
+}
+
+/// Stamps the tests onto a kernel. One that the machine lacks says so and is done.
+macro_rules! stamp {
+    ($($module:ident: $name:literal,)*) => {
+        const STAMPED: &[&str] = &[$($name),*];
+        $(mod $module {
+            stamp!(@each $name: s1_no_pixels, s2_one_pixel, s3_two_pixels, s4_starts_and_steps,
+                s5_lengths_and_alignments, s6_drift, s6_complement, any_span);
+        })*
+    };
+    (@each $name:literal: $($test:ident),*) => {
+        $(#[test]
+        fn $test() {
+            match mode13h::span::Kernel::by_name($name) {
+                Ok(kernel) => super::$test(kernel),
+                Err(error) => println!("not tried: {error}"),
+            }
+        })*
+    };
+}
+
+stamp! {
+    portable: "portable",
+    asm: "asm",
+    asm_unrolled: "asm-unrolled",
+    simd: "simd",
+    simd_arrays: "simd-arrays",
+    simd_sse2: "simd-sse2",
+    simd_avx2: "simd-avx2",
+    simd_avx512: "simd-avx512",
+}
+
+/// Every kernel that there is has its tests, and the kernels that must be here are.
+#[test]
+fn every_kernel_is_tested() {
+    let names: Vec<_> = Kernel::available().map(Kernel::name).collect();
+    println!("{}", names.join(", "));
+    for name in &names {
+        assert!(STAMPED.contains(name), "{name} has no tests");
+    }
+    let mut certain = vec!["portable"];
+    if cfg!(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86"))) {
+        certain.push("asm");
+    }
+    if cfg!(all(feature = "asm", target_arch = "x86_64")) {
+        certain.push("asm-unrolled");
+    }
+    if cfg!(feature = "simd") {
+        certain.extend(["simd", "simd-arrays"]);
+    }
+    if cfg!(all(feature = "simd", target_arch = "x86_64")) {
+        certain.push("simd-sse2");
+    }
+    #[cfg(all(feature = "simd", feature = "std", target_arch = "x86_64"))]
+    {
+        if is_x86_feature_detected!("avx2") {
+            certain.push("simd-avx2");
+        }
+        // Masked bytes, and the instruction that makes the mask.
+        if is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("bmi2")
+        {
+            certain.push("simd-avx512");
+        }
+    }
+    for name in certain {
+        assert!(names.contains(&name), "{name} is missing");
+    }
+}
+
+#[test]
+fn kernels_are_chosen_by_name() {
+    for kernel in Kernel::available() {
+        let again = Kernel::by_name(kernel.name()).expect("an available kernel");
+        assert_eq!((again.name(), again.level()), (kernel.name(), kernel.level()));
+    }
+    assert_eq!(Kernel::available().next().map(Kernel::name), Some("portable"));
+    let machine = if cfg!(target_arch = "x86_64") { "x86-64" } else { "i686" };
+    let mut best = "arrays";
+    for kernel in Kernel::available().filter(|kernel| kernel.name() != "simd") {
+        let level = match kernel.name() {
+            "asm" | "asm-unrolled" => machine,
+            name => name.trim_start_matches("simd-"),
+        };
+        assert_eq!((kernel.level(), kernel.to_string()), (level, kernel.name().to_owned()));
+        if kernel.name().starts_with("simd-") {
+            best = level;
+        }
+    }
+    if let Ok(simd) = Kernel::by_name("simd") {
+        assert_eq!((simd.level(), simd.to_string()), (best, format!("simd ({best})")));
+        assert_eq!(format!("{simd:?}"), format!("Kernel(simd ({best}))"));
+    }
+    let names: Vec<_> = Kernel::available().map(Kernel::name).collect();
+    let error = Kernel::by_name("mmx").expect_err("no such kernel").to_string();
+    assert_eq!(error, format!("no such kernel; this machine has {}", names.join(", ")));
+    for name in STAMPED.iter().filter(|name| !names.contains(name)) {
+        let error = Kernel::by_name(name).expect_err("a kernel that is not here").to_string();
+        assert_eq!(error, format!("this machine or build lacks the kernel {name}; it has {}", names.join(", ")));
+    }
+    assert!(names.contains(&Kernel::fastest().name()));
+    if cfg!(feature = "simd") {
+        assert_eq!(Kernel::fastest().name(), "simd");
+    }
+}
+
+/// Numerators one beside a multiple of the divisor, where f64 cannot tell the quotient from the whole number.
+#[test]
+fn c5_quotients_beside_whole_numbers() {
+    let mut tried = Tried::new("c5_quotients_beside_whole_numbers", 200_000);
+    let mut random = Random::named("c5 quotients");
+    while tried.more() {
+        let wide = |random: &mut Random, bits: u32| {
+            let number = u128::from(random.next_u64()) << 64 | u128::from(random.next_u64());
+            // Below 2¹¹⁷.
+            (number >> (128 - bits)) as i128
+        };
+        let bits = random.within(1, 116) as u32;
+        let (d, dd) = (wide(&mut random, bits).max(1), wide(&mut random, bits) >> 2);
+        let quotient = i128::from(random.within(0, 255));
+        let beside = random.one_of(&[-1, 0, 1, d / 2, d - 1]).clamp(-quotient * d, d - 1);
+        let mut row = [0; 5];
+        fill_quotients(&mut row, quotient * d + beside, quotient * dd, d, dd);
+        for (k, byte) in (0..).zip(row) {
+            let (n, d) = (quotient * (d + k * dd) + beside, d + k * dd);
+            assert_eq!(i128::from(byte), n.div_euclid(d), "{n} / {d}");
+        }
+    }
+}
+
+/// A kernel that is wrong in one byte, or writes one beyond, is found out: the property can fail.
+#[test]
+fn a_wrong_byte_is_caught() {
+    let case = Case { length: 20, alignment: 3, shade: 0x1000, step: 0x0100 };
+    let mut canvas = Canvas::new(20);
+    let mut expected = naive_span(20, case.shade, case.step);
+    expected[19] ^= 1;
+    let failure = canvas.check(Kernel::PORTABLE, case, &expected).expect_err("a wrong byte");
+    assert_eq!((failure.pixel, failure.is, failure.should), (19, 0x23, 0x22));
+    // A row of 20 seen as one of 19: its last byte lies on the guard.
+    let start = canvas.bytes.as_ptr().addr().next_multiple_of(64) - canvas.bytes.as_ptr().addr() + GUARD + 3;
+    canvas.bytes[start + 19] ^= 1;
+    let short = Case { length: 19, ..case };
+    assert_eq!(canvas.check_naively(Kernel::PORTABLE, short).expect_err("a lost guard").pixel, 19);
+}
+
+/// The long run, on as many threads as the machine has.
+mod long {
+    use super::*;
+    use std::sync::Mutex;
+    use std::thread;
+    use std::time::Instant;
+
+    /// What a thread has found.
+    #[derive(Default)]
+    struct Found {
+        cases: u64,
+        /// Rows that are not as they should be, and the first of them.
+        wrong: u64,
+        first: Option<String>,
+    }
+
+    impl Found {
+        fn wrong(&mut self, what: impl FnOnce() -> String) {
+            self.wrong += 1;
+            self.first.get_or_insert_with(what);
+        }
+    }
+
+    /// Runs `part(thread, threads)` on every thread.
+    fn on_all_threads(tried: &mut Tried, part: impl Fn(u64, u64) -> Found + Sync) {
+        let threads = thread::available_parallelism().map_or(1, |n| n.get()) as u64;
+        let all = Mutex::new(Found::default());
+        thread::scope(|scope| {
+            for i in 0..threads {
+                let (part, all) = (&part, &all);
+                scope.spawn(move || {
+                    let found = part(i, threads);
+                    let mut all = all.lock().expect("no thread panicked");
+                    all.cases += found.cases;
+                    all.wrong += found.wrong;
+                    all.first = all.first.take().or(found.first);
+                });
+            }
+        });
+        let all = all.into_inner().expect("no thread panicked");
+        tried.add(all.cases);
+        tried.worst("rows that differ", all.wrong as f64);
+        assert!(all.wrong == 0, "{} rows differ: {}", all.wrong, all.first.unwrap_or_default());
+    }
+
+    fn failure(kernel: Kernel, shade: u16, step: u16, row: &[u8], expected: &[u8]) -> String {
+        let case = Case { length: row.len(), alignment: 0, shade, step };
+        let pixel = row.iter().zip(expected).position(|(a, b)| a != b).unwrap_or(0);
+        Failure { kernel, case, pixel: pixel as isize, is: row[pixel], should: expected[pixel] }.to_string()
+    }
+
+    /// All 2³² starts and steps at 191 pixels: `portable` against the definition, the others against it.
+    #[test]
+    #[ignore = "the long run: minutes"]
+    fn s4_long_every_start_and_step() {
+        let kernels: Vec<_> = Kernel::available().filter(|k| !["portable", "simd"].contains(&k.name())).collect();
+        let stated = (1 << 32) * (kernels.len() as u64 + 1);
+        let mut tried = Tried::new("s4_long_every_start_and_step", stated);
+        let started = Instant::now();
+        on_all_threads(&mut tried, |thread, threads| {
+            let mut found = Found::default();
+            // Bytes, so that the compiler sees that no sum below can overflow, and works on many at once.
+            let places: [u8; EXHAUSTIVE_LENGTH] = std::array::from_fn(|k| k as u8);
+            let mut definition = [0; EXHAUSTIVE_LENGTH];
+            let mut portable = [0; EXHAUSTIVE_LENGTH];
+            let mut row = [0; EXHAUSTIVE_LENGTH];
+            for step in (0..=u16::MAX).filter(|step| u64::from(*step) % threads == thread) {
+                for shade in 0..=u16::MAX {
+                    for (&k, pixel) in places.iter().zip(&mut definition) {
+                        *pixel = ((u32::from(shade) + u32::from(k) * u32::from(step)) % 65_536 / 256) as u8;
+                    }
+                    Kernel::PORTABLE.fill(&mut portable, shade, step);
+                    if portable != definition {
+                        found.wrong(|| failure(Kernel::PORTABLE, shade, step, &portable, &definition));
+                    }
+                    for &kernel in &kernels {
+                        kernel.fill(&mut row, shade, step);
+                        if row != portable {
+                            found.wrong(|| failure(kernel, shade, step, &row, &portable));
+                        }
+                    }
+                    found.cases += kernels.len() as u64 + 1;
+                    row[usize::from(shade) % EXHAUSTIVE_LENGTH] ^= 0xFF; // no kernel may lean on an old row
+                }
+            }
+            found
+        });
+        println!("{} kernels, {:.0?}", kernels.len() + 1, started.elapsed());
+        tried.done();
+    }
+
+    /// 10⁹ random spans of 1 to 4,095 pixels, log-uniform, at random alignments, guard bytes watched.
+    #[test]
+    #[ignore = "the long run: minutes"]
+    fn s4_long_random_spans() {
+        const SPANS: u64 = 1_000_000_000;
+        let kernels: Vec<_> = Kernel::available().filter(|k| !["portable", "simd"].contains(&k.name())).collect();
+        let mut tried = Tried::new("s4_long_random_spans", SPANS);
+        let started = Instant::now();
+        on_all_threads(&mut tried, |thread, threads| {
+            let mut found = Found::default();
+            let mut random = Random::new(400 + thread);
+            let mut expected = [0; 4_095];
+            let mut canvas = vec![0xA5; 4_095 + 64 + 63 + 2 * GUARD];
+            let base = canvas.as_ptr().addr().next_multiple_of(64) - canvas.as_ptr().addr();
+            let spans = SPANS.div_ceil(threads);
+            for i in 0..spans {
+                let length = random.log_uniform(12);
+                let bits = random.next_u64();
+                let (shade, step, alignment) = (bits as u16, (bits >> 16) as u16, (bits >> 32) as usize % 64);
+                let expected = &mut expected[..length];
+                Kernel::PORTABLE.fill(expected, shade, step);
+                let kernel = kernels[i as usize % kernels.len()];
+                let start = base + GUARD + alignment;
+                let (before, rest) = canvas.split_at_mut(start);
+                let (row, behind) = rest.split_at_mut(length);
+                kernel.fill(row, shade, step);
+                if row != expected {
+                    found.wrong(|| failure(kernel, shade, step, row, expected));
+                }
+                if before[start - GUARD..] != [0xA5; GUARD] || behind[..GUARD] != [0xA5; GUARD] {
+                    found
+                        .wrong(|| format!("{kernel}: shade {shade} step {step} length {length}: a guard byte is gone"));
+                    before[start - GUARD..].fill(0xA5);
+                    behind[..GUARD].fill(0xA5);
+                }
+                row.fill(0xA5);
+                found.cases += 1;
+            }
+            found
+        });
+        println!("{} kernels, {:.0?}", kernels.len(), started.elapsed());
+        tried.done();
+    }
+}
+
+/// Lists of spans, with a depth test and without, by every kernel: the bytes, depths and counts are those of a loop over
+/// pixels, and whatever lies before, between and behind the spans stays, up to the last byte and cell there are. Of spans
+/// that reach beyond these nothing is drawn.
+#[test]
+fn lists_are_filled_as_pixel_by_pixel() {
+    const PIXELS: usize = 300;
+    let mut random = Random::named("lists of spans");
+    let (mut written, mut hidden, mut beyond) = (0, 0, 0);
+    for round in 0..20_000 {
+        let most = random.one_of(&[4, 9, 17, 90]);
+        let count = random.within(0, 12) as usize;
+        // Equal depths, too: then the first that was drawn stays.
+        let level = random.one_of(&[1_i64 << 30, 5, 1 << 32]);
+        let mut spans = Vec::new();
+        let mut depths = Vec::new();
+        for _ in 0..count {
+            let length = random.within(0, most);
+            // One in four at the very end, or beyond it.
+            let last = PIXELS as i64 - length;
+            let (anywhere, elsewhere) = (random.within(0, last + 3), random.within(0, last + 3));
+            let at = random.one_of(&[anywhere, anywhere, anywhere, last]);
+            let cell = random.one_of(&[at, at, at, elsewhere]);
+            let (shade, step) = (random.next_u64() as u16, random.next_u64() as u16);
+            spans.push(Listed { at: at as u32, length: length as u32, shade, step });
+            let slope = random.next_u64() as i64 >> random.within(0, 63);
+            let z = random.within(0, level - 1) << 24;
+            depths.push(match random.within(0, 3) {
+                0 => Depths { at: cell as u32, z: random.next_u64() as i64, dz: slope },
+                1 => Depths { at: cell as u32, z, dz: 0 },
+                _ => Depths { at: cell as u32, z, dz: slope >> 30 },
+            });
+        }
+        let bytes: Vec<u8> = (0..PIXELS).map(guard_byte).collect();
+        let cells: Vec<u32> = (0..PIXELS).map(|_| random.one_of(&[0, 3, 1 << 29, u32::MAX])).collect();
+        let (mut flat, mut deep, mut nearest) = (bytes.clone(), bytes.clone(), cells.clone());
+        let mut nearer = 0;
+        for (span, depth) in spans.iter().zip(&depths) {
+            let (at, cell, length) = (span.at as usize, depth.at as usize, span.length as usize);
+            let inside = at + length <= PIXELS;
+            beyond += usize::from(!inside);
+            for k in 0..length {
+                let byte = (span.shade.wrapping_add(span.step.wrapping_mul(k as u16)) >> 8) as u8;
+                if inside {
+                    flat[at + k] = byte;
+                }
+                if inside && cell + length <= PIXELS {
+                    let d = (depth.z.wrapping_add(depth.dz.wrapping_mul(k as i64)) >> 24) as u32;
+                    if d > nearest[cell + k] {
+                        (deep[at + k], nearest[cell + k]) = (byte, d);
+                        nearer += 1;
+                    } else {
+                        hidden += 1;
+                    }
+                }
+            }
+        }
+        written += nearer;
+        for kernel in Kernel::available() {
+            let mut drawn = bytes.clone();
+            kernel.fill_list(&mut drawn, &spans);
+            assert_eq!(drawn, flat, "{kernel}, round {round}: {spans:?}");
+            let (mut drawn, mut kept) = (bytes.clone(), cells.clone());
+            let count = kernel.fill_list_nearer(&mut drawn, &mut kept, &spans, &depths);
+            assert!(
+                (&drawn, &kept, count) == (&deep, &nearest, nearer),
+                "{kernel}, round {round}: {spans:?}, {depths:?}"
+            );
+        }
+    }
+    assert!(written > 100_000 && hidden > 100_000 && beyond > 500, "{written}, {hidden}, {beyond}");
+}
+
+/// Levels that this machine lacks are tried by no test; the line of `.ci/not_tried` names them.
+#[cfg(all(feature = "asm", feature = "simd", target_arch = "x86_64"))]
+#[test]
+fn levels_that_are_missing_are_said() {
+    let mut tried = Tried::new("levels_that_are_missing_are_said", 6);
+    let all = ["asm", "asm-unrolled", "simd-arrays", "simd-sse2", "simd-avx2", "simd-avx512"];
+    for name in all {
+        is_here(name, Kernel::by_name(name).is_ok());
+        tried.add(1);
+    }
+    let known = |kernel: &Kernel| all.contains(&kernel.name()) || ["portable", "simd"].contains(&kernel.name());
+    assert!(Kernel::available().all(|kernel| known(&kernel)), "a kernel that is not in this list");
+}

@@ -1,0 +1,16 @@
+//! The scenes that are compiled in.
+
+use mode13h::render::automatic;
+use mode13h::scene::{Scene, shipped};
+
+/// Every shipped scene under its name, with its palette, at two fifths of its time.
+pub fn scenes() -> impl Iterator<Item = (String, Scene)> {
+    shipped::ALL.iter().map(|shipped| {
+        let mut scene = shipped.load().expect("a scene that loads").scene;
+        if scene.wishes.auto_palette {
+            automatic(&scene).expect("a legal scene").apply(&mut scene);
+        }
+        scene.set_time(0.4 * scene.duration);
+        (format!("scene {}", shipped.name), scene)
+    })
+}
