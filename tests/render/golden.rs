@@ -64,7 +64,7 @@ fn golden_frames_of_a_house() {
     use mode13h::scene::{Camera, Motion, Object, Shared};
 
     let mut tried = Tried::new("golden_frames_of_a_house", 5);
-    let loaded = obj::load(crate::support::root().join("tests/data/house.obj")).expect("a model");
+    let loaded = obj::load(crate::support::workspace::root().join("tests/data/house.obj")).expect("a model");
     let mut object = Object::new(loaded.mesh).centred();
     let surfaces = object.mesh().surfaces().to_vec();
     for (material, surface) in object.materials.iter_mut().zip(surfaces) {

@@ -9,6 +9,9 @@ use std::path::Path;
 const GROUPS: [(char, u32); 9] =
     [('S', 7), ('R', 14), ('C', 5), ('N', 9), ('T', 3), ('D', 4), ('P', 5), ('E', 1), ('F', 5)];
 
+/// The folders of the workspace that hold tests.
+const SOURCES: [&str; 6] = ["src", "tests", "lab/src", "lab/tests", "cli/src", "cli/tests"];
+
 /// What a row says in place of tests as long as nothing is built that they could try.
 const PENDING: &str = "pending: feature";
 
@@ -183,15 +186,15 @@ fn faults(list: &str, functions: &[Function]) -> Vec<String> {
 /// The functions in all files of Rust below a directory of the project, but for this file, whose samples
 /// are none.
 fn read_sources(directory: &str, functions: &mut Vec<Function>) {
-    let entries = fs::read_dir(crate::support::root().join(directory)).expect(directory);
+    let entries = fs::read_dir(crate::support::workspace::root().join(directory)).expect(directory);
     let mut names: Vec<_> = entries.map(|entry| entry.expect(directory).file_name()).collect();
     names.sort();
     for name in names {
         let path = format!("{directory}/{}", name.to_str().expect("a name in Unicode"));
-        let absolute = crate::support::root().join(&path);
+        let absolute = crate::support::workspace::root().join(&path);
         if absolute.is_dir() {
             read_sources(&path, functions);
-        } else if path.ends_with(".rs") && path != "tests/hard_cases.rs" {
+        } else if path.ends_with(".rs") && path != "tests/render/hard_cases.rs" {
             functions.extend(self::functions(&path, &fs::read_to_string(&absolute).expect(&path)));
         }
     }
@@ -229,11 +232,12 @@ fn reported_by_case() -> String {
 
 #[test]
 fn every_hard_case_has_tests_that_report() {
-    let list = crate::support::root().join("tests/HARD_CASES.md");
+    let list = crate::support::workspace::root().join("tests/HARD_CASES.md");
     let list = fs::read_to_string(list).expect("tests/HARD_CASES.md");
     let mut functions = Vec::new();
-    read_sources("src", &mut functions);
-    read_sources("tests", &mut functions);
+    for directory in SOURCES {
+        read_sources(directory, &mut functions);
+    }
     let faults = faults(&list, &functions);
     if !faults.is_empty() {
         println!("The tests that there are:\n\n{}", tests_by_case(&functions));
@@ -250,12 +254,14 @@ fn every_hard_case_has_tests_that_report() {
 /// The long run's table in the README is that of the tests there are.
 #[test]
 fn every_long_test_is_in_the_readme() {
-    let readme = crate::support::root().join("README.md");
+    let readme = crate::support::workspace::root().join("README.md");
     let readme = fs::read_to_string(readme).expect("README.md");
     let table = readme.split("<!-- tried -->").nth(1).and_then(|rest| rest.split("<!-- /tried -->").next());
     let table = table.expect("a table between two marks");
     let mut functions = Vec::new();
-    read_sources("tests", &mut functions);
+    for directory in SOURCES {
+        read_sources(directory, &mut functions);
+    }
     let long = functions.iter().filter(|function| function.is_test && function.name.split('_').nth(1) == Some("long"));
     let mut names: Vec<_> = long.map(|function| function.name.as_str()).collect();
     names.sort_unstable();

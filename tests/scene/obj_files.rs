@@ -32,7 +32,7 @@ fn refused(text: impl AsRef<[u8]>) -> String {
 }
 
 fn data(name: &str) -> PathBuf {
-    crate::support::root().join("tests/data").join(name)
+    crate::support::workspace::root().join("tests/data").join(name)
 }
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";

@@ -515,7 +515,7 @@ fn p2_no_pixel_has_an_index_of_another_ramp() {
 #[cfg(all(feature = "obj", feature = "image"))]
 #[test]
 fn the_house_has_two_ramps_and_bricks() {
-    let folder = crate::support::root().join("tests/data");
+    let folder = crate::support::workspace::root().join("tests/data");
     let house = mode13h::mesh::obj::load(folder.join("house.obj")).expect("a model");
     assert!(house.warnings.is_empty(), "{:?}", house.warnings);
     let surfaces = house.mesh.surfaces().to_vec();

@@ -293,7 +293,7 @@ fn names_are_found_and_differ() {
 }
 
 fn palettes_folder() -> std::path::PathBuf {
-    crate::support::root().join("palettes")
+    crate::support::workspace::root().join("palettes")
 }
 
 /// The constructors are the truth. `MODE13H_WRITE_PALETTES=1` writes the files from them, and fails

@@ -63,7 +63,7 @@ fn draw_at(scene: &mut Scene, seconds: f64) -> Shown {
 
 #[test]
 fn every_scene_loads_and_says_what_it_shows() {
-    let folder = crate::support::root().join("scenes");
+    let folder = crate::support::workspace::root().join("scenes");
     let mut files: Vec<String> = fs::read_dir(&folder)
         .expect("a folder")
         .map(|entry| entry.expect("an entry").file_name().into_string().expect("text"))
@@ -211,7 +211,7 @@ fn painters_order_and_affine_mapping_show_their_faults() {
 }
 
 fn kept(shipped: &Shipped) -> PathBuf {
-    crate::support::root().join(format!("scenes/pictures/{}.png", shipped.name))
+    crate::support::workspace::root().join(format!("scenes/pictures/{}.png", shipped.name))
 }
 
 fn read(path: &Path) -> Shown {

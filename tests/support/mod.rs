@@ -29,5 +29,3 @@ pub mod shipped {
 pub mod triangles;
 pub mod tried;
 pub mod workspace;
-
-pub use workspace::root;

@@ -941,7 +941,7 @@ fn palettes_are_looked_at() {
 #[test]
 fn palettes_are_made_for_models() {
     let directory = directory();
-    let data = |name: &str| crate::support::root().join("tests/data").join(name).display().to_string();
+    let data = |name: &str| crate::support::workspace::root().join("tests/data").join(name).display().to_string();
     let house = data("house.obj");
     succeed(&directory, &["palette", "--from", &house, "-o", "house.gpl"]);
     succeed(&directory, &["palette", "--from", &house, "--up", "z", "-o", "lying.gpl"]);
@@ -999,7 +999,7 @@ fn green(bytes: &[u8]) -> f64 {
 #[test]
 fn a_model_with_colours_is_shown_in_them() {
     let directory = directory();
-    let data = |name: &str| crate::support::root().join("tests/data").join(name).display().to_string();
+    let data = |name: &str| crate::support::workspace::root().join("tests/data").join(name).display().to_string();
     let house = data("house.obj");
     succeed(&directory, &["render", &house, "-o", "default.png"]);
     succeed(&directory, &["render", &house, "-o", "auto.png", "--palette", "auto"]);
@@ -1052,7 +1052,7 @@ fn a_model_with_colours_is_shown_in_them() {
 #[test]
 fn a_scene_may_ask_for_a_palette_made_for_it() {
     let directory = directory();
-    let house = crate::support::root().join("tests/data/house.obj");
+    let house = crate::support::workspace::root().join("tests/data/house.obj");
     let text = |palette: &str| {
         format!(
             "palette = '{palette}'\nbackground = '#203060'\nlights = [{{ sun = [1, 2, 3] }}]\n\

@@ -9,5 +9,3 @@ pub mod random;
 pub mod tried;
 #[path = "../../../tests/support/workspace.rs"]
 pub mod workspace;
-
-pub use workspace::root;

@@ -18,7 +18,7 @@ use properties::PROPERTIES;
 
 /// Name and bytes of each file in the corpus of a property.
 fn corpus(property: &str) -> Vec<(PathBuf, Vec<u8>)> {
-    let folder = crate::support::root().join("tests/corpus").join(property);
+    let folder = crate::support::workspace::root().join("tests/corpus").join(property);
     let mut paths: Vec<PathBuf> = fs::read_dir(&folder)
         .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
         .map(|entry| entry.expect("an entry").path())

@@ -158,13 +158,13 @@ fn decode(bytes: &[u8]) -> (u32, u32, Vec<u8>, Vec<u8>) {
 }
 
 fn kept(case: &Case) -> PathBuf {
-    crate::support::root().join(format!("tests/pictures/{}.png", case.id.to_lowercase()))
+    crate::support::workspace::root().join(format!("tests/pictures/{}.png", case.id.to_lowercase()))
 }
 
 #[test]
 fn show_the_list_of_hard_cases_shows_every_picture_with_its_sentence() {
     let mut tried = Tried::new("show_the_list_of_hard_cases_shows_every_picture_with_its_sentence", 24);
-    let list = crate::support::root().join("tests/HARD_CASES.md");
+    let list = crate::support::workspace::root().join("tests/HARD_CASES.md");
     let list = std::fs::read_to_string(list).expect("tests/HARD_CASES.md");
     for Case { id, title, sentence, .. } in CASES {
         let head = format!("### {id}: {title}\n\n{sentence}\n\n![");

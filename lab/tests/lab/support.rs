@@ -17,5 +17,3 @@ pub mod triangles;
 pub mod tried;
 #[path = "../../../tests/support/workspace.rs"]
 pub mod workspace;
-
-pub use workspace::root;

@@ -198,7 +198,7 @@ fn documents_name_the_keys_of_the_window() {
     let help = help.split("Keys in the window: ").nth(1).expect("keys");
     assert_eq!(readme, keys_of(help), "README.md and --help");
     // What the program asks for.
-    let sources = crate::support::root().join("src/bin/mode13h");
+    let sources = crate::support::workspace::root().join("cli/src");
     let mut asked = BTreeSet::new();
     let mut folders = vec![sources];
     while let Some(folder) = folders.pop() {
@@ -229,7 +229,7 @@ fn documents_name_the_keys_of_the_window() {
 #[test]
 fn documents_name_files_that_are_there() {
     let mut tried = Tried::new("documents_name_files_that_are_there", 30);
-    let root = crate::support::root();
+    let root = crate::support::workspace::root();
     for (document, text) in DOCUMENTS {
         let folder = root.join(document).parent().expect("a folder").to_path_buf();
         let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
@@ -238,7 +238,8 @@ fn documents_name_files_that_are_there() {
             assert!(folder.join(link).exists(), "{document}: there is no {link}");
             tried.add(1);
         }
-        let folders = [".ci/", "tests/", "src/", "asm/", "examples/", "benches/", "fuzz/", "palettes/", "docs/"];
+        let folders =
+            [".ci/", "tests/", "src/", "asm/", "examples/", "benches/", "fuzz/", "palettes/", "docs/", "lab/", "cli/"];
         for path in quoted(text).filter_map(|quote| quote.split(' ').next()) {
             if folders.iter().any(|folder| path.starts_with(folder)) {
                 assert!(root.join(path).exists(), "{document}: there is no {path}");

@@ -183,7 +183,7 @@ fn floats(folder: &Path, fields: &mut Vec<String>) {
 pub(crate) fn every_float_is_refused(mut tried: Tried) {
     let mut fields = Vec::new();
     for folder in ["src/scene", "src/light", "src/mesh"] {
-        floats(&crate::support::root().join(folder), &mut fields);
+        floats(&crate::support::workspace::root().join(folder), &mut fields);
     }
     fields.sort_unstable();
     let mut listed: Vec<&str> = FLOATS.iter().map(|row| row.0).chain(ELSEWHERE.iter().map(|row| row.0)).collect();

@@ -771,7 +771,7 @@ fn lamp(world: &mut World, random: &mut Random, change: ChangeLamp) {
 /// `Light::Sun.color`) and every public method that takes `&mut self` (`Scene::add`), of the modules that hold what a
 /// frame is drawn from.
 pub(super) fn in_the_sources() -> Vec<String> {
-    let root = crate::support::root().join("src");
+    let root = crate::support::workspace::root().join("src");
     let mut paths = vec![root.join("render/mod.rs"), root.join("vga/mod.rs")];
     for folder in ["scene", "light"] {
         let entries = fs::read_dir(root.join(folder)).expect("a folder").map(|entry| entry.expect("an entry").path());

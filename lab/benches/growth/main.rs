@@ -10,7 +10,6 @@
 //! proportion. With the feature `report` there is a chart too, `target/growth.svg`.
 
 mod case;
-#[cfg(feature = "report")]
 mod chart;
 mod series;
 
@@ -88,7 +87,6 @@ fn main() {
             if kept { "kept" } else { "NOT KEPT" }
         );
     }
-    #[cfg(feature = "report")]
     if is_bench {
         let path = concat!(env!("CARGO_TARGET_TMPDIR"), "/../growth.svg");
         match std::fs::write(path, chart::svg(&all)) {
@@ -100,7 +98,7 @@ fn main() {
 
 /// Time that this thread has run, where the system counts it: other programs do not add to that.
 fn thread_time() -> Duration {
-    #[cfg(all(unix, feature = "cli"))]
+    #[cfg(unix)]
     if let Ok(time) = nix::time::clock_gettime(nix::time::ClockId::CLOCK_THREAD_CPUTIME_ID) {
         return time.into();
     }
