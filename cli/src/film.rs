@@ -12,9 +12,9 @@ use mode13h::palette::Palette;
 use mode13h::vga::Vga;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
-use crate::artists::Artists;
 use crate::failure::{Failure, on_one_line};
 use crate::output;
+use crate::renderer_pool::RendererPool;
 
 /// What a frame shows.
 pub(crate) struct Frame {
@@ -92,14 +92,14 @@ impl Film {
         &self,
         fades: bool,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send,
     ) -> Result<(), Failure> {
         let figures = output::long_file(|| {
             let figures = match self.kind {
-                Kind::Gif => self.write_gif(progress, artists, &draw),
-                Kind::Apng => self.write_apng(fades, progress, artists, &draw),
-                Kind::Stream => self.write_stream(progress, artists, &draw).map(|()| String::new()),
+                Kind::Gif => self.write_gif(progress, renderer_pool, &draw),
+                Kind::Apng => self.write_apng(fades, progress, renderer_pool, &draw),
+                Kind::Stream => self.write_stream(progress, renderer_pool, &draw).map(|()| String::new()),
             };
             progress.finish_and_clear();
             figures
@@ -111,7 +111,7 @@ impl Film {
     fn write_gif<Artist: Send>(
         &self,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
     ) -> Result<String, Failure> {
         let mut file = GifFile::create(&self.out, self.scale, self.rate).map_err(Failure::work)?;
@@ -119,7 +119,7 @@ impl Film {
             None => GifFrame::first(&frame.picture(), self.scale),
             Some(before) => GifFrame::after(&before.picture(), &frame.picture(), self.scale, first.colors()),
         };
-        self.each(progress, artists, draw, make, |frame| file.add_frame(frame).map_err(Failure::work))?;
+        self.each(progress, renderer_pool, draw, make, |frame| file.add_frame(frame).map_err(Failure::work))?;
         file.finish().map(|film| self.figures(&film)).map_err(Failure::work)
     }
 
@@ -128,7 +128,7 @@ impl Film {
         &self,
         fades: bool,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
     ) -> Result<String, Failure> {
         let colors = |first: &Palette| match fades {
@@ -139,7 +139,7 @@ impl Film {
         let make = |before: Option<&Frame>, frame: &Frame, first: &Palette| {
             ApngFrame::new(before.map(Frame::picture).as_ref(), &frame.picture(), self.scale, &colors(first))
         };
-        self.each(progress, artists, draw, make, |frame| file.add(&frame).map_err(Failure::work))?;
+        self.each(progress, renderer_pool, draw, make, |frame| file.add(&frame).map_err(Failure::work))?;
         let bytes = file.finish().map_err(Failure::work)?;
         let (width, height) = self.scale.size(320, 200);
         let (above, below) = self.rate.fraction();
@@ -157,7 +157,7 @@ impl Film {
     fn write_stream<Artist: Send>(
         &self,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
     ) -> Result<(), Failure> {
         let mut out = std::io::stdout().lock();
@@ -171,7 +171,7 @@ impl Film {
             bytes.extend(export::y4m_frame(&picture, self.scale)?);
             Ok(bytes)
         };
-        let result = self.each(progress, artists, draw, make, |bytes: Vec<u8>| {
+        let result = self.each(progress, renderer_pool, draw, make, |bytes: Vec<u8>| {
             out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| {
                 nobody_reads = error.kind() == ErrorKind::BrokenPipe;
                 Failure::work(format!("standard output: {error}"))
@@ -186,12 +186,12 @@ impl Film {
     fn each<Artist: Send, Made: Send>(
         &self,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
         make: impl Fn(Option<&Frame>, &Frame, &Palette) -> Result<Made, PictureError> + Sync,
         mut add: impl FnMut(Made) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let draw = |number| go_on().and_then(|()| artists.work(|artist| draw(artist, number)));
+        let draw = |number| go_on().and_then(|()| renderer_pool.work(|artist| draw(artist, number)));
         let draw_all =
             |numbers: Range<u32>| -> Result<Vec<Frame>, Failure> { numbers.into_par_iter().map(draw).collect() };
         // Some for each thread (of which there are at most 1,024): frames are not equally fast.

@@ -1,9 +1,9 @@
 //! `mode13h`: a scene or a model in a window, or a picture of it.
 
-mod artists;
 mod chart;
 mod cost;
 mod demo;
+mod effect_cost;
 mod explain;
 mod failure;
 mod film;
@@ -14,13 +14,13 @@ mod output;
 mod overlay;
 mod palette;
 mod plan;
-mod price;
 mod read_files;
 mod render;
+mod renderer_pool;
 mod scenes;
 mod show;
-mod stage;
-mod switches;
+mod toggles;
+mod turntable;
 mod verify;
 
 use std::process::ExitCode;
@@ -53,7 +53,7 @@ enum Command {
     Plan(plan::Options),
     /// Let one pixel account for its byte, or show a row's intensity and its slope
     Explain(explain::Options),
-    /// Measure what accuracy costs in time: every rung's error beside its time
+    /// Measure what accuracy costs in time: every shading's error beside its time
     Cost(cost::Options),
     /// Look at a palette, convert it, or make one for a model
     Palette(palette::Options),

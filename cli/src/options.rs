@@ -7,13 +7,13 @@ use clap::{Args, ValueEnum};
 use mode13h::glam::Vec3;
 use mode13h::mesh::obj;
 use mode13h::palette::{Rgb, builtin};
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, VertexPath};
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Shading, VertexPath};
 use mode13h::scene::{Scene, UpAxis};
 use mode13h::span::Kernel;
 
 use crate::failure::Failure;
 use crate::input::{self, Colors, Input, Model};
-use crate::stage::{Background, Stage};
+use crate::turntable::{Background, Turntable};
 
 /// The environment variable that stands in for `--kernel`. The library reads none.
 const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
@@ -21,10 +21,10 @@ const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 /// How a model or a scene is drawn. What is not said here the scene says, or else the library chooses.
 #[derive(Args, Clone)]
 pub(crate) struct Drawing {
-    #[arg(long, value_name = "RUNG", help = help_on_rungs())]
-    rung: Option<Rung>,
+    #[arg(long, value_name = "SHADING", help = help_on_shadings())]
+    shading: Option<Shading>,
     /// Spend the least time that keeps every face within so many shades of error, of 1/255 of full intensity
-    #[arg(long, value_name = "SHADES", value_parser = shades, conflicts_with = "rung")]
+    #[arg(long, value_name = "SHADES", value_parser = shades, conflicts_with = "shading")]
     max_error: Option<f32>,
     #[arg(long, value_name = "FILE|NAME|auto", help = help_on_palettes())]
     palette: Option<OsString>,
@@ -132,13 +132,13 @@ impl Drawing {
     }
 
     /// What INPUT shows, drawn as was asked for.
-    pub(crate) fn stage(&self, input: Input) -> Result<Stage, Failure> {
+    pub(crate) fn stage(&self, input: Input) -> Result<Turntable, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
         let (mut stage, usual) = match input {
             Input::Model(model) => {
                 let Model { mesh, .. } = *model;
                 let textures = input::textures(&mesh);
-                let stage = Stage::of_model(mesh, self.up.unwrap_or(Up::Y).into(), &textures);
+                let stage = Turntable::of_model(mesh, self.up.unwrap_or(Up::Y).into(), &textures);
                 let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };
                 (stage, Some(colors))
             }
@@ -148,9 +148,9 @@ impl Drawing {
                 ));
             }
             Input::Scene { scene, .. } => {
-                let auto = scene.wishes.auto_palette.then_some(Colors::Auto);
+                let auto = scene.preferences.auto_palette.then_some(Colors::Auto);
                 let colors = auto.or(scene.palette.clone().map(Colors::from));
-                (Stage::of_scene(*scene), colors)
+                (Turntable::of_scene(*scene), colors)
             }
         };
         if let Some(zoom) = self.zoom {
@@ -188,19 +188,19 @@ impl Drawing {
         (!is_name).then(|| PathBuf::from(words))
     }
 
-    /// The rung of a scene that wishes for this one.
-    pub(crate) fn rung(&self, wish: Option<Rung>) -> Rung {
-        self.rung.or(wish).unwrap_or_default()
+    /// The shading of a scene that preferences for this one.
+    pub(crate) fn shading(&self, wish: Option<Shading>) -> Shading {
+        self.shading.or(wish).unwrap_or_default()
     }
 
-    /// Whether a rung or a budget was asked for.
-    pub(crate) fn chooses_rung(&self) -> bool {
-        self.rung.is_some() || self.max_error.is_some()
+    /// Whether a shading or a budget was asked for.
+    pub(crate) fn chooses_shading(&self) -> bool {
+        self.shading.is_some() || self.max_error.is_some()
     }
 
-    /// The budget of a scene that wishes for this one, if any is asked for.
+    /// The budget of a scene that preferences for this one, if any is asked for.
     pub(crate) fn max_error(&self, wish: Option<f32>) -> Option<f32> {
-        self.max_error.or(wish.filter(|_| self.rung.is_none()))
+        self.max_error.or(wish.filter(|_| self.shading.is_none()))
     }
 
     /// The mapping that was asked for.
@@ -216,8 +216,8 @@ impl Drawing {
         renderer.set_mapping(self.mapping);
         renderer.set_mipmaps(self.mipmaps.map(|mipmaps| mipmaps == Switch::On));
         renderer.set_vertex_path(self.vertex_path.unwrap_or_default());
-        if let Some(rung) = self.rung {
-            renderer.set_rung(rung);
+        if let Some(shading) = self.shading {
+            renderer.set_shading(shading);
         }
         renderer.set_max_error(self.max_error);
         renderer
@@ -246,8 +246,8 @@ fn camera(words: &str) -> Result<(Vec3, Vec3), String> {
     let point = |words: &str| {
         let numbers: Option<Vec<f32>> = words.split(',').map(|word| word.trim().parse().ok()).collect();
         let point = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok()).map(Vec3::from_array);
-        let why = || format!("{words:?} is no point: three numbers with commas between them, such as 0,1.5,4");
-        point.filter(|point| point.is_finite()).ok_or_else(why)
+        let reason = || format!("{words:?} is no point: three numbers with commas between them, such as 0,1.5,4");
+        point.filter(|point| point.is_finite()).ok_or_else(reason)
     };
     let (eye, target) = match words.split_once(':') {
         Some((eye, target)) => (point(eye)?, point(target)?),
@@ -295,9 +295,9 @@ pub(crate) fn shades(words: &str) -> Result<f32, String> {
     }
 }
 
-fn help_on_rungs() -> String {
-    let names = Rung::ALL.map(Rung::name).join(", ");
-    format!("How faces are shaded: {names} [default: the scene's, or {}]", Rung::default())
+fn help_on_shadings() -> String {
+    let names = Shading::ALL.map(Shading::name).join(", ");
+    format!("How faces are shaded: {names} [default: the scene's, or {}]", Shading::default())
 }
 
 fn help_on_hidden_surfaces() -> String {

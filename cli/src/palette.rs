@@ -12,7 +12,7 @@ use mode13h::palette::{Palette, builtin};
 
 use crate::failure::Failure;
 use crate::options::{self, Up};
-use crate::stage::Stage;
+use crate::turntable::Turntable;
 use crate::{input, output, read_files};
 
 #[derive(Args)]
@@ -59,7 +59,7 @@ fn make(model: &OsStr, up: Up, crease: Option<f32>, out: Option<&Path>) -> Resul
     let input::Model { name, mesh } = input::model(model, &obj::Options { crease })?;
     out.map_or(Ok(()), read_files::spare)?;
     let textures = input::textures(&mesh);
-    let mut stage = Stage::of_model(mesh, up.into(), &textures);
+    let mut stage = Turntable::of_model(mesh, up.into(), &textures);
     let automatic = stage.automatic().map_err(Failure::work)?.clone();
     let mut lines = String::new();
     let materials = stage.scene.objects().iter().flat_map(|object| &object.materials);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, RungRow, Study, Verdict};
+use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, ShadingRow, Study, Verdict};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -15,7 +15,7 @@ struct Json<'a> {
     kernel: &'a str,
     frames: usize,
     rounds: usize,
-    rungs: Vec<JsonRung>,
+    shadings: Vec<JsonShading>,
     budget: Vec<JsonBudget>,
     options: Vec<JsonOption<'a>>,
     claims: Vec<JsonClaim<'a>>,
@@ -58,8 +58,8 @@ struct JsonSplit {
 }
 
 #[derive(Serialize)]
-struct JsonRung {
-    rung: &'static str,
+struct JsonShading {
+    shading: &'static str,
     ns_per_frame: f64,
     ns_per_frame_quartiles: [f64; 2],
     ns_per_pixel: f64,
@@ -86,7 +86,7 @@ struct JsonBudget {
     largest_patch: usize,
     ns_per_frame: f64,
     ns_per_frame_quartiles: [f64; 2],
-    best_single_rung: Option<&'static str>,
+    best_single_shading: Option<&'static str>,
     best_single_ns: Option<f64>,
     ratio: Option<f64>,
     ratio_interval: Option<[f64; 2]>,
@@ -120,11 +120,11 @@ fn interval((low, high): (f64, f64)) -> [f64; 2] {
     [low, high]
 }
 
-impl From<&RungRow> for JsonRung {
-    fn from(row: &RungRow) -> Self {
+impl From<&ShadingRow> for JsonShading {
+    fn from(row: &ShadingRow) -> Self {
         let split = row.split;
         Self {
-            rung: row.rung.name(),
+            shading: row.shading.name(),
             ns_per_frame: row.per_frame.median,
             ns_per_frame_quartiles: quartiles(&row.per_frame),
             ns_per_pixel: row.per_pixel,
@@ -145,7 +145,7 @@ impl From<&RungRow> for JsonRung {
             cover_errors: row.cover_errors,
             swim: row.swim,
             efficient: row.efficient,
-            as_fast_as: row.as_fast_as.iter().map(|rung| rung.name()).collect(),
+            as_fast_as: row.as_fast_as.iter().map(|shading| shading.name()).collect(),
         }
     }
 }
@@ -160,11 +160,11 @@ impl From<&BudgetRow> for JsonBudget {
             largest_patch: row.patch,
             ns_per_frame: row.per_frame.median,
             ns_per_frame_quartiles: quartiles(&row.per_frame),
-            best_single_rung: row.best_single_rung.map(|rung| rung.name()),
+            best_single_shading: row.best_single_shading.map(|shading| shading.name()),
             best_single_ns: row.best_single.map(|time| time.median),
             ratio: row.ratio.map(|(ratio, _)| ratio),
             ratio_interval: row.ratio.map(|(_, of)| interval(of)),
-            triangles: row.triangles.iter().map(|(rung, triangles)| (rung.name(), *triangles)).collect(),
+            triangles: row.triangles.iter().map(|(shading, triangles)| (shading.name(), *triangles)).collect(),
         }
     }
 }
@@ -212,7 +212,7 @@ pub(super) fn json(study: &Study, warnings: &[String]) -> Result<String, Failure
         kernel: &study.kernel,
         frames: study.frames,
         rounds: study.rounds,
-        rungs: study.rungs.iter().map(JsonRung::from).collect(),
+        shadings: study.shadings.iter().map(JsonShading::from).collect(),
         budget: study.budget.iter().map(JsonBudget::from).collect(),
         options: study.options.iter().map(JsonOption::from).collect(),
         claims: study.claims.iter().map(JsonClaim::from).collect(),

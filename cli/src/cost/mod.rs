@@ -13,21 +13,21 @@ use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::render::Rung;
+use mode13h::render::Shading;
 use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h_lab::cost::{self, Settings, Step, Subject, report};
 
 use crate::failure::Failure;
 use crate::options::{Drawing, finite};
-use crate::stage::Stage;
+use crate::turntable::Turntable;
 use crate::{input, output};
 
 /// Frames that follow each other 0.25° apart, for what swims.
 const STEPS: u32 = 5;
 
 #[derive(Args)]
-#[command(mut_arg("rung", |arg| arg.hide(true)), mut_arg("max_error", |arg| arg.hide(true)))]
+#[command(mut_arg("shading", |arg| arg.hide(true)), mut_arg("max_error", |arg| arg.hide(true)))]
 pub(crate) struct Options {
     #[arg(help = input::help())]
     input: OsString,
@@ -38,9 +38,9 @@ pub(crate) struct Options {
     /// As JSON, for programs
     #[arg(long)]
     json: bool,
-    /// The rungs to be studied, with commas between [default: all]
-    #[arg(long, value_name = "RUNG,...", value_delimiter = ',')]
-    rungs: Vec<Rung>,
+    /// The shadings to be studied, with commas between [default: all]
+    #[arg(long, value_name = "SHADING,...", value_delimiter = ',')]
+    shadings: Vec<Shading>,
     /// How many frames, all over one round: a model turns once, a scene moves for as long as it says
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value_t = 8)]
     frames: u32,
@@ -70,10 +70,12 @@ fn seconds(words: &str) -> Result<f64, String> {
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { input, out, json, frames, instructions, seconds, counted, drawing, .. } = options;
-    if drawing.chooses_rung() {
-        return Err(Failure::words("cost compares rungs and budgets with each other: --rungs says which rungs"));
+    if drawing.chooses_shading() {
+        return Err(Failure::words(
+            "cost compares shadings and budgets with each other: --shadings says which shadings",
+        ));
     }
-    let rungs = if options.rungs.is_empty() { Rung::ALL.to_vec() } else { options.rungs.clone() };
+    let shadings = if options.shadings.is_empty() { Shading::ALL.to_vec() } else { options.shadings.clone() };
     let mut kernel = drawing.kernel()?;
     let input = drawing.input(input)?;
     let name = input.name().to_string();
@@ -81,7 +83,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let frames = turned(&mut stage, *frames, 360.0 / f64::from(*frames));
     let steps = turned(&mut stage, STEPS, 0.25);
     if *counted {
-        return instructions::draw(&frames, &rungs, &|| drawing.renderer(kernel));
+        return instructions::draw(&frames, &shadings, &|| drawing.renderer(kernel));
     }
     let directory = match (out, json) {
         (Some(directory), _) => Some(directory.clone()),
@@ -90,14 +92,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     // Before much time is spent.
     directory.as_deref().map_or(Ok(()), files::check)?;
-    let counts = if *instructions { Some(instructions::count(&rungs, frames.len())?) } else { None };
+    let counts = if *instructions { Some(instructions::count(&shadings, frames.len())?) } else { None };
     if let Some(counts) = &counts {
         kernel = Kernel::by_name(&counts.kernel).map_err(Failure::work)?;
     }
 
     let renderer = || drawing.renderer(kernel);
     let subject = Subject { name: &name, frames: &frames, steps: &steps, renderer: &renderer };
-    let mut settings = Settings { rungs, host: host::host(), clock: host::clock(), ..Settings::default() };
+    let mut settings = Settings { shadings, host: host::host(), clock: host::clock(), ..Settings::default() };
     if let Some(seconds) = *seconds {
         (settings.seconds, settings.at_most) = (seconds, true);
     }
@@ -132,7 +134,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// So many frames of what is shown, each turned by so many degrees more than the one before it.
-fn turned(stage: &mut Stage, frames: u32, degrees: f64) -> Vec<Scene> {
+fn turned(stage: &mut Turntable, frames: u32, degrees: f64) -> Vec<Scene> {
     let mut scenes = Vec::new();
     for frame in 0..frames {
         let (seconds, pose) = stage.turned(0.0, f64::from(frame) * degrees);

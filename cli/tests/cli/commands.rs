@@ -19,7 +19,7 @@ use mode13h::vga::Vga;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The program in a directory, with no display and no wishes from the environment.
+/// The program in a directory, with no display and no preferences from the environment.
 fn program(directory: &TempDir) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
     command.current_dir(directory).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("MODE13H_KERNEL");
@@ -131,7 +131,10 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus"], "--out <OUT>"),
         (vec!["render", "torus", "-o", "x.png", "--kernel", "mmx"], "no such kernel; this machine has portable"),
         (vec!["--kernel", "mmx"], "no such kernel; this machine has portable"),
-        (vec!["render", "torus", "-o", "x.png", "--rung", "mirror"], "there are flat, gouraud-period, gouraud-8.8, "),
+        (
+            vec!["render", "torus", "-o", "x.png", "--shading", "mirror"],
+            "there are flat, gouraud-vintage, gouraud-8.8, ",
+        ),
         (vec!["render", "torus", "-o", "x.tif"], "x.tif: no kind of picture"),
         (vec!["render", "torus", "-o", "x"], "x: "),
         (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a row of pictures needs"),
@@ -191,7 +194,7 @@ fn wrong_words_end_with_2() {
         (vec!["torus", "verify"], "verify is a command, and stands before its INPUT"),
         (vec!["plan"], "<INPUT>"),
         (vec!["plan", "torus", "--at", "inf"], "--at"),
-        (vec!["plan", "torus", "--rung", "mirror"], "there are flat, gouraud-period, gouraud-8.8, "),
+        (vec!["plan", "torus", "--shading", "mirror"], "there are flat, gouraud-vintage, gouraud-8.8, "),
     ] {
         assert_fails(&run(&directory, &words), 2, says);
     }
@@ -845,11 +848,11 @@ fn a_plan_for_programs_is_that_of_the_second_of_two_frames_and_the_same_on_every
                     let row = rows.next().expect("a row");
                     assert_eq!(object["object"], row.object.as_str());
                     let keys: Vec<&String> = effect.as_object().expect("an object").keys().collect();
-                    assert_eq!(keys, ["choice", "effect", "on", "why"]);
+                    assert_eq!(keys, ["choice", "effect", "on", "reason"]);
                     assert_eq!(effect["effect"], row.effect.name());
                     assert_eq!(effect["on"], row.on);
                     assert_eq!(effect["choice"], row.choice);
-                    assert_eq!(effect["why"], row.why.as_str());
+                    assert_eq!(effect["reason"], row.reason.as_str());
                 }
             }
         }
@@ -1205,7 +1208,7 @@ fn words_have_the_last_word_over_a_scene() {
     };
     let (said, own) = stats(&["phong"]);
     assert!(said.contains(": phong, float vertices,"), "{said}");
-    let (said, _) = stats(&["phong", "--rung", "flat", "--hidden", "scan-line", "--vertex-path", "integer"]);
+    let (said, _) = stats(&["phong", "--shading", "flat", "--hidden", "scan-line", "--vertex-path", "integer"]);
     assert!(said.contains(": flat, integer vertices,") && said.contains(" scan-line: "), "{said}");
     let (_, grey) = stats(&["phong", "--palette", "grey"]);
     assert!(grey != own);
@@ -1311,10 +1314,10 @@ fn explain_says_why_a_pixel_has_its_byte() {
             assert_eq!((json["byte"].clone(), text.contains("the background")), (Value::from(0), true));
             continue;
         };
-        let account = &seen["accounts"][0];
-        let sums = account["sums"].as_array().expect("sums");
+        let shade_trace = &seen["accounts"][0];
+        let sums = shade_trace["sums"].as_array().expect("sums");
         let last = sums.last().and_then(Value::as_u64).expect("a sum");
-        assert_eq!((last >> 8, sums.len() as u64 - 1), (byte.into(), account["steps"].as_u64().expect("steps")));
+        assert_eq!((last >> 8, sums.len() as u64 - 1), (byte.into(), shade_trace["steps"].as_u64().expect("steps")));
         assert!(text.contains(&format!("{last:04x}")), "{text}");
         let face = &json["faces"][seen["face"].as_u64().expect("a place") as usize];
         assert!(text.contains(&format!("cone, triangle {}", face["triangle"])), "{text}");

@@ -18,13 +18,13 @@ fn by_the_raster(comparison: &Comparison) -> Vec<u8> {
     let raster = Raster::new(frame);
     if comparison.depth_tested {
         let mut raster = raster.with_cleared_depth(&mut depths);
-        for (vertices, shading) in &comparison.triangles {
-            raster.triangle(vertices, *shading);
+        for (vertices, interpolation) in &comparison.triangles {
+            raster.triangle(vertices, *interpolation);
         }
     } else {
         let mut raster = raster;
-        for (vertices, shading) in &comparison.triangles {
-            raster.triangle(vertices, *shading);
+        for (vertices, interpolation) in &comparison.triangles {
+            raster.triangle(vertices, *interpolation);
         }
     }
     bytes
@@ -35,8 +35,8 @@ fn by_the_oracle(comparison: &Comparison) -> (Vec<u8>, Vec<u8>) {
     let (width, height) = (comparison.right.width(), comparison.right.height());
     let (mut bytes, mut owners) = (vec![0; width * height], vec![0; width * height]);
     let mut depths = vec![0; width * height];
-    for (vertices, shading) in &comparison.triangles {
-        for pixel in oracle::pixels(vertices, *shading, width as i32, height as i32) {
+    for (vertices, interpolation) in &comparison.triangles {
+        for pixel in oracle::pixels(vertices, *interpolation, width as i32, height as i32) {
             let at = pixel.y as usize * width + pixel.x as usize;
             owners[at] += 1;
             let depth = oracle::depth_at(vertices, pixel.x, pixel.y);

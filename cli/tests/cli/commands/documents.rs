@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 use mode13h::plan::Effect;
-use mode13h::render::{HiddenSurfaces, Mapping, Rung, VertexPath};
+use mode13h::render::{HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::scene::shipped;
 use mode13h::span::Kernel;
 
@@ -56,7 +56,7 @@ fn help(words: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The options that a text names, such as `--rung`.
+/// The options that a text names, such as `--shading`.
 fn options(text: &str) -> BTreeSet<&str> {
     let starts = text.match_indices("--").map(|(at, _)| at);
     let word = |at: usize| {
@@ -124,7 +124,7 @@ fn documents_name_options_that_the_program_has() {
     }
 }
 
-/// Of `--rung phong` the second word.
+/// Of `--shading phong` the second word.
 #[test]
 fn documents_give_options_values_that_they_take() {
     let mut tried = Tried::new("documents_give_options_values_that_they_take", 15);
@@ -138,7 +138,7 @@ fn documents_give_options_values_that_they_take() {
                     continue;
                 }
                 let known = match pair[0] {
-                    "--rung" => value.parse::<Rung>().is_ok(),
+                    "--shading" => value.parse::<Shading>().is_ok(),
                     "--hidden" => value.parse::<HiddenSurfaces>().is_ok(),
                     "--mapping" => value.parse::<Mapping>().is_ok(),
                     "--vertex-path" => value.parse::<VertexPath>().is_ok(),
@@ -162,13 +162,13 @@ fn values_of(key: &str) -> Vec<&'static str> {
 #[test]
 fn documents_list_every_shading_and_every_way() {
     let mut tried = Tried::new("documents_list_every_shading_and_every_way", 4);
-    assert_eq!(values_of("rung"), Rung::ALL.map(Rung::name));
+    assert_eq!(values_of("shading"), Shading::ALL.map(Shading::name));
     assert_eq!(values_of("hidden-surfaces"), HiddenSurfaces::ALL.map(HiddenSurfaces::name));
     assert_eq!(values_of("mapping"), Mapping::ALL.map(Mapping::name));
     let table =
         PROGRAM.split("| shading | what |").nth(1).expect("the table of shadings").split("\n\n").next().expect("rows");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
-    assert_eq!(rows.collect::<Vec<_>>(), Rung::ALL.map(Rung::name));
+    assert_eq!(rows.collect::<Vec<_>>(), Shading::ALL.map(Shading::name));
     tried.add(4);
 }
 
@@ -177,7 +177,7 @@ fn documents_list_every_shading_and_every_way() {
 #[test]
 fn documents_name_what_there_is() {
     let mut tried = Tried::new("documents_name_what_there_is", 30);
-    let mut known: BTreeSet<&str> = Rung::ALL.map(Rung::name).into();
+    let mut known: BTreeSet<&str> = Shading::ALL.map(Shading::name).into();
     known.extend(Effect::ALL.map(Effect::name));
     known.extend(HiddenSurfaces::ALL.map(HiddenSurfaces::name));
     known.extend(Mapping::ALL.map(Mapping::name));
@@ -292,8 +292,8 @@ fn documents_name_files_that_are_there() {
 /// The reading itself.
 #[test]
 fn options_and_keys_are_found_in_a_text() {
-    let text = "|---|---| `--rung flat`, cargo -- --max-error 2; a--b, ---, --N, --at=1 ";
-    assert_eq!(options(text), BTreeSet::from(["--at", "--max-error", "--rung"]));
+    let text = "|---|---| `--shading flat`, cargo -- --max-error 2; a--b, ---, --N, --at=1 ";
+    assert_eq!(options(text), BTreeSet::from(["--at", "--max-error", "--shading"]));
     let keys = "A key: Esc quits, `[` `]` step; B makes it smaller and Shift-B greater. H, A4 and `+` `-`; 1 to 9";
     assert_eq!(keys_of(keys), BTreeSet::from(["+", "1", "9", "B", "Esc", "H", "[", "]"]));
     assert!(has_heading("# One\n\n## The study's own clock\n", "the-studys-own-clock"));
