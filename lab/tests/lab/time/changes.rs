@@ -134,11 +134,28 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene::objects_mut", |w, r| *one_object(w, r) = object(r)),
     seen("Scene::lights_mut", |w, r| {
         let lights = w.scene.lights_mut();
-        match r.within(0, 2) {
-            0 => lights.clear(),
-            1 => lights.truncate(1),
-            // The order of their sum.
-            _ => lights.reverse(),
+        // The order of their sum.
+        if r.within(0, 1) == 0 { lights.reverse() } else { lights.iter_mut().for_each(|at| *at = light(r)) }
+    }),
+    seen("Scene::clear_lights", |w, _| w.scene.clear_lights()),
+    seen("Scene::remove_light", |w, r| {
+        if let Some(&id) = one_of_few(w.scene.light_ids(), r) {
+            w.scene.remove_light(id);
+        }
+    }),
+    seen("Scene::light_mut", |w, r| {
+        if let Some(&id) = one_of_few(w.scene.light_ids(), r) {
+            *w.scene.light_mut(id).expect("there") = light(r);
+        }
+    }),
+    seen("Scene::remove", |w, r| {
+        if let (true, Some(&id)) = (w.scene.objects().len() > 1, one_of_few(w.scene.object_ids(), r)) {
+            w.scene.remove(id);
+        }
+    }),
+    seen("Scene::get_mut", |w, r| {
+        if let Some(&id) = one_of_few(w.scene.object_ids(), r) {
+            *w.scene.get_mut(id).expect("there") = object(r);
         }
     }),
     seen("Scene::set_time", |w, r| {
@@ -216,7 +233,8 @@ pub(super) const CHANGES: &[Change] = &[
         fewer_objects(w);
     }),
     seen("Moving::Light", |w, r| {
-        with_motion(w, r, |r| Motion::Path { what: Moving::Light(0), path: circle(r) });
+        let Some(&id) = w.scene.light_ids().first() else { return };
+        with_motion(w, r, |r| Motion::Path { what: Moving::Light(id), path: circle(r) });
         w.scene.set_time(0.6);
     }),
     seen("Moving::Eye", |w, r| {
@@ -636,6 +654,12 @@ fn forced(random: &mut Random) -> (Effect, Option<bool>) {
 
 // Where things are
 
+/// One of a list, if it has any.
+fn one_of_few<'a, T>(list: &'a [T], random: &mut Random) -> Option<&'a T> {
+    let last = list.len().checked_sub(1)?;
+    list.get(random.within(0, last as i64) as usize)
+}
+
 fn one_object<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Object {
     let objects = world.scene.objects_mut();
     let last = objects.len() as i64 - 1;
@@ -731,7 +755,9 @@ fn fewer_objects(world: &mut World) {
     let mut scene = Scene::new();
     (scene.camera, scene.ambient, scene.background) = (old.camera, old.ambient, old.background);
     (scene.palette, scene.fog, scene.preferences) = (old.palette.clone(), old.fog, old.preferences);
-    *scene.lights_mut() = old.lights().to_vec();
+    for &light in old.lights() {
+        scene.add_light(light);
+    }
     for object in objects.into_iter().rev().take(3) {
         scene.add(object);
     }
