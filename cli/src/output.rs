@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-use mode13h::export::{self, ExportError, Picture, Scale};
+use mode13h::export::{ExportError, Picture, Png, Scale};
 use mode13h::vga::Vga;
 
 use crate::failure::Failure;
@@ -64,10 +64,8 @@ pub(crate) fn is_interrupted() -> bool {
 pub(crate) fn picture(vga: &Vga, path: &Path, rgb: bool, scale: Option<Scale>) -> Result<(), ExportError> {
     let palette = vga.palette();
     let picture = Picture::mode_13h(vga.pixels(), &palette);
-    file(|| match (rgb, scale) {
-        (true, scale) => export::picture_rgb_png(&picture, scale.unwrap_or(Scale::FiveBySix), path),
-        (false, scale) => export::picture_png(&picture, scale.unwrap_or(Scale::One), path),
-    })
+    let scale = scale.unwrap_or(if rgb { Scale::FiveBySix } else { Scale::One });
+    file(|| Png { scale, rgb }.save(&picture, path))
 }
 
 /// Writes what `vga` shows under the first name that is free of `mode13h-0001.png`, `mode13h-0002.png` and so on in

@@ -4,7 +4,7 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use mode13h::export::{self, Picture, PixelShape, Scale};
+use mode13h::export::{self, Picture, PixelShape, Png, Scale};
 use mode13h::mesh::obj;
 use mode13h::palette::auto::Entries;
 use mode13h::palette::file::Format;
@@ -102,7 +102,7 @@ fn chart(palette: &Palette, out: &Path) -> Result<(), export::ExportError> {
         palette: palette.colors(),
         shape: PixelShape::SQUARE,
     };
-    export::picture_png(&squares, Scale::To { width: 256, height: 256 }, out)
+    Png { scale: Scale::To { width: 256, height: 256 }, rgb: false }.save(&squares, out)
 }
 
 /// The palette as text: what it is, and its colours; painted where the terminal can.

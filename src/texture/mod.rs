@@ -12,7 +12,7 @@
 //! palette and the texture's colours, so a texture knows nothing of any palette.
 
 mod builtin;
-#[cfg(feature = "image")]
+#[cfg(feature = "png")]
 mod load;
 mod mipmap;
 mod resample;
@@ -23,7 +23,7 @@ use core::fmt;
 
 use crate::palette::median_cut::MedianCut;
 use crate::palette::{Rgb, Search};
-#[cfg(feature = "image")]
+#[cfg(feature = "png")]
 pub use load::{LoadError, LoadErrorKind, decode, load};
 pub use mipmap::Mipmap;
 
