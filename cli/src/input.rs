@@ -1,6 +1,5 @@
 //! From the words INPUT and FILE|NAME to a scene or a mesh, and to a palette.
 
-use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Read};
@@ -9,9 +8,10 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::mesh::{Mesh, Weight, obj, shapes};
+use mode13h::model;
 use mode13h::palette::{Palette, builtin, file};
 use mode13h::scene::{self, Scene, Shared, shipped};
-use mode13h::texture::{self, Texture};
+use mode13h::texture::Texture;
 
 use crate::failure::Failure;
 use crate::read_files;
@@ -112,16 +112,11 @@ fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn()
 /// cannot is a warning, a line on standard error, and the surface is drawn without it. Files named by several surfaces
 /// are read once.
 pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
-    let mut read: HashMap<&str, Option<Shared<Texture>>> = HashMap::new();
-    let textures = mesh.surfaces().iter().map(|surface| {
-        let path = surface.texture.as_deref().filter(|_| mesh.texcoords().is_some())?;
-        let texture = read.entry(path).or_insert_with(|| {
-            let loaded = texture::load(path).map(Shared::new);
-            loaded.map_err(|error| eprintln!("mode13h: {}", Failure::work(format!("{error}; drawn without it")))).ok()
-        });
-        texture.clone()
-    });
-    textures.collect()
+    let (textures, errors) = model::textures(mesh);
+    for error in errors {
+        eprintln!("mode13h: {}", Failure::work(format!("{error}; drawn without it")));
+    }
+    textures
 }
 
 /// Loads a model; if that takes longer than a moment and standard error is a terminal, with a bar there.
