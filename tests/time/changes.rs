@@ -180,8 +180,12 @@ pub(super) const CHANGES: &[Change] = &[
         w.scene.wishes.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
     }),
     seen("Wishes.mapping", |w, r| {
+        w.settings.mapping = None;
+        w.kept.set_mapping(None);
+        let (before, after) = two_mappings(r);
+        w.scene.wishes.mapping = before;
         textured(w, r);
-        w.scene.wishes.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
+        w.scene.wishes.mapping = after;
     }),
     seen("Wishes.mipmaps", |w, r| {
         textured(w, r);
@@ -276,7 +280,16 @@ pub(super) const CHANGES: &[Change] = &[
         one_material(w, r).ramp = RampChoice::Entries(Ramp::new(r.within(0, 128) as u8, 64).expect("within 256"));
     }),
     seen("RampChoice::Nearest", |w, r| one_material(w, r).ramp = RampChoice::Nearest),
-    seen("Material.color", |w, r| one_material(w, r).color = channels(r)),
+    seen("Material.color", |w, r| {
+        let (before, after) = (channels(r), channels(r));
+        let last = w.scene.objects().len() as i64 - 1;
+        let which = r.within(0, last) as usize;
+        // Its colour is mixed from channels before, too.
+        let material = &mut w.scene.objects_mut()[which].materials[0];
+        (material.ramp, material.color) = (RampChoice::Nearest, before);
+        drawn(w);
+        w.scene.objects_mut()[which].materials[0].color = after;
+    }),
     seen("Material.highlight", |w, r| {
         let color = channels(r);
         shiny(w, r, |material| material.highlight = color);
@@ -313,9 +326,12 @@ pub(super) const CHANGES: &[Change] = &[
         w.kept.set_max_error(shades);
     }),
     seen("Renderer::set_mapping", |w, r| {
+        // The plan's decision is the same for two of them, and the object's vertices are.
+        let (before, after) = two_mappings(r);
+        w.kept.set_mapping(before);
         textured(w, r);
-        w.settings.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
-        w.kept.set_mapping(w.settings.mapping);
+        w.settings.mapping = after;
+        w.kept.set_mapping(after);
     }),
     seen("Renderer::set_mipmaps", |w, r| {
         textured(w, r);
@@ -659,6 +675,16 @@ fn shiny(world: &mut World, random: &mut Random, change: impl Fn(&mut Material))
 /// Draws a frame, so that the next one differs from it by nothing but what is changed now.
 fn drawn(world: &mut World) {
     world.kept.draw(&world.scene, &mut world.machines[0]).map(drop).unwrap_or_default();
+}
+
+/// A mapping and another one; half the time the two by which the plan's effects are the same.
+fn two_mappings(random: &mut Random) -> (Option<Mapping>, Option<Mapping>) {
+    let any = |random: &mut Random| sometimes(random, |random| random.one_of(&Mapping::ALL));
+    match random.within(0, 3) {
+        0 => (Some(Mapping::Every16), Some(Mapping::Perspective)),
+        1 => (Some(Mapping::Perspective), Some(Mapping::Every16)),
+        _ => (any(random), any(random)),
+    }
 }
 
 /// Sees to it that there is a texture on a face that is seen at an angle.
