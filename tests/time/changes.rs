@@ -191,7 +191,24 @@ pub(super) const CHANGES: &[Change] = &[
         textured(w, r);
         w.scene.wishes.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
     }),
-    seen("Wishes.tessellation", |w, r| w.scene.wishes.tessellation = sometimes(r, |r| between(r, 0.5, 4.0))),
+    seen("Wishes.tessellation", |w, r| {
+        // By a lamp near a large face, which is split otherwise then.
+        if r.within(0, 1) == 1 {
+            let mut wall = Object::new(shapes::wall(1, 1));
+            wall.set_angles([0.0, 0.2, 0.0]);
+            w.scene.objects_mut()[0] = wall;
+            w.scene.lights_mut().truncate(3);
+            w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
+            w.scene.wishes.max_error = None;
+            w.settings.max_error = None;
+            w.kept.set_max_error(None);
+            w.scene.wishes.tessellation = Some(4.0);
+            drawn(w);
+            w.scene.wishes.tessellation = Some(between(r, 0.5, 1.0));
+        } else {
+            w.scene.wishes.tessellation = sometimes(r, |r| between(r, 0.5, 4.0));
+        }
+    }),
     seen("Wishes.dither", |w, r| w.scene.wishes.dither = r.within(0, 1) == 1),
     seen("Wishes.max_error", |w, r| w.scene.wishes.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
     // The program makes it, no renderer.
@@ -294,10 +311,11 @@ pub(super) const CHANGES: &[Change] = &[
         let color = channels(r);
         shiny(w, r, |material| material.highlight = color);
     }),
-    seen("Material.texture", |w, r| one_material(w, r).texture = sometimes(r, texture)),
+    seen("Material.texture", |w, r| {
+        two_images(w, r, |material, image| (material.texture, material.environment) = (image, None));
+    }),
     seen("Material.environment", |w, r| {
-        let material = one_material(w, r);
-        (material.texture, material.environment) = (None, sometimes(r, texture));
+        two_images(w, r, |material, image| (material.texture, material.environment) = (None, image));
     }),
     seen("Material.blend", |w, r| one_material(w, r).blend = Blend::Mix(r.one_of(&[60, 190]))),
     seen("Blend::Opaque", |w, r| one_material(w, r).blend = Blend::Opaque),
@@ -313,7 +331,13 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Light::Lamp.color", |w, r| lamp(w, r, |r, _, _, _, color| *color = channels(r))),
     // The renderer
     seen("Renderer::set_rung", |w, r| {
-        let rung = r.one_of(&Rung::ALL);
+        // Half the time two that take the same vertices and stages.
+        let linear = [Rung::GouraudPeriod, Rung::Gouraud88, Rung::Gouraud1616];
+        if r.within(0, 1) == 1 {
+            w.kept.set_rung(r.one_of(&linear));
+            drawn(w);
+        }
+        let rung = if r.within(0, 1) == 1 { r.one_of(&linear) } else { r.one_of(&Rung::ALL) };
         (w.settings.rung, w.settings.max_error) = (Some(rung), None);
         w.kept.set_rung(rung);
     }),
@@ -347,6 +371,16 @@ pub(super) const CHANGES: &[Change] = &[
         w.kept.set_kernel(w.settings.kernel);
     }),
     seen("Renderer::set_hidden_surfaces", |w, r| {
+        // Two bodies that pass through each other, so that each way shows them otherwise.
+        if r.within(0, 1) == 1 {
+            let mut through = Object::new(shapes::torus(9, 6));
+            through.set_angles(angles(r));
+            w.scene.objects_mut()[0] = Object::new(shapes::cube());
+            w.scene.add(through);
+            fewer_objects(w);
+            w.kept.set_hidden_surfaces(Some(HiddenSurfaces::PainterOrder));
+            drawn(w);
+        }
         w.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
         w.kept.set_hidden_surfaces(w.settings.hidden_surfaces);
     }),
@@ -436,12 +470,16 @@ pub(super) const CHANGES: &[Change] = &[
         Renderer::new().draw(&start(r), &mut w.machines[0]).map(drop).unwrap_or_default();
     }),
     unseen("one set alike draws the same", |w, _| {
+        w.kept.force(Effect::Lighting, Some(false));
+        w.settings.forced.push((None, Effect::Lighting, Some(false)));
         let [alike, fresh] = [w.kept.set_alike(), w.settings.renderer()].map(|mut renderer| {
             let mut vga = w.machines[0].clone();
             vga.pixels_mut().fill(3);
             (renderer.draw(&w.scene, &mut vga).map(drop), vga.pixels().to_vec())
         });
         assert!(alike == fresh, "one set alike");
+        w.kept.force(Effect::Lighting, None);
+        w.settings.forced.push((None, Effect::Lighting, None));
     }),
     unseen("nothing", |_, _| {}),
     unseen("a line within a rectangle of the frame", |w, r| {
@@ -675,6 +713,20 @@ fn shiny(world: &mut World, random: &mut Random, change: impl Fn(&mut Material))
 /// Draws a frame, so that the next one differs from it by nothing but what is changed now.
 fn drawn(world: &mut World) {
     world.kept.draw(&world.scene, &mut world.machines[0]).map(drop).unwrap_or_default();
+}
+
+/// Gives a material one image, draws, and gives it another one, or none.
+fn two_images(world: &mut World, random: &mut Random, change: impl Fn(&mut Material, Option<Shared<Texture>>)) {
+    let last = world.scene.objects().len() as i64 - 1;
+    let which = random.within(0, last) as usize;
+    let object = &mut world.scene.objects_mut()[which];
+    if object.mesh().texcoords().is_none() {
+        replace_mesh(object, shapes::wall(1, 1));
+    }
+    change(&mut object.materials[0], Some(texture(random)));
+    drawn(world);
+    let image = sometimes(random, texture);
+    change(&mut world.scene.objects_mut()[which].materials[0], image);
 }
 
 /// A mapping and another one; half the time the two by which the plan's effects are the same.
