@@ -565,7 +565,7 @@ fn films_of(tried: &mut Tried, frames: u32) {
     tried.worst("MiB for the long film", long as f64 / 1024.0);
     assert!(short > MIB, "{short} KiB were read");
     // How full the two lists of 64 frames are at once, and what the allocator keeps of what was given back, is chance: both
-    // lists are 8 MiB, of a film that is kept whole the shortest takes 128.
+    // lists are 8 MiB. A film of 2,000 frames that is kept whole takes 122.
     assert!(long <= short + 8 * MIB, "{short} KiB for 200 frames, {long} KiB for {frames}");
     tried.add(frames.into());
 }
