@@ -509,7 +509,7 @@ fn films_are_the_same_whatever_the_number_of_threads() {
 
 /// One film long enough that each thread draws many frames.
 #[test]
-fn a_long_film_is_the_same_whatever_the_number_of_threads() {
+fn a_film_of_many_frames_is_the_same_whatever_the_number_of_threads() {
     let directory = directory();
     let films = ["1", "7"].map(|threads| {
         let words = ["fade", "-o", "x.gif", "--frames", "61", "--scale", "1", "--threads", threads];
