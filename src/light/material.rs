@@ -25,6 +25,7 @@ impl RampChoice {
     /// The entries in `palette`. A palette without ramps, or none at all, counts as one ramp of 256, and so does what
     /// needs no ramp.
     #[must_use]
+    #[doc(hidden)]
     pub fn in_palette(self, palette: Option<&Palette>) -> Ramp {
         match (self, palette) {
             (Self::Entries(ramp), _) => ramp,
@@ -130,6 +131,7 @@ impl Material {
     /// surface that it was made from: Kd and Ks without their luminance, which the material's shares of light have. A
     /// texture has its colours itself.
     #[must_use]
+    #[doc(hidden)]
     pub fn own_colors(&self, surface: &Surface) -> ([f32; 3], [f32; 3]) {
         let or_else = |own: [f32; 3], of: [f32; 3]| if own == [1.0; 3] { hue(of) } else { own };
         let color = if self.texture.is_some() { self.color } else { or_else(self.color, surface.diffuse) };
@@ -139,6 +141,7 @@ impl Material {
     /// The same in its [own colours](Self::own_colors) where it has a ramp by number only: for a palette that has no
     /// ramps.
     #[must_use]
+    #[doc(hidden)]
     pub fn in_own_colors(&self, surface: &Surface) -> Self {
         if !matches!(self.ramp, RampChoice::Number(_)) {
             return self.clone();
@@ -156,6 +159,7 @@ impl Material {
     /// Whether it takes three channels to light it: whether it is coloured, or drawn in the nearest entries. An image
     /// alone takes but one.
     #[must_use]
+    #[doc(hidden)]
     pub fn takes_channels(&self) -> bool {
         let has_image = self.texture.is_some() || self.environment.is_some();
         self.is_colored() || (self.ramp == RampChoice::Nearest && !has_image)
@@ -163,6 +167,7 @@ impl Material {
 
     /// Whether it has a highlight.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_specular(&self) -> bool {
         self.specular != 0.0
     }
