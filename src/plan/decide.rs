@@ -58,6 +58,10 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     plan.objects.clear();
     plan.seen = Rect::NOWHERE;
     for (place, object) in inputs.scene.objects().iter().enumerate() {
+        if !inputs.scene.is_visible(place) {
+            plan.objects.push(ObjectPlan::nothing(inputs.shading));
+            continue;
+        }
         let rules = Rules {
             scene: inputs.scene,
             place,
@@ -107,8 +111,7 @@ struct Rules<'a> {
 
 impl Rules<'_> {
     fn all(&self, lamps_in_range: usize) -> ObjectPlan {
-        let decisions = [Decision::off(Reason::SceneHasNone); Effect::COUNT];
-        let mut plan = ObjectPlan { decisions, shading: self.inputs.shading, max_error: None };
+        let mut plan = ObjectPlan::nothing(self.inputs.shading);
         for effect in Effect::ALL {
             let mut decision = self.decision(effect, lamps_in_range, &plan);
             if effect.is_left_out() {
@@ -121,6 +124,7 @@ impl Rules<'_> {
             }
             if let Some(on) = self.inputs.forced.get_for(self.place, effect)
                 && on != decision.on
+                && !(decision.on && effect.keeps_inside())
             {
                 decision = Decision { on, reason: Reason::Overrides, choice: if on { decision.choice } else { "" } };
             }

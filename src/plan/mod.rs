@@ -63,6 +63,11 @@ pub struct ObjectPlan {
 }
 
 impl ObjectPlan {
+    /// No effect: an object that is not drawn.
+    pub(crate) fn nothing(shading: Shading) -> Self {
+        Self { decisions: [Decision::off(Reason::SceneHasNone); Effect::COUNT], shading, max_error: None }
+    }
+
     /// The decision on an effect.
     #[must_use]
     pub fn decision(&self, effect: Effect) -> &Decision {

@@ -259,7 +259,7 @@ impl Renderer {
     /// Of effects that save work, on or off gives the same bytes; that of hidden surfaces is switched by
     /// [`set_hidden_surfaces`](Self::set_hidden_surfaces). Where an effect that changes the picture is
     /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
-    /// image that changes nothing).
+    /// image that changes nothing). Clipping stays on where the plan calls for it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
         self.forced.set(effect, on);
     }
@@ -479,6 +479,10 @@ impl Renderer {
         }
         for (i, (object, state)) in scene.objects().iter().zip(&mut self.states).enumerate() {
             let plan = &self.plan.objects[i];
+            if !scene.is_visible(i) {
+                state.forget();
+                continue;
+            }
             if self.vertex_path == VertexPath::Integer {
                 changed = true;
                 state.forget();
@@ -508,7 +512,8 @@ impl Renderer {
     /// Makes the plan of a scene that has been checked. Returns the shading that shades.
     fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Shading {
         self.views.clear();
-        self.views.extend(scene.objects().iter().map(|object| ObjectView::new(view, object)));
+        let placed = |(i, object)| ObjectView::placed(view, object, &scene.placement(i));
+        self.views.extend(scene.objects().iter().enumerate().map(placed));
         let shading = match self.vertex_path {
             VertexPath::Integer => self.shading_for(scene).in_integers(),
             VertexPath::Float => self.shading_for(scene),

@@ -4,6 +4,8 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
+use glam::Vec3;
+
 use super::Stats;
 use super::budget::{self, Budget, Decided, Lit};
 use super::face::Faces;
@@ -303,7 +305,8 @@ impl ObjectState {
         if by_pixel {
             if source.shading.0 == Shading::PhongTable && !channels {
                 vertex::slopes(&geometry, &source.view, &mut self.extras);
-                self.tables_of_normals(scene, object, view);
+                let at = source.view.position();
+                self.tables_of_normals(scene, at, view);
             } else {
                 vertex::lit_points(&geometry, &mut self.extras);
             }
@@ -314,14 +317,14 @@ impl ObjectState {
     }
 
     /// The tables of shades by normal, as the eye sees them: they stay while the object turns.
-    fn tables_of_normals(&mut self, scene: &Scene, object: &Object, view: &View) {
+    fn tables_of_normals(&mut self, scene: &Scene, at: Vec3, view: &View) {
         self.beams.clear();
         self.beams.extend(scene.lights().iter().filter_map(|light| {
             // A lamp counts as a sun where the object is: a table knows no places.
             let (towards, share) = match *light {
                 Light::Sun { direction, .. } => (direction, 1.0),
                 Light::Lamp { position, range, .. } => {
-                    let away = position - object.position;
+                    let away = position - at;
                     let part = away.length_squared() / (range * range);
                     if part >= 1.0 || part.is_nan() {
                         return None;

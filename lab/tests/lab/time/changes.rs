@@ -114,7 +114,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene.palette", |w, r| w.scene.palette = sometimes(r, palette)),
     seen("Scene.palette_animation", |w, r| w.scene.palette_animation = sometimes(r, |r| fade(r, palette))),
     seen("Scene.fog", |w, r| w.scene.fog = sometimes(r, fog)),
-    seen("Scene.wishes", |w, _| w.scene.preferences = Default::default()),
+    seen("Scene.preferences", |w, _| w.scene.preferences = Default::default()),
     unseen("Scene.motions", |w, r| w.scene.motions.truncate(r.within(0, 1) as usize)),
     // When a picture is taken of it, which the program asks for.
     unseen("Scene.picture", |w, r| w.scene.picture = r.unit()),
@@ -191,11 +191,11 @@ pub(super) const CHANGES: &[Change] = &[
         animate(w, r, |r| PaletteAnimation::Cycle { range: 1..=255, period: 0.5 + r.unit() });
     }),
     // Preferences
-    seen("Wishes.shading", |w, r| w.scene.preferences.shading = sometimes(r, |r| r.one_of(&Shading::ALL))),
-    seen("Wishes.hidden_surfaces", |w, r| {
+    seen("Preferences.shading", |w, r| w.scene.preferences.shading = sometimes(r, |r| r.one_of(&Shading::ALL))),
+    seen("Preferences.hidden_surfaces", |w, r| {
         w.scene.preferences.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
     }),
-    seen("Wishes.mapping", |w, r| {
+    seen("Preferences.mapping", |w, r| {
         w.settings.mapping = None;
         w.kept.set_mapping(None);
         let (before, after) = two_mappings(r);
@@ -203,17 +203,19 @@ pub(super) const CHANGES: &[Change] = &[
         textured(w, r);
         w.scene.preferences.mapping = after;
     }),
-    seen("Wishes.mipmaps", |w, r| {
+    seen("Preferences.mipmaps", |w, r| {
         textured(w, r);
         w.scene.preferences.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
     }),
-    seen("Wishes.tessellation", |w, r| {
+    seen("Preferences.tessellation", |w, r| {
         // By a lamp near a large face, which is split otherwise then.
         if r.within(0, 1) == 1 {
             let mut wall = Object::new(shapes::wall(1, 1));
             wall.set_angles([0.0, 0.2, 0.0]);
             w.scene.objects_mut()[0] = wall;
-            w.scene.lights_mut().truncate(3);
+            while let Some(&id) = w.scene.light_ids().get(3) {
+                w.scene.remove_light(id);
+            }
             w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
             w.scene.preferences.max_error = None;
             w.settings.max_error = None;
@@ -225,10 +227,10 @@ pub(super) const CHANGES: &[Change] = &[
             w.scene.preferences.tessellation = sometimes(r, |r| between(r, 0.5, 4.0));
         }
     }),
-    seen("Wishes.dither", |w, r| w.scene.preferences.dither = r.within(0, 1) == 1),
-    seen("Wishes.max_error", |w, r| w.scene.preferences.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
+    seen("Preferences.dither", |w, r| w.scene.preferences.dither = r.within(0, 1) == 1),
+    seen("Preferences.max_error", |w, r| w.scene.preferences.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
     // The program makes it, no renderer.
-    unseen("Wishes.auto_palette", |w, r| w.scene.preferences.auto_palette = r.within(0, 1) == 1),
+    unseen("Preferences.auto_palette", |w, r| w.scene.preferences.auto_palette = r.within(0, 1) == 1),
     // Motions
     seen("Motion::Spin.object", |w, r| spin(w, r, [0.0, 0.3, 0.0], [0.0, 0.2, 0.0])),
     seen("Motion::Spin.start", |w, r| {
@@ -289,6 +291,14 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("UpAxis::Y", |w, r| one_object(w, r).up_axis = UpAxis::Y),
     seen("UpAxis::Z", |w, r| one_object(w, r).up_axis = UpAxis::Z),
+    seen("Object.visible", |w, r| one_object(w, r).visible ^= true),
+    seen("Object.parent", |w, r| {
+        // Only what stands before it in the scene, so that there is no circle.
+        let ids = w.scene.object_ids().to_vec();
+        let below = r.within(0, ids.len() as i64 - 1) as usize;
+        let parent = one_of_few(&ids[..below], r).copied();
+        w.scene.objects_mut()[below].parent = parent;
+    }),
     seen("Object::rotate_x", |w, r| one_object(w, r).rotate_x(r.unit())),
     seen("Object::rotate_y", |w, r| one_object(w, r).rotate_y(r.unit())),
     seen("Object::rotate_z", |w, r| one_object(w, r).rotate_z(r.unit())),
@@ -347,7 +357,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Light::Lamp.range", |w, r| lamp(w, r, |r, _, _, range, _| *range = between(r, 0.5, 4.0))),
     seen("Light::Lamp.color", |w, r| lamp(w, r, |r, _, _, _, color| *color = channels(r))),
     // The renderer
-    seen("Renderer::set_rung", |w, r| {
+    seen("Renderer::set_shading", |w, r| {
         // Half the time two that take the same vertices and stages.
         let linear = [Shading::GouraudVintage, Shading::Gouraud88, Shading::Gouraud1616];
         if r.within(0, 1) == 1 {
@@ -836,7 +846,9 @@ fn fewer_objects(world: &mut World) {
     for &light in old.lights() {
         scene.add_light(light);
     }
-    for object in objects.into_iter().rev().take(3) {
+    for mut object in objects.into_iter().rev().take(3) {
+        // Ids are another scene's.
+        object.parent = None;
         scene.add(object);
     }
     world.scene = scene;
