@@ -2,6 +2,7 @@
 
 use alloc::string::String;
 
+use super::LightResponse;
 use super::source::{is_colored, luminance};
 use crate::mesh::Surface;
 use crate::palette::{Palette, Ramp, Rgb};
@@ -64,6 +65,8 @@ pub struct Material {
     pub environment: Option<Shared<Texture>>,
     /// How it lies over what is behind it.
     pub blend: Blend,
+    /// Its own answer to light, in place of the lighting model's intensity. The 16.16 path leaves it out.
+    pub response: Option<LightResponse>,
 }
 
 /// How a body lies over what is behind it, by a table of 256 × 256 colours.
@@ -107,6 +110,7 @@ impl Material {
             texture: None,
             environment: None,
             blend: Blend::Opaque,
+            response: None,
         }
     }
 

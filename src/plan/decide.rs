@@ -70,6 +70,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             reach: inputs.views[place].reach(object.mesh().bounds()),
             change: inputs.change.get(place).copied().unwrap_or(Change::New),
             inputs,
+            shading: if inputs.max_error.is_some() && answers_itself(object) { Shading::Phong } else { inputs.shading },
             way: (way, reason),
         };
         plan.seen = plan.seen.hull(rules.reach.seen);
@@ -80,6 +81,11 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     if inputs.shading == Shading::GouraudVintage || inputs.integer {
         plan.seen = Rect::EVERYWHERE;
     }
+}
+
+/// Whether any of its materials has an own answer to light, which no bound is known for.
+pub(crate) fn answers_itself(object: &Object) -> bool {
+    object.materials.iter().any(|material| material.response.is_some())
 }
 
 /// Whether the 16.16 path knows an effect.
@@ -106,12 +112,14 @@ struct Rules<'a> {
     reach: ScreenBounds,
     change: Change,
     inputs: &'a Inputs<'a>,
+    /// That of the inputs; of an object that no bound holds for, light at every pixel in place of a budget.
+    shading: Shading,
     way: (HiddenSurfaces, Reason),
 }
 
 impl Rules<'_> {
     fn all(&self, lamps_in_range: usize) -> ObjectPlan {
-        let mut plan = ObjectPlan::nothing(self.inputs.shading);
+        let mut plan = ObjectPlan::nothing(self.shading);
         for effect in Effect::ALL {
             let mut decision = self.decision(effect, lamps_in_range, &plan);
             if effect.is_left_out() {
@@ -138,7 +146,7 @@ impl Rules<'_> {
 
     /// Leaves it to a budget how faces are shaded, where that is not known for all of them.
     fn keep_within(&self, max_error: f32, plan: &mut ObjectPlan) {
-        if self.inputs.integer || !plan.is_on(Effect::Lighting) {
+        if self.inputs.integer || !plan.is_on(Effect::Lighting) || answers_itself(self.object) {
             return;
         }
         if self.is_lit_by_face(plan) {
@@ -270,7 +278,7 @@ impl Rules<'_> {
                 false => Decision::on(Reason::Budget { max_error }).choosing("budget"),
             };
         }
-        match self.inputs.shading {
+        match self.shading {
             Shading::Flat => Decision::off(Reason::FlatAsked),
             shading if shading.lights_pixels() => Decision::off(Reason::Asked).choosing(shading.name()),
             shading => Decision::on(Reason::ShadesDiffer).choosing(shading.name()),
@@ -297,7 +305,7 @@ impl Rules<'_> {
                 Decision::on(Reason::Budget { max_error }).choosing(Shading::Phong.name())
             };
         }
-        match self.inputs.shading {
+        match self.shading {
             shading if shading.lights_pixels() => Decision::on(Reason::Asked).choosing(shading.name()),
             _ => Decision::off(Reason::NotAsked).choosing(""),
         }
@@ -309,7 +317,7 @@ impl Rules<'_> {
             Decision::off(before.decision(Effect::Lighting).reason)
         } else if self.inputs.max_error.is_some() && !self.inputs.integer {
             Decision::off(Reason::LeftToBudget)
-        } else if self.inputs.shading == Shading::GouraudTessellated || self.scene.preferences.tessellation.is_some() {
+        } else if self.shading == Shading::GouraudTessellated || self.scene.preferences.tessellation.is_some() {
             Decision::on(Reason::Asked)
         } else {
             Decision::off(Reason::NotAsked)
@@ -387,7 +395,7 @@ impl Rules<'_> {
         if !self.scene.preferences.dither {
             Decision::off(Reason::NotAsked)
         } else if before.is_on(Effect::Phong)
-            && self.inputs.shading == Shading::PhongTable
+            && self.shading == Shading::PhongTable
             && !before.is_on(Effect::RgbChannels)
         {
             Decision::off(Reason::WholeShades)

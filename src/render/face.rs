@@ -285,6 +285,7 @@ impl Faces<'_> {
             if self.channels {
                 let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
                 let channels = SurfaceMaterial::channels(if turned { back } else { front });
+                let channels = channels.map(|channel| paint.respond_on_channel(channel));
                 attributes.iter_mut().for_each(|corner| corner.channels = channels);
             } else {
                 let shade = self.face_shade(indices, surface, turned);
@@ -322,7 +323,7 @@ impl Faces<'_> {
         } else {
             both_sides(paint.answer.ambient, paint.answer.diffuse, self.lights.suns, normal)
         };
-        paint.shade(if turned { back } else { front })
+        paint.respond(paint.shade(if turned { back } else { front }))
     }
 
     /// The middle of a face, and its normal.

@@ -328,7 +328,8 @@ impl Renderer {
         if plan.is_on(Effect::Phong) || (plan.is_on(Effect::Lighting) && !plan.is_on(Effect::Gouraud)) {
             return None;
         }
-        let faces = self.states.get(object)?.faces(scene.objects().get(object)?, plan)?;
+        let object_in_scene = scene.objects().get(object).filter(|object| !plan::answers_itself(object))?;
+        let faces = self.states.get(object)?.faces(object_in_scene, plan)?;
         Some(bound::linear_error(&faces.geometry, &faces.lights, faces.paints, !faces.culls))
     }
 

@@ -267,6 +267,9 @@ impl ObjectState {
         } else {
             self.lit.leave_without_light();
         }
+        if self.paints.iter().any(|paint| paint.response.is_some()) {
+            vertex::respond(&geometry, &self.paints, &mut self.lit, &mut self.extras);
+        }
         if plan.is_on(Effect::Texture) {
             vertex::texture_coordinates(&geometry, &self.paints, &mut self.extras);
         }
@@ -342,13 +345,13 @@ impl ObjectState {
                 Some((of, by, _)) if *of == self.beams && by == paint => {}
                 Some((of, by, table)) => {
                     of.clone_from(&self.beams);
-                    *by = *paint;
+                    by.clone_from(paint);
                     fill_normal_table(table, &lights, paint);
                 }
                 None => {
                     let mut table = Table::from_fn(|_, _| 0);
                     fill_normal_table(&mut table, &lights, paint);
-                    self.normal_tables.push((self.beams.clone(), *paint, table));
+                    self.normal_tables.push((self.beams.clone(), paint.clone(), table));
                 }
             }
         }

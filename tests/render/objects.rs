@@ -1,10 +1,11 @@
 //! Objects that are hidden, removed, or move with others.
 
 use mode13h::glam::Vec3;
-use mode13h::light::Light;
+use mode13h::light::{Light, LightResponse};
 use mode13h::mesh::shapes;
+use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, VertexPath};
+use mode13h::render::{RenderError, Renderer, Shading, VertexPath};
 use mode13h::scene::{Motion, Preferences};
 use mode13h::scene::{Moving, Object, ObjectId, Path, Scene};
 use mode13h::vga::Vga;
@@ -137,4 +138,58 @@ fn ids_outlive_removals_and_name_nothing_afterwards() {
     assert!(again != cube && scene.object_ids() == [torus, cone, again]);
     scene.clear_lights();
     assert!(scene.lights().is_empty() && scene.light_ids().is_empty());
+}
+
+/// A step at half the light: what is darker than 127 is then black, what is lighter than 128 white. A byte is the nearest
+/// to its shade, so nothing is said of the two between.
+#[test]
+fn a_response_to_light_is_asked_at_vertices_faces_and_pixels() {
+    let step = LightResponse::new(|intensity| if intensity < 0.5 { 0.0 } else { 1.0 });
+    let mut tried = Tried::new("a_response_to_light_is_asked_at_vertices_faces_and_pixels", 40_000);
+    for (shading, budget) in
+        [(Shading::Flat, None), (Shading::Phong, None), (Shading::PhongTable, None), (Shading::default(), Some(4.0))]
+    {
+        let mut scene = Scene::showing(shapes::sphere(48, 24));
+        scene.background = 77;
+        // A budget lights such an object at every pixel: no bound is known for it.
+        scene.preferences.shading = Some(if budget.is_some() { Shading::Phong } else { shading });
+        let plain = drawn(&scene);
+        scene.preferences = Preferences { shading: Some(shading), max_error: budget, ..Preferences::default() };
+        scene.objects_mut()[0].materials[0].response = Some(step.clone());
+        let stepped = drawn(&scene);
+        let (mut black, mut white) = (0, 0);
+        for (&plain, &stepped) in plain.iter().zip(&stepped).filter(|(plain, stepped)| **plain != 77 || **stepped != 77)
+        {
+            black += u32::from(stepped == 0);
+            white += u32::from(stepped == 255);
+            match plain {
+                77 => assert_eq!(stepped, 0, "{shading}"),
+                127 | 128 => assert!(stepped == 0 || stepped == 255, "{shading}"),
+                _ => assert_eq!(stepped, if plain > 128 { 255 } else { 0 }, "{shading}: {plain}"),
+            }
+            tried.add(1);
+        }
+        assert!(black > 3_000 && white > 3_000, "{shading}: {black}, {white}");
+    }
+}
+
+/// At the vertices, and linear between: a response that is constant leaves one shade, on one channel and on three.
+#[test]
+fn a_constant_response_is_one_shade() {
+    for (colored, constant, shown) in
+        [(false, 1.0, Rgb::WHITE), (true, 1.0, Rgb::WHITE), (false, f32::NAN, Rgb::BLACK), (true, f32::NAN, Rgb::BLACK)]
+    {
+        let mut scene = Scene::showing(shapes::torus(24, 12));
+        scene.background = 7;
+        let material = &mut scene.objects_mut()[0].materials[0];
+        material.response = Some(LightResponse::new(move |_| constant));
+        if colored {
+            material.color = [1.0, 1.0, 0.999];
+        }
+        let palette = scene.palette.clone().expect("greys");
+        let frame = drawn(&scene);
+        let mut seen = frame.into_iter().filter(|byte| *byte != 7).peekable();
+        assert!(seen.peek().is_some());
+        assert!(seen.all(|byte| palette.color(byte) == shown), "{colored}, {constant}");
+    }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::LazyLock;
 
 use mode13h::glam::Vec3;
-use mode13h::light::{Blend, Light, Material, RampChoice};
+use mode13h::light::{Blend, Light, LightResponse, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
@@ -313,6 +313,11 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Material.shininess", |w, r| {
         let shininess = between(r, 1.0, 30.0).round();
         shiny(w, r, |material| material.shininess = shininess);
+    }),
+    seen("Material.response", |w, r| {
+        let tones = r.within(2, 5) as f32;
+        let toon = LightResponse::new(move |intensity| (intensity * tones).floor() / tones);
+        one_material(w, r).response = sometimes(r, |_| toon);
     }),
     seen("Material.ramp", |w, r| one_material(w, r).ramp = RampChoice::Number(r.within(0, 7) as u16)),
     seen("RampChoice::Number", |w, r| {
