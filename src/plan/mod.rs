@@ -161,8 +161,10 @@ impl Plan {
         if Effect::HiddenSurfaces.is_left_out() { HiddenSurfaces::BackFaces } else { self.hidden_surfaces }
     }
 
-    /// Whether the plan chose how hidden surfaces are left out, and nobody asked for it.
-    pub(crate) fn is_chosen(&self) -> bool {
+    /// Whether the plan chose how hidden surfaces are left out, and nobody asked for it. Then an object that is painted far
+    /// to near is convex, and its faces are drawn in any order.
+    #[must_use]
+    pub fn is_chosen(&self) -> bool {
         self.chosen
     }
 

@@ -40,12 +40,31 @@ pub(super) enum LightSampling {
     SixPoints,
 }
 
-/// Takes faces as they are to be drawn.
+/// A face of the geometry that is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// Its index in the mesh, or in what splitting made of it.
+    pub(super) index: u32,
+    /// Its vertices.
+    pub(super) indices: [u32; 3],
+    pub(super) surface: u16,
+    pub(super) back_facing: bool,
+}
+
+/// Takes faces as they are to be drawn, each with its index in the mesh or in what splitting made of it. The parts of a face
+/// that is clipped have the face's index.
 pub(super) trait Sink {
     /// A face without effects.
-    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation);
+    fn plain(&mut self, face: u32, vertices: &[Vertex; 3], interpolation: Interpolation);
     /// A face whose pixels pass through stages, the number of its surface, and what shades it.
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode);
+    fn with_effects(
+        &mut self,
+        face: u32,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        surface: u16,
+        manner: ShadeMode,
+    );
     /// What faces may be left out by, if any: those that cover no pixel centre.
     fn sieve(&self) -> Option<Sieve> {
         None
@@ -170,23 +189,26 @@ impl Faces<'_> {
                 left &= left - 1;
                 let (indices, surface) = (triangles[at], surfaces[at]);
                 let is = |bits: u64| bits >> at & 1 == 1;
+                let back_facing = !CULLS && is(sifted.back);
+                // Fewer than 2³² faces.
+                let index = (chunk * sift::MOST + at) as u32;
+                let face = Face { index, indices, surface, back_facing };
                 if is(sifted.clipped) {
                     let corners = indices.map(|i| self.lit.get(i as usize));
                     if CULLS || !is(self.twins_of(chunk)) {
-                        self.clipped::<CULLS, EFFECTS>(indices, surface, &corners, stats, sink);
+                        self.clipped::<CULLS, EFFECTS>(face, &corners, stats, sink);
                     } else {
-                        self.clipped::<true, EFFECTS>(indices, surface, &corners, stats, sink);
+                        self.clipped::<true, EFFECTS>(face, &corners, stats, sink);
                     }
                     continue;
                 }
-                let turned = !CULLS && is(sifted.back);
-                let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
+                let vertices = indices.map(|i| self.lit.vertex(i as usize, back_facing));
                 if EFFECTS && self.paints[usize::from(surface)].has_effects {
-                    let attributes = indices.map(|i| self.extras[i as usize].side(turned));
-                    self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
+                    let attributes = indices.map(|i| self.extras[i as usize].side(back_facing));
+                    self.hand_on(face, (vertices, attributes), stats, sink);
                 } else {
-                    let interpolation = self.interpolation(indices, surface, turned, stats);
-                    sink.plain(&vertices, interpolation);
+                    let interpolation = self.interpolation(face, stats);
+                    sink.plain(index, &vertices, interpolation);
                 }
             }
         }
@@ -214,26 +236,28 @@ impl Faces<'_> {
     #[inline(never)]
     fn clipped<const CULLS: bool, const EFFECTS: bool>(
         &self,
-        indices: [u32; 3],
-        surface: u16,
+        face: Face,
         corners: &[LitVertex; 3],
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
+        let Face { indices, surface, .. } = face;
         let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
-        let turned = !CULLS && is_turned_away(&at);
+        let back_facing = !CULLS && is_turned_away(&at);
+        let face = Face { back_facing, ..face };
+        let sides = |interpolation| (interpolation, back_facing);
         if EFFECTS && self.paints[usize::from(surface)].has_effects {
-            let carried =
-                indices.map(|i| WithEffects { attributes: self.extras[i as usize].side(turned), affine: self.affine });
+            let attributes = |i: u32| self.extras[i as usize].side(back_facing);
+            let carried = indices.map(|i| WithEffects { attributes: attributes(i), affine: self.affine });
             let interpolation = self.shading.interpolation();
-            self.parts::<CULLS, _>(at, corners, carried, (interpolation, turned), stats, |vertices, carried, stats| {
+            self.parts::<CULLS, _>(at, corners, carried, sides(interpolation), stats, |vertices, carried, stats| {
                 let attributes = carried.map(|carried| carried.attributes);
-                self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
+                self.hand_on(face, (vertices, attributes), stats, sink);
             });
         } else {
-            let interpolation = self.interpolation(indices, surface, turned, stats);
-            self.parts::<CULLS, _>(at, corners, [(); 3], (interpolation, turned), stats, |vertices, _, _| {
-                sink.plain(&vertices, interpolation)
+            let interpolation = self.interpolation(face, stats);
+            self.parts::<CULLS, _>(at, corners, [(); 3], sides(interpolation), stats, |vertices, _, _| {
+                sink.plain(face.index, &vertices, interpolation)
             });
         }
     }
@@ -271,62 +295,57 @@ impl Faces<'_> {
     /// Hands on a face with effects; its one shade, where it has but one, is put into its corners here.
     fn hand_on(
         &self,
-        indices: [u32; 3],
-        surface: u16,
-        turned: bool,
+        face: Face,
         (mut vertices, mut attributes): ([Vertex; 3], [Attributes; 3]),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
         if self.flat && self.is_lit {
             stats.lit += 1;
-            let (centre, normal) = self.face(indices);
-            let paint = &self.paints[usize::from(surface)];
             if self.channels {
+                let (centre, normal) = self.middle(face.indices);
+                let paint = &self.paints[usize::from(face.surface)];
                 let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
-                let channels = SurfaceMaterial::channels(if turned { back } else { front });
+                let channels = SurfaceMaterial::channels(if face.back_facing { back } else { front });
                 attributes.iter_mut().for_each(|corner| corner.channels = channels);
             } else {
-                let shade = self.face_shade(indices, surface, turned);
+                let shade = self.face_shade(face);
                 vertices = vertices.map(|vertex| vertex.with_shade(shade));
             }
         }
-        sink.with_effects(
-            &vertices,
-            &attributes,
-            surface,
-            ShadeMode { shading: self.shading, sampling: LightSampling::Pixels },
-        );
+        let manner = ShadeMode { shading: self.shading, sampling: LightSampling::Pixels };
+        sink.with_effects(face.index, &vertices, &attributes, face.surface, manner);
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
     #[inline]
-    fn interpolation(&self, indices: [u32; 3], surface: u16, turned: bool, stats: &mut Stats) -> Interpolation {
+    fn interpolation(&self, face: Face, stats: &mut Stats) -> Interpolation {
         if self.flat && self.is_lit {
             stats.lit += 1;
-            return Interpolation::Flat(self.face_shade(indices, surface, turned).nearest());
+            return Interpolation::Flat(self.face_shade(face).nearest());
         }
         if !self.runs {
             // All corners have the same, wherever the plan says so.
-            return Interpolation::Flat(self.lit.shades[indices[0] as usize][usize::from(turned)].nearest());
+            let shades = self.lit.shades[face.indices[0] as usize];
+            return Interpolation::Flat(shades[usize::from(face.back_facing)].nearest());
         }
         self.shading.interpolation()
     }
 
     /// The one shade of a face: at its middle, by its own normal.
-    fn face_shade(&self, indices: [u32; 3], surface: u16, turned: bool) -> U8F8 {
-        let (centre, normal) = self.face(indices);
+    fn face_shade(&self, Face { indices, surface, back_facing, .. }: Face) -> U8F8 {
+        let (centre, normal) = self.middle(indices);
         let paint = &self.paints[usize::from(surface)];
         let (front, back) = if self.full {
             self.lights.one_channel(&paint.answer, centre, normal)
         } else {
             both_sides(paint.answer.ambient, paint.answer.diffuse, self.lights.suns, normal)
         };
-        paint.shade(if turned { back } else { front })
+        paint.shade(if back_facing { back } else { front })
     }
 
     /// The middle of a face, and its normal.
-    fn face(&self, indices: [u32; 3]) -> (glam::Vec3, glam::Vec3) {
+    fn middle(&self, indices: [u32; 3]) -> (glam::Vec3, glam::Vec3) {
         let [a, b, c] = indices.map(|i| self.geometry.positions[i as usize]);
         // A face without area has no normal; rounded, it may still cover a pixel.
         let normal = face_normal(a, b, c).unwrap_or(self.geometry.normals[indices[0] as usize]);

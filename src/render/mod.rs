@@ -13,7 +13,7 @@
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `stats` | what a frame came to |
-//! | `trace`, `one_pixel` | one pixel of a frame: its faces; its byte, stage by stage |
+//! | `each_triangle` | every triangle of a frame with all that the raster would get, for the laboratory |
 //! | `automatic` | a palette for a scene, from what is seen of it over a round |
 //!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed,
@@ -24,6 +24,7 @@ mod automatic;
 mod bound;
 mod budget;
 mod clip;
+pub(crate) mod each_triangle;
 mod edge_map;
 mod error;
 mod face;
@@ -31,7 +32,6 @@ mod hidden_surfaces;
 mod integer;
 mod lit;
 mod object;
-pub(crate) mod one_pixel;
 mod paint;
 mod pipelines;
 mod pixel_light;
@@ -40,7 +40,6 @@ mod sinks;
 mod stats;
 mod tables;
 mod tessellate;
-pub(crate) mod trace;
 mod vertex;
 mod vertex_path;
 mod within;
@@ -66,9 +65,7 @@ use crate::view::{ObjectView, View};
 pub use automatic::{AutomaticPalette, Seen, automatic, seen};
 pub use error::RenderError;
 use error::check;
-pub use one_pixel::ShadedBy;
 pub use stats::{Shares, Stats};
-pub use trace::Fate;
 pub use vertex_path::{UnknownVertexPath, VertexPath};
 
 /// What the frame that was drawn last depends on, beside its objects.
@@ -434,6 +431,11 @@ impl Renderer {
         self.prepare(scene, screen, None, true)?;
         self.last = None;
         Ok(())
+    }
+
+    /// Whether the shading was chosen for this renderer, whatever the scene asks for.
+    pub(crate) fn has_own_shading(&self) -> bool {
+        self.shading.is_some()
     }
 
     /// Whether vertices are kept from frame to frame.

@@ -7,7 +7,7 @@ use super::paint::SurfaceMaterial;
 use super::pixel_light::PixelLight;
 use super::tables::{Image, Tables};
 use crate::light::{Blend, Material};
-use crate::palette::Palette;
+use crate::palette::{Palette, Ramp};
 use crate::plan::{Effect, ObjectPlan, Plan, Reason};
 use crate::raster::DrawStats;
 use crate::raster::effects::{PixelPipeline, ShadeSource, TextureMapping, TextureStage};
@@ -93,6 +93,11 @@ pub(super) struct Pipelines<'a> {
 impl Pipelines<'_> {
     fn paint(&self, object: usize, surface: u16) -> Option<&SurfaceMaterial> {
         self.states.get(object)?.paints().get(usize::from(surface))
+    }
+
+    /// The palette entries of a surface's shades.
+    pub(super) fn ramp(&self, object: usize, surface: u16) -> Option<Ramp> {
+        self.paint(object, surface).map(|paint| paint.ramp)
     }
 
     /// Whether a surface shines through.

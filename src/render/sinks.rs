@@ -35,11 +35,11 @@ pub(super) fn depth_of(vertices: &[Vertex; 3]) -> u64 {
 pub(super) struct ForEachSink<F>(pub(super) F);
 
 impl<F: FnMut(&[Vertex; 3], Interpolation)> Sink for ForEachSink<F> {
-    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+    fn plain(&mut self, _: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {
         (self.0)(vertices, interpolation);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: ShadeMode) {
+    fn with_effects(&mut self, _: u32, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: ShadeMode) {
         (self.0)(vertices, Interpolation::default());
     }
 }
@@ -59,7 +59,7 @@ impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
     }
 
     #[inline]
-    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+    fn plain(&mut self, _: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {
         self.batched.triangle(vertices, interpolation);
     }
 
@@ -77,7 +77,14 @@ impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
         }
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode) {
+    fn with_effects(
+        &mut self,
+        _: u32,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        surface: u16,
+        manner: ShadeMode,
+    ) {
         if self.looks.is_transparent(self.object, surface) {
             let (vertices, attributes) = (*vertices, *attributes);
             self.transparent.push(DeferredFace { vertices, attributes, object: self.object, surface, manner });
@@ -150,12 +157,19 @@ impl Sink for DeferredSink<'_> {
         Some(self.sieve)
     }
 
-    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+    fn plain(&mut self, _: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {
         self.triangles.push((*vertices, interpolation));
         self.places.push(None);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode) {
+    fn with_effects(
+        &mut self,
+        _: u32,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        surface: u16,
+        manner: ShadeMode,
+    ) {
         let face = DeferredFace { vertices: *vertices, attributes: *attributes, object: self.object, surface, manner };
         if self.looks.is_transparent(self.object, surface) {
             self.transparent.push(face);

@@ -3,7 +3,7 @@
 use super::Stats;
 use super::budget::{Bodies, Budget, Choice, Decided, Question, Vain};
 use super::clip::WithEffects;
-use super::face::{Faces, LightSampling, ShadeMode, Sink, is_turned_away};
+use super::face::{Face, Faces, LightSampling, ShadeMode, Sink, is_turned_away};
 use super::sift;
 use super::vertex::Geometry;
 use crate::fixed::U8F8;
@@ -72,13 +72,15 @@ impl Faces<'_> {
                     if EFFECTS && self.paints[usize::from(surface)].has_effects {
                         let attributes = indices.map(|i| self.extras[i as usize].side(turned));
                         let manner = ShadeMode { shading: LINEAR_SHADING, sampling: LightSampling::Pixels };
-                        sink.with_effects(&vertices, &attributes, surface, manner);
+                        sink.with_effects((first + at) as u32, &vertices, &attributes, surface, manner);
                     } else {
-                        sink.plain(&vertices, LINEAR_SHADING.interpolation());
+                        // Fewer than 2³² faces.
+                        sink.plain((first + at) as u32, &vertices, LINEAR_SHADING.interpolation());
                     }
                     continue;
                 }
-                let face = (first + at, indices, surface, turned);
+                // Fewer than 2³² faces.
+                let face = Face { index: (first + at) as u32, indices, surface, back_facing: turned };
                 let (choice, known) = (&mut choices[at], &mut bodies[at]);
                 if is(sifted.clipped) && (CULLS || !is(self.twins_of(chunk))) {
                     self.clipped_within::<CULLS, EFFECTS>(face, (budget, choice, known), stats, sink);
@@ -99,14 +101,16 @@ impl Faces<'_> {
     #[inline(never)]
     fn one_within<const EFFECTS: bool>(
         &self,
-        (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
+        face: Face,
         (budget, choice, known): (&Budget, &mut Choice, &mut Bodies),
         (vain, hopeless): (&mut Vain, bool),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
+        let Face { index, indices, surface, back_facing: turned } = face;
         if *choice == Choice::Unknown && budget.is_simple() {
-            *choice = budget.decide_at_once((triangle, indices, surface, turned), self.lit, self.geometry.normals);
+            *choice =
+                budget.decide_at_once((index as usize, indices, surface, turned), self.lit, self.geometry.normals);
         }
         let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
         if *choice == Choice::Unknown {
@@ -118,7 +122,6 @@ impl Faces<'_> {
                 Choice::Phong
             } else {
                 let shades = vertices.map(|vertex| vertex.shade());
-                let face = (triangle, indices, surface, turned);
                 vain.decided(self.decide::<EFFECTS>((budget, known), face, (shades, Some(&vertices))))
             };
         }
@@ -129,9 +132,9 @@ impl Faces<'_> {
             if choice == Choice::Curved {
                 self.put_curve(&mut attributes, (indices, surface, turned), &vertices);
             }
-            hand_on_within(vertices, attributes, surface, choice, sink);
+            hand_on_within(face, (vertices, attributes), choice, sink);
         } else {
-            sink.plain(&vertices, choice.interpolation(&vertices));
+            sink.plain(index, &vertices, choice.interpolation(&vertices));
         }
     }
 
@@ -140,17 +143,19 @@ impl Faces<'_> {
     #[inline(never)]
     fn clipped_within<const CULLS: bool, const EFFECTS: bool>(
         &self,
-        (triangle, indices, surface, _): (usize, [u32; 3], u16, bool),
+        face: Face,
         (budget, choice, known): (&Budget, &mut Choice, &mut Bodies),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
+        let Face { indices, surface, .. } = face;
         let corners = &indices.map(|i| self.lit.get(i as usize));
         let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
         let turned = !CULLS && is_turned_away(&at);
+        let face = Face { back_facing: turned, ..face };
         if *choice == Choice::Unknown {
             let shades = corners.map(|corner| if turned { corner.back } else { corner.vertex.shade() });
-            *choice = self.decide::<EFFECTS>((budget, known), (triangle, indices, surface, turned), (shades, None));
+            *choice = self.decide::<EFFECTS>((budget, known), face, (shades, None));
         }
         let (choice, before) = (*choice, stats.drawn);
         let interpolation = choice.shading().interpolation();
@@ -158,11 +163,12 @@ impl Faces<'_> {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
             self.parts::<CULLS, _>(at, corners, carried, (interpolation, turned), stats, |vertices, carried, _| {
-                hand_on_within(vertices, carried.map(|carried| carried.attributes), surface, choice, sink);
+                let attributes = carried.map(|carried| carried.attributes);
+                hand_on_within(face, (vertices, attributes), choice, sink);
             });
         } else {
             self.parts::<CULLS, _>(at, corners, [(); 3], (interpolation, turned), stats, |vertices, _, _| {
-                sink.plain(&vertices, choice.interpolation(&vertices));
+                sink.plain(face.index, &vertices, choice.interpolation(&vertices));
             });
         }
         stats.shares.add(choice.shading(), stats.drawn - before);
@@ -173,7 +179,7 @@ impl Faces<'_> {
     fn decide<const EFFECTS: bool>(
         &self,
         (budget, known): (&Budget, &mut Bodies),
-        (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
+        Face { index, indices, surface, back_facing: turned }: Face,
         (shades, vertices): ([U8F8; 3], Option<&[Vertex; 3]>),
     ) -> Choice {
         let shades = if EFFECTS && self.channels {
@@ -181,7 +187,7 @@ impl Faces<'_> {
         } else {
             shades.map(|shade| [shade.to_bits(); 3])
         };
-        let question = Question { triangle, indices, surface, turned, shades, vertices };
+        let question = Question { triangle: index as usize, indices, surface, turned, shades, vertices };
         self.cheapest_within(budget, &question, known)
     }
 
@@ -208,9 +214,8 @@ fn is_smaller(vertices: &[Vertex; 3], pixels: u64) -> bool {
 
 /// Hands on a face with effects that is shaded by choice. Of a flat one every corner gets the shade in the middle.
 fn hand_on_within(
-    mut vertices: [Vertex; 3],
-    mut attributes: [Attributes; 3],
-    surface: u16,
+    face: Face,
+    (mut vertices, mut attributes): ([Vertex; 3], [Attributes; 3]),
     choice: Choice,
     sink: &mut impl Sink,
 ) {
@@ -223,7 +228,8 @@ fn hand_on_within(
         attributes.iter_mut().for_each(|corner| corner.channels = channels);
         shading = Shading::Gouraud88Reseeded;
     }
-    sink.with_effects(&vertices, &attributes, surface, ShadeMode { shading, sampling: choice.sampling() });
+    let manner = ShadeMode { shading, sampling: choice.sampling() };
+    sink.with_effects(face.index, &vertices, &attributes, face.surface, manner);
 }
 
 /// Half-way between the least and the greatest.

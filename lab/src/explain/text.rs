@@ -6,11 +6,13 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::face::{EdgeKind, FaceHere};
+use super::one_pixel::ShadedBy;
 use super::pixel::{Pixel, PixelStage, Seen};
 use super::span_text::{say_account, short_account};
+use super::trace::Fate;
 use mode13h::plan::Effect;
 use mode13h::raster::Interpolation;
-use mode13h::render::{Fate, ShadedBy, Shading};
+use mode13h::render::Shading;
 
 /// Columns of text.
 const WIDTH: usize = 100;

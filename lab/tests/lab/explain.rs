@@ -246,6 +246,32 @@ fn a_tie_on_a_shared_edge_is_the_left_edges() {
     }
 }
 
+/// Faces with the same corners are named each by its own number, whichever of them is seen.
+#[test]
+fn faces_with_the_same_corners_keep_their_own_numbers() {
+    let scene = square([100.0, 132.0], [60.0, 92.0]);
+    let mesh = scene.objects()[0].mesh();
+    let mut triangles = mesh.triangles().to_vec();
+    triangles.extend_from_within(..);
+    let mesh = Mesh::new(mesh.positions().to_vec(), triangles).expect("a square twice");
+    let mut twice = scene.clone();
+    twice.objects_mut()[0] = Object::new(mesh).named("square");
+    for (way, fates) in [
+        (HiddenSurfaces::DepthBuffer, [Fate::Seen, Fate::Behind]),
+        (HiddenSurfaces::BackFaces, [Fate::PaintedOver, Fate::Seen]),
+    ] {
+        for max_error in [None, Some(4.0)] {
+            let mut renderer = Renderer::new();
+            renderer.set_hidden_surfaces(Some(way));
+            renderer.set_max_error(max_error);
+            // Below the diagonal.
+            let pixel = explain(&mut renderer, &twice, 105, 80);
+            let named: Vec<_> = pixel.faces.iter().map(|face| (face.triangle, face.fate)).collect();
+            assert_eq!(named, [(Some(0), fates[0]), (Some(2), fates[1])], "{way}: {pixel}");
+        }
+    }
+}
+
 /// Every pixel of a long row, in which spans start anew, by every shading; and of two bodies in one place, whose depths are
 /// equal everywhere, by every way to hidden surfaces.
 #[test]
