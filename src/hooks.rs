@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 pub use crate::plan::reason::name_of;
 pub use crate::raster::shade_trace::{Accumulator, Progression, Ratio, ShadeTrace, row_of, rows_of};
 pub use crate::render::each_triangle::{DrawnEffects, DrawnTriangle};
-use crate::render::{RenderError, Renderer, Screen, Shading, Stats};
+use crate::render::{RenderError, Renderer, Screen, Stats};
 pub use crate::scene::object::turn;
 use crate::scene::{Object, Scene, Shared};
 
@@ -44,23 +44,6 @@ pub fn set_vertex_bits(renderer: &mut Renderer, bits: u32) {
 /// default, mixes them.
 pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {
     renderer.show_channel(channel);
-}
-
-/// The shading that a scene is drawn with.
-#[must_use]
-pub fn shading_for(renderer: &Renderer, scene: &Scene) -> Shading {
-    renderer.shading_for(scene)
-}
-
-/// Sets the renderer's own shading, or leaves it to the scene. Returns what was set before.
-pub fn replace_shading(renderer: &mut Renderer, shading: Option<Shading>) -> Option<Shading> {
-    renderer.replace_shading(shading)
-}
-
-/// Whether a shading was set on this renderer, whatever the scene asks for.
-#[must_use]
-pub fn has_own_shading(renderer: &Renderer) -> bool {
-    renderer.has_own_shading()
 }
 
 /// The mesh of an object, to be kept or compared by address.

@@ -15,9 +15,6 @@ const AFFINE_TOLERANCE: f64 = 0.5;
 /// A face that is tilted by 60° has twice as many.
 const MIN_TEXELS: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// The shades that [`Shading::GouraudTessellated`] asks for.
-pub(crate) const MIN_TESSELLATION: f32 = 1.0;
-
 /// What decisions are made from.
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: &'a Scene,
@@ -28,8 +25,12 @@ pub(crate) struct Inputs<'a> {
     pub(crate) forced: &'a Overrides,
     /// On the 16.16 path one that it has.
     pub(crate) shading: Shading,
-    /// The budget; then the shading is the default.
+    /// The budget; then the shading is the default. None on the 16.16 path.
     pub(crate) max_error: Option<f32>,
+    /// Whether faces are to be split.
+    pub(crate) tessellates: bool,
+    /// Whether shades between two entries are to be shown as a pattern of both.
+    pub(crate) dithers: bool,
     pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
     pub(crate) mapping: Option<Mapping>,
     pub(crate) mipmaps: Option<bool>,
@@ -134,7 +135,7 @@ impl Rules<'_> {
 
     /// Leaves it to a budget how faces are shaded, where that is not known for all of them.
     fn keep_within(&self, max_error: f32, plan: &mut ObjectPlan) {
-        if self.inputs.integer || !plan.is_on(Effect::Lighting) {
+        if !plan.is_on(Effect::Lighting) {
             return;
         }
         if self.is_lit_by_face(plan) {
@@ -303,9 +304,9 @@ impl Rules<'_> {
         // Faces are split for their shades alone.
         if !before.is_on(Effect::Lighting) {
             Decision::off(before.decision(Effect::Lighting).reason)
-        } else if self.inputs.max_error.is_some() && !self.inputs.integer {
+        } else if self.inputs.max_error.is_some() {
             Decision::off(Reason::LeftToBudget)
-        } else if self.inputs.shading == Shading::GouraudTessellated || self.scene.preferences.tessellation.is_some() {
+        } else if self.inputs.tessellates {
             Decision::on(Reason::Asked)
         } else {
             Decision::off(Reason::NotAsked)
@@ -380,7 +381,7 @@ impl Rules<'_> {
     }
 
     fn dither(&self, before: &ObjectPlan) -> Decision {
-        if !self.scene.preferences.dither {
+        if !self.inputs.dithers {
             Decision::off(Reason::NotAsked)
         } else if before.is_on(Effect::Phong)
             && self.inputs.shading == Shading::PhongTable

@@ -23,7 +23,7 @@ use alloc::vec::Vec;
 pub use effect::{Class, Effect, UnknownEffect};
 pub use reason::Reason;
 
-pub(crate) use decide::{Change, Inputs, MIN_TESSELLATION, decide};
+pub(crate) use decide::{Change, Inputs, decide};
 pub(crate) use hidden::far_to_near;
 
 use crate::raster::Rect;

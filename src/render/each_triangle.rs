@@ -1,6 +1,7 @@
 //! Every triangle of a frame with all that the raster would get, for the laboratory.
 
-use super::face::{ShadeMode, Sink};
+use super::face::Sink;
+use super::face_shading::FaceShading;
 use super::pipelines::Pipelines;
 use super::{RenderError, Renderer, Screen, Stats, VertexPath};
 use crate::palette::Ramp;
@@ -66,11 +67,11 @@ impl Sink for Visitor<'_, '_> {
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
         surface: u16,
-        manner: ShadeMode,
+        shading: FaceShading,
     ) {
-        let triangle = self.triangle(face, vertices, manner.shading.interpolation());
+        let triangle = self.triangle(face, vertices, shading.interpolation());
         let transparent = self.pipelines.is_transparent(self.object, surface);
-        self.pipelines.with((self.object, surface, manner), |pipeline| {
+        self.pipelines.with((self.object, surface, shading), |pipeline| {
             let effects = Some(DrawnEffects { attributes, transparent, pipeline });
             (self.visit)(&DrawnTriangle { effects, ..triangle });
             DrawStats::default()
@@ -94,7 +95,7 @@ impl Renderer {
             Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         for &object in &self.plan.order {
             let of_scene = &scene.objects()[object];
-            if self.vertex_path == VertexPath::Integer {
+            if self.settings.vertex_path == VertexPath::Integer {
                 let mut plain = |vertices: &[Vertex; 3], interpolation| {
                     visit(&DrawnTriangle { object, face: None, vertices, interpolation, ramp: None, effects: None });
                 };

@@ -7,6 +7,7 @@
 use super::Stats;
 use super::budget::{Budget, Decided};
 use super::clip::{Carried, Corner, WithEffects, clip};
+use super::face_shading::FaceShading;
 use super::lit::{LitVertex, LitVertices};
 use super::paint::SurfaceMaterial;
 use super::sift::listed::Listed;
@@ -16,29 +17,10 @@ use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
 use crate::raster::batch::numbered::{Numbered, TURNED};
-use crate::raster::effects::{Attributes, SampleSpacing};
+use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
 use crate::scene::Shading;
 use crate::view::{Homogeneous, ObjectView};
-
-/// How a face with effects is shaded.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(super) struct ShadeMode {
-    pub(super) shading: Shading,
-    /// Of a shading that lights pixels.
-    pub(super) sampling: LightSampling,
-}
-
-/// Where a face takes light whose pixels need some.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(super) enum LightSampling {
-    #[default]
-    Pixels,
-    /// At pixels of a row that lie apart, linear between.
-    Every(SampleSpacing),
-    /// At its corners and the middles of its edges, quadratic between.
-    SixPoints,
-}
 
 /// A face of the geometry that is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +45,7 @@ pub(super) trait Sink {
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
         surface: u16,
-        manner: ShadeMode,
+        shading: FaceShading,
     );
     /// What faces may be left out by, if any: those that cover no pixel centre.
     fn sieve(&self) -> Option<Sieve> {
@@ -131,7 +113,7 @@ impl Faces<'_> {
             (false, true) => self.each::<false, true>(stats, sink),
             (true, true) => self.each::<true, true>(stats, sink),
         }
-        stats.shares.add(self.shading, stats.drawn - before);
+        stats.shares.add(self.shading.into(), stats.drawn - before);
     }
 
     /// Which of a chunk of up to 64 triangles lie back to back with others.
@@ -313,8 +295,7 @@ impl Faces<'_> {
                 vertices = vertices.map(|vertex| vertex.with_shade(shade));
             }
         }
-        let manner = ShadeMode { shading: self.shading, sampling: LightSampling::Pixels };
-        sink.with_effects(face.index, &vertices, &attributes, face.surface, manner);
+        sink.with_effects(face.index, &vertices, &attributes, face.surface, self.shading.into());
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.

@@ -10,12 +10,13 @@ use super::face::Faces;
 use super::lit::LitVertices;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
+use super::settings::{Accuracy, Resolved};
 use super::tessellate::Tessellated;
 use super::vertex::{self, Geometry, VertexAttributes};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
 use crate::palette::{Palette, Table};
-use crate::plan::{Change, Effect, MIN_TESSELLATION, ObjectPlan, Reason};
+use crate::plan::{Change, Effect, ObjectPlan, Reason};
 use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
@@ -32,14 +33,14 @@ struct ShadeSource {
     /// As the materials' ramps depend on it.
     ramps: usize,
     fog: Option<Fog>,
-    shading: (Shading, Option<f32>),
-    tessellation: Option<f32>,
+    accuracy: Accuracy,
+    tolerance: f32,
 }
 
 impl ShadeSource {
     /// Takes on what the object is now. Says whether that is another thing than before. Nothing is
     /// allocated as long as there are no more lights or materials than before.
-    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, shading: (Shading, Option<f32>)) -> bool {
+    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Resolved) -> bool {
         let mut changed = false;
         if !Shared::ptr_eq(&self.mesh, object.shared_mesh()) {
             self.mesh = Shared::clone(object.shared_mesh());
@@ -55,8 +56,8 @@ impl ShadeSource {
         changed |= replace(&mut self.ambient, scene.ambient);
         changed |= replace(&mut self.ramps, scene.palette.as_ref().map_or(0, Palette::ramps));
         changed |= replace(&mut self.fog, scene.fog);
-        changed |= replace(&mut self.shading, shading);
-        changed | replace(&mut self.tessellation, scene.preferences.tessellation)
+        changed |= replace(&mut self.accuracy, settings.accuracy);
+        changed | replace(&mut self.tolerance, settings.tolerance)
     }
 }
 
@@ -133,16 +134,10 @@ pub(super) struct ObjectState {
 }
 
 impl ObjectState {
-    /// Takes on what the object is now, and the shading and the budget that it is drawn by. Says what became of it since its vertices were made.
-    pub(super) fn renew(
-        &mut self,
-        scene: &Scene,
-        object: &Object,
-        view: &ObjectView,
-        shading: (Shading, Option<f32>),
-    ) -> Change {
+    /// Takes on what the object is now, and what it is drawn by. Says what became of it since its vertices were made.
+    pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Resolved) -> Change {
         match &mut self.source {
-            Some(source) => self.stale |= source.renew(scene, object, view, shading),
+            Some(source) => self.stale |= source.renew(scene, object, view, settings),
             None => {
                 let mut source = ShadeSource {
                     mesh: Shared::clone(object.shared_mesh()),
@@ -153,10 +148,10 @@ impl ObjectState {
                     ambient: scene.ambient,
                     ramps: 0,
                     fog: None,
-                    shading,
-                    tessellation: None,
+                    accuracy: settings.accuracy,
+                    tolerance: settings.tolerance,
                 };
-                source.renew(scene, object, view, shading);
+                source.renew(scene, object, view, settings);
                 self.source = Some(source);
             }
         }
@@ -222,9 +217,8 @@ impl ObjectState {
                 Some((mesh, points)) if Shared::ptr_eq(mesh, object.shared_mesh()) => &*points,
                 other => &other.insert((Shared::clone(object.shared_mesh()), object.mesh().points())).1,
             };
-            let tolerance = scene.preferences.tessellation.unwrap_or(MIN_TESSELLATION);
             let twins = object.mesh().twins();
-            self.tessellated.split(&geometry, (points, twins), &lights, &self.paints, tolerance);
+            self.tessellated.split(&geometry, (points, twins), &lights, &self.paints, source.tolerance);
             self.tessellated.geometry()
         } else {
             geometry
@@ -301,7 +295,7 @@ impl ObjectState {
             self.decided.clear();
         }
         if by_pixel {
-            if source.shading.0 == Shading::PhongTable && !channels {
+            if source.accuracy.shading() == Shading::PhongTable && !channels {
                 vertex::slopes(&geometry, &source.view, &mut self.extras);
                 self.tables_of_normals(scene, object, view);
             } else {

@@ -1,7 +1,7 @@
 //! What is done to the pixels of a surface: the plan, the material and the tables, put together.
 
 use super::budget::limits;
-use super::face::{LightSampling, ShadeMode};
+use super::face_shading::FaceShading;
 use super::object::ObjectState;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::PixelLight;
@@ -109,7 +109,7 @@ impl Pipelines<'_> {
     /// Hands the look of a surface of an object, shaded by a shading, to `draw`. Of one that is not there, nothing is drawn.
     pub(super) fn with(
         &self,
-        (object, surface, manner): (usize, u16, ShadeMode),
+        (object, surface, shading): (usize, u16, FaceShading),
         draw: impl FnOnce(&PixelPipeline<'_>) -> DrawStats,
     ) -> DrawStats {
         let (Some(plan), Some(state), Some(paint)) =
@@ -149,11 +149,11 @@ impl Pipelines<'_> {
         };
         let blends = paint.blend != Blend::Opaque || is_forced(plan, Effect::Transparency);
         let look = PixelPipeline {
-            source: source(plan, manner, channels.is_some(), state.normal_table(surface), &light),
+            source: source(plan, shading, channels.is_some(), state.normal_table(surface), &light),
             channels,
             dither: match dither {
                 true if is_forced(plan, Effect::Dither) && !self.scene.preferences.dither => {
-                    let cut = manner.shading.interpolation().rounding() == 0 && channels.is_none();
+                    let cut = shading.interpolation().rounding() == 0 && channels.is_none();
                     Some(if cut { &NO_THRESHOLD } else { &NO_AMPLITUDE })
                 }
                 true => Some(&BAYER),
@@ -170,19 +170,17 @@ impl Pipelines<'_> {
 
 fn source<'a>(
     plan: &ObjectPlan,
-    ShadeMode { shading, sampling }: ShadeMode,
+    shading: FaceShading,
     channels: bool,
     table: Option<&'a [u8; 65_536]>,
     light: &'a PixelLight<'a>,
 ) -> ShadeSource<'a> {
     if plan.is_on(Effect::Phong) && shading.lights_pixels() {
-        return match table {
-            Some(table) if shading == Shading::PhongTable && !channels => ShadeSource::NormalTable(table),
-            _ => match sampling {
-                LightSampling::Pixels => ShadeSource::Lit(light),
-                LightSampling::Every(apart) => ShadeSource::LitEvery(apart, light),
-                LightSampling::SixPoints => ShadeSource::Curved(limits(light.paint, channels)),
-            },
+        return match (shading, table) {
+            (FaceShading::By(Shading::PhongTable), Some(table)) if !channels => ShadeSource::NormalTable(table),
+            (FaceShading::By(_), _) => ShadeSource::Lit(light),
+            (FaceShading::PhongEvery(spacing), _) => ShadeSource::LitEvery(spacing, light),
+            (FaceShading::Quadratic, _) => ShadeSource::Curved(limits(light.paint, channels)),
         };
     }
     ShadeSource::Shaded(shading.interpolation())

@@ -53,7 +53,9 @@ impl fmt::Display for Accuracy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Shading(shading) => shading.fmt(f),
-            Self::WithinError(shades) => write!(f, "within {shades} {}", if *shades == 1.0 { "shade" } else { "shades" }),
+            Self::WithinError(shades) => {
+                write!(f, "within {shades} {}", if *shades == 1.0 { "shade" } else { "shades" })
+            }
         }
     }
 }
@@ -102,9 +104,10 @@ pub struct Resolved {
     pub mapping: Option<Mapping>,
     /// Whether textures have mipmaps; `None` leaves it to the plan.
     pub mipmaps: Option<bool>,
-    /// Faces are split until the shades on their edges are linear to so many shades; `None` where nobody asks for it, or a
-    /// budget sees to it.
-    pub tessellation: Option<f32>,
+    /// Whether faces are to be split. A budget sees to it otherwise that shades follow the light.
+    pub tessellates: bool,
+    /// Faces that are split are split until the shades on their edges are linear to so many shades.
+    pub tolerance: f32,
     /// Whether shades between two entries of a ramp are shown as a pattern of both.
     pub dither: bool,
     /// The numbers that vertices are made in.
@@ -113,8 +116,8 @@ pub struct Resolved {
     pub keeps_vertices: bool,
 }
 
-/// The shades that [`Shading::GouraudTessellated`] asks for.
-pub(crate) const MIN_TESSELLATION: f32 = 1.0;
+/// The shades to which faces are split that a scene says nothing about.
+const DEFAULT_TOLERANCE: f32 = 1.0;
 
 impl Settings {
     /// What a scene with these preferences is drawn by. The settings count before the preferences. Of a scene's own
@@ -148,7 +151,8 @@ impl Settings {
                 ChosenBy::Renderer | ChosenBy::Default => Accuracy::default(),
             },
         };
-        let by_shading = (accuracy.shading() == Shading::GouraudTessellated).then_some(MIN_TESSELLATION);
+        let asks_for_splitting =
+            accuracy.shading() == Shading::GouraudTessellated || preferences.tessellation.is_some();
         Resolved {
             asked,
             asked_by,
@@ -156,7 +160,8 @@ impl Settings {
             hidden_surfaces: self.hidden_surfaces.or(preferences.hidden_surfaces),
             mapping: self.mapping.or(preferences.mapping),
             mipmaps: self.mipmaps.or(preferences.mipmaps),
-            tessellation: preferences.tessellation.or(by_shading).filter(|_| accuracy.max_error().is_none()),
+            tessellates: asks_for_splitting && accuracy.max_error().is_none(),
+            tolerance: preferences.tessellation.unwrap_or(DEFAULT_TOLERANCE),
             dither: preferences.dither,
             vertex_path: self.vertex_path,
             keeps_vertices: self.keeps_frames() && self.vertex_path == VertexPath::Float,
@@ -214,13 +219,15 @@ mod tests {
     fn a_shading_asks_for_splitting_and_a_budget_for_none() {
         let of = |accuracy: Accuracy, tessellation, vertex_path| {
             let settings = Settings { accuracy: Some(accuracy), vertex_path, ..Settings::default() };
-            settings.resolve(&Preferences { tessellation, ..Preferences::default() }).tessellation
+            let resolved = settings.resolve(&Preferences { tessellation, ..Preferences::default() });
+            (resolved.tessellates, resolved.tolerance)
         };
         let float = VertexPath::Float;
-        assert_eq!(of(Shading::GouraudTessellated.into(), None, float), Some(MIN_TESSELLATION));
-        assert_eq!(of(Shading::GouraudTessellated.into(), Some(3.0), float), Some(3.0));
-        assert_eq!(of(Shading::Phong.into(), Some(3.0), float), Some(3.0));
-        assert_eq!(of(Shading::Phong.into(), None, float), None);
-        assert_eq!(of(Accuracy::WithinError(2.0), Some(3.0), float), None);
+        assert_eq!(of(Shading::GouraudTessellated.into(), None, float), (true, 1.0));
+        assert_eq!(of(Shading::GouraudTessellated.into(), Some(3.0), float), (true, 3.0));
+        assert_eq!(of(Shading::Phong.into(), Some(3.0), float), (true, 3.0));
+        assert_eq!(of(Shading::Phong.into(), None, float), (false, 1.0));
+        // Switched on by hand faces are split as the scene says.
+        assert_eq!(of(Accuracy::WithinError(2.0), Some(3.0), float), (false, 3.0));
     }
 }

@@ -3,7 +3,8 @@
 
 use alloc::vec::Vec;
 
-use super::face::{ShadeMode, Sink};
+use super::face::Sink;
+use super::face_shading::FaceShading;
 use super::pipelines::Pipelines;
 use super::sift::Sieve;
 use crate::raster::batch::numbered::Numbered;
@@ -17,7 +18,7 @@ pub(super) struct DeferredFace {
     pub(super) attributes: [Attributes; 3],
     pub(super) object: usize,
     pub(super) surface: u16,
-    pub(super) manner: ShadeMode,
+    pub(super) shading: FaceShading,
 }
 
 impl DeferredFace {
@@ -39,7 +40,7 @@ impl<F: FnMut(&[Vertex; 3], Interpolation)> Sink for ForEachSink<F> {
         (self.0)(vertices, interpolation);
     }
 
-    fn with_effects(&mut self, _: u32, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: ShadeMode) {
+    fn with_effects(&mut self, _: u32, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: FaceShading) {
         (self.0)(vertices, Interpolation::default());
     }
 }
@@ -83,17 +84,17 @@ impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
         surface: u16,
-        manner: ShadeMode,
+        shading: FaceShading,
     ) {
         if self.looks.is_transparent(self.object, surface) {
             let (vertices, attributes) = (*vertices, *attributes);
-            self.transparent.push(DeferredFace { vertices, attributes, object: self.object, surface, manner });
+            self.transparent.push(DeferredFace { vertices, attributes, object: self.object, surface, shading });
             return;
         }
         // In the order in which they came: of equal depths the first stays.
         self.batched.draw();
         let Batched { raster, drawn, .. } = &mut self.batched;
-        **drawn += self.looks.with((self.object, surface, manner), |look| {
+        **drawn += self.looks.with((self.object, surface, shading), |look| {
             if CLIPS {
                 raster.triangle_with_effects(vertices, attributes, look)
             } else {
@@ -168,9 +169,9 @@ impl Sink for DeferredSink<'_> {
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
         surface: u16,
-        manner: ShadeMode,
+        shading: FaceShading,
     ) {
-        let face = DeferredFace { vertices: *vertices, attributes: *attributes, object: self.object, surface, manner };
+        let face = DeferredFace { vertices: *vertices, attributes: *attributes, object: self.object, surface, shading };
         if self.looks.is_transparent(self.object, surface) {
             self.transparent.push(face);
             return;

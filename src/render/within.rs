@@ -3,7 +3,7 @@
 use super::Stats;
 use super::budget::{Bodies, Budget, Choice, Decided, Question, Vain};
 use super::clip::WithEffects;
-use super::face::{Face, Faces, LightSampling, ShadeMode, Sink, is_turned_away};
+use super::face::{Face, Faces, Sink, is_turned_away};
 use super::sift;
 use super::vertex::Geometry;
 use crate::fixed::U8F8;
@@ -71,8 +71,7 @@ impl Faces<'_> {
                     let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
                     if EFFECTS && self.paints[usize::from(surface)].has_effects {
                         let attributes = indices.map(|i| self.extras[i as usize].side(turned));
-                        let manner = ShadeMode { shading: LINEAR_SHADING, sampling: LightSampling::Pixels };
-                        sink.with_effects((first + at) as u32, &vertices, &attributes, surface, manner);
+                        sink.with_effects((first + at) as u32, &vertices, &attributes, surface, LINEAR_SHADING.into());
                     } else {
                         // Fewer than 2³² faces.
                         sink.plain((first + at) as u32, &vertices, LINEAR_SHADING.interpolation());
@@ -94,7 +93,7 @@ impl Faces<'_> {
         if let Some((listed, numbered)) = &listed {
             sink.numbered(numbered, listed.all(), LINEAR_SHADING.interpolation());
         }
-        stats.shares.add(LINEAR_SHADING, linear);
+        stats.shares.add(LINEAR_SHADING.into(), linear);
     }
 
     /// A face that its cluster says nothing of.
@@ -226,10 +225,9 @@ fn hand_on_within(
         let [a, b, c] = attributes.map(|corner| corner.channels);
         let channels = [0, 1, 2].map(|channel| middle([a[channel], b[channel], c[channel]]));
         attributes.iter_mut().for_each(|corner| corner.channels = channels);
-        shading = Shading::Gouraud88Reseeded;
+        shading = LINEAR_SHADING.into();
     }
-    let manner = ShadeMode { shading, sampling: choice.sampling() };
-    sink.with_effects(face.index, &vertices, &attributes, face.surface, manner);
+    sink.with_effects(face.index, &vertices, &attributes, face.surface, shading);
 }
 
 /// Half-way between the least and the greatest.

@@ -92,13 +92,17 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
             try_one(format!("{name}, {way}"), &scene, &|_, renderer| renderer.set_hidden_surfaces(Some(way)));
         }
         for shading in Shading::ALL {
-            try_one(format!("{name}, {shading}"), &scene, &|_, renderer| renderer.set_shading(shading));
+            try_one(format!("{name}, {shading}"), &scene, &|_, renderer| {
+                renderer.set_shading(shading);
+            });
         }
         for mapping in Mapping::ALL {
             try_one(format!("{name}, {mapping}"), &scene, &|_, renderer| renderer.set_mapping(Some(mapping)));
         }
         for shades in [0.8, 2.0] {
-            try_one(format!("{name}, within {shades}"), &scene, &|_, renderer| renderer.set_max_error(Some(shades)));
+            try_one(format!("{name}, within {shades}"), &scene, &|_, renderer| {
+                renderer.set_max_error(shades);
+            });
         }
         try_one(format!("{name}, in integers"), &scene, &|_, renderer| renderer.set_vertex_path(VertexPath::Integer));
         try_one(format!("{name}, dithered"), &scene, &|scene, _| scene.preferences.dither = true);

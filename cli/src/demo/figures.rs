@@ -142,7 +142,8 @@ mod tests {
         for scene in shipped::ALL {
             let mut demo = demo(scene.name);
             for budget in [None, Some(1.0)] {
-                demo.shading = ShadingChoice::new(demo.renderer.shading(), budget);
+                let shading = demo.renderer.settings().accuracy.unwrap_or_default().shading();
+                demo.shading = ShadingChoice::new(shading, budget);
                 demo.draw().expect("a legal scene");
                 for size in WINDOWS {
                     for (help, figures) in [(true, false), (false, true), (true, true)] {

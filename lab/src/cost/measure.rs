@@ -14,7 +14,7 @@ use super::statistics::{Ratio, Rng, quartiles};
 use super::{Aspect, BudgetRow, Host, OptionRow, ProbeError, ShadingRow, Split, Study};
 use crate::truth::TruthError;
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, Screen, Shading};
+use mode13h::render::{FaceShading, RenderError, Renderer, Screen, Shading};
 use mode13h::scene::Scene;
 
 /// The share of pixels that a budget, and a shading that is compared with it, must keep within the bound.
@@ -308,7 +308,7 @@ impl Rows<'_> {
             };
             let median = |&(other, _): &(usize, Shading)| quartiles(&self.times[other]).median;
             let best = self.each_shading().filter(keeps).min_by(|a, b| median(a).total_cmp(&median(b)));
-            let shares = Shading::ALL.into_iter().zip(self.outcome.work[place].shares);
+            let shares = FaceShading::ALL.into_iter().zip(self.outcome.work[place].shares);
             BudgetRow {
                 max_error,
                 within: findings.within(bound),

@@ -9,7 +9,7 @@ use core::cell::{Cell, RefCell};
 
 use mode13h::hooks::DrawnTriangle;
 use mode13h::palette::Table;
-use mode13h::raster::effects::{Attributes, Lighting, Mix, PixelPipeline, ShadeSource, TextureStage};
+use mode13h::raster::effects::{Attributes, Lighting, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use mode13h::raster::{DrawStats, Frame, Raster, Rect, Vertex};
 use mode13h::render::Screen;
 use mode13h::span::Kernel;
@@ -32,8 +32,10 @@ pub enum ShadedBy {
         /// The shades in 8.8, of three channels or three times the same.
         shades: [u16; 3],
     },
-    /// Between two pixels of its row, at most 16 apart, that are lit.
+    /// Between two pixels of its row that are lit.
     BetweenLit {
+        /// How far the two lie apart, at most.
+        spacing: SampleSpacing,
         /// The shades in 8.8 of the one before it, or of itself, of three channels or three times the same.
         before: [u16; 3],
         /// Those of the next.
@@ -267,7 +269,7 @@ fn stages(
             let place = usize::from(pixel.look(met, behind, &numbered));
             let all = listed.all.borrow();
             let of = |place: usize| all.get(place).or(all.last()).copied().unwrap_or_default();
-            made.shaded_by = ShadedBy::BetweenLit { before: of(place), after: of(place + 1) };
+            made.shaded_by = ShadedBy::BetweenLit { spacing: apart, before: of(place), after: of(place + 1) };
         }
         // Its corners' shades.
         _ => {}

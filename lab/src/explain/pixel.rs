@@ -16,7 +16,7 @@ use mode13h::plan::{self, Effect};
 use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::effects::Attributes;
 use mode13h::raster::{Interpolation, Vertex};
-use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading, VertexPath};
+use mode13h::render::{Accuracy, ChosenBy, HiddenSurfaces, Renderer, Resolved, Screen, Shading, VertexPath};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
@@ -192,8 +192,8 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
         hidden_surfaces: trace.stats.hidden_surfaces,
         hidden_surfaces_why: hidden.map(|row| row.reason.clone()).unwrap_or_default(),
         shading: trace.stats.shading,
-        shading_why: shading_why(renderer, scene, trace.stats.shading),
-        max_error: renderer.max_error(scene),
+        shading_why: shading_why(&renderer.settings().resolve(&scene.preferences)),
+        max_error: trace.stats.max_error,
         vertex_path: trace.stats.vertex_path,
         objects: (0..scene.objects().len()).map(|object| hooks::name_of(scene, object)).collect(),
         faces,
@@ -212,17 +212,16 @@ fn color(renderer: &Renderer, scene: &Scene, entry: u8) -> Rgb {
     vga.palette().colors()[usize::from(entry)]
 }
 
-fn shading_why(renderer: &Renderer, scene: &Scene, drawn: Shading) -> String {
-    let wanted = hooks::shading_for(renderer, scene);
-    if wanted != drawn {
-        return format!("16.16 vertices have no {wanted}");
-    }
-    if hooks::has_own_shading(renderer) {
-        "asked for".into()
-    } else if scene.preferences.shading.is_some() {
-        "the scene asks for it".into()
-    } else {
-        "the default".into()
+fn shading_why(settings: &Resolved) -> String {
+    let Resolved { asked, asked_by, accuracy, .. } = *settings;
+    match asked_by {
+        _ if asked != accuracy => match asked {
+            Accuracy::Shading(shading) => format!("16.16 vertices have no {shading}"),
+            Accuracy::WithinError(_) => "16.16 vertices have no budget".into(),
+        },
+        ChosenBy::Renderer => "asked for".into(),
+        ChosenBy::Scene => "the scene asks for it".into(),
+        ChosenBy::Default => "the default".into(),
     }
 }
 

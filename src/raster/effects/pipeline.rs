@@ -63,7 +63,7 @@ pub struct Limits {
 }
 
 /// How far two pixels of a row that are lit lie apart.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum SampleSpacing {
     /// 4 pixels.
     Four,

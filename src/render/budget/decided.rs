@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use crate::raster::effects::SampleSpacing;
-use crate::render::face::LightSampling;
+use crate::render::face_shading::FaceShading;
 use crate::render::sift;
 use crate::scene::Shading;
 
@@ -26,12 +26,14 @@ pub(in crate::render) enum Choice {
 }
 
 impl Choice {
-    pub(in crate::render) const fn shading(self) -> Shading {
+    pub(in crate::render) const fn shading(self) -> FaceShading {
         match self {
-            Self::Flat => Shading::Flat,
-            Self::Float => Shading::Float,
-            Self::Phong | Self::PhongEvery(_) | Self::Curved => Shading::Phong,
-            Self::Linear | Self::Unknown => Shading::Gouraud88Reseeded,
+            Self::Flat => FaceShading::By(Shading::Flat),
+            Self::Float => FaceShading::By(Shading::Float),
+            Self::Curved => FaceShading::Quadratic,
+            Self::PhongEvery(spacing) => FaceShading::PhongEvery(spacing),
+            Self::Phong => FaceShading::By(Shading::Phong),
+            Self::Linear | Self::Unknown => FaceShading::By(Shading::Gouraud88Reseeded),
         }
     }
 }
@@ -40,15 +42,6 @@ impl Choice {
     /// Whether its pixels need light beyond that of the corners.
     pub(in crate::render) fn needs_light(self) -> bool {
         matches!(self, Self::Phong | Self::PhongEvery(_) | Self::Curved)
-    }
-
-    /// Where it takes light.
-    pub(in crate::render) fn sampling(self) -> LightSampling {
-        match self {
-            Self::PhongEvery(apart) => LightSampling::Every(apart),
-            Self::Curved => LightSampling::SixPoints,
-            _ => LightSampling::Pixels,
-        }
     }
 }
 
