@@ -18,6 +18,7 @@
 //! | [`scene`] | objects, camera, lights, fog, motion, what is asked for | `alloc` |
 //! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
+//! | [`auto_palette`] | a palette for a scene, from what is seen of it over a round | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
 //!
@@ -69,6 +70,8 @@ pub mod raster;
 pub mod span;
 pub mod vga;
 
+#[cfg(feature = "alloc")]
+pub mod auto_palette;
 #[cfg(feature = "alloc")]
 pub mod hooks;
 #[cfg(feature = "alloc")]

@@ -2,6 +2,7 @@
 
 use super::hidden;
 use super::reason::Reason;
+use super::stages::{Choice, Dither, Lamps, Lighting, LitAt, Stages, VertexStage};
 use super::{Decision, Effect, ObjectPlan, Overrides, Plan};
 use crate::light::{LampBeam, Light, Material, lamp_reaches};
 use crate::raster::Rect;
@@ -108,8 +109,8 @@ struct Rules<'a> {
 
 impl Rules<'_> {
     fn all(&self, lamps_in_range: usize) -> ObjectPlan {
-        let decisions = [Decision::off(Reason::SceneHasNone); Effect::COUNT];
-        let mut plan = ObjectPlan { decisions, shading: self.inputs.shading, max_error: None };
+        let mut plan = ObjectPlan::new(self.inputs.shading);
+        let mut overridden = [false; Effect::COUNT];
         for effect in Effect::ALL {
             let mut decision = self.decision(effect, lamps_in_range, &plan);
             if effect.is_left_out() {
@@ -123,14 +124,56 @@ impl Rules<'_> {
             if let Some(on) = self.inputs.forced.get_for(self.place, effect)
                 && on != decision.on
             {
-                decision = Decision { on, reason: Reason::Overrides, choice: if on { decision.choice } else { "" } };
+                decision = Decision { on, reason: Reason::Overrides, choice: forced_choice(on, decision.choice) };
+                overridden[effect.index()] = true;
             }
             plan.set(effect, decision);
         }
         if let Some(max_error) = self.inputs.max_error {
             self.keep_within(max_error, &mut plan);
         }
+        plan.stages = self.stages(&plan, |effect| plan.is_on(effect) && overridden[effect.index()]);
         plan
+    }
+
+    /// What is done for the object, by what is decided; `forced`: whether an effect is on by hand alone.
+    fn stages(&self, plan: &ObjectPlan, forced: impl Fn(Effect) -> bool) -> Stages {
+        let is_on = |effect| plan.is_on(effect);
+        let channels = is_on(Effect::RgbChannels);
+        Stages {
+            vertices: match is_on(Effect::Transform) {
+                false => VertexStage::Keep,
+                true if forced(Effect::Transform) || !self.inputs.keeps => VertexStage::MakeAnew,
+                true => VertexStage::Make,
+            },
+            nearest: self.reach.nearest,
+            lighting: match is_on(Effect::Lighting) {
+                _ if channels => Lighting::Channels,
+                false => Lighting::None,
+                true if is_on(Effect::PositionalLights) || is_on(Effect::Specular) => Lighting::All,
+                true => Lighting::Suns,
+            },
+            lit_at: if plan.shading == Shading::Flat && is_on(Effect::Lighting) {
+                LitAt::Faces
+            } else if is_on(Effect::Phong) && plan.max_error.is_none() {
+                LitAt::Pixels
+            } else {
+                LitAt::Vertices
+            },
+            lamps: match is_on(Effect::PositionalLights) {
+                false => Lamps::None,
+                true if forced(Effect::PositionalLights) => Lamps::All,
+                true => Lamps::InRange,
+            },
+            mapping: mapping(plan),
+            dither: match is_on(Effect::Dither) {
+                false => Dither::None,
+                true if forced(Effect::Dither) && !self.inputs.dithers => Dither::Neutral,
+                true => Dither::Ordered,
+            },
+            neutral_image: forced(Effect::Texture) || forced(Effect::EnvironmentMap),
+            neutral_blend: forced(Effect::Transparency),
+        }
     }
 
     /// Leaves it to a budget how faces are shaded, where that is not known for all of them.
@@ -222,7 +265,7 @@ impl Rules<'_> {
 
     fn hidden_surfaces(&self) -> Decision {
         let (way, reason) = self.way;
-        Decision { on: way != HiddenSurfaces::BackFaces, choice: way.name(), reason }
+        Decision { on: way != HiddenSurfaces::BackFaces, choice: Choice::HiddenSurfaces(way), reason }
     }
 
     fn lighting(&self, lamps_in_range: usize) -> Decision {
@@ -264,13 +307,13 @@ impl Rules<'_> {
         if let Some(max_error) = self.inputs.max_error {
             return match self.is_lit_by_face(before) {
                 true => Decision::off(Reason::Faceted),
-                false => Decision::on(Reason::Budget { max_error }).choosing("budget"),
+                false => Decision::on(Reason::Budget { max_error }).choosing(Choice::Budget),
             };
         }
         match self.inputs.shading {
             Shading::Flat => Decision::off(Reason::FlatAsked),
-            shading if shading.lights_pixels() => Decision::off(Reason::Asked).choosing(shading.name()),
-            shading => Decision::on(Reason::ShadesDiffer).choosing(shading.name()),
+            shading if shading.lights_pixels() => Decision::off(Reason::Asked).choosing(Choice::Shading(shading)),
+            shading => Decision::on(Reason::ShadesDiffer).choosing(Choice::Shading(shading)),
         }
     }
 
@@ -291,12 +334,12 @@ impl Rules<'_> {
             } else if self.is_lit_by_face(before) {
                 Decision::off(Reason::Faceted)
             } else {
-                Decision::on(Reason::Budget { max_error }).choosing(Shading::Phong.name())
+                Decision::on(Reason::Budget { max_error }).choosing(Choice::Shading(Shading::Phong))
             };
         }
         match self.inputs.shading {
-            shading if shading.lights_pixels() => Decision::on(Reason::Asked).choosing(shading.name()),
-            _ => Decision::off(Reason::NotAsked).choosing(""),
+            shading if shading.lights_pixels() => Decision::on(Reason::Asked).choosing(Choice::Shading(shading)),
+            _ => Decision::off(Reason::NotAsked),
         }
     }
 
@@ -315,16 +358,16 @@ impl Rules<'_> {
 
     fn perspective(&self) -> Decision {
         if !self.object.materials.iter().any(|material| material.texture.is_some()) {
-            return Decision::off(Reason::NoTexture).choosing("");
+            return Decision::off(Reason::NoTexture);
         }
         let texels = self.affine_error();
         match self.inputs.mapping {
-            Some(Mapping::Affine) => Decision::off(Reason::Asked).choosing(Mapping::Affine.name()),
-            Some(mapping) => Decision::on(Reason::Asked).choosing(mapping.name()),
+            Some(Mapping::Affine) => Decision::off(Reason::Asked).choosing(Choice::Mapping(Mapping::Affine)),
+            Some(mapping) => Decision::on(Reason::Asked).choosing(Choice::Mapping(mapping)),
             None if texels > AFFINE_TOLERANCE => {
-                Decision::on(Reason::AffineError { texels }).choosing(Mapping::Perspective.name())
+                Decision::on(Reason::AffineError { texels }).choosing(Choice::Mapping(Mapping::Perspective))
             }
-            None => Decision::off(Reason::AffineError { texels }).choosing(Mapping::Affine.name()),
+            None => Decision::off(Reason::AffineError { texels }).choosing(Choice::Mapping(Mapping::Affine)),
         }
     }
 
@@ -362,10 +405,10 @@ impl Rules<'_> {
             Some(asked) => (asked, Reason::Asked),
             None => (texels > MIN_TEXELS, Reason::TexelsToPixel { texels }),
         };
-        let affine = [Mapping::Affine.name(), ""].contains(&before.decision(Effect::Perspective).choice);
-        match on {
-            true => Decision::on(reason).choosing(if affine { "per face" } else { "per 16 pixels" }),
-            false => Decision::off(reason),
+        match (on, mapping(before)) {
+            (true, Mapping::Affine) => Decision::on(reason).choosing(Choice::LevelPerFace),
+            (true, _) => Decision::on(reason).choosing(Choice::LevelPer16Pixels),
+            (false, _) => Decision::off(reason),
         }
     }
 
@@ -389,7 +432,7 @@ impl Rules<'_> {
         {
             Decision::off(Reason::WholeShades)
         } else {
-            Decision::on(Reason::Asked).choosing("ordered 8 x 8")
+            Decision::on(Reason::Asked).choosing(Choice::Ordered8x8)
         }
     }
 
@@ -398,6 +441,25 @@ impl Rules<'_> {
             Some(material) => Decision::on(Reason::MaterialHas { material }),
             None => Decision::off(Reason::NoMaterialHas),
         }
+    }
+}
+
+/// What is chosen of an effect that is switched by hand. Where the plan would have textures affine, perspective that is
+/// switched on is exact at every pixel.
+fn forced_choice(on: bool, planned: Choice) -> Choice {
+    match planned {
+        _ if !on => Choice::Only,
+        Choice::Mapping(Mapping::Affine) => Choice::Mapping(Mapping::Perspective),
+        planned => planned,
+    }
+}
+
+/// How texture coordinates run.
+fn mapping(plan: &ObjectPlan) -> Mapping {
+    match plan.decision(Effect::Perspective).choice {
+        _ if !plan.is_on(Effect::Perspective) => Mapping::Affine,
+        Choice::Mapping(mapping) => mapping,
+        _ => Mapping::Perspective,
     }
 }
 

@@ -1,10 +1,10 @@
 //! Every triangle of a frame with all that the raster would get, for the laboratory.
 
 use super::face::Sink;
-use super::face_shading::FaceShading;
 use super::pipelines::Pipelines;
 use super::{RenderError, Renderer, Screen, Stats, VertexPath};
 use crate::palette::Ramp;
+use crate::plan::FaceShading;
 use crate::raster::effects::{Attributes, PixelPipeline};
 use crate::raster::{DrawStats, Interpolation, Vertex};
 use crate::scene::Scene;

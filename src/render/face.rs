@@ -7,7 +7,6 @@
 use super::Stats;
 use super::budget::{Budget, Decided};
 use super::clip::{Carried, Corner, WithEffects, clip};
-use super::face_shading::FaceShading;
 use super::lit::{LitVertex, LitVertices};
 use super::paint::SurfaceMaterial;
 use super::sift::listed::Listed;
@@ -16,6 +15,7 @@ use super::vertex::{Geometry, VertexAttributes};
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
+use crate::plan::FaceShading;
 use crate::raster::batch::numbered::{Numbered, TURNED};
 use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
@@ -75,14 +75,12 @@ pub(super) struct Faces<'a> {
     /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. Turned away, such a
     /// face is left out even where others show their backs: the other one has the same depth, and looks toward the eye.
     pub(super) twins: &'a [u64],
-    /// Whether any light falls on it.
-    pub(super) is_lit: bool,
     /// Whether its shades run: else each surface has one.
     pub(super) runs: bool,
     /// Whether there are lamps or highlights.
     pub(super) full: bool,
     /// Whether faces are lit, each on one channel or on three, and not vertices.
-    pub(super) flat: bool,
+    pub(super) lit_by_face: bool,
     pub(super) channels: bool,
     /// Whether texture coordinates are linear on the screen.
     pub(super) affine: bool,
@@ -147,7 +145,7 @@ impl Faces<'_> {
     fn each<const CULLS: bool, const EFFECTS: bool>(&self, stats: &mut Stats, sink: &mut impl Sink) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         let (sieve, exact_cover) = (sink.sieve(), self.shading.interpolation().has_exact_cover());
-        let one_shading = exact_cover && self.runs && !(self.flat && self.is_lit);
+        let one_shading = exact_cover && self.runs && !self.lit_by_face;
         let mut listed = if one_shading { self.listed::<EFFECTS>(sink, self.shading.interpolation()) } else { None };
         let chunks = triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST));
         for (chunk, (triangles, surfaces)) in chunks.enumerate() {
@@ -282,7 +280,7 @@ impl Faces<'_> {
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
-        if self.flat && self.is_lit {
+        if self.lit_by_face {
             stats.lit += 1;
             if self.channels {
                 let (centre, normal) = self.middle(face.indices);
@@ -301,7 +299,7 @@ impl Faces<'_> {
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
     #[inline]
     fn interpolation(&self, face: Face, stats: &mut Stats) -> Interpolation {
-        if self.flat && self.is_lit {
+        if self.lit_by_face {
             stats.lit += 1;
             return Interpolation::Flat(self.face_shade(face).nearest());
         }

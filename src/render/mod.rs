@@ -15,13 +15,11 @@
 //! | `settings` | how a renderer is set; what a scene is drawn by, and who chose that |
 //! | `stats` | what a frame came to |
 //! | `each_triangle` | every triangle of a frame with all that the raster would get, for the laboratory |
-//! | `automatic` | a palette for a scene, from what is seen of it over a round |
 //!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed,
 //! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
 //! be and left out where they are turned away; the [`raster`](crate::raster) draws what is left.
 
-mod automatic;
 mod bound;
 mod budget;
 mod clip;
@@ -29,7 +27,6 @@ pub(crate) mod each_triangle;
 mod edge_map;
 mod error;
 mod face;
-mod face_shading;
 mod hidden_surfaces;
 mod integer;
 mod lit;
@@ -47,7 +44,6 @@ mod vertex;
 mod vertex_path;
 mod within;
 
-use alloc::format;
 use alloc::vec::Vec;
 use core::mem;
 
@@ -56,7 +52,8 @@ use self::object::ObjectState;
 use self::sinks::{DeferredFace, ForEachSink};
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
-use crate::plan::{self, Change, Effect, Inputs, Plan, decide};
+pub use crate::plan::FaceShading;
+use crate::plan::{self, Change, Effect, Findings, Inputs, Plan, decide};
 use crate::raster::scan_line::Lists;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
@@ -65,10 +62,8 @@ use crate::span::Kernel;
 use crate::vga::Vga;
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
-pub use automatic::{AutomaticPalette, Seen, automatic, seen};
 pub use error::RenderError;
 use error::check;
-pub use face_shading::FaceShading;
 pub use settings::{Accuracy, ChosenBy, Resolved, Settings};
 pub use stats::{Shares, Stats};
 pub use vertex_path::{UnknownVertexPath, VertexPath};
@@ -263,21 +258,10 @@ impl Renderer {
     /// how many of its triangles each shading got.
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
-        let mut rows = self.plan.rows(scene);
-        for row in &mut rows {
-            if row.effect == Effect::Gouraud
-                && let Some(shares) = self.states.get(row.place).and_then(ObjectState::shares)
-            {
-                row.reason = format!("{}: {shares}", row.reason);
-            }
-            if !row.on
-                && matches!(row.effect, Effect::Phong | Effect::Tessellation)
-                && let Some(shades) = self.linear_error(scene, row.place)
-            {
-                row.reason = format!("{}; linear shades are off by at most {shades:.2}", row.reason);
-            }
-        }
-        rows
+        self.plan.rows_with(scene, |object| Findings {
+            face_counts: self.states.get(object).and_then(ObjectState::face_counts),
+            linear_error: self.linear_error(scene, object),
+        })
     }
 
     /// How far the shades of an object, by its place, may be from light at every pixel, in shades of 1/255

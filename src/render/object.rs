@@ -1,11 +1,10 @@
 //! What a renderer keeps of an object from frame to frame: its vertices, lit and projected, and what
 //! they were made from. As long as that stays, so do they.
 
-use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::Stats;
-use super::budget::{self, Budget, Decided, Lit};
+use super::budget::{Budget, Decided, Lit};
 use super::face::Faces;
 use super::lit::LitVertices;
 use super::paint::SurfaceMaterial;
@@ -16,7 +15,8 @@ use super::vertex::{self, Geometry, VertexAttributes};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
 use crate::palette::{Palette, Table};
-use crate::plan::{Change, Effect, ObjectPlan, Reason};
+use crate::plan::stages::{Lamps, Lighting, LitAt, VertexStage};
+use crate::plan::{Change, Effect, FaceCounts, ObjectPlan};
 use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
@@ -172,11 +172,6 @@ impl ObjectState {
         self.made_by = None;
     }
 
-    /// What a shading makes of the vertices.
-    fn is_flat(shading: Shading) -> bool {
-        shading == Shading::Flat
-    }
-
     /// Makes the vertices, if they are not those of last frame. Returns whether it did.
     pub(super) fn vertices(
         &mut self,
@@ -188,26 +183,26 @@ impl ObjectState {
         stats: &mut Stats,
     ) -> bool {
         let on = Effect::ALL.map(|effect| effect != Effect::Transform && plan.is_on(effect));
-        if !plan.is_on(Effect::Transform) && self.made_by == Some(on) {
+        let stages = plan.stages();
+        if stages.vertices == VertexStage::Keep && self.made_by == Some(on) {
             return false;
         }
         // Made again by force they are what they were. What was decided on is decided again, too, as it would be of an
         // object that moves: force is there to do, and to measure, all the work.
-        let changed = self.stale
-            || self.made_by != Some(on)
-            || matches!(plan.decision(Effect::Transform).reason, Reason::Overrides | Reason::NotKept);
+        let changed = self.stale || self.made_by != Some(on) || stages.vertices == VertexStage::MakeAnew;
         (self.made_by, self.stale) = (Some(on), false);
         let Some(source) = &self.source else { return false };
         self.paints.clear();
         let palette = scene.palette.as_ref();
         self.paints.extend(object.materials.iter().map(|m| SurfaceMaterial::new(m, scene.ambient, palette, plan)));
         self.lamps.clear();
-        if plan.is_on(Effect::PositionalLights) {
-            let forced = plan.decision(Effect::PositionalLights).reason == Reason::Overrides;
-            let bounds = object.mesh().bounds();
-            let in_range = |lamp: &&LampBeam| forced || crate::light::lamp_reaches(lamp, bounds);
-            self.lamps.extend(source.lamps.iter().filter(in_range).copied());
-        }
+        let bounds = object.mesh().bounds();
+        let falls_on_it = |lamp: &&LampBeam| match stages.lamps {
+            Lamps::None => false,
+            Lamps::InRange => crate::light::lamp_reaches(lamp, bounds),
+            Lamps::All => true,
+        };
+        self.lamps.extend(source.lamps.iter().filter(falls_on_it).copied());
         let suns = if plan.is_on(Effect::Lighting) { source.suns.as_slice() } else { &[] };
         let lights = Lights { suns, lamps: &self.lamps, eye: source.view.eye() };
 
@@ -237,27 +232,23 @@ impl ObjectState {
         if self.paints.iter().any(|paint| paint.has_effects) {
             self.extras.resize(count, VertexAttributes::default());
         }
-        let channels = plan.is_on(Effect::RgbChannels);
-        let full = plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular);
-        let by_face = Self::is_flat(plan.shading()) && plan.is_on(Effect::Lighting);
-        let by_pixel = plan.is_on(Effect::Phong) && plan.max_error().is_none();
-        let by_vertex = !by_face && !by_pixel;
+        let channels = stages.lighting == Lighting::Channels;
         // Of a closed body nobody sees the back.
         let both = !plan.is_on(Effect::BackFaceCulling);
-        if !plan.is_on(Effect::Lighting) && !channels {
-            vertex::light_none(&geometry, &self.paints, &mut self.lit);
-        } else if by_vertex {
+        if stages.lighting != Lighting::None && stages.lit_at == LitAt::Vertices {
             stats.lit += count as u64;
-            if channels {
-                self.lit.leave_without_light();
-                vertex::light_channels(&geometry, &self.paints, &lights, (both, kernel), &mut self.extras);
-            } else if full {
-                vertex::light_all(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit);
-            } else {
+        }
+        match (stages.lighting, stages.lit_at) {
+            (Lighting::None, _) => vertex::light_none(&geometry, &self.paints, &mut self.lit),
+            (_, LitAt::Faces | LitAt::Pixels) => self.lit.leave_without_light(),
+            (Lighting::Suns, _) => {
                 vertex::light_suns(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit);
             }
-        } else {
-            self.lit.leave_without_light();
+            (Lighting::All, _) => vertex::light_all(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit),
+            (Lighting::Channels, _) => {
+                self.lit.leave_without_light();
+                vertex::light_channels(&geometry, &self.paints, &lights, (both, kernel), &mut self.extras);
+            }
         }
         if plan.is_on(Effect::Texture) {
             vertex::texture_coordinates(&geometry, &self.paints, &mut self.extras);
@@ -277,10 +268,7 @@ impl ObjectState {
                 geometry: &geometry,
                 whole,
                 view: &source.view,
-                nearest: match plan.decision(Effect::NearClipping).reason {
-                    Reason::Nearest { nearest, .. } => nearest,
-                    _ => source.view.reach(object.mesh().bounds()).nearest,
-                },
+                nearest: stages.nearest,
                 lights: &lights,
                 paints: &self.paints,
                 channels,
@@ -294,7 +282,7 @@ impl ObjectState {
         } else {
             self.decided.clear();
         }
-        if by_pixel {
+        if stages.lit_at == LitAt::Pixels {
             if source.accuracy.shading() == Shading::PhongTable && !channels {
                 vertex::slopes(&geometry, &source.view, &mut self.extras);
                 self.tables_of_normals(scene, object, view);
@@ -367,6 +355,7 @@ impl ObjectState {
 
     /// Its faces, ready to be drawn.
     pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &ObjectPlan) -> Option<Faces<'a>> {
+        let stages = plan.stages();
         // Vertices that were not made, or are of no use, have none.
         self.made_by?;
         let source = self.source.as_ref()?;
@@ -380,13 +369,11 @@ impl ObjectState {
             extras: &self.extras,
             culls: plan.is_on(Effect::BackFaceCulling),
             twins: if self.is_tessellated { self.tessellated.twins() } else { object.mesh().twins() },
-            is_lit: plan.is_on(Effect::Lighting),
             runs: plan.is_on(Effect::Gouraud),
-            full: plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular),
-            flat: Self::is_flat(plan.shading()),
-            channels: plan.is_on(Effect::RgbChannels),
-            affine: !plan.is_on(Effect::Perspective)
-                || plan.decision(Effect::Perspective).choice == Mapping::Affine.name(),
+            full: stages.lighting == Lighting::All,
+            lit_by_face: stages.lit_at == LitAt::Faces,
+            channels: stages.lighting == Lighting::Channels,
+            affine: stages.mapping == Mapping::Affine,
             lights_pixels: plan.is_on(Effect::Phong),
             budget: self.has_budget.then_some(&self.budget),
         })
@@ -408,9 +395,9 @@ impl ObjectState {
         core::mem::take(&mut self.decided)
     }
 
-    /// How many triangles a budget's choices gave to each shading, and why, in words; `None` without a budget.
-    pub(super) fn shares(&self) -> Option<String> {
-        self.has_budget.then(|| budget::shares(&self.decided))
+    /// How many triangles were shaded in which way, by a budget's choices; `None` without a budget.
+    pub(super) fn face_counts(&self) -> Option<FaceCounts> {
+        self.has_budget.then(|| self.decided.counts())
     }
 
     /// The same, as they are.

@@ -4,9 +4,9 @@
 use alloc::vec::Vec;
 
 use super::face::Sink;
-use super::face_shading::FaceShading;
 use super::pipelines::Pipelines;
 use super::sift::Sieve;
+use crate::plan::FaceShading;
 use crate::raster::batch::numbered::Numbered;
 use crate::raster::effects::Attributes;
 use crate::raster::{Batch, DrawStats, Interpolation, Raster, Vertex};

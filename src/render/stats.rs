@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use super::face_shading::FaceShading;
 use super::settings::{Accuracy, Resolved};
 use super::{HiddenSurfaces, Shading, VertexPath};
+use crate::plan::FaceShading;
 use crate::raster::DrawStats;
 use crate::span::Kernel;
 

@@ -11,7 +11,7 @@ use allocation_counter::measure;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::plan::{Decision, Effect};
+use mode13h::plan::{Choice, Decision, Effect};
 use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Shading, Stats, VertexPath};
 use mode13h::scene::{Motion, Object, Scene, shipped};
 use mode13h::vga::Vga;
@@ -20,7 +20,7 @@ use mode13h::vga::Vga;
 const FRAMES: u32 = 6;
 
 /// What was decided, reasons aside: for each object each effect and by which of several ways, and the way to hidden surfaces.
-type Decided = (Vec<Vec<(bool, &'static str)>>, HiddenSurfaces);
+type Decided = (Vec<Vec<(bool, Choice)>>, HiddenSurfaces);
 
 fn decided(renderer: &Renderer) -> Decided {
     let plan = renderer.plan();

@@ -1,6 +1,6 @@
 //! The figures that I shows, and the keys that H shows.
 
-use mode13h::plan::Effect;
+use mode13h::plan::{Choice, Effect};
 use mode13h::render::{Shares, Stats};
 
 use super::Demo;
@@ -87,8 +87,8 @@ impl Demo {
             let mut entry = effect.name().to_string();
             let is_said = matches!(effect, Effect::HiddenSurfaces | Effect::Gouraud | Effect::Phong);
             let first = on.first()?;
-            if !is_said && !first.choice.is_empty() {
-                entry += &format!(" {}", first.choice);
+            if !is_said && first.choice != Choice::Only {
+                entry += &format!(" {}", first.choice.name());
             }
             if on.len() < objects.len() {
                 entry += &format!(" {}/{}", on.len(), objects.len());

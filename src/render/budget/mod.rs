@@ -41,7 +41,7 @@
 //! | `question` | the decision on one triangle |
 //! | `settle` | which faces of a chunk are linear, before any is looked at by itself |
 //! | `curve` | whether quadratic shades do |
-//! | `decided` | what is decided, and how that is said |
+//! | `decided` | what is decided |
 
 mod cluster;
 mod corners;
@@ -60,7 +60,7 @@ use glam::Vec3;
 use self::cluster::{Cluster, Cones};
 use self::cluster::{Linear, Where};
 pub(super) use self::curve::limits;
-pub(super) use self::decided::{Bodies, Choice, Decided, shares};
+pub(super) use self::decided::{Bodies, Choice, Decided};
 use self::facet::{Facet, Strength};
 use self::light::{Towards, narrow};
 pub(super) use self::question::Question;

@@ -167,23 +167,23 @@ pub(super) const CHANGES: &[Change] = &[
         animate(w, r, |r| PaletteAnimation::Cycle { range: 1..=255, period: 0.5 + r.unit() });
     }),
     // Preferences
-    seen("Wishes.shading", |w, r| w.scene.preferences.shading = sometimes(r, |r| r.one_of(&Shading::ALL))),
-    seen("Wishes.hidden_surfaces", |w, r| {
+    seen("Preferences.shading", |w, r| w.scene.preferences.shading = sometimes(r, |r| r.one_of(&Shading::ALL))),
+    seen("Preferences.hidden_surfaces", |w, r| {
         w.scene.preferences.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
     }),
-    seen("Wishes.mapping", |w, r| {
+    seen("Preferences.mapping", |w, r| {
         textured(w, r);
         w.scene.preferences.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
     }),
-    seen("Wishes.mipmaps", |w, r| {
+    seen("Preferences.mipmaps", |w, r| {
         textured(w, r);
         w.scene.preferences.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
     }),
-    seen("Wishes.tessellation", |w, r| w.scene.preferences.tessellation = sometimes(r, |r| between(r, 0.5, 4.0))),
-    seen("Wishes.dither", |w, r| w.scene.preferences.dither = r.within(0, 1) == 1),
-    seen("Wishes.max_error", |w, r| w.scene.preferences.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
+    seen("Preferences.tessellation", |w, r| w.scene.preferences.tessellation = sometimes(r, |r| between(r, 0.5, 4.0))),
+    seen("Preferences.dither", |w, r| w.scene.preferences.dither = r.within(0, 1) == 1),
+    seen("Preferences.max_error", |w, r| w.scene.preferences.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
     // The program makes it, no renderer.
-    unseen("Wishes.auto_palette", |w, r| w.scene.preferences.auto_palette = r.within(0, 1) == 1),
+    unseen("Preferences.auto_palette", |w, r| w.scene.preferences.auto_palette = r.within(0, 1) == 1),
     // Motions
     seen("Motion::Spin.object", |w, r| spin(w, r, [0.0, 0.3, 0.0], [0.0, 0.2, 0.0])),
     seen("Motion::Spin.start", |w, r| {
@@ -291,7 +291,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Light::Lamp.range", |w, r| lamp(w, r, |r, _, _, range, _| *range = between(r, 0.5, 4.0))),
     seen("Light::Lamp.color", |w, r| lamp(w, r, |r, _, _, _, color| *color = channels(r))),
     // The renderer
-    seen("Renderer::set_rung", |w, r| {
+    seen("Renderer::set_shading", |w, r| {
         let shading = r.one_of(&Shading::ALL);
         w.settings.accuracy = Some(Accuracy::Shading(shading));
         w.kept.set_shading(shading);
@@ -300,6 +300,11 @@ pub(super) const CHANGES: &[Change] = &[
         let shades = sometimes(r, |r| between(r, 0.5, 16.0));
         w.settings.accuracy = shades.map(Accuracy::WithinError);
         w.kept.set_accuracy(w.settings.accuracy);
+    }),
+    seen("Renderer::set_max_error", |w, r| {
+        let shades = between(r, 0.5, 16.0);
+        w.settings.accuracy = Some(Accuracy::WithinError(shades));
+        w.kept.set_max_error(shades);
     }),
     seen("Renderer::set_mapping", |w, r| {
         textured(w, r);

@@ -11,11 +11,12 @@ mod seen;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Effect, RenderError, Renderer, Screen};
 use crate::light::{Material, RampChoice};
 use crate::mesh::Surface;
 use crate::palette::auto::{Automatic, Entries, Use, share_beside};
 use crate::palette::{Palette, Rgb};
+use crate::plan::Effect;
+use crate::render::{RenderError, Renderer, Screen};
 use crate::scene::{Object, Scene, Shared};
 use crate::texture::{Mipmap, Texture};
 use mixed::OwnColors;
@@ -72,12 +73,12 @@ impl AutomaticPalette {
 /// ```
 /// use mode13h::mesh::shapes;
 /// use mode13h::palette::auto::Entries;
-/// use mode13h::render::automatic;
+/// use mode13h::auto_palette;
 /// use mode13h::scene::Scene;
 ///
 /// let mut scene = Scene::showing(shapes::torus(48, 24));
 /// scene.objects_mut()[0].materials[0].color = [0.9, 0.5, 0.2];
-/// let made = automatic(&scene)?;
+/// let made = auto_palette::of_scene(&scene)?;
 /// let Entries::Ramp { ramp, full_light: 1.0, .. } = made.entries[0][0] else { unreachable!("it is matt") };
 /// made.apply(&mut scene);
 /// assert_eq!(scene.palette, Some(made.palette));
@@ -86,8 +87,8 @@ impl AutomaticPalette {
 /// ```
 ///
 /// # Errors
-/// As [`Renderer::draw`](super::Renderer::draw).
-pub fn automatic(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
+/// As [`Renderer::draw`].
+pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     let in_channels = mixed::has_colored_light(scene);
     let mut tints = Tints::default();
     let bodies: Vec<Vec<Body>> = scene.objects().iter().map(|object| bodies(object, scene, &mut tints)).collect();

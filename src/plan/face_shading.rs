@@ -60,7 +60,7 @@ impl FaceShading {
     }
 
     /// How the raster runs the corners' shades, if these are what is shown.
-    pub(super) const fn interpolation(self) -> Interpolation {
+    pub(crate) const fn interpolation(self) -> Interpolation {
         match self {
             Self::By(shading) => shading.interpolation(),
             Self::Quadratic | Self::PhongEvery(_) => Shading::Phong.interpolation(),
@@ -68,7 +68,7 @@ impl FaceShading {
     }
 
     /// Its index in [`ALL`](Self::ALL).
-    pub(super) fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         Self::ALL.iter().position(|shading| *shading == self).unwrap_or_default()
     }
 }
