@@ -7,6 +7,7 @@
 //! | module | holds | needs |
 //! |---|---|---|
 //! | [`fixed`] | the number types: 8.8 shades, 24.8 screen coordinates, 16.16; every rounding by name | – |
+//! | [`lanes`] | eight numbers at a time | – |
 //! | [`palette`] | 256 colours, ramps of shades, file formats | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
@@ -65,6 +66,7 @@ pub use glam;
 
 pub mod fixed;
 pub mod integer;
+pub mod lanes;
 pub mod palette;
 pub mod raster;
 pub mod span;
@@ -84,6 +86,8 @@ pub mod plan;
 pub mod render;
 #[cfg(feature = "alloc")]
 pub mod scene;
+#[cfg(feature = "alloc")]
+mod shared;
 #[cfg(feature = "alloc")]
 pub mod texture;
 #[cfg(feature = "alloc")]

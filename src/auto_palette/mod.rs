@@ -20,11 +20,8 @@ use crate::render::{RenderError, Renderer, Screen};
 use crate::scene::{Object, Scene, Shared};
 use crate::texture::{Mipmap, Texture};
 use mixed::OwnColors;
-use seen::moments;
 pub use seen::{Seen, seen};
-
-/// Pictures over one round.
-const POSES: u32 = 16;
+use seen::{full_light, moments};
 
 /// A palette for a scene, and the scene's materials in it.
 #[derive(Clone, PartialEq, Debug)]
@@ -240,13 +237,6 @@ fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
     let added = |i: usize| (brightest[i] - color[i]).max(0.0) / material.specular;
     let highlight = if material.is_specular() { core::array::from_fn(added) } else { [1.0; 3] };
     (color.map(|channel| channel / full), highlight)
-}
-
-/// What a material gives back of ambient and diffuse light in full light. At most 1, as no more is shown, and 1 where it
-/// gives nothing back.
-fn full_light(material: &Material, ambient: f32) -> f32 {
-    let full = material.ambient * ambient + material.diffuse;
-    if full > 0.0 { full.min(1.0) } else { 1.0 }
 }
 
 /// Images in the colours of their materials, each once.

@@ -45,10 +45,10 @@ pub use gif_frame::GifFrame;
 #[cfg(feature = "png")]
 pub use indexed::{encode_png, picture_png, png};
 #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
-pub use picture::{Picture, PictureError, PixelShape};
+pub use picture::{MAX_SIDE, Picture, PictureError, PixelShape};
 #[cfg(feature = "image")]
 pub use rgb::{encode_rgb_png, picture_rgb_png, rgb_png};
 #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
-pub use scale::{MAX_SIDE, Scale, ScaleError};
+pub use scale::{Scale, ScaleError};
 #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
 pub use y4m::{y4m_frame, y4m_header};

@@ -5,7 +5,7 @@ use alloc::string::String;
 use super::source::{is_colored, luminance};
 use crate::mesh::Surface;
 use crate::palette::{Palette, Ramp, Rgb};
-use crate::scene::Shared;
+use crate::shared::Shared;
 use crate::texture::Texture;
 
 /// Where a material's shades lie in the palette.

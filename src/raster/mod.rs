@@ -44,6 +44,7 @@ pub mod batch;
 pub mod clip;
 pub mod cover;
 pub mod depth;
+mod draw_stats;
 #[cfg(feature = "embedded-graphics")]
 mod draw_target;
 pub mod edge;
@@ -69,9 +70,10 @@ pub mod wide;
 
 pub use batch::Batch;
 pub use depth::DepthBuffer;
+pub use draw_stats::DrawStats;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;
 pub use frame::{Frame, FrameError, Rect};
 pub use interpolation::Interpolation;
-pub use triangle::{DrawStats, Raster};
+pub use triangle::Raster;
 pub use vertex::{Vertex, VertexError};

@@ -104,7 +104,8 @@ impl Renderer {
                 // What is decided here, of faces that cover no pixel too, is not kept.
                 let mut decided = self.states[object].decided().clone();
                 let triangle_surfaces = faces.geometry.triangle_surfaces;
-                faces.draw(&mut decided, &mut stats, &mut Visitor { pipelines, object, triangle_surfaces, visit });
+                let mut visitor = Visitor { pipelines, object, triangle_surfaces, visit: &mut *visit };
+                faces.draw(self.states[object].budget(), &mut decided, &mut stats, &mut visitor);
             }
         }
         Ok(stats)

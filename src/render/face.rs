@@ -7,20 +7,20 @@
 use super::Stats;
 use super::budget::{Budget, Decided};
 use super::clip::{Carried, Corner, WithEffects, clip};
+use super::faces::Faces;
 use super::lit::{LitVertex, LitVertices};
 use super::paint::SurfaceMaterial;
 use super::sift::listed::Listed;
 use super::sift::{self, Sieve, Sifted};
-use super::vertex::{Geometry, VertexAttributes};
+use super::vertex::Geometry;
 use crate::fixed::U8F8;
-use crate::light::{Lights, both_sides};
+use crate::light::both_sides;
 use crate::mesh::normals::face_normal;
 use crate::plan::FaceShading;
 use crate::raster::batch::numbered::{Numbered, TURNED};
 use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
-use crate::scene::Shading;
-use crate::view::{Homogeneous, ObjectView};
+use crate::view::Homogeneous;
 
 /// A face of the geometry that is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -59,43 +59,12 @@ pub(super) trait Sink {
     fn numbered(&mut self, _: &Numbered<'_>, _: &[u32], _: Interpolation) {}
 }
 
-/// One object in one frame.
-pub(super) struct Faces<'a> {
-    pub(super) shading: Shading,
-    pub(super) geometry: Geometry<'a>,
-    pub(super) view: &'a ObjectView,
-    pub(super) lights: Lights<'a>,
-    /// One for each surface of the mesh.
-    pub(super) paints: &'a [SurfaceMaterial],
-    pub(super) lit: &'a LitVertices,
-    /// As many, if there are effects.
-    pub(super) extras: &'a [VertexAttributes],
-    /// Whether faces that are turned away are left out.
-    pub(super) culls: bool,
-    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. Turned away, such a
-    /// face is left out even where others show their backs: the other one has the same depth, and looks toward the eye.
-    pub(super) twins: &'a [u64],
-    /// Whether its shades run: else each surface has one.
-    pub(super) runs: bool,
-    /// Whether there are lamps or highlights.
-    pub(super) full: bool,
-    /// Whether faces are lit, each on one channel or on three, and not vertices.
-    pub(super) lit_by_face: bool,
-    pub(super) channels: bool,
-    /// Whether texture coordinates are linear on the screen.
-    pub(super) affine: bool,
-    /// Whether pixels may be lit each for itself.
-    pub(super) lights_pixels: bool,
-    /// What faces are decided on by, if that is done for each.
-    pub(super) budget: Option<&'a Budget>,
-}
-
 impl Faces<'_> {
-    /// Hands the faces that are to be drawn to `sink`. `decided` is what a budget led to, for each face.
-    pub(super) fn draw(&self, decided: &mut Decided, stats: &mut Stats, sink: &mut impl Sink) {
+    /// Hands the faces that are to be drawn to `sink`. With a budget each is decided on; `decided` is what that led to.
+    pub(super) fn draw(&self, budget: Option<&Budget>, decided: &mut Decided, stats: &mut Stats, sink: &mut impl Sink) {
         stats.faces += self.geometry.triangles.len() as u64;
         let effects = !self.extras.is_empty();
-        if let Some(budget) = self.budget {
+        if let Some(budget) = budget {
             let decided = (budget, decided);
             return match (self.culls, effects) {
                 (false, false) => self.each_within::<false, false>(decided, stats, sink),

@@ -65,12 +65,12 @@ impl Renderer {
                 if plan.is_on(Effect::ScreenClipping) {
                     let batched = Batched::<true> { raster, batch, drawn };
                     let mut sink = ImmediateSink { batched, looks, object, transparent };
-                    faces.draw(&mut decided, stats, &mut sink);
+                    faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
                     sink.batched.draw();
                 } else {
                     let batched = Batched::<false> { raster, batch, drawn };
                     let mut sink = ImmediateSink { batched, looks, object, transparent };
-                    faces.draw(&mut decided, stats, &mut sink);
+                    faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
                     sink.batched.draw();
                 }
             }
@@ -116,7 +116,7 @@ impl Renderer {
                 self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut sink.0);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                faces.draw(&mut decided, stats, sink);
+                faces.draw(self.states[object].budget(), &mut decided, stats, sink);
             }
             self.states[object].put_decided(decided);
         }
@@ -161,7 +161,7 @@ impl Renderer {
                     object,
                     sieve,
                 };
-                faces.draw(&mut decided, stats, &mut sink);
+                faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
             }
             self.states[object].put_decided(decided);
         }

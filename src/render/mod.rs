@@ -6,7 +6,8 @@
 //! | `vertex`, `lit` | the stages of vertices: projected, lit, given what effects need; what they come to, in arrays |
 //! | `tessellate`, `edge_map` | faces split along their edges; a number for each edge |
 //! | `sift` | which faces are turned away, and which cover no pixel centre |
-//! | `face` | the stage of faces, with `clip`: near plane and guard band |
+//! | `faces` | what an object's faces are made from |
+//! | `face`, `within` | the stage of faces, with `clip`: near plane and guard band |
 //! | `bound` | how far linear shades may be from light at every pixel |
 //! | `budget` | the error budget: which shading for which triangle |
 //! | `sinks`, `visible` | what becomes of faces: drawn as they come, or kept; the ways to visible surfaces |
@@ -27,6 +28,7 @@ pub(crate) mod each_triangle;
 mod edge_map;
 mod error;
 mod face;
+mod faces;
 mod hidden_surfaces;
 mod integer;
 mod lit;

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::Stats;
 use super::budget::{Budget, Decided, Lit};
-use super::face::Faces;
+use super::faces::Faces;
 use super::lit::LitVertices;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
@@ -375,8 +375,13 @@ impl ObjectState {
             channels: stages.lighting == Lighting::Channels,
             affine: stages.mapping == Mapping::Affine,
             lights_pixels: plan.is_on(Effect::Phong),
-            budget: self.has_budget.then_some(&self.budget),
+            kernel: self.budget().map_or(Kernel::PORTABLE, Budget::kernel),
         })
+    }
+
+    /// What its faces are decided on by, if that is done for each.
+    pub(super) fn budget(&self) -> Option<&Budget> {
+        self.has_budget.then_some(&self.budget)
     }
 
     /// Its faces, seen or not.

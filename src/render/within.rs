@@ -1,9 +1,10 @@
 //! The stage of an object's faces within an error budget: each is drawn by the shading that is decided for it.
 
 use super::Stats;
-use super::budget::{Bodies, Budget, Choice, Decided, Question, Vain};
+use super::budget::{Bodies, Budget, Choice, Decided, Question, Vain, WORTH_SAMPLES};
 use super::clip::WithEffects;
-use super::face::{Face, Faces, Sink, is_turned_away};
+use super::face::{Face, Sink, is_turned_away};
+use super::faces::Faces;
 use super::sift;
 use super::vertex::Geometry;
 use crate::fixed::U8F8;
@@ -17,10 +18,6 @@ const LINEAR_SHADING: Shading = Shading::Gouraud88Reseeded;
 
 /// In pixels.
 const SMALL: u64 = 64;
-
-/// Pixels from which on it pays to light a face at some points before it is lit at all of them. (With 12 `still` takes 2 % less,
-/// and `two-lights` within 2 shades 25 % more.)
-pub(super) const WORTH_SAMPLES: u64 = 5;
 
 impl Faces<'_> {
     /// The same, with effects or without, each by the shading that is decided for it. (Every shading that there is a choice of

@@ -5,7 +5,7 @@
 //! | `face` | a triangle at the pixel: its corners, its edges, who owns a tie, what became of it |
 //! | `pixel` | [`pixel()`]: everything about one |
 //! | `trace`, `one_pixel` | the pixel's triangles, and which is seen; its byte, stage by stage |
-//! | `text`, `span_text` | the same in words |
+//! | `text`, `span_text`, `paragraph` | the account in words |
 //! | `walk` | [`Walk`]: a triangle pixel by pixel, and the registers of the loop of 1994 at each |
 //! | `row` | [`row()`]: a row's intensity and its slope, drawn and true |
 //!
@@ -30,6 +30,7 @@
 
 mod face;
 mod one_pixel;
+mod paragraph;
 mod pixel;
 mod row;
 mod span_text;

@@ -8,12 +8,12 @@ use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
 
 use mode13h::hooks::DrawnTriangle;
+use mode13h::lanes::{LANES, Lanes, Points};
 use mode13h::palette::Table;
 use mode13h::raster::effects::{Attributes, Lighting, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use mode13h::raster::{DrawStats, Frame, Raster, Rect, Vertex};
 use mode13h::render::Screen;
 use mode13h::span::Kernel;
-use mode13h::span::lit::{LANES, Lanes, Points};
 use mode13h::span::texture::{Levels, Texels};
 
 /// Where the shades of a face come from.

@@ -7,6 +7,7 @@ use core::fmt;
 
 use super::face::{EdgeKind, FaceHere};
 use super::one_pixel::ShadedBy;
+use super::paragraph::Text;
 use super::pixel::{Pixel, PixelStage, Seen};
 use super::span_text::{say_account, short_account};
 use super::trace::Fate;
@@ -14,49 +15,8 @@ use mode13h::plan::Effect;
 use mode13h::raster::Interpolation;
 use mode13h::render::{FaceShading, Shading};
 
-/// Columns of text.
-const WIDTH: usize = 100;
-
-/// Columns of what stands before it.
-const LABEL: usize = 10;
-
 /// Triangles that are listed, at most.
 const LISTED: usize = 6;
-
-/// Lines that begin with a label and go on below it.
-pub(super) struct Text(String);
-
-impl Text {
-    /// A paragraph, wrapped.
-    pub(super) fn say(&mut self, label: &str, words: &str) {
-        let mut line = format!("  {label:LABEL$}");
-        let mut empty = true;
-        for word in words.split_whitespace() {
-            if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-                self.line(&line);
-                line = " ".repeat(LABEL + 2);
-                empty = true;
-            }
-            if !empty {
-                line.push(' ');
-            }
-            line += word;
-            empty = false;
-        }
-        self.line(&line);
-    }
-
-    /// One line as it is.
-    fn line(&mut self, line: &str) {
-        self.0 += line.trim_end();
-        self.0.push('\n');
-    }
-
-    /// A line behind a label, as it is.
-    fn row(&mut self, label: &str, row: &str) {
-        self.line(&format!("  {label:LABEL$}{row}"));
-    }
-}
 
 impl fmt::Display for Pixel {
     /// Lines of at most 100 columns.
