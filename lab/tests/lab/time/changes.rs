@@ -107,7 +107,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene.palette", |w, r| w.scene.palette = sometimes(r, palette)),
     seen("Scene.palette_animation", |w, r| w.scene.palette_animation = sometimes(r, |r| fade(r, palette))),
     seen("Scene.fog", |w, r| w.scene.fog = sometimes(r, fog)),
-    seen("Scene.wishes", |w, _| w.scene.preferences = Default::default()),
+    seen("Scene.preferences", |w, _| w.scene.preferences = Default::default()),
     unseen("Scene.motions", |w, r| w.scene.motions.truncate(r.within(0, 1) as usize)),
     // When a picture is taken of it, which the program asks for.
     unseen("Scene.picture", |w, r| w.scene.picture = r.unit()),
