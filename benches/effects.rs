@@ -7,12 +7,13 @@
 //! As in the table of `spans`: each round times every loop once, in a new order, and the figure is the
 //! median over the rounds. The first row is the span's fastest kernel, for comparison.
 
+use mode13h::lanes::{LANES, Points};
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::depth::{copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
 use mode13h::span::float::fill_float;
 use mode13h::span::hyperbolic::fill_quotients;
-use mode13h::span::lit::{LANES, Points, interpolate};
+use mode13h::span::lit::interpolate;
 use mode13h::span::texture::{Texels, fill_affine, fill_perspective, fill_perspective_portable};
 use mode13h::span::wide::fill_16_16;
 use mode13h::span::{Kernel, lookup};

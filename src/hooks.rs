@@ -4,22 +4,26 @@
 
 use crate::light::Light;
 use crate::mesh::Mesh;
-use crate::palette::Ramp;
 pub use crate::plan::reason::name_of;
 pub use crate::raster::shade_trace::{Accumulator, Progression, Ratio, ShadeTrace, row_of, rows_of};
-pub use crate::render::one_pixel::Bytes;
-pub use crate::render::trace::{Met, Trace};
-use crate::render::{RenderError, Renderer, Screen, Shading};
+pub use crate::render::each_triangle::{DrawnEffects, DrawnTriangle};
+use crate::render::{RenderError, Renderer, Screen, Stats};
 pub use crate::scene::object::turn;
 use crate::scene::{Object, Scene, Shared};
 
-/// Everything about the pixel (`x`, `y`), which lies inside the screen: its triangles in the order of drawing, what became
-/// of each, and the stages of those that are seen.
+/// Hands every triangle that [`Renderer::draw`] would draw to `visit`, in the order of [`Renderer::for_each_triangle`], with
+/// all that the raster would get. Returns the counts of the work, without the raster's. Nothing is drawn, and the frames that
+/// are drawn after it are those that would have been drawn without it.
 ///
 /// # Errors
-/// Those of [`Renderer::draw`].
-pub fn trace(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: u32) -> Result<Trace, RenderError> {
-    renderer.trace(scene, screen, x, y)
+/// Those of [`Renderer::draw`], before the first triangle.
+pub fn each_triangle(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    screen: Screen,
+    visit: &mut dyn FnMut(&DrawnTriangle<'_>),
+) -> Result<Stats, RenderError> {
+    renderer.each_triangle(scene, screen, visit)
 }
 
 /// Makes the plan and the vertices of a frame, and draws nothing.
@@ -40,35 +44,6 @@ pub fn set_vertex_bits(renderer: &mut Renderer, bits: u32) {
 /// default, mixes them.
 pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {
     renderer.show_channel(channel);
-}
-
-/// The shading that a scene is drawn with.
-#[must_use]
-pub fn shading_for(renderer: &Renderer, scene: &Scene) -> Shading {
-    renderer.shading_for(scene)
-}
-
-/// Sets the renderer's own shading, or leaves it to the scene. Returns what was set before.
-pub fn replace_shading(renderer: &mut Renderer, shading: Option<Shading>) -> Option<Shading> {
-    renderer.replace_shading(shading)
-}
-
-/// Whether a shading was set on this renderer, whatever the scene asks for.
-#[must_use]
-pub fn has_own_shading(renderer: &Renderer) -> bool {
-    renderer.has_own_shading()
-}
-
-/// Whether an object's faces were split in the last frame.
-#[must_use]
-pub fn is_split(renderer: &Renderer, object: usize) -> bool {
-    renderer.is_split(object)
-}
-
-/// The palette entries of a surface's shades in the last frame.
-#[must_use]
-pub fn ramp_of(renderer: &Renderer, scene: &Scene, object: usize, surface: u16) -> Ramp {
-    renderer.ramp_of(scene, object, surface)
 }
 
 /// The mesh of an object, to be kept or compared by address.

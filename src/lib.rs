@@ -7,6 +7,7 @@
 //! | module | holds | needs |
 //! |---|---|---|
 //! | [`fixed`] | the number types: 8.8 shades, 24.8 screen coordinates, 16.16; every rounding by name | – |
+//! | [`lanes`] | eight numbers at a time | – |
 //! | [`palette`] | 256 colours, ramps of shades, file formats | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
@@ -18,6 +19,7 @@
 //! | [`scene`] | objects, camera, lights, fog, motion, what is asked for | `alloc` |
 //! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
+//! | [`auto_palette`] | a palette for a scene, from what is seen of it over a round | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
 //! | `model` | a model file as a scene: mesh, textures, palette, framing | `obj`, `png` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
@@ -63,11 +65,14 @@ pub use glam;
 
 pub mod fixed;
 pub mod integer;
+pub mod lanes;
 pub mod palette;
 pub mod raster;
 pub mod span;
 pub mod vga;
 
+#[cfg(feature = "alloc")]
+pub mod auto_palette;
 #[cfg(feature = "alloc")]
 pub mod hooks;
 #[cfg(feature = "alloc")]
@@ -80,6 +85,8 @@ pub mod plan;
 pub mod render;
 #[cfg(feature = "alloc")]
 pub mod scene;
+#[cfg(feature = "alloc")]
+mod shared;
 #[cfg(feature = "alloc")]
 pub mod texture;
 #[cfg(feature = "alloc")]

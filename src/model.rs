@@ -7,9 +7,10 @@ use std::path::Path;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
+use crate::auto_palette;
 use crate::mesh::Mesh;
 use crate::mesh::obj::{self, ObjError};
-use crate::render::{RenderError, automatic};
+use crate::render::RenderError;
 use crate::scene::{Object, Scene, Shared};
 use crate::texture::{self, LoadError, Texture};
 
@@ -135,7 +136,7 @@ impl Scene {
         let has_colors = object.has_colors();
         let mut scene = Self::showing(object);
         if has_colors {
-            automatic(&scene).map_err(ModelError::Scene)?.apply(&mut scene);
+            auto_palette::of_scene(&scene).map_err(ModelError::Scene)?.apply(&mut scene);
         }
         Ok(scene)
     }

@@ -75,9 +75,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return output::print(&text);
     }
     let Some(y) = *row else { return Ok(()) };
-    let shading = drawing.shading(stage.scene.preferences.shading);
+    let accuracy = renderer.settings().resolve(&stage.scene.preferences).accuracy;
     let row = explain::row(renderer, &stage.scene, screen, y).map_err(Failure::work)?;
-    let title = format!("{name} at {at} s, row {y}, {shading}");
+    let title = format!("{name} at {at} s, row {y}, {accuracy}");
     match out {
         Some(out) => output::file(|| chart::svg(&title, &row, out)).map_err(Failure::work),
         None if *json => output::print(&pretty(&row_json(&name, at, &row))?),
@@ -158,7 +158,7 @@ fn seen_json(seen: &Seen) -> Value {
         ShadedBy::Light { normal, position, shades } => {
             json!({ "normal": normal, "position": position, "shades_256": shades })
         }
-        ShadedBy::BetweenLit { before, after } => json!({ "before_256": before, "after_256": after }),
+        ShadedBy::BetweenLit { before, after, .. } => json!({ "before_256": before, "after_256": after }),
         ShadedBy::BetweenSix(corners) => json!({ "corners_and_middles_256": corners }),
         _ => Value::Null,
     };

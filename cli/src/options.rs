@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 use mode13h::glam::Vec3;
 use mode13h::mesh::obj;
 use mode13h::palette::{Rgb, builtin};
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Shading, VertexPath};
-use mode13h::scene::{Scene, UpAxis};
+use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Settings, Shading, VertexPath};
+use mode13h::scene::{Preferences, Scene, UpAxis};
 use mode13h::span::Kernel;
 
 use crate::failure::Failure;
@@ -188,19 +188,19 @@ impl Drawing {
         (!is_name).then(|| PathBuf::from(words))
     }
 
-    /// The shading of a scene that preferences for this one.
-    pub(crate) fn shading(&self, wish: Option<Shading>) -> Shading {
-        self.shading.or(wish).unwrap_or_default()
-    }
-
     /// Whether a shading or a budget was asked for.
     pub(crate) fn chooses_shading(&self) -> bool {
-        self.shading.is_some() || self.max_error.is_some()
+        self.accuracy().is_some()
     }
 
-    /// The budget of a scene that preferences for this one, if any is asked for.
-    pub(crate) fn max_error(&self, wish: Option<f32>) -> Option<f32> {
-        self.max_error.or(wish.filter(|_| self.shading.is_none()))
+    /// How exact shades are, if that was asked for.
+    fn accuracy(&self) -> Option<Accuracy> {
+        self.max_error.map(Accuracy::WithinError).or(self.shading.map(Accuracy::Shading))
+    }
+
+    /// How exact shades of a scene with these preferences are to be.
+    pub(crate) fn accuracy_for(&self, preferences: &Preferences) -> Accuracy {
+        Settings { accuracy: self.accuracy(), ..Settings::default() }.resolve(preferences).asked
     }
 
     /// The mapping that was asked for.
@@ -216,10 +216,7 @@ impl Drawing {
         renderer.set_mapping(self.mapping);
         renderer.set_mipmaps(self.mipmaps.map(|mipmaps| mipmaps == Switch::On));
         renderer.set_vertex_path(self.vertex_path.unwrap_or_default());
-        if let Some(shading) = self.shading {
-            renderer.set_shading(shading);
-        }
-        renderer.set_max_error(self.max_error);
+        renderer.set_accuracy(self.accuracy());
         renderer
     }
 }

@@ -1,11 +1,12 @@
 //! What is shown: a model in a scene made for it, or a scene of its own.
 
+use mode13h::auto_palette::{self, AutomaticPalette};
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Material};
 use mode13h::mesh::Mesh;
 use mode13h::model::with_textures;
 use mode13h::palette::{Palette, Rgb};
-use mode13h::render::{AutomaticPalette, RenderError, automatic};
+use mode13h::render::RenderError;
 use mode13h::scene::{Camera, Motion, Moving, Object, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 
@@ -239,7 +240,7 @@ impl Turntable {
     pub(crate) fn automatic(&mut self) -> Result<&AutomaticPalette, RenderError> {
         let made = match self.automatic.take() {
             Some(made) => made,
-            None => automatic(&self.round())?,
+            None => auto_palette::of_scene(&self.round())?,
         };
         Ok(self.automatic.insert(made))
     }

@@ -41,10 +41,10 @@ pub use gif_file::GifFile;
 #[cfg(feature = "gif")]
 pub use gif_frame::GifFrame;
 #[cfg(any(feature = "png", feature = "gif"))]
-pub use picture::{Picture, PictureError, PixelShape};
+pub use picture::{MAX_SIDE, Picture, PictureError, PixelShape};
 #[cfg(feature = "png")]
 pub use png_file::{Png, png};
 #[cfg(any(feature = "png", feature = "gif"))]
-pub use scale::{MAX_SIDE, Scale, ScaleError};
+pub use scale::{Scale, ScaleError};
 #[cfg(any(feature = "png", feature = "gif"))]
 pub use y4m::{y4m_frame, y4m_header};

@@ -5,6 +5,9 @@ use std::fmt;
 
 use crate::palette::{Palette, Rgb};
 
+/// The longest side of an exported picture, in pixels.
+pub const MAX_SIDE: u16 = 16_384;
+
 /// The shape of a pixel: its width to its height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelShape {
@@ -47,7 +50,7 @@ impl<'a> Picture<'a> {
 
     /// That the sizes agree with each other and with the bytes there are.
     pub(super) fn check(&self) -> Result<(), PictureError> {
-        let limit = 1..=super::MAX_SIDE as usize;
+        let limit = 1..=MAX_SIDE as usize;
         let shape = self.shape;
         if !limit.contains(&self.width) || !limit.contains(&self.height) || shape.width == 0 || shape.height == 0 {
             return Err(PictureError::Size { width: self.width, height: self.height });
@@ -104,7 +107,7 @@ impl fmt::Display for PictureError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             PictureError::Size { width, height } => {
-                write!(f, "a picture of {width} x {height} pixels: each side must be 1 to {}", super::MAX_SIDE)
+                write!(f, "a picture of {width} x {height} pixels: each side must be 1 to {}", MAX_SIDE)
             }
             PictureError::Bytes { bytes, pitch } => {
                 write!(f, "{bytes} bytes do not hold the picture's rows at a pitch of {pitch}")

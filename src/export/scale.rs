@@ -6,10 +6,7 @@ use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
-use super::{Picture, PixelShape};
-
-/// The longest side of an exported picture, in pixels.
-pub const MAX_SIDE: u16 = 16_384;
+use super::{MAX_SIDE, Picture, PixelShape};
 
 /// How a picture is enlarged when it is exported. Each pixel of the result is one pixel of the frame, never a mixture,
 /// so that an indexed picture stays indexed.

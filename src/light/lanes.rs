@@ -7,8 +7,8 @@
 
 use super::intensity::{Lights, Reflectance, Wide};
 use super::power::Shininess;
+use crate::lanes::{LANES, Lanes, Points};
 use crate::span::Kernel;
-use crate::span::lit::{LANES, Lanes, Points};
 
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]

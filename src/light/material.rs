@@ -6,7 +6,7 @@ use super::LightResponse;
 use super::source::{is_colored, luminance};
 use crate::mesh::Surface;
 use crate::palette::{Palette, Ramp, Rgb};
-use crate::scene::Shared;
+use crate::shared::Shared;
 use crate::texture::Texture;
 
 /// Where a material's shades lie in the palette.

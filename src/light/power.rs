@@ -1,6 +1,6 @@
 //! The power of a highlight.
 
-use crate::span::lit::{LANES, Lanes};
+use crate::lanes::{LANES, Lanes};
 
 /// The greatest whole shininess that is raised to by products.
 const MOST: f64 = 1_024.0;

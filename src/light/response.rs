@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::scene::Shared;
+use crate::shared::Shared;
 
 /// A material's own answer to light: a function from the intensity that the lighting model gives, 0 to 1, to the one that
 /// is shown. It is asked wherever light is taken: at each vertex, face or pixel, on one channel or on each of three.

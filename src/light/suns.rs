@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::Beam;
-use crate::span::lit::{LANES, Lanes};
+use crate::lanes::{LANES, Lanes};
 
 /// [`both_sides`](super::both_sides) of eight normals, or of the front alone, and anything of the back: the same operations in the same order. Where it adds nothing,
 /// zero is added, which changes no sum: none is −0, as each begins at +0.

@@ -2,6 +2,7 @@
 
 use super::hidden;
 use super::reason::Reason;
+use super::stages::{Choice, Dither, Lamps, Lighting, LitAt, Stages, VertexStage};
 use super::{Decision, Effect, ObjectPlan, Overrides, Plan};
 use crate::light::{LampBeam, Light, Material, lamp_reaches};
 use crate::raster::Rect;
@@ -15,9 +16,6 @@ const AFFINE_TOLERANCE: f64 = 0.5;
 /// A face that is tilted by 60° has twice as many.
 const MIN_TEXELS: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// The shades that [`Shading::GouraudTessellated`] asks for.
-pub(crate) const MIN_TESSELLATION: f32 = 1.0;
-
 /// What decisions are made from.
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: &'a Scene,
@@ -28,8 +26,12 @@ pub(crate) struct Inputs<'a> {
     pub(crate) forced: &'a Overrides,
     /// On the 16.16 path one that it has.
     pub(crate) shading: Shading,
-    /// The budget; then the shading is the default.
+    /// The budget; then the shading is the default. None on the 16.16 path.
     pub(crate) max_error: Option<f32>,
+    /// Whether faces are to be split.
+    pub(crate) tessellates: bool,
+    /// Whether shades between two entries are to be shown as a pattern of both.
+    pub(crate) dithers: bool,
     pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
     pub(crate) mapping: Option<Mapping>,
     pub(crate) mipmaps: Option<bool>,
@@ -59,7 +61,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     plan.seen = Rect::NOWHERE;
     for (place, object) in inputs.scene.objects().iter().enumerate() {
         if !inputs.scene.is_visible(place) {
-            plan.objects.push(ObjectPlan::nothing(inputs.shading));
+            plan.objects.push(ObjectPlan::new(inputs.shading));
             continue;
         }
         let rules = Rules {
@@ -119,7 +121,8 @@ struct Rules<'a> {
 
 impl Rules<'_> {
     fn all(&self, lamps_in_range: usize) -> ObjectPlan {
-        let mut plan = ObjectPlan::nothing(self.shading);
+        let mut plan = ObjectPlan::new(self.shading);
+        let mut overridden = [false; Effect::COUNT];
         for effect in Effect::ALL {
             let mut decision = self.decision(effect, lamps_in_range, &plan);
             if effect.is_left_out() {
@@ -134,19 +137,61 @@ impl Rules<'_> {
                 && on != decision.on
                 && !(decision.on && effect.keeps_inside())
             {
-                decision = Decision { on, reason: Reason::Overrides, choice: if on { decision.choice } else { "" } };
+                decision = Decision { on, reason: Reason::Overrides, choice: forced_choice(on, decision.choice) };
+                overridden[effect.index()] = true;
             }
             plan.set(effect, decision);
         }
         if let Some(max_error) = self.inputs.max_error {
             self.keep_within(max_error, &mut plan);
         }
+        plan.stages = self.stages(&plan, |effect| plan.is_on(effect) && overridden[effect.index()]);
         plan
+    }
+
+    /// What is done for the object, by what is decided; `forced`: whether an effect is on by hand alone.
+    fn stages(&self, plan: &ObjectPlan, forced: impl Fn(Effect) -> bool) -> Stages {
+        let is_on = |effect| plan.is_on(effect);
+        let channels = is_on(Effect::RgbChannels);
+        Stages {
+            vertices: match is_on(Effect::Transform) {
+                false => VertexStage::Keep,
+                true if forced(Effect::Transform) || !self.inputs.keeps => VertexStage::MakeAnew,
+                true => VertexStage::Make,
+            },
+            nearest: self.reach.nearest,
+            lighting: match is_on(Effect::Lighting) {
+                _ if channels => Lighting::Channels,
+                false => Lighting::None,
+                true if is_on(Effect::PositionalLights) || is_on(Effect::Specular) => Lighting::All,
+                true => Lighting::Suns,
+            },
+            lit_at: if plan.shading == Shading::Flat && is_on(Effect::Lighting) {
+                LitAt::Faces
+            } else if is_on(Effect::Phong) && plan.max_error.is_none() {
+                LitAt::Pixels
+            } else {
+                LitAt::Vertices
+            },
+            lamps: match is_on(Effect::PositionalLights) {
+                false => Lamps::None,
+                true if forced(Effect::PositionalLights) => Lamps::All,
+                true => Lamps::InRange,
+            },
+            mapping: mapping(plan),
+            dither: match is_on(Effect::Dither) {
+                false => Dither::None,
+                true if forced(Effect::Dither) && !self.inputs.dithers => Dither::Neutral,
+                true => Dither::Ordered,
+            },
+            neutral_image: forced(Effect::Texture) || forced(Effect::EnvironmentMap),
+            neutral_blend: forced(Effect::Transparency),
+        }
     }
 
     /// Leaves it to a budget how faces are shaded, where that is not known for all of them.
     fn keep_within(&self, max_error: f32, plan: &mut ObjectPlan) {
-        if self.inputs.integer || !plan.is_on(Effect::Lighting) || answers_itself(self.object) {
+        if !plan.is_on(Effect::Lighting) || answers_itself(self.object) {
             return;
         }
         if self.is_lit_by_face(plan) {
@@ -233,7 +278,7 @@ impl Rules<'_> {
 
     fn hidden_surfaces(&self) -> Decision {
         let (way, reason) = self.way;
-        Decision { on: way != HiddenSurfaces::BackFaces, choice: way.name(), reason }
+        Decision { on: way != HiddenSurfaces::BackFaces, choice: Choice::HiddenSurfaces(way), reason }
     }
 
     fn lighting(&self, lamps_in_range: usize) -> Decision {
@@ -275,13 +320,13 @@ impl Rules<'_> {
         if let Some(max_error) = self.inputs.max_error {
             return match self.is_lit_by_face(before) {
                 true => Decision::off(Reason::Faceted),
-                false => Decision::on(Reason::Budget { max_error }).choosing("budget"),
+                false => Decision::on(Reason::Budget { max_error }).choosing(Choice::Budget),
             };
         }
         match self.shading {
             Shading::Flat => Decision::off(Reason::FlatAsked),
-            shading if shading.lights_pixels() => Decision::off(Reason::Asked).choosing(shading.name()),
-            shading => Decision::on(Reason::ShadesDiffer).choosing(shading.name()),
+            shading if shading.lights_pixels() => Decision::off(Reason::Asked).choosing(Choice::Shading(shading)),
+            shading => Decision::on(Reason::ShadesDiffer).choosing(Choice::Shading(shading)),
         }
     }
 
@@ -302,12 +347,12 @@ impl Rules<'_> {
             } else if self.is_lit_by_face(before) {
                 Decision::off(Reason::Faceted)
             } else {
-                Decision::on(Reason::Budget { max_error }).choosing(Shading::Phong.name())
+                Decision::on(Reason::Budget { max_error }).choosing(Choice::Shading(Shading::Phong))
             };
         }
         match self.shading {
-            shading if shading.lights_pixels() => Decision::on(Reason::Asked).choosing(shading.name()),
-            _ => Decision::off(Reason::NotAsked).choosing(""),
+            shading if shading.lights_pixels() => Decision::on(Reason::Asked).choosing(Choice::Shading(shading)),
+            _ => Decision::off(Reason::NotAsked),
         }
     }
 
@@ -315,9 +360,9 @@ impl Rules<'_> {
         // Faces are split for their shades alone.
         if !before.is_on(Effect::Lighting) {
             Decision::off(before.decision(Effect::Lighting).reason)
-        } else if self.inputs.max_error.is_some() && !self.inputs.integer {
+        } else if self.inputs.max_error.is_some() {
             Decision::off(Reason::LeftToBudget)
-        } else if self.shading == Shading::GouraudTessellated || self.scene.preferences.tessellation.is_some() {
+        } else if self.inputs.tessellates {
             Decision::on(Reason::Asked)
         } else {
             Decision::off(Reason::NotAsked)
@@ -326,16 +371,16 @@ impl Rules<'_> {
 
     fn perspective(&self) -> Decision {
         if !self.object.materials.iter().any(|material| material.texture.is_some()) {
-            return Decision::off(Reason::NoTexture).choosing("");
+            return Decision::off(Reason::NoTexture);
         }
         let texels = self.affine_error();
         match self.inputs.mapping {
-            Some(Mapping::Affine) => Decision::off(Reason::Asked).choosing(Mapping::Affine.name()),
-            Some(mapping) => Decision::on(Reason::Asked).choosing(mapping.name()),
+            Some(Mapping::Affine) => Decision::off(Reason::Asked).choosing(Choice::Mapping(Mapping::Affine)),
+            Some(mapping) => Decision::on(Reason::Asked).choosing(Choice::Mapping(mapping)),
             None if texels > AFFINE_TOLERANCE => {
-                Decision::on(Reason::AffineError { texels }).choosing(Mapping::Perspective.name())
+                Decision::on(Reason::AffineError { texels }).choosing(Choice::Mapping(Mapping::Perspective))
             }
-            None => Decision::off(Reason::AffineError { texels }).choosing(Mapping::Affine.name()),
+            None => Decision::off(Reason::AffineError { texels }).choosing(Choice::Mapping(Mapping::Affine)),
         }
     }
 
@@ -373,10 +418,10 @@ impl Rules<'_> {
             Some(asked) => (asked, Reason::Asked),
             None => (texels > MIN_TEXELS, Reason::TexelsToPixel { texels }),
         };
-        let affine = [Mapping::Affine.name(), ""].contains(&before.decision(Effect::Perspective).choice);
-        match on {
-            true => Decision::on(reason).choosing(if affine { "per face" } else { "per 16 pixels" }),
-            false => Decision::off(reason),
+        match (on, mapping(before)) {
+            (true, Mapping::Affine) => Decision::on(reason).choosing(Choice::LevelPerFace),
+            (true, _) => Decision::on(reason).choosing(Choice::LevelPer16Pixels),
+            (false, _) => Decision::off(reason),
         }
     }
 
@@ -392,7 +437,7 @@ impl Rules<'_> {
     }
 
     fn dither(&self, before: &ObjectPlan) -> Decision {
-        if !self.scene.preferences.dither {
+        if !self.inputs.dithers {
             Decision::off(Reason::NotAsked)
         } else if before.is_on(Effect::Phong)
             && self.shading == Shading::PhongTable
@@ -400,7 +445,7 @@ impl Rules<'_> {
         {
             Decision::off(Reason::WholeShades)
         } else {
-            Decision::on(Reason::Asked).choosing("ordered 8 x 8")
+            Decision::on(Reason::Asked).choosing(Choice::Ordered8x8)
         }
     }
 
@@ -409,6 +454,25 @@ impl Rules<'_> {
             Some(material) => Decision::on(Reason::MaterialHas { material }),
             None => Decision::off(Reason::NoMaterialHas),
         }
+    }
+}
+
+/// What is chosen of an effect that is switched by hand. Where the plan would have textures affine, perspective that is
+/// switched on is exact at every pixel.
+fn forced_choice(on: bool, planned: Choice) -> Choice {
+    match planned {
+        _ if !on => Choice::Only,
+        Choice::Mapping(Mapping::Affine) => Choice::Mapping(Mapping::Perspective),
+        planned => planned,
+    }
+}
+
+/// How texture coordinates run.
+fn mapping(plan: &ObjectPlan) -> Mapping {
+    match plan.decision(Effect::Perspective).choice {
+        _ if !plan.is_on(Effect::Perspective) => Mapping::Affine,
+        Choice::Mapping(mapping) => mapping,
+        _ => Mapping::Perspective,
     }
 }
 

@@ -4,6 +4,9 @@
 //! |---|---|
 //! | `effect` | [`Effect`]: the list, and what each may change |
 //! | `reason` | [`Reason`]: the reasons |
+//! | `stages` | what is done for an object, as values; [`Choice`] |
+//! | `face_shading` | [`FaceShading`]: how a face is shaded |
+//! | `findings` | [`Findings`]: what drawing found out, in words |
 //! | `decide` | the rules, a function an effect |
 //! | `hidden` | which way to leave out hidden surfaces |
 //!
@@ -14,42 +17,49 @@
 
 mod decide;
 mod effect;
+mod face_shading;
+mod findings;
 mod hidden;
 pub(crate) mod reason;
+pub(crate) mod stages;
 
 use alloc::string::String;
 use alloc::vec::Vec;
 
 pub use effect::{Class, Effect, UnknownEffect};
+pub use face_shading::FaceShading;
+pub use findings::{FaceCounts, Findings};
 pub use reason::Reason;
+pub use stages::Choice;
 
-pub(crate) use decide::{Change, Inputs, MIN_TESSELLATION, answers_itself, decide};
+pub(crate) use decide::{Change, Inputs, answers_itself, decide};
 pub(crate) use hidden::far_to_near;
 
+use self::stages::{Dither, Lamps, Lighting, LitAt, Stages, VertexStage};
 use crate::raster::Rect;
-use crate::scene::{HiddenSurfaces, Scene, Shading};
+use crate::scene::{HiddenSurfaces, Mapping, Scene, Shading};
 
 /// One decision.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Decision {
     /// Whether the effect is on.
     pub on: bool,
-    /// Of several ways to do it, which; empty where there is but one.
-    pub choice: &'static str,
+    /// Of several ways to do it, which.
+    pub choice: Choice,
     /// Why.
     pub reason: Reason,
 }
 
 impl Decision {
     pub(crate) const fn on(reason: Reason) -> Self {
-        Self { on: true, choice: "", reason }
+        Self { on: true, choice: Choice::Only, reason }
     }
 
     pub(crate) const fn off(reason: Reason) -> Self {
-        Self { on: false, choice: "", reason }
+        Self { on: false, choice: Choice::Only, reason }
     }
 
-    pub(crate) const fn choosing(self, choice: &'static str) -> Self {
+    pub(crate) const fn choosing(self, choice: Choice) -> Self {
         Self { choice, ..self }
     }
 }
@@ -60,12 +70,30 @@ pub struct ObjectPlan {
     decisions: [Decision; Effect::COUNT],
     shading: Shading,
     max_error: Option<f32>,
+    stages: Stages,
 }
 
 impl ObjectPlan {
-    /// No effect: an object that is not drawn.
-    pub(crate) fn nothing(shading: Shading) -> Self {
-        Self { decisions: [Decision::off(Reason::SceneHasNone); Effect::COUNT], shading, max_error: None }
+    /// Nothing is decided yet; an object that is not drawn.
+    fn new(shading: Shading) -> Self {
+        let stages = Stages {
+            vertices: VertexStage::MakeAnew,
+            nearest: 0.0,
+            lighting: Lighting::None,
+            lit_at: LitAt::Vertices,
+            lamps: Lamps::None,
+            mapping: Mapping::Affine,
+            dither: Dither::None,
+            neutral_image: false,
+            neutral_blend: false,
+        };
+        let decisions = [Decision::off(Reason::SceneHasNone); Effect::COUNT];
+        Self { decisions, shading, max_error: None, stages }
+    }
+
+    /// What is done for the object.
+    pub(crate) fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     /// The decision on an effect.
@@ -166,8 +194,10 @@ impl Plan {
         if Effect::HiddenSurfaces.is_left_out() { HiddenSurfaces::BackFaces } else { self.hidden_surfaces }
     }
 
-    /// Whether the plan chose how hidden surfaces are left out, and nobody asked for it.
-    pub(crate) fn is_chosen(&self) -> bool {
+    /// Whether the plan chose how hidden surfaces are left out, and nobody asked for it. Then an object that is painted far
+    /// to near is convex, and its faces are drawn in any order.
+    #[must_use]
+    pub fn is_chosen(&self) -> bool {
         self.chosen
     }
 
@@ -192,12 +222,26 @@ impl Plan {
     /// Every decision in words: object by object, in the order of [`Effect::ALL`].
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<Row> {
+        self.rows_with(scene, |_| Findings::default())
+    }
+
+    /// Every decision in words, and what drawing found out about each object.
+    #[must_use]
+    pub fn rows_with(&self, scene: &Scene, findings: impl Fn(usize) -> Findings) -> Vec<Row> {
         let mut rows = Vec::with_capacity(self.objects.len() * Effect::COUNT);
         for (place, plan) in self.objects.iter().enumerate() {
+            let findings = findings(place);
             for effect in Effect::ALL {
                 let Decision { on, choice, reason } = *plan.decision(effect);
-                let (object, reason) = (reason::name_of(scene, place), reason.words(scene, place));
-                rows.push(Row { place, object, effect, on, choice, reason });
+                let reason = reason.words(scene, place) + &findings.words(effect, on);
+                rows.push(Row {
+                    place,
+                    object: reason::name_of(scene, place),
+                    effect,
+                    on,
+                    choice: choice.name(),
+                    reason,
+                });
             }
         }
         rows

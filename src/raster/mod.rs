@@ -46,6 +46,7 @@ pub mod clip;
 #[doc(hidden)]
 pub mod cover;
 pub mod depth;
+mod draw_stats;
 #[cfg(feature = "embedded-graphics")]
 mod draw_target;
 #[doc(hidden)]
@@ -81,9 +82,10 @@ pub mod wide;
 
 pub use batch::Batch;
 pub use depth::DepthBuffer;
+pub use draw_stats::DrawStats;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;
 pub use frame::{Frame, FrameError, Rect};
 pub use interpolation::Interpolation;
-pub use triangle::{DrawStats, Raster};
+pub use triangle::Raster;
 pub use vertex::{Vertex, VertexError};

@@ -6,12 +6,12 @@ use core::ops::Range;
 
 use super::cover::{Row, SortedTriangle};
 use super::depth::{Cell, DepthPlane};
+use super::draw_stats::DrawStats;
 #[cfg(feature = "alloc")]
 use super::float::FloatPlane;
 use super::hyperbolic::HyperbolicPlane;
 use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
-use super::triangle::DrawStats;
 use super::vintage::{PeriodTriangle, Ramp};
 use super::wide::ShadePlane16;
 #[cfg(feature = "alloc")]

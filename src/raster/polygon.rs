@@ -29,11 +29,12 @@ use core::fmt;
 
 use super::cover::point;
 use super::depth::Cell;
+use super::draw_stats::DrawStats;
 use super::frame::Rect;
 use super::interpolation::Interpolation;
 use super::quotient::Divisor;
 use super::shade::RESEED;
-use super::triangle::{DrawStats, Raster};
+use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 

@@ -2,57 +2,13 @@
 
 use super::cover::{Row, SortedTriangle};
 use super::depth::{Cell, DepthBuffer, DepthPlane};
+use super::draw_stats::DrawStats;
 use super::frame::{Frame, Rect};
 use super::interpolation::Interpolation;
 use super::paint::RowShader;
 use super::vertex::Vertex;
 use super::vintage::PeriodTriangle;
 use crate::span::Kernel;
-
-/// What drawing a triangle came to.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-pub struct DrawStats {
-    /// Spans handed to a pixel loop, pieces between two starts counted each.
-    pub spans: u32,
-    /// Pixels covered inside the clip rectangle.
-    pub covered: u32,
-    /// Pixels written: those covered, less those behind what the depth buffer holds.
-    pub pixels: u32,
-    /// Pixels whose depth was compared with the depth buffer's.
-    pub tested: u32,
-    /// Pixels that got a texel.
-    pub textured: u32,
-    /// Pixels whose texel is of a level that was chosen for them, level 0 among them.
-    pub mipmapped: u32,
-    /// Pixels that got a threshold of the dither pattern.
-    pub dithered: u32,
-    /// Pixels looked up in a fog table.
-    pub fogged: u32,
-    /// Pixels looked up in a table with what was behind them.
-    pub blended: u32,
-    /// Pixels mixed from three channels.
-    pub mixed: u32,
-    /// Pixels that were lit each for itself.
-    pub lit: u32,
-}
-
-impl core::ops::AddAssign for DrawStats {
-    /// Counts wrap at 2³²; a frame of 4,096 × 4,096 would have to be filled 256 times over.
-    fn add_assign(&mut self, other: Self) {
-        let add = |count: &mut u32, more: u32| *count = count.wrapping_add(more);
-        add(&mut self.spans, other.spans);
-        add(&mut self.covered, other.covered);
-        add(&mut self.pixels, other.pixels);
-        add(&mut self.tested, other.tested);
-        add(&mut self.textured, other.textured);
-        add(&mut self.mipmapped, other.mipmapped);
-        add(&mut self.dithered, other.dithered);
-        add(&mut self.fogged, other.fogged);
-        add(&mut self.blended, other.blended);
-        add(&mut self.mixed, other.mixed);
-        add(&mut self.lit, other.lit);
-    }
-}
 
 /// Draws triangles into a frame: inside a clip rectangle, with a depth buffer if there is one, with
 /// a span kernel of choice.

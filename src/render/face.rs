@@ -7,45 +7,46 @@
 use super::Stats;
 use super::budget::{Budget, Decided};
 use super::clip::{Carried, Corner, WithEffects, clip};
+use super::faces::Faces;
 use super::lit::{LitVertex, LitVertices};
 use super::paint::SurfaceMaterial;
 use super::sift::listed::Listed;
 use super::sift::{self, Sieve, Sifted};
-use super::vertex::{Geometry, VertexAttributes};
+use super::vertex::Geometry;
 use crate::fixed::U8F8;
-use crate::light::{Lights, both_sides};
+use crate::light::both_sides;
 use crate::mesh::normals::face_normal;
+use crate::plan::FaceShading;
 use crate::raster::batch::numbered::{Numbered, TURNED};
-use crate::raster::effects::{Attributes, SampleSpacing};
+use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
-use crate::scene::Shading;
-use crate::view::{Homogeneous, ObjectView};
+use crate::view::Homogeneous;
 
-/// How a face with effects is shaded.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(super) struct ShadeMode {
-    pub(super) shading: Shading,
-    /// Of a shading that lights pixels.
-    pub(super) sampling: LightSampling,
+/// A face of the geometry that is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// Its index in the mesh, or in what splitting made of it.
+    pub(super) index: u32,
+    /// Its vertices.
+    pub(super) indices: [u32; 3],
+    pub(super) surface: u16,
+    pub(super) back_facing: bool,
 }
 
-/// Where a face takes light whose pixels need some.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(super) enum LightSampling {
-    #[default]
-    Pixels,
-    /// At pixels of a row that lie apart, linear between.
-    Every(SampleSpacing),
-    /// At its corners and the middles of its edges, quadratic between.
-    SixPoints,
-}
-
-/// Takes faces as they are to be drawn.
+/// Takes faces as they are to be drawn, each with its index in the mesh or in what splitting made of it. The parts of a face
+/// that is clipped have the face's index.
 pub(super) trait Sink {
     /// A face without effects.
-    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation);
+    fn plain(&mut self, face: u32, vertices: &[Vertex; 3], interpolation: Interpolation);
     /// A face whose pixels pass through stages, the number of its surface, and what shades it.
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode);
+    fn with_effects(
+        &mut self,
+        face: u32,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        surface: u16,
+        shading: FaceShading,
+    );
     /// What faces may be left out by, if any: those that cover no pixel centre.
     fn sieve(&self) -> Option<Sieve> {
         None
@@ -58,45 +59,12 @@ pub(super) trait Sink {
     fn numbered(&mut self, _: &Numbered<'_>, _: &[u32], _: Interpolation) {}
 }
 
-/// One object in one frame.
-pub(super) struct Faces<'a> {
-    pub(super) shading: Shading,
-    pub(super) geometry: Geometry<'a>,
-    pub(super) view: &'a ObjectView,
-    pub(super) lights: Lights<'a>,
-    /// One for each surface of the mesh.
-    pub(super) paints: &'a [SurfaceMaterial],
-    pub(super) lit: &'a LitVertices,
-    /// As many, if there are effects.
-    pub(super) extras: &'a [VertexAttributes],
-    /// Whether faces that are turned away are left out.
-    pub(super) culls: bool,
-    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. Turned away, such a
-    /// face is left out even where others show their backs: the other one has the same depth, and looks toward the eye.
-    pub(super) twins: &'a [u64],
-    /// Whether any light falls on it.
-    pub(super) is_lit: bool,
-    /// Whether its shades run: else each surface has one.
-    pub(super) runs: bool,
-    /// Whether there are lamps or highlights.
-    pub(super) full: bool,
-    /// Whether faces are lit, each on one channel or on three, and not vertices.
-    pub(super) flat: bool,
-    pub(super) channels: bool,
-    /// Whether texture coordinates are linear on the screen.
-    pub(super) affine: bool,
-    /// Whether pixels may be lit each for itself.
-    pub(super) lights_pixels: bool,
-    /// What faces are decided on by, if that is done for each.
-    pub(super) budget: Option<&'a Budget>,
-}
-
 impl Faces<'_> {
-    /// Hands the faces that are to be drawn to `sink`. `decided` is what a budget led to, for each face.
-    pub(super) fn draw(&self, decided: &mut Decided, stats: &mut Stats, sink: &mut impl Sink) {
+    /// Hands the faces that are to be drawn to `sink`. With a budget each is decided on; `decided` is what that led to.
+    pub(super) fn draw(&self, budget: Option<&Budget>, decided: &mut Decided, stats: &mut Stats, sink: &mut impl Sink) {
         stats.faces += self.geometry.triangles.len() as u64;
         let effects = !self.extras.is_empty();
-        if let Some(budget) = self.budget {
+        if let Some(budget) = budget {
             let decided = (budget, decided);
             return match (self.culls, effects) {
                 (false, false) => self.each_within::<false, false>(decided, stats, sink),
@@ -112,7 +80,7 @@ impl Faces<'_> {
             (false, true) => self.each::<false, true>(stats, sink),
             (true, true) => self.each::<true, true>(stats, sink),
         }
-        stats.shares.add(self.shading, stats.drawn - before);
+        stats.shares.add(self.shading.into(), stats.drawn - before);
     }
 
     /// Which of a chunk of up to 64 triangles lie back to back with others.
@@ -146,7 +114,7 @@ impl Faces<'_> {
     fn each<const CULLS: bool, const EFFECTS: bool>(&self, stats: &mut Stats, sink: &mut impl Sink) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         let (sieve, exact_cover) = (sink.sieve(), self.shading.interpolation().has_exact_cover());
-        let one_shading = exact_cover && self.runs && !(self.flat && self.is_lit);
+        let one_shading = exact_cover && self.runs && !self.lit_by_face;
         let mut listed = if one_shading { self.listed::<EFFECTS>(sink, self.shading.interpolation()) } else { None };
         let chunks = triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST));
         for (chunk, (triangles, surfaces)) in chunks.enumerate() {
@@ -170,23 +138,26 @@ impl Faces<'_> {
                 left &= left - 1;
                 let (indices, surface) = (triangles[at], surfaces[at]);
                 let is = |bits: u64| bits >> at & 1 == 1;
+                let back_facing = !CULLS && is(sifted.back);
+                // Fewer than 2³² faces.
+                let index = (chunk * sift::MOST + at) as u32;
+                let face = Face { index, indices, surface, back_facing };
                 if is(sifted.clipped) {
                     let corners = indices.map(|i| self.lit.get(i as usize));
                     if CULLS || !is(self.twins_of(chunk)) {
-                        self.clipped::<CULLS, EFFECTS>(indices, surface, &corners, stats, sink);
+                        self.clipped::<CULLS, EFFECTS>(face, &corners, stats, sink);
                     } else {
-                        self.clipped::<true, EFFECTS>(indices, surface, &corners, stats, sink);
+                        self.clipped::<true, EFFECTS>(face, &corners, stats, sink);
                     }
                     continue;
                 }
-                let turned = !CULLS && is(sifted.back);
-                let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
+                let vertices = indices.map(|i| self.lit.vertex(i as usize, back_facing));
                 if EFFECTS && self.paints[usize::from(surface)].has_effects {
-                    let attributes = indices.map(|i| self.extras[i as usize].side(turned));
-                    self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
+                    let attributes = indices.map(|i| self.extras[i as usize].side(back_facing));
+                    self.hand_on(face, (vertices, attributes), stats, sink);
                 } else {
-                    let interpolation = self.interpolation(indices, surface, turned, stats);
-                    sink.plain(&vertices, interpolation);
+                    let interpolation = self.interpolation(face, stats);
+                    sink.plain(index, &vertices, interpolation);
                 }
             }
         }
@@ -214,26 +185,28 @@ impl Faces<'_> {
     #[inline(never)]
     fn clipped<const CULLS: bool, const EFFECTS: bool>(
         &self,
-        indices: [u32; 3],
-        surface: u16,
+        face: Face,
         corners: &[LitVertex; 3],
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
+        let Face { indices, surface, .. } = face;
         let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
-        let turned = !CULLS && is_turned_away(&at);
+        let back_facing = !CULLS && is_turned_away(&at);
+        let face = Face { back_facing, ..face };
+        let sides = |interpolation| (interpolation, back_facing);
         if EFFECTS && self.paints[usize::from(surface)].has_effects {
-            let carried =
-                indices.map(|i| WithEffects { attributes: self.extras[i as usize].side(turned), affine: self.affine });
+            let attributes = |i: u32| self.extras[i as usize].side(back_facing);
+            let carried = indices.map(|i| WithEffects { attributes: attributes(i), affine: self.affine });
             let interpolation = self.shading.interpolation();
-            self.parts::<CULLS, _>(at, corners, carried, (interpolation, turned), stats, |vertices, carried, stats| {
+            self.parts::<CULLS, _>(at, corners, carried, sides(interpolation), stats, |vertices, carried, stats| {
                 let attributes = carried.map(|carried| carried.attributes);
-                self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
+                self.hand_on(face, (vertices, attributes), stats, sink);
             });
         } else {
-            let interpolation = self.interpolation(indices, surface, turned, stats);
-            self.parts::<CULLS, _>(at, corners, [(); 3], (interpolation, turned), stats, |vertices, _, _| {
-                sink.plain(&vertices, interpolation)
+            let interpolation = self.interpolation(face, stats);
+            self.parts::<CULLS, _>(at, corners, [(); 3], sides(interpolation), stats, |vertices, _, _| {
+                sink.plain(face.index, &vertices, interpolation)
             });
         }
     }
@@ -271,63 +244,57 @@ impl Faces<'_> {
     /// Hands on a face with effects; its one shade, where it has but one, is put into its corners here.
     fn hand_on(
         &self,
-        indices: [u32; 3],
-        surface: u16,
-        turned: bool,
+        face: Face,
         (mut vertices, mut attributes): ([Vertex; 3], [Attributes; 3]),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
-        if self.flat && self.is_lit {
+        if self.lit_by_face {
             stats.lit += 1;
-            let (centre, normal) = self.face(indices);
-            let paint = &self.paints[usize::from(surface)];
             if self.channels {
+                let (centre, normal) = self.middle(face.indices);
+                let paint = &self.paints[usize::from(face.surface)];
                 let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
-                let channels = SurfaceMaterial::channels(if turned { back } else { front });
+                let channels = SurfaceMaterial::channels(if face.back_facing { back } else { front });
                 let channels = channels.map(|channel| paint.respond_on_channel(channel));
                 attributes.iter_mut().for_each(|corner| corner.channels = channels);
             } else {
-                let shade = self.face_shade(indices, surface, turned);
+                let shade = self.face_shade(face);
                 vertices = vertices.map(|vertex| vertex.with_shade(shade));
             }
         }
-        sink.with_effects(
-            &vertices,
-            &attributes,
-            surface,
-            ShadeMode { shading: self.shading, sampling: LightSampling::Pixels },
-        );
+        sink.with_effects(face.index, &vertices, &attributes, face.surface, self.shading.into());
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
     #[inline]
-    fn interpolation(&self, indices: [u32; 3], surface: u16, turned: bool, stats: &mut Stats) -> Interpolation {
-        if self.flat && self.is_lit {
+    fn interpolation(&self, face: Face, stats: &mut Stats) -> Interpolation {
+        if self.lit_by_face {
             stats.lit += 1;
-            return Interpolation::Flat(self.face_shade(indices, surface, turned).nearest());
+            return Interpolation::Flat(self.face_shade(face).nearest());
         }
         if !self.runs {
             // All corners have the same, wherever the plan says so.
-            return Interpolation::Flat(self.lit.shades[indices[0] as usize][usize::from(turned)].nearest());
+            let shades = self.lit.shades[face.indices[0] as usize];
+            return Interpolation::Flat(shades[usize::from(face.back_facing)].nearest());
         }
         self.shading.interpolation()
     }
 
     /// The one shade of a face: at its middle, by its own normal.
-    fn face_shade(&self, indices: [u32; 3], surface: u16, turned: bool) -> U8F8 {
-        let (centre, normal) = self.face(indices);
+    fn face_shade(&self, Face { indices, surface, back_facing, .. }: Face) -> U8F8 {
+        let (centre, normal) = self.middle(indices);
         let paint = &self.paints[usize::from(surface)];
         let (front, back) = if self.full {
             self.lights.one_channel(&paint.answer, centre, normal)
         } else {
             both_sides(paint.answer.ambient, paint.answer.diffuse, self.lights.suns, normal)
         };
-        paint.respond(paint.shade(if turned { back } else { front }))
+        paint.respond(paint.shade(if back_facing { back } else { front }))
     }
 
     /// The middle of a face, and its normal.
-    fn face(&self, indices: [u32; 3]) -> (glam::Vec3, glam::Vec3) {
+    fn middle(&self, indices: [u32; 3]) -> (glam::Vec3, glam::Vec3) {
         let [a, b, c] = indices.map(|i| self.geometry.positions[i as usize]);
         // A face without area has no normal; rounded, it may still cover a pixel.
         let normal = face_normal(a, b, c).unwrap_or(self.geometry.normals[indices[0] as usize]);

@@ -38,7 +38,7 @@ impl Renderer {
         }
         self.depths = depths;
         // Those of the 16.16 path are not counted one by one.
-        stats.shares.complete(stats.shading, stats.drawn);
+        stats.shares.complete(stats.shading.into(), stats.drawn);
     }
 
     /// Draws each face as it comes, then those that shine through.
@@ -54,7 +54,7 @@ impl Renderer {
             let mut decided = self.states[object].take_decided();
             let looks =
                 Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
-            if self.vertex_path == VertexPath::Integer {
+            if self.settings.vertex_path == VertexPath::Integer {
                 let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
                 let mut plain = |vertices: &[Vertex; 3], interpolation| batched.triangle(vertices, interpolation);
                 integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
@@ -65,12 +65,12 @@ impl Renderer {
                 if plan.is_on(Effect::ScreenClipping) {
                     let batched = Batched::<true> { raster, batch, drawn };
                     let mut sink = ImmediateSink { batched, looks, object, transparent };
-                    faces.draw(&mut decided, stats, &mut sink);
+                    faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
                     sink.batched.draw();
                 } else {
                     let batched = Batched::<false> { raster, batch, drawn };
                     let mut sink = ImmediateSink { batched, looks, object, transparent };
-                    faces.draw(&mut decided, stats, &mut sink);
+                    faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
                     sink.batched.draw();
                 }
             }
@@ -96,7 +96,7 @@ impl Renderer {
             Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         for &(_, place) in &self.far_to_near {
             let face = &self.transparent[place];
-            stats.raster += looks.with((face.object, face.surface, face.manner), |look| {
+            stats.raster += looks.with((face.object, face.surface, face.shading), |look| {
                 raster.triangle_with_effects(&face.vertices, &face.attributes, look)
             });
         }
@@ -112,11 +112,11 @@ impl Renderer {
     ) {
         for &object in &self.plan.order {
             let mut decided = self.states[object].take_decided();
-            if self.vertex_path == VertexPath::Integer {
+            if self.settings.vertex_path == VertexPath::Integer {
                 self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut sink.0);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                faces.draw(&mut decided, stats, sink);
+                faces.draw(self.states[object].budget(), &mut decided, stats, sink);
             }
             self.states[object].put_decided(decided);
         }
@@ -137,7 +137,7 @@ impl Renderer {
         transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
         for &object in &self.plan.order {
             let mut decided = self.states[object].take_decided();
-            if self.vertex_path == VertexPath::Integer {
+            if self.settings.vertex_path == VertexPath::Integer {
                 let mut plain = |vertices: &[Vertex; 3], interpolation| {
                     triangles.push((*vertices, interpolation));
                     places.push(None);
@@ -161,7 +161,7 @@ impl Renderer {
                     object,
                     sieve,
                 };
-                faces.draw(&mut decided, stats, &mut sink);
+                faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
             }
             self.states[object].put_decided(decided);
         }
@@ -193,7 +193,7 @@ impl Renderer {
             };
             batched.draw();
             let face = &self.kept[place as usize];
-            *batched.drawn += looks.with((face.object, face.surface, face.manner), |look| {
+            *batched.drawn += looks.with((face.object, face.surface, face.shading), |look| {
                 batched.raster.triangle_with_effects(vertices, &face.attributes, look)
             });
         }
@@ -211,7 +211,7 @@ impl Renderer {
         stats.raster += raster
             .scan_line_with(&self.triangles, scratch, |i, row, pixels, kernel, drawn| {
                 let Some(face) = places[i].and_then(|place| kept.get(place as usize)) else { return false };
-                looks.with((face.object, face.surface, face.manner), |look| {
+                looks.with((face.object, face.surface, face.shading), |look| {
                     crate::raster::effects::paint_row(
                         &face.vertices,
                         &face.attributes,

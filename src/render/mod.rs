@@ -6,46 +6,46 @@
 //! | `vertex`, `lit` | the stages of vertices: projected, lit, given what effects need; what they come to, in arrays |
 //! | `tessellate`, `edge_map` | faces split along their edges; a number for each edge |
 //! | `sift` | which faces are turned away, and which cover no pixel centre |
-//! | `face` | the stage of faces, with `clip`: near plane and guard band |
+//! | `faces` | what an object's faces are made from |
+//! | `face`, `within` | the stage of faces, with `clip`: near plane and guard band |
 //! | `bound` | how far linear shades may be from light at every pixel |
 //! | `budget` | the error budget: which shading for which triangle |
 //! | `sinks`, `visible` | what becomes of faces: drawn as they come, or kept; the ways to visible surfaces |
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
+//! | `settings` | how a renderer is set; what a scene is drawn by, and who chose that |
 //! | `stats` | what a frame came to |
-//! | `trace`, `one_pixel` | one pixel of a frame: its faces; its byte, stage by stage |
-//! | `automatic` | a palette for a scene, from what is seen of it over a round |
+//! | `each_triangle` | every triangle of a frame with all that the raster would get, for the laboratory |
 //!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed,
 //! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
 //! be and left out where they are turned away; the [`raster`](crate::raster) draws what is left.
 
-mod automatic;
 mod bound;
 mod budget;
 mod clip;
+pub(crate) mod each_triangle;
 mod edge_map;
 mod error;
 mod face;
+mod faces;
 mod hidden_surfaces;
 mod integer;
 mod lit;
 mod object;
-pub(crate) mod one_pixel;
 mod paint;
 mod pipelines;
 mod pixel_light;
+mod settings;
 mod sift;
 mod sinks;
 mod stats;
 mod tables;
 mod tessellate;
-pub(crate) mod trace;
 mod vertex;
 mod vertex_path;
 mod within;
 
-use alloc::format;
 use alloc::vec::Vec;
 use core::mem;
 
@@ -54,21 +54,20 @@ use self::object::ObjectState;
 use self::sinks::{DeferredFace, ForEachSink};
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
-use crate::plan::{self, Change, Effect, Inputs, Overrides, Plan, decide};
+pub use crate::plan::FaceShading;
+use crate::plan::{self, Change, Effect, Findings, Inputs, Plan, decide};
 use crate::raster::scan_line::Lists;
 use crate::raster::{Frame, Interpolation, Vertex};
+use crate::scene::Scene;
 pub use crate::scene::{HiddenSurfaces, Mapping, Shading, UnknownHiddenSurfaces, UnknownMapping, UnknownShading};
-use crate::scene::{Preferences, Scene};
 use crate::span::Kernel;
 use crate::vga::Vga;
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
-pub use automatic::{AutomaticPalette, Seen, automatic, seen};
 pub use error::RenderError;
 use error::check;
-pub use one_pixel::ShadedBy;
+pub use settings::{Accuracy, ChosenBy, Resolved, Settings};
 pub use stats::{Shares, Stats};
-pub use trace::Fate;
 pub use vertex_path::{UnknownVertexPath, VertexPath};
 
 /// What the frame that was drawn last depends on, beside its objects.
@@ -77,8 +76,7 @@ struct Drawing {
     screen: Screen,
     background: u8,
     hidden_surfaces: HiddenSurfaces,
-    mapping: Option<Mapping>,
-    preferences: Preferences,
+    settings: Resolved,
     order: Vec<usize>,
     /// As tables are made from it, and ramps lie in it.
     palette: Option<Palette>,
@@ -91,16 +89,10 @@ const VERTEX_BITS: u32 = 8;
 /// do not change; the bytes are those of a new renderer.
 #[derive(Debug)]
 pub struct Renderer {
-    shading: Option<Shading>,
-    max_error: Option<f32>,
-    mapping: Option<Mapping>,
-    mipmaps: Option<bool>,
-    vertex_path: VertexPath,
+    settings: Settings,
     /// Bits after the point of projected vertices; 8 as the raster has them.
     vertex_bits: u32,
     kernel: Kernel,
-    hidden_surfaces: Option<HiddenSurfaces>,
-    forced: Overrides,
     views: Vec<ObjectView>,
     change: Vec<Change>,
     states: Vec<ObjectState>,
@@ -128,15 +120,9 @@ impl Renderer {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            shading: None,
-            max_error: None,
-            mapping: None,
-            mipmaps: None,
-            vertex_path: VertexPath::default(),
+            settings: Settings::default(),
             vertex_bits: VERTEX_BITS,
             kernel: Kernel::fastest(),
-            hidden_surfaces: None,
-            forced: Overrides::default(),
             views: Vec::new(),
             change: Vec::new(),
             states: Vec::new(),
@@ -158,62 +144,46 @@ impl Renderer {
     /// A new renderer that is set as this one and draws the same bytes, for another thread.
     #[must_use]
     pub fn set_alike(&self) -> Self {
-        Self {
-            shading: self.shading,
-            max_error: self.max_error,
-            mapping: self.mapping,
-            mipmaps: self.mipmaps,
-            vertex_path: self.vertex_path,
-            kernel: self.kernel,
-            hidden_surfaces: self.hidden_surfaces,
-            forced: self.forced.clone(),
-            ..Self::new()
-        }
+        Self { settings: self.settings.clone(), kernel: self.kernel, ..Self::new() }
     }
 
-    /// Chooses the technique of shading, whatever the scene asks for, and drops a budget that was set.
-    pub fn set_shading(&mut self, shading: Shading) {
-        self.shading = Some(shading);
-        self.max_error = None;
-    }
-
-    /// Sets a budget: how many shades of error are accepted, 1/255 of full intensity each, whatever the scene asks
-    /// for. Each triangle then gets the cheapest shading that is known to keep within, and a shading that was set is dropped.
-    /// `None` leaves it to the scene.
-    ///
-    /// A number that is not above 0 and finite is an error when a scene is drawn.
-    pub fn set_max_error(&mut self, shades: Option<f32>) {
-        self.max_error = shades;
-        if shades.is_some() {
-            self.shading = None;
-        }
-    }
-
-    /// The budget that a scene is drawn by: this renderer's, or else, where no shading was set, the scene's.
+    /// How it is set.
     #[must_use]
-    pub fn max_error(&self, scene: &Scene) -> Option<f32> {
-        self.max_error.or(if self.shading.is_none() { scene.preferences.max_error } else { None })
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
-    /// The technique of shading, where it is not the scene's choice; the default's name where it is.
-    #[must_use]
-    pub fn shading(&self) -> Shading {
-        self.shading.unwrap_or_default()
+    /// Chooses how exact shades are, whatever the scene asks for; `None` leaves it to the scene. Returns what was chosen
+    /// before.
+    pub fn set_accuracy(&mut self, accuracy: Option<Accuracy>) -> Option<Accuracy> {
+        mem::replace(&mut self.settings.accuracy, accuracy)
+    }
+
+    /// Chooses a shading: sets the [accuracy](Self::set_accuracy) to [`Accuracy::Shading`]. Returns what was chosen before,
+    /// a shading or an error that is accepted, in whose place it comes.
+    pub fn set_shading(&mut self, shading: Shading) -> Option<Accuracy> {
+        self.set_accuracy(Some(Accuracy::Shading(shading)))
+    }
+
+    /// Accepts so many shades of error, 1/255 of full intensity each: sets the [accuracy](Self::set_accuracy) to
+    /// [`Accuracy::WithinError`]. Returns what was chosen before, a shading or another error, in whose place it comes.
+    pub fn set_max_error(&mut self, shades: f32) -> Option<Accuracy> {
+        self.set_accuracy(Some(Accuracy::WithinError(shades)))
     }
 
     /// Chooses how textures are mapped, whatever the scene asks for; `None` leaves it to the scene.
     pub fn set_mapping(&mut self, mapping: Option<Mapping>) {
-        self.mapping = mapping;
+        self.settings.mapping = mapping;
     }
 
     /// Gives textures mipmaps or none, whatever the scene asks for; `None` leaves it to the scene.
     pub fn set_mipmaps(&mut self, mipmaps: Option<bool>) {
-        self.mipmaps = mipmaps;
+        self.settings.mipmaps = mipmaps;
     }
 
     /// Chooses the way from mesh to vertices.
     pub fn set_vertex_path(&mut self, vertex_path: VertexPath) {
-        self.vertex_path = vertex_path;
+        self.settings.vertex_path = vertex_path;
     }
 
     /// Rounds projected vertices once more, to so many bits after the point: 8, as they are, or fewer, so to whole pixels
@@ -228,7 +198,7 @@ impl Renderer {
     /// The way from mesh to vertices.
     #[must_use]
     pub fn vertex_path(&self) -> VertexPath {
-        self.vertex_path
+        self.settings.vertex_path
     }
 
     /// Chooses the span kernel. All give the same bytes.
@@ -245,13 +215,13 @@ impl Renderer {
     /// Forces a way to leave out hidden surfaces, right or wrong; with `None`, as a new renderer has it,
     /// the cheapest that is right for the scene is taken.
     pub fn set_hidden_surfaces(&mut self, way: Option<HiddenSurfaces>) {
-        self.hidden_surfaces = way;
+        self.settings.hidden_surfaces = way;
     }
 
     /// The way that is forced, if one is.
     #[must_use]
     pub fn hidden_surfaces(&self) -> Option<HiddenSurfaces> {
-        self.hidden_surfaces
+        self.settings.hidden_surfaces
     }
 
     /// Switches an effect on or off for every object, or leaves it to the plan, as a new renderer does.
@@ -261,24 +231,13 @@ impl Renderer {
     /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
     /// image that changes nothing). Clipping stays on where the plan calls for it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
-        self.forced.set(effect, on);
+        self.settings.overrides.set(effect, on);
     }
 
     /// The same for one object, by its place in the scene, whatever holds for every object; `None` takes that back.
     /// Palette animation is on as soon as it is for one.
     pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
-        self.forced.set_for(object, effect, on);
-    }
-
-    /// The technique of shading that a scene is drawn by.
-    pub(crate) fn shading_for(&self, scene: &Scene) -> Shading {
-        let shading = self.shading.or(if self.max_error.is_none() { scene.preferences.shading } else { None });
-        shading.unwrap_or_default()
-    }
-
-    /// Chooses the technique of shading, or leaves it to the scene. Returns what was chosen before.
-    pub(crate) fn replace_shading(&mut self, shading: Option<Shading>) -> Option<Shading> {
-        mem::replace(&mut self.shading, shading)
+        self.settings.overrides.set_for(object, effect, on);
     }
 
     /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to an entry of the
@@ -301,21 +260,10 @@ impl Renderer {
     /// how many of its triangles each shading got.
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
-        let mut rows = self.plan.rows(scene);
-        for row in &mut rows {
-            if row.effect == Effect::Gouraud
-                && let Some(shares) = self.states.get(row.place).and_then(ObjectState::shares)
-            {
-                row.reason = format!("{}: {shares}", row.reason);
-            }
-            if !row.on
-                && matches!(row.effect, Effect::Phong | Effect::Tessellation)
-                && let Some(shades) = self.linear_error(scene, row.place)
-            {
-                row.reason = format!("{}; linear shades are off by at most {shades:.2}", row.reason);
-            }
-        }
-        rows
+        self.plan.rows_with(scene, |object| Findings {
+            face_counts: self.states.get(object).and_then(ObjectState::face_counts),
+            linear_error: self.linear_error(scene, object),
+        })
     }
 
     /// How far the shades of an object, by its place, may be from light at every pixel, in shades of 1/255
@@ -377,7 +325,7 @@ impl Renderer {
             vga.set_palette(palette);
         }
         match self.last {
-            Some((stamp, last)) if !changed && stamp == vga.stamp() && self.may_keep() => {
+            Some((stamp, last)) if !changed && stamp == vga.stamp() && self.settings.keeps_frames() => {
                 stats.redrawn = false;
                 stats.hidden_surfaces = last.hidden_surfaces;
                 return Ok(stats);
@@ -437,11 +385,6 @@ impl Renderer {
         Ok(())
     }
 
-    /// Whether vertices are kept from frame to frame.
-    fn may_keep(&self) -> bool {
-        self.forced.get(Effect::Transform) != Some(true)
-    }
-
     /// Checks the scene, makes the plan, and the vertices by it. Says whether anything has changed that
     /// the picture depends on.
     fn prepare(
@@ -452,39 +395,36 @@ impl Renderer {
         whole: bool,
     ) -> Result<(Stats, bool), RenderError> {
         let view = self.checked(scene, screen)?;
-        if self.vertex_path == VertexPath::Integer {
+        if self.settings.vertex_path == VertexPath::Integer {
             self.integer.prepare(scene, screen)?;
         }
-        let shading = self.decide(scene, &view, whole);
+        let settings = self.decide(scene, &view, whole);
 
-        let drawing = (screen, scene.background, self.plan.hidden_surfaces(), self.mapping, scene.preferences);
+        let drawing = (screen, scene.background, self.plan.hidden_surfaces(), settings);
         let palette = scene.palette.as_ref().or(shown);
         let same = self.drawing.as_ref().is_some_and(|last| {
-            (last.screen, last.background, last.hidden_surfaces, last.mapping, last.preferences) == drawing
+            (last.screen, last.background, last.hidden_surfaces, last.settings) == drawing
                 && last.order == self.plan.order
                 && last.palette.as_ref() == palette
         });
         let mut changed = !same;
         if !same {
-            let (screen, background, hidden_surfaces, mapping, preferences) = drawing;
+            let (screen, background, hidden_surfaces, settings) = drawing;
             // The list that is there is used again.
             let mut order = self.drawing.take().map_or_else(Vec::new, |last| last.order);
             order.clone_from(&self.plan.order);
             let palette = palette.cloned();
-            self.drawing = Some(Drawing { screen, background, hidden_surfaces, mapping, preferences, order, palette });
+            self.drawing = Some(Drawing { screen, background, hidden_surfaces, settings, order, palette });
         }
 
-        let mut stats = Stats::new(shading, self.vertex_path, self.kernel, self.plan.hidden_surfaces());
-        if self.vertex_path == VertexPath::Float {
-            stats.max_error = self.max_error(scene);
-        }
+        let mut stats = Stats::new(&settings, self.kernel, self.plan.hidden_surfaces());
         for (i, (object, state)) in scene.objects().iter().zip(&mut self.states).enumerate() {
             let plan = &self.plan.objects[i];
             if !scene.is_visible(i) {
                 state.forget();
                 continue;
             }
-            if self.vertex_path == VertexPath::Integer {
+            if self.settings.vertex_path == VertexPath::Integer {
                 changed = true;
                 state.forget();
                 continue;
@@ -505,43 +445,41 @@ impl Renderer {
     /// The view of a scene in which nothing is wrong.
     fn checked(&self, scene: &Scene, screen: Screen) -> Result<View, RenderError> {
         check(scene)?;
-        let preferences = Preferences { max_error: self.max_error(scene), ..scene.preferences };
-        preferences.check().map_err(RenderError::Preferences)?;
+        let settings = self.settings.resolve(&scene.preferences);
+        settings.to_check(&scene.preferences).check().map_err(RenderError::Preferences)?;
         View::new(&scene.camera, screen).map_err(RenderError::Camera)
     }
 
-    /// Makes the plan of a scene that has been checked. Returns the shading that shades.
-    fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Shading {
+    /// Makes the plan of a scene that has been checked. Returns what it is drawn by.
+    fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Resolved {
         self.views.clear();
         let placed = |(i, object)| ObjectView::placed(view, object, &scene.placement(i));
         self.views.extend(scene.objects().iter().enumerate().map(placed));
-        let shading = match self.vertex_path {
-            VertexPath::Integer => self.shading_for(scene).in_integers(),
-            VertexPath::Float => self.shading_for(scene),
-        };
-        let max_error = self.max_error(scene);
+        let settings = self.settings.resolve(&scene.preferences);
         self.states.resize_with(scene.objects().len(), ObjectState::default);
         self.change.clear();
         for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {
-            self.change.push(state.renew(scene, object, view, (shading, max_error)));
+            self.change.push(state.renew(scene, object, view, &settings));
         }
         let inputs = Inputs {
             scene,
             views: &self.views,
             change: &self.change,
-            forced: &self.forced,
-            shading,
-            max_error,
-            hidden_surfaces: self.hidden_surfaces.or(scene.preferences.hidden_surfaces),
-            mapping: self.mapping.or(scene.preferences.mapping),
-            mipmaps: self.mipmaps.or(scene.preferences.mipmaps),
+            forced: &self.settings.overrides,
+            shading: settings.accuracy.shading(),
+            max_error: settings.accuracy.max_error(),
+            tessellates: settings.tessellates,
+            dithers: settings.dither,
+            hidden_surfaces: settings.hidden_surfaces,
+            mapping: settings.mapping,
+            mipmaps: settings.mipmaps,
             whole,
-            integer: self.vertex_path == VertexPath::Integer,
-            keeps: self.may_keep() && self.vertex_path == VertexPath::Float,
+            integer: settings.vertex_path == VertexPath::Integer,
+            keeps: settings.keeps_vertices,
         };
         let states = &self.states;
         decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.plan);
-        shading
+        settings
     }
 
     /// Bytes that the renderer holds.

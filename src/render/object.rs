@@ -1,23 +1,24 @@
 //! What a renderer keeps of an object from frame to frame: its vertices, lit and projected, and what
 //! they were made from. As long as that stays, so do they.
 
-use alloc::string::String;
 use alloc::vec::Vec;
 
 use glam::Vec3;
 
 use super::Stats;
-use super::budget::{self, Budget, Decided, Lit};
-use super::face::Faces;
+use super::budget::{Budget, Decided, Lit};
+use super::faces::Faces;
 use super::lit::LitVertices;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
+use super::settings::{Accuracy, Resolved};
 use super::tessellate::Tessellated;
 use super::vertex::{self, Geometry, VertexAttributes};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
 use crate::palette::{Palette, Table};
-use crate::plan::{Change, Effect, MIN_TESSELLATION, ObjectPlan, Reason};
+use crate::plan::stages::{Lamps, Lighting, LitAt, VertexStage};
+use crate::plan::{Change, Effect, FaceCounts, ObjectPlan};
 use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
@@ -34,14 +35,14 @@ struct ShadeSource {
     /// As the materials' ramps depend on it.
     ramps: usize,
     fog: Option<Fog>,
-    shading: (Shading, Option<f32>),
-    tessellation: Option<f32>,
+    accuracy: Accuracy,
+    tolerance: f32,
 }
 
 impl ShadeSource {
     /// Takes on what the object is now. Says whether that is another thing than before. Nothing is
     /// allocated as long as there are no more lights or materials than before.
-    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, shading: (Shading, Option<f32>)) -> bool {
+    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Resolved) -> bool {
         let mut changed = false;
         if !Shared::ptr_eq(&self.mesh, object.shared_mesh()) {
             self.mesh = Shared::clone(object.shared_mesh());
@@ -57,8 +58,8 @@ impl ShadeSource {
         changed |= replace(&mut self.ambient, scene.ambient);
         changed |= replace(&mut self.ramps, scene.palette.as_ref().map_or(0, Palette::ramps));
         changed |= replace(&mut self.fog, scene.fog);
-        changed |= replace(&mut self.shading, shading);
-        changed | replace(&mut self.tessellation, scene.preferences.tessellation)
+        changed |= replace(&mut self.accuracy, settings.accuracy);
+        changed | replace(&mut self.tolerance, settings.tolerance)
     }
 }
 
@@ -135,16 +136,10 @@ pub(super) struct ObjectState {
 }
 
 impl ObjectState {
-    /// Takes on what the object is now, and the shading and the budget that it is drawn by. Says what became of it since its vertices were made.
-    pub(super) fn renew(
-        &mut self,
-        scene: &Scene,
-        object: &Object,
-        view: &ObjectView,
-        shading: (Shading, Option<f32>),
-    ) -> Change {
+    /// Takes on what the object is now, and what it is drawn by. Says what became of it since its vertices were made.
+    pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Resolved) -> Change {
         match &mut self.source {
-            Some(source) => self.stale |= source.renew(scene, object, view, shading),
+            Some(source) => self.stale |= source.renew(scene, object, view, settings),
             None => {
                 let mut source = ShadeSource {
                     mesh: Shared::clone(object.shared_mesh()),
@@ -155,10 +150,10 @@ impl ObjectState {
                     ambient: scene.ambient,
                     ramps: 0,
                     fog: None,
-                    shading,
-                    tessellation: None,
+                    accuracy: settings.accuracy,
+                    tolerance: settings.tolerance,
                 };
-                source.renew(scene, object, view, shading);
+                source.renew(scene, object, view, settings);
                 self.source = Some(source);
             }
         }
@@ -179,11 +174,6 @@ impl ObjectState {
         self.made_by = None;
     }
 
-    /// What a shading makes of the vertices.
-    fn is_flat(shading: Shading) -> bool {
-        shading == Shading::Flat
-    }
-
     /// Makes the vertices, if they are not those of last frame. Returns whether it did.
     pub(super) fn vertices(
         &mut self,
@@ -195,26 +185,26 @@ impl ObjectState {
         stats: &mut Stats,
     ) -> bool {
         let on = Effect::ALL.map(|effect| effect != Effect::Transform && plan.is_on(effect));
-        if !plan.is_on(Effect::Transform) && self.made_by == Some(on) {
+        let stages = plan.stages();
+        if stages.vertices == VertexStage::Keep && self.made_by == Some(on) {
             return false;
         }
         // Made again by force they are what they were. What was decided on is decided again, too, as it would be of an
         // object that moves: force is there to do, and to measure, all the work.
-        let changed = self.stale
-            || self.made_by != Some(on)
-            || matches!(plan.decision(Effect::Transform).reason, Reason::Overrides | Reason::NotKept);
+        let changed = self.stale || self.made_by != Some(on) || stages.vertices == VertexStage::MakeAnew;
         (self.made_by, self.stale) = (Some(on), false);
         let Some(source) = &self.source else { return false };
         self.paints.clear();
         let palette = scene.palette.as_ref();
         self.paints.extend(object.materials.iter().map(|m| SurfaceMaterial::new(m, scene.ambient, palette, plan)));
         self.lamps.clear();
-        if plan.is_on(Effect::PositionalLights) {
-            let forced = plan.decision(Effect::PositionalLights).reason == Reason::Overrides;
-            let bounds = object.mesh().bounds();
-            let in_range = |lamp: &&LampBeam| forced || crate::light::lamp_reaches(lamp, bounds);
-            self.lamps.extend(source.lamps.iter().filter(in_range).copied());
-        }
+        let bounds = object.mesh().bounds();
+        let falls_on_it = |lamp: &&LampBeam| match stages.lamps {
+            Lamps::None => false,
+            Lamps::InRange => crate::light::lamp_reaches(lamp, bounds),
+            Lamps::All => true,
+        };
+        self.lamps.extend(source.lamps.iter().filter(falls_on_it).copied());
         let suns = if plan.is_on(Effect::Lighting) { source.suns.as_slice() } else { &[] };
         let lights = Lights { suns, lamps: &self.lamps, eye: source.view.eye() };
 
@@ -224,9 +214,8 @@ impl ObjectState {
                 Some((mesh, points)) if Shared::ptr_eq(mesh, object.shared_mesh()) => &*points,
                 other => &other.insert((Shared::clone(object.shared_mesh()), object.mesh().points())).1,
             };
-            let tolerance = scene.preferences.tessellation.unwrap_or(MIN_TESSELLATION);
             let twins = object.mesh().twins();
-            self.tessellated.split(&geometry, (points, twins), &lights, &self.paints, tolerance);
+            self.tessellated.split(&geometry, (points, twins), &lights, &self.paints, source.tolerance);
             self.tessellated.geometry()
         } else {
             geometry
@@ -245,27 +234,23 @@ impl ObjectState {
         if self.paints.iter().any(|paint| paint.has_effects) {
             self.extras.resize(count, VertexAttributes::default());
         }
-        let channels = plan.is_on(Effect::RgbChannels);
-        let full = plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular);
-        let by_face = Self::is_flat(plan.shading()) && plan.is_on(Effect::Lighting);
-        let by_pixel = plan.is_on(Effect::Phong) && plan.max_error().is_none();
-        let by_vertex = !by_face && !by_pixel;
+        let channels = stages.lighting == Lighting::Channels;
         // Of a closed body nobody sees the back.
         let both = !plan.is_on(Effect::BackFaceCulling);
-        if !plan.is_on(Effect::Lighting) && !channels {
-            vertex::light_none(&geometry, &self.paints, &mut self.lit);
-        } else if by_vertex {
+        if stages.lighting != Lighting::None && stages.lit_at == LitAt::Vertices {
             stats.lit += count as u64;
-            if channels {
-                self.lit.leave_without_light();
-                vertex::light_channels(&geometry, &self.paints, &lights, (both, kernel), &mut self.extras);
-            } else if full {
-                vertex::light_all(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit);
-            } else {
+        }
+        match (stages.lighting, stages.lit_at) {
+            (Lighting::None, _) => vertex::light_none(&geometry, &self.paints, &mut self.lit),
+            (_, LitAt::Faces | LitAt::Pixels) => self.lit.leave_without_light(),
+            (Lighting::Suns, _) => {
                 vertex::light_suns(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit);
             }
-        } else {
-            self.lit.leave_without_light();
+            (Lighting::All, _) => vertex::light_all(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit),
+            (Lighting::Channels, _) => {
+                self.lit.leave_without_light();
+                vertex::light_channels(&geometry, &self.paints, &lights, (both, kernel), &mut self.extras);
+            }
         }
         if self.paints.iter().any(|paint| paint.response.is_some()) {
             vertex::respond(&geometry, &self.paints, &mut self.lit, &mut self.extras);
@@ -288,10 +273,7 @@ impl ObjectState {
                 geometry: &geometry,
                 whole,
                 view: &source.view,
-                nearest: match plan.decision(Effect::NearClipping).reason {
-                    Reason::Nearest { nearest, .. } => nearest,
-                    _ => source.view.reach(object.mesh().bounds()).nearest,
-                },
+                nearest: stages.nearest,
                 lights: &lights,
                 paints: &self.paints,
                 channels,
@@ -305,8 +287,8 @@ impl ObjectState {
         } else {
             self.decided.clear();
         }
-        if by_pixel {
-            if source.shading.0 == Shading::PhongTable && !channels {
+        if stages.lit_at == LitAt::Pixels {
+            if source.accuracy.shading() == Shading::PhongTable && !channels {
                 vertex::slopes(&geometry, &source.view, &mut self.extras);
                 let at = source.view.position();
                 self.tables_of_normals(scene, at, view);
@@ -379,6 +361,7 @@ impl ObjectState {
 
     /// Its faces, ready to be drawn.
     pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &ObjectPlan) -> Option<Faces<'a>> {
+        let stages = plan.stages();
         // Vertices that were not made, or are of no use, have none.
         self.made_by?;
         let source = self.source.as_ref()?;
@@ -392,16 +375,19 @@ impl ObjectState {
             extras: &self.extras,
             culls: plan.is_on(Effect::BackFaceCulling),
             twins: if self.is_tessellated { self.tessellated.twins() } else { object.mesh().twins() },
-            is_lit: plan.is_on(Effect::Lighting),
             runs: plan.is_on(Effect::Gouraud),
-            full: plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular),
-            flat: Self::is_flat(plan.shading()),
-            channels: plan.is_on(Effect::RgbChannels),
-            affine: !plan.is_on(Effect::Perspective)
-                || plan.decision(Effect::Perspective).choice == Mapping::Affine.name(),
+            full: stages.lighting == Lighting::All,
+            lit_by_face: stages.lit_at == LitAt::Faces,
+            channels: stages.lighting == Lighting::Channels,
+            affine: stages.mapping == Mapping::Affine,
             lights_pixels: plan.is_on(Effect::Phong),
-            budget: self.has_budget.then_some(&self.budget),
+            kernel: self.budget().map_or(Kernel::PORTABLE, Budget::kernel),
         })
+    }
+
+    /// What its faces are decided on by, if that is done for each.
+    pub(super) fn budget(&self) -> Option<&Budget> {
+        self.has_budget.then_some(&self.budget)
     }
 
     /// Its faces, seen or not.
@@ -420,9 +406,9 @@ impl ObjectState {
         core::mem::take(&mut self.decided)
     }
 
-    /// How many triangles a budget's choices gave to each shading, and why, in words; `None` without a budget.
-    pub(super) fn shares(&self) -> Option<String> {
-        self.has_budget.then(|| budget::shares(&self.decided))
+    /// How many triangles were shaded in which way, by a budget's choices; `None` without a budget.
+    pub(super) fn face_counts(&self) -> Option<FaceCounts> {
+        self.has_budget.then(|| self.decided.counts())
     }
 
     /// The same, as they are.

@@ -3,6 +3,7 @@
 use crate::fixed::U8F8;
 use crate::light::{Blend, LightResponse, Material, Reflectance};
 use crate::palette::{Palette, Ramp};
+use crate::plan::stages::LitAt;
 use crate::plan::{Effect, ObjectPlan};
 use crate::texture::Texture;
 
@@ -23,6 +24,7 @@ pub(super) struct SurfaceMaterial {
 
 impl SurfaceMaterial {
     pub(super) fn new(material: &Material, ambient: f32, palette: Option<&Palette>, plan: &ObjectPlan) -> Self {
+        let stages = plan.stages();
         let size = |texture: &Texture| [1_u32 << texture.width_bits(), 1 << texture.height_bits()];
         let texture_size = material.texture.as_deref().filter(|_| plan.is_on(Effect::Texture)).map(size);
         let environment_size = material
@@ -34,11 +36,9 @@ impl SurfaceMaterial {
         let channels = plan.is_on(Effect::RgbChannels);
         let image = texture_size.is_some() || environment_size.is_some();
         let everywhere = [Effect::Fog, Effect::RgbChannels, Effect::Dither].iter().any(|effect| plan.is_on(*effect))
-            || (plan.is_on(Effect::Phong) && plan.max_error().is_none());
+            || stages.lit_at == LitAt::Pixels;
         // Switched on by hand, an effect runs on every surface, with neutral input where it has none.
-        let forced = [Effect::Texture, Effect::EnvironmentMap, Effect::Transparency]
-            .iter()
-            .any(|effect| plan.is_on(*effect) && plan.decision(*effect).reason == crate::plan::Reason::Overrides);
+        let forced = stages.neutral_image || stages.neutral_blend;
         Self {
             answer: Reflectance {
                 ambient: f64::from(material.ambient) * f64::from(ambient),

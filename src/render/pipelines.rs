@@ -1,14 +1,15 @@
 //! What is done to the pixels of a surface: the plan, the material and the tables, put together.
 
 use super::budget::limits;
-use super::face::{LightSampling, ShadeMode};
 use super::object::ObjectState;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::PixelLight;
 use super::tables::{Image, Tables};
 use crate::light::{Blend, Material};
-use crate::palette::Palette;
-use crate::plan::{Effect, ObjectPlan, Plan, Reason};
+use crate::palette::{Palette, Ramp};
+use crate::plan::FaceShading;
+use crate::plan::stages::Dither;
+use crate::plan::{Effect, ObjectPlan, Plan};
 use crate::raster::DrawStats;
 use crate::raster::effects::{PixelPipeline, ShadeSource, TextureMapping, TextureStage};
 use crate::scene::{Mapping, Scene, Shading};
@@ -25,10 +26,6 @@ const NO_AMPLITUDE: [[u8; 8]; 8] = [[128; 8]; 8];
 /// The same for shades that have no half added to them.
 const NO_THRESHOLD: [[u8; 8]; 8] = [[0; 8]; 8];
 
-fn is_forced(plan: &ObjectPlan, effect: Effect) -> bool {
-    plan.is_on(effect) && plan.decision(effect).reason == Reason::Overrides
-}
-
 /// The image of a surface, if one is on: its own, or what it mirrors.
 fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &SurfaceMaterial) -> Option<Image<'a>> {
     let (texture, has_levels) = if paint.texture_size.is_some() {
@@ -39,11 +36,6 @@ fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &SurfaceMaterial)
         return None;
     };
     texture.as_ref().map(|texture| Image { texture, has_levels })
-}
-
-/// Whether an image runs on a surface that has none.
-fn neutral_image(plan: &ObjectPlan) -> bool {
-    is_forced(plan, Effect::Texture) || is_forced(plan, Effect::EnvironmentMap)
 }
 
 /// Sees to it that the tables that a frame needs are there.
@@ -70,10 +62,10 @@ pub(super) fn need(tables: &mut Tables, scene: &Scene, palette: &Palette, plan: 
             match image {
                 Some(image) if channels => tables.need_channels(image),
                 Some(image) => tables.need_shades(Some(image)),
-                None if neutral_image(plan) => tables.need_shades(None),
+                None if plan.stages().neutral_image => tables.need_shades(None),
                 None => {}
             }
-            if paint.blend != Blend::Opaque || is_forced(plan, Effect::Transparency) {
+            if paint.blend != Blend::Opaque || plan.stages().neutral_blend {
                 tables.need_blend(paint.blend);
             }
         }
@@ -95,6 +87,11 @@ impl Pipelines<'_> {
         self.states.get(object)?.paints().get(usize::from(surface))
     }
 
+    /// The palette entries of a surface's shades.
+    pub(super) fn ramp(&self, object: usize, surface: u16) -> Option<Ramp> {
+        self.paint(object, surface).map(|paint| paint.ramp)
+    }
+
     /// Whether a surface shines through.
     pub(super) fn is_transparent(&self, object: usize, surface: u16) -> bool {
         self.plan.is_on(object, Effect::Transparency)
@@ -104,7 +101,7 @@ impl Pipelines<'_> {
     /// Hands the look of a surface of an object, shaded by a shading, to `draw`. Of one that is not there, nothing is drawn.
     pub(super) fn with(
         &self,
-        (object, surface, manner): (usize, u16, ShadeMode),
+        (object, surface, shading): (usize, u16, FaceShading),
         draw: impl FnOnce(&PixelPipeline<'_>) -> DrawStats,
     ) -> DrawStats {
         let (Some(plan), Some(state), Some(paint)) =
@@ -117,8 +114,8 @@ impl Pipelines<'_> {
             return DrawStats::default();
         };
         let light = PixelLight { lights: state.lights(plan), paint, kernel: self.kernel };
-        let dither = plan.is_on(Effect::Dither);
-        let channels = plan.is_on(Effect::RgbChannels).then(|| self.tables.mix(dither));
+        let dither = plan.stages().dither;
+        let channels = plan.is_on(Effect::RgbChannels).then(|| self.tables.mix(dither != Dither::None));
         let image = image(plan, material, paint);
         let texture_look = match image {
             Some(image) => {
@@ -127,11 +124,15 @@ impl Pipelines<'_> {
                 let tables =
                     if channels.is_some() { self.tables.channels(image) } else { self.tables.shades(Some(image)) };
                 texels.zip(tables).map(|(texels, tables)| {
-                    let mapping = if paint.texture_size.is_some() { mapping(plan) } else { TextureMapping::Affine };
+                    let mapping = if paint.texture_size.is_some() {
+                        plan.stages().mapping.into()
+                    } else {
+                        TextureMapping::Affine
+                    };
                     TextureStage { texels, levels: self.tables.levels(image), mapping, tables }
                 })
             }
-            None if neutral_image(plan) && channels.is_none() => {
+            None if plan.stages().neutral_image && channels.is_none() => {
                 let texels = Texels::new(&ONE_TEXEL, 0, 0).ok();
                 texels.zip(self.tables.shades(None)).map(|(texels, tables)| TextureStage {
                     texels,
@@ -142,17 +143,17 @@ impl Pipelines<'_> {
             }
             None => None,
         };
-        let blends = paint.blend != Blend::Opaque || is_forced(plan, Effect::Transparency);
+        let blends = paint.blend != Blend::Opaque || plan.stages().neutral_blend;
         let look = PixelPipeline {
-            source: source(plan, manner, channels.is_some(), state.normal_table(surface), &light),
+            source: source(plan, shading, channels.is_some(), state.normal_table(surface), &light),
             channels,
             dither: match dither {
-                true if is_forced(plan, Effect::Dither) && !self.scene.preferences.dither => {
-                    let cut = manner.shading.interpolation().rounding() == 0 && channels.is_none();
+                Dither::Neutral => {
+                    let cut = shading.interpolation().rounding() == 0 && channels.is_none();
                     Some(if cut { &NO_THRESHOLD } else { &NO_AMPLITUDE })
                 }
-                true => Some(&BAYER),
-                false => None,
+                Dither::Ordered => Some(&BAYER),
+                Dither::None => None,
             },
             texture: texture_look,
             fog: if plan.is_on(Effect::Fog) { self.tables.fog(self.scene.fog.map(|fog| fog.color)) } else { None },
@@ -165,31 +166,28 @@ impl Pipelines<'_> {
 
 fn source<'a>(
     plan: &ObjectPlan,
-    ShadeMode { shading, sampling }: ShadeMode,
+    shading: FaceShading,
     channels: bool,
     table: Option<&'a [u8; 65_536]>,
     light: &'a PixelLight<'a>,
 ) -> ShadeSource<'a> {
     if plan.is_on(Effect::Phong) && shading.lights_pixels() {
-        return match table {
-            Some(table) if shading == Shading::PhongTable && !channels => ShadeSource::NormalTable(table),
-            _ => match sampling {
-                LightSampling::Pixels => ShadeSource::Lit(light),
-                LightSampling::Every(apart) => ShadeSource::LitEvery(apart, light),
-                LightSampling::SixPoints => ShadeSource::Curved(limits(light.paint, channels)),
-            },
+        return match (shading, table) {
+            (FaceShading::By(Shading::PhongTable), Some(table)) if !channels => ShadeSource::NormalTable(table),
+            (FaceShading::By(_), _) => ShadeSource::Lit(light),
+            (FaceShading::PhongEvery(spacing), _) => ShadeSource::LitEvery(spacing, light),
+            (FaceShading::Quadratic, _) => ShadeSource::Curved(limits(light.paint, channels)),
         };
     }
     ShadeSource::Shaded(shading.interpolation())
 }
 
-fn mapping(plan: &ObjectPlan) -> TextureMapping {
-    if !plan.is_on(Effect::Perspective) {
-        return TextureMapping::Affine;
-    }
-    if plan.decision(Effect::Perspective).choice == Mapping::Every16.name() {
-        TextureMapping::Every16
-    } else {
-        TextureMapping::Perspective
+impl From<Mapping> for TextureMapping {
+    fn from(mapping: Mapping) -> Self {
+        match mapping {
+            Mapping::Affine => Self::Affine,
+            Mapping::Every16 => Self::Every16,
+            Mapping::Perspective => Self::Perspective,
+        }
     }
 }

@@ -2,11 +2,11 @@
 
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
+use crate::lanes::{LANES, Lanes, Points};
 use crate::light::Lights;
 use crate::palette::Table;
 use crate::raster::effects::Lighting;
 use crate::span::Kernel;
-use crate::span::lit::{LANES, Lanes, Points};
 
 /// One surface of an object, lit pixel by pixel in the object's own space.
 ///

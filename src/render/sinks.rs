@@ -3,9 +3,10 @@
 
 use alloc::vec::Vec;
 
-use super::face::{ShadeMode, Sink};
+use super::face::Sink;
 use super::pipelines::Pipelines;
 use super::sift::Sieve;
+use crate::plan::FaceShading;
 use crate::raster::batch::numbered::Numbered;
 use crate::raster::effects::Attributes;
 use crate::raster::{Batch, DrawStats, Interpolation, Raster, Vertex};
@@ -17,7 +18,7 @@ pub(super) struct DeferredFace {
     pub(super) attributes: [Attributes; 3],
     pub(super) object: usize,
     pub(super) surface: u16,
-    pub(super) manner: ShadeMode,
+    pub(super) shading: FaceShading,
 }
 
 impl DeferredFace {
@@ -35,11 +36,11 @@ pub(super) fn depth_of(vertices: &[Vertex; 3]) -> u64 {
 pub(super) struct ForEachSink<F>(pub(super) F);
 
 impl<F: FnMut(&[Vertex; 3], Interpolation)> Sink for ForEachSink<F> {
-    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+    fn plain(&mut self, _: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {
         (self.0)(vertices, interpolation);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: ShadeMode) {
+    fn with_effects(&mut self, _: u32, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: FaceShading) {
         (self.0)(vertices, Interpolation::default());
     }
 }
@@ -59,7 +60,7 @@ impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
     }
 
     #[inline]
-    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+    fn plain(&mut self, _: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {
         self.batched.triangle(vertices, interpolation);
     }
 
@@ -77,16 +78,23 @@ impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
         }
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode) {
+    fn with_effects(
+        &mut self,
+        _: u32,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        surface: u16,
+        shading: FaceShading,
+    ) {
         if self.looks.is_transparent(self.object, surface) {
             let (vertices, attributes) = (*vertices, *attributes);
-            self.transparent.push(DeferredFace { vertices, attributes, object: self.object, surface, manner });
+            self.transparent.push(DeferredFace { vertices, attributes, object: self.object, surface, shading });
             return;
         }
         // In the order in which they came: of equal depths the first stays.
         self.batched.draw();
         let Batched { raster, drawn, .. } = &mut self.batched;
-        **drawn += self.looks.with((self.object, surface, manner), |look| {
+        **drawn += self.looks.with((self.object, surface, shading), |look| {
             if CLIPS {
                 raster.triangle_with_effects(vertices, attributes, look)
             } else {
@@ -150,13 +158,20 @@ impl Sink for DeferredSink<'_> {
         Some(self.sieve)
     }
 
-    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+    fn plain(&mut self, _: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {
         self.triangles.push((*vertices, interpolation));
         self.places.push(None);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode) {
-        let face = DeferredFace { vertices: *vertices, attributes: *attributes, object: self.object, surface, manner };
+    fn with_effects(
+        &mut self,
+        _: u32,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        surface: u16,
+        shading: FaceShading,
+    ) {
+        let face = DeferredFace { vertices: *vertices, attributes: *attributes, object: self.object, surface, shading };
         if self.looks.is_transparent(self.object, surface) {
             self.transparent.push(face);
             return;

@@ -2,7 +2,9 @@
 
 use core::fmt;
 
+use super::settings::{Accuracy, Resolved};
 use super::{HiddenSurfaces, Shading, VertexPath};
+use crate::plan::FaceShading;
 use crate::raster::DrawStats;
 use crate::span::Kernel;
 
@@ -10,9 +12,9 @@ use crate::span::Kernel;
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Stats {
-    /// The shading that shaded, where there was no budget.
+    /// The shading that shaded, where no error was accepted.
     pub shading: Shading,
-    /// The budget: how many shades of error were accepted.
+    /// How many shades of error were accepted.
     pub max_error: Option<f32>,
     /// The way from mesh to vertices.
     pub vertex_path: VertexPath,
@@ -40,50 +42,45 @@ pub struct Stats {
     pub culled: u64,
     /// Triangles handed to the raster: faces, and the parts of those that were clipped.
     pub drawn: u64,
-    /// The shadings that shaded them.
+    /// How they were shaded.
     pub shares: Shares,
     /// What the raster did with them.
     pub raster: DrawStats,
 }
 
-/// How many triangles each shading shaded.
+/// How many triangles were shaded in which way.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Shares([u64; Shading::ALL.len()]);
+pub struct Shares([u64; FaceShading::ALL.len()]);
 
 impl Shares {
     /// Counts more triangles.
-    pub(super) fn add(&mut self, shading: Shading, triangles: u64) {
-        self.0[shading as usize] += triangles;
+    pub(super) fn add(&mut self, shading: FaceShading, triangles: u64) {
+        self.0[shading.index()] += triangles;
     }
 
     /// Counts those that were not counted yet, of `drawn`.
-    pub(super) fn complete(&mut self, shading: Shading, drawn: u64) {
+    pub(super) fn complete(&mut self, shading: FaceShading, drawn: u64) {
         self.add(shading, drawn - self.0.iter().sum::<u64>());
     }
 
-    /// The triangles of one shading.
+    /// The triangles that were shaded so.
     #[must_use]
-    pub fn of(&self, shading: Shading) -> u64 {
-        self.0[shading as usize]
+    pub fn of(&self, shading: impl Into<FaceShading>) -> u64 {
+        self.0[shading.into().index()]
     }
 
-    /// Each shading that shaded any, from cheap to exact, and how many.
-    pub fn iter(&self) -> impl Iterator<Item = (Shading, u64)> {
-        Shading::ALL.into_iter().zip(self.0).filter(|(_, triangles)| *triangles > 0)
+    /// Each way in which any were shaded, from cheap to exact, and how many.
+    pub fn iter(&self) -> impl Iterator<Item = (FaceShading, u64)> {
+        FaceShading::ALL.into_iter().zip(self.0).filter(|(_, triangles)| *triangles > 0)
     }
 }
 
 impl Stats {
-    pub(super) fn new(
-        shading: Shading,
-        vertex_path: VertexPath,
-        kernel: Kernel,
-        hidden_surfaces: HiddenSurfaces,
-    ) -> Self {
+    pub(super) fn new(settings: &Resolved, kernel: Kernel, hidden_surfaces: HiddenSurfaces) -> Self {
         Self {
-            shading,
-            max_error: None,
-            vertex_path,
+            shading: settings.accuracy.shading(),
+            max_error: settings.accuracy.max_error(),
+            vertex_path: settings.vertex_path,
             kernel: kernel.name(),
             hidden_surfaces,
             redrawn: true,
@@ -104,11 +101,19 @@ impl Stats {
 
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { shading, vertex_path, kernel, hidden_surfaces, redrawn, kept, allocated, .. } = self;
+        let Self { shading, max_error, vertex_path, kernel, hidden_surfaces, redrawn, kept, allocated, .. } = self;
         let Self { vertices, lit, faces, clipped, culled, drawn, raster, .. } = self;
+        let accuracy = max_error.map_or(Accuracy::Shading(*shading), Accuracy::WithinError);
+        write!(f, "{accuracy}")?;
+        if max_error.is_some() {
+            for (i, (shading, triangles)) in self.shares.iter().enumerate() {
+                write!(f, "{}{triangles} {shading}", if i == 0 { " (" } else { ", " })?;
+            }
+            f.write_str(if self.shares.iter().next().is_some() { ")" } else { "" })?;
+        }
         write!(
             f,
-            "{shading}, {vertex_path} vertices, kernel {kernel}, {hidden_surfaces}: {vertices} vertices, {lit} lit, {faces} faces, \
+            ", {vertex_path} vertices, kernel {kernel}, {hidden_surfaces}: {vertices} vertices, {lit} lit, {faces} faces, \
              {clipped} clipped, {culled} culled, {drawn} drawn, {} spans, {} pixels covered, {} written",
             raster.spans, raster.covered, raster.pixels
         )?;

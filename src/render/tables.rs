@@ -8,7 +8,7 @@ use crate::light::Blend;
 use crate::palette::cube::CUBE;
 use crate::palette::{Nearest, Palette, Rgb, Table};
 use crate::raster::effects::Mix;
-use crate::scene::Shared;
+use crate::shared::Shared;
 use crate::span::texture::Levels;
 use crate::texture::{Mipmap, Texture};
 

@@ -1,9 +1,10 @@
 //! The stage of an object's faces within an error budget: each is drawn by the shading that is decided for it.
 
 use super::Stats;
-use super::budget::{Bodies, Budget, Choice, Decided, Question, Vain};
+use super::budget::{Bodies, Budget, Choice, Decided, Question, Vain, WORTH_SAMPLES};
 use super::clip::WithEffects;
-use super::face::{Faces, LightSampling, ShadeMode, Sink, is_turned_away};
+use super::face::{Face, Sink, is_turned_away};
+use super::faces::Faces;
 use super::sift;
 use super::vertex::Geometry;
 use crate::fixed::U8F8;
@@ -17,10 +18,6 @@ const LINEAR_SHADING: Shading = Shading::Gouraud88Reseeded;
 
 /// In pixels.
 const SMALL: u64 = 64;
-
-/// Pixels from which on it pays to light a face at some points before it is lit at all of them. (With 12 `still` takes 2 % less,
-/// and `two-lights` within 2 shades 25 % more.)
-pub(super) const WORTH_SAMPLES: u64 = 5;
 
 impl Faces<'_> {
     /// The same, with effects or without, each by the shading that is decided for it. (Every shading that there is a choice of
@@ -71,14 +68,15 @@ impl Faces<'_> {
                     let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
                     if EFFECTS && self.paints[usize::from(surface)].has_effects {
                         let attributes = indices.map(|i| self.extras[i as usize].side(turned));
-                        let manner = ShadeMode { shading: LINEAR_SHADING, sampling: LightSampling::Pixels };
-                        sink.with_effects(&vertices, &attributes, surface, manner);
+                        sink.with_effects((first + at) as u32, &vertices, &attributes, surface, LINEAR_SHADING.into());
                     } else {
-                        sink.plain(&vertices, LINEAR_SHADING.interpolation());
+                        // Fewer than 2³² faces.
+                        sink.plain((first + at) as u32, &vertices, LINEAR_SHADING.interpolation());
                     }
                     continue;
                 }
-                let face = (first + at, indices, surface, turned);
+                // Fewer than 2³² faces.
+                let face = Face { index: (first + at) as u32, indices, surface, back_facing: turned };
                 let (choice, known) = (&mut choices[at], &mut bodies[at]);
                 if is(sifted.clipped) && (CULLS || !is(self.twins_of(chunk))) {
                     self.clipped_within::<CULLS, EFFECTS>(face, (budget, choice, known), stats, sink);
@@ -92,21 +90,23 @@ impl Faces<'_> {
         if let Some((listed, numbered)) = &listed {
             sink.numbered(numbered, listed.all(), LINEAR_SHADING.interpolation());
         }
-        stats.shares.add(LINEAR_SHADING, linear);
+        stats.shares.add(LINEAR_SHADING.into(), linear);
     }
 
     /// A face that its cluster says nothing of.
     #[inline(never)]
     fn one_within<const EFFECTS: bool>(
         &self,
-        (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
+        face: Face,
         (budget, choice, known): (&Budget, &mut Choice, &mut Bodies),
         (vain, hopeless): (&mut Vain, bool),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
+        let Face { index, indices, surface, back_facing: turned } = face;
         if *choice == Choice::Unknown && budget.is_simple() {
-            *choice = budget.decide_at_once((triangle, indices, surface, turned), self.lit, self.geometry.normals);
+            *choice =
+                budget.decide_at_once((index as usize, indices, surface, turned), self.lit, self.geometry.normals);
         }
         let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
         if *choice == Choice::Unknown {
@@ -118,7 +118,6 @@ impl Faces<'_> {
                 Choice::Phong
             } else {
                 let shades = vertices.map(|vertex| vertex.shade());
-                let face = (triangle, indices, surface, turned);
                 vain.decided(self.decide::<EFFECTS>((budget, known), face, (shades, Some(&vertices))))
             };
         }
@@ -129,9 +128,9 @@ impl Faces<'_> {
             if choice == Choice::Curved {
                 self.put_curve(&mut attributes, (indices, surface, turned), &vertices);
             }
-            hand_on_within(vertices, attributes, surface, choice, sink);
+            hand_on_within(face, (vertices, attributes), choice, sink);
         } else {
-            sink.plain(&vertices, choice.interpolation(&vertices));
+            sink.plain(index, &vertices, choice.interpolation(&vertices));
         }
     }
 
@@ -140,17 +139,19 @@ impl Faces<'_> {
     #[inline(never)]
     fn clipped_within<const CULLS: bool, const EFFECTS: bool>(
         &self,
-        (triangle, indices, surface, _): (usize, [u32; 3], u16, bool),
+        face: Face,
         (budget, choice, known): (&Budget, &mut Choice, &mut Bodies),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
+        let Face { indices, surface, .. } = face;
         let corners = &indices.map(|i| self.lit.get(i as usize));
         let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
         let turned = !CULLS && is_turned_away(&at);
+        let face = Face { back_facing: turned, ..face };
         if *choice == Choice::Unknown {
             let shades = corners.map(|corner| if turned { corner.back } else { corner.vertex.shade() });
-            *choice = self.decide::<EFFECTS>((budget, known), (triangle, indices, surface, turned), (shades, None));
+            *choice = self.decide::<EFFECTS>((budget, known), face, (shades, None));
         }
         let (choice, before) = (*choice, stats.drawn);
         let interpolation = choice.shading().interpolation();
@@ -158,11 +159,12 @@ impl Faces<'_> {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
             self.parts::<CULLS, _>(at, corners, carried, (interpolation, turned), stats, |vertices, carried, _| {
-                hand_on_within(vertices, carried.map(|carried| carried.attributes), surface, choice, sink);
+                let attributes = carried.map(|carried| carried.attributes);
+                hand_on_within(face, (vertices, attributes), choice, sink);
             });
         } else {
             self.parts::<CULLS, _>(at, corners, [(); 3], (interpolation, turned), stats, |vertices, _, _| {
-                sink.plain(&vertices, choice.interpolation(&vertices));
+                sink.plain(face.index, &vertices, choice.interpolation(&vertices));
             });
         }
         stats.shares.add(choice.shading(), stats.drawn - before);
@@ -173,7 +175,7 @@ impl Faces<'_> {
     fn decide<const EFFECTS: bool>(
         &self,
         (budget, known): (&Budget, &mut Bodies),
-        (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
+        Face { index, indices, surface, back_facing: turned }: Face,
         (shades, vertices): ([U8F8; 3], Option<&[Vertex; 3]>),
     ) -> Choice {
         let shades = if EFFECTS && self.channels {
@@ -181,7 +183,7 @@ impl Faces<'_> {
         } else {
             shades.map(|shade| [shade.to_bits(); 3])
         };
-        let question = Question { triangle, indices, surface, turned, shades, vertices };
+        let question = Question { triangle: index as usize, indices, surface, turned, shades, vertices };
         self.cheapest_within(budget, &question, known)
     }
 
@@ -208,9 +210,8 @@ fn is_smaller(vertices: &[Vertex; 3], pixels: u64) -> bool {
 
 /// Hands on a face with effects that is shaded by choice. Of a flat one every corner gets the shade in the middle.
 fn hand_on_within(
-    mut vertices: [Vertex; 3],
-    mut attributes: [Attributes; 3],
-    surface: u16,
+    face: Face,
+    (mut vertices, mut attributes): ([Vertex; 3], [Attributes; 3]),
     choice: Choice,
     sink: &mut impl Sink,
 ) {
@@ -221,9 +222,9 @@ fn hand_on_within(
         let [a, b, c] = attributes.map(|corner| corner.channels);
         let channels = [0, 1, 2].map(|channel| middle([a[channel], b[channel], c[channel]]));
         attributes.iter_mut().for_each(|corner| corner.channels = channels);
-        shading = Shading::Gouraud88Reseeded;
+        shading = LINEAR_SHADING.into();
     }
-    sink.with_effects(&vertices, &attributes, surface, ShadeMode { shading, sampling: choice.sampling() });
+    sink.with_effects(face.index, &vertices, &attributes, face.surface, shading);
 }
 
 /// Half-way between the least and the greatest.

@@ -296,6 +296,38 @@ fn narrow(v: Row) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
+impl Camera {
+    /// Looks along −z at an object that turns about its own upward axis: its `angles` about x and z stay, the one about y
+    /// goes round. Over the whole turn it fills nine tenths of a 4:3 picture's width or height, whichever it fills more,
+    /// and stays in the middle.
+    ///
+    /// The hull counts, not a sphere about it, and of the hull what it sweeps over. That takes a few passes over the
+    /// vertices.
+    ///
+    /// ```
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::scene::{Camera, Object, Scene};
+    /// let mut scene = Scene::new();
+    /// let teapot = scene.add(Object::new(shapes::teapot(8)).centred());
+    /// scene[teapot].set_angles([0.35, 0.0, 0.0]);
+    /// scene.camera = Camera::framing_turn(&scene[teapot]);
+    /// // Nearer than from where its sphere would be seen whole.
+    /// let sphere = Camera::framing(scene[teapot].position, scene[teapot].mesh().bounds().radius);
+    /// assert!(scene.camera.eye.z < 0.9 * sphere.eye.z);
+    /// ```
+    #[must_use]
+    pub fn framing_turn(object: &Object) -> Self {
+        let from = Viewpoint { direction: Vec3::Z, up: Vec3::Y, field_of_view: Self::FIELD_OF_VIEW, target: None };
+        let swept = Swept::new(object, Turning::Upright, None);
+        // What reaches farther than f32 is no more to be framed exactly.
+        from.camera(&[swept]).unwrap_or_else(|| {
+            let bounds = object.mesh().bounds();
+            let radius = (bounds.radius + bounds.centre.distance(object.pivot)) * object.scale;
+            Self::framing(object.position, radius.min(f32::MAX))
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

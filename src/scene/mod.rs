@@ -38,6 +38,7 @@ use glam::Vec3;
 
 use crate::light::Light;
 use crate::palette::{Palette, Rgb, builtin};
+pub use crate::shared::Shared;
 use crate::vga::Vga;
 pub use animation::PaletteAnimation;
 pub use camera::Camera;
@@ -49,14 +50,6 @@ pub use object::{Object, UpAxis};
 pub use preferences::{
     HiddenSurfaces, Mapping, Preferences, Shading, UnknownHiddenSurfaces, UnknownMapping, UnknownShading,
 };
-
-/// A mesh or a texture that several objects, scenes and threads may share. Where the processor has no
-/// atomic counter (Cortex-M0) it stays within one thread.
-#[cfg(target_has_atomic = "ptr")]
-pub type Shared<T> = alloc::sync::Arc<T>;
-/// A mesh or a texture that several objects and scenes may share, within one thread.
-#[cfg(not(target_has_atomic = "ptr"))]
-pub type Shared<T> = alloc::rc::Rc<T>;
 
 /// An object of a scene, as [`Scene::add`] returned it. Valid until the object is removed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]

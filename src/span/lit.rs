@@ -1,15 +1,7 @@
 //! What light needs at every pixel: normal and position, perspective-correct. A pass that writes no pixel.
 
 use super::Kernel;
-
-/// Pixels that are lit at a time: two to eight vectors of a processor, and no more than short spans have.
-pub const LANES: usize = 8;
-
-/// One number for each of so many pixels that follow each other.
-pub type Lanes<T> = [T; LANES];
-
-/// Normal and position, x, y and z each, of as many pixels.
-pub type Points = [Lanes<f32>; 6];
+use crate::lanes::{LANES, Lanes, Points};
 
 /// Six numbers at each of eight pixels of a row, from pixel `first` on, each the quotient of two that change
 /// linearly along it:

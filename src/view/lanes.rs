@@ -17,8 +17,8 @@ use glam::{Mat3, Vec3};
 
 use super::ObjectView;
 use crate::fixed::whole_part;
+pub(crate) use crate::lanes::LANES;
 use crate::raster::Vertex;
-pub(crate) use crate::span::lit::LANES;
 
 /// An object's way to the screen in f32.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! The window's own pixels, to be drawn on over the picture.
 
-use super::fit::Area;
+use super::area::Area;
 use crate::palette::Rgb;
 
 /// The window's pixels after the picture was stretched to them. [`Window::show_over`](super::Window::show_over) lends

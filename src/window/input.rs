@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use minifb::{InputCallback, Key, MouseButton, MouseMode, Window};
 
-use super::fit::Area;
+use super::area::Area;
 
 /// A notch of what minifb reports. On X11, where a wheel is a button, it counts its going down and its coming up.
 const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };

@@ -3,6 +3,7 @@
 //! [`run`] is a whole game's frame; [`Window`] is the same for programs that keep their own loop. Without a display
 //! both give a [`WindowError`] and no panic.
 
+mod area;
 mod canvas;
 mod fit;
 mod input;
@@ -13,8 +14,8 @@ use std::fmt;
 use std::thread;
 use std::time::{Duration, Instant};
 
+pub use area::Area;
 pub use canvas::Canvas;
-pub use fit::Area;
 pub use input::{Buttons, Input};
 pub use minifb::Key;
 

@@ -7,6 +7,7 @@ use crate::support::random::Random;
 use crate::support::triangles;
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
+use mode13h::lanes::{Lanes, Points};
 use mode13h::raster::effects::{
     Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
 };
@@ -15,7 +16,6 @@ use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
 use mode13h::span::depth::Cell;
 use mode13h::span::dither::BAYER;
-use mode13h::span::lit::{Lanes, Points};
 use mode13h::span::texture::{Levels, Texels};
 use num_bigint::BigInt;
 use num_traits::Signed;

@@ -453,7 +453,7 @@ fn depths_of_earlier_frames_do_not_count() {
         let mut other = Vga::new();
         let stats = again.draw(&scene, &mut machine).expect("a legal scene");
         fresh.draw(&scene, &mut other).expect("a legal scene");
-        assert!(machine.pixels() == other.pixels(), "round {round}, {}", again.shading());
+        assert!(machine.pixels() == other.pixels(), "round {round}, {}", again.settings().accuracy.unwrap_or_default());
         drawn += stats.raster.pixels;
     }
     assert!(drawn > 1_000_000, "{drawn}");

@@ -11,7 +11,7 @@ use allocation_counter::measure;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::plan::{Decision, Effect};
+use mode13h::plan::{Choice, Decision, Effect};
 use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Shading, Stats, VertexPath};
 use mode13h::scene::{Motion, Object, Scene, shipped};
 use mode13h::vga::Vga;
@@ -20,7 +20,7 @@ use mode13h::vga::Vga;
 const FRAMES: u32 = 6;
 
 /// What was decided, reasons aside: for each object each effect and by which of several ways, and the way to hidden surfaces.
-type Decided = (Vec<Vec<(bool, &'static str)>>, HiddenSurfaces);
+type Decided = (Vec<Vec<(bool, Choice)>>, HiddenSurfaces);
 
 fn decided(renderer: &Renderer) -> Decided {
     let plan = renderer.plan();
@@ -92,13 +92,17 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
             try_one(format!("{name}, {way}"), &scene, &|_, renderer| renderer.set_hidden_surfaces(Some(way)));
         }
         for shading in Shading::ALL {
-            try_one(format!("{name}, {shading}"), &scene, &|_, renderer| renderer.set_shading(shading));
+            try_one(format!("{name}, {shading}"), &scene, &|_, renderer| {
+                renderer.set_shading(shading);
+            });
         }
         for mapping in Mapping::ALL {
             try_one(format!("{name}, {mapping}"), &scene, &|_, renderer| renderer.set_mapping(Some(mapping)));
         }
         for shades in [0.8, 2.0] {
-            try_one(format!("{name}, within {shades}"), &scene, &|_, renderer| renderer.set_max_error(Some(shades)));
+            try_one(format!("{name}, within {shades}"), &scene, &|_, renderer| {
+                renderer.set_max_error(shades);
+            });
         }
         try_one(format!("{name}, in integers"), &scene, &|_, renderer| renderer.set_vertex_path(VertexPath::Integer));
         try_one(format!("{name}, dithered"), &scene, &|scene, _| scene.preferences.dither = true);

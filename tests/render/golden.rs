@@ -43,7 +43,7 @@ fn golden_frames_of_every_scene() {
     for shipped in &shipped::ALL {
         let mut scene = shipped.load().expect("a scene that loads").scene;
         if scene.preferences.auto_palette {
-            mode13h::render::automatic(&scene).expect("a legal scene").apply(&mut scene);
+            mode13h::auto_palette::of_scene(&scene).expect("a legal scene").apply(&mut scene);
         }
         for third in 0..3_u8 {
             scene.set_time(scene.duration * f64::from(third) / 3.0);
@@ -58,9 +58,9 @@ fn golden_frames_of_every_scene() {
 #[cfg(all(feature = "obj", feature = "png"))]
 #[test]
 fn golden_frames_of_a_house() {
+    use mode13h::auto_palette;
     use mode13h::light::Light;
     use mode13h::mesh::obj;
-    use mode13h::render::automatic;
     use mode13h::scene::{Camera, Motion, Object, Shared};
 
     let mut tried = Tried::new("golden_frames_of_a_house", 5);
@@ -80,7 +80,7 @@ fn golden_frames_of_a_house() {
     house.motions.push(Motion::Spin { object: id, start: [0.35, 0.0, 0.0], turns: [0.0, 0.25, 0.0] });
 
     let mut auto = house.clone();
-    automatic(&house).expect("a scene").apply(&mut auto);
+    auto_palette::of_scene(&house).expect("a scene").apply(&mut auto);
     let in_palette = |name: &str| {
         let mut scene = house.clone();
         scene.palette = builtin::by_name(name).map(|found| found.palette.clone());

@@ -180,7 +180,7 @@ fn the_plan_names_the_shading_that_is_drawn() {
             let shades_run = drawn != Shading::Flat && !drawn.lights_pixels();
             assert_eq!(decision.on, shades_run, "{path}, {shading}");
             if shades_run {
-                assert_eq!(decision.choice, drawn.name(), "{path}, {shading}");
+                assert_eq!(decision.choice.name(), drawn.name(), "{path}, {shading}");
                 assert!(
                     interpolations.iter().all(|interpolation| *interpolation == drawn.interpolation()),
                     "{path}, {shading}"

@@ -343,7 +343,9 @@ fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
         let allowed = bound + 1.75 + 0.5;
         for (effect, shading) in [(Effect::Phong, Some(Shading::Phong)), (Effect::Tessellation, None)] {
             let (bytes, stats, _) = draw(&scene, |renderer| match shading {
-                Some(shading) => renderer.set_shading(shading),
+                Some(shading) => {
+                    renderer.set_shading(shading);
+                }
                 None => renderer.force(effect, Some(true)),
             });
             assert!(shading.is_none() || stats.raster.lit > 0 || stats.lit == 0, "{name}: {stats}");

@@ -2,12 +2,13 @@
 
 use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h::auto_palette::{self, Seen, seen};
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, RampChoice};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::auto::{Automatic, Entries, Use, share};
 use mode13h::palette::{Palette, Ramp, Rgb, Search, builtin};
-use mode13h::render::{Renderer, Seen, automatic, seen};
+use mode13h::render::Renderer;
 use mode13h::scene::{Camera, Motion, Object, ObjectId, Scene, UpAxis};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
@@ -486,7 +487,7 @@ fn p2_no_pixel_has_an_index_of_another_ramp() {
         .collect();
     let mesh = mesh.clone().with_surfaces(surfaces, mesh.triangle_surfaces().to_vec()).expect("as many");
     let (mut scene, id) = turning(Object::new(mesh));
-    let made = automatic(&scene).expect("a scene");
+    let made = auto_palette::of_scene(&scene).expect("a scene");
     scene.motions.clear();
     made.apply(&mut scene);
     let materials = scene[id].materials.clone();
@@ -525,7 +526,7 @@ fn the_house_has_two_ramps_and_bricks() {
     let mut object = Object::new(house.mesh);
     let bricks = mode13h::scene::Shared::new(bricks);
     object.materials[1] = object.materials[1].clone().with_map(&surfaces[1], &bricks);
-    let made = automatic(&turning(object).0).expect("a mesh");
+    let made = auto_palette::of_scene(&turning(object).0).expect("a mesh");
     let [grass, walls, tiles] = made.entries[0][..] else { panic!("three") };
     let color = |entries, place: f32| {
         let ramp = ramp(entries);

@@ -5,13 +5,14 @@
 
 use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h::auto_palette::{self, AutomaticPalette};
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material, RampChoice};
 use mode13h::mesh::{Surface, shapes};
 use mode13h::palette::auto::Entries;
 use mode13h::palette::cube::CUBE;
 use mode13h::palette::{Palette, Ramp, Rgb};
-use mode13h::render::{AutomaticPalette, Renderer, automatic};
+use mode13h::render::Renderer;
 use mode13h::scene::{Fog, Object, Scene, Shared};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
@@ -93,7 +94,7 @@ fn shown(scene: &Scene) -> (Vec<Rgb>, Vec<Option<usize>>) {
 
 /// With the palette that is made for it.
 fn made(scene: &mut Scene) -> AutomaticPalette {
-    let made = automatic(scene).expect("a legal scene");
+    let made = auto_palette::of_scene(scene).expect("a legal scene");
     made.apply(scene);
     made
 }
@@ -346,11 +347,11 @@ fn a_round_is_seen_and_not_its_beginning() {
     let mut scene = walls(&mut random, random_material);
     let id = scene.add(Object::new(shapes::sphere(16, 8)));
     scene[id].position = Vec3::new(0.0, 100.0, 0.0);
-    let unseen = mode13h::render::seen(&scene).expect("a scene");
+    let unseen = auto_palette::seen(&scene).expect("a scene");
     assert_eq!(unseen[12][0].area, 0.0);
     let path = mode13h::scene::Path::Line { from: Vec3::Y * 100.0, to: Vec3::ZERO, period: 4.0, back: true };
     scene.motions.push(mode13h::scene::Motion::Path { what: mode13h::scene::Moving::Object(id), path });
-    let seen = mode13h::render::seen(&scene).expect("a scene");
+    let seen = auto_palette::seen(&scene).expect("a scene");
     assert!(seen[12][0].area > 0.01 && seen[12][0].brightest > 0.9, "{:?}", seen[12]);
     let all: f32 = seen.iter().flatten().map(|seen| seen.area).sum();
     assert!((all - 1.0).abs() < 1e-5);
@@ -367,7 +368,7 @@ fn an_automatic_palette_has_the_colours_of_mipmaps() {
     let mut scene = crate::support::scenes::floor("checker", 24.0 * 32.0);
     scene.objects_mut()[0].materials[0].texture = Some(Shared::new(texture));
     let farthest = |scene: &Scene| {
-        let palette = automatic(scene).expect("a legal scene").palette.on_dac();
+        let palette = auto_palette::of_scene(scene).expect("a legal scene").palette.on_dac();
         let mean = Rgb::new(128, 128, 0);
         palette.color(palette.nearest(mean)).distance_squared(mean)
     };

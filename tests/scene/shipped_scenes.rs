@@ -5,10 +5,11 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use crate::support::tried::Tried;
+use mode13h::auto_palette;
 use mode13h::export;
 use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Shading, automatic};
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Shading};
 use mode13h::scene::Scene;
 use mode13h::scene::file::Loaded;
 use mode13h::scene::shipped::{self, Shipped};
@@ -22,7 +23,7 @@ fn load(shipped: &Shipped) -> Scene {
     let Loaded { mut scene, warnings, .. } = shipped.load().unwrap_or_else(|error| panic!("{error}"));
     assert!(warnings.is_empty(), "{warnings:?}");
     if scene.preferences.auto_palette {
-        automatic(&scene).expect("a legal scene").apply(&mut scene);
+        auto_palette::of_scene(&scene).expect("a legal scene").apply(&mut scene);
     }
     scene
 }

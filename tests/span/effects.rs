@@ -4,6 +4,7 @@
 
 use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h::lanes::{LANES, Points};
 use mode13h::palette::Rgb;
 use mode13h::palette::cube;
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
@@ -11,7 +12,7 @@ use mode13h::span::curve::curve;
 use mode13h::span::depth::{Cell, copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
 use mode13h::span::float::fill_float;
-use mode13h::span::lit::{LANES, Points, interpolate};
+use mode13h::span::lit::interpolate;
 use mode13h::span::texture::{Texels, TexelsError, fill_affine, fill_perspective, fill_perspective_portable};
 use mode13h::span::wide::fill_16_16;
 use mode13h::span::{Kernel, lookup};

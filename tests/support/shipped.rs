@@ -1,6 +1,6 @@
 //! The scenes that are compiled in.
 
-use mode13h::render::automatic;
+use mode13h::auto_palette;
 use mode13h::scene::{Scene, shipped};
 
 /// Every shipped scene under its name, with its palette, at two fifths of its time.
@@ -8,7 +8,7 @@ pub fn scenes() -> impl Iterator<Item = (String, Scene)> {
     shipped::ALL.iter().map(|shipped| {
         let mut scene = shipped.load().expect("a scene that loads").scene;
         if scene.preferences.auto_palette {
-            automatic(&scene).expect("a legal scene").apply(&mut scene);
+            auto_palette::of_scene(&scene).expect("a legal scene").apply(&mut scene);
         }
         scene.set_time(0.4 * scene.duration);
         (format!("scene {}", shipped.name), scene)

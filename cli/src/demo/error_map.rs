@@ -21,7 +21,7 @@ use mode13h_lab::cost::Probe;
 use mode13h_lab::truth::{ErrorMap, Face, Figures, Shown, Tiles, Truth, TruthFrame};
 
 use super::background::{Background, Desk};
-use super::magnifier::Pixel;
+use super::pixel::Pixel;
 use crate::failure::Failure;
 use crate::overlay::{Row, Sheet, Side as Edge};
 

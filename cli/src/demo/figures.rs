@@ -1,6 +1,6 @@
 //! The figures that I shows, and the keys that H shows.
 
-use mode13h::plan::Effect;
+use mode13h::plan::{Choice, Effect};
 use mode13h::render::{Shares, Stats};
 
 use super::Demo;
@@ -87,8 +87,8 @@ impl Demo {
             let mut entry = effect.name().to_string();
             let is_said = matches!(effect, Effect::HiddenSurfaces | Effect::Gouraud | Effect::Phong);
             let first = on.first()?;
-            if !is_said && !first.choice.is_empty() {
-                entry += &format!(" {}", first.choice);
+            if !is_said && first.choice != Choice::Only {
+                entry += &format!(" {}", first.choice.name());
             }
             if on.len() < objects.len() {
                 entry += &format!(" {}/{}", on.len(), objects.len());
@@ -142,7 +142,8 @@ mod tests {
         for scene in shipped::ALL {
             let mut demo = demo(scene.name);
             for budget in [None, Some(1.0)] {
-                demo.shading = ShadingChoice::new(demo.renderer.shading(), budget);
+                let shading = demo.renderer.settings().accuracy.unwrap_or_default().shading();
+                demo.shading = ShadingChoice::new(shading, budget);
                 demo.draw().expect("a legal scene");
                 for size in WINDOWS {
                     for (help, figures) in [(true, false), (false, true), (true, true)] {

@@ -24,6 +24,7 @@ use mode13h::window::Area;
 use mode13h_lab::show::{Enlarged, Segment};
 
 use super::background::{Background, Desk};
+use super::pixel::Pixel;
 use super::shade_trace;
 use super::step::Traced;
 use crate::failure::Failure;
@@ -71,23 +72,7 @@ impl Ink {
     }
 }
 
-/// A pixel of the frame.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Pixel {
-    /// 0 to 319.
-    pub(super) x: u16,
-    /// 0 to 199.
-    pub(super) y: u16,
-}
-
 impl Pixel {
-    /// The one that a point of the picture lies in, if it is on the picture; x and y in pixels of the frame.
-    pub(super) fn at((x, y): (f32, f32)) -> Option<Pixel> {
-        let on_picture = (0.0..WIDTH as f32).contains(&x) && (0.0..HEIGHT as f32).contains(&y);
-        // Whole numbers within the ranges above.
-        on_picture.then_some(Pixel { x: x as u16, y: y as u16 })
-    }
-
     /// The upper left corner of the lens's view about it, which may lie beyond the frame.
     fn corner(self) -> (i32, i32) {
         (i32::from(self.x) - MIDDLE.0, i32::from(self.y) - MIDDLE.1)

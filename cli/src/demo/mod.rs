@@ -21,6 +21,7 @@ mod figures;
 mod loader;
 mod magnifier;
 mod motion;
+mod pixel;
 mod shade_trace;
 mod shading;
 mod step;
@@ -33,7 +34,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use mode13h::palette::{Palette, builtin};
 use mode13h::render::{Mapping, Renderer, Screen, Stats};
-use mode13h::scene::Scene;
+use mode13h::scene::{Preferences, Scene};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window, WindowError};
@@ -49,8 +50,9 @@ use choice::Choice;
 use compare::Compare;
 use error_map::Map;
 use loader::{Inputs, Loader, Loading};
-use magnifier::{Cells, Magnifier, Pixel};
+use magnifier::{Cells, Magnifier};
 use motion::Motion;
+use pixel::Pixel;
 use shading::ShadingChoice;
 use step::Stepper;
 use timing::Timing;
@@ -240,7 +242,7 @@ impl Demo {
             triangles: 0,
             wrong: None,
             renderer: drawing.renderer(kernel),
-            shading: ShadingChoice::new(drawing.shading(None), drawing.max_error(None)),
+            shading: ShadingChoice::of(drawing.accuracy_for(&Preferences::default())),
             chose_shading: false,
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
             palettes: palettes(&stage, drawing),
@@ -322,8 +324,7 @@ impl Demo {
         self.stage = stage;
         if !self.chose_shading {
             let preferences = &self.stage.scene.preferences;
-            self.shading =
-                ShadingChoice::new(drawing.shading(preferences.shading), drawing.max_error(preferences.max_error));
+            self.shading = ShadingChoice::of(drawing.accuracy_for(preferences));
         }
         let before = std::mem::replace(&mut self.palettes, palettes(&self.stage, drawing));
         if keeps && self.chose_palette && self.palettes.choose(|(name, _)| *name == before.chosen().0) {

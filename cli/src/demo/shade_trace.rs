@@ -4,7 +4,7 @@ use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
 use mode13h_lab::explain::{self, Edge, FaceHere, Seen};
 
-use super::magnifier::Pixel;
+use super::pixel::Pixel;
 use super::step::Traced;
 
 /// Letters of a line beyond which it is cut: more than any has.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use mode13h::render::{Renderer, Shading};
+use mode13h::render::{Accuracy, Renderer, Shading};
 use mode13h::window::{Input, Key};
 
 /// The budgets that B goes through, in shades of 1/255 of full intensity.
@@ -99,6 +99,11 @@ impl ShadingChoice {
         ShadingChoice { shading, budget: budget.unwrap_or(USUAL), by_budget: budget.is_some() }
     }
 
+    /// What draws with this accuracy.
+    pub(super) fn of(accuracy: Accuracy) -> ShadingChoice {
+        ShadingChoice::new(accuracy.shading(), accuracy.max_error())
+    }
+
     /// Does what the user render. Whether they wished anything.
     pub(super) fn follow(&mut self, input: &Input) -> bool {
         let wish = wish(input);
@@ -138,11 +143,10 @@ impl ShadingChoice {
 
     /// Has a renderer draw by it.
     pub(super) fn set(&self, renderer: &mut Renderer) {
-        if self.by_budget {
-            renderer.set_max_error(Some(self.budget));
-        } else {
-            renderer.set_shading(self.shading);
-        }
+        renderer.set_accuracy(Some(match self.by_budget {
+            true => Accuracy::WithinError(self.budget),
+            false => Accuracy::Shading(self.shading),
+        }));
     }
 
     /// The error that is or would be accepted, in shades.
@@ -212,11 +216,10 @@ mod tests {
 
     #[test]
     fn a_renderer_draws_by_what_was_chosen() {
-        let scene = mode13h::scene::Scene::new();
         let mut renderer = Renderer::new();
         ShadingChoice::new(Shading::Flat, Some(4.0)).set(&mut renderer);
-        assert_eq!(renderer.max_error(&scene), Some(4.0));
+        assert_eq!(renderer.settings().accuracy, Some(Accuracy::WithinError(4.0)));
         ShadingChoice::new(Shading::Phong, None).set(&mut renderer);
-        assert_eq!((renderer.max_error(&scene), renderer.shading()), (None, Shading::Phong));
+        assert_eq!(renderer.settings().accuracy, Some(Accuracy::Shading(Shading::Phong)));
     }
 }

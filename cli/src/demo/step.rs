@@ -7,7 +7,7 @@ use mode13h::render::Screen;
 use mode13h::window::{Input, Key};
 use mode13h_lab::explain::{self, FaceHere, Progression, Seen, ShadedBy, Walk};
 
-use super::magnifier::Pixel;
+use super::pixel::Pixel;
 
 /// A triangle that is seen at a pixel.
 #[derive(Clone, PartialEq, Debug)]

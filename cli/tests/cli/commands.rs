@@ -1211,6 +1211,10 @@ fn words_have_the_last_word_over_a_scene() {
     assert!(said.contains(": phong, float vertices,"), "{said}");
     let (said, _) = stats(&["phong", "--shading", "flat", "--hidden", "scan-line", "--vertex-path", "integer"]);
     assert!(said.contains(": flat, integer vertices,") && said.contains(" scan-line: "), "{said}");
+    // Within an error the shadings that faces got are counted, and no other is named.
+    let (said, _) = stats(&["phong", "--max-error", "4"]);
+    assert!(said.contains(": within 4 shades (") && said.contains(" gouraud-8.8-reseeded"), "{said}");
+    assert!(said.contains("), float vertices,"), "{said}");
     let (_, grey) = stats(&["phong", "--palette", "grey"]);
     assert!(grey != own);
     let (_, perspective) = stats(&["crate", "--at", "0.3"]);
@@ -1334,6 +1338,9 @@ fn explain_draws_a_row() {
     let text = String::from_utf8(output.stdout).expect("text");
     assert!(text.starts_with("cone at 0 s, row 120, gouraud-8.8-reseeded\n"), "{text}");
     assert!(text.contains("Mach bands") && text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    let output = run(&directory, &["explain", "cone", "--row", "120", "--max-error", "4"]);
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.starts_with("cone at 0 s, row 120, within 4 shades\n"), "{text}");
     let output = run(&directory, &["explain", "cone", "--row", "0"]);
     assert!(String::from_utf8(output.stdout).expect("text").contains("nothing but background"));
 

@@ -7,7 +7,7 @@ use core::fmt;
 
 use super::Aspect;
 use mode13h::hooks;
-use mode13h::render::{HiddenSurfaces, Renderer, Shading, VertexPath};
+use mode13h::render::{Accuracy, HiddenSurfaces, Renderer, Shading, VertexPath};
 use mode13h::span::Kernel;
 
 /// The budgets that are measured, in shades, the greatest error first.
@@ -56,13 +56,19 @@ impl<'a> Configuration<'a> {
         Self { kind, name: name.to_string(), set: Box::new(set), dither: None }
     }
 
+    fn accurate(kind: Kind, name: impl ToString, accuracy: Accuracy) -> Self {
+        Self::new(kind, name, move |renderer| {
+            renderer.set_accuracy(Some(accuracy));
+        })
+    }
+
     pub(super) fn shading(shading: Shading) -> Self {
-        Self::new(Kind::Shading(shading), shading, move |renderer| renderer.set_shading(shading))
+        Self::accurate(Kind::Shading(shading), shading, Accuracy::Shading(shading))
     }
 
     pub(super) fn budget(shades: f64) -> Self {
         // Whole numbers up to 16.
-        Self::new(Kind::Budget(shades), shades, move |renderer| renderer.set_max_error(Some(shades as f32)))
+        Self::accurate(Kind::Budget(shades), shades, Accuracy::WithinError(shades as f32))
     }
 
     /// All shadings of a list, the reference among them, and all budgets.

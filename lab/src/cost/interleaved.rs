@@ -20,7 +20,7 @@ use super::clock::Clock;
 use super::configuration::{Configuration, Kind};
 use super::statistics::{Ratio, Rng};
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, Shading, Shares};
+use mode13h::render::{FaceShading, RenderError, Renderer, Shares};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
@@ -93,12 +93,12 @@ fn cell(text: &str) -> Cow<'_, str> {
 pub(super) struct Work {
     pub(super) triangles: u64,
     pub(super) pixels: u64,
-    pub(super) shares: [u64; Shading::ALL.len()],
+    pub(super) shares: [u64; FaceShading::ALL.len()],
 }
 
 impl Work {
     fn add_shares(&mut self, shares: &Shares) {
-        for (count, shading) in self.shares.iter_mut().zip(Shading::ALL) {
+        for (count, shading) in self.shares.iter_mut().zip(FaceShading::ALL) {
             *count += shares.of(shading);
         }
     }
@@ -247,6 +247,7 @@ mod tests {
     use super::*;
     use crate::cost::Aspect;
     use mode13h::mesh::shapes;
+    use mode13h::render::Shading;
 
     #[test]
     fn a_name_with_a_comma_is_one_cell() {

@@ -2,7 +2,6 @@
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
-use core::fmt;
 
 use super::accuracy::{Referee, Results};
 use super::claims::claims;
@@ -11,10 +10,9 @@ use super::configuration::{BUDGETS, Configuration, Kind, REFERENCE};
 use super::interleaved::{Outcome, Samples, Spent, contest};
 use super::split::split;
 use super::statistics::{Ratio, Rng, quartiles};
-use super::{Aspect, BudgetRow, Host, OptionRow, ProbeError, ShadingRow, Split, Study};
-use crate::truth::TruthError;
+use super::{Aspect, BudgetRow, CostError, Host, OptionRow, ShadingRow, Split, Study};
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, Screen, Shading};
+use mode13h::render::{FaceShading, Renderer, Screen, Shading};
 use mode13h::scene::Scene;
 
 /// The share of pixels that a budget, and a shading that is compared with it, must keep within the bound.
@@ -80,51 +78,6 @@ pub enum Step {
     Split,
     /// Measuring what the sources claim.
     Claims,
-}
-
-/// Why nothing could be found out.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub enum CostError {
-    /// The scene cannot be drawn.
-    Scene(RenderError),
-    /// What it shows cannot be looked at.
-    Probe(ProbeError),
-    /// There is no truth about it.
-    Truth(TruthError),
-    /// There is no frame.
-    NoFrames,
-}
-
-impl fmt::Display for CostError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Scene(error) => error.fmt(f),
-            Self::Probe(error) => error.fmt(f),
-            Self::Truth(error) => error.fmt(f),
-            Self::NoFrames => f.write_str("there is no frame to be drawn"),
-        }
-    }
-}
-
-impl core::error::Error for CostError {}
-
-impl From<RenderError> for CostError {
-    fn from(error: RenderError) -> Self {
-        Self::Scene(error)
-    }
-}
-
-impl From<ProbeError> for CostError {
-    fn from(error: ProbeError) -> Self {
-        Self::Probe(error)
-    }
-}
-
-impl From<TruthError> for CostError {
-    fn from(error: TruthError) -> Self {
-        Self::Truth(error)
-    }
 }
 
 /// Measures what accuracy costs. `progress` is told what is being done, and the share of that, 0 to 1; by several
@@ -308,7 +261,7 @@ impl Rows<'_> {
             };
             let median = |&(other, _): &(usize, Shading)| quartiles(&self.times[other]).median;
             let best = self.each_shading().filter(keeps).min_by(|a, b| median(a).total_cmp(&median(b)));
-            let shares = Shading::ALL.into_iter().zip(self.outcome.work[place].shares);
+            let shares = FaceShading::ALL.into_iter().zip(self.outcome.work[place].shares);
             BudgetRow {
                 max_error,
                 within: findings.within(bound),

@@ -16,6 +16,7 @@ mod accuracy;
 mod claims;
 mod clock;
 mod configuration;
+mod error;
 mod interleaved;
 mod measure;
 mod probe;
@@ -27,7 +28,8 @@ mod study;
 
 pub use clock::Clock;
 pub use configuration::BUDGETS;
+pub use error::CostError;
 pub use interleaved::Samples;
-pub use measure::{CostError, Settings, Step, Subject, measure, warnings};
+pub use measure::{Settings, Step, Subject, measure, warnings};
 pub use probe::{Probe, ProbeError};
 pub use study::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, Verdict};

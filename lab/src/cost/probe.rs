@@ -11,7 +11,7 @@ use mode13h::mesh::{Mesh, Surface};
 use mode13h::palette::Ramp;
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, FrameError};
-use mode13h::render::{RenderError, Renderer, Screen, Shading};
+use mode13h::render::{Accuracy, RenderError, Renderer, Screen, Shading};
 use mode13h::scene::{Object, Scene, Shared};
 
 /// Finds out what a renderer shows, by nothing but drawing with it.
@@ -118,11 +118,12 @@ impl Probe {
             *light = light.with_color([1.0; 3]).with_intensity(light.brightness());
         }
         // Making a table for every digit would take long.
-        let needs_tables = hooks::shading_for(&self.renderer, &scene) == Shading::PhongTable;
-        let replaced = needs_tables.then(|| hooks::replace_shading(&mut self.renderer, Some(Shading::Phong)));
+        let accuracy = self.renderer.settings().resolve(&scene.preferences).asked;
+        let needs_tables = accuracy == Accuracy::Shading(Shading::PhongTable);
+        let replaced = needs_tables.then(|| self.renderer.set_shading(Shading::Phong));
         let numbers = self.numbers(scene, screen);
-        if let Some(shading) = replaced {
-            hooks::replace_shading(&mut self.renderer, shading);
+        if let Some(accuracy) = replaced {
+            self.renderer.set_accuracy(accuracy);
         }
         Ok(numbers?.into_iter().map(|number| self.numbered.face(number)).collect())
     }

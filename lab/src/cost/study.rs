@@ -3,7 +3,7 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use mode13h::render::Shading;
+use mode13h::render::{FaceShading, Shading};
 
 /// The cost of accuracy on one scene or model.
 #[derive(Clone, PartialEq, Debug)]
@@ -147,7 +147,7 @@ pub struct BudgetRow {
     /// The budget's time as a ratio to that, and the ratio's 95 % interval.
     pub ratio: Option<(f64, (f64, f64))>,
     /// Triangles of all frames that each shading drew, those of none left out.
-    pub triangles: Vec<(Shading, u64)>,
+    pub triangles: Vec<(FaceShading, u64)>,
 }
 
 /// What may be chosen beside the shading.

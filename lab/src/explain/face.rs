@@ -3,7 +3,8 @@
 use core::fmt;
 
 use mode13h::raster::{Interpolation, Vertex};
-use mode13h::render::Fate;
+
+use super::trace::Fate;
 
 /// A triangle that covers the pixel, or whose edge runs through its centre.
 #[derive(Clone, Copy, PartialEq, Debug)]

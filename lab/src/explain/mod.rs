@@ -4,7 +4,8 @@
 //! |---|---|
 //! | `face` | a triangle at the pixel: its corners, its edges, who owns a tie, what became of it |
 //! | `pixel` | [`pixel()`]: everything about one |
-//! | `text`, `span_text` | the same in words |
+//! | `trace`, `one_pixel` | the pixel's triangles, and which is seen; its byte, stage by stage |
+//! | `text`, `span_text`, `paragraph` | the account in words |
 //! | `walk` | [`Walk`]: a triangle pixel by pixel, and the registers of the loop of 1994 at each |
 //! | `row` | [`row()`]: a row's intensity and its slope, drawn and true |
 //!
@@ -28,10 +29,13 @@
 //! ```
 
 mod face;
+mod one_pixel;
+mod paragraph;
 mod pixel;
 mod row;
 mod span_text;
 mod text;
+mod trace;
 mod walk;
 
 use core::fmt;
@@ -41,10 +45,11 @@ use crate::truth::TruthError;
 pub use face::{Edge, EdgeKind, FaceHere};
 pub use mode13h::hooks::{Accumulator, Progression, Ratio, ShadeTrace};
 use mode13h::raster::Frame;
-pub use mode13h::render::{Fate, ShadedBy};
 use mode13h::render::{RenderError, Screen};
+pub use one_pixel::ShadedBy;
 pub use pixel::{Against, Pixel, PixelStage, Seen, pixel};
 pub use row::{Column, Row, row};
+pub use trace::Fate;
 pub use walk::{Registers, Step, Walk};
 
 /// Why there is nothing to explain.

@@ -5,18 +5,18 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::face::{FaceHere, clockwise};
+use super::one_pixel::{Bytes, ShadedBy};
+use super::trace::{Fate, Met, trace};
 use super::{ExplainError, check};
 use crate::truth::{Face, Standard, Truth};
 use mode13h::hooks;
-use mode13h::hooks::Bytes;
-use mode13h::hooks::Met;
 use mode13h::hooks::{ShadeTrace, row_of};
 use mode13h::palette::{Ramp, Rgb};
 use mode13h::plan::{self, Effect};
 use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::effects::Attributes;
 use mode13h::raster::{Interpolation, Vertex};
-use mode13h::render::{Fate, HiddenSurfaces, Renderer, Screen, ShadedBy, Shading, VertexPath};
+use mode13h::render::{Accuracy, ChosenBy, HiddenSurfaces, Renderer, Resolved, Screen, Shading, VertexPath};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
@@ -176,14 +176,13 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
     if x >= width || y >= height {
         return Err(ExplainError::OutsidePixel { x, y, width, height });
     }
-    let trace = hooks::trace(renderer, scene, screen, x, y).map_err(ExplainError::Scene)?;
+    let trace = trace(renderer, scene, screen, x, y).map_err(ExplainError::Scene)?;
     let truth = Truth::new(scene, screen).map_err(ExplainError::Truth)?;
-    let rows = renderer.plan().rows(scene);
     let faces: Vec<FaceHere> = trace.met.iter().map(|met| here(renderer, &truth, met, x, y)).collect();
-    let inputs = Inputs { renderer, scene, screen, truth: &truth, rows: &rows, x, y };
+    let inputs = Inputs { scene, screen, truth: &truth, rows: &trace.rows, x, y };
     let seen = trace.met.iter().zip(&faces).enumerate();
     let seen = seen.filter_map(|(i, (met, face))| Some(inputs.seen(i, face, met, met.bytes.as_ref()?))).collect();
-    let hidden = rows.iter().find(|row| row.effect == Effect::HiddenSurfaces);
+    let hidden = trace.rows.iter().find(|row| row.effect == Effect::HiddenSurfaces);
     Ok(Pixel {
         x,
         y,
@@ -193,8 +192,8 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
         hidden_surfaces: trace.stats.hidden_surfaces,
         hidden_surfaces_why: hidden.map(|row| row.reason.clone()).unwrap_or_default(),
         shading: trace.stats.shading,
-        shading_why: shading_why(renderer, scene, trace.stats.shading),
-        max_error: renderer.max_error(scene),
+        shading_why: shading_why(&renderer.settings().resolve(&scene.preferences)),
+        max_error: trace.stats.max_error,
         vertex_path: trace.stats.vertex_path,
         objects: (0..scene.objects().len()).map(|object| hooks::name_of(scene, object)).collect(),
         faces,
@@ -213,24 +212,24 @@ fn color(renderer: &Renderer, scene: &Scene, entry: u8) -> Rgb {
     vga.palette().colors()[usize::from(entry)]
 }
 
-fn shading_why(renderer: &Renderer, scene: &Scene, drawn: Shading) -> String {
-    let wanted = hooks::shading_for(renderer, scene);
-    if wanted != drawn {
-        return format!("16.16 vertices have no {wanted}");
-    }
-    if hooks::has_own_shading(renderer) {
-        "asked for".into()
-    } else if scene.preferences.shading.is_some() {
-        "the scene asks for it".into()
-    } else {
-        "the default".into()
+fn shading_why(settings: &Resolved) -> String {
+    let Resolved { asked, asked_by, accuracy, .. } = *settings;
+    match asked_by {
+        _ if asked != accuracy => match asked {
+            Accuracy::Shading(shading) => format!("16.16 vertices have no {shading}"),
+            Accuracy::WithinError(_) => "16.16 vertices have no budget".into(),
+        },
+        ChosenBy::Renderer => "asked for".into(),
+        ChosenBy::Scene => "the scene asks for it".into(),
+        ChosenBy::Default => "the default".into(),
     }
 }
 
 /// A triangle, with its place in the mesh.
 fn here(renderer: &Renderer, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> FaceHere {
-    let is_part = hooks::is_split(renderer, met.object);
-    let triangle = if is_part || met.place.is_none() { nearest(truth, met, x, y) } else { met.place };
+    let is_part =
+        renderer.vertex_path() == VertexPath::Float && renderer.plan().is_on(met.object, Effect::Tessellation);
+    let triangle = if is_part || met.face.is_none() { nearest(truth, met, x, y) } else { met.face };
     FaceHere {
         object: met.object,
         triangle,
@@ -258,7 +257,6 @@ fn nearest(truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> Option<usize> {
 
 /// What a seen face is explained from.
 struct Inputs<'a> {
-    renderer: &'a Renderer,
     scene: &'a Scene,
     screen: Screen,
     truth: &'a Truth<'a>,
@@ -269,10 +267,7 @@ struct Inputs<'a> {
 
 impl Inputs<'_> {
     fn seen(&self, place: usize, face: &FaceHere, met: &Met, bytes: &Bytes) -> Seen {
-        let of_mesh =
-            |triangle: usize| self.scene.objects().get(met.object)?.mesh().triangle_surfaces().get(triangle).copied();
-        let surface = face.triangle.and_then(of_mesh).unwrap_or_default();
-        let ramp = hooks::ramp_of(self.renderer, self.scene, met.object, surface);
+        let ramp = met.ramp.or_else(|| self.ramp_of_material(face)).unwrap_or(Ramp::WHOLE);
         let of_object = |row: &&plan::Row| row.on && row.place == met.object;
         Seen {
             face: place,
@@ -284,6 +279,14 @@ impl Inputs<'_> {
             against: face.triangle.map(|t| self.against(met, t, bytes.shades, ramp)).unwrap_or_default(),
             effects: self.rows.iter().filter(of_object).cloned().collect(),
         }
+    }
+
+    /// The palette entries of a face's material.
+    fn ramp_of_material(&self, face: &FaceHere) -> Option<Ramp> {
+        let object = self.scene.objects().get(face.object)?;
+        let surface = face.triangle.and_then(|triangle| object.mesh().triangle_surfaces().get(triangle));
+        let material = object.materials.get(usize::from(surface.copied().unwrap_or_default()))?;
+        Some(material.ramp.in_palette(self.scene.palette.as_ref()))
     }
 
     fn accounts(&self, met: &Met, bytes: &Bytes) -> Option<Vec<ShadeTrace>> {

@@ -4,7 +4,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::text::Text;
+use super::paragraph::Text;
 use mode13h::hooks::{Accumulator, Progression, Ratio, ShadeTrace};
 
 /// Sums that are shown of either end of a span.

@@ -6,55 +6,17 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::face::{EdgeKind, FaceHere};
+use super::one_pixel::ShadedBy;
+use super::paragraph::Text;
 use super::pixel::{Pixel, PixelStage, Seen};
 use super::span_text::{say_account, short_account};
+use super::trace::Fate;
 use mode13h::plan::Effect;
 use mode13h::raster::Interpolation;
-use mode13h::render::{Fate, ShadedBy, Shading};
-
-/// Columns of text.
-const WIDTH: usize = 100;
-
-/// Columns of what stands before it.
-const LABEL: usize = 10;
+use mode13h::render::{FaceShading, Shading};
 
 /// Triangles that are listed, at most.
 const LISTED: usize = 6;
-
-/// Lines that begin with a label and go on below it.
-pub(super) struct Text(String);
-
-impl Text {
-    /// A paragraph, wrapped.
-    pub(super) fn say(&mut self, label: &str, words: &str) {
-        let mut line = format!("  {label:LABEL$}");
-        let mut empty = true;
-        for word in words.split_whitespace() {
-            if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-                self.line(&line);
-                line = " ".repeat(LABEL + 2);
-                empty = true;
-            }
-            if !empty {
-                line.push(' ');
-            }
-            line += word;
-            empty = false;
-        }
-        self.line(&line);
-    }
-
-    /// One line as it is.
-    fn line(&mut self, line: &str) {
-        self.0 += line.trim_end();
-        self.0.push('\n');
-    }
-
-    /// A line behind a label, as it is.
-    fn row(&mut self, label: &str, row: &str) {
-        self.line(&format!("  {label:LABEL$}{row}"));
-    }
-}
 
 impl fmt::Display for Pixel {
     /// Lines of at most 100 columns.
@@ -121,7 +83,7 @@ impl Pixel {
     }
 
     /// The technique that a face is shaded by, whatever was asked for.
-    fn shading_of(&self, face: &FaceHere, seen: &Seen) -> Shading {
+    fn shading_of(&self, face: &FaceHere, seen: &Seen) -> FaceShading {
         let by_shading = match face.interpolation {
             Interpolation::Flat(_) => Shading::Flat,
             Interpolation::GouraudVintage => Shading::GouraudVintage,
@@ -133,13 +95,15 @@ impl Pixel {
             _ => self.shading,
         };
         match seen.shaded_by {
-            ShadedBy::NormalTable => Shading::PhongTable,
-            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_) => Shading::Phong,
+            ShadedBy::NormalTable => Shading::PhongTable.into(),
+            ShadedBy::Light { .. } => Shading::Phong.into(),
+            ShadedBy::BetweenLit { spacing, .. } => FaceShading::PhongEvery(spacing),
+            ShadedBy::BetweenSix(_) => FaceShading::Quadratic,
             ShadedBy::Corners if face.is_part && by_shading == Shading::Gouraud88Reseeded => {
-                Shading::GouraudTessellated
+                Shading::GouraudTessellated.into()
             }
-            ShadedBy::Corners if self.shading == Shading::Flat => Shading::Flat,
-            ShadedBy::Corners => by_shading,
+            ShadedBy::Corners if self.shading == Shading::Flat => Shading::Flat.into(),
+            ShadedBy::Corners => by_shading.into(),
         }
     }
 
@@ -173,9 +137,10 @@ impl Pixel {
                 );
                 text.say("light", &words);
             }
-            (ShadedBy::BetweenLit { before, after }, _) => {
+            (ShadedBy::BetweenLit { spacing, before, after }, _) => {
                 let words = format!(
-                    "linear between two pixels of its row, at most 16 apart, that are lit by the whole model: {} and {}",
+                    "linear between two pixels of its row, at most {} apart, that are lit by the whole model: {} and {}",
+                    spacing.pixels(),
                     in_shades(seen, before),
                     in_shades(seen, after),
                 );
@@ -271,9 +236,9 @@ impl Pixel {
         let runs = seen.effects.iter().any(|row| row.effect == Effect::Gouraud);
         let words = if let Some(shades) = self.max_error {
             format!("{drawn}: chosen for this face by the budget of {shades} shades")
-        } else if drawn == self.shading {
+        } else if drawn == self.shading.into() {
             format!("{drawn}: {}", self.shading_why)
-        } else if drawn == Shading::Flat && !runs {
+        } else if drawn == Shading::Flat.into() && !runs {
             format!("{drawn}: its corners have one shade (else {}: {})", self.shading, self.shading_why)
         } else {
             format!("{drawn}, where {} is on ({})", self.shading, self.shading_why)

@@ -1,13 +1,9 @@
 //! Group S: every span kernel of this machine against the definition, and the twins of other loops.
 
 use super::random::Random;
-use super::twins::twins;
+use super::twins::{GUARD, GUARD_BYTE, twins};
 use super::{FAILURES, Group};
 use mode13h::span::Kernel;
-
-/// Bytes before and behind a row that have to stay as they were.
-pub(super) const GUARD: usize = 64;
-pub(super) const GUARD_BYTE: u8 = 0xA5;
 
 /// Every span kernel of this machine against the definition, in the manner of hard cases S1 to S6; under 2 s.
 ///

@@ -2,10 +2,13 @@
 
 use super::Group;
 use super::random::Random;
-use super::spans::{GUARD, GUARD_BYTE};
 use mode13h::span::channels::{mix_cube, mix_cube_portable};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
 use mode13h::span::texture::{Texels, fill_perspective, fill_perspective_portable};
+
+/// Bytes before and behind a row that have to stay as they were.
+pub(super) const GUARD: usize = 64;
+pub(super) const GUARD_BYTE: u8 = 0xA5;
 
 /// The longest row.
 const LONGEST: usize = 320;

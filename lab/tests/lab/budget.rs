@@ -7,7 +7,8 @@ use mode13h::light::{Blend, Light};
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, Shading, Stats, VertexPath};
+use mode13h::raster::effects::SampleSpacing;
+use mode13h::render::{Accuracy, FaceShading, RenderError, Renderer, Shading, Stats, VertexPath};
 use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
 use mode13h_lab::cost::Probe;
@@ -18,7 +19,7 @@ const BUDGETS: [f32; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
 
 fn within(max_error: f32) -> Renderer {
     let mut renderer = Renderer::new();
-    renderer.set_max_error(Some(max_error));
+    renderer.set_max_error(max_error);
     renderer
 }
 
@@ -296,7 +297,7 @@ fn kept_decisions_are_those_that_would_be_made() {
             if change == 5 {
                 scene.lights_mut().iter_mut().for_each(|light| *light = light.with_intensity(0.6));
             }
-            renderer.set_max_error(Some(max_error));
+            renderer.set_max_error(max_error);
             let kept = draw(&mut renderer, &scene, &mut vga);
             assert_eq!(kept, draw(&mut within(max_error), &scene, &mut Vga::new()), "{name}, change {change}");
             tried.add(1);
@@ -309,7 +310,8 @@ fn kept_decisions_are_those_that_would_be_made() {
 fn a_wider_budget_lights_fewer_pixels() {
     for (name, scene) in scenes::all() {
         let lit = BUDGETS.map(|max_error| {
-            within(max_error).draw(&scene, &mut Vga::new()).expect("a legal scene").shares.of(Shading::Phong)
+            let shares = within(max_error).draw(&scene, &mut Vga::new()).expect("a legal scene").shares;
+            shares.iter().filter(|(shading, _)| shading.lights_pixels()).map(|(_, triangles)| triangles).sum::<u64>()
         });
         assert!(lit.is_sorted(), "{name}: {lit:?}");
     }
@@ -320,11 +322,13 @@ fn the_budget_is_the_renderers_or_the_scenes() {
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
     scene.preferences.max_error = Some(3.0);
     let mut renderer = Renderer::new();
-    assert_eq!(renderer.max_error(&scene), Some(3.0));
-    renderer.set_max_error(Some(5.0));
-    assert_eq!(renderer.max_error(&scene), Some(5.0));
-    renderer.set_shading(Shading::Phong);
-    assert_eq!(renderer.max_error(&scene), None);
+    let drawn_by = |renderer: &Renderer| renderer.settings().resolve(&scene.preferences).accuracy;
+    assert_eq!(drawn_by(&renderer), Accuracy::WithinError(3.0));
+    assert_eq!(renderer.set_max_error(5.0), None);
+    assert_eq!(drawn_by(&renderer), Accuracy::WithinError(5.0));
+    // A shading comes in the place of a budget, and is told so.
+    assert_eq!(renderer.set_shading(Shading::Phong), Some(Accuracy::WithinError(5.0)));
+    assert_eq!(drawn_by(&renderer), Accuracy::Shading(Shading::Phong));
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     assert_eq!((stats.max_error, stats.shares.of(Shading::Phong)), (None, stats.drawn));
     for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY] {
@@ -343,6 +347,41 @@ fn integers_know_no_budget() {
     assert_eq!(stats.max_error, None);
     assert_eq!(stats.shares.of(Shading::Gouraud88Reseeded), stats.drawn);
     assert_eq!(renderer.plan().objects()[0].max_error(), None);
+}
+
+/// Each approximation of light at every pixel is counted under a name of its own, and the plan says it once.
+#[test]
+fn approximations_are_counted_apart() {
+    let mut counts = FaceShading::ALL.map(|shading| (shading, 0));
+    for (name, scene) in scenes::all() {
+        for max_error in [16.0, 4.0, 1.0] {
+            let mut renderer = within(max_error);
+            let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
+            counts.iter_mut().for_each(|(shading, count)| *count += stats.shares.of(*shading));
+            for row in renderer.rows(&scene) {
+                for shading in FaceShading::ALL {
+                    let said = row.reason.matches(&format!(" {shading} (")).count();
+                    assert!(said <= 1, "{name} within {max_error}: {}", row.reason);
+                }
+            }
+        }
+    }
+    let drawn = |shading: FaceShading| counts.iter().any(|(of, count)| *of == shading && *count > 0);
+    assert!(drawn(FaceShading::Quadratic) && drawn(Shading::Phong.into()), "{counts:?}");
+    assert!(SampleSpacing::ALL.into_iter().any(|spacing| drawn(FaceShading::PhongEvery(spacing))), "{counts:?}");
+}
+
+/// What a scene's shading would be counts for nothing where it accepts an error.
+#[test]
+fn a_scene_with_a_shading_and_an_error_accepts_the_error() {
+    for (name, mut scene) in scenes::all() {
+        (scene.preferences.shading, scene.preferences.max_error) = (None, Some(4.0));
+        let without = draw(&mut Renderer::new(), &scene, &mut Vga::new());
+        for shading in [Shading::Flat, Shading::GouraudTessellated, Shading::PhongTable] {
+            scene.preferences.shading = Some(shading);
+            assert!(draw(&mut Renderer::new(), &scene, &mut Vga::new()) == without, "{name}, {shading}");
+        }
+    }
 }
 
 /// The plan names the budget and what came of it.

@@ -8,7 +8,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
 use mode13h::raster::{Frame, Interpolation};
-use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading, VertexPath};
+use mode13h::render::{Accuracy, FaceShading, HiddenSurfaces, Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h_lab::cost::Probe;
 use mode13h_lab::explain::{
@@ -243,6 +243,57 @@ fn a_tie_on_a_shared_edge_is_the_left_edges() {
         assert_eq!(!pixel.seen.is_empty(), is_in, "({x}, {y})");
         let fate = if is_in { Fate::Seen } else { Fate::NotItsEdge };
         assert!(pixel.faces.iter().any(|face| face.fate == fate), "{pixel}");
+    }
+}
+
+/// Within a budget a face is named by what shaded it: light at the pixel, between pixels of its row, or at six points.
+#[test]
+fn faces_within_a_budget_are_named_by_what_shaded_them() {
+    let mut named = [0; 3];
+    for (name, scene) in scenes::all() {
+        let mut renderer = Renderer::new();
+        renderer.set_max_error(4.0);
+        let bytes = frame(&mut renderer, &scene);
+        for (x, y) in some_pixels(&bytes, scene.background, 8, &mut Random::named(&name)) {
+            let pixel = explain(&mut renderer, &scene, x, y);
+            let Some((_, seen)) = pixel.front() else { continue };
+            let (which, word) = match seen.shaded_by {
+                ShadedBy::Light { .. } => (0, "phong"),
+                ShadedBy::BetweenLit { spacing, .. } => (1, FaceShading::PhongEvery(spacing).name()),
+                ShadedBy::BetweenSix(_) => (2, "phong-quadratic"),
+                _ => continue,
+            };
+            named[which] += 1;
+            let words = format!("shading   {word}: chosen for this face by the budget of 4 shades");
+            assert!(pixel.to_string().contains(&words), "{name}: {pixel}");
+        }
+    }
+    assert!(named[0] > 0 && named[2] > 0, "{named:?}");
+}
+
+/// Faces with the same corners are named each by its own number, whichever of them is seen.
+#[test]
+fn faces_with_the_same_corners_keep_their_own_numbers() {
+    let scene = square([100.0, 132.0], [60.0, 92.0]);
+    let mesh = scene.objects()[0].mesh();
+    let mut triangles = mesh.triangles().to_vec();
+    triangles.extend_from_within(..);
+    let mesh = Mesh::new(mesh.positions().to_vec(), triangles).expect("a square twice");
+    let mut twice = scene.clone();
+    twice.objects_mut()[0] = Object::new(mesh).named("square");
+    for (way, fates) in [
+        (HiddenSurfaces::DepthBuffer, [Fate::Seen, Fate::Behind]),
+        (HiddenSurfaces::BackFaces, [Fate::PaintedOver, Fate::Seen]),
+    ] {
+        for max_error in [None, Some(4.0)] {
+            let mut renderer = Renderer::new();
+            renderer.set_hidden_surfaces(Some(way));
+            renderer.set_accuracy(max_error.map(Accuracy::WithinError));
+            // Below the diagonal.
+            let pixel = explain(&mut renderer, &twice, 105, 80);
+            let named: Vec<_> = pixel.faces.iter().map(|face| (face.triangle, face.fate)).collect();
+            assert_eq!(named, [(Some(0), fates[0]), (Some(2), fates[1])], "{way}: {pixel}");
+        }
     }
 }
 

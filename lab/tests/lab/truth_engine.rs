@@ -948,7 +948,9 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
                         probe.renderer().set_hidden_surfaces(Some(way));
                         match setting {
                             10 => probe.renderer().set_vertex_path(VertexPath::Integer),
-                            11 => probe.renderer().set_max_error(Some(4.0)),
+                            11 => {
+                                probe.renderer().set_max_error(4.0);
+                            }
                             _ => {}
                         }
                         let shown = probe.look(&scene, SCREEN).expect("a legal scene");

@@ -2,8 +2,8 @@
 //! pixel: `teapot` and `phong` 8 % sooner, the torus, whose rows are of four pixels, no sooner.)
 
 use super::Wides;
+use crate::lanes::Points;
 use crate::light::{Lights, Reflectance};
-use crate::span::lit::Points;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn one_channel<const UNIT: bool>(lights: &Lights<'_>, answer: &Reflectance, points: &Points) -> Wides {

@@ -17,8 +17,9 @@
 
 use super::Interpolation;
 use super::depth::{Cell, DepthPlane};
+use super::draw_stats::DrawStats;
 use super::frame::Rect;
-use super::triangle::{DrawStats, Raster};
+use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, I24F8, U8F8};
 use crate::span::Kernel;

@@ -12,9 +12,9 @@ use super::rows::{
     Draw, Edges, Floats, Gathered, Group, Ints, LANES, MAGIC, Place, Row, Spans, rows_by, set_up, tall_by,
 };
 use super::sieve::{Chosen, Kept, Kind, pack, sieve_by};
+use crate::raster::draw_stats::DrawStats;
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
-use crate::raster::triangle::DrawStats;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {

@@ -29,25 +29,20 @@ use self::curve::CurvePlane;
 pub use self::pipeline::{
     Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
 };
-use self::planes::{KNOTS, Knots, LitPlane, TexturePlane};
+use self::planes::{KNOTS, Knots, LitPlane, PIECE, TexturePlane};
 use super::cover::{Row, SortedTriangle};
 use super::depth::{Cell, DepthPlane};
+use super::draw_stats::DrawStats;
 use super::interpolation::Interpolation;
 use super::paint::{RowShader, to_bytes};
 use super::shade::{RESEED, ShadePlane};
-use super::triangle::{DrawStats, Raster};
+use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::fixed::U8F8;
+use crate::lanes::LANES;
 use crate::span::channels::{mix_cube, mix_nearest};
 use crate::span::depth::{copy_before, copy_nearer};
-use crate::span::lit::LANES;
 use crate::span::{Kernel, lookup};
-
-/// Pixels in a piece.
-const PIECE: usize = RESEED as usize;
-
-/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`], and between two choices of a level.
-const EVERY: usize = 16;
 
 /// A half for every pixel: no dither.
 const HALVES: [[u8; 8]; 8] = [[128; 8]; 8];

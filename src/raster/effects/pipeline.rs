@@ -1,8 +1,8 @@
 //! What is done to the pixels of a triangle: where shades come from, and the stages that they pass.
 
 use crate::fixed::U8F8;
+use crate::lanes::{Lanes, Points};
 use crate::raster::interpolation::Interpolation;
-use crate::span::lit::{Lanes, Points};
 use crate::span::texture::{Levels, Texels};
 
 /// The values of a corner beyond its position, shade and depth. What a look does not use may be
@@ -63,7 +63,7 @@ pub struct Limits {
 }
 
 /// How far two pixels of a row that are lit lie apart.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum SampleSpacing {
     /// 4 pixels.
     Four,

@@ -4,15 +4,22 @@
 use core::ops::Range;
 
 use super::level::{self, LevelPlane};
-use super::{Attributes, EVERY, PIECE, SampleSpacing, TextureMapping, TextureStage};
+use super::{Attributes, SampleSpacing, TextureMapping, TextureStage};
+use crate::lanes::{LANES, Lanes, Points};
 use crate::raster::cover::{Row, SortedTriangle};
 use crate::raster::hyperbolic::Linear;
 use crate::raster::paint::to_bytes;
+use crate::raster::shade::RESEED;
 use crate::raster::weights::Weights;
 use crate::span::Kernel;
 use crate::span::hyperbolic::floor_quotient;
-use crate::span::lit::{LANES, Lanes, Points};
 use crate::span::texture::{Levels, Texels, fill_affine, fill_perspective};
+
+/// Pixels in a piece.
+pub(super) const PIECE: usize = RESEED as usize;
+
+/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`], and between two choices of a level.
+const EVERY: usize = 16;
 
 /// The most places in a piece that are lit for [`ShadeSource::LitEvery`], its end being one, and as many as are lit at once.
 pub(super) const KNOTS: usize = (PIECE / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);

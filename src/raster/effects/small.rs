@@ -4,13 +4,14 @@
 use super::pipeline::{Lighting, PixelPipeline, ShadeSource};
 use super::planes::LitPlane;
 use super::{Attributes, HALVES, write};
+use crate::lanes::{LANES, Lanes};
 use crate::raster::cover::{Row, SortedTriangle};
 use crate::raster::depth::{Cell, DepthPlane};
+use crate::raster::draw_stats::DrawStats;
 use crate::raster::paint::to_bytes;
-use crate::raster::triangle::{DrawStats, Raster};
+use crate::raster::triangle::Raster;
 use crate::raster::vertex::Vertex;
 use crate::span::Kernel;
-use crate::span::lit::{LANES, Lanes};
 
 /// Rows that are lit together, and their pixels: wider ones are not small.
 const ROWS: usize = 8;

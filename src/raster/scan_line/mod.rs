@@ -38,8 +38,9 @@ use core::fmt;
 pub use self::active::EdgePair;
 use super::cover::{Row, SortedTriangle};
 use super::depth::Cell;
+use super::draw_stats::DrawStats;
 use super::interpolation::Interpolation;
-use super::triangle::{DrawStats, Raster};
+use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::span::Kernel;
 

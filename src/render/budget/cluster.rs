@@ -7,8 +7,8 @@ use super::eight::{NOUGHT, Vectors, dot};
 use super::facet::{Facet, Strength};
 use super::light::{APART, APART_ANGLE, APART_TURN, narrow};
 use super::{CURVATURE, LIGHTS, LINEAR, Lit, QUARTERS, highlight, parts};
+use crate::lanes::{LANES, Lanes};
 use crate::light::{Beam, LampBeam};
-use crate::span::lit::{LANES, Lanes};
 
 /// Cosines and sines of f32 are off by less.
 const ROUNDING: f32 = 1e-3;

@@ -6,9 +6,9 @@ use glam::Vec3;
 use super::eight::{NOUGHT, Vectors, dot, square_root};
 use super::light::narrow;
 use super::{Budget, LIGHTS, Lit};
+use crate::lanes::{LANES, Lanes};
 use crate::light::Lights;
 use crate::span::Kernel;
-use crate::span::lit::{LANES, Lanes};
 
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]

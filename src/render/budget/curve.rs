@@ -31,13 +31,13 @@ use glam::Vec3;
 use super::light::OneLight;
 use super::{Budget, EXACT, Question};
 use crate::fixed::U8F8;
+use crate::lanes::{LANES, Lanes, Points};
 use crate::light::Reflectance;
 use crate::raster::Vertex;
 use crate::raster::effects::{Attributes, Limits};
-use crate::render::face::Faces;
+use crate::render::faces::Faces;
 use crate::render::paint::SurfaceMaterial;
 use crate::span::Kernel;
-use crate::span::lit::{LANES, Lanes, Points};
 
 /// Pixels from which on it pays to find out. (From 64 on the torus takes 0.86 of the time of `phong` within 2 shades, from 32
 /// on 0.78, from 16 on 0.75; from 10 on 0.77.)
@@ -305,7 +305,7 @@ impl Faces<'_> {
         vertices: &[Vertex; 3],
     ) {
         let depths = vertices.each_ref().map(Vertex::depth);
-        let kernel = self.budget.and_then(|budget| budget.kernel).unwrap_or(Kernel::PORTABLE);
+        let kernel = self.kernel;
         let face = self.on_screen(indices, surface, turned, depths, kernel);
         let light = self.light_at(&face, &NODES);
         let ramp = self.paints[usize::from(surface)].ramp;

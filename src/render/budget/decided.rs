@@ -1,11 +1,9 @@
-//! What a budget decides for a triangle, and how that is said.
+//! What a budget decides for a triangle.
 
-use alloc::format;
-use alloc::string::String;
 use alloc::vec::Vec;
 
+use crate::plan::{FaceCounts, FaceShading};
 use crate::raster::effects::SampleSpacing;
-use crate::render::face::LightSampling;
 use crate::render::sift;
 use crate::scene::Shading;
 
@@ -26,12 +24,26 @@ pub(in crate::render) enum Choice {
 }
 
 impl Choice {
-    pub(in crate::render) const fn shading(self) -> Shading {
+    /// Those that draw something, from cheap to exact.
+    const ALL: [Self; 8] = [
+        Self::Flat,
+        Self::Linear,
+        Self::Float,
+        Self::Curved,
+        Self::PhongEvery(SampleSpacing::Sixteen),
+        Self::PhongEvery(SampleSpacing::Eight),
+        Self::PhongEvery(SampleSpacing::Four),
+        Self::Phong,
+    ];
+
+    pub(in crate::render) const fn shading(self) -> FaceShading {
         match self {
-            Self::Flat => Shading::Flat,
-            Self::Float => Shading::Float,
-            Self::Phong | Self::PhongEvery(_) | Self::Curved => Shading::Phong,
-            Self::Linear | Self::Unknown => Shading::Gouraud88Reseeded,
+            Self::Flat => FaceShading::By(Shading::Flat),
+            Self::Float => FaceShading::By(Shading::Float),
+            Self::Curved => FaceShading::Quadratic,
+            Self::PhongEvery(spacing) => FaceShading::PhongEvery(spacing),
+            Self::Phong => FaceShading::By(Shading::Phong),
+            Self::Linear | Self::Unknown => FaceShading::By(Shading::Gouraud88Reseeded),
         }
     }
 }
@@ -40,15 +52,6 @@ impl Choice {
     /// Whether its pixels need light beyond that of the corners.
     pub(in crate::render) fn needs_light(self) -> bool {
         matches!(self, Self::Phong | Self::PhongEvery(_) | Self::Curved)
-    }
-
-    /// Where it takes light.
-    pub(in crate::render) fn sampling(self) -> LightSampling {
-        match self {
-            Self::PhongEvery(apart) => LightSampling::Every(apart),
-            Self::Curved => LightSampling::SixPoints,
-            _ => LightSampling::Pixels,
-        }
     }
 }
 
@@ -144,33 +147,18 @@ impl Decided {
         (0..self.chunks.len()).map(of_chunk).sum()
     }
 
+    /// How many triangles were shaded in which way.
+    pub(in crate::render) fn counts(&self) -> FaceCounts {
+        let drawn = Choice::ALL.map(|choice| (choice.shading(), self.count(choice)));
+        let drawn: Vec<(FaceShading, usize)> = drawn.into_iter().filter(|(_, count)| *count > 0).collect();
+        let not_drawn = self.triangles - drawn.iter().map(|(_, count)| count).sum::<usize>();
+        FaceCounts { drawn, not_drawn }
+    }
+
     /// Bytes that it holds.
     pub(in crate::render) fn bytes(&self) -> usize {
         self.chunks.capacity() * size_of::<Chunk>()
             + self.choices.capacity() * size_of::<Choice>()
             + self.bodies.capacity() * size_of::<Bodies>()
     }
-}
-
-/// How many triangles went to which shading, and why.
-pub(in crate::render) fn shares(decided: &Decided) -> String {
-    let kinds = [
-        (Choice::Flat, "one shade at their corners, or near enough"),
-        (Choice::Linear, "light is linear enough on them"),
-        (Choice::Float, "so it is, but not on the screen"),
-        (Choice::Curved, "it is quadratic on the screen"),
-        (Choice::PhongEvery(SampleSpacing::Sixteen), "at every 16th pixel of a row, and so it is between"),
-        (Choice::PhongEvery(SampleSpacing::Eight), "at every 8th"),
-        (Choice::PhongEvery(SampleSpacing::Four), "at every 4th"),
-        (Choice::Phong, "it is not known to be"),
-    ];
-    let (mut text, mut unseen) = (String::new(), decided.triangles());
-    for (choice, reason) in kinds {
-        let count = decided.count(choice);
-        unseen -= count;
-        if count > 0 {
-            text += &format!("{count} {} ({reason}), ", choice.shading());
-        }
-    }
-    text + &format!("{unseen} not drawn")
 }

@@ -19,10 +19,10 @@ use super::corners::ways;
 use super::decided::Bodies;
 use super::light::{APART, FROM_ONE, clamp_error, narrow};
 use super::{Budget, CURVATURE, EXACT, LINEAR, brightest, highlight, parts};
+use crate::lanes::{LANES, Lanes};
 use crate::light::{Lights, Reflectance};
-use crate::render::face::Faces;
+use crate::render::faces::Faces;
 use crate::span::Kernel;
-use crate::span::lit::{LANES, Lanes};
 
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]

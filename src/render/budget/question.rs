@@ -2,17 +2,17 @@
 
 use glam::Vec3;
 
+use super::WORTH_SAMPLES;
 use super::decided::{Bodies, Choice};
 use super::light::{OneLight, Towards, narrow};
 use super::{Budget, EXACT, LINEAR, brightest, highlight, parts};
+use crate::lanes::LANES;
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::SampleSpacing;
-use crate::render::face::Faces;
+use crate::render::faces::Faces;
 use crate::render::lit::LitVertices;
-use crate::render::within::WORTH_SAMPLES;
 use crate::span::Kernel;
-use crate::span::lit::LANES;
 
 /// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
 const WORTH_KNOTS: f32 = 16.0;

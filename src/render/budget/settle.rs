@@ -4,10 +4,10 @@ use super::cluster::{Linear, Where};
 use super::decided::{Bodies, Choice, Decided};
 use super::eight::{Looked, NOUGHT, ends, greater};
 use super::{Budget, LIGHTS};
-use crate::render::face::Faces;
+use crate::lanes::LANES;
+use crate::render::faces::Faces;
 use crate::render::sift;
 use crate::render::vertex::Geometry;
-use crate::span::lit::LANES;
 
 const ENOUGH: u32 = 8;
 

@@ -8,12 +8,12 @@ use glam::{Vec2, Vec3};
 use super::lit::{LitVertices, Place};
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
+use crate::lanes::{LANES, Points};
 use crate::light::Lights;
 use crate::palette::Ramp;
 use crate::raster::effects::Attributes;
 use crate::scene::Fog;
 use crate::span::Kernel;
-use crate::span::lit::{LANES, Points};
 use crate::view::ObjectView;
 
 mod lanes;

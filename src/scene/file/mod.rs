@@ -35,6 +35,7 @@ mod build;
 mod camera;
 mod error;
 mod layout;
+mod limits;
 mod material;
 mod motion;
 mod named;
@@ -58,14 +59,8 @@ use build::Builder;
 use error::{Fault, not_a_scene, not_toml};
 pub use error::{SceneError, SceneErrorKind};
 use layout::SceneLayout;
+pub use limits::{LONGEST, MAX_TRIANGLES};
 pub use place::Place;
-
-/// The most bytes of a scene file: 1 MiB.
-pub const LONGEST: usize = 1 << 20;
-
-/// The most triangles that the shapes of a scene have together: one for every pixel of mode 13h, and some. Models may have
-/// more.
-pub const MAX_TRIANGLES: u64 = 1 << 16;
 
 /// A scene and what was found wanting while it was read.
 #[derive(Clone, Debug)]

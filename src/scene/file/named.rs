@@ -13,7 +13,7 @@ use super::value::FileName;
 use super::{LONGEST, SceneErrorKind};
 use crate::mesh::{Mesh, obj};
 use crate::palette::{Palette, builtin, file as palette_file};
-use crate::scene::Shared;
+use crate::shared::Shared;
 use crate::texture::{self, LoadError, LoadErrorKind, Texture};
 
 /// How the caller opens a file.

@@ -221,7 +221,7 @@ fn s7_frames_keep_the_rules() {
             renderer.set_kernel(kernel);
             renderer.set_hidden_surfaces(way);
             if is_budget {
-                renderer.set_max_error(Some(2.0));
+                renderer.set_max_error(2.0);
             } else if let Some(shading) = shading {
                 renderer.set_shading(shading);
             }

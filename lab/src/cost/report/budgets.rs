@@ -78,7 +78,7 @@ pub(super) fn verdict(row: &BudgetRow) -> String {
 fn shared_out(row: &BudgetRow) -> String {
     // Below 2⁵³.
     let sum = row.triangles.iter().map(|(_, triangles)| *triangles as f64).sum::<f64>();
-    let part = |(shading, triangles): &(mode13h::render::Shading, u64)| {
+    let part = |(shading, triangles): &(mode13h::render::FaceShading, u64)| {
         format!("{shading} {} ({})", count(triangles), percent(*triangles as f64 / sum))
     };
     if row.triangles.is_empty() {

@@ -48,7 +48,7 @@ fn budget(max_error: f64, within: f64, best: Option<(Shading, f64)>) -> BudgetRo
         best_single_shading: best.map(|(shading, _)| shading),
         best_single: best.map(|(_, ratio)| time(1.2e5 / ratio)),
         ratio: best.map(|(_, ratio)| (ratio, (0.98 * ratio, 1.02 * ratio))),
-        triangles: vec![(Shading::Flat, 120), (Shading::Phong, 1_380)],
+        triangles: vec![(Shading::Flat.into(), 120), (Shading::Phong.into(), 1_380)],
     }
 }
 

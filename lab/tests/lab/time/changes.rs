@@ -10,7 +10,7 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, Interpolation, Vertex};
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Screen, Shading, VertexPath};
+use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
 use mode13h::span::Kernel;
 use mode13h::texture::Texture;
@@ -22,8 +22,7 @@ use crate::support::random::Random;
 /// How a renderer is set: what a fresh one is given, so that it draws the same frame.
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
-    shading: Option<Shading>,
-    max_error: Option<f32>,
+    accuracy: Option<Accuracy>,
     mapping: Option<Mapping>,
     mipmaps: Option<bool>,
     vertex_path: VertexPath,
@@ -36,8 +35,7 @@ pub(super) struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            shading: None,
-            max_error: None,
+            accuracy: None,
             mapping: None,
             mipmaps: None,
             vertex_path: VertexPath::default(),
@@ -51,14 +49,9 @@ impl Default for Settings {
 impl Settings {
     /// A fresh renderer that is set so.
     pub(super) fn renderer(&self) -> Renderer {
-        let Self { shading, max_error, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
+        let Self { accuracy, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
         let mut renderer = Renderer::new();
-        if let Some(shading) = shading {
-            renderer.set_shading(*shading);
-        }
-        if max_error.is_some() {
-            renderer.set_max_error(*max_error);
-        }
+        renderer.set_accuracy(*accuracy);
         renderer.set_mapping(*mapping);
         renderer.set_mipmaps(*mipmaps);
         renderer.set_vertex_path(*vertex_path);
@@ -218,8 +211,8 @@ pub(super) const CHANGES: &[Change] = &[
             }
             w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
             w.scene.preferences.max_error = None;
-            w.settings.max_error = None;
-            w.kept.set_max_error(None);
+            w.settings.accuracy = None;
+            w.kept.set_accuracy(None);
             w.scene.preferences.tessellation = Some(4.0);
             drawn(w);
             w.scene.preferences.tessellation = Some(between(r, 0.5, 1.0));
@@ -370,15 +363,17 @@ pub(super) const CHANGES: &[Change] = &[
             drawn(w);
         }
         let shading = if r.within(0, 1) == 1 { r.one_of(&linear) } else { r.one_of(&Shading::ALL) };
-        (w.settings.shading, w.settings.max_error) = (Some(shading), None);
+        w.settings.accuracy = Some(Accuracy::Shading(shading));
         w.kept.set_shading(shading);
     }),
-    seen("Renderer::set_max_error", |w, r| {
+    seen("Renderer::set_accuracy", |w, r| {
         let shades = sometimes(r, |r| between(r, 0.5, 16.0));
-        w.settings.max_error = shades;
-        if shades.is_some() {
-            w.settings.shading = None;
-        }
+        w.settings.accuracy = shades.map(Accuracy::WithinError);
+        w.kept.set_accuracy(w.settings.accuracy);
+    }),
+    seen("Renderer::set_max_error", |w, r| {
+        let shades = between(r, 0.5, 16.0);
+        w.settings.accuracy = Some(Accuracy::WithinError(shades));
         w.kept.set_max_error(shades);
     }),
     seen("Renderer::set_mapping", |w, r| {

@@ -14,7 +14,7 @@ use super::super::rows::{Gathered, Group, LANES, Place, set_up};
 use super::super::sieve::Chosen;
 use super::eight_rows::{Columns, Rows, lines};
 use super::planes;
-use crate::raster::triangle::DrawStats;
+use crate::raster::draw_stats::DrawStats;
 use crate::span::avx2::span;
 use crate::span::nearer::{self, Tested};
 

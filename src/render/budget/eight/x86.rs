@@ -1,7 +1,7 @@
 //! The bounds of eight faces, compiled for AVX2: eight f32 at a time.
 
 use super::{Eight, Falling};
-use crate::span::lit::Lanes;
+use crate::lanes::Lanes;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn model(falling: &Falling<'_>, eight: &Eight) -> [Lanes<f32>; 2] {

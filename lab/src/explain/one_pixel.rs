@@ -7,15 +7,14 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
 
-use super::Screen;
-use super::pipelines::Pipelines;
-use super::trace::Met;
-use crate::palette::Table;
-use crate::raster::effects::{Attributes, Lighting, Mix, PixelPipeline, ShadeSource, TextureStage};
-use crate::raster::{DrawStats, Frame, Raster, Rect, Vertex};
-use crate::span::Kernel;
-use crate::span::lit::{LANES, Lanes, Points};
-use crate::span::texture::{Levels, Texels};
+use mode13h::hooks::DrawnTriangle;
+use mode13h::lanes::{LANES, Lanes, Points};
+use mode13h::palette::Table;
+use mode13h::raster::effects::{Attributes, Lighting, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
+use mode13h::raster::{DrawStats, Frame, Raster, Rect, Vertex};
+use mode13h::render::Screen;
+use mode13h::span::Kernel;
+use mode13h::span::texture::{Levels, Texels};
 
 /// Where the shades of a face come from.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -33,8 +32,10 @@ pub enum ShadedBy {
         /// The shades in 8.8, of three channels or three times the same.
         shades: [u16; 3],
     },
-    /// Between two pixels of its row, at most 16 apart, that are lit.
+    /// Between two pixels of its row that are lit.
     BetweenLit {
+        /// How far the two lie apart, at most.
+        spacing: SampleSpacing,
         /// The shades in 8.8 of the one before it, or of itself, of three channels or three times the same.
         before: [u16; 3],
         /// Those of the next.
@@ -47,25 +48,25 @@ pub enum ShadedBy {
 
 /// What the stages of a face make of a pixel.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Bytes {
-    pub shaded_by: ShadedBy,
-    pub exact_cover: bool,
+pub(super) struct Bytes {
+    pub(super) shaded_by: ShadedBy,
+    pub(super) exact_cover: bool,
     /// One shade three times, or three channels.
-    pub shades: [u8; 3],
-    pub channels: bool,
-    pub texel: Option<u8>,
+    pub(super) shades: [u8; 3],
+    pub(super) channels: bool,
+    pub(super) texel: Option<u8>,
     /// The level of its image that the texel is of; `None` of an image without levels.
-    pub level: Option<u8>,
+    pub(super) level: Option<u8>,
     /// The threshold, and the byte.
-    pub dithered: Option<(u8, u8)>,
+    pub(super) dithered: Option<(u8, u8)>,
     /// Of channels, each with the texel's.
-    pub textured: Option<[u8; 3]>,
-    pub mixed: Option<u8>,
+    pub(super) textured: Option<[u8; 3]>,
+    pub(super) mixed: Option<u8>,
     /// The level, and the byte.
-    pub fogged: Option<(u8, u8)>,
+    pub(super) fogged: Option<(u8, u8)>,
     /// What is behind, and the byte.
-    pub blended: Option<(u8, u8)>,
-    pub byte: u8,
+    pub(super) blended: Option<(u8, u8)>,
+    pub(super) byte: u8,
 }
 
 /// A frame of which one pixel is drawn.
@@ -100,7 +101,7 @@ impl OnePixel {
     pub(super) fn is_on_edge(&self, vertices: &[Vertex; 3]) -> bool {
         // Within a frame of at most 4,096 pixels a side.
         let centre = [self.x, self.y].map(|c| i64::from(c) * 256 + 128);
-        let area = crate::raster::clip::doubled_area(vertices).signum();
+        let area = mode13h::raster::clip::doubled_area(vertices).signum();
         let at = |i: usize| [i64::from(vertices[i].x().to_bits()), i64::from(vertices[i].y().to_bits())];
         let sides = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
             let (a, b) = (at(from), at(to));
@@ -191,38 +192,36 @@ impl Lighting for Numbers {
     }
 }
 
-/// What a face makes of the pixel, where `behind` is.
-pub(super) fn bytes(looks: &Pipelines<'_>, met: &Met, pixel: &mut OnePixel, behind: u8, scan_line: bool) -> Bytes {
-    let plain = |shade: u8, exact_cover: bool| Bytes {
-        shaded_by: ShadedBy::Corners,
-        exact_cover,
-        shades: [shade; 3],
-        channels: false,
-        texel: None,
-        level: None,
-        dithered: None,
-        textured: None,
-        mixed: None,
-        fogged: None,
-        blended: None,
-        byte: shade,
-    };
-    let (Some(attributes), Some(surface)) = (met.attributes, met.surface) else {
-        // The scan-line method finds the pixels itself, and takes a shading's shades alone.
-        let look = PixelPipeline { source: ShadeSource::Shaded(met.interpolation), ..PixelPipeline::PLAIN };
-        let byte = if scan_line {
-            pixel.look((&met.vertices, &Default::default()), behind, &look)
-        } else {
-            pixel.draw(behind, |raster| raster.triangle(&met.vertices, met.interpolation)).unwrap_or(behind)
+impl OnePixel {
+    /// What a face makes of the pixel, where `behind` is.
+    pub(super) fn bytes(&mut self, triangle: &DrawnTriangle<'_>, behind: u8, scan_line: bool) -> Bytes {
+        let plain = |shade: u8, exact_cover: bool| Bytes {
+            shaded_by: ShadedBy::Corners,
+            exact_cover,
+            shades: [shade; 3],
+            channels: false,
+            texel: None,
+            level: None,
+            dithered: None,
+            textured: None,
+            mixed: None,
+            fogged: None,
+            blended: None,
+            byte: shade,
         };
-        return plain(byte, scan_line || met.interpolation.has_exact_cover());
-    };
-    let mut made = plain(behind, true);
-    looks.with((met.object, surface, met.manner), |look| {
-        made = stages(look, (&met.vertices, &attributes), pixel, behind, made);
-        DrawStats::default()
-    });
-    made
+        let DrawnTriangle { vertices, interpolation, effects, .. } = *triangle;
+        if let Some(effects) = effects {
+            return stages(effects.pipeline, (vertices, effects.attributes), self, behind, plain(behind, true));
+        }
+        // The scan-line method finds the pixels itself, and takes a shading's shades alone.
+        let byte = if scan_line {
+            let pipeline = PixelPipeline { source: ShadeSource::Shaded(interpolation), ..PixelPipeline::PLAIN };
+            self.look((vertices, &Default::default()), behind, &pipeline)
+        } else {
+            self.draw(behind, |raster| raster.triangle(vertices, interpolation)).unwrap_or(behind)
+        };
+        plain(byte, scan_line || interpolation.has_exact_cover())
+    }
 }
 
 /// What each stage of a look makes of the pixel.
@@ -246,7 +245,6 @@ fn stages(
         made.shades = [pixel.look(met, behind, &bare); 3];
     }
     match look.source {
-        ShadeSource::Shaded(_) => {}
         ShadeSource::Curved(_) => made.shaded_by = ShadedBy::BetweenSix(met.1.map(|corner| corner.lit)),
         ShadeSource::NormalTable(_) => made.shaded_by = ShadedBy::NormalTable,
         ShadeSource::Lit(light) => {
@@ -271,8 +269,10 @@ fn stages(
             let place = usize::from(pixel.look(met, behind, &numbered));
             let all = listed.all.borrow();
             let of = |place: usize| all.get(place).or(all.last()).copied().unwrap_or_default();
-            made.shaded_by = ShadedBy::BetweenLit { before: of(place), after: of(place + 1) };
+            made.shaded_by = ShadedBy::BetweenLit { spacing: apart, before: of(place), after: of(place + 1) };
         }
+        // Its corners' shades.
+        _ => {}
     }
     // A row of a table is a shade, a level or the new byte; a column a texel or the byte that was there.
     let columns = Table::from_fn(|_, column| column);

@@ -9,12 +9,14 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{POSES, full_light};
 use crate::light::{Blend, Material, RampChoice};
 use crate::palette::Ramp;
 use crate::render::{RenderError, Renderer};
 use crate::scene::{Preferences, Scene};
 use crate::vga::Vga;
+
+/// Pictures over one round.
+const POSES: u32 = 16;
 
 /// What is seen of a material over a round.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -202,4 +204,11 @@ impl Tally {
             brightest: f32::from(self.brightest) / 255.0,
         }
     }
+}
+
+/// What a material gives back of ambient and diffuse light in full light. At most 1, as no more is shown, and 1 where it
+/// gives nothing back.
+pub(super) fn full_light(material: &Material, ambient: f32) -> f32 {
+    let full = material.ambient * ambient + material.diffuse;
+    if full > 0.0 { full.min(1.0) } else { 1.0 }
 }

@@ -11,19 +11,17 @@ mod seen;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Effect, RenderError, Renderer, Screen};
 use crate::light::{Material, RampChoice};
 use crate::mesh::Surface;
 use crate::palette::auto::{Automatic, Entries, Use, share_beside};
 use crate::palette::{Palette, Rgb};
+use crate::plan::Effect;
+use crate::render::{RenderError, Renderer, Screen};
 use crate::scene::{Object, Scene, Shared};
 use crate::texture::{Mipmap, Texture};
 use mixed::OwnColors;
-use seen::moments;
 pub use seen::{Seen, seen};
-
-/// Pictures over one round.
-const POSES: u32 = 16;
+use seen::{full_light, moments};
 
 /// A palette for a scene, and the scene's materials in it.
 #[derive(Clone, PartialEq, Debug)]
@@ -72,12 +70,12 @@ impl AutomaticPalette {
 /// ```
 /// use mode13h::mesh::shapes;
 /// use mode13h::palette::auto::Entries;
-/// use mode13h::render::automatic;
+/// use mode13h::auto_palette;
 /// use mode13h::scene::Scene;
 ///
 /// let mut scene = Scene::showing(shapes::torus(48, 24));
 /// scene.objects_mut()[0].materials[0].color = [0.9, 0.5, 0.2];
-/// let made = automatic(&scene)?;
+/// let made = auto_palette::of_scene(&scene)?;
 /// let Entries::Ramp { ramp, full_light: 1.0, .. } = made.entries[0][0] else { unreachable!("it is matt") };
 /// made.apply(&mut scene);
 /// assert_eq!(scene.palette, Some(made.palette));
@@ -86,8 +84,8 @@ impl AutomaticPalette {
 /// ```
 ///
 /// # Errors
-/// As [`Renderer::draw`](super::Renderer::draw).
-pub fn automatic(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
+/// As [`Renderer::draw`].
+pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     let in_channels = mixed::has_colored_light(scene);
     let mut tints = Tints::default();
     let bodies: Vec<Vec<Body>> = scene.objects().iter().map(|object| bodies(object, scene, &mut tints)).collect();
@@ -239,13 +237,6 @@ fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
     let added = |i: usize| (brightest[i] - color[i]).max(0.0) / material.specular;
     let highlight = if material.is_specular() { core::array::from_fn(added) } else { [1.0; 3] };
     (color.map(|channel| channel / full), highlight)
-}
-
-/// What a material gives back of ambient and diffuse light in full light. At most 1, as no more is shown, and 1 where it
-/// gives nothing back.
-fn full_light(material: &Material, ambient: f32) -> f32 {
-    let full = material.ambient * ambient + material.diffuse;
-    if full > 0.0 { full.min(1.0) } else { 1.0 }
 }
 
 /// Images in the colours of their materials, each once.

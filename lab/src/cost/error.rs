@@ -1,0 +1,52 @@
+//! Why nothing could be measured.
+
+use core::fmt;
+
+use super::ProbeError;
+use crate::truth::TruthError;
+use mode13h::render::RenderError;
+
+/// Why nothing could be found out.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum CostError {
+    /// The scene cannot be drawn.
+    Scene(RenderError),
+    /// What it shows cannot be looked at.
+    Probe(ProbeError),
+    /// There is no truth about it.
+    Truth(TruthError),
+    /// There is no frame.
+    NoFrames,
+}
+
+impl fmt::Display for CostError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scene(error) => error.fmt(f),
+            Self::Probe(error) => error.fmt(f),
+            Self::Truth(error) => error.fmt(f),
+            Self::NoFrames => f.write_str("there is no frame to be drawn"),
+        }
+    }
+}
+
+impl core::error::Error for CostError {}
+
+impl From<RenderError> for CostError {
+    fn from(error: RenderError) -> Self {
+        Self::Scene(error)
+    }
+}
+
+impl From<ProbeError> for CostError {
+    fn from(error: ProbeError) -> Self {
+        Self::Probe(error)
+    }
+}
+
+impl From<TruthError> for CostError {
+    fn from(error: TruthError) -> Self {
+        Self::Truth(error)
+    }
+}

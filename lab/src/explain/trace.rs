@@ -1,0 +1,159 @@
+//! One pixel of a frame: which triangles cover it, which of them is seen, and what each stage makes of its byte.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use mode13h::hooks::{self, DrawnTriangle};
+use mode13h::palette::Ramp;
+use mode13h::plan;
+use mode13h::raster::cover::SortedTriangle;
+use mode13h::raster::depth::DepthPlane;
+use mode13h::raster::effects::Attributes;
+use mode13h::raster::{Interpolation, Vertex};
+use mode13h::render::{HiddenSurfaces, RenderError, Renderer, Screen, Stats};
+use mode13h::scene::Scene;
+
+use super::one_pixel::{Bytes, OnePixel};
+
+/// A triangle that covers the pixel, or whose edge runs through its centre.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    /// How many triangles of the frame come before it.
+    number: usize,
+    pub(super) object: usize,
+    /// Its index in the mesh, or in what splitting made of it; `None` where that is not known.
+    pub(super) face: Option<usize>,
+    pub(super) vertices: [Vertex; 3],
+    pub(super) interpolation: Interpolation,
+    /// The palette entries of its surface's shades, where they are known.
+    pub(super) ramp: Option<Ramp>,
+    /// Of a face with effects.
+    pub(super) attributes: Option<[Attributes; 3]>,
+    pub(super) depth: u32,
+    pub(super) fate: Fate,
+    /// Of what is seen, what its stages make.
+    pub(super) bytes: Option<Bytes>,
+}
+
+/// What becomes of a triangle at a pixel.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Fate {
+    /// It is seen.
+    Seen,
+    /// It shines through, and is seen before what is behind it.
+    SeenThrough,
+    /// It is farther away than what is seen, or as far and drawn later.
+    Behind,
+    /// What is seen was painted over it.
+    PaintedOver,
+    /// Its edge runs through the pixel's centre, and the pixel is its neighbour's: the edge is neither a top nor a left
+    /// one.
+    NotItsEdge,
+}
+
+/// Everything about a pixel.
+#[derive(Debug)]
+pub(super) struct Trace {
+    pub(super) stats: Stats,
+    /// In the order of drawing; those that shine through last.
+    pub(super) met: Vec<Met>,
+    pub(super) byte: u8,
+    /// The plan in words.
+    pub(super) rows: Vec<plan::Row>,
+}
+
+/// Everything about the pixel (`x`, `y`), which lies inside the screen: its triangles in the order of drawing, what became
+/// of each, and the stages of those that are seen.
+///
+/// # Errors
+/// Those of [`Renderer::draw`].
+pub(super) fn trace(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    screen: Screen,
+    x: u32,
+    y: u32,
+) -> Result<Trace, RenderError> {
+    let plan = renderer.make_plan(scene, screen)?;
+    let (hidden_surfaces, chosen) = (plan.hidden_surfaces(), plan.is_chosen());
+    // With the scan-line method every shading covers exactly.
+    let exact = hidden_surfaces == HiddenSurfaces::ScanLine;
+    let mut pixel = OnePixel { screen, x, y, kernel: renderer.kernel(), row: vec![0; screen.width as usize] };
+    let (mut met, mut number) = (Vec::new(), 0);
+    let stats = hooks::each_triangle(renderer, scene, screen, &mut |triangle| {
+        met.extend(meet(triangle, number, &mut pixel, exact));
+        number += 1;
+    })?;
+    let rows = renderer.plan().rows(scene);
+    decide_fates(&mut met, hidden_surfaces, chosen);
+    let mut byte = scene.background;
+    // The one that hides what is behind it comes first, and those that shine through follow far to near.
+    debug_assert!(met.iter().filter(|met| met.fate == Fate::Seen).count() <= 1);
+    for fate in [Fate::Seen, Fate::SeenThrough] {
+        for met in met.iter_mut().filter(|met| met.fate == fate) {
+            // What it passes through is known only while it is visited.
+            let mut number = 0;
+            hooks::each_triangle(renderer, scene, screen, &mut |triangle| {
+                if number == met.number {
+                    met.bytes = Some(pixel.bytes(triangle, byte, exact));
+                }
+                number += 1;
+            })?;
+            byte = met.bytes.map_or(byte, |bytes| bytes.byte);
+        }
+    }
+    Ok(Trace { stats, met, byte, rows })
+}
+
+/// A triangle, if it meets the pixel.
+fn meet(triangle: &DrawnTriangle<'_>, number: usize, pixel: &mut OnePixel, exact: bool) -> Option<Met> {
+    let DrawnTriangle { object, face, vertices, interpolation, ramp, effects } = *triangle;
+    let by = if exact || effects.is_some() { Interpolation::Flat(0) } else { interpolation };
+    let covers = pixel.draw(0, |raster| raster.triangle(vertices, by)).is_some();
+    if !covers && (!by.has_exact_cover() || !pixel.is_on_edge(vertices)) {
+        return None;
+    }
+    // Columns and rows of a frame.
+    let depth = DepthPlane::new(&SortedTriangle::new(vertices)).at(pixel.x as i32, pixel.y as i32);
+    let fate = match effects {
+        _ if !covers => Fate::NotItsEdge,
+        Some(effects) if effects.transparent => Fate::SeenThrough,
+        _ => Fate::Seen,
+    };
+    let attributes = effects.map(|effects| *effects.attributes);
+    Some(Met { number, object, face, vertices: *vertices, interpolation, ramp, attributes, depth, fate, bytes: None })
+}
+
+/// The sum of a face's depths.
+fn depth_of(vertices: &[Vertex; 3]) -> u64 {
+    vertices.iter().map(|v| u64::from(v.depth())).sum()
+}
+
+/// Says of each face that covers the pixel whether it is seen, as the way to hidden surfaces has it, and puts those
+/// that shine through last, far to near.
+fn decide_fates(met: &mut Vec<Met>, way: HiddenSurfaces, chosen: bool) {
+    let tests_depth = matches!(way, HiddenSurfaces::DepthBuffer | HiddenSurfaces::ScanLine);
+    let opaque = || (0..met.len()).filter(|&i| met[i].fate == Fate::Seen);
+    let seen = match way {
+        // Of equal depths the first.
+        _ if tests_depth => opaque().filter(|&i| met[i].depth > 0).rev().max_by_key(|&i| met[i].depth),
+        // Painted last: of equal ones the last.
+        HiddenSurfaces::PainterOrder if !chosen => opaque().max_by_key(|&i| depth_of(&met[i].vertices)),
+        _ => opaque().next_back(),
+    };
+    let wall = seen.map_or(0, |i| met[i].depth);
+    for (i, met) in met.iter_mut().enumerate() {
+        met.fate = match met.fate {
+            Fate::Seen if Some(i) == seen => Fate::Seen,
+            Fate::Seen if tests_depth => Fate::Behind,
+            Fate::Seen => Fate::PaintedOver,
+            Fate::SeenThrough if tests_depth && met.depth <= wall => Fate::Behind,
+            other => other,
+        };
+    }
+    let (mut opaque, mut through): (Vec<Met>, Vec<Met>) = met.drain(..).partition(|met| met.fate != Fate::SeenThrough);
+    // Far to near, as the renderer draws them.
+    through.sort_by_key(|met| depth_of(&met.vertices));
+    opaque.append(&mut through);
+    *met = opaque;
+}

@@ -1,0 +1,65 @@
+//! What drawing finds out about an object beyond its plan, and how that is said.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::{Effect, FaceShading};
+use crate::raster::effects::SampleSpacing;
+use crate::scene::Shading;
+
+/// What drawing found out about an object.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Findings {
+    /// How its faces were shaded, if an error budget chose that.
+    pub face_counts: Option<FaceCounts>,
+    /// How far linear shades may be from light at every pixel, in shades of 1/255 of full intensity, if that is known.
+    pub linear_error: Option<f64>,
+}
+
+impl Findings {
+    /// What is said beside the reason for an effect, if anything.
+    pub(super) fn words(&self, effect: Effect, on: bool) -> String {
+        match (effect, &self.face_counts, self.linear_error) {
+            (Effect::Gouraud, Some(counts), _) => format!(": {counts}"),
+            (Effect::Phong | Effect::Tessellation, _, Some(shades)) if !on => {
+                format!("; linear shades are off by at most {shades:.2}")
+            }
+            _ => String::new(),
+        }
+    }
+}
+
+/// How many faces of an object an error budget had shaded in which way.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct FaceCounts {
+    /// Each way that any face was shaded in, from cheap to exact.
+    pub drawn: Vec<(FaceShading, usize)>,
+    /// Faces on which nothing had to be decided, as they are not seen.
+    pub not_drawn: usize,
+}
+
+/// Each count with its reason, and last those that were not drawn.
+impl fmt::Display for FaceCounts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (shading, count) in &self.drawn {
+            write!(f, "{count} {shading} ({}), ", why(*shading))?;
+        }
+        write!(f, "{} not drawn", self.not_drawn)
+    }
+}
+
+/// Why a budget chooses it.
+fn why(shading: FaceShading) -> &'static str {
+    match shading {
+        FaceShading::By(Shading::Flat) => "one shade at their corners, or near enough",
+        FaceShading::By(Shading::Float) => "so it is, but not on the screen",
+        FaceShading::By(Shading::Phong) => "it is not known to be",
+        FaceShading::By(_) => "light is linear enough on them",
+        FaceShading::Quadratic => "it is quadratic on the screen",
+        FaceShading::PhongEvery(SampleSpacing::Sixteen) => "at every 16th pixel of a row, and so it is between",
+        FaceShading::PhongEvery(SampleSpacing::Eight) => "at every 8th",
+        FaceShading::PhongEvery(SampleSpacing::Four) => "at every 4th",
+    }
+}

@@ -1,0 +1,113 @@
+//! The stages that an object goes through, as values: what the renderer goes by. Words and reasons are for people alone.
+
+use crate::scene::{HiddenSurfaces, Mapping, Shading};
+
+/// Of several ways to have an effect, which.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[non_exhaustive]
+pub enum Choice {
+    /// There is but one way.
+    #[default]
+    Only,
+    /// By this shading.
+    Shading(Shading),
+    /// By what an error budget chooses for each face.
+    Budget,
+    /// Hidden surfaces are left out in this way.
+    HiddenSurfaces(HiddenSurfaces),
+    /// Texture coordinates run in this way.
+    Mapping(Mapping),
+    /// Mipmaps: a level for each face.
+    LevelPerFace,
+    /// Mipmaps: a level for each 16 pixels of a row.
+    LevelPer16Pixels,
+    /// Dither by a matrix of 8 × 8 thresholds.
+    Ordered8x8,
+}
+
+impl Choice {
+    /// Its name; empty where there is but one way.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Only => "",
+            Self::Shading(shading) => shading.name(),
+            Self::Budget => "budget",
+            Self::HiddenSurfaces(way) => way.name(),
+            Self::Mapping(mapping) => mapping.name(),
+            Self::LevelPerFace => "per face",
+            Self::LevelPer16Pixels => "per 16 pixels",
+            Self::Ordered8x8 => "ordered 8 x 8",
+        }
+    }
+}
+
+/// What becomes of an object's vertices.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum VertexStage {
+    /// Those of last frame are kept.
+    Keep,
+    /// They are made.
+    Make,
+    /// They are made, and with them all that is kept beside them: by force, or as nothing is kept.
+    MakeAnew,
+}
+
+/// What light is worked out for shades.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Lighting {
+    /// None: each surface has one shade.
+    None,
+    /// Suns, and no highlights.
+    Suns,
+    /// Suns, lamps and highlights.
+    All,
+    /// The same on each of three channels.
+    Channels,
+}
+
+/// Where light is worked out.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum LitAt {
+    Vertices,
+    /// At the middle of each face.
+    Faces,
+    /// At each pixel.
+    Pixels,
+}
+
+/// Which lamps fall on an object.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Lamps {
+    None,
+    InRange,
+    /// In range or not: by force.
+    All,
+}
+
+/// What takes the place of the half that is else added to a shade.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Dither {
+    None,
+    Ordered,
+    /// Thresholds that change nothing: by force.
+    Neutral,
+}
+
+/// What is done for one object.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Stages {
+    pub(crate) vertices: VertexStage,
+    /// How near the object's bounds come, along the view.
+    pub(crate) nearest: f64,
+    pub(crate) lighting: Lighting,
+    pub(crate) lit_at: LitAt,
+    pub(crate) lamps: Lamps,
+    /// How texture coordinates run.
+    pub(crate) mapping: Mapping,
+    pub(crate) dither: Dither,
+    /// Whether surfaces without an image get one that changes nothing: by force.
+    pub(crate) neutral_image: bool,
+    /// Whether surfaces that hide what is behind them pass through a table that changes nothing: by force.
+    pub(crate) neutral_blend: bool,
+}

@@ -1,0 +1,233 @@
+//! How a renderer is set, and what a scene is drawn by: the only place that knows which of two wishes counts.
+
+use core::fmt;
+
+use super::VertexPath;
+use crate::plan::{Effect, Overrides};
+use crate::scene::{HiddenSurfaces, Mapping, Preferences, Shading};
+
+/// How exact shades are: one choice, so that a shading and a budget cannot both be set.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Accuracy {
+    /// As exact as this shading makes them, on every face.
+    Shading(Shading),
+    /// Within so many shades of error, 1/255 of full intensity each: every face gets the cheapest shading that is known to
+    /// keep within. A number that is not above 0 and finite is an error when a scene is drawn.
+    WithinError(f32),
+}
+
+impl Accuracy {
+    /// The shading; within an error the default, which is what faces get on which nothing has to be decided.
+    #[must_use]
+    pub fn shading(self) -> Shading {
+        match self {
+            Self::Shading(shading) => shading,
+            Self::WithinError(_) => Shading::default(),
+        }
+    }
+
+    /// How many shades of error are accepted, if it is by that that shadings are chosen.
+    #[must_use]
+    pub const fn max_error(self) -> Option<f32> {
+        match self {
+            Self::Shading(_) => None,
+            Self::WithinError(shades) => Some(shades),
+        }
+    }
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self::Shading(Shading::default())
+    }
+}
+
+impl From<Shading> for Accuracy {
+    fn from(shading: Shading) -> Self {
+        Self::Shading(shading)
+    }
+}
+
+/// The shading's name, or `within 4 shades`.
+impl fmt::Display for Accuracy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Shading(shading) => shading.fmt(f),
+            Self::WithinError(shades) => {
+                write!(f, "within {shades} {}", if *shades == 1.0 { "shade" } else { "shades" })
+            }
+        }
+    }
+}
+
+/// Who chose what a scene is drawn by.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum ChosenBy {
+    /// The renderer's settings.
+    Renderer,
+    /// The scene's preferences.
+    Scene,
+    /// Nobody: it is the default.
+    Default,
+}
+
+/// How a renderer is set. What is `None` here is left to the scene, and what the scene does not ask for to the plan.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Settings {
+    /// How exact shades are.
+    pub accuracy: Option<Accuracy>,
+    /// How hidden surfaces are left out, right or wrong.
+    pub hidden_surfaces: Option<HiddenSurfaces>,
+    /// How textures are mapped.
+    pub mapping: Option<Mapping>,
+    /// Whether textures have mipmaps.
+    pub mipmaps: Option<bool>,
+    /// The numbers that vertices are made in.
+    pub vertex_path: VertexPath,
+    /// Effects that are switched by hand.
+    pub overrides: Overrides,
+}
+
+/// What a scene is drawn by. [`Settings::resolve`] makes it.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
+pub struct Resolved {
+    /// How exact shades are to be, as it was asked for, or the default.
+    pub asked: Accuracy,
+    /// Who asked for that.
+    pub asked_by: ChosenBy,
+    /// How exact shades are: what the vertex path has of it.
+    pub accuracy: Accuracy,
+    /// How hidden surfaces are left out; `None` leaves it to the plan.
+    pub hidden_surfaces: Option<HiddenSurfaces>,
+    /// How textures are mapped; `None` leaves it to the plan.
+    pub mapping: Option<Mapping>,
+    /// Whether textures have mipmaps; `None` leaves it to the plan.
+    pub mipmaps: Option<bool>,
+    /// Whether faces are to be split. A budget sees to it otherwise that shades follow the light.
+    pub tessellates: bool,
+    /// Faces that are split are split until the shades on their edges are linear to so many shades.
+    pub tolerance: f32,
+    /// Whether shades between two entries of a ramp are shown as a pattern of both.
+    pub dither: bool,
+    /// The numbers that vertices are made in.
+    pub vertex_path: VertexPath,
+    /// Whether what was made of a vertex may be kept for the next frame.
+    pub keeps_vertices: bool,
+}
+
+/// The shades to which faces are split that a scene says nothing about.
+const DEFAULT_TOLERANCE: f32 = 1.0;
+
+impl Settings {
+    /// What a scene with these preferences is drawn by. The settings count before the preferences. Of a scene's own
+    /// preferences an error that is accepted counts before a shading. Vertices in 16.16 know no budget and not every shading:
+    /// there the shading is the nearest that they have.
+    ///
+    /// ```
+    /// use mode13h::render::{Accuracy, ChosenBy, Settings, Shading};
+    /// use mode13h::scene::Preferences;
+    ///
+    /// let preferences = Preferences { max_error: Some(2.0), ..Preferences::default() };
+    /// let mut settings = Settings::default();
+    /// assert_eq!(settings.resolve(&preferences).accuracy, Accuracy::WithinError(2.0));
+    /// settings.accuracy = Some(Accuracy::Shading(Shading::Phong));
+    /// let resolved = settings.resolve(&preferences);
+    /// assert_eq!((resolved.accuracy, resolved.asked_by), (Accuracy::Shading(Shading::Phong), ChosenBy::Renderer));
+    /// ```
+    #[must_use]
+    pub fn resolve(&self, preferences: &Preferences) -> Resolved {
+        let of_scene = preferences.max_error.map(Accuracy::WithinError).or(preferences.shading.map(Accuracy::Shading));
+        let (asked, asked_by) = match (self.accuracy, of_scene) {
+            (Some(accuracy), _) => (accuracy, ChosenBy::Renderer),
+            (None, Some(accuracy)) => (accuracy, ChosenBy::Scene),
+            (None, None) => (Accuracy::default(), ChosenBy::Default),
+        };
+        let accuracy = match (self.vertex_path, asked) {
+            (VertexPath::Float, asked) => asked,
+            (VertexPath::Integer, Accuracy::Shading(shading)) => shading.in_integers().into(),
+            (VertexPath::Integer, Accuracy::WithinError(_)) => match asked_by {
+                ChosenBy::Scene => preferences.shading.unwrap_or_default().in_integers().into(),
+                ChosenBy::Renderer | ChosenBy::Default => Accuracy::default(),
+            },
+        };
+        let asks_for_splitting =
+            accuracy.shading() == Shading::GouraudTessellated || preferences.tessellation.is_some();
+        Resolved {
+            asked,
+            asked_by,
+            accuracy,
+            hidden_surfaces: self.hidden_surfaces.or(preferences.hidden_surfaces),
+            mapping: self.mapping.or(preferences.mapping),
+            mipmaps: self.mipmaps.or(preferences.mipmaps),
+            tessellates: asks_for_splitting && accuracy.max_error().is_none(),
+            tolerance: preferences.tessellation.unwrap_or(DEFAULT_TOLERANCE),
+            dither: preferences.dither,
+            vertex_path: self.vertex_path,
+            keeps_vertices: self.keeps_frames() && self.vertex_path == VertexPath::Float,
+        }
+    }
+
+    /// Whether a frame that is there may stay where nothing has changed.
+    pub(super) fn keeps_frames(&self) -> bool {
+        self.overrides.get(Effect::Transform) != Some(true)
+    }
+}
+
+impl Resolved {
+    /// The preferences of a scene, with the accuracy that was asked for in place of the scene's own: what must be in range.
+    pub(super) fn to_check(self, preferences: &Preferences) -> Preferences {
+        Preferences { max_error: self.asked.max_error(), ..*preferences }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every combination of what a renderer and a scene may say about accuracy, against the table that it stands for.
+    #[test]
+    fn the_renderer_counts_before_the_scene_and_a_budget_before_a_shading() {
+        let phong = Accuracy::Shading(Shading::Phong);
+        for set in [None, Some(phong), Some(Accuracy::WithinError(2.0))] {
+            for shading in [None, Some(Shading::Flat)] {
+                for max_error in [None, Some(4.0)] {
+                    for vertex_path in VertexPath::ALL {
+                        let settings = Settings { accuracy: set, vertex_path, ..Settings::default() };
+                        let preferences = Preferences { shading, max_error, ..Preferences::default() };
+                        let resolved = settings.resolve(&preferences);
+                        let (asked, by) = match (set, max_error, shading) {
+                            (Some(set), ..) => (set, ChosenBy::Renderer),
+                            (None, Some(error), _) => (Accuracy::WithinError(error), ChosenBy::Scene),
+                            (None, None, Some(shading)) => (Accuracy::Shading(shading), ChosenBy::Scene),
+                            (None, None, None) => (Accuracy::default(), ChosenBy::Default),
+                        };
+                        assert_eq!((resolved.asked, resolved.asked_by), (asked, by));
+                        let drawn = match vertex_path {
+                            VertexPath::Float => asked,
+                            _ if set.is_some() => Accuracy::default(),
+                            _ => Accuracy::Shading(shading.unwrap_or_default()),
+                        };
+                        assert_eq!(resolved.accuracy, drawn, "{settings:?} {preferences:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_shading_asks_for_splitting_and_a_budget_for_none() {
+        let of = |accuracy: Accuracy, tessellation, vertex_path| {
+            let settings = Settings { accuracy: Some(accuracy), vertex_path, ..Settings::default() };
+            let resolved = settings.resolve(&Preferences { tessellation, ..Preferences::default() });
+            (resolved.tessellates, resolved.tolerance)
+        };
+        let float = VertexPath::Float;
+        assert_eq!(of(Shading::GouraudTessellated.into(), None, float), (true, 1.0));
+        assert_eq!(of(Shading::GouraudTessellated.into(), Some(3.0), float), (true, 3.0));
+        assert_eq!(of(Shading::Phong.into(), Some(3.0), float), (true, 3.0));
+        assert_eq!(of(Shading::Phong.into(), None, float), (false, 1.0));
+        // Switched on by hand faces are split as the scene says.
+        assert_eq!(of(Accuracy::WithinError(2.0), Some(3.0), float), (false, 3.0));
+    }
+}
