@@ -127,8 +127,8 @@ const FLOATS: &[Row] = &[
     ("Surface.diffuse", 3, |s, bad, i| surface(s, |surface| surface.diffuse[i] = bad), "object 0"),
     ("Surface.specular", 3, |s, bad, i| surface(s, |surface| surface.specular[i] = bad), "object 0"),
     ("Surface.shininess", 1, |s, bad, _| surface(s, |surface| surface.shininess = bad), "object 0"),
-    ("Wishes.max_error", 1, |s, bad, _| s.preferences.max_error = Some(bad), "wishes"),
-    ("Wishes.tessellation", 1, |s, bad, _| s.preferences.tessellation = Some(bad), "wishes"),
+    ("Preferences.max_error", 1, |s, bad, _| s.preferences.max_error = Some(bad), "wishes"),
+    ("Preferences.tessellation", 1, |s, bad, _| s.preferences.tessellation = Some(bad), "wishes"),
 ];
 
 /// Those that no frame is made from, and where they are tried.
@@ -140,8 +140,6 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("Mesh.normals", "tests/mesh_normals.rs"),
     ("Mesh.positions", "tests/mesh_normals.rs"),
     ("Mesh.texcoords", "tests/mesh_normals.rs"),
-    ("Object.longest_edges", "worked out from positions"),
-    ("Object.steepest_texcoords", "worked out from positions and texture coordinates"),
     ("Scene.duration", "the length of a film, not a number of a frame: tests/scene_files.rs"),
     ("Scene.picture", "a moment, which motions make nothing of if it is none"),
     ("Scene.time", "in what it has moved"),
