@@ -9,6 +9,7 @@
 
 mod bounds;
 mod error;
+mod facts;
 pub mod normals;
 #[cfg(feature = "obj")]
 pub mod obj;
@@ -61,6 +62,7 @@ pub struct Mesh {
     convex: bool,
     /// A bit for each triangle that lies back to back with another; empty if there is none.
     twins: Vec<u64>,
+    facts: facts::Facts,
 }
 
 impl Mesh {
@@ -80,12 +82,14 @@ impl Mesh {
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check(&positions, &triangles)?;
         let normals = vec![Vec3::Z; positions.len()];
-        let mut mesh = Self::assemble(positions, normals, triangles);
+        let points = topology::weld(&positions);
+        let edges = topology::Edges::new(&triangles, &points);
+        let mut mesh = Self::assemble_welded(positions, normals, triangles, &points, &edges);
         // Numbers of vertices, which are below 2³¹.
         let own: Vec<u32> = (0..mesh.positions.len() as u32).collect();
         let known = vec![None; mesh.positions.len()];
         mesh.average(&own, Weight::Angle, None, known);
-        Ok(mesh)
+        Ok(mesh.with_facts())
     }
 
     /// A mesh with one plain [`Surface`] and the caller's normals, one for each vertex. They are made
@@ -124,7 +128,7 @@ impl Mesh {
             return Err(MeshError::TexcoordNotFinite { vertex });
         }
         self.texcoords = Some(texcoords);
-        Ok(self)
+        Ok(self.with_facts())
     }
 
     /// The same mesh with these surfaces, and for each triangle the number of its own.
@@ -141,17 +145,18 @@ impl Mesh {
         }
         self.surfaces = surfaces;
         self.triangle_surfaces = triangle_surfaces;
-        Ok(self)
+        Ok(self.with_facts())
     }
 
     /// Finite positions, unit normals, indices in range: a shape, or input that was checked.
     pub(in crate::mesh) fn assemble(positions: Vec<Vec3>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let points = topology::weld(&positions);
         let edges = topology::Edges::new(&triangles, &points);
-        Self::assemble_welded(positions, normals, triangles, &points, &edges)
+        Self::assemble_welded(positions, normals, triangles, &points, &edges).with_facts()
     }
 
-    /// [`assemble`](Self::assemble), where the points of the vertices and the edges are known.
+    /// [`assemble`](Self::assemble), where the points of the vertices and the edges are known, and what else holds of the mesh
+    /// is still to be found out.
     fn assemble_welded(
         mut positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
@@ -181,6 +186,7 @@ impl Mesh {
             outward,
             convex,
             twins,
+            facts: facts::Facts::default(),
         }
     }
 

@@ -180,6 +180,7 @@ impl Mesh {
         let known = vec![None; self.positions.len()];
         let together = crease.map(|crease| Together::new(f64::from(crease), &[]));
         self.average(&points, weight, together, known);
+        self.find_facts();
     }
 
     /// Gives every face its own normal at all its corners. Vertices are split where they must be.
@@ -190,6 +191,7 @@ impl Mesh {
             face.has_area().then(|| narrow(face.normal))
         };
         self.give(normal, vec![None; self.positions.len()]);
+        self.find_facts();
     }
 
     fn faces(&self) -> Vec<Face> {

@@ -67,22 +67,6 @@ impl Mesh {
                 *index = at;
             }
         }
-        mesh
-    }
-
-    /// For each vertex the number of its surface; 0 where no triangle uses it. Of a mesh without
-    /// [one surface a vertex](Self::has_one_surface_a_vertex), that of the last triangle.
-    #[must_use]
-    pub fn vertex_surfaces(&self) -> Vec<u16> {
-        let mut surface_of = vec![0; self.positions.len()];
-        if self.surfaces.len() == 1 {
-            return surface_of;
-        }
-        for (triangle, &surface) in self.triangles.iter().zip(&self.triangle_surfaces) {
-            for &i in triangle {
-                surface_of[i as usize] = surface;
-            }
-        }
-        surface_of
+        mesh.with_facts()
     }
 }

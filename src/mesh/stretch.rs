@@ -31,6 +31,6 @@ impl Mesh {
         mesh.texcoords = self.texcoords.clone();
         mesh.surfaces = self.surfaces.clone();
         mesh.triangle_surfaces = self.triangle_surfaces.clone();
-        Ok(mesh)
+        Ok(mesh.with_facts())
     }
 }

@@ -203,7 +203,7 @@ impl Rules<'_> {
 
     /// Whether light at every pixel would give each face one shade, that of its own normal.
     fn is_lit_by_face(&self, before: &ObjectPlan) -> bool {
-        self.object.is_faceted() && !before.is_on(Effect::PositionalLights) && !before.is_on(Effect::Specular)
+        self.object.mesh().is_faceted() && !before.is_on(Effect::PositionalLights) && !before.is_on(Effect::Specular)
     }
 
     /// `before`: what has been decided so far, in the order of [`Effect::ALL`].
@@ -394,7 +394,7 @@ impl Rules<'_> {
     /// the longest edge of the mesh.
     fn affine_error(&self) -> f64 {
         let nearest = self.reach.nearest.max(f64::from(self.view.near()));
-        let (edge, texture_edge) = self.object.longest_edges();
+        let (edge, texture_edge) = self.object.mesh().longest_edges();
         let size = self
             .object
             .materials
@@ -480,7 +480,7 @@ fn mapping(plan: &ObjectPlan) -> Mapping {
 /// to the screen and at most `farthest` away along the view: so many as an image's longer side has, times what texture
 /// coordinates change by over a unit, times a pixel's longer side.
 fn texels_to_pixel(object: &Object, view: &ObjectView, farthest: f64) -> f64 {
-    let images = object.materials.iter().zip(object.steepest_texcoords());
+    let images = object.materials.iter().zip(object.mesh().steepest_texcoords());
     let steepest = images.filter_map(|(material, change)| {
         let texture = material.texture.as_ref()?;
         Some(change * f64::from(texture.width().max(texture.height())))

@@ -1,7 +1,6 @@
 //! A mesh in a scene: where it is, how it is turned, what it is made of.
 
 use alloc::string::String;
-use alloc::vec;
 use alloc::vec::Vec;
 
 use glam::{Mat3, Vec3};
@@ -9,7 +8,6 @@ use glam::{Mat3, Vec3};
 use super::{ObjectId, Scene, Shared};
 use crate::light::Material;
 use crate::mesh::Mesh;
-use crate::mesh::normals::face_normal;
 
 /// Which axis of a mesh points up.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -27,11 +25,6 @@ pub struct Object {
     /// A name for people.
     pub name: String,
     mesh: Shared<Mesh>,
-    /// Of each vertex, its surface.
-    vertex_surfaces: Vec<u16>,
-    longest_edges: (f32, f32),
-    steepest_texcoords: Vec<f64>,
-    faceted: bool,
     /// One for each surface of the mesh.
     pub materials: Vec<Material>,
     /// The point of the mesh, in its own coordinates, that it turns about.
@@ -62,10 +55,6 @@ impl Object {
         let materials = numbers.zip(mesh.surfaces()).map(|(i, s)| Material::from_surface(s, i)).collect();
         Self {
             name: String::new(),
-            vertex_surfaces: mesh.vertex_surfaces(),
-            longest_edges: longest_edges(&mesh),
-            steepest_texcoords: steepest_texcoords(&mesh),
-            faceted: is_faceted(&mesh),
             mesh,
             materials,
             pivot: Vec3::ZERO,
@@ -106,22 +95,7 @@ impl Object {
     /// Of each vertex of the mesh, the number of its surface.
     #[must_use]
     pub fn vertex_surfaces(&self) -> &[u16] {
-        &self.vertex_surfaces
-    }
-
-    /// The longest edge of the mesh, in its own units, and the longest in its texture coordinates.
-    pub(crate) fn longest_edges(&self) -> (f32, f32) {
-        self.longest_edges
-    }
-
-    /// Of each surface of the mesh by how much its texture coordinates change at most over a unit of the mesh.
-    pub(crate) fn steepest_texcoords(&self) -> &[f64] {
-        &self.steepest_texcoords
-    }
-
-    /// Whether the normals of every face of the mesh are its own: what is far away lights each of its points alike.
-    pub(crate) fn is_faceted(&self) -> bool {
-        self.faceted
+        self.mesh.vertex_surfaces()
     }
 
     /// What is wrong with it, if anything.
@@ -277,63 +251,6 @@ impl From<Shared<Mesh>> for Object {
     fn from(mesh: Shared<Mesh>) -> Self {
         Self::new(mesh)
     }
-}
-
-/// The longest edge in space and in texture coordinates. Rounded; infinite beyond f32.
-fn longest_edges(mesh: &Mesh) -> (f32, f32) {
-    let (mut edge, mut texture_edge) = (0.0_f32, 0.0_f32);
-    for &[a, b, c] in mesh.triangles() {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            // In range, as every mesh is.
-            let (from, to) = (from as usize, to as usize);
-            edge = edge.max(mesh.positions()[from].distance_squared(mesh.positions()[to]));
-            if let Some(texcoords) = mesh.texcoords() {
-                texture_edge = texture_edge.max(texcoords[from].distance_squared(texcoords[to]));
-            }
-        }
-    }
-    // Of the greatest square alone: a root keeps the order.
-    (libm::sqrtf(edge), libm::sqrtf(texture_edge))
-}
-
-/// Of each surface by how much texture coordinates change at most over a unit of its faces, those without area aside.
-///
-/// On a face with the edges e and f, a change g of a coordinate along e and h along f, and g' and h' of another,
-/// ∇·∇' = (gg'·f·f − (gh' + g'h)·e·f + hh'·e·e) / (e·e f·f − (e·f)²). A step of one unit changes both coordinates
-/// together by no more than the root of the greater eigenvalue of these products.
-fn steepest_texcoords(mesh: &Mesh) -> Vec<f64> {
-    let mut steepest = vec![0.0_f64; mesh.surfaces().len()];
-    let Some(texcoords) = mesh.texcoords() else { return steepest };
-    for (&corners, &surface) in mesh.triangles().iter().zip(mesh.triangle_surfaces()) {
-        // In range, as every mesh is.
-        let [p, q, r] = corners.map(|i| mesh.positions()[i as usize].to_array().map(f64::from));
-        let [s, t, w] = corners.map(|i| texcoords[i as usize].to_array().map(f64::from));
-        let (e, f) = ([0, 1, 2].map(|i| q[i] - p[i]), [0, 1, 2].map(|i| r[i] - p[i]));
-        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let (ee, ef, ff) = (dot(e, e), dot(e, f), dot(f, f));
-        let area = ee * ff - ef * ef;
-        if area <= 0.0 {
-            continue;
-        }
-        let (g, h) = ([t[0] - s[0], t[1] - s[1]], [w[0] - s[0], w[1] - s[1]]);
-        let product =
-            |i: usize, j: usize| (g[i] * g[j] * ff - (g[i] * h[j] + g[j] * h[i]) * ef + h[i] * h[j] * ee) / area;
-        let (uu, uv, vv) = (product(0, 0), product(0, 1), product(1, 1));
-        let greater = (uu + vv + libm::hypot(uu - vv, 2.0 * uv)) / 2.0;
-        let most = &mut steepest[usize::from(surface)];
-        *most = most.max(libm::sqrt(greater));
-    }
-    steepest
-}
-
-/// Whether the three normals of every face are that of its plane, to some 10⁻⁵ of an angle: a 400th of a shade.
-fn is_faceted(mesh: &Mesh) -> bool {
-    mesh.triangles().iter().all(|corners| {
-        let [a, b, c] = corners.map(|i| mesh.positions()[i as usize]);
-        // What has no area shows no shade.
-        let Some(normal) = face_normal(a, b, c) else { return true };
-        corners.iter().all(|&i| mesh.normals()[i as usize].distance_squared(normal) < 1e-10)
-    })
 }
 
 /// The turn of angles about x, y and z, by rows: z first, then y, then x.

@@ -89,7 +89,7 @@ pub(super) fn mesh(
         };
         mesh.average(&points, Weight::Angle, Some(together), known);
     }
-    Ok((mesh, mended))
+    Ok((mesh.with_facts(), mended))
 }
 
 /// Keeps what is to be kept, of a list that has one for each, or none at all.

@@ -36,5 +36,5 @@ pub fn cube() -> Mesh {
             triangles.push([first, first + 2, first + 3]);
         }
     }
-    Mesh { texcoords: Some(texcoords), ..Mesh::assemble(positions, normals, triangles) }
+    Mesh { texcoords: Some(texcoords), ..Mesh::assemble(positions, normals, triangles) }.with_facts()
 }

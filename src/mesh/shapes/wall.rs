@@ -33,5 +33,5 @@ pub fn wall(columns: u32, rows: u32) -> Mesh {
         }
     }
     let normals = positions.iter().map(|_| Vec3::Z).collect();
-    Mesh { texcoords: Some(texcoords), ..Mesh::assemble(positions, normals, triangles) }
+    Mesh { texcoords: Some(texcoords), ..Mesh::assemble(positions, normals, triangles) }.with_facts()
 }

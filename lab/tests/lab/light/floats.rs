@@ -140,8 +140,6 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("Mesh.normals", "tests/mesh_normals.rs"),
     ("Mesh.positions", "tests/mesh_normals.rs"),
     ("Mesh.texcoords", "tests/mesh_normals.rs"),
-    ("Object.longest_edges", "worked out from positions"),
-    ("Object.steepest_texcoords", "worked out from positions and texture coordinates"),
     ("Scene.duration", "the length of a film, not a number of a frame: tests/scene_files.rs"),
     ("Scene.picture", "a moment, which motions make nothing of if it is none"),
     ("Scene.time", "in what it has moved"),

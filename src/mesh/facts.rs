@@ -1,0 +1,196 @@
+//! What holds of a mesh whoever draws it: found out once, when it is made, and shared by all objects that show it.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::Mesh;
+use super::normals::face_normal;
+
+/// What is found out about a mesh.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Facts {
+    /// Of each vertex, its surface.
+    vertex_surfaces: Vec<u16>,
+    /// In space and in texture coordinates.
+    longest_edges: (f32, f32),
+    steepest_texcoords: Vec<f64>,
+    is_faceted: bool,
+}
+
+/// They follow from the mesh, so two that belong to equal meshes are equal.
+impl PartialEq for Facts {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Mesh {
+    /// The mesh with what holds of it, as it is now.
+    pub(super) fn with_facts(mut self) -> Self {
+        self.find_facts();
+        self
+    }
+
+    /// Finds out what holds of the mesh as it is now. Whatever changes a mesh ends so.
+    pub(super) fn find_facts(&mut self) {
+        self.facts = Facts {
+            vertex_surfaces: vertex_surfaces(self),
+            longest_edges: longest_edges(self),
+            steepest_texcoords: steepest_texcoords(self),
+            is_faceted: is_faceted(self),
+        };
+    }
+
+    /// For each vertex the number of its surface; 0 where no triangle uses it. Of a mesh without
+    /// [one surface a vertex](Self::has_one_surface_a_vertex), that of the last triangle.
+    #[must_use]
+    pub fn vertex_surfaces(&self) -> &[u16] {
+        &self.facts.vertex_surfaces
+    }
+
+    /// The longest edge, in its own units, and the longest in texture coordinates.
+    pub(crate) fn longest_edges(&self) -> (f32, f32) {
+        self.facts.longest_edges
+    }
+
+    /// Of each surface by how much its texture coordinates change at most over a unit of the mesh.
+    pub(crate) fn steepest_texcoords(&self) -> &[f64] {
+        &self.facts.steepest_texcoords
+    }
+
+    /// Whether the normals of every face are its own: what is far away lights each of its points alike.
+    pub(crate) fn is_faceted(&self) -> bool {
+        self.facts.is_faceted
+    }
+}
+
+/// Of each vertex, its surface.
+fn vertex_surfaces(mesh: &Mesh) -> Vec<u16> {
+    let mut surface_of = vec![0; mesh.positions.len()];
+    if mesh.surfaces.len() == 1 {
+        return surface_of;
+    }
+    for (triangle, &surface) in mesh.triangles.iter().zip(&mesh.triangle_surfaces) {
+        for &i in triangle {
+            surface_of[i as usize] = surface;
+        }
+    }
+    surface_of
+}
+
+/// The longest edge in space and in texture coordinates. Rounded; infinite beyond f32.
+fn longest_edges(mesh: &Mesh) -> (f32, f32) {
+    let (mut edge, mut texture_edge) = (0.0_f32, 0.0_f32);
+    for &[a, b, c] in &mesh.triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            // In range, as every mesh is.
+            let (from, to) = (from as usize, to as usize);
+            edge = edge.max(mesh.positions[from].distance_squared(mesh.positions[to]));
+            if let Some(texcoords) = &mesh.texcoords {
+                texture_edge = texture_edge.max(texcoords[from].distance_squared(texcoords[to]));
+            }
+        }
+    }
+    // Of the greatest square alone: a root keeps the order.
+    (libm::sqrtf(edge), libm::sqrtf(texture_edge))
+}
+
+/// Of each surface by how much texture coordinates change at most over a unit of its faces, those without area aside.
+///
+/// On a face with the edges e and f, a change g of a coordinate along e and h along f, and g' and h' of another,
+/// ∇·∇' = (gg'·f·f − (gh' + g'h)·e·f + hh'·e·e) / (e·e f·f − (e·f)²). A step of one unit changes both coordinates
+/// together by no more than the root of the greater eigenvalue of these products.
+fn steepest_texcoords(mesh: &Mesh) -> Vec<f64> {
+    let mut steepest = vec![0.0_f64; mesh.surfaces.len()];
+    let Some(texcoords) = &mesh.texcoords else { return steepest };
+    for (&corners, &surface) in mesh.triangles.iter().zip(&mesh.triangle_surfaces) {
+        // In range, as every mesh is.
+        let [p, q, r] = corners.map(|i| mesh.positions[i as usize].to_array().map(f64::from));
+        let [s, t, w] = corners.map(|i| texcoords[i as usize].to_array().map(f64::from));
+        let (e, f) = ([0, 1, 2].map(|i| q[i] - p[i]), [0, 1, 2].map(|i| r[i] - p[i]));
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (ee, ef, ff) = (dot(e, e), dot(e, f), dot(f, f));
+        let area = ee * ff - ef * ef;
+        if area <= 0.0 {
+            continue;
+        }
+        let (g, h) = ([t[0] - s[0], t[1] - s[1]], [w[0] - s[0], w[1] - s[1]]);
+        let product =
+            |i: usize, j: usize| (g[i] * g[j] * ff - (g[i] * h[j] + g[j] * h[i]) * ef + h[i] * h[j] * ee) / area;
+        let (uu, uv, vv) = (product(0, 0), product(0, 1), product(1, 1));
+        let greater = (uu + vv + libm::hypot(uu - vv, 2.0 * uv)) / 2.0;
+        let most = &mut steepest[usize::from(surface)];
+        *most = most.max(libm::sqrt(greater));
+    }
+    steepest
+}
+
+/// Whether the three normals of every face are that of its plane, to some 10⁻⁵ of an angle: a 400th of a shade.
+fn is_faceted(mesh: &Mesh) -> bool {
+    mesh.triangles.iter().all(|corners| {
+        let [a, b, c] = corners.map(|i| mesh.positions[i as usize]);
+        // What has no area shows no shade.
+        let Some(normal) = face_normal(a, b, c) else { return true };
+        corners.iter().all(|&i| mesh.normals[i as usize].distance_squared(normal) < 1e-10)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use glam::{Vec2, Vec3};
+
+    use super::super::{Mesh, Surface, Weight, shapes};
+    use super::*;
+
+    /// What is kept of a mesh is what is found out about it anew, bit for bit.
+    fn check(what: &str, mesh: &Mesh) {
+        let anew = mesh.clone().with_facts().facts;
+        let Facts { vertex_surfaces, longest_edges: (edge, of_texture), steepest_texcoords, is_faceted } = &mesh.facts;
+        assert_eq!(*vertex_surfaces, anew.vertex_surfaces, "{what}");
+        let bits = |numbers: &[f64]| numbers.iter().map(|number| number.to_bits()).collect::<Vec<_>>();
+        assert_eq!([edge.to_bits(), of_texture.to_bits()], {
+            let (edge, of_texture) = anew.longest_edges;
+            [edge.to_bits(), of_texture.to_bits()]
+        });
+        assert_eq!(bits(steepest_texcoords), bits(&anew.steepest_texcoords), "{what}");
+        assert_eq!(*is_faceted, anew.is_faceted, "{what}");
+        assert_eq!(vertex_surfaces.len(), mesh.positions().len(), "{what}");
+    }
+
+    #[test]
+    fn facts_are_those_of_the_mesh_however_it_is_made() {
+        for (name, mesh) in [
+            ("cube", shapes::cube()),
+            ("wall", shapes::wall(3, 2)),
+            ("torus", shapes::torus(8, 5)),
+            ("sphere", shapes::sphere(8, 5)),
+            ("cone", shapes::cone(8, 2)),
+            ("cylinder", shapes::cylinder(8, 2)),
+            ("teapot", shapes::teapot(2)),
+        ] {
+            check(name, &mesh);
+            check(name, &mesh.stretched(Vec3::new(1.0, 2.0, 4.0)).expect("factors"));
+            let surfaces = vec![Surface::default(); 2];
+            let numbers = (0..mesh.triangles().len()).map(|i| (i % 2) as u16).collect();
+            let mesh = mesh.with_surfaces(surfaces, numbers).expect("surfaces");
+            check(name, &mesh);
+            let mut mesh = mesh.with_one_surface_a_vertex();
+            check(name, &mesh);
+            assert!(mesh.vertex_surfaces().contains(&1), "{name}");
+            mesh.smooth(Weight::Angle, Some(0.5));
+            check(name, &mesh);
+            mesh.flat();
+            check(name, &mesh);
+            assert!(mesh.is_faceted(), "{name}");
+            let texcoords = (0..mesh.positions().len()).map(|i| Vec2::new(i as f32, 1.0)).collect();
+            let mesh = mesh.with_texcoords(texcoords).expect("pairs");
+            check(name, &mesh);
+            assert!(mesh.longest_edges().1 >= 1.0, "{name}");
+            let (positions, normals) = (mesh.positions().to_vec(), mesh.normals().to_vec());
+            check(name, &Mesh::with_normals(positions.clone(), normals, mesh.triangles().to_vec()).expect("sound"));
+            check(name, &Mesh::new(positions, mesh.triangles().to_vec()).expect("sound"));
+        }
+    }
+}
