@@ -11,7 +11,7 @@ named! {
         Flat = "flat",
         /// What the sources print: vertices on whole pixels, a step for every span by a division that cuts.
         /// Without exact cover ([`raster::period`](crate::raster::period)).
-        GouraudPeriod = "gouraud-period",
+        GouraudPeriod = "gouraud-vintage",
         /// Linear between the vertices in 8.8, each row of a triangle one span.
         Gouraud88 = "gouraud-8.8",
         /// The same, started anew every 64 pixels: the default.

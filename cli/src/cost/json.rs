@@ -5,17 +5,15 @@ use std::collections::BTreeMap;
 use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, RungRow, Study, Verdict};
 use serde::Serialize;
 
-use crate::failure::Failure;
-
 #[derive(Serialize)]
-struct Json<'a> {
+pub(super) struct Json<'a> {
     schema: u32,
     input: &'a str,
     host: Host<'a>,
     kernel: &'a str,
     frames: usize,
     rounds: usize,
-    rungs: Vec<JsonRung>,
+    shadings: Vec<JsonShading>,
     budget: Vec<JsonBudget>,
     options: Vec<JsonOption<'a>>,
     claims: Vec<JsonClaim<'a>>,
@@ -58,8 +56,8 @@ struct JsonSplit {
 }
 
 #[derive(Serialize)]
-struct JsonRung {
-    rung: &'static str,
+struct JsonShading {
+    shading: &'static str,
     ns_per_frame: f64,
     ns_per_frame_quartiles: [f64; 2],
     ns_per_pixel: f64,
@@ -86,7 +84,7 @@ struct JsonBudget {
     largest_patch: usize,
     ns_per_frame: f64,
     ns_per_frame_quartiles: [f64; 2],
-    best_single_rung: Option<&'static str>,
+    best_single_shading: Option<&'static str>,
     best_single_ns: Option<f64>,
     ratio: Option<f64>,
     ratio_interval: Option<[f64; 2]>,
@@ -120,11 +118,11 @@ fn interval((low, high): (f64, f64)) -> [f64; 2] {
     [low, high]
 }
 
-impl From<&RungRow> for JsonRung {
+impl From<&RungRow> for JsonShading {
     fn from(row: &RungRow) -> Self {
         let split = row.split;
         Self {
-            rung: row.rung.name(),
+            shading: row.rung.name(),
             ns_per_frame: row.per_frame.median,
             ns_per_frame_quartiles: quartiles(&row.per_frame),
             ns_per_pixel: row.per_pixel,
@@ -160,7 +158,7 @@ impl From<&BudgetRow> for JsonBudget {
             largest_patch: row.patch,
             ns_per_frame: row.per_frame.median,
             ns_per_frame_quartiles: quartiles(&row.per_frame),
-            best_single_rung: row.best_single_rung.map(|rung| rung.name()),
+            best_single_shading: row.best_single_rung.map(|rung| rung.name()),
             best_single_ns: row.best_single.map(|time| time.median),
             ratio: row.ratio.map(|(ratio, _)| ratio),
             ratio_interval: row.ratio.map(|(_, of)| interval(of)),
@@ -196,11 +194,11 @@ impl<'a> From<&'a Claim> for JsonClaim<'a> {
     }
 }
 
-/// The study as JSON, with a line end.
-pub(super) fn json(study: &Study, warnings: &[String]) -> Result<String, Failure> {
+/// The study for programs.
+pub(super) fn json<'a>(study: &'a Study, warnings: &'a [String]) -> Json<'a> {
     let host = &study.host;
-    let json = Json {
-        schema: 1,
+    Json {
+        schema: 2,
         input: &study.input,
         host: Host {
             processor: &host.processor,
@@ -212,12 +210,10 @@ pub(super) fn json(study: &Study, warnings: &[String]) -> Result<String, Failure
         kernel: &study.kernel,
         frames: study.frames,
         rounds: study.rounds,
-        rungs: study.rungs.iter().map(JsonRung::from).collect(),
+        shadings: study.rungs.iter().map(JsonShading::from).collect(),
         budget: study.budget.iter().map(JsonBudget::from).collect(),
         options: study.options.iter().map(JsonOption::from).collect(),
         claims: study.claims.iter().map(JsonClaim::from).collect(),
         warnings,
-    };
-    let text = serde_json::to_string_pretty(&json).map_err(Failure::work)?;
-    Ok(text + "\n")
+    }
 }

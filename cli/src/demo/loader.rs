@@ -10,8 +10,8 @@ use std::thread;
 use std::time::{Duration, SystemTime};
 
 use crate::failure::Failure;
-use crate::options::Drawing;
-use crate::read_files;
+use crate::options::{Drawing, ShadingOptions};
+use crate::{input, read_files};
 use crate::stage::Stage;
 
 /// How often it is looked whether a file has changed.
@@ -26,14 +26,14 @@ const LAG: Duration = Duration::from_millis(20);
 /// What is to be loaded, and how it is to be drawn.
 pub(super) struct Inputs {
     pub(super) drawing: Drawing,
+    pub(super) shading: ShadingOptions,
     pub(super) words: Vec<OsString>,
 }
 
 impl Inputs {
     /// What to call an input, whether it can be loaded or not.
     pub(super) fn name(&self, at: usize) -> String {
-        let words = &self.words[at];
-        Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned()
+        input::name_of(&self.words[at])
     }
 }
 
@@ -102,7 +102,7 @@ impl Loader {
                 }
             }
         };
-        thread::Builder::new().name("loader".to_string()).spawn(work).map_err(Failure::work)?;
+        thread::Builder::new().name("loader".to_string()).spawn(work).map_err(Failure::from)?;
         Ok(Loader { wanted, loaded })
     }
 
@@ -168,11 +168,13 @@ mod tests {
     struct Words {
         #[command(flatten)]
         drawing: Drawing,
+        #[command(flatten)]
+        shading: ShadingOptions,
     }
 
     fn inputs(words: &[&Path]) -> Arc<Inputs> {
-        let drawing = Words::parse_from(["mode13h"]).drawing;
-        Arc::new(Inputs { drawing, words: words.iter().map(|path| path.as_os_str().to_os_string()).collect() })
+        let Words { drawing, shading } = Words::parse_from(["mode13h"]);
+        Arc::new(Inputs { drawing, shading, words: words.iter().map(|path| path.as_os_str().to_os_string()).collect() })
     }
 
     /// The next that the loader gives, which takes a second or so.

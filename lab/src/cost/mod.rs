@@ -27,7 +27,7 @@ mod way;
 
 pub use clock::Clock;
 pub use contest::Samples;
-pub use measure::{CostError, Settings, Step, Subject, measure, warnings};
+pub use measure::{CostError, Settings, Step, Subject, budgets_are_kept, measure, warnings};
 pub use probe::{Probe, ProbeError};
 pub use study::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, RungRow, Split, Study, Verdict};
 pub use way::BUDGETS;

@@ -9,7 +9,7 @@ use toml::Spanned;
 
 use super::camera::camera;
 use super::error::Fault;
-use super::layout::{AnimationLayout, FogLayout, LightLayout, SceneLayout, WishesLayout};
+use super::layout::{AnimationLayout, FogLayout, LightLayout, RenderLayout, SceneLayout};
 use super::named::{Named, Open};
 use super::object::Objects;
 use super::value::{Background, FileName, List, OneOrThree};
@@ -47,8 +47,8 @@ impl<'a> Builder<'a> {
         if let Some(ambient) = layout.ambient {
             self.scene.ambient = ambient.0;
         }
-        if let Some(wishes) = &layout.wishes {
-            self.scene.wishes = self::wishes(wishes);
+        if let Some(render) = &layout.render {
+            self.scene.wishes = wishes(render);
         }
         if let Some(name) = &layout.palette {
             self.palette(name)?;
@@ -205,9 +205,9 @@ impl<'a> Builder<'a> {
     }
 }
 
-fn wishes(layout: &WishesLayout) -> Wishes {
+fn wishes(layout: &RenderLayout) -> Wishes {
     Wishes {
-        rung: layout.rung.as_ref().map(|name| name.0),
+        rung: layout.shading.as_ref().map(|name| name.0),
         hidden_surfaces: layout.hidden_surfaces.as_ref().map(|name| name.0),
         mapping: layout.mapping.as_ref().map(|name| name.0),
         mipmaps: layout.mipmaps,

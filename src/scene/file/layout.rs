@@ -31,7 +31,7 @@ pub(super) struct SceneLayout {
     pub(super) animation: Option<Spanned<AnimationLayout>>,
     pub(super) fog: Option<Spanned<FogLayout>>,
     pub(super) camera: Option<Spanned<CameraLayout>>,
-    pub(super) wishes: Option<WishesLayout>,
+    pub(super) render: Option<RenderLayout>,
     pub(super) picture: Option<Angle>,
     #[serde(default)]
     pub(super) objects: Vec<Spanned<ObjectLayout>>,
@@ -142,11 +142,11 @@ pub(super) struct AnimationLayout {
     pub(super) rounds: Option<Times>,
 }
 
-/// `[wishes]`
+/// `[render]`
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
-pub(super) struct WishesLayout {
-    pub(super) rung: Option<Name<Rung>>,
+pub(super) struct RenderLayout {
+    pub(super) shading: Option<Name<Rung>>,
     pub(super) hidden_surfaces: Option<Name<HiddenSurfaces>>,
     pub(super) mapping: Option<Name<Mapping>>,
     pub(super) mipmaps: Option<bool>,
