@@ -213,8 +213,7 @@ impl Film {
             let make = |(i, frame): (usize, &Frame)| {
                 go_on()?;
                 let before = i.checked_sub(1).map_or(last.as_ref(), |before| drawn.get(before));
-                make(before, frame, &colors)
-                    .map_err(|error| Failure::words(format!("{}: {error}", self.out.display())))
+                make(before, frame, &colors).map_err(|error| Failure::words(format!("{}: {error}", self.out.display())))
             };
             let make_all =
                 || -> Result<Vec<Made>, Failure> { drawn.par_iter().enumerate().map(make).collect::<Result<_, _>>() };

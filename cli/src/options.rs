@@ -130,7 +130,7 @@ pub(crate) struct Moment {
     ///
     /// A model turns by 90 degrees in a second.
     ///
-    /// [default: 0; for a single frame without --turn, the scene's `picture`]
+    /// [default: for a single frame that is not turned, the scene's `picture`; otherwise 0]
     #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, visible_alias = "at")]
     time: Option<f64>,
 }

@@ -107,10 +107,7 @@ pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure
     if force || path.symlink_metadata().is_err() {
         return Ok(());
     }
-    Err(Failure::file(format!(
-        "{}: exists already; --force overwrites it, and -o names another place",
-        path.display()
-    )))
+    Err(Failure::file(format!("{}: exists already; --force overwrites it, and -o names another place", path.display())))
 }
 
 /// Whether a person sees what [`print`] prints, with colours.

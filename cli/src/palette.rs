@@ -7,8 +7,8 @@ use clap::{ArgGroup, Args};
 use mode13h::export::{self, Picture, PixelShape, Scale};
 use mode13h::mesh::obj;
 use mode13h::palette::auto::Entries;
-use mode13h::palette::file::Format;
 use mode13h::palette::builtin::Builtin;
+use mode13h::palette::file::Format;
 use mode13h::palette::{Palette, builtin};
 use serde_json::{Value, json};
 
@@ -92,9 +92,9 @@ fn list() -> String {
 }
 
 fn list_json() -> Value {
-    let palettes = builtin::ALL.iter().map(|builtin| {
-        json!({ "name": builtin.name, "ramps": builtin.palette.ramps(), "provenance": builtin.provenance })
-    });
+    let palettes = builtin::ALL.iter().map(
+        |builtin| json!({ "name": builtin.name, "ramps": builtin.palette.ramps(), "provenance": builtin.provenance }),
+    );
     json!({ "schema": 1, "palettes": palettes.collect::<Vec<_>>() })
 }
 

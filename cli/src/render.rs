@@ -132,7 +132,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let kernel = options.drawing.kernel()?;
     let progress = progress(frames);
     let motion = Motion::new(options, &out, &stage);
-    let make = || Artist { renderer: options.shading.renderer(&options.drawing, kernel), stage: stage.clone(), vga: Vga::new() };
+    let make = || Artist {
+        renderer: options.shading.renderer(&options.drawing, kernel),
+        stage: stage.clone(),
+        vga: Vga::new(),
+    };
     let artists = Artists::new(make);
     let drawn: Mutex<Vec<(u32, Stats)>> = Mutex::default();
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {

@@ -37,12 +37,14 @@ pub(crate) fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) 
     near.min_by_key(|name| far(name))
 }
 
-/// The nearest command, if `word` is no INPUT and no scene or shape is nearer.
+/// The nearest command, if `word` is neither a command nor an INPUT, and no scene or shape is nearer.
 pub(crate) fn mistyped_command(word: &OsStr) -> Option<&'static str> {
     let path = Path::new(word);
     let word = word.to_str().filter(|word| !word.starts_with('-'))?;
-    let is_input = path.symlink_metadata().is_ok() || path.extension().is_some() || inputs().any(|name| name == word);
-    let nearest = nearest(word, words::COMMANDS.into_iter().chain(inputs())).filter(|_| !is_input)?;
+    if path.symlink_metadata().is_ok() || path.extension().is_some() {
+        return None;
+    }
+    let nearest = nearest(word, words::COMMANDS.into_iter().chain(inputs())).filter(|nearest| *nearest != word)?;
     words::COMMANDS.into_iter().find(|name| *name == nearest)
 }
 
@@ -84,11 +86,10 @@ mod tests {
         }
     }
 
-    /// A scene's name is never taken for a command, nor a command's for a scene.
     #[test]
-    fn names_are_far_from_commands() {
-        for input in inputs() {
-            assert_eq!(mistyped_command(OsStr::new(input)), None);
+    fn a_name_that_there_is_was_not_mistyped() {
+        for name in inputs().chain(words::COMMANDS) {
+            assert_eq!(mistyped_command(OsStr::new(name)), None, "{name}");
         }
         assert_eq!(mistyped_command(OsStr::new("rendr")), Some("render"));
         assert_eq!(mistyped_command(OsStr::new("rendr.toml")), None);

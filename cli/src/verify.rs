@@ -18,6 +18,8 @@ pub(crate) struct Options {
     #[arg(long)]
     json: bool,
     /// The number that the random cases are made from
+    ///
+    /// The same number makes the same cases.
     #[arg(long, value_name = "N", default_value_t = 13)]
     seed: u64,
     /// Check a frame that `render --record` kept, instead of the cases

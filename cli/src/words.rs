@@ -17,8 +17,8 @@ pub(crate) const COMMANDS: [&str; 10] =
 
 /// Draw scenes and models as a 386 with a VGA card did
 ///
-/// The frame has 320 x 200 bytes, each an entry of a palette of 256 colours. All numbers behind the vertices are fixed
-/// point. Without a command the INPUT is shown in a window, as by `mode13h demo`.
+/// A frame has 320 x 200 bytes, each an entry of a palette of 256 colours. Without a command the INPUT is shown in a
+/// window, as by `mode13h demo`.
 #[derive(Parser)]
 #[command(name = "mode13h", version, args_conflicts_with_subcommands = true)]
 pub(crate) struct Words {

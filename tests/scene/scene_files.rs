@@ -81,7 +81,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (path("{ circle = { middle = 1 } }"), "key `objects[0].path.circle.middle`: unknown key; known are centre, "),
         (cube("fog.begin = 1"), "2:5: key `fog.begin`: unknown key; known are color, start, end"),
         (cube("animation = { to = 1 }"), "2:15: key `animation.to`: unknown key; known are fade, cycle, rounds"),
-        (cube("wishes.hidden_surfaces = 1"), "2:8: key `wishes.hidden_surfaces`: unknown key; known are rung, hidden-"),
+        (cube("render.hidden_surfaces = 1"), "2:8: key `render.hidden_surfaces`: unknown key; known are shading, hidd"),
         (cube("\"`, expected one of `a`\" = 1"), "2:1: key ``, expected one of `a``: unknown key; known are name, "),
         // Wrong types.
         (list("name = 7"), "1:8: key `name`: expected a string, found integer `7`"),
@@ -118,8 +118,8 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             cube("duration = 1979-05-27"),
             "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found map",
         ),
-        (cube("wishes = { rung = 3 }"), "2:19: key `wishes.rung`: expected a name in quotes, found integer `3`"),
-        (cube("wishes.dither = 'yes'"), "2:17: key `wishes.dither`: expected a boolean, found string \"yes\""),
+        (cube("render = { shading = 3 }"), "2:22: key `render.shading`: expected a name in quotes, found integer `3`"),
+        (cube("render.dither = 'yes'"), "2:17: key `render.dither`: expected a boolean, found string \"yes\""),
         // Out of range.
         (cube("duration = 0"), "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found 0"),
         (cube("duration = nan"), "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found NaN"),
@@ -206,7 +206,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (path("{ line = [[0, 0, 0]] }"), "3:17: key `objects[0].path.line`: expected a list of 2, found 1"),
         (cube("fog = { start = 2, end = 2 }"), "2:26: key `fog.end`: the fog ends no farther than it starts"),
         (cube("animation.cycle = [9, 8]"), "2:19: key `animation.cycle`: the first entry lies behind the last"),
-        (cube("wishes.max-error = 0"), "2:20: key `wishes.max-error`: expected a number above 0, found 0"),
+        (cube("render.max-error = 0"), "2:20: key `render.max-error`: expected a number above 0, found 0"),
         // Names of nothing.
         (
             list("objects = [{ shape = 'toroid' }]"),
@@ -222,14 +222,20 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             object("material.blend = 'glass'"),
             "3:18: key `objects[0].material.blend`: expected \"opaque\", \"add\", or how opaque it is, a numb",
         ),
+        (cube("render.shading = 'best'"), "2:18: key `render.shading`: \"best\": unknown "),
+        // Names of before.
+        (cube("[wishes]\nrung = 'flat'"), "2:2: key `wishes`: is now called `render`"),
+        (cube("wishes.rung = 'flat'"), "2:1: key `wishes`: is now called `render`"),
+        (cube("[render]\nrung = 'flat'"), "3:1: key `render.rung`: is now called `shading`"),
+        (cube("render = { rung = 'flat' }"), "2:12: key `render.rung`: is now called `shading`"),
         (
-            cube("wishes.rung = 'best'"),
-            "2:15: key `wishes.rung`: \"best\": unknown rung; there are flat, gouraud-period, gouraud-8.8, ",
+            cube("render.shading = 'gouraud-period'"),
+            "2:18: key `render.shading`: \"gouraud-period\" is now called \"gouraud-vintage\"",
         ),
-        (cube("wishes.mapping = 'best'"), "2:18: key `wishes.mapping`: \"best\": unknown mapping; there are affine, "),
+        (cube("render.mapping = 'best'"), "2:18: key `render.mapping`: \"best\": unknown mapping; there are affine, "),
         (
-            cube("wishes.hidden-surfaces = ''"),
-            "key `wishes.hidden-surfaces`: \"\": unknown way to hidden surfaces; the",
+            cube("render.hidden-surfaces = ''"),
+            "key `render.hidden-surfaces`: \"\": unknown way to hidden surfaces; the",
         ),
         (
             path("{ circle = { radius = 1, axis = 'w' } }"),
@@ -415,8 +421,8 @@ near = 0.5
 eye-path = { line = [[0, 1, 9], [0, 1, 5]], back = true, rounds = 2 }
 target-path = { circle = { centre = [0, 1, 0], from = [1, 0, 0], towards = [0, 2, 0] } }
 
-[wishes]
-rung = "phong"
+[render]
+shading = "phong"
 hidden-surfaces = "scan-line"
 mapping = "every-16"
 tessellation = 1.5
@@ -672,7 +678,7 @@ fn every_key_is_documented() {
         ("circle", "objects = [{ path.circle.x = 1 }]"),
         ("fog", "fog.x = 1"),
         ("animation", "animation.x = 1"),
-        ("wishes", "wishes.x = 1"),
+        ("render", "render.x = 1"),
     ] {
         let error = loaded(text).expect_err("no such key");
         let SceneErrorKind::UnknownKey { known } = &*error.kind else { panic!("{error}") };

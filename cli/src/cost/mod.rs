@@ -44,9 +44,10 @@ pub(crate) struct Options {
     /// Print the study as JSON
     #[arg(long)]
     json: bool,
-    /// The shadings to be studied, with commas between [default: all]
     #[arg(
         long,
+        help = "The shadings to be studied, with commas between [default: all]",
+        long_help = long_help_on_shadings(),
         value_name = "NAME,...",
         value_delimiter = ',',
         value_parser = one_of(Rung::ALL, Rung::name),
@@ -76,6 +77,13 @@ pub(crate) struct Options {
     counted: bool,
     #[command(flatten)]
     drawing: Drawing,
+}
+
+fn long_help_on_shadings() -> String {
+    format!(
+        "The shadings to be studied, with commas between: {}\n\n[default: all]",
+        Rung::ALL.map(Rung::name).join(", ")
+    )
 }
 
 /// A time on the command line.

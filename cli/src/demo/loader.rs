@@ -11,8 +11,8 @@ use std::time::{Duration, SystemTime};
 
 use crate::failure::Failure;
 use crate::options::{Drawing, ShadingOptions};
-use crate::{input, read_files};
 use crate::stage::Stage;
+use crate::{input, read_files};
 
 /// How often it is looked whether a file has changed.
 const PERIOD: Duration = Duration::from_millis(250);

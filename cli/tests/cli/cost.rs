@@ -68,15 +68,15 @@ fn everything_is_measured_and_written() {
     let output = run(&directory, &words);
     assert!(output.status.success(), "{output:?}");
     let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!((&json["schema"], &json["input"], &json["frames"]), (&1.into(), &"torus".into(), &3.into()));
+    assert_eq!((&json["schema"], &json["input"], &json["frames"]), (&2.into(), &"torus".into(), &3.into()));
     for named in [&json["kernel"], &json["host"]["processor"], &json["host"]["flags"], &json["host"]["clock"]] {
         assert!(named.as_str().is_some_and(|name| !name.is_empty()), "{json}");
     }
     assert!(json["host"]["compiler"].as_str().is_some_and(|compiler| compiler.contains("rustc ")), "{json}");
     assert!(number(&json["host"]["clock_step_ns"]) > 0.0);
 
-    let rungs = json["rungs"].as_array().expect("a list");
-    assert!(rungs.iter().map(|row| row["rung"].as_str()).eq(Rung::ALL.map(|rung| Some(rung.name()))));
+    let rungs = json["shadings"].as_array().expect("a list");
+    assert!(rungs.iter().map(|row| row["shading"].as_str()).eq(Rung::ALL.map(|rung| Some(rung.name()))));
     for row in rungs {
         assert_time(row);
         assert_errors(&row["error_gouraud"]);
@@ -87,7 +87,7 @@ fn everything_is_measured_and_written() {
         let parts = ["plan", "vertices", "setup", "spans", "scan_out"].map(|part| number(&row["split_ns"][part]));
         assert!(parts.iter().all(|part| *part >= 0.0), "{row}");
         assert!(number(&row["ns_per_pixel"]) < number(&row["ns_per_triangle"]), "some 20 pixels each: {row}");
-        let itself = row["rung"] == "gouraud-8.8";
+        let itself = row["shading"] == "gouraud-8.8";
         assert_eq!(itself, row["ratio"] == 1.0 && row["ratio_interval"][0] == 1.0 && row["ratio_interval"][1] == 1.0);
     }
     let of = |rung: Rung| &rungs[Rung::ALL.iter().position(|of| *of == rung).expect("listed")];
@@ -112,7 +112,7 @@ fn everything_is_measured_and_written() {
         let triangles = row["triangles"].as_object().expect("numbers by rung");
         assert!(!triangles.is_empty() && triangles.values().all(|count| count.as_u64() > Some(0)), "{row}");
         // Phong is within a shade of its own model.
-        assert!(row["best_single_rung"].is_string() && number(&row["best_single_ns"]) > 0.0, "{row}");
+        assert!(row["best_single_shading"].is_string() && number(&row["best_single_ns"]) > 0.0, "{row}");
     }
 
     let options = json["options"].as_array().expect("a list");
@@ -170,11 +170,11 @@ fn everything_is_measured_and_written() {
 #[test]
 fn rungs_that_are_asked_for_are_the_rungs_there_are() {
     let directory = directory();
-    let output = run(&directory, &["cube", "--frames", "1", "--seconds", "0", "--json", "--rungs", "phong,flat"]);
+    let output = run(&directory, &["cube", "--frames", "1", "--seconds", "0", "--json", "--shadings", "phong,flat"]);
     let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let rungs: Vec<&Value> = json["rungs"].as_array().expect("a list").iter().map(|row| &row["rung"]).collect();
+    let rungs: Vec<&Value> = json["shadings"].as_array().expect("a list").iter().map(|row| &row["shading"]).collect();
     assert_eq!(rungs, ["flat", "phong"]);
-    assert!(number(&json["rungs"][1]["ratio"]) > 1.0, "to gouraud-8.8, which was drawn all the same");
+    assert!(number(&json["shadings"][1]["ratio"]) > 1.0, "to gouraud-8.8, which was drawn all the same");
     assert!(fs::read_dir(&directory).expect("a directory").next().is_none(), "without -o nothing is written");
 }
 
@@ -227,7 +227,7 @@ fn a_study_is_not_lost_when_it_cannot_be_written() {
     fs::write(directory.path().join("out"), "in the way").expect("written");
     let output = child.wait_with_output().expect("it ends");
     let lines = String::from_utf8(output.stderr).expect("text");
-    assert_eq!(output.status.code(), Some(1), "{lines}");
+    assert_eq!(output.status.code(), Some(3), "{lines}");
     let kept = elsewhere.path().join(format!(
         "mode13h-cost-cube-{}",
         fs::read_dir(&elsewhere)
@@ -247,7 +247,7 @@ fn a_study_is_not_lost_when_it_cannot_be_written() {
         ),
         "{lines}"
     );
-    assert!(fs::read_to_string(kept.join("cost.json")).expect("read").contains("\"schema\": 1"));
+    assert!(fs::read_to_string(kept.join("cost.json")).expect("read").contains("\"schema\": 2"));
     let table = String::from_utf8(output.stdout).expect("text");
     assert!(
         table.contains("gouraud-8.8-reseeded") && table.contains(&format!("written to {}", kept.display())),
@@ -259,22 +259,22 @@ fn a_study_is_not_lost_when_it_cannot_be_written() {
 fn what_is_wrong_is_said_in_one_line() {
     let directory = directory();
     for (words, status, says) in [
-        (&["torus", "--rungs", "flat,best"][..], 2, "unknown rung"),
-        (&["torus", "--rung", "flat"], 2, "--rungs says which"),
-        (&["torus", "--max-error", "2"], 2, "--rungs says which"),
+        (&["torus", "--shadings", "flat,best"][..], 2, "[possible values: flat, "),
+        (&["torus", "--shading", "flat"], 2, "did you mean --shadings?"),
+        (&["torus", "--max-error", "2"], 2, "unexpected argument '--max-error'"),
         (&["torus", "--frames", "0"], 2, "--frames"),
-        (&["nothing.toml"], 1, "nothing.toml"),
-        (&["torus", "-o", "/dev/null"], 1, "/dev/null: is no directory"),
+        (&["nothing.toml"], 3, "nothing.toml"),
+        (&["torus", "-o", "/dev/null"], 3, "/dev/null: is no directory"),
         // Before anything is measured.
         #[cfg(target_os = "linux")]
-        (&["torus", "-o", "/proc/a/b"], 1, "/proc/a: no file can be made in the directory /proc"),
+        (&["torus", "-o", "/proc/a/b"], 3, "/proc/a: no file can be made in the directory /proc"),
         (&["torus", "--seconds", "-1"], 2, "--seconds"),
     ] {
         assert_fails(&directory, &run(&directory, words), status, says);
     }
     let without =
         program(&directory).args(["cost", "torus", "--instructions"]).env("PATH", "").output().expect("started");
-    assert_fails(&directory, &without, 1, "needs valgrind, which is not there");
+    assert_fails(&directory, &without, 3, "needs valgrind, which is not there");
 }
 
 #[cfg(unix)]
@@ -304,10 +304,11 @@ fn instructions_are_counted_where_valgrind_is() {
         return;
     }
     let directory = directory();
-    let words = ["cube", "--frames", "2", "--seconds", "0", "--json", "--instructions", "--rungs", "gouraud-8.8,phong"];
+    let words =
+        ["cube", "--frames", "2", "--seconds", "0", "--json", "--instructions", "--shadings", "gouraud-8.8,phong"];
     let output = run(&directory, &words);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
-    let of = |rung: usize| json["rungs"][rung]["instructions_per_frame"].as_u64().expect("a count");
+    let of = |rung: usize| json["shadings"][rung]["instructions_per_frame"].as_u64().expect("a count");
     // 64,000 bytes are cleared, by 64 at a time at most; Phong has a square root and more at each of its pixels.
     assert!(of(0) > 1000 && of(1) > 4 * of(0), "{json}");
     let kernel = json["kernel"].as_str().expect("a name");

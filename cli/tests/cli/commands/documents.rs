@@ -40,7 +40,7 @@ fn help(words: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The options that a text names, such as `--rung`.
+/// The options that a text names, such as `--shading`.
 fn options(text: &str) -> BTreeSet<&str> {
     let starts = text.match_indices("--").map(|(at, _)| at);
     let word = |at: usize| {
@@ -101,7 +101,7 @@ fn documents_name_options_that_the_program_has() {
     }
 }
 
-/// Of `--rung phong` the second word.
+/// Of `--shading phong` the second word.
 #[test]
 fn documents_give_options_values_that_they_take() {
     let mut tried = Tried::new("documents_give_options_values_that_they_take", 15);
@@ -115,10 +115,10 @@ fn documents_give_options_values_that_they_take() {
                     continue;
                 }
                 let known = match pair[0] {
-                    "--rung" => value.parse::<Rung>().is_ok(),
-                    "--hidden" => value.parse::<HiddenSurfaces>().is_ok(),
+                    "--shading" => value.parse::<Rung>().is_ok(),
+                    "--hidden-surfaces" => value.parse::<HiddenSurfaces>().is_ok(),
                     "--mapping" => value.parse::<Mapping>().is_ok(),
-                    "--vertex-path" => value.parse::<VertexPath>().is_ok(),
+                    "--arithmetic" => value.parse::<VertexPath>().is_ok(),
                     "--palette" => value == "auto" || mode13h::palette::builtin::by_name(value).is_some(),
                     _ => continue,
                 };
@@ -139,7 +139,7 @@ fn values_of(key: &str) -> Vec<&'static str> {
 #[test]
 fn documents_list_every_shading_and_every_way() {
     let mut tried = Tried::new("documents_list_every_shading_and_every_way", 4);
-    assert_eq!(values_of("rung"), Rung::ALL.map(Rung::name));
+    assert_eq!(values_of("shading"), Rung::ALL.map(Rung::name));
     assert_eq!(values_of("hidden-surfaces"), HiddenSurfaces::ALL.map(HiddenSurfaces::name));
     assert_eq!(values_of("mapping"), Mapping::ALL.map(Mapping::name));
     let table = README.split("| rung | what |").nth(1).expect("the table of rungs").split("\n\n").next().expect("rows");
@@ -195,7 +195,7 @@ fn documents_name_the_keys_of_the_window() {
     let paragraph = README.split("\nIn the window: ").nth(1).expect("keys").split("\n\n").next().expect("a paragraph");
     let readme = keys_of(paragraph);
     let help = help(&[]);
-    let help = help.split("Keys in the window: ").nth(1).expect("keys");
+    let help = help.split("Keys in the window:\n").nth(1).expect("keys");
     assert_eq!(readme, keys_of(help), "README.md and --help");
     // What the program asks for.
     let sources = crate::support::workspace::root().join("cli/src");
@@ -252,8 +252,8 @@ fn documents_name_files_that_are_there() {
 /// The reading itself.
 #[test]
 fn options_and_keys_are_found_in_a_text() {
-    let text = "|---|---| `--rung flat`, cargo -- --max-error 2; a--b, ---, --N, --at=1 ";
-    assert_eq!(options(text), BTreeSet::from(["--at", "--max-error", "--rung"]));
+    let text = "|---|---| `--shading flat`, cargo -- --max-error 2; a--b, ---, --N, --at=1 ";
+    assert_eq!(options(text), BTreeSet::from(["--at", "--max-error", "--shading"]));
     let keys = "A key: Esc quits, `[` `]` step; B makes it smaller and Shift-B greater. H, A4 and `+` `-`; 1 to 9";
     assert_eq!(keys_of(keys), BTreeSet::from(["+", "1", "9", "B", "Esc", "H", "[", "]"]));
 }
