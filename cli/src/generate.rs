@@ -50,7 +50,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             clap_complete::generate(*shell, &mut words::command(), "mode13h", &mut script);
             output::print(&String::from_utf8_lossy(&script))
         }
-        What::Man { out: None } => output::print(&String::from_utf8_lossy(&page(words::command())?)),
+        What::Man { out: None } => output::print(&String::from_utf8_lossy(&page(built())?)),
         What::Man { out: Some(directory) } => write_pages(directory),
     }
 }
@@ -58,9 +58,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 /// Writes the page of the program and one for each command.
 fn write_pages(directory: &Path) -> Result<(), Failure> {
     fs::create_dir_all(directory).map_err(|error| Failure::file(format!("{}: {error}", directory.display())))?;
-    // Built, each command knows its whole name: mode13h-render.
-    let mut all = words::command().disable_help_subcommand(true);
-    all.build();
+    let all = built();
     for command in all.get_subcommands().chain([&all]) {
         let name = command.get_display_name().unwrap_or(command.get_name());
         let path = directory.join(format!("{name}.1"));
@@ -68,6 +66,13 @@ fn write_pages(directory: &Path) -> Result<(), Failure> {
         output::file(|| export::write_atomically(&path, |file| file.write_all(&bytes)))?;
     }
     Ok(())
+}
+
+/// All commands, each of which knows its whole name: mode13h-render.
+fn built() -> clap::Command {
+    let mut all = words::command().disable_help_subcommand(true);
+    all.build();
+    all
 }
 
 fn page(command: clap::Command) -> Result<Vec<u8>, Failure> {

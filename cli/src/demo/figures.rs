@@ -58,7 +58,7 @@ impl Demo {
             Row::new("error", self.map.figures(self.number, self.seconds, self.shading.budget())),
         ];
         if let Some(Stats { hidden_surfaces, vertices, drawn, raster, shares, .. }) = &self.stats {
-            let mut head = "rungs";
+            let mut head = "shadings";
             for share in of_rungs(shares) {
                 rows.push(Row::new(std::mem::take(&mut head), share));
             }
