@@ -23,7 +23,7 @@ const LENGTHS: [usize; 13] = [1, 2, 4, 8, 12, 16, 24, 32, 48, 64, 100, 160, 320]
 /// Rows in a batch: one from each place in a cache line, as spans start anywhere.
 const ROWS: usize = 64;
 /// Bytes of a row, with room for every start.
-const ROOM: usize = 320 + 64;
+const CAPACITY: usize = 320 + 64;
 
 /// What the loops read and write. The tables are larger than a first-level cache, as they are in use.
 struct Memory {
@@ -126,10 +126,10 @@ fn main() {
         (0..count).map(|_| byte()).collect()
     };
     let mut memory = Memory {
-        row: bytes(ROOM),
-        channels: [bytes(ROOM), bytes(ROOM), bytes(ROOM)],
+        row: bytes(CAPACITY),
+        channels: [bytes(CAPACITY), bytes(CAPACITY), bytes(CAPACITY)],
         // Above and below the depths drawn, at random: half of the pixels are nearer, at first.
-        depth: bytes(ROOM).into_iter().map(|byte| u32::from(byte) << 21).collect(),
+        depth: bytes(CAPACITY).into_iter().map(|byte| u32::from(byte) << 21).collect(),
         points: [[0.0; LANES]; 6],
         texture: bytes(65_536),
         table: bytes(65_536).try_into().expect("as long"),

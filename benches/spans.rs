@@ -20,12 +20,12 @@ const SPANS: usize = 64;
 
 /// What is timed: a kernel, or the memset that a flat span would be.
 #[derive(Clone, Copy)]
-enum Contender {
+enum Candidate {
     Fill,
     Kernel(Kernel),
 }
 
-impl Contender {
+impl Candidate {
     fn all() -> Vec<Self> {
         // `simd` is one of the levels under another name, but the one that people get.
         [Self::Fill].into_iter().chain(Kernel::available().map(Self::Kernel)).collect()
@@ -86,7 +86,7 @@ fn main() {
             let mut group = criterion.benchmark_group(format!("spans/{length}"));
             let batch = spans(|| length);
             group.throughput(Throughput::Elements((SPANS * length) as u64));
-            for contender in Contender::all() {
+            for contender in Candidate::all() {
                 group.bench_function(BenchmarkId::from_parameter(contender.name()), |bencher| {
                     bencher.iter(|| contender.draw(&mut pixels, &batch));
                 });
@@ -103,7 +103,7 @@ fn main() {
 
 /// Median time of a span, ns, all contenders side by side.
 fn table(pixels: &mut Pixels, rounds: usize) {
-    let contenders = Contender::all();
+    let contenders = Candidate::all();
     println!("\nns per span, median of {rounds} rounds, every round all kernels in turn");
     print!("{:>10}", "pixels");
     for contender in &contenders {
@@ -137,7 +137,7 @@ fn table(pixels: &mut Pixels, rounds: usize) {
         }
         let medians: Vec<f64> = times.into_iter().map(median).collect();
         let of = |wanted: &str| {
-            let at = contenders.iter().position(|c| matches!(c, Contender::Kernel(k) if k.name() == wanted));
+            let at = contenders.iter().position(|c| matches!(c, Candidate::Kernel(k) if k.name() == wanted));
             at.map_or(f64::NAN, |i| medians[i])
         };
         print!("{name:>10}");

@@ -17,23 +17,25 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::raster::{Drawn, Frame, Raster, Shading, Vertex};
-use mode13h::render::{Renderer, Rung, Screen};
+use mode13h::raster::{DrawStats, Frame, Interpolation, Raster, Vertex};
+use mode13h::render::{Renderer, Screen, Shading};
 use mode13h::scene::{Camera, Scene};
 use mode13h::vga::Vga;
 
-type Triangles = Vec<([Vertex; 3], Shading)>;
+type Triangles = Vec<([Vertex; 3], Interpolation)>;
 
 /// The triangles of a mesh as the raster gets them, back to front.
-fn of_mesh(mesh: Mesh, rung: Rung) -> Triangles {
+fn of_mesh(mesh: Mesh, shading: Shading) -> Triangles {
     let mut scene = Scene::showing(mesh);
     scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
     scene.objects_mut()[0].set_angles([0.4, 0.6, 0.0]);
     let mut renderer = Renderer::new();
-    renderer.set_rung(rung);
+    renderer.set_shading(shading);
     let mut triangles = Triangles::new();
     renderer
-        .for_each_triangle(&scene, Screen::MODE_13H, |vertices, shading| triangles.push((*vertices, shading)))
+        .for_each_triangle(&scene, Screen::MODE_13H, |vertices, interpolation| {
+            triangles.push((*vertices, interpolation))
+        })
         .expect("a legal scene");
     triangles.sort_by_key(|(vertices, _)| vertices.iter().map(|v| u64::from(v.depth())).sum::<u64>());
     triangles
@@ -51,16 +53,16 @@ fn of_tri(path: &Path) -> Result<Triangles, Box<dyn std::error::Error>> {
         let shade = U8F8::from_intensity(shade / 255.0, 0, 256);
         Ok(Vertex::new(coordinate(x)?, coordinate(y)?, shade, 0)?)
     };
-    (0..count).map(|_| Ok(([vertex()?, vertex()?, vertex()?], Shading::GouraudReseeded))).collect()
+    (0..count).map(|_| Ok(([vertex()?, vertex()?, vertex()?], Interpolation::GouraudReseeded))).collect()
 }
 
-fn draw(triangles: &Triangles, bytes: &mut [u8]) -> Drawn {
+fn draw(triangles: &Triangles, bytes: &mut [u8]) -> DrawStats {
     bytes.fill(0);
     let frame = Frame::new(bytes, Vga::WIDTH as u32, Vga::HEIGHT as u32, Vga::PITCH).expect("a legal frame");
     let mut raster = Raster::new(frame);
-    let mut drawn = Drawn::default();
-    for (vertices, shading) in triangles {
-        drawn += raster.triangle(vertices, *shading);
+    let mut drawn = DrawStats::default();
+    for (vertices, interpolation) in triangles {
+        drawn += raster.triangle(vertices, *interpolation);
     }
     drawn
 }
@@ -69,14 +71,14 @@ fn triangles(criterion: &mut Criterion) {
     let mut workloads = Vec::new();
     for name in ["cube", "torus", "teapot"] {
         let mesh = || shapes::by_name(name).expect("listed");
-        for rung in Rung::ALL {
-            workloads.push((format!("{name}/{rung}"), of_mesh(mesh(), rung)));
+        for shading in Shading::ALL {
+            workloads.push((format!("{name}/{shading}"), of_mesh(mesh(), shading)));
         }
     }
     #[cfg(feature = "obj")]
     if let Ok(path) = std::env::var("MODE13H_MODEL") {
         let mesh = mode13h::mesh::obj::load(&path).expect("MODE13H_MODEL names a model").mesh;
-        workloads.push((format!("{path}/{}", Rung::default()), of_mesh(mesh, Rung::default())));
+        workloads.push((format!("{path}/{}", Shading::default()), of_mesh(mesh, Shading::default())));
     }
     if let Some(paths) = std::env::var_os("MODE13H_TRI") {
         for path in std::env::split_paths(&paths) {

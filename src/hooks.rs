@@ -5,11 +5,11 @@
 use crate::light::Light;
 use crate::mesh::Mesh;
 use crate::palette::Ramp;
-pub use crate::plan::why::name_of;
-pub use crate::raster::account::{Account, Ratio, Sums, Way, row_of, rows_of};
+pub use crate::plan::reason::name_of;
+pub use crate::raster::shade_trace::{Accumulator, Progression, Ratio, ShadeTrace, row_of, rows_of};
 pub use crate::render::one_pixel::Bytes;
 pub use crate::render::trace::{Met, Trace};
-use crate::render::{RenderError, Renderer, Rung, Screen};
+use crate::render::{RenderError, Renderer, Screen, Shading};
 pub use crate::scene::object::turn;
 use crate::scene::{Object, Scene, Shared};
 
@@ -44,19 +44,19 @@ pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {
 
 /// The shading that a scene is drawn with.
 #[must_use]
-pub fn rung_for(renderer: &Renderer, scene: &Scene) -> Rung {
-    renderer.rung_for(scene)
+pub fn shading_for(renderer: &Renderer, scene: &Scene) -> Shading {
+    renderer.shading_for(scene)
 }
 
 /// Sets the renderer's own shading, or leaves it to the scene. Returns what was set before.
-pub fn replace_rung(renderer: &mut Renderer, rung: Option<Rung>) -> Option<Rung> {
-    renderer.replace_rung(rung)
+pub fn replace_shading(renderer: &mut Renderer, shading: Option<Shading>) -> Option<Shading> {
+    renderer.replace_shading(shading)
 }
 
 /// Whether a shading was set on this renderer, whatever the scene asks for.
 #[must_use]
-pub fn has_own_rung(renderer: &Renderer) -> bool {
-    renderer.has_own_rung()
+pub fn has_own_shading(renderer: &Renderer) -> bool {
+    renderer.has_own_shading()
 }
 
 /// Whether an object's faces were split in the last frame.

@@ -130,7 +130,7 @@ pub(crate) struct ObjectView {
 /// Where an object may be seen, once what is nearer than the near plane is cut off: somewhat more than
 /// where it is.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) struct Reach {
+pub(crate) struct ScreenBounds {
     /// The least distance along the view; may be negative.
     pub(crate) nearest: f64,
     /// The greatest.
@@ -222,7 +222,7 @@ impl ObjectView {
     }
 
     /// Where the box `bounds` of the object's mesh may be seen.
-    pub(crate) fn reach(&self, bounds: Bounds) -> Reach {
+    pub(crate) fn reach(&self, bounds: Bounds) -> ScreenBounds {
         let (matrix, offset) = &self.exact;
         let (min, max) = (widen(bounds.min), widen(bounds.max));
         let far: Row = core::array::from_fn(|i| min[i].abs().max(max[i].abs()));
@@ -260,7 +260,7 @@ impl ObjectView {
             (from.max(0.0) as u32, libm::ceil(to).min(size[i]).max(0.0) as u32)
         };
         let ((x0, x1), (y0, y1)) = (pixels(0), pixels(1));
-        Reach {
+        ScreenBounds {
             nearest,
             farthest,
             crosses_near,

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 use mode13h::render::Screen;
-use mode13h_lab::explain::{self, Account, ExplainError, FaceHere, Fate, Pixel, Row, Seen, ShadedBy, Stage, Way};
+use mode13h_lab::explain::{
+    self, ExplainError, FaceHere, Fate, Pixel, PixelStage, Progression, Row, Seen, ShadeTrace, ShadedBy,
+};
 use mode13h_lab::truth::Standard;
 use serde_json::{Map, Value, json};
 
 use crate::failure::Failure;
 use crate::options::{Drawing, Moment, ShadingOptions};
-use crate::stage::Pose;
+use crate::turntable::Pose;
 use crate::{chart, input, output, read_files};
 
 #[derive(Args)]
@@ -83,10 +85,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         };
     }
     let Some(y) = *row else { return Ok(()) };
-    let wishes = &stage.scene.wishes;
-    let shaded_by = match shading.max_error(wishes.max_error) {
+    let preferences = &stage.scene.preferences;
+    let shaded_by = match shading.max_error(preferences.max_error) {
         Some(shades) => format!("a budget of {shades} shades"),
-        None => shading.shading(wishes.rung).to_string(),
+        None => shading.shading(preferences.shading).to_string(),
     };
     let row = explain::row(renderer, &stage.scene, screen, y).map_err(Failure::from)?;
     let title = format!("{name} at {at} s, row {y}, {shaded_by}");
@@ -117,8 +119,8 @@ fn pixel_json(name: &str, at: f64, pixel: &Pixel) -> Value {
         "byte": pixel.byte,
         "rgb": [color.r, color.g, color.b],
         "background": pixel.background,
-        "shading": pixel.rung.name(),
-        "shading_reason": pixel.rung_why,
+        "shading": pixel.shading.name(),
+        "shading_reason": pixel.shading_why,
         "max_error": pixel.max_error,
         "arithmetic": pixel.vertex_path.name(),
         "hidden_surfaces": pixel.hidden_surfaces.name(),
@@ -153,7 +155,7 @@ fn face_json(pixel: &Pixel, face: &FaceHere) -> Value {
         "object_index": face.object,
         "triangle": face.triangle,
         "is_part": face.is_part,
-        "interpolation": face.shading.name(),
+        "interpolation": face.interpolation.name(),
         "corners": corners.collect::<Vec<_>>(),
         "edges": edges.collect::<Vec<_>>(),
         "depth": face.depth,
@@ -180,8 +182,10 @@ fn seen_json(seen: &Seen) -> Value {
     let against = seen.against.iter().map(
         |against| json!({ "standard": against.standard.name(), "shades": against.shades, "error": against.error }),
     );
-    let effects =
-        seen.effects.iter().map(|row| json!({ "effect": row.effect.name(), "choice": row.choice, "reason": row.why }));
+    let effects = seen
+        .effects
+        .iter()
+        .map(|row| json!({ "effect": row.effect.name(), "choice": row.choice, "reason": row.reason }));
     json!({
         "face": seen.face,
         "ramp": [seen.ramp.first(), seen.ramp.last()],
@@ -195,10 +199,10 @@ fn seen_json(seen: &Seen) -> Value {
     })
 }
 
-fn account_json(account: &Account) -> Value {
-    let mut json = match account.way {
-        Way::Flat(_) => json!({ "progression": "flat" }),
-        Way::Sums(sums) => json!({
+fn account_json(shade_trace: &ShadeTrace) -> Value {
+    let mut json = match shade_trace.way {
+        Progression::Flat(_) => json!({ "progression": "flat" }),
+        Progression::Accumulator(sums) => json!({
             "progression": "sums",
             "first": sums.first,
             "start_at": sums.start_at,
@@ -209,15 +213,15 @@ fn account_json(account: &Account) -> Value {
             "steps": sums.steps,
             "sums": (0..=sums.steps).map(|k| sums.after(k)).collect::<Vec<_>>(),
         }),
-        Way::Float { start, n, d, shade } => {
+        Progression::Float { start, n, d, shade } => {
             json!({ "progression": "float", "start_at": start, "n": n, "d": d, "shade": shade })
         }
         _ => json!({ "progression": "quotient" }),
     };
     if let Value::Object(map) = &mut json {
-        map.insert("byte".into(), account.byte.into());
+        map.insert("byte".into(), shade_trace.byte.into());
         // Numbers beyond 2^53, which many readers of JSON cut: as text.
-        let exact = account.exact.map(|exact| {
+        let exact = shade_trace.exact.map(|exact| {
             json!({
                 "numerator": exact.numerator.to_string(),
                 "denominator": exact.denominator.to_string(),
@@ -229,39 +233,39 @@ fn account_json(account: &Account) -> Value {
     json
 }
 
-fn stage_json(stage: &Stage) -> Value {
+fn stage_json(stage: &PixelStage) -> Value {
     let mut json = Map::new();
     let mut put = |name: &str, value: Value| json.insert(name.into(), value);
     let name = match *stage {
-        Stage::Shade(_) => "shade",
-        Stage::Channels(channels) => {
+        PixelStage::Shade(_) => "shade",
+        PixelStage::Channels(channels) => {
             put("channels", json!(channels));
             "channels"
         }
-        Stage::Dither { threshold, .. } => {
+        PixelStage::Dither { threshold, .. } => {
             put("threshold", threshold.into());
             "dither"
         }
-        Stage::Texture { texel, level, .. } => {
+        PixelStage::Texture { texel, level, .. } => {
             put("texel", texel.into());
             put("mipmap_level", json!(level));
             "texture"
         }
-        Stage::TextureChannels { texel, level, channels } => {
+        PixelStage::TextureChannels { texel, level, channels } => {
             put("texel", texel.into());
             put("mipmap_level", json!(level));
             put("channels", json!(channels));
             "texture"
         }
-        Stage::Mix { threshold, .. } => {
+        PixelStage::Mix { threshold, .. } => {
             put("threshold", json!(threshold));
             "mix"
         }
-        Stage::Fog { level, .. } => {
+        PixelStage::Fog { level, .. } => {
             put("level", level.into());
             "fog"
         }
-        Stage::Blend { behind, .. } => {
+        PixelStage::Blend { behind, .. } => {
             put("behind", behind.into());
             "blend"
         }

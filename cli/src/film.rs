@@ -13,9 +13,9 @@ use mode13h::vga::Vga;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 
-use crate::artists::Artists;
 use crate::failure::{Failure, on_one_line};
 use crate::output;
+use crate::renderer_pool::RendererPool;
 
 /// What a frame shows.
 pub(crate) struct Frame {
@@ -92,21 +92,21 @@ impl Film {
         self.frames
     }
 
-    /// Draws the frames by `draw`, by as many artists at a time as there are threads in the pool it is called in, writes
+    /// Draws the frames by `draw`, by as many renderer_pool at a time as there are threads in the pool it is called in, writes
     /// them, and returns what was written, if it is a file. A frame is drawn from its number alone, so that the film is the same with
     /// any number of threads. `fades`: whether its palette changes.
     pub(crate) fn write<Artist: Send>(
         &self,
         fades: bool,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send,
     ) -> Result<Option<Figures>, Failure> {
         output::long_file(|| {
             let figures = match self.kind {
-                Kind::Gif => self.write_gif(progress, artists, &draw).map(Some),
-                Kind::Apng => self.write_apng(fades, progress, artists, &draw).map(Some),
-                Kind::Stream => self.write_stream(progress, artists, &draw).map(|()| None),
+                Kind::Gif => self.write_gif(progress, renderer_pool, &draw).map(Some),
+                Kind::Apng => self.write_apng(fades, progress, renderer_pool, &draw).map(Some),
+                Kind::Stream => self.write_stream(progress, renderer_pool, &draw).map(|()| None),
             };
             progress.finish_and_clear();
             figures
@@ -116,7 +116,7 @@ impl Film {
     fn write_gif<Artist: Send>(
         &self,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
     ) -> Result<Figures, Failure> {
         let mut file = GifFile::create(&self.out, self.scale, self.rate).map_err(Failure::from)?;
@@ -124,7 +124,7 @@ impl Film {
             None => GifFrame::first(&frame.picture(), self.scale),
             Some(before) => GifFrame::after(&before.picture(), &frame.picture(), self.scale, first.colors()),
         };
-        self.each(progress, artists, draw, make, |frame| file.add_frame(frame).map_err(Failure::from))?;
+        self.each(progress, renderer_pool, draw, make, |frame| file.add_frame(frame).map_err(Failure::from))?;
         file.finish().map(|film| self.figures(&film)).map_err(Failure::from)
     }
 
@@ -133,7 +133,7 @@ impl Film {
         &self,
         fades: bool,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
     ) -> Result<Figures, Failure> {
         let colors = |first: &Palette| match fades {
@@ -144,7 +144,7 @@ impl Film {
         let make = |before: Option<&Frame>, frame: &Frame, first: &Palette| {
             ApngFrame::new(before.map(Frame::picture).as_ref(), &frame.picture(), self.scale, &colors(first))
         };
-        self.each(progress, artists, draw, make, |frame| file.add(&frame).map_err(Failure::from))?;
+        self.each(progress, renderer_pool, draw, make, |frame| file.add(&frame).map_err(Failure::from))?;
         let bytes = file.finish().map_err(Failure::from)?;
         let (width, height) = self.scale.size(320, 200);
         let (above, below) = self.rate.fraction();
@@ -165,7 +165,7 @@ impl Film {
     fn write_stream<Artist: Send>(
         &self,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
     ) -> Result<(), Failure> {
         let mut out = std::io::stdout().lock();
@@ -179,7 +179,7 @@ impl Film {
             bytes.extend(export::y4m_frame(&picture, self.scale)?);
             Ok(bytes)
         };
-        let result = self.each(progress, artists, draw, make, |bytes: Vec<u8>| {
+        let result = self.each(progress, renderer_pool, draw, make, |bytes: Vec<u8>| {
             out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| {
                 nobody_reads = error.kind() == ErrorKind::BrokenPipe;
                 Failure::file(format!("standard output: {error}"))
@@ -194,12 +194,12 @@ impl Film {
     fn each<Artist: Send, Made: Send>(
         &self,
         progress: &ProgressBar,
-        artists: &Artists<Artist, impl Fn() -> Artist + Sync>,
+        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
         make: impl Fn(Option<&Frame>, &Frame, &Palette) -> Result<Made, PictureError> + Sync,
         mut add: impl FnMut(Made) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let draw = |number| go_on().and_then(|()| artists.work(|artist| draw(artist, number)));
+        let draw = |number| go_on().and_then(|()| renderer_pool.work(|artist| draw(artist, number)));
         let draw_all =
             |numbers: Range<u32>| -> Result<Vec<Frame>, Failure> { numbers.into_par_iter().map(draw).collect() };
         // Some for each thread (of which there are at most 1,024): frames are not equally fast.

@@ -1,9 +1,9 @@
 //! `mode13h`: a scene or a model in a window, or a picture of it.
 
-mod artists;
 mod chart;
 mod cost;
 mod demo;
+mod effect_cost;
 mod explain;
 mod failure;
 mod film;
@@ -15,14 +15,14 @@ mod output;
 mod overlay;
 mod palette;
 mod plan;
-mod price;
 mod read_files;
 mod render;
+mod renderer_pool;
 mod scenes;
 mod show;
-mod stage;
 mod stats;
-mod switches;
+mod toggles;
+mod turntable;
 mod typo;
 mod verify;
 mod words;

@@ -16,7 +16,7 @@ use mode13h::span::Kernel;
 
 use crate::failure::Failure;
 use crate::input::{self, Colors, Input, Model};
-use crate::stage::{Background, Stage};
+use crate::turntable::{Background, Turntable};
 pub(crate) use shading::ShadingOptions;
 
 /// The environment variable that stands in for `--kernel`. The library reads none.
@@ -188,13 +188,13 @@ impl Drawing {
     }
 
     /// What INPUT shows, drawn as was asked for.
-    pub(crate) fn stage(&self, input: Input) -> Result<Stage, Failure> {
+    pub(crate) fn stage(&self, input: Input) -> Result<Turntable, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
         let (mut stage, usual) = match input {
             Input::Model(model) => {
                 let Model { mesh, .. } = *model;
                 let textures = input::textures(&mesh);
-                let stage = Stage::of_model(mesh, self.up.unwrap_or(Up::Y).into(), &textures);
+                let stage = Turntable::of_model(mesh, self.up.unwrap_or(Up::Y).into(), &textures);
                 let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };
                 (stage, Some(colors))
             }
@@ -204,9 +204,9 @@ impl Drawing {
                 ));
             }
             Input::Scene { scene, .. } => {
-                let auto = scene.wishes.auto_palette.then_some(Colors::Auto);
+                let auto = scene.preferences.auto_palette.then_some(Colors::Auto);
                 let colors = auto.or(scene.palette.clone().map(Colors::from));
-                (Stage::of_scene(*scene), colors)
+                (Turntable::of_scene(*scene), colors)
             }
         };
         if let Some(zoom) = self.zoom {
@@ -222,7 +222,7 @@ impl Drawing {
             stage.set_dither(dither);
         }
         if let Some(shades) = self.pipeline.tessellation {
-            stage.scene.wishes.tessellation = Some(shades);
+            stage.scene.preferences.tessellation = Some(shades);
         }
         let colors = asked.or(usual);
         if colors == Some(Colors::Auto) && self.pipeline.arithmetic == Some(VertexPath::Integer) {

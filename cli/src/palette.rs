@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use crate::failure::{Failure, on_one_line};
 use crate::options::{self, Up};
-use crate::stage::Stage;
+use crate::turntable::Turntable;
 use crate::{input, output, read_files};
 
 #[derive(Args)]
@@ -139,7 +139,7 @@ fn make(
     let input::Model { name, mesh } = input::model(model, &obj::Options { crease })?;
     out.map_or(Ok(()), read_files::spare)?;
     let textures = input::textures(&mesh);
-    let mut stage = Stage::of_model(mesh, up.into(), &textures);
+    let mut stage = Turntable::of_model(mesh, up.into(), &textures);
     let automatic = stage.automatic().map_err(Failure::from)?.clone();
     let mut made = Vec::new();
     let materials = stage.scene.objects().iter().flat_map(|object| &object.materials);

@@ -1,4 +1,4 @@
-//! `mode13h plan`: what a scene calls for, object by object, and why.
+//! `mode13h plan`: what a scene calls for, object by object, and reason.
 
 use std::ffi::OsString;
 use std::time::Duration;
@@ -11,10 +11,10 @@ use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use serde::Serialize;
 
+use crate::effect_cost::EffectCost;
 use crate::failure::Failure;
 use crate::options::{Drawing, ShadingOptions, finite};
-use crate::price::Meter;
-use crate::stage::Pose;
+use crate::turntable::Pose;
 use crate::{input, output};
 
 /// From one frame to the next, in seconds: films have 35 a second.
@@ -65,7 +65,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 
     let effects = rows.len().max(1);
     let of_one = (TIME / u32::try_from(effects).unwrap_or(u32::MAX)).clamp(TIME_OF_ONE.0, TIME_OF_ONE.1);
-    let meter = Meter { renderer: || shading.renderer(drawing, kernel), frames: &frames, time: of_one };
+    let meter = EffectCost { renderer: || shading.renderer(drawing, kernel), frames: &frames, time: of_one };
     let prices = if *time { Some(prices(&meter, &rows)?) } else { None };
     if *json {
         return output::print_json(&as_json(&name, &rows, prices.as_deref()));
@@ -77,7 +77,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// The price of each row, in nanoseconds a frame.
-fn prices<Make: Fn() -> Renderer>(meter: &Meter<'_, Make>, rows: &[Row]) -> Result<Vec<Option<u64>>, Failure> {
+fn prices<Make: Fn() -> Renderer>(meter: &EffectCost<'_, Make>, rows: &[Row]) -> Result<Vec<Option<u64>>, Failure> {
     let bar = ProgressBar::new(rows.len() as u64);
     let bar = match ProgressStyle::with_template("{bar:40} {pos}/{len} effects measured") {
         Ok(style) => bar.with_style(style),
@@ -130,7 +130,7 @@ fn as_json<'a>(name: &'a str, rows: &'a [Row], prices: Option<&'a [Option<u64>]>
             effect: row.effect.name(),
             on: row.on,
             choice: row.choice,
-            reason: &row.why,
+            reason: &row.reason,
             ns_per_frame: prices.map(|prices| prices[i]),
         });
         Some(JsonObject { object: &rows[0].object, effects: effects.collect() })
@@ -155,11 +155,11 @@ impl Head<'_> {
         let of = if objects == 1 { "1 object".to_string() } else { format!("{objects} objects") };
         let mut text = format!("{name} at {at} s, 1/35 s after the frame before it: {of}\n");
         let hidden = rows.iter().find(|row| row.effect == Effect::HiddenSurfaces);
-        let why = hidden.map(|row| format!(" ({})", row.why)).unwrap_or_default();
-        let Stats { rung, vertex_path, kernel, hidden_surfaces, .. } = stats;
+        let reason = hidden.map(|row| format!(" ({})", row.reason)).unwrap_or_default();
+        let Stats { shading, vertex_path, kernel, hidden_surfaces, .. } = stats;
         let mut paragraph = |line: &str| text.push_str(&wrapped(line, 0, WIDTH));
         paragraph(&format!(
-            "all: {rung}, {vertex_path} vertices, kernel {kernel}, hidden surfaces by {hidden_surfaces}{why}"
+            "all: {shading}, {vertex_path} vertices, kernel {kernel}, hidden surfaces by {hidden_surfaces}{reason}"
         ));
         if !stats.redrawn {
             paragraph("nothing changed since the frame before, so this one is not drawn again");
@@ -211,7 +211,7 @@ fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
         price: widest(&|(_, price)| price.len()),
     };
     let objects: Vec<&[(&Row, String)]> = priced.chunk_by(|(a, _), (b, _)| a.place == b.place).collect();
-    let said = |row: &Row| (row.effect, row.on, row.choice, row.why.clone());
+    let said = |row: &Row| (row.effect, row.on, row.choice, row.reason.clone());
     let common: Vec<(&Row, String)> = match objects.as_slice() {
         [first, rest @ ..] if !rest.is_empty() && prices.is_none() => {
             let same =
@@ -263,7 +263,7 @@ fn table(heading: &str, rows: &[(&Row, String)], widths: &Widths) -> String {
     for (row, price) in rows {
         let columns = columns(row.effect.name(), if row.on { "on" } else { "off" }, row.choice, price);
         text += &columns;
-        text += &wrapped(&row.why, columns.chars().count(), WIDTH);
+        text += &wrapped(&row.reason, columns.chars().count(), WIDTH);
     }
     text
 }

@@ -14,12 +14,12 @@ use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::{Value, json};
 
-use crate::artists::Artists;
 use crate::failure::{Failure, on_one_line};
 use crate::film::{self, Film, Kind};
 use crate::names::{Names, number_in};
 use crate::options::{Drawing, Moment, ShadingOptions, finite};
-use crate::stage::{Pose, Stage};
+use crate::renderer_pool::RendererPool;
+use crate::turntable::{Pose, Turntable};
 use crate::{input, output, read_files, stats};
 
 #[derive(Args)]
@@ -137,7 +137,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         stage: stage.clone(),
         vga: Vga::new(),
     };
-    let artists = Artists::new(make);
+    let renderer_pool = RendererPool::new(make);
     let drawn: Mutex<Vec<(u32, Stats)>> = Mutex::default();
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
         let stats = artist.draw(&motion, number)?;
@@ -166,14 +166,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::from)
     };
     let result = match &out {
-        Out::Pictures(names, 1) => artists.work(|artist| picture(names, artist, 0)).map(|()| None),
+        Out::Pictures(names, 1) => renderer_pool.work(|artist| picture(names, artist, 0)).map(|()| None),
         Out::Pictures(names, frames) => pool()?.install(|| {
-            let each = |n| artists.work(|artist| picture(names, artist, n));
+            let each = |n| renderer_pool.work(|artist| picture(names, artist, n));
             (0..*frames).into_par_iter().try_for_each(each).map(|()| None)
         }),
         Out::Film(film) => {
             let fades = stage.scene.palette_animation.is_some();
-            pool()?.install(|| film.write(fades, &progress, &artists, frame))
+            pool()?.install(|| film.write(fades, &progress, &renderer_pool, frame))
         }
     };
     progress.finish_and_clear();
@@ -295,7 +295,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(options: &Options, out: &Out, stage: &Stage) -> Motion {
+    fn new(options: &Options, out: &Out, stage: &Turntable) -> Motion {
         let frames = out.frames();
         let whole_turn = (matches!(out, Out::Film(_)) && frames > 1).then_some(360.0);
         let rate = options.fps.unwrap_or(FrameRate::default().frames_per_second());
@@ -305,7 +305,7 @@ impl Motion {
     }
 
     /// The time and the pose in a frame. From the frame's number alone: nothing adds up.
-    fn of(&self, number: u32, stage: &Stage) -> (f64, Pose) {
+    fn of(&self, number: u32, stage: &Turntable) -> (f64, Pose) {
         let Motion { frames, turn, at, rate } = *self;
         let number = f64::from(number);
         match turn {
@@ -320,7 +320,7 @@ impl Motion {
 /// is why the order, and the number of threads, change nothing.
 struct Artist {
     renderer: Renderer,
-    stage: Stage,
+    stage: Turntable,
     vga: Vga,
 }
 

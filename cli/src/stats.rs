@@ -1,6 +1,6 @@
 //! What drawing a frame came to, for programs.
 
-use mode13h::raster::Drawn;
+use mode13h::raster::DrawStats;
 use mode13h::render::Stats;
 use serde_json::{Map, Value, json};
 
@@ -8,11 +8,11 @@ use serde_json::{Map, Value, json};
 pub(crate) fn json(number: u32, stats: &Stats) -> Value {
     let shares: Map<String, Value> =
         stats.shares.iter().map(|(shading, triangles)| (shading.name().to_string(), triangles.into())).collect();
-    let Drawn { spans, covered, pixels, tested, textured, mipmapped, dithered, fogged, blended, mixed, lit } =
+    let DrawStats { spans, covered, pixels, tested, textured, mipmapped, dithered, fogged, blended, mixed, lit } =
         stats.raster;
     json!({
         "frame": number,
-        "shading": stats.rung.name(),
+        "shading": stats.shading.name(),
         "max_error": stats.max_error,
         "arithmetic": stats.vertex_path.name(),
         "kernel": stats.kernel,

@@ -20,7 +20,7 @@
 //!
 //! ```
 //! use mode13h::fixed::I16F16;
-//! use mode13h::integer::{Angle, Camera, FixedMesh, Lens, Object, Paint, Placement, Stage, Sun, Technique, View};
+//! use mode13h::integer::{Angle, Camera, FixedMesh, Lens, Object, Paint, Placement, VertexStage, Sun, Technique, View};
 //! use mode13h::palette::Ramp;
 //! use mode13h::raster::{Frame, Raster};
 //!
@@ -38,11 +38,11 @@
 //! let suns = [Sun { direction: at(0, 0, 1), intensity: I16F16::ONE }];
 //!
 //! let (mut lit, mut beams) = ([Default::default(); 3], [Default::default(); 1]);
-//! let stage = Stage::new(&view, object, &suns, Technique::default(), &mut lit, &mut beams)?;
+//! let stage = VertexStage::new(&view, object, &suns, Technique::default(), &mut lit, &mut beams)?;
 //! let mut bytes = [0; 320 * 200];
 //! let mut raster = Raster::new(Frame::new(&mut bytes, 320, 200, 320)?);
-//! let faces = stage.faces(|vertices, shading| {
-//!     raster.triangle(vertices, shading);
+//! let faces = stage.faces(|vertices, interpolation| {
+//!     raster.triangle(vertices, interpolation);
 //! });
 //! assert_eq!(faces.drawn, 1);
 //! assert_eq!(bytes[100 * 320 + 160], 180); // lit under 45°: 255 · √½
@@ -62,7 +62,7 @@ use core::fmt;
 pub use angle::Angle;
 pub use light::{Beam, Paint, Sun};
 pub use mesh::{FixedMesh, FixedMeshError, Index, average_normals, face_normal};
-pub use stage::{Faces, LitVertex, Object, Stage, Technique};
+pub use stage::{Faces, LitVertex, Object, Technique, VertexStage};
 pub use vector::{Vector, turn, unit_vector};
 pub use view::{Camera, Lens, Placement, View};
 

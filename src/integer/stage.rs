@@ -8,16 +8,16 @@ use super::mesh::{FixedMesh, Index, face_normal};
 use super::view::{Homogeneous, ObjectView, Placement, View};
 use crate::fixed::U8F8;
 use crate::raster::clip::doubled_area;
-use crate::raster::{Shading, Vertex};
+use crate::raster::{Interpolation, Vertex};
 
-/// How faces are shaded: the rungs of the same names, for which see `render::Rung`.
+/// How faces are shaded: the shadings of the same names, for which see `render::Shading`.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub enum Technique {
     /// One shade for each face.
     Flat,
     /// As the sources print it, vertices on whole pixels.
-    GouraudPeriod,
+    GouraudVintage,
     /// Linear between the vertices, each row of a triangle one span.
     Gouraud,
     /// The same, started anew every 64 pixels.
@@ -65,7 +65,7 @@ pub struct Faces {
 
 /// An object whose vertices are ready: its faces can be drawn, as often as there are bands.
 #[derive(Clone, Copy, Debug)]
-pub struct Stage<'a, I: Index = u16> {
+pub struct VertexStage<'a, I: Index = u16> {
     technique: Technique,
     object: Object<'a, I>,
     view: ObjectView,
@@ -73,7 +73,7 @@ pub struct Stage<'a, I: Index = u16> {
     lit: &'a [LitVertex],
 }
 
-impl<'a, I: Index> Stage<'a, I> {
+impl<'a, I: Index> VertexStage<'a, I> {
     /// Lights and projects every vertex of the mesh. `lit` is room for at least as many vertices as
     /// the mesh has, `beams` for as many beams as there are suns.
     ///
@@ -120,7 +120,7 @@ impl<'a, I: Index> Stage<'a, I> {
 
     /// Hands the faces that are to be drawn to `triangle`, clipped where they must be. Those of a
     /// closed mesh that are turned away are left out, and of two that lie back to back; others show their back.
-    pub fn faces(&self, mut triangle: impl FnMut(&[Vertex; 3], Shading)) -> Faces {
+    pub fn faces(&self, mut triangle: impl FnMut(&[Vertex; 3], Interpolation)) -> Faces {
         let mut counts = Faces::default();
         let mesh = &self.object.mesh;
         for (face, indices) in mesh.triangles.iter().enumerate() {
@@ -139,11 +139,11 @@ impl<'a, I: Index> Stage<'a, I> {
                 continue;
             }
             counts.drawn += 1;
-            let shading = self.shading(face, indices, area > 0, &mut counts);
+            let interpolation = self.interpolation(face, indices, area > 0, &mut counts);
             if area > 0 {
-                triangle(&corners.map(|corner| corner.vertex.with_shade(corner.back)), shading);
+                triangle(&corners.map(|corner| corner.vertex.with_shade(corner.back)), interpolation);
             } else {
-                triangle(&vertices, shading);
+                triangle(&vertices, interpolation);
             }
         }
         counts
@@ -157,7 +157,7 @@ impl<'a, I: Index> Stage<'a, I> {
         indices: [usize; 3],
         corners: &[LitVertex; 3],
         counts: &mut Faces,
-        triangle: &mut impl FnMut(&[Vertex; 3], Shading),
+        triangle: &mut impl FnMut(&[Vertex; 3], Interpolation),
     ) {
         let at = indices.map(|i| self.view.homogeneous(self.object.mesh.positions[i]));
         let turned = !self.object.mesh.hides_back(face) && is_turned_away(&at);
@@ -172,22 +172,22 @@ impl<'a, I: Index> Stage<'a, I> {
             counts.culled += 1;
             return;
         }
-        let shading = self.shading(face, indices, turned, counts);
+        let interpolation = self.interpolation(face, indices, turned, counts);
         for part in clipped.parts() {
             counts.drawn += 1;
-            triangle(&part, shading);
+            triangle(&part, interpolation);
         }
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
     #[inline]
-    fn shading(&self, face: usize, indices: [usize; 3], turned: bool, counts: &mut Faces) -> Shading {
+    fn interpolation(&self, face: usize, indices: [usize; 3], turned: bool, counts: &mut Faces) -> Interpolation {
         match self.technique {
-            Technique::GouraudReseeded => Shading::GouraudReseeded,
-            Technique::GouraudPeriod => Shading::GouraudPeriod,
-            Technique::Gouraud => Shading::Gouraud,
-            Technique::Gouraud1616 => Shading::Gouraud1616,
-            Technique::GouraudHyperbolic => Shading::GouraudHyperbolic,
+            Technique::GouraudReseeded => Interpolation::GouraudReseeded,
+            Technique::GouraudVintage => Interpolation::GouraudVintage,
+            Technique::Gouraud => Interpolation::Gouraud,
+            Technique::Gouraud1616 => Interpolation::Gouraud1616,
+            Technique::GouraudHyperbolic => Interpolation::GouraudHyperbolic,
             Technique::Flat => {
                 counts.lit += 1;
                 let mesh = &self.object.mesh;
@@ -196,7 +196,7 @@ impl<'a, I: Index> Stage<'a, I> {
                 let normal = face_normal(a, b, c).unwrap_or(mesh.normals[indices[0]]);
                 let paint = &self.object.paints[mesh.triangle_surface(face)];
                 let (front, back) = paint.shades(self.beams, normal);
-                Shading::Flat(if turned { back } else { front }.nearest())
+                Interpolation::Flat(if turned { back } else { front }.nearest())
             }
         }
     }

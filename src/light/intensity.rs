@@ -47,7 +47,7 @@ pub(crate) struct Lights<'a> {
 
 /// What a material answers, in f64.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) struct Answer {
+pub(crate) struct Reflectance {
     /// ka·Ia.
     pub(crate) ambient: f64,
     pub(crate) diffuse: f64,
@@ -97,7 +97,7 @@ impl<const N: usize> Side<N> {
     }
 
     /// What the body gives back, and its highlight.
-    fn answer(&self, answer: &Answer) -> ([f64; N], [f64; N]) {
+    fn answer(&self, answer: &Reflectance) -> ([f64; N], [f64; N]) {
         let body = self.diffuse.map(|light| answer.ambient + answer.diffuse * light);
         (body, self.specular.map(|light| answer.specular * light))
     }
@@ -108,7 +108,7 @@ impl Lights<'_> {
     /// from and for the other: first the suns, then the lamps, each in their order. Where there are no
     /// lamps and no highlight these are the numbers of [`both_sides`].
     #[inline(never)]
-    pub(crate) fn one_channel(&self, answer: &Answer, position: Vec3, normal: Vec3) -> (f64, f64) {
+    pub(crate) fn one_channel(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (f64, f64) {
         let of_sun = |sun: &Beam| [f64::from(sun.intensity)];
         let of_lamp = |lamp: &LampBeam| [f64::from(lamp.intensity)];
         let sides = self.sum(answer, position, normal, of_sun, of_lamp);
@@ -121,7 +121,7 @@ impl Lights<'_> {
 
     /// The same on three channels: red, green, blue.
     #[inline(never)]
-    pub(crate) fn three_channels(&self, answer: &Answer, position: Vec3, normal: Vec3) -> (Wide, Wide) {
+    pub(crate) fn three_channels(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (Wide, Wide) {
         let of_sun = |sun: &Beam| sun.channels.map(f64::from);
         let of_lamp = |lamp: &LampBeam| lamp.channels.map(f64::from);
         let sides = self.sum(answer, position, normal, of_sun, of_lamp);
@@ -136,7 +136,7 @@ impl Lights<'_> {
     #[inline]
     fn sum<const N: usize>(
         &self,
-        answer: &Answer,
+        answer: &Reflectance,
         position: Vec3,
         normal: Vec3,
         of_sun: impl Fn(&Beam) -> [f64; N],

@@ -2,10 +2,10 @@
 //!
 //! The same numbers as [`Lights::one_channel`] and [`Lights::three_channels`] give for each point: the
 //! same operations in the same order, and each of them (sum, product, quotient, square root) rounds alike in a vector
-//! and alone. Where a point has no part in a light, nought is added, which changes no sum: none is −0, as each
+//! and alone. Where a point has no part in a light, zero is added, which changes no sum: none is −0, as each
 //! begins at +0.
 
-use super::intensity::{Answer, Lights, Wide};
+use super::intensity::{Lights, Reflectance, Wide};
 use super::power::Shininess;
 use crate::span::Kernel;
 use crate::span::lit::{LANES, Lanes, Points};
@@ -77,7 +77,7 @@ fn unit_normals(points: &Points) -> [Lanes<f32>; 3] {
 impl Lights<'_> {
     /// The whole sum on one channel, not yet clamped, for the side that the points' normals, of any length, point
     /// away from.
-    pub(crate) fn front_of_one_channel(&self, answer: &Answer, points: &Points, kernel: Kernel) -> Wides {
+    pub(crate) fn front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
             return x86::one_channel::<false>(self, answer, points);
@@ -87,7 +87,7 @@ impl Lights<'_> {
     }
 
     /// The same for normals that are unit already, which are taken as they are.
-    pub(crate) fn unit_front_of_one_channel(&self, answer: &Answer, points: &Points, kernel: Kernel) -> Wides {
+    pub(crate) fn unit_front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
             return x86::one_channel::<true>(self, answer, points);
@@ -97,7 +97,7 @@ impl Lights<'_> {
     }
 
     /// The same as [`front_of_one_channel`](Self::front_of_one_channel) on three channels: red, green, blue.
-    pub(crate) fn front_of_three_channels(&self, answer: &Answer, points: &Points, kernel: Kernel) -> [Wides; 3] {
+    pub(crate) fn front_of_three_channels(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> [Wides; 3] {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
             return x86::three_channels::<false>(self, answer, points);
@@ -107,7 +107,12 @@ impl Lights<'_> {
     }
 
     /// The same for normals that are unit already, which are taken as they are.
-    pub(crate) fn unit_front_of_three_channels(&self, answer: &Answer, points: &Points, kernel: Kernel) -> [Wides; 3] {
+    pub(crate) fn unit_front_of_three_channels(
+        &self,
+        answer: &Reflectance,
+        points: &Points,
+        kernel: Kernel,
+    ) -> [Wides; 3] {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
             return x86::three_channels::<true>(self, answer, points);
@@ -117,18 +122,22 @@ impl Lights<'_> {
     }
 
     #[inline(never)]
-    fn one_channel_apart<const UNIT: bool>(&self, answer: &Answer, points: &Points) -> Wides {
+    fn one_channel_apart<const UNIT: bool>(&self, answer: &Reflectance, points: &Points) -> Wides {
         self.one_channel_of_eight::<UNIT, true>(answer, points)
     }
 
     #[inline(never)]
-    fn three_channels_apart<const UNIT: bool>(&self, answer: &Answer, points: &Points) -> [Wides; 3] {
+    fn three_channels_apart<const UNIT: bool>(&self, answer: &Reflectance, points: &Points) -> [Wides; 3] {
         self.three_channels_of_eight::<UNIT, true>(answer, points)
     }
 
     /// Inlined where it is compiled for a processor, and all that it calls; but with highlights `APART`.
     #[inline(always)]
-    fn one_channel_of_eight<const UNIT: bool, const APART: bool>(&self, answer: &Answer, points: &Points) -> Wides {
+    fn one_channel_of_eight<const UNIT: bool, const APART: bool>(
+        &self,
+        answer: &Reflectance,
+        points: &Points,
+    ) -> Wides {
         let of_sun = |sun: &super::Beam| [f64::from(sun.intensity)];
         let normals = normals_of::<UNIT>(points);
         let front = self.front::<1, APART>(answer, &normals, points, of_sun, |lamp| [f64::from(lamp.intensity)]);
@@ -142,7 +151,7 @@ impl Lights<'_> {
     #[inline(always)]
     fn three_channels_of_eight<const UNIT: bool, const APART: bool>(
         &self,
-        answer: &Answer,
+        answer: &Reflectance,
         points: &Points,
     ) -> [Wides; 3] {
         let of_sun = |sun: &super::Beam| sun.channels.map(f64::from);
@@ -161,7 +170,7 @@ impl Lights<'_> {
     #[inline(always)]
     fn front<const N: usize, const APART: bool>(
         &self,
-        answer: &Answer,
+        answer: &Reflectance,
         narrow: &[Lanes<f32>; 3],
         points: &Points,
         of_sun: impl Fn(&super::Beam) -> [f64; N],
@@ -256,7 +265,7 @@ impl Eye {
     }
 }
 
-/// What is above 0; nought for the rest, and for what is no number.
+/// What is above 0; zero for the rest, and for what is no number.
 #[inline(always)]
 fn positive(values: &Wides) -> Wides {
     let mut positive = NOUGHT;
@@ -362,10 +371,10 @@ mod tests {
         )
     }
 
-    fn answer() -> impl Strategy<Value = Answer> {
+    fn answer() -> impl Strategy<Value = Reflectance> {
         let shininess = prop_oneof![(0_u32..200).prop_map(f64::from), 0.0..60.0];
         (prop::array::uniform3(0.0..1.0), prop::bool::ANY, shininess, prop::array::uniform3(0.0..1.0)).prop_map(
-            |([ambient, diffuse, specular], is_specular, shininess, color)| Answer {
+            |([ambient, diffuse, specular], is_specular, shininess, color)| Reflectance {
                 ambient,
                 diffuse,
                 specular: if is_specular { specular } else { 0.0 },

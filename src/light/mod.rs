@@ -27,7 +27,7 @@ mod power;
 mod source;
 mod suns;
 
-pub(crate) use intensity::{Answer, Beam, LampBeam, Lights, both_sides, lamp_reaches};
+pub(crate) use intensity::{Beam, LampBeam, Lights, Reflectance, both_sides, lamp_reaches};
 pub use material::{Blend, Material, RampChoice};
 pub use source::Light;
 pub(crate) use suns::both_sides_of_eight;

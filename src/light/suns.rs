@@ -6,7 +6,7 @@ use super::Beam;
 use crate::span::lit::{LANES, Lanes};
 
 /// [`both_sides`](super::both_sides) of eight normals, or of the front alone, and anything of the back: the same operations in the same order. Where it adds nothing,
-/// nought is added, which changes no sum: none is −0, as each begins at +0.
+/// zero is added, which changes no sum: none is −0, as each begins at +0.
 #[inline(always)]
 pub(crate) fn both_sides_of_eight<const BOTH: bool>(
     ambient: f64,
@@ -33,7 +33,7 @@ pub(crate) fn both_sides_of_eight<const BOTH: bool>(
     [front, back].map(|side| side.map(|light| ambient + diffuse * light))
 }
 
-/// The light, or else nought. By a mask: of a choice the compiler makes a branch, and then no vectors.
+/// The light, or else zero. By a mask: of a choice the compiler makes a branch, and then no vectors.
 #[inline(always)]
 fn only(is_lit: bool, light: f64) -> f64 {
     f64::from_bits(light.to_bits() & u64::from(is_lit).wrapping_neg())

@@ -89,11 +89,11 @@ pub struct Automatic {
 }
 
 /// Entries to be shared out: all but the first and the last.
-const ROOM: usize = 254;
+const CAPACITY: usize = 254;
 /// The least that a ramp has, unless there are fewer colours on it.
 const LEAST: usize = 4;
 /// What is kept for textures before the ramps have theirs.
-const LEAST_FOR_TEXTURES: usize = 16;
+const MIN_FOR_TEXTURES: usize = 16;
 /// A share of the area for what is never in sight.
 const UNSEEN: f64 = 1e-6;
 /// The narrowest range of intensities that entries are made for: a light may move.
@@ -101,7 +101,7 @@ const NARROWEST: f64 = 0.25;
 /// How many brightnesses of a texture's colours are looked at.
 const LEVELS: u8 = 16;
 /// How many textured uses are looked at: those with the largest areas.
-const MOST_TEXTURED: usize = 64;
+const MAX_TEXTURED: usize = 64;
 /// The weight of the whole area in median cut.
 const WHOLE: f64 = 16_777_216.0;
 /// More than any squared distance between two colours and two highlights: 2 · 195,075.
@@ -142,9 +142,9 @@ pub fn share_beside(uses: &[Use<'_>], mixtures: &[(Rgb, f32)]) -> Automatic {
     let (areas, mixed) = areas(uses, mixtures);
     let mut textures = MedianCut::new(cloud(uses, &areas, &mixed));
     let is_needed = !mixed.is_empty() || uses.iter().any(|of| of.texels.is_some());
-    let kept = if is_needed { LEAST_FOR_TEXTURES } else { 0 };
+    let kept = if is_needed { MIN_FOR_TEXTURES } else { 0 };
     textures.cut_to(kept);
-    let (mut ramps, ramp_of) = choose(uses, &areas, (ROOM - kept) / LEAST);
+    let (mut ramps, ramp_of) = choose(uses, &areas, (CAPACITY - kept) / LEAST);
     give(&mut ramps, &mut textures);
 
     let mut colors = [Rgb::BLACK; 256];
@@ -176,7 +176,7 @@ fn entries(first: usize, count: usize) -> Ramp {
 
 /// Gives away the room: an entry at a time to who gains most by it.
 fn give(ramps: &mut [Wanted], textures: &mut MedianCut) {
-    let mut room = ROOM.saturating_sub(ramps.iter().map(|ramp| ramp.entries).sum::<usize>() + textures.len());
+    let mut room = CAPACITY.saturating_sub(ramps.iter().map(|ramp| ramp.entries).sum::<usize>() + textures.len());
     while room > 0 {
         let best = best(ramps, Wanted::gain);
         let by_ramp = best.map_or(0.0, |best| ramps[best].gain());
@@ -387,7 +387,7 @@ fn choose(uses: &[Use<'_>], areas: &[f64], most: usize) -> (Vec<Wanted>, Vec<Opt
 fn cloud(uses: &[Use<'_>], areas: &[f64], mixed: &[(Rgb, f64)]) -> Vec<(Rgb, u32)> {
     let mut textured: Vec<usize> = (0..uses.len()).filter(|&i| uses[i].texels.is_some()).collect();
     textured.sort_by(|&a, &b| areas[b].total_cmp(&areas[a]));
-    textured.truncate(MOST_TEXTURED);
+    textured.truncate(MAX_TEXTURED);
     let mut points: Vec<(Rgb, u32)> = Vec::new();
     for (of, area) in textured.into_iter().map(|i| (&uses[i], areas[i])) {
         let texels = of.texels.unwrap_or_default();

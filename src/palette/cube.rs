@@ -4,7 +4,7 @@
 //! from dark to light, spread evenly over the DAC's levels that the cube's own six greys leave free.
 //! Every colour is one that the DAC shows exactly.
 
-use super::{Palette, Rgb, expand};
+use super::{Palette, Rgb, dac6_to_8};
 
 /// The six levels of a channel, in the DAC's 6 bits: `63·k/5` to the nearest.
 pub(crate) const LEVELS: [u8; 6] = [0, 13, 25, 38, 50, 63];
@@ -68,7 +68,7 @@ const fn nearest_table<const N: usize>(rising: &[u8; N]) -> [u8; 256] {
     let (mut value, mut k) = (0, 0);
     while value < 256 {
         // The nearest never goes back while the value rises.
-        while k + 1 < N && expand(rising[k + 1]).abs_diff(value as u8) < expand(rising[k]).abs_diff(value as u8) {
+        while k + 1 < N && dac6_to_8(rising[k + 1]).abs_diff(value as u8) < dac6_to_8(rising[k]).abs_diff(value as u8) {
             k += 1;
         }
         // N is at most 40.

@@ -40,7 +40,7 @@ pub use bios::BIOS;
 #[cfg(feature = "alloc")]
 pub use nearest::Nearest;
 pub use ramp::Ramp;
-pub use rgb::{Rgb, expand, reduce};
+pub use rgb::{Rgb, dac6_to_8, to_dac6};
 #[cfg(feature = "alloc")]
 pub use search::Search;
 #[cfg(feature = "alloc")]
@@ -67,7 +67,7 @@ pub struct Palette {
 
 impl Palette {
     /// The most ramps that [`from_colors`](Self::from_colors) looks for: ramps of 8 entries.
-    const MOST_RAMPS_FOUND: u16 = 32;
+    const MAX_RAMPS_FOUND: u16 = 32;
 
     /// From 256 colours. The ramps are found by looking: of 1, 2, 4, 8, 16 and 32 equal ramps the
     /// fewest such that within each no entry is darker than the one before it, and the last is
@@ -76,7 +76,7 @@ impl Palette {
     #[must_use]
     pub const fn from_colors(colors: [Rgb; 256]) -> Self {
         let mut ramps = 1;
-        while ramps <= Self::MOST_RAMPS_FOUND {
+        while ramps <= Self::MAX_RAMPS_FOUND {
             if all_ramps_rise(&colors, ramps) {
                 return Self { colors, ramps };
             }

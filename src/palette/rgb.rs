@@ -15,19 +15,19 @@ pub struct Rgb {
 /// are dropped, as the DAC drops them.
 #[must_use]
 #[inline]
-pub const fn expand(six: u8) -> u8 {
+pub const fn dac6_to_8(six: u8) -> u8 {
     let v = six & 63;
     (v << 2) | (v >> 4)
 }
 
-/// 8 bits to 6: `v >> 2`, rounded down. [`expand`] undoes it for every value that `expand` makes.
+/// 8 bits to 6: `v >> 2`, rounded down. [`dac6_to_8`] undoes it for every value that `dac6_to_8` makes.
 #[must_use]
 #[inline]
-pub const fn reduce(eight: u8) -> u8 {
+pub const fn to_dac6(eight: u8) -> u8 {
     eight >> 2
 }
 
-/// The 6 bits whose [`expand`] is nearest. `expand` is at most a half from `255·six/63`, so that is
+/// The 6 bits whose [`dac6_to_8`] is nearest. `dac6_to_8` is at most a half from `255·six/63`, so that is
 /// the nearest of `63·v/255`; `p1_every_colour_has_a_nearest_one_on_the_dac` tries all values.
 const fn nearest_six(v: u8) -> u8 {
     // At most 63.
@@ -65,14 +65,14 @@ impl Rgb {
     #[must_use]
     #[inline]
     pub const fn from_dac(six: [u8; 3]) -> Self {
-        Self::new(expand(six[0]), expand(six[1]), expand(six[2]))
+        Self::new(dac6_to_8(six[0]), dac6_to_8(six[1]), dac6_to_8(six[2]))
     }
 
     /// The DAC's red, green and blue, 0 to 63 each, rounded down.
     #[must_use]
     #[inline]
     pub const fn to_dac(self) -> [u8; 3] {
-        [reduce(self.r), reduce(self.g), reduce(self.b)]
+        [to_dac6(self.r), to_dac6(self.g), to_dac6(self.b)]
     }
 
     /// The colour that the card shows for this one: through 6 bits and back.

@@ -1,22 +1,22 @@
 //! The rules: for every effect a function that says whether an object calls for it, and why.
 
 use super::hidden;
-use super::why::Why;
-use super::{Decision, Effect, Forced, ObjectPlan, Plan};
+use super::reason::Reason;
+use super::{Decision, Effect, ObjectPlan, Overrides, Plan};
 use crate::light::{LampBeam, Light, Material, lamp_reaches};
 use crate::raster::Rect;
-use crate::scene::{HiddenSurfaces, Mapping, Object, Rung, Scene};
-use crate::view::{ObjectView, Reach};
+use crate::scene::{HiddenSurfaces, Mapping, Object, Scene, Shading};
+use crate::view::{ObjectView, ScreenBounds};
 
 /// How far an affine mapping may be off before it is given up, in texels: half of one.
 const AFFINE_TOLERANCE: f64 = 0.5;
 
 /// The texels to a pixel, seen straight on, above which an object has mipmaps: half of the √2 up to which level 0 is shown.
 /// A face that is tilted by 60° has twice as many.
-const LEAST_TEXELS: f64 = core::f64::consts::FRAC_1_SQRT_2;
+const MIN_TEXELS: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// The shades that [`Rung::GouraudTessellated`] asks for.
-pub(crate) const LEAST_TESSELLATION: f32 = 1.0;
+/// The shades that [`Shading::GouraudTessellated`] asks for.
+pub(crate) const MIN_TESSELLATION: f32 = 1.0;
 
 /// What decisions are made from.
 pub(crate) struct Inputs<'a> {
@@ -24,11 +24,11 @@ pub(crate) struct Inputs<'a> {
     /// One for each object.
     pub(crate) views: &'a [ObjectView],
     /// One for each object: whether it was drawn before, and is as it was.
-    pub(crate) since: &'a [Since],
-    pub(crate) forced: &'a Forced,
+    pub(crate) change: &'a [Change],
+    pub(crate) forced: &'a Overrides,
     /// On the 16.16 path one that it has.
-    pub(crate) rung: Rung,
-    /// The budget; then the rung is the default.
+    pub(crate) shading: Shading,
+    /// The budget; then the shading is the default.
     pub(crate) max_error: Option<f32>,
     pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
     pub(crate) mapping: Option<Mapping>,
@@ -43,7 +43,7 @@ pub(crate) struct Inputs<'a> {
 
 /// What became of an object since the last frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Since {
+pub(crate) enum Change {
     New,
     Changed,
     Unchanged,
@@ -52,9 +52,9 @@ pub(crate) enum Since {
 /// Makes the plan of a frame, in place.
 #[inline(never)]
 pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [LampBeam], plan: &mut Plan) {
-    let (way, why) = hidden::choose(inputs.scene, inputs.views, inputs.hidden_surfaces, &mut plan.order);
+    let (way, reason) = hidden::choose(inputs.scene, inputs.views, inputs.hidden_surfaces, &mut plan.order);
     plan.hidden_surfaces = way;
-    plan.chosen = why != Why::Asked;
+    plan.chosen = reason != Reason::Asked;
     plan.objects.clear();
     plan.seen = Rect::NOWHERE;
     for (place, object) in inputs.scene.objects().iter().enumerate() {
@@ -64,16 +64,16 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             object,
             view: &inputs.views[place],
             reach: inputs.views[place].reach(object.mesh().bounds()),
-            since: inputs.since.get(place).copied().unwrap_or(Since::New),
+            change: inputs.change.get(place).copied().unwrap_or(Change::New),
             inputs,
-            way: (way, why),
+            way: (way, reason),
         };
         plan.seen = plan.seen.hull(rules.reach.seen);
         let in_range = lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count();
         plan.objects.push(rules.all(in_range));
     }
     // That of the sources draws beyond a triangle's edges, and 16.16 clips in its own way.
-    if inputs.rung == Rung::GouraudPeriod || inputs.integer {
+    if inputs.shading == Shading::GouraudVintage || inputs.integer {
         plan.seen = Rect::EVERYWHERE;
     }
 }
@@ -99,30 +99,30 @@ struct Rules<'a> {
     place: usize,
     object: &'a Object,
     view: &'a ObjectView,
-    reach: Reach,
-    since: Since,
+    reach: ScreenBounds,
+    change: Change,
     inputs: &'a Inputs<'a>,
-    way: (HiddenSurfaces, Why),
+    way: (HiddenSurfaces, Reason),
 }
 
 impl Rules<'_> {
     fn all(&self, lamps_in_range: usize) -> ObjectPlan {
-        let decisions = [Decision::off(Why::SceneHasNone); Effect::COUNT];
-        let mut plan = ObjectPlan { decisions, rung: self.inputs.rung, max_error: None };
+        let decisions = [Decision::off(Reason::SceneHasNone); Effect::COUNT];
+        let mut plan = ObjectPlan { decisions, shading: self.inputs.shading, max_error: None };
         for effect in Effect::ALL {
             let mut decision = self.decision(effect, lamps_in_range, &plan);
             if effect.is_left_out() {
-                plan.set(effect, Decision::off(Why::LeftOut));
+                plan.set(effect, Decision::off(Reason::LeftOut));
                 continue;
             }
             if self.inputs.integer && !in_integers(effect) {
-                plan.set(effect, Decision::off(Why::NotInIntegers));
+                plan.set(effect, Decision::off(Reason::NotInIntegers));
                 continue;
             }
             if let Some(on) = self.inputs.forced.get_for(self.place, effect)
                 && on != decision.on
             {
-                decision = Decision { on, why: Why::Forced, choice: if on { decision.choice } else { "" } };
+                decision = Decision { on, reason: Reason::Overrides, choice: if on { decision.choice } else { "" } };
             }
             plan.set(effect, decision);
         }
@@ -138,7 +138,7 @@ impl Rules<'_> {
             return;
         }
         if self.is_lit_by_face(plan) {
-            plan.rung = Rung::Flat;
+            plan.shading = Shading::Flat;
         } else {
             plan.max_error = Some(max_error);
         }
@@ -174,156 +174,156 @@ impl Rules<'_> {
             Effect::Transparency => self.material_has(|material| material.blend != crate::light::Blend::Opaque),
             Effect::Dither => self.dither(before),
             Effect::PaletteAnimation => match self.scene.palette_animation {
-                Some(_) => Decision::on(Why::Asked),
-                None => Decision::off(Why::SceneHasNone),
+                Some(_) => Decision::on(Reason::Asked),
+                None => Decision::off(Reason::SceneHasNone),
             },
         }
     }
 
     fn transform(&self) -> Decision {
-        match self.since {
-            _ if self.inputs.integer => Decision::on(Why::NotKept),
-            Since::New => Decision::on(Why::FirstFrame),
-            Since::Changed => Decision::on(Why::Changed),
-            Since::Unchanged if self.inputs.keeps => Decision::off(Why::Unchanged),
-            Since::Unchanged => Decision::on(Why::NotKept),
+        match self.change {
+            _ if self.inputs.integer => Decision::on(Reason::NotKept),
+            Change::New => Decision::on(Reason::FirstFrame),
+            Change::Changed => Decision::on(Reason::Changed),
+            Change::Unchanged if self.inputs.keeps => Decision::off(Reason::Unchanged),
+            Change::Unchanged => Decision::on(Reason::NotKept),
         }
     }
 
     fn near_clipping(&self) -> Decision {
-        let why = Why::Nearest { nearest: self.reach.nearest, near: f64::from(self.view.near()) };
-        if self.reach.crosses_near { Decision::on(why) } else { Decision::off(why) }
+        let reason = Reason::Nearest { nearest: self.reach.nearest, near: f64::from(self.view.near()) };
+        if self.reach.crosses_near { Decision::on(reason) } else { Decision::off(reason) }
     }
 
     fn screen_clipping(&self, before: &ObjectPlan) -> Decision {
         if before.is_on(Effect::NearClipping) {
-            Decision::on(Why::CrossesNear)
+            Decision::on(Reason::CrossesNear)
         } else if self.reach.leaves_screen {
-            Decision::on(Why::LeavesScreen)
+            Decision::on(Reason::LeavesScreen)
         } else if !self.inputs.whole {
-            Decision::on(Why::Band)
+            Decision::on(Reason::Band)
         } else {
-            Decision::off(Why::OnScreen)
+            Decision::off(Reason::OnScreen)
         }
     }
 
     fn back_face_culling(&self) -> Decision {
         if hidden::is_transparent(self.object) {
-            Decision::off(Why::SeenThrough)
+            Decision::off(Reason::SeenThrough)
         } else if self.object.mesh().is_outward() {
-            Decision::on(Why::Closed)
+            Decision::on(Reason::Closed)
         } else if self.object.mesh().is_closed() {
-            Decision::off(Why::InsideOut)
+            Decision::off(Reason::InsideOut)
         } else {
-            Decision::off(Why::Open)
+            Decision::off(Reason::Open)
         }
     }
 
     fn hidden_surfaces(&self) -> Decision {
-        let (way, why) = self.way;
-        Decision { on: way != HiddenSurfaces::BackFaces, choice: way.name(), why }
+        let (way, reason) = self.way;
+        Decision { on: way != HiddenSurfaces::BackFaces, choice: way.name(), reason }
     }
 
     fn lighting(&self, lamps_in_range: usize) -> Decision {
         let bright = || self.scene.lights().iter().filter(|light| light.intensity() != 0.0);
         let count = bright().count();
         if count == 0 {
-            Decision::off(Why::NoLight)
+            Decision::off(Reason::NoLight)
         } else if self.object.materials.iter().all(|m| m.diffuse == 0.0 && m.specular == 0.0) {
-            Decision::off(Why::NoResponse)
+            Decision::off(Reason::NoResponse)
         } else if lamps_in_range == 0 && bright().all(|light| matches!(light, Light::Lamp { .. })) {
-            Decision::off(Why::LampsOutOfRange { count })
+            Decision::off(Reason::LampsOutOfRange { count })
         } else {
-            Decision::on(Why::Lights { count })
+            Decision::on(Reason::Lights { count })
         }
     }
 
     fn positional_lights(&self, in_range: usize, before: &ObjectPlan) -> Decision {
         let count = self.scene.lights().iter().filter(|light| matches!(light, Light::Lamp { .. })).count();
         match (count, in_range) {
-            (0, _) => Decision::off(Why::NoLamp),
-            (_, 0) => Decision::off(Why::LampsOutOfRange { count }),
-            _ if !before.is_on(Effect::Lighting) => Decision::off(before.decision(Effect::Lighting).why),
-            _ => Decision::on(Why::LampsInRange { count: in_range }),
+            (0, _) => Decision::off(Reason::NoLamp),
+            (_, 0) => Decision::off(Reason::LampsOutOfRange { count }),
+            _ if !before.is_on(Effect::Lighting) => Decision::off(before.decision(Effect::Lighting).reason),
+            _ => Decision::on(Reason::LampsInRange { count: in_range }),
         }
     }
 
     fn specular(&self, before: &ObjectPlan) -> Decision {
         let decision = self.material_has(Material::is_specular);
         if decision.on && !before.is_on(Effect::Lighting) {
-            return Decision::off(before.decision(Effect::Lighting).why);
+            return Decision::off(before.decision(Effect::Lighting).reason);
         }
         decision
     }
 
     fn gouraud(&self, before: &ObjectPlan) -> Decision {
         if !before.is_on(Effect::Lighting) {
-            return Decision::off(Why::OneShade);
+            return Decision::off(Reason::OneShade);
         }
         if let Some(max_error) = self.inputs.max_error {
             return match self.is_lit_by_face(before) {
-                true => Decision::off(Why::Faceted),
-                false => Decision::on(Why::Budget { max_error }).choosing("budget"),
+                true => Decision::off(Reason::Faceted),
+                false => Decision::on(Reason::Budget { max_error }).choosing("budget"),
             };
         }
-        match self.inputs.rung {
-            Rung::Flat => Decision::off(Why::FlatAsked),
-            rung if rung.lights_pixels() => Decision::off(Why::Asked).choosing(rung.name()),
-            rung => Decision::on(Why::ShadesDiffer).choosing(rung.name()),
+        match self.inputs.shading {
+            Shading::Flat => Decision::off(Reason::FlatAsked),
+            shading if shading.lights_pixels() => Decision::off(Reason::Asked).choosing(shading.name()),
+            shading => Decision::on(Reason::ShadesDiffer).choosing(shading.name()),
         }
     }
 
     fn fog(&self) -> Decision {
-        let Some(fog) = &self.scene.fog else { return Decision::off(Why::SceneHasNone) };
+        let Some(fog) = &self.scene.fog else { return Decision::off(Reason::SceneHasNone) };
         let (farthest, start) = (self.reach.farthest, f64::from(fog.start));
         if farthest > start {
-            Decision::on(Why::ReachesInto { farthest, start })
+            Decision::on(Reason::ReachesInto { farthest, start })
         } else {
-            Decision::off(Why::NearerThan { farthest, start })
+            Decision::off(Reason::NearerThan { farthest, start })
         }
     }
 
     fn phong(&self, before: &ObjectPlan) -> Decision {
         if let Some(max_error) = self.inputs.max_error {
             return if !before.is_on(Effect::Lighting) {
-                Decision::off(before.decision(Effect::Lighting).why)
+                Decision::off(before.decision(Effect::Lighting).reason)
             } else if self.is_lit_by_face(before) {
-                Decision::off(Why::Faceted)
+                Decision::off(Reason::Faceted)
             } else {
-                Decision::on(Why::Budget { max_error }).choosing(Rung::Phong.name())
+                Decision::on(Reason::Budget { max_error }).choosing(Shading::Phong.name())
             };
         }
-        match self.inputs.rung {
-            rung if rung.lights_pixels() => Decision::on(Why::Asked).choosing(rung.name()),
-            _ => Decision::off(Why::NotAsked).choosing(""),
+        match self.inputs.shading {
+            shading if shading.lights_pixels() => Decision::on(Reason::Asked).choosing(shading.name()),
+            _ => Decision::off(Reason::NotAsked).choosing(""),
         }
     }
 
     fn tessellation(&self, before: &ObjectPlan) -> Decision {
         // Faces are split for their shades alone.
         if !before.is_on(Effect::Lighting) {
-            Decision::off(before.decision(Effect::Lighting).why)
+            Decision::off(before.decision(Effect::Lighting).reason)
         } else if self.inputs.max_error.is_some() && !self.inputs.integer {
-            Decision::off(Why::LeftToBudget)
-        } else if self.inputs.rung == Rung::GouraudTessellated || self.scene.wishes.tessellation.is_some() {
-            Decision::on(Why::Asked)
+            Decision::off(Reason::LeftToBudget)
+        } else if self.inputs.shading == Shading::GouraudTessellated || self.scene.preferences.tessellation.is_some() {
+            Decision::on(Reason::Asked)
         } else {
-            Decision::off(Why::NotAsked)
+            Decision::off(Reason::NotAsked)
         }
     }
 
     fn perspective(&self) -> Decision {
         if !self.object.materials.iter().any(|material| material.texture.is_some()) {
-            return Decision::off(Why::NoTexture).choosing("");
+            return Decision::off(Reason::NoTexture).choosing("");
         }
         let texels = self.affine_error();
         match self.inputs.mapping {
-            Some(Mapping::Affine) => Decision::off(Why::Asked).choosing(Mapping::Affine.name()),
-            Some(mapping) => Decision::on(Why::Asked).choosing(mapping.name()),
+            Some(Mapping::Affine) => Decision::off(Reason::Asked).choosing(Mapping::Affine.name()),
+            Some(mapping) => Decision::on(Reason::Asked).choosing(mapping.name()),
             None if texels > AFFINE_TOLERANCE => {
-                Decision::on(Why::AffineError { texels }).choosing(Mapping::Perspective.name())
+                Decision::on(Reason::AffineError { texels }).choosing(Mapping::Perspective.name())
             }
-            None => Decision::off(Why::AffineError { texels }).choosing(Mapping::Affine.name()),
+            None => Decision::off(Reason::AffineError { texels }).choosing(Mapping::Affine.name()),
         }
     }
 
@@ -351,51 +351,51 @@ impl Rules<'_> {
 
     fn mipmaps(&self, before: &ObjectPlan) -> Decision {
         if !before.is_on(Effect::Texture) {
-            return Decision::off(before.decision(Effect::Texture).why);
+            return Decision::off(before.decision(Effect::Texture).reason);
         }
         if !self.object.materials.iter().any(|material| material.texture.is_some()) {
-            return Decision::off(Why::NoImage);
+            return Decision::off(Reason::NoImage);
         }
         let texels = texels_to_pixel(self.object, self.view, self.reach.farthest);
-        let (on, why) = match self.inputs.mipmaps {
-            Some(asked) => (asked, Why::Asked),
-            None => (texels > LEAST_TEXELS, Why::TexelsToPixel { texels }),
+        let (on, reason) = match self.inputs.mipmaps {
+            Some(asked) => (asked, Reason::Asked),
+            None => (texels > MIN_TEXELS, Reason::TexelsToPixel { texels }),
         };
         let affine = [Mapping::Affine.name(), ""].contains(&before.decision(Effect::Perspective).choice);
         match on {
-            true => Decision::on(why).choosing(if affine { "per face" } else { "per 16 pixels" }),
-            false => Decision::off(why),
+            true => Decision::on(reason).choosing(if affine { "per face" } else { "per 16 pixels" }),
+            false => Decision::off(reason),
         }
     }
 
     fn rgb_channels(&self) -> Decision {
         if let Some(light) = self.scene.lights().iter().position(|light| light.is_colored() && light.intensity() != 0.0)
         {
-            return Decision::on(Why::ColoredLight { light });
+            return Decision::on(Reason::ColoredLight { light });
         }
         match self.object.materials.iter().position(Material::takes_channels) {
-            Some(material) => Decision::on(Why::ColoredMaterial { material }),
-            None => Decision::off(Why::NoColor),
+            Some(material) => Decision::on(Reason::ColoredMaterial { material }),
+            None => Decision::off(Reason::NoColor),
         }
     }
 
     fn dither(&self, before: &ObjectPlan) -> Decision {
-        if !self.scene.wishes.dither {
-            Decision::off(Why::NotAsked)
+        if !self.scene.preferences.dither {
+            Decision::off(Reason::NotAsked)
         } else if before.is_on(Effect::Phong)
-            && self.inputs.rung == Rung::PhongTable
+            && self.inputs.shading == Shading::PhongTable
             && !before.is_on(Effect::RgbChannels)
         {
-            Decision::off(Why::WholeShades)
+            Decision::off(Reason::WholeShades)
         } else {
-            Decision::on(Why::Asked).choosing("ordered 8 x 8")
+            Decision::on(Reason::Asked).choosing("ordered 8 x 8")
         }
     }
 
     fn material_has(&self, has: impl Fn(&Material) -> bool) -> Decision {
         match self.object.materials.iter().position(has) {
-            Some(material) => Decision::on(Why::MaterialHas { material }),
-            None => Decision::off(Why::NoMaterialHas),
+            Some(material) => Decision::on(Reason::MaterialHas { material }),
+            None => Decision::off(Reason::NoMaterialHas),
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use alloc::vec::Vec;
 
-use super::why::Why;
+use super::reason::Reason;
 use crate::light::{Blend, Material};
 use crate::scene::{HiddenSurfaces, Object, Scene};
 use crate::view::ObjectView;
@@ -22,32 +22,32 @@ pub(super) fn choose(
     views: &[ObjectView],
     asked: Option<HiddenSurfaces>,
     order: &mut Vec<usize>,
-) -> (HiddenSurfaces, Why) {
+) -> (HiddenSurfaces, Reason) {
     let objects = scene.objects();
     order.clear();
     order.extend(0..objects.len());
     let transparent = objects.iter().filter(|object| is_transparent(object)).count();
     match asked {
         Some(HiddenSurfaces::ScanLine) if transparent > 0 => {
-            return (HiddenSurfaces::DepthBuffer, Why::ScanLineShowsOneFace);
+            return (HiddenSurfaces::DepthBuffer, Reason::ScanLineShowsOneFace);
         }
-        Some(asked) => return (asked, Why::Asked),
+        Some(asked) => return (asked, Reason::Asked),
         None => {}
     }
     if transparent > 0 {
         return if transparent == objects.len() {
-            (HiddenSurfaces::BackFaces, Why::AllTransparent)
+            (HiddenSurfaces::BackFaces, Reason::AllTransparent)
         } else {
-            (HiddenSurfaces::DepthBuffer, Why::TransparentLast)
+            (HiddenSurfaces::DepthBuffer, Reason::TransparentLast)
         };
     }
     let dented = objects.iter().position(|object| !object.mesh().is_convex());
     match (objects, dented) {
-        ([], _) => (HiddenSurfaces::BackFaces, Why::Empty),
-        (_, Some(object)) => (HiddenSurfaces::DepthBuffer, Why::NotConvex { object }),
-        ([_], None) => (HiddenSurfaces::BackFaces, Why::OneConvex),
-        _ if objects_far_to_near(objects, views, order) => (HiddenSurfaces::PainterOrder, Why::ConvexApart),
-        _ => (HiddenSurfaces::DepthBuffer, Why::Overlap),
+        ([], _) => (HiddenSurfaces::BackFaces, Reason::Empty),
+        (_, Some(object)) => (HiddenSurfaces::DepthBuffer, Reason::NotConvex { object }),
+        ([_], None) => (HiddenSurfaces::BackFaces, Reason::OneConvex),
+        _ if objects_far_to_near(objects, views, order) => (HiddenSurfaces::PainterOrder, Reason::ConvexApart),
+        _ => (HiddenSurfaces::DepthBuffer, Reason::Overlap),
     }
 }
 

@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `effect` | [`Effect`]: the list, and what each may change |
-//! | `why` | [`Why`]: the reasons |
+//! | `reason` | [`Reason`]: the reasons |
 //! | `decide` | the rules, a function an effect |
 //! | `hidden` | which way to leave out hidden surfaces |
 //!
@@ -15,19 +15,19 @@
 mod decide;
 mod effect;
 mod hidden;
-pub(crate) mod why;
+pub(crate) mod reason;
 
 use alloc::string::String;
 use alloc::vec::Vec;
 
 pub use effect::{Class, Effect, UnknownEffect};
-pub use why::Why;
+pub use reason::Reason;
 
-pub(crate) use decide::{Inputs, LEAST_TESSELLATION, Since, decide};
+pub(crate) use decide::{Change, Inputs, MIN_TESSELLATION, decide};
 pub(crate) use hidden::far_to_near;
 
 use crate::raster::Rect;
-use crate::scene::{HiddenSurfaces, Rung, Scene};
+use crate::scene::{HiddenSurfaces, Scene, Shading};
 
 /// One decision.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -37,16 +37,16 @@ pub struct Decision {
     /// Of several ways to do it, which; empty where there is but one.
     pub choice: &'static str,
     /// Why.
-    pub why: Why,
+    pub reason: Reason,
 }
 
 impl Decision {
-    pub(crate) const fn on(why: Why) -> Self {
-        Self { on: true, choice: "", why }
+    pub(crate) const fn on(reason: Reason) -> Self {
+        Self { on: true, choice: "", reason }
     }
 
-    pub(crate) const fn off(why: Why) -> Self {
-        Self { on: false, choice: "", why }
+    pub(crate) const fn off(reason: Reason) -> Self {
+        Self { on: false, choice: "", reason }
     }
 
     pub(crate) const fn choosing(self, choice: &'static str) -> Self {
@@ -58,7 +58,7 @@ impl Decision {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ObjectPlan {
     decisions: [Decision; Effect::COUNT],
-    rung: Rung,
+    shading: Shading,
     max_error: Option<f32>,
 }
 
@@ -79,12 +79,12 @@ impl ObjectPlan {
 
     /// How it is shaded.
     #[must_use]
-    pub fn rung(&self) -> Rung {
-        self.rung
+    pub fn shading(&self) -> Shading {
+        self.shading
     }
 
     /// The budget that its triangles are shaded by, each as is cheapest: how many shades of error are accepted.
-    /// `None` where there is none, or one rung is known to be the cheapest for all.
+    /// `None` where there is none, or one shading is known to be the cheapest for all.
     #[must_use]
     pub fn max_error(&self) -> Option<f32> {
         self.max_error
@@ -97,13 +97,13 @@ impl ObjectPlan {
 
 /// What is switched by hand: `None` leaves it to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct Forced {
+pub struct Overrides {
     everywhere: [Option<bool>; Effect::COUNT],
     /// Objects that differ from that, by their places.
     single: Vec<(usize, Effect, bool)>,
 }
 
-impl Forced {
+impl Overrides {
     /// Switches an effect on or off for every object, or leaves it to the plan.
     pub fn set(&mut self, effect: Effect, on: Option<bool>) {
         self.everywhere[effect.index()] = on;
@@ -190,9 +190,9 @@ impl Plan {
         let mut rows = Vec::with_capacity(self.objects.len() * Effect::COUNT);
         for (place, plan) in self.objects.iter().enumerate() {
             for effect in Effect::ALL {
-                let Decision { on, choice, why } = *plan.decision(effect);
-                let (object, why) = (why::name_of(scene, place), why.words(scene, place));
-                rows.push(Row { place, object, effect, on, choice, why });
+                let Decision { on, choice, reason } = *plan.decision(effect);
+                let (object, reason) = (reason::name_of(scene, place), reason.words(scene, place));
+                rows.push(Row { place, object, effect, on, choice, reason });
             }
         }
         rows
@@ -214,5 +214,5 @@ pub struct Row {
     /// Of several ways to do it, which; empty where there is but one.
     pub choice: &'static str,
     /// Why.
-    pub why: String,
+    pub reason: String,
 }

@@ -11,12 +11,12 @@ use super::vertex::Vertex;
 pub const PLANES: usize = 5;
 
 /// The most corners: a triangle's, and at most one more for every plane.
-pub const MOST_CORNERS: usize = 3 + PLANES;
+pub const MAX_CORNERS: usize = 3 + PLANES;
 
 /// The corners of a convex polygon before their division, of whatever kind the vertex path has.
 #[derive(Clone, Copy, Debug)]
 pub struct Corners<C> {
-    corners: [C; MOST_CORNERS],
+    corners: [C; MAX_CORNERS],
     count: usize,
 }
 
@@ -38,7 +38,7 @@ impl<C: Copy> Corners<C> {
     /// Every corner as a vertex; `None` if one has none.
     #[must_use]
     pub fn project(&self, mut vertex: impl FnMut(&C) -> Option<Vertex>) -> Option<Clipped> {
-        let mut polygon = Clipped { vertices: [Vertex::default(); MOST_CORNERS], count: self.count };
+        let mut polygon = Clipped { vertices: [Vertex::default(); MAX_CORNERS], count: self.count };
         for (place, corner) in polygon.vertices.iter_mut().zip(self.as_slice()) {
             *place = vertex(corner)?;
         }
@@ -85,7 +85,7 @@ pub fn clip<C: Copy, D: Copy + PartialOrd + Default>(
 /// A convex polygon, but for the rounding of its corners.
 #[derive(Clone, Copy, Debug)]
 pub struct Clipped {
-    vertices: [Vertex; MOST_CORNERS],
+    vertices: [Vertex; MAX_CORNERS],
     count: usize,
 }
 
@@ -100,7 +100,7 @@ impl Clipped {
     #[must_use]
     pub fn triangle(&self, corners: [usize; 3]) -> [Vertex; 3] {
         // Below the number of corners, which is no greater than that of places.
-        corners.map(|i| self.vertices[i % MOST_CORNERS])
+        corners.map(|i| self.vertices[i % MAX_CORNERS])
     }
 
     /// Twice the area, as [`doubled_area`] has it of a triangle.

@@ -7,7 +7,7 @@ use super::vertex::Vertex;
 /// A triangle whose vertices are in order: top, middle, bottom, of equal heights the left one
 /// first. What is drawn depends on the three points alone, not on the order they were given in.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Ordered {
+pub struct SortedTriangle {
     /// The vertices by (y, x).
     pub vertices: [Vertex; 3],
     /// Twice the area in (1/256 pixel)²; positive if the middle vertex lies right of the edge from
@@ -15,7 +15,7 @@ pub struct Ordered {
     pub doubled_area: i64,
 }
 
-impl Ordered {
+impl SortedTriangle {
     /// Puts three vertices in order.
     #[must_use]
     #[inline]

@@ -19,7 +19,7 @@
 
 use core::fmt;
 
-use super::cover::Ordered;
+use super::cover::SortedTriangle;
 use super::frame::Frame;
 #[cfg(feature = "alloc")]
 use super::frame::Rect;
@@ -39,7 +39,7 @@ impl DepthPlane {
     /// The plane of a triangle that is not degenerate.
     #[must_use]
     #[inline]
-    pub fn new(triangle: &Ordered) -> Self {
+    pub fn new(triangle: &SortedTriangle) -> Self {
         let area = Divisor::new(triangle.area());
         let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth()));
         // At most 2⁵⁴ both.

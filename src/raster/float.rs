@@ -36,7 +36,7 @@
 //! The clamp keeps bytes in range, and nothing else: here, not by rounding one way, as in
 //! [`shade`](super::shade).
 
-use super::cover::{Ordered, Row};
+use super::cover::{Row, SortedTriangle};
 use super::weights::Weights;
 
 /// The shades of a triangle in f32.
@@ -64,7 +64,7 @@ pub(super) struct FloatRow {
 impl FloatPlane {
     /// Of any three shades of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order
     /// of its vertices. A depth of 0 counts as 1.
-    pub(super) fn of_values(triangle: &Ordered, shades: [i64; 3]) -> Self {
+    pub(super) fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1)));
         let weights = Weights::new(triangle);
         let step = |products: [i128; 3]| {

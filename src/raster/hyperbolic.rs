@@ -14,7 +14,7 @@
 //! shade off, and what the rounding of depths adds: for w from 1 to 10⁴ within one triangle a
 //! depth is off by 5 parts in 10⁶ at most, a shade by 0.003.
 
-use super::cover::Ordered;
+use super::cover::SortedTriangle;
 use super::weights::WholeWeights;
 use crate::fixed::HAS_F64;
 use crate::span::hyperbolic::{fill_estimated_quotients, fill_quotients, floor_quotient};
@@ -31,7 +31,7 @@ pub(super) struct Linear {
 #[cfg(feature = "alloc")]
 impl Linear {
     /// Of a triangle that is not degenerate, with these values at its vertices; each below 2⁶⁴.
-    pub(super) fn new(triangle: &Ordered, [v0, v1, v2]: [i128; 3]) -> Self {
+    pub(super) fn new(triangle: &SortedTriangle, [v0, v1, v2]: [i128; 3]) -> Self {
         let [(x0, y0), (x1, y1), (x2, y2)] =
             triangle.vertices.each_ref().map(|v| (i128::from(v.x().to_bits()), i128::from(v.y().to_bits())));
         let sign = i128::from(triangle.doubled_area.signum());
@@ -72,7 +72,7 @@ impl HyperbolicPlane {
     /// Of any three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order of
     /// its vertices. A depth of 0 counts as 1.
     #[must_use]
-    pub fn of_values(triangle: &Ordered, shades: [i64; 3]) -> Self {
+    pub fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1)));
         Self { weights: WholeWeights::new(triangle), depths, shades }
     }
@@ -187,7 +187,7 @@ mod tests {
             let vertices = corners.map(|(x, y, depth)| {
                 Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from_bits(0x4080), depth).expect("in range")
             });
-            let triangle = Ordered::new(&vertices);
+            let triangle = SortedTriangle::new(&vertices);
             let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
             let mut bytes = [0; 4096];
             let length = last as usize + 1;
@@ -204,7 +204,7 @@ mod tests {
             let vertices = corners.map(|(x, y, shade, depth)| {
                 Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from_bits(shade), depth).expect("in range")
             });
-            let triangle = Ordered::new(&vertices);
+            let triangle = SortedTriangle::new(&vertices);
             prop_assume!(triangle.doubled_area != 0);
             let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
             let mut wrong = None;

@@ -6,7 +6,7 @@
 //! edge leave no hole and draw no pixel twice. Shades stay **in range**: a byte lies within
 //! `[(min + 128) >> 8, (max + 128) >> 8]` of its own triangle's vertices. Neither is reached by
 //! clamping pixels: [`edge`] walks the edges with quotient and remainder, [`shade`] says why no
-//! sum can leave the range. One [`Shading`] has neither: that of the sources, [`period`].
+//! sum can leave the range. One [`Interpolation`] has neither: that of the sources, [`vintage`].
 //!
 //! The stages, in the order in which a triangle passes them:
 //!
@@ -17,10 +17,10 @@
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
 //! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
 //! | [`edge`], [`cover`] | which pixels |
-//! | [`shading`], [`shade`], [`wide`], [`hyperbolic`], `float` | which byte |
-//! | [`period`] | both as the sources print them |
+//! | [`interpolation`], [`shade`], [`wide`], [`hyperbolic`], `float` | which byte |
+//! | [`vintage`] | both as the sources print them |
 //! | [`depth`] | whether it is in front |
-//! | `account` | start, step and sum of a single pixel, for those who ask |
+//! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
 //! | [`batch`] | the same for many triangles at a time: [`Raster::batch`] |
@@ -29,19 +29,17 @@
 //!
 //! ```
 //! use mode13h::fixed::{I24F8, U8F8};
-//! use mode13h::raster::{Frame, Raster, Shading, Vertex};
+//! use mode13h::raster::{Frame, Raster, Interpolation, Vertex};
 //!
 //! let mut bytes = [0_u8; 8 * 4];
 //! let mut raster = Raster::new(Frame::new(&mut bytes, 8, 4, 8)?);
 //! let at = |x, y, shade| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(shade), 0);
-//! let drawn = raster.triangle(&[at(0, 0, 40)?, at(8, 0, 200)?, at(0, 4, 40)?], Shading::default());
+//! let drawn = raster.triangle(&[at(0, 0, 40)?, at(8, 0, 200)?, at(0, 4, 40)?], Interpolation::default());
 //! assert_eq!(drawn.pixels, 16);
 //! assert_eq!(&bytes[..8], &[50, 70, 90, 110, 130, 150, 170, 0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[cfg(feature = "alloc")]
-pub mod account;
 pub mod batch;
 pub mod clip;
 pub mod cover;
@@ -55,15 +53,17 @@ pub mod effects;
 pub mod float;
 pub mod frame;
 pub mod hyperbolic;
+pub mod interpolation;
 mod paint;
-pub mod period;
 pub mod polygon;
 pub mod quotient;
 pub mod scan_line;
 pub mod shade;
-pub mod shading;
+#[cfg(feature = "alloc")]
+pub mod shade_trace;
 pub mod triangle;
 pub mod vertex;
+pub mod vintage;
 mod weights;
 pub mod wide;
 
@@ -72,6 +72,6 @@ pub use depth::DepthBuffer;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;
 pub use frame::{Frame, FrameError, Rect};
-pub use shading::Shading;
-pub use triangle::{Drawn, Raster};
+pub use interpolation::Interpolation;
+pub use triangle::{DrawStats, Raster};
 pub use vertex::{Vertex, VertexError};

@@ -4,16 +4,16 @@
 
 use core::ops::Range;
 
-use super::cover::{Ordered, Row};
+use super::cover::{Row, SortedTriangle};
 use super::depth::{Cell, DepthPlane};
 #[cfg(feature = "alloc")]
 use super::float::FloatPlane;
 use super::hyperbolic::HyperbolicPlane;
-use super::period::{PeriodTriangle, Ramp};
+use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
-use super::shading::Shading;
-use super::triangle::Drawn;
-use super::wide::WideShadePlane;
+use super::triangle::DrawStats;
+use super::vintage::{PeriodTriangle, Ramp};
+use super::wide::ShadePlane16;
 #[cfg(feature = "alloc")]
 use crate::span::dither::fill_dithered;
 #[cfg(feature = "alloc")]
@@ -25,7 +25,7 @@ use crate::span::{Kernel, depth};
 
 /// The shades of one triangle, or another value of its corners, ready to be painted row by row.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Paint {
+pub(super) enum RowShader {
     Flat(u8),
     Linear {
         plane: ShadePlane,
@@ -34,52 +34,52 @@ pub(super) enum Paint {
     Period(PeriodTriangle),
     /// Of one row.
     Ramp(Ramp),
-    Wide(WideShadePlane),
+    Wide(ShadePlane16),
     Hyperbolic(HyperbolicPlane),
     #[cfg(feature = "alloc")]
     Float(FloatPlane),
 }
 
-impl Paint {
+impl RowShader {
     /// Of a triangle that is not degenerate.
     #[inline]
-    pub(super) fn new(triangle: &Ordered, shading: Shading) -> Self {
-        Self::of_values(triangle, triangle.shades(), shading)
+    pub(super) fn new(triangle: &SortedTriangle, interpolation: Interpolation) -> Self {
+        Self::of_values(triangle, triangle.shades(), interpolation)
     }
 
     /// Of three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order of its
     /// vertices.
     #[inline]
-    pub(super) fn of_values(triangle: &Ordered, values: [i64; 3], shading: Shading) -> Self {
-        match shading {
-            Shading::Flat(index) => Self::Flat(index),
-            Shading::Gouraud | Shading::GouraudReseeded => Self::Linear {
+    pub(super) fn of_values(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation) -> Self {
+        match interpolation {
+            Interpolation::Flat(index) => Self::Flat(index),
+            Interpolation::Gouraud | Interpolation::GouraudReseeded => Self::Linear {
                 plane: ShadePlane::of_values(triangle, values),
-                reseeded: matches!(shading, Shading::GouraudReseeded),
+                reseeded: matches!(interpolation, Interpolation::GouraudReseeded),
             },
-            _ => Self::of_another_kind(triangle, values, shading),
+            _ => Self::of_another_kind(triangle, values, interpolation),
         }
     }
 
     /// Apart, so that the loops that draw linear shades hold no more than these.
     #[inline(never)]
-    fn of_another_kind(triangle: &Ordered, values: [i64; 3], shading: Shading) -> Self {
-        match shading {
-            Shading::GouraudPeriod => Self::Period(PeriodTriangle::new(triangle, values)),
-            Shading::Gouraud1616 => Self::Wide(WideShadePlane::of_values(triangle, values)),
-            Shading::GouraudHyperbolic => Self::Hyperbolic(HyperbolicPlane::of_values(triangle, values)),
+    fn of_another_kind(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation) -> Self {
+        match interpolation {
+            Interpolation::GouraudVintage => Self::Period(PeriodTriangle::new(triangle, values)),
+            Interpolation::Gouraud1616 => Self::Wide(ShadePlane16::of_values(triangle, values)),
+            Interpolation::GouraudHyperbolic => Self::Hyperbolic(HyperbolicPlane::of_values(triangle, values)),
             #[cfg(feature = "alloc")]
-            Shading::Float => Self::Float(FloatPlane::of_values(triangle, values)),
+            Interpolation::Float => Self::Float(FloatPlane::of_values(triangle, values)),
             // These are made above.
-            Shading::Flat(_) | Shading::Gouraud | Shading::GouraudReseeded => {
-                Self::of_values(triangle, values, shading)
+            Interpolation::Flat(_) | Interpolation::Gouraud | Interpolation::GouraudReseeded => {
+                Self::of_values(triangle, values, interpolation)
             }
         }
     }
 
     /// Paints `row` into `pixels`, which is the frame's whole row.
     #[inline]
-    pub(super) fn row(&self, row: &Row, pixels: &mut [u8], kernel: Kernel, drawn: &mut Drawn) {
+    pub(super) fn row(&self, row: &Row, pixels: &mut [u8], kernel: Kernel, drawn: &mut DrawStats) {
         match self {
             Self::Flat(index) => span(pixels, row.range(), drawn, |pixels| pixels.fill(*index)),
             Self::Linear { plane, reseeded } => starts(row, plane, *reseeded, |range, start| {
@@ -90,7 +90,7 @@ impl Paint {
     }
 
     #[inline(never)]
-    fn row_of_another_kind(&self, row: &Row, pixels: &mut [u8], kernel: Kernel, drawn: &mut Drawn) {
+    fn row_of_another_kind(&self, row: &Row, pixels: &mut [u8], kernel: Kernel, drawn: &mut DrawStats) {
         match self {
             Self::Period(triangle) => Self::Ramp(triangle.ramp(row.y)).row_of_another_kind(row, pixels, kernel, drawn),
             Self::Ramp(ramp) => ramp.spans(row.x0..row.x1, |range, shade, step| {
@@ -108,7 +108,7 @@ impl Paint {
         pixels: &mut [u8],
         depths: &mut [D],
         plane: &DepthPlane,
-        drawn: &mut Drawn,
+        drawn: &mut DrawStats,
     ) {
         let mut tested = Tested { row: row.y, pixels, depths, plane, drawn };
         match self {
@@ -164,7 +164,7 @@ impl Paint {
 
 /// For the stages of `effects`.
 #[cfg(feature = "alloc")]
-impl Paint {
+impl RowShader {
     /// The bytes of `piece`, which begins at column `x` of `row` and has no start but there. With dither, the
     /// thresholds of the row take the place of the half.
     pub(super) fn piece(&self, row: &Row, x: i32, piece: &mut [u8], dither: Option<&[u8; 8]>, kernel: Kernel) {
@@ -244,14 +244,14 @@ pub(super) fn to_bytes(shades: &[u16], thresholds: &[u8; 8], column: usize, byte
 
 /// The sum at column `x`: it starts at the row's origin.
 #[inline]
-fn wide_start(plane: &WideShadePlane, row: &Row, x: i32) -> u32 {
+fn wide_start(plane: &ShadePlane16, row: &Row, x: i32) -> u32 {
     // Columns are below 4,096; the sum is meant modulo 2³².
     plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul((x - row.origin) as u32))
 }
 
 /// Hands the pixels of a span to its loop, and counts them.
 #[inline]
-fn span(pixels: &mut [u8], range: Range<usize>, drawn: &mut Drawn, fill: impl FnOnce(&mut [u8])) {
+fn span(pixels: &mut [u8], range: Range<usize>, drawn: &mut DrawStats, fill: impl FnOnce(&mut [u8])) {
     if let Some(pixels) = pixels.get_mut(range) {
         drawn.spans += 1;
         // At most 4,096.
@@ -266,7 +266,7 @@ struct Tested<'a, D> {
     pixels: &'a mut [u8],
     depths: &'a mut [D],
     plane: &'a DepthPlane,
-    drawn: &'a mut Drawn,
+    drawn: &'a mut DrawStats,
 }
 
 impl<D: Cell> Tested<'_, D> {
@@ -326,15 +326,15 @@ mod tests {
         let vertices = corners.map(|(x, y, shade, depth)| {
             Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from_bits(shade), depth).expect("in range")
         });
-        let triangle = Ordered::new(&vertices);
+        let triangle = SortedTriangle::new(&vertices);
         let depths = DepthPlane::new(&triangle);
-        let ramp = Paint::Ramp(PeriodTriangle::new(&triangle, triangle.shades()).ramp(7));
-        let paints = Shading::INTERPOLATED.iter().map(|shading| Paint::new(&triangle, *shading));
-        for paint in paints.chain([Paint::Flat(9), ramp]) {
+        let ramp = RowShader::Ramp(PeriodTriangle::new(&triangle, triangle.shades()).ramp(7));
+        let paints = Interpolation::INTERPOLATED.iter().map(|interpolation| RowShader::new(&triangle, *interpolation));
+        for paint in paints.chain([RowShader::Flat(9), ramp]) {
             let mut rows = 0;
             triangle.rows(WIDTH, Rect { x0: 0, y0: 0, x1: WIDTH, y1: 20 }, |row| {
                 let (mut bytes, mut nearer, mut cells) = ([3; 200], [3; 200], [0_u32; 200]);
-                let (mut drawn, mut tested) = (Drawn::default(), Drawn::default());
+                let (mut drawn, mut tested) = (DrawStats::default(), DrawStats::default());
                 paint.row(&row, &mut bytes, Kernel::PORTABLE, &mut drawn);
                 paint.row_where_nearer(&row, &mut nearer, &mut cells, &depths, &mut tested);
                 assert_eq!(nearer, bytes, "{row:?} of {paint:?}");

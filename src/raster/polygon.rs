@@ -30,10 +30,10 @@ use core::fmt;
 use super::cover::point;
 use super::depth::Cell;
 use super::frame::Rect;
+use super::interpolation::Interpolation;
 use super::quotient::Divisor;
 use super::shade::RESEED;
-use super::shading::Shading;
-use super::triangle::{Drawn, Raster};
+use super::triangle::{DrawStats, Raster};
 use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 
@@ -64,15 +64,15 @@ pub enum PolygonError {
         needed: usize,
     },
     /// The table interpolates shades in 8.8, linearly along edges and rows; it has no other shading than
-    /// flat, [`Gouraud`](Shading::Gouraud) and [`GouraudReseeded`](Shading::GouraudReseeded).
-    Shading(Shading),
+    /// flat, [`Gouraud`](Interpolation::Gouraud) and [`GouraudReseeded`](Interpolation::GouraudReseeded).
+    Interpolation(Interpolation),
 }
 
 impl fmt::Display for PolygonError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotConvex => f.write_str("the polygon is not convex"),
-            Self::Shading(shading) => write!(f, "a table of rows cannot shade as {shading:?}"),
+            Self::Interpolation(interpolation) => write!(f, "a table of rows cannot shade as {interpolation:?}"),
             Self::Table { given, needed } => write!(f, "a table of {given} rows given where {needed} are needed"),
         }
     }
@@ -213,13 +213,13 @@ impl<D: Cell> Raster<'_, D> {
     ///
     /// ```
     /// use mode13h::fixed::{I24F8, U8F8};
-    /// use mode13h::raster::{Frame, Raster, Shading, Vertex, polygon::TableRow};
+    /// use mode13h::raster::{Frame, Raster, Interpolation, Vertex, polygon::TableRow};
     ///
     /// let at = |x, y, shade| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(shade), 0);
     /// let quad = [at(0, 0, 10)?, at(4, 0, 90)?, at(4, 2, 90)?, at(0, 2, 10)?];
     /// let mut bytes = [0; 4 * 2];
     /// let mut raster = Raster::new(Frame::new(&mut bytes, 4, 2, 4)?);
-    /// raster.polygon(&quad, Shading::Gouraud, &mut [TableRow::default(); 2])?;
+    /// raster.polygon(&quad, Interpolation::Gouraud, &mut [TableRow::default(); 2])?;
     /// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -230,20 +230,20 @@ impl<D: Cell> Raster<'_, D> {
     pub fn polygon(
         &mut self,
         vertices: &[Vertex],
-        shading: Shading,
+        interpolation: Interpolation,
         table: &mut [TableRow],
-    ) -> Result<Drawn, PolygonError> {
-        let reseed = match shading {
-            Shading::Flat(_) | Shading::Gouraud => i32::MAX,
-            Shading::GouraudReseeded => RESEED,
-            other => return Err(PolygonError::Shading(other)),
+    ) -> Result<DrawStats, PolygonError> {
+        let reseed = match interpolation {
+            Interpolation::Flat(_) | Interpolation::Gouraud => i32::MAX,
+            Interpolation::GouraudReseeded => RESEED,
+            other => return Err(PolygonError::Interpolation(other)),
         };
         let held = self.frame.rows();
         let (given, needed) = (table.len(), held.len());
         if given < needed {
             return Err(PolygonError::Table { given, needed });
         }
-        let mut drawn = Drawn::default();
+        let mut drawn = DrawStats::default();
         let Some(winding) = winding(vertices)? else { return Ok(drawn) };
         for y in fill_table(vertices, winding, self.clip, table, held.start) {
             let Some(edges) = table.get((y - held.start) as usize) else { break };
@@ -258,7 +258,7 @@ impl<D: Cell> Raster<'_, D> {
             }
             drawn.covered += (x1 - x0) as u32;
             drawn.pixels += (x1 - x0) as u32;
-            if let Shading::Flat(index) = shading {
+            if let Interpolation::Flat(index) = interpolation {
                 drawn.spans += 1;
                 if let Some(pixels) = pixels.get_mut(x0 as usize..x1 as usize) {
                     pixels.fill(index);

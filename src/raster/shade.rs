@@ -37,7 +37,7 @@
 //! [`RESEED`] pixels keeps that under a quarter, and the byte, which is the nearest, within three
 //! quarters of a shade of exact.
 
-use super::cover::Ordered;
+use super::cover::SortedTriangle;
 use super::quotient::Divisor;
 
 /// Pixels between two exact starts of a reseeded span.
@@ -60,7 +60,7 @@ impl ShadePlane {
     /// The plane of a triangle that is not degenerate.
     #[must_use]
     #[inline]
-    pub fn new(triangle: &Ordered) -> Self {
+    pub fn new(triangle: &SortedTriangle) -> Self {
         Self::of_values(triangle, triangle.shades())
     }
 
@@ -68,7 +68,7 @@ impl ShadePlane {
     /// in the order of its vertices.
     #[must_use]
     #[inline]
-    pub fn of_values(triangle: &Ordered, shades: [i64; 3]) -> Self {
+    pub fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         // At most 2³⁸ both.
         let (gx, gy) = triangle.gradient(shades);
         let first = &triangle.vertices[0];

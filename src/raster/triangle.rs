@@ -1,17 +1,17 @@
 //! A triangle, from three vertices to bytes.
 
-use super::cover::{Ordered, Row};
+use super::cover::{Row, SortedTriangle};
 use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::frame::{Frame, Rect};
-use super::paint::Paint;
-use super::period::PeriodTriangle;
-use super::shading::Shading;
+use super::interpolation::Interpolation;
+use super::paint::RowShader;
 use super::vertex::Vertex;
+use super::vintage::PeriodTriangle;
 use crate::span::Kernel;
 
 /// What drawing a triangle came to.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-pub struct Drawn {
+pub struct DrawStats {
     /// Spans handed to a pixel loop, pieces between two starts counted each.
     pub spans: u32,
     /// Pixels covered inside the clip rectangle.
@@ -36,7 +36,7 @@ pub struct Drawn {
     pub lit: u32,
 }
 
-impl core::ops::AddAssign for Drawn {
+impl core::ops::AddAssign for DrawStats {
     /// Counts wrap at 2³²; a frame of 4,096 × 4,096 would have to be filled 256 times over.
     fn add_assign(&mut self, other: Self) {
         let add = |count: &mut u32, more: u32| *count = count.wrapping_add(more);
@@ -147,24 +147,24 @@ impl<'a, D: Cell> Raster<'a, D> {
     /// Draws a triangle. The order of the vertices and their winding make no difference; a triangle
     /// without area draws nothing.
     #[inline]
-    pub fn triangle(&mut self, vertices: &[Vertex; 3], shading: Shading) -> Drawn {
-        self.draw::<true>(vertices, shading)
+    pub fn triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
+        self.draw::<true>(vertices, interpolation)
     }
 
     /// The same for a triangle that lies wholly inside the frame, all of which is drawn: its rows are not
     /// compared with any edge. What lies outside all the same is not drawn, or some of it.
     #[inline]
-    pub fn triangle_inside(&mut self, vertices: &[Vertex; 3], shading: Shading) -> Drawn {
-        self.draw::<false>(vertices, shading)
+    pub fn triangle_inside(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
+        self.draw::<false>(vertices, interpolation)
     }
 
     #[inline]
-    fn draw<const CLIPS: bool>(&mut self, vertices: &[Vertex; 3], shading: Shading) -> Drawn {
-        let triangle = Ordered::new(vertices);
-        if !shading.has_exact_cover() {
-            return self.draw_period(&triangle);
+    fn draw<const CLIPS: bool>(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
+        let triangle = SortedTriangle::new(vertices);
+        if !interpolation.has_exact_cover() {
+            return self.draw_vintage(&triangle);
         }
-        let mut drawn = Drawn::default();
+        let mut drawn = DrawStats::default();
         // Made when the first row is there: half of the triangles of a fine model cover no pixel.
         let (mut paint, mut plane) = (None, None);
         let (width, clip) = (self.frame.width(), self.clip);
@@ -172,7 +172,7 @@ impl<'a, D: Cell> Raster<'a, D> {
             drawn.covered += (row.x1 - row.x0) as u32;
             let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };
-            let paint = paint.get_or_insert_with(|| Paint::new(&triangle, shading));
+            let paint = paint.get_or_insert_with(|| RowShader::new(&triangle, interpolation));
             // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             let Some(depth) = depth else {
@@ -193,8 +193,8 @@ impl<'a, D: Cell> Raster<'a, D> {
     /// The same with rows, and shades in each, as the sources have them. Depths are those of the triangle's
     /// plane, beyond its edges too, where they may wrap.
     #[inline(never)]
-    fn draw_period(&mut self, triangle: &Ordered) -> Drawn {
-        let mut drawn = Drawn::default();
+    fn draw_vintage(&mut self, triangle: &SortedTriangle) -> DrawStats {
+        let mut drawn = DrawStats::default();
         if triangle.doubled_area == 0 {
             return drawn;
         }
@@ -204,7 +204,7 @@ impl<'a, D: Cell> Raster<'a, D> {
             drawn.covered += (row.x1 - row.x0) as u32;
             let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };
-            let paint = Paint::Ramp(ramp);
+            let paint = RowShader::Ramp(ramp);
             let Some(depth) = &mut self.depth else {
                 return paint.row(&row, pixels, self.kernel, &mut drawn);
             };

@@ -5,7 +5,7 @@
 //! f64 loses nothing of them. None is negative at a centre that is covered: a sum of such weights times
 //! values above 0 cancels nothing, and is right to a few parts in 2⁵³ however thin the triangle.
 
-use super::cover::Ordered;
+use super::cover::SortedTriangle;
 
 /// The weights of the three corners, as whole numbers.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +18,7 @@ pub(super) struct WholeWeights {
 
 impl WholeWeights {
     /// Of a triangle that is not degenerate; the corners in the order of its vertices.
-    pub(super) fn new(triangle: &Ordered) -> Self {
+    pub(super) fn new(triangle: &SortedTriangle) -> Self {
         let first = &triangle.vertices[0];
         let (x0, y0) = (i64::from(first.x().to_bits()), i64::from(first.y().to_bits()));
         let mut weights = Self { origin: [0; 3], per_column: [0; 3], per_row: [0; 3] };
@@ -60,7 +60,7 @@ pub(super) struct Weights {
 #[cfg(feature = "alloc")]
 impl Weights {
     /// Of a triangle that is not degenerate; the corners in the order of its vertices.
-    pub(super) fn new(triangle: &Ordered) -> Self {
+    pub(super) fn new(triangle: &SortedTriangle) -> Self {
         let whole = WholeWeights::new(triangle);
         let exact = |weights: [i64; 3]| weights.map(|weight| weight as f64);
         Self { origin: exact(whole.origin), per_column: exact(whole.per_column), per_row: exact(whole.per_row) }

@@ -17,21 +17,21 @@
 //! After k steps the sum is off by less than (k + 1)/65,536 of a shade: 320/65,536 over a row of 320, one
 //! sixteenth over the widest frame. The byte is the nearest to that: within ½ + 320/65,536.
 
-use super::cover::Ordered;
+use super::cover::SortedTriangle;
 use super::shade::ShadePlane;
 
 /// The shade plane of a triangle, for sums in 16.16.
 #[derive(Clone, Copy, Debug)]
-pub struct WideShadePlane {
+pub struct ShadePlane16 {
     plane: ShadePlane,
     step: u32,
 }
 
-impl WideShadePlane {
+impl ShadePlane16 {
     /// The plane of any three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate,
     /// in the order of its vertices.
     #[must_use]
-    pub fn of_values(triangle: &Ordered, shades: [i64; 3]) -> Self {
+    pub fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let plane = ShadePlane::of_values(triangle, shades);
         // 2⁸ · |per_column| / A, by its quotient and its rest: at most 2⁴⁶, and less than A.
         let area = plane.area();

@@ -15,7 +15,7 @@
 
 use glam::Vec3;
 
-use super::paint::Paint;
+use super::paint::SurfaceMaterial;
 use super::vertex::Geometry;
 use crate::light::Lights;
 
@@ -93,7 +93,7 @@ struct Face {
 
 impl Face {
     /// The light at any point of the face, by what it is at vertex `i`, not clamped.
-    fn light(&self, i: usize, lights: &Lights<'_>, paint: &Paint) -> Range {
+    fn light(&self, i: usize, lights: &Lights<'_>, paint: &SurfaceMaterial) -> Range {
         let answer = &paint.answer;
         let (at, normal) = (self.positions[i], self.normals[i]);
         let to_eye = sub(lights.eye, at);
@@ -141,7 +141,7 @@ impl Face {
     }
 
     /// How far linear shades may be off, of full intensity.
-    fn error(&self, lights: &Lights<'_>, paint: &Paint, shades: [f64; 3]) -> f64 {
+    fn error(&self, lights: &Lights<'_>, paint: &SurfaceMaterial, shades: [f64; 3]) -> f64 {
         let shown = |intensity: f64| intensity.clamp(0.0, 1.0);
         let (mut low, mut high) = (0.0_f64, 1.0_f64);
         for i in 0..3 {
@@ -159,7 +159,12 @@ impl Face {
 /// No pixel of the object is farther than this, in shades of 1/255 of full intensity, from what light at
 /// every pixel, or at the vertices of its faces split, would make of it, rounding aside.
 #[inline(never)]
-pub(super) fn linear_error(geometry: &Geometry<'_>, lights: &Lights<'_>, paints: &[Paint], two_sided: bool) -> f64 {
+pub(super) fn linear_error(
+    geometry: &Geometry<'_>,
+    lights: &Lights<'_>,
+    paints: &[SurfaceMaterial],
+    two_sided: bool,
+) -> f64 {
     let mut greatest = 0.0_f64;
     for (triangle, &surface) in geometry.triangles.iter().zip(geometry.triangle_surfaces) {
         let paint = &paints[usize::from(surface)];

@@ -8,7 +8,7 @@
 use crate::fixed::U8F8;
 use crate::raster::clip::{Clipped, clip as clip_triangle};
 use crate::raster::effects::Attributes;
-use crate::raster::{Shading, Vertex};
+use crate::raster::{Interpolation, Vertex};
 use crate::view::{Homogeneous, ObjectView};
 
 /// Which part of the way from one end of an edge to the other a cut lies at.
@@ -108,7 +108,7 @@ fn distance<C>(view: &ObjectView, plane: usize, corner: &Corner<C>) -> f64 {
 /// the next plane would throw the point away, and the face with it.
 fn cut<C: Carried>(
     view: &ObjectView,
-    shading: Shading,
+    interpolation: Interpolation,
     plane: usize,
     inside: &Corner<C>,
     outside: &Corner<C>,
@@ -136,7 +136,7 @@ fn cut<C: Carried>(
     // plane, what is linear on the screen is linear along the edge.
     let on_face = d_inside / whole;
     let on_screen = if plane == 0 { on_face } else { on_face * b.w / w };
-    let of_shades = if shading.is_linear_on_the_face() { on_face } else { on_screen };
+    let of_shades = if interpolation.is_linear_on_the_face() { on_face } else { on_screen };
     let shade = inside.shade + (outside.shade - inside.shade) * of_shades;
     // Rounding in `shade` must not leave the range of the two ends.
     let (low, high) = (inside.shade.min(outside.shade), inside.shade.max(outside.shade));
@@ -148,17 +148,19 @@ fn cut<C: Carried>(
     }
 }
 
-/// Clips a triangle that is drawn with `shading`. Returns `None` if nothing is left, else the polygon and what its
+/// Clips a triangle that is drawn with `interpolation`. Returns `None` if nothing is left, else the polygon and what its
 /// corners carry.
 pub(super) fn clip<C: Carried>(
     view: &ObjectView,
-    shading: Shading,
+    interpolation: Interpolation,
     corners: [Corner<C>; 3],
 ) -> Option<(Clipped, impl Fn(usize) -> C)> {
     let left = clip_triangle(
         corners,
         |plane, corner| distance(view, plane, corner),
-        |plane, inside, outside, d_inside, d_outside| cut(view, shading, plane, inside, outside, d_inside, d_outside),
+        |plane, inside, outside, d_inside, d_outside| {
+            cut(view, interpolation, plane, inside, outside, d_inside, d_outside)
+        },
     )?;
     let polygon = left.project(|corner| {
         // At most 0xFF00: between two shades that are. The cast truncates after the half.

@@ -31,7 +31,7 @@ pub enum RenderError {
     /// The palette's animation.
     PaletteAnimation(&'static str),
     /// What is asked for.
-    Wishes(&'static str),
+    Preferences(&'static str),
 }
 
 impl fmt::Display for RenderError {
@@ -43,7 +43,7 @@ impl fmt::Display for RenderError {
             Self::Ambient => f.write_str("the ambient light must be finite"),
             Self::Fog(what) => write!(f, "fog: {what}"),
             Self::PaletteAnimation(what) => write!(f, "palette animation: {what}"),
-            Self::Wishes(what) => write!(f, "wishes: {what}"),
+            Self::Preferences(what) => write!(f, "wishes: {what}"),
         }
     }
 }
@@ -67,5 +67,5 @@ pub(super) fn check(scene: &Scene) -> Result<(), RenderError> {
     if let Some(animation) = &scene.palette_animation {
         animation.check().map_err(RenderError::PaletteAnimation)?;
     }
-    scene.wishes.check().map_err(RenderError::Wishes)
+    scene.preferences.check().map_err(RenderError::Preferences)
 }

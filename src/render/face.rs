@@ -8,34 +8,34 @@ use super::Stats;
 use super::budget::{Budget, Decided};
 use super::clip::{Carried, Corner, WithEffects, clip};
 use super::lit::{LitVertex, LitVertices};
-use super::paint::Paint;
+use super::paint::SurfaceMaterial;
 use super::sift::listed::Listed;
 use super::sift::{self, Sieve, Sifted};
-use super::vertex::{Extra, Geometry};
+use super::vertex::{Geometry, VertexAttributes};
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
 use crate::raster::batch::numbered::{Numbered, TURNED};
-use crate::raster::effects::{Apart, Attributes};
-use crate::raster::{Shading, Vertex};
-use crate::scene::Rung;
+use crate::raster::effects::{Attributes, SampleSpacing};
+use crate::raster::{Interpolation, Vertex};
+use crate::scene::Shading;
 use crate::view::{Homogeneous, ObjectView};
 
 /// How a face with effects is shaded.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(super) struct Manner {
-    pub(super) rung: Rung,
-    /// Of a rung that lights pixels.
-    pub(super) lit_at: LitAt,
+pub(super) struct ShadeMode {
+    pub(super) shading: Shading,
+    /// Of a shading that lights pixels.
+    pub(super) sampling: LightSampling,
 }
 
 /// Where a face takes light whose pixels need some.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(super) enum LitAt {
+pub(super) enum LightSampling {
     #[default]
     Pixels,
     /// At pixels of a row that lie apart, linear between.
-    Every(Apart),
+    Every(SampleSpacing),
     /// At its corners and the middles of its edges, quadratic between.
     SixPoints,
 }
@@ -43,32 +43,32 @@ pub(super) enum LitAt {
 /// Takes faces as they are to be drawn.
 pub(super) trait Sink {
     /// A face without effects.
-    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading);
+    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation);
     /// A face whose pixels pass through stages, the number of its surface, and what shades it.
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner);
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode);
     /// What faces may be left out by, if any: those that cover no pixel centre.
     fn sieve(&self) -> Option<Sieve> {
         None
     }
     /// Whether it takes faces without effects by their numbers, too.
-    fn takes_numbers(&self, _: Shading) -> bool {
+    fn takes_numbers(&self, _: Interpolation) -> bool {
         false
     }
     /// Faces without effects, none of which needs clipping, by their numbers and sides.
-    fn numbered(&mut self, _: &Numbered<'_>, _: &[u32], _: Shading) {}
+    fn numbered(&mut self, _: &Numbered<'_>, _: &[u32], _: Interpolation) {}
 }
 
 /// One object in one frame.
 pub(super) struct Faces<'a> {
-    pub(super) rung: Rung,
+    pub(super) shading: Shading,
     pub(super) geometry: Geometry<'a>,
     pub(super) view: &'a ObjectView,
     pub(super) lights: Lights<'a>,
     /// One for each surface of the mesh.
-    pub(super) paints: &'a [Paint],
+    pub(super) paints: &'a [SurfaceMaterial],
     pub(super) lit: &'a LitVertices,
     /// As many, if there are effects.
-    pub(super) extras: &'a [Extra],
+    pub(super) extras: &'a [VertexAttributes],
     /// Whether faces that are turned away are left out.
     pub(super) culls: bool,
     /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. Turned away, such a
@@ -112,7 +112,7 @@ impl Faces<'_> {
             (false, true) => self.each::<false, true>(stats, sink),
             (true, true) => self.each::<true, true>(stats, sink),
         }
-        stats.shares.add(self.rung, stats.drawn - before);
+        stats.shares.add(self.shading, stats.drawn - before);
     }
 
     /// Which of a chunk of up to 64 triangles lie back to back with others.
@@ -145,9 +145,9 @@ impl Faces<'_> {
     #[inline(never)]
     fn each<const CULLS: bool, const EFFECTS: bool>(&self, stats: &mut Stats, sink: &mut impl Sink) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
-        let (sieve, exact_cover) = (sink.sieve(), self.rung.shading().has_exact_cover());
+        let (sieve, exact_cover) = (sink.sieve(), self.shading.interpolation().has_exact_cover());
         let one_shading = exact_cover && self.runs && !(self.flat && self.is_lit);
-        let mut listed = if one_shading { self.listed::<EFFECTS>(sink, self.rung.shading()) } else { None };
+        let mut listed = if one_shading { self.listed::<EFFECTS>(sink, self.shading.interpolation()) } else { None };
         let chunks = triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST));
         for (chunk, (triangles, surfaces)) in chunks.enumerate() {
             let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), exact_cover, (chunk, triangles), stats);
@@ -156,13 +156,13 @@ impl Faces<'_> {
                     let sides = (chunk * sift::MOST, if CULLS { 0 } else { sifted.back });
                     listed.add(sides, left, sieve.kernel);
                     if let Some(whole) = listed.whole() {
-                        sink.numbered(numbered, whole, self.rung.shading());
+                        sink.numbered(numbered, whole, self.shading.interpolation());
                         listed.take_whole();
                     }
                     continue;
                 }
                 // In the order of their numbers.
-                sink.numbered(numbered, listed.all(), self.rung.shading());
+                sink.numbered(numbered, listed.all(), self.shading.interpolation());
                 listed.clear();
             }
             while left != 0 {
@@ -185,13 +185,13 @@ impl Faces<'_> {
                     let attributes = indices.map(|i| self.extras[i as usize].side(turned));
                     self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
                 } else {
-                    let shading = self.shading(indices, surface, turned, stats);
-                    sink.plain(&vertices, shading);
+                    let interpolation = self.interpolation(indices, surface, turned, stats);
+                    sink.plain(&vertices, interpolation);
                 }
             }
         }
         if let Some((listed, numbered)) = &listed {
-            sink.numbered(numbered, listed.all(), self.rung.shading());
+            sink.numbered(numbered, listed.all(), self.shading.interpolation());
         }
     }
 
@@ -199,12 +199,12 @@ impl Faces<'_> {
     pub(super) fn listed<const EFFECTS: bool>(
         &self,
         sink: &impl Sink,
-        shading: Shading,
+        interpolation: Interpolation,
     ) -> Option<(Listed, Numbered<'_>)> {
         let LitVertices { places, depths, shades, .. } = self.lit;
         let triangles = self.geometry.triangles;
         let plain = !EFFECTS || self.paints.iter().all(|paint| !paint.has_effects);
-        let takes = plain && sink.takes_numbers(shading);
+        let takes = plain && sink.takes_numbers(interpolation);
         let fits = triangles.len() < TURNED as usize;
         (takes && fits).then_some((Listed::new(), Numbered { places, depths, shades, triangles }))
     }
@@ -225,15 +225,15 @@ impl Faces<'_> {
         if EFFECTS && self.paints[usize::from(surface)].has_effects {
             let carried =
                 indices.map(|i| WithEffects { attributes: self.extras[i as usize].side(turned), affine: self.affine });
-            let shading = self.rung.shading();
-            self.parts::<CULLS, _>(at, corners, carried, (shading, turned), stats, |vertices, carried, stats| {
+            let interpolation = self.shading.interpolation();
+            self.parts::<CULLS, _>(at, corners, carried, (interpolation, turned), stats, |vertices, carried, stats| {
                 let attributes = carried.map(|carried| carried.attributes);
                 self.hand_on(indices, surface, turned, (vertices, attributes), stats, sink);
             });
         } else {
-            let shading = self.shading(indices, surface, turned, stats);
-            self.parts::<CULLS, _>(at, corners, [(); 3], (shading, turned), stats, |vertices, _, _| {
-                sink.plain(&vertices, shading)
+            let interpolation = self.interpolation(indices, surface, turned, stats);
+            self.parts::<CULLS, _>(at, corners, [(); 3], (interpolation, turned), stats, |vertices, _, _| {
+                sink.plain(&vertices, interpolation)
             });
         }
     }
@@ -244,7 +244,7 @@ impl Faces<'_> {
         at: [Homogeneous; 3],
         corners: &[LitVertex; 3],
         carried: [C; 3],
-        (shading, turned): (Shading, bool),
+        (interpolation, turned): (Interpolation, bool),
         stats: &mut Stats,
         mut part: impl FnMut([Vertex; 3], [C; 3], &mut Stats),
     ) {
@@ -254,7 +254,9 @@ impl Faces<'_> {
             let projected = (!needs_clipping).then(|| vertex.with_shade(shade));
             Corner { at: at[i], shade: f64::from(shade.to_bits()), vertex: projected, carried: carried[i] }
         };
-        let Some((polygon, carried)) = clip(self.view, shading, [corner(0), corner(1), corner(2)]) else { return };
+        let Some((polygon, carried)) = clip(self.view, interpolation, [corner(0), corner(1), corner(2)]) else {
+            return;
+        };
         let area = polygon.doubled_area();
         if area == 0 || (CULLS && area > 0) {
             stats.culled += 1;
@@ -282,28 +284,33 @@ impl Faces<'_> {
             let paint = &self.paints[usize::from(surface)];
             if self.channels {
                 let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
-                let channels = Paint::channels(if turned { back } else { front });
+                let channels = SurfaceMaterial::channels(if turned { back } else { front });
                 attributes.iter_mut().for_each(|corner| corner.channels = channels);
             } else {
                 let shade = self.face_shade(indices, surface, turned);
                 vertices = vertices.map(|vertex| vertex.with_shade(shade));
             }
         }
-        sink.with_effects(&vertices, &attributes, surface, Manner { rung: self.rung, lit_at: LitAt::Pixels });
+        sink.with_effects(
+            &vertices,
+            &attributes,
+            surface,
+            ShadeMode { shading: self.shading, sampling: LightSampling::Pixels },
+        );
     }
 
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
     #[inline]
-    fn shading(&self, indices: [u32; 3], surface: u16, turned: bool, stats: &mut Stats) -> Shading {
+    fn interpolation(&self, indices: [u32; 3], surface: u16, turned: bool, stats: &mut Stats) -> Interpolation {
         if self.flat && self.is_lit {
             stats.lit += 1;
-            return Shading::Flat(self.face_shade(indices, surface, turned).nearest());
+            return Interpolation::Flat(self.face_shade(indices, surface, turned).nearest());
         }
         if !self.runs {
             // All corners have the same, wherever the plan says so.
-            return Shading::Flat(self.lit.shades[indices[0] as usize][usize::from(turned)].nearest());
+            return Interpolation::Flat(self.lit.shades[indices[0] as usize][usize::from(turned)].nearest());
         }
-        self.rung.shading()
+        self.shading.interpolation()
     }
 
     /// The one shade of a face: at its middle, by its own normal.

@@ -9,15 +9,15 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::stats::Stats;
-use super::{RenderError, Rung, Screen};
+use super::{RenderError, Screen, Shading};
 use crate::fixed::I16F16;
 use crate::integer::{
-    Angle, Beam, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Stage, Sun, Technique,
-    Vector, View,
+    Angle, Beam, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Sun, Technique, Vector,
+    VertexStage, View,
 };
 use crate::light::{Light, Material};
 use crate::mesh::Mesh;
-use crate::raster::{Shading, Vertex};
+use crate::raster::{Interpolation, Vertex};
 use crate::scene::{self, Scene, Shared, UpAxis};
 
 /// The farthest coordinate.
@@ -238,30 +238,33 @@ impl IntegerPath {
     /// Hands the triangles of an object of the prepared scene to `triangle`.
     pub(super) fn triangles(
         &mut self,
-        rung: Rung,
+        shading: Shading,
         (index, object): (usize, &scene::Object),
         stats: &mut Stats,
-        triangle: &mut impl FnMut(&[Vertex; 3], Shading),
+        triangle: &mut impl FnMut(&[Vertex; 3], Interpolation),
     ) {
         let (Some(view), Some(prepared)) = (&self.view, self.objects.get(index)) else { return };
         let mesh = fixed_mesh(&self.meshes, prepared, object);
         self.lit.resize(mesh.vertices().max(self.lit.len()), LitVertex::default());
         self.beams.resize(self.suns.len(), Beam::default());
-        let technique = match rung {
-            Rung::Flat => Technique::Flat,
-            Rung::GouraudPeriod => Technique::GouraudPeriod,
-            Rung::Gouraud88 => Technique::Gouraud,
-            Rung::Gouraud1616 => Technique::Gouraud1616,
-            Rung::GouraudHyperbolic => Technique::GouraudHyperbolic,
-            // The default; of the others it is what `Rung::in_integers` says.
-            Rung::Gouraud88Reseeded | Rung::GouraudTessellated | Rung::PhongTable | Rung::Phong | Rung::Float => {
-                Technique::GouraudReseeded
-            }
+        let technique = match shading {
+            Shading::Flat => Technique::Flat,
+            Shading::GouraudVintage => Technique::GouraudVintage,
+            Shading::Gouraud88 => Technique::Gouraud,
+            Shading::Gouraud1616 => Technique::Gouraud1616,
+            Shading::GouraudHyperbolic => Technique::GouraudHyperbolic,
+            // The default; of the others it is what `Shading::in_integers` says.
+            Shading::Gouraud88Reseeded
+            | Shading::GouraudTessellated
+            | Shading::PhongTable
+            | Shading::Phong
+            | Shading::Float => Technique::GouraudReseeded,
         };
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
         // `prepare` has checked the object, and here is room for all.
-        let Ok(stage) = Stage::new(view, fixed_object, &self.suns, technique, &mut self.lit, &mut self.beams) else {
+        let Ok(stage) = VertexStage::new(view, fixed_object, &self.suns, technique, &mut self.lit, &mut self.beams)
+        else {
             return;
         };
         let vertices = mesh.vertices() as u64;

@@ -8,7 +8,7 @@
 //! | `sift` | which faces are turned away, and which cover no pixel centre |
 //! | `face` | the stage of faces, with `clip`: near plane and guard band |
 //! | `bound` | how far linear shades may be from light at every pixel |
-//! | `budget` | the error budget: which rung for which triangle |
+//! | `budget` | the error budget: which shading for which triangle |
 //! | `sinks`, `visible` | what becomes of faces: drawn as they come, or kept; the ways to visible surfaces |
 //! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
@@ -27,12 +27,13 @@ mod clip;
 mod edge_map;
 mod error;
 mod face;
+mod hidden_surfaces;
 mod integer;
 mod lit;
-mod look;
 mod object;
 pub(crate) mod one_pixel;
 mod paint;
+mod pipelines;
 mod pixel_light;
 mod sift;
 mod sinks;
@@ -42,7 +43,6 @@ mod tessellate;
 pub(crate) mod trace;
 mod vertex;
 mod vertex_path;
-mod visible;
 mod within;
 
 use alloc::format;
@@ -51,14 +51,14 @@ use core::mem;
 
 use self::integer::IntegerPath;
 use self::object::ObjectState;
-use self::sinks::{Bare, Kept};
+use self::sinks::{DeferredFace, ForEachSink};
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
-use crate::plan::{self, Effect, Forced, Inputs, Plan, Since, decide};
+use crate::plan::{self, Change, Effect, Inputs, Overrides, Plan, decide};
 use crate::raster::scan_line::Lists;
-use crate::raster::{Frame, Shading, Vertex};
-pub use crate::scene::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung};
-use crate::scene::{Scene, Wishes};
+use crate::raster::{Frame, Interpolation, Vertex};
+pub use crate::scene::{HiddenSurfaces, Mapping, Shading, UnknownHiddenSurfaces, UnknownMapping, UnknownShading};
+use crate::scene::{Preferences, Scene};
 use crate::span::Kernel;
 use crate::vga::Vga;
 pub use crate::view::Screen;
@@ -78,7 +78,7 @@ struct Drawing {
     background: u8,
     hidden_surfaces: HiddenSurfaces,
     mapping: Option<Mapping>,
-    wishes: Wishes,
+    preferences: Preferences,
     order: Vec<usize>,
     /// As tables are made from it, and ramps lie in it.
     palette: Option<Palette>,
@@ -91,7 +91,7 @@ const VERTEX_BITS: u32 = 8;
 /// do not change; the bytes are those of a new renderer.
 #[derive(Debug)]
 pub struct Renderer {
-    rung: Option<Rung>,
+    shading: Option<Shading>,
     max_error: Option<f32>,
     mapping: Option<Mapping>,
     mipmaps: Option<bool>,
@@ -100,9 +100,9 @@ pub struct Renderer {
     vertex_bits: u32,
     kernel: Kernel,
     hidden_surfaces: Option<HiddenSurfaces>,
-    forced: Forced,
+    forced: Overrides,
     views: Vec<ObjectView>,
-    since: Vec<Since>,
+    change: Vec<Change>,
     states: Vec<ObjectState>,
     tables: Tables,
     plan: Plan,
@@ -110,11 +110,11 @@ pub struct Renderer {
     depths: Vec<u32>,
     /// Of a frame that must be known whole before it is drawn; beside each face its place in `kept`,
     /// if it has effects.
-    triangles: Vec<([Vertex; 3], Shading)>,
+    triangles: Vec<([Vertex; 3], Interpolation)>,
     kept_places: Vec<Option<u32>>,
-    kept: Vec<Kept>,
+    kept: Vec<DeferredFace>,
     /// Faces that shine through.
-    transparent: Vec<Kept>,
+    transparent: Vec<DeferredFace>,
     /// The sum of a face's depths, and its place: what is painted far to near.
     far_to_near: Vec<(u64, usize)>,
     lists: Lists,
@@ -124,11 +124,11 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer with the default rung and the fastest kernel.
+    /// A renderer with the default shading and the fastest kernel.
     #[must_use]
     pub fn new() -> Self {
         Self {
-            rung: None,
+            shading: None,
             max_error: None,
             mapping: None,
             mipmaps: None,
@@ -136,9 +136,9 @@ impl Renderer {
             vertex_bits: VERTEX_BITS,
             kernel: Kernel::fastest(),
             hidden_surfaces: None,
-            forced: Forced::default(),
+            forced: Overrides::default(),
             views: Vec::new(),
-            since: Vec::new(),
+            change: Vec::new(),
             states: Vec::new(),
             tables: Tables::default(),
             plan: Plan::new(),
@@ -159,7 +159,7 @@ impl Renderer {
     #[must_use]
     pub fn set_alike(&self) -> Self {
         Self {
-            rung: self.rung,
+            shading: self.shading,
             max_error: self.max_error,
             mapping: self.mapping,
             mipmaps: self.mipmaps,
@@ -172,33 +172,33 @@ impl Renderer {
     }
 
     /// Chooses the technique of shading, whatever the scene asks for, and drops a budget that was set.
-    pub fn set_rung(&mut self, rung: Rung) {
-        self.rung = Some(rung);
+    pub fn set_shading(&mut self, shading: Shading) {
+        self.shading = Some(shading);
         self.max_error = None;
     }
 
     /// Sets a budget: how many shades of error are accepted, 1/255 of full intensity each, whatever the scene asks
-    /// for. Each triangle then gets the cheapest rung that is known to keep within, and a rung that was set is dropped.
+    /// for. Each triangle then gets the cheapest shading that is known to keep within, and a shading that was set is dropped.
     /// `None` leaves it to the scene.
     ///
     /// A number that is not above 0 and finite is an error when a scene is drawn.
     pub fn set_max_error(&mut self, shades: Option<f32>) {
         self.max_error = shades;
         if shades.is_some() {
-            self.rung = None;
+            self.shading = None;
         }
     }
 
-    /// The budget that a scene is drawn by: this renderer's, or else, where no rung was set, the scene's.
+    /// The budget that a scene is drawn by: this renderer's, or else, where no shading was set, the scene's.
     #[must_use]
     pub fn max_error(&self, scene: &Scene) -> Option<f32> {
-        self.max_error.or(if self.rung.is_none() { scene.wishes.max_error } else { None })
+        self.max_error.or(if self.shading.is_none() { scene.preferences.max_error } else { None })
     }
 
     /// The technique of shading, where it is not the scene's choice; the default's name where it is.
     #[must_use]
-    pub fn rung(&self) -> Rung {
-        self.rung.unwrap_or_default()
+    pub fn shading(&self) -> Shading {
+        self.shading.unwrap_or_default()
     }
 
     /// Chooses how textures are mapped, whatever the scene asks for; `None` leaves it to the scene.
@@ -271,14 +271,14 @@ impl Renderer {
     }
 
     /// The technique of shading that a scene is drawn by.
-    pub(crate) fn rung_for(&self, scene: &Scene) -> Rung {
-        let rung = self.rung.or(if self.max_error.is_none() { scene.wishes.rung } else { None });
-        rung.unwrap_or_default()
+    pub(crate) fn shading_for(&self, scene: &Scene) -> Shading {
+        let shading = self.shading.or(if self.max_error.is_none() { scene.preferences.shading } else { None });
+        shading.unwrap_or_default()
     }
 
     /// Chooses the technique of shading, or leaves it to the scene. Returns what was chosen before.
-    pub(crate) fn replace_rung(&mut self, rung: Option<Rung>) -> Option<Rung> {
-        mem::replace(&mut self.rung, rung)
+    pub(crate) fn replace_shading(&mut self, shading: Option<Shading>) -> Option<Shading> {
+        mem::replace(&mut self.shading, shading)
     }
 
     /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to an entry of the
@@ -298,7 +298,7 @@ impl Renderer {
     /// The plan of the frame that was drawn last, in words: [`Plan::rows`] of `scene`, which it must have
     /// been drawn from, and how far the picture may be off where light at every pixel or splitting is not
     /// on. That is worked out here, face by face, and only here. Of an object that is drawn within an error budget,
-    /// how many of its triangles each rung got.
+    /// how many of its triangles each shading got.
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         let mut rows = self.plan.rows(scene);
@@ -306,13 +306,13 @@ impl Renderer {
             if row.effect == Effect::Gouraud
                 && let Some(shares) = self.states.get(row.place).and_then(ObjectState::shares)
             {
-                row.why = format!("{}: {shares}", row.why);
+                row.reason = format!("{}: {shares}", row.reason);
             }
             if !row.on
                 && matches!(row.effect, Effect::Phong | Effect::Tessellation)
                 && let Some(shades) = self.linear_error(scene, row.place)
             {
-                row.why = format!("{}; linear shades are off by at most {shades:.2}", row.why);
+                row.reason = format!("{}; linear shades are off by at most {shades:.2}", row.reason);
             }
         }
         rows
@@ -420,11 +420,11 @@ impl Renderer {
         &mut self,
         scene: &Scene,
         screen: Screen,
-        triangle: impl FnMut(&[Vertex; 3], Shading),
+        triangle: impl FnMut(&[Vertex; 3], Interpolation),
     ) -> Result<Stats, RenderError> {
         let (mut stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
-        self.faces(scene, &mut stats, &mut Bare(triangle));
+        self.faces(scene, &mut stats, &mut ForEachSink(triangle));
         Ok(stats)
     }
 
@@ -454,26 +454,26 @@ impl Renderer {
         if self.vertex_path == VertexPath::Integer {
             self.integer.prepare(scene, screen)?;
         }
-        let rung = self.decide(scene, &view, whole);
+        let shading = self.decide(scene, &view, whole);
 
-        let drawing = (screen, scene.background, self.plan.hidden_surfaces(), self.mapping, scene.wishes);
+        let drawing = (screen, scene.background, self.plan.hidden_surfaces(), self.mapping, scene.preferences);
         let palette = scene.palette.as_ref().or(shown);
         let same = self.drawing.as_ref().is_some_and(|last| {
-            (last.screen, last.background, last.hidden_surfaces, last.mapping, last.wishes) == drawing
+            (last.screen, last.background, last.hidden_surfaces, last.mapping, last.preferences) == drawing
                 && last.order == self.plan.order
                 && last.palette.as_ref() == palette
         });
         let mut changed = !same;
         if !same {
-            let (screen, background, hidden_surfaces, mapping, wishes) = drawing;
+            let (screen, background, hidden_surfaces, mapping, preferences) = drawing;
             // The list that is there is used again.
             let mut order = self.drawing.take().map_or_else(Vec::new, |last| last.order);
             order.clone_from(&self.plan.order);
             let palette = palette.cloned();
-            self.drawing = Some(Drawing { screen, background, hidden_surfaces, mapping, wishes, order, palette });
+            self.drawing = Some(Drawing { screen, background, hidden_surfaces, mapping, preferences, order, palette });
         }
 
-        let mut stats = Stats::new(rung, self.vertex_path, self.kernel, self.plan.hidden_surfaces());
+        let mut stats = Stats::new(shading, self.vertex_path, self.kernel, self.plan.hidden_surfaces());
         if self.vertex_path == VertexPath::Float {
             stats.max_error = self.max_error(scene);
         }
@@ -493,49 +493,49 @@ impl Renderer {
                 stats.kept += 1;
             }
         }
-        look::need(&mut self.tables, scene, palette.unwrap_or(&BIOS), &self.plan, &self.states);
+        pipelines::need(&mut self.tables, scene, palette.unwrap_or(&BIOS), &self.plan, &self.states);
         Ok((stats, changed))
     }
 
     /// The view of a scene in which nothing is wrong.
     fn checked(&self, scene: &Scene, screen: Screen) -> Result<View, RenderError> {
         check(scene)?;
-        let wishes = Wishes { max_error: self.max_error(scene), ..scene.wishes };
-        wishes.check().map_err(RenderError::Wishes)?;
+        let preferences = Preferences { max_error: self.max_error(scene), ..scene.preferences };
+        preferences.check().map_err(RenderError::Preferences)?;
         View::new(&scene.camera, screen).map_err(RenderError::Camera)
     }
 
-    /// Makes the plan of a scene that has been checked. Returns the rung that shades.
-    fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Rung {
+    /// Makes the plan of a scene that has been checked. Returns the shading that shades.
+    fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Shading {
         self.views.clear();
         self.views.extend(scene.objects().iter().map(|object| ObjectView::new(view, object)));
-        let rung = match self.vertex_path {
-            VertexPath::Integer => self.rung_for(scene).in_integers(),
-            VertexPath::Float => self.rung_for(scene),
+        let shading = match self.vertex_path {
+            VertexPath::Integer => self.shading_for(scene).in_integers(),
+            VertexPath::Float => self.shading_for(scene),
         };
         let max_error = self.max_error(scene);
         self.states.resize_with(scene.objects().len(), ObjectState::default);
-        self.since.clear();
+        self.change.clear();
         for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {
-            self.since.push(state.renew(scene, object, view, (rung, max_error)));
+            self.change.push(state.renew(scene, object, view, (shading, max_error)));
         }
         let inputs = Inputs {
             scene,
             views: &self.views,
-            since: &self.since,
+            change: &self.change,
             forced: &self.forced,
-            rung,
+            shading,
             max_error,
-            hidden_surfaces: self.hidden_surfaces.or(scene.wishes.hidden_surfaces),
-            mapping: self.mapping.or(scene.wishes.mapping),
-            mipmaps: self.mipmaps.or(scene.wishes.mipmaps),
+            hidden_surfaces: self.hidden_surfaces.or(scene.preferences.hidden_surfaces),
+            mapping: self.mapping.or(scene.preferences.mapping),
+            mipmaps: self.mipmaps.or(scene.preferences.mipmaps),
             whole,
             integer: self.vertex_path == VertexPath::Integer,
             keeps: self.may_keep() && self.vertex_path == VertexPath::Float,
         };
         let states = &self.states;
         decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.plan);
-        rung
+        shading
     }
 
     /// Bytes that the renderer holds.
@@ -544,9 +544,9 @@ impl Renderer {
             + self.states.iter().map(ObjectState::bytes).sum::<usize>()
             + self.tables.bytes()
             + self.depths.capacity() * 4
-            + self.triangles.capacity() * size_of::<([Vertex; 3], Shading)>()
+            + self.triangles.capacity() * size_of::<([Vertex; 3], Interpolation)>()
             + self.kept_places.capacity() * size_of::<Option<u32>>()
-            + (self.kept.capacity() + self.transparent.capacity()) * size_of::<Kept>()
+            + (self.kept.capacity() + self.transparent.capacity()) * size_of::<DeferredFace>()
             + self.far_to_near.capacity() * size_of::<(u64, usize)>()
             + self.lists.bytes()
     }

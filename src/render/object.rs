@@ -8,21 +8,21 @@ use super::Stats;
 use super::budget::{self, Budget, Decided, Lit};
 use super::face::Faces;
 use super::lit::LitVertices;
-use super::paint::Paint;
+use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
 use super::tessellate::Tessellated;
-use super::vertex::{self, Extra, Geometry};
+use super::vertex::{self, Geometry, VertexAttributes};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
 use crate::palette::{Palette, Table};
-use crate::plan::{Effect, LEAST_TESSELLATION, ObjectPlan, Since, Why};
-use crate::scene::{Fog, Mapping, Object, Rung, Scene, Shared};
+use crate::plan::{Change, Effect, MIN_TESSELLATION, ObjectPlan, Reason};
+use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
 
 /// What an object's vertices depend on, beside the plan.
 #[derive(Clone, PartialEq, Debug)]
-struct Source {
+struct ShadeSource {
     mesh: Shared<Mesh>,
     view: ObjectView,
     suns: Vec<Beam>,
@@ -32,14 +32,14 @@ struct Source {
     /// As the materials' ramps depend on it.
     ramps: usize,
     fog: Option<Fog>,
-    rung: (Rung, Option<f32>),
+    shading: (Shading, Option<f32>),
     tessellation: Option<f32>,
 }
 
-impl Source {
+impl ShadeSource {
     /// Takes on what the object is now. Says whether that is another thing than before. Nothing is
     /// allocated as long as there are no more lights or materials than before.
-    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, rung: (Rung, Option<f32>)) -> bool {
+    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, shading: (Shading, Option<f32>)) -> bool {
         let mut changed = false;
         if !Shared::ptr_eq(&self.mesh, object.shared_mesh()) {
             self.mesh = Shared::clone(object.shared_mesh());
@@ -55,8 +55,8 @@ impl Source {
         changed |= replace(&mut self.ambient, scene.ambient);
         changed |= replace(&mut self.ramps, scene.palette.as_ref().map_or(0, Palette::ramps));
         changed |= replace(&mut self.fog, scene.fog);
-        changed |= replace(&mut self.rung, rung);
-        changed | replace(&mut self.tessellation, scene.wishes.tessellation)
+        changed |= replace(&mut self.shading, shading);
+        changed | replace(&mut self.tessellation, scene.preferences.tessellation)
     }
 }
 
@@ -107,23 +107,23 @@ pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
 /// One object of a renderer's scene.
 #[derive(Debug, Default)]
 pub(super) struct ObjectState {
-    source: Option<Source>,
+    source: Option<ShadeSource>,
     /// Whether the source has changed since the vertices were made.
     stale: bool,
     /// The plan that the vertices were made by, its reasons aside.
     made_by: Option<[bool; Effect::COUNT]>,
-    paints: Vec<Paint>,
+    paints: Vec<SurfaceMaterial>,
     /// Of the source's lamps, those in range.
     lamps: Vec<LampBeam>,
     lit: LitVertices,
-    extras: Vec<Extra>,
+    extras: Vec<VertexAttributes>,
     tessellated: Tessellated,
     /// Whether that is what is drawn. What is not stays for when it is again.
     is_tessellated: bool,
     /// Of the mesh, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
     /// One for each surface, and what they were made from.
-    normal_tables: Vec<(Vec<Beam>, Paint, Table)>,
+    normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Table)>,
     /// What they would be made from now.
     beams: Vec<Beam>,
     /// What a budget's decisions are made from, and those that were made, one for each triangle.
@@ -133,18 +133,18 @@ pub(super) struct ObjectState {
 }
 
 impl ObjectState {
-    /// Takes on what the object is now, and the rung and the budget that it is drawn by. Says what became of it since its vertices were made.
+    /// Takes on what the object is now, and the shading and the budget that it is drawn by. Says what became of it since its vertices were made.
     pub(super) fn renew(
         &mut self,
         scene: &Scene,
         object: &Object,
         view: &ObjectView,
-        rung: (Rung, Option<f32>),
-    ) -> Since {
+        shading: (Shading, Option<f32>),
+    ) -> Change {
         match &mut self.source {
-            Some(source) => self.stale |= source.renew(scene, object, view, rung),
+            Some(source) => self.stale |= source.renew(scene, object, view, shading),
             None => {
-                let mut source = Source {
+                let mut source = ShadeSource {
                     mesh: Shared::clone(object.shared_mesh()),
                     view: *view,
                     suns: Vec::new(),
@@ -153,17 +153,17 @@ impl ObjectState {
                     ambient: scene.ambient,
                     ramps: 0,
                     fog: None,
-                    rung,
+                    shading,
                     tessellation: None,
                 };
-                source.renew(scene, object, view, rung);
+                source.renew(scene, object, view, shading);
                 self.source = Some(source);
             }
         }
         match self.made_by {
-            None => Since::New,
-            Some(_) if self.stale => Since::Changed,
-            Some(_) => Since::Unchanged,
+            None => Change::New,
+            Some(_) if self.stale => Change::Changed,
+            Some(_) => Change::Unchanged,
         }
     }
 
@@ -177,9 +177,9 @@ impl ObjectState {
         self.made_by = None;
     }
 
-    /// What a rung makes of the vertices.
-    fn is_flat(rung: Rung) -> bool {
-        rung == Rung::Flat
+    /// What a shading makes of the vertices.
+    fn is_flat(shading: Shading) -> bool {
+        shading == Shading::Flat
     }
 
     /// Makes the vertices, if they are not those of last frame. Returns whether it did.
@@ -200,15 +200,15 @@ impl ObjectState {
         // object that moves: force is there to do, and to measure, all the work.
         let changed = self.stale
             || self.made_by != Some(on)
-            || matches!(plan.decision(Effect::Transform).why, Why::Forced | Why::NotKept);
+            || matches!(plan.decision(Effect::Transform).reason, Reason::Overrides | Reason::NotKept);
         (self.made_by, self.stale) = (Some(on), false);
         let Some(source) = &self.source else { return false };
         self.paints.clear();
         let palette = scene.palette.as_ref();
-        self.paints.extend(object.materials.iter().map(|m| Paint::new(m, scene.ambient, palette, plan)));
+        self.paints.extend(object.materials.iter().map(|m| SurfaceMaterial::new(m, scene.ambient, palette, plan)));
         self.lamps.clear();
         if plan.is_on(Effect::PositionalLights) {
-            let forced = plan.decision(Effect::PositionalLights).why == Why::Forced;
+            let forced = plan.decision(Effect::PositionalLights).reason == Reason::Overrides;
             let bounds = object.mesh().bounds();
             let in_range = |lamp: &&LampBeam| forced || crate::light::lamp_reaches(lamp, bounds);
             self.lamps.extend(source.lamps.iter().filter(in_range).copied());
@@ -222,7 +222,7 @@ impl ObjectState {
                 Some((mesh, points)) if Shared::ptr_eq(mesh, object.shared_mesh()) => &*points,
                 other => &other.insert((Shared::clone(object.shared_mesh()), object.mesh().points())).1,
             };
-            let tolerance = scene.wishes.tessellation.unwrap_or(LEAST_TESSELLATION);
+            let tolerance = scene.preferences.tessellation.unwrap_or(MIN_TESSELLATION);
             let twins = object.mesh().twins();
             self.tessellated.split(&geometry, (points, twins), &lights, &self.paints, tolerance);
             self.tessellated.geometry()
@@ -241,11 +241,11 @@ impl ObjectState {
         }
         self.extras.clear();
         if self.paints.iter().any(|paint| paint.has_effects) {
-            self.extras.resize(count, Extra::default());
+            self.extras.resize(count, VertexAttributes::default());
         }
         let channels = plan.is_on(Effect::RgbChannels);
         let full = plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular);
-        let by_face = Self::is_flat(plan.rung()) && plan.is_on(Effect::Lighting);
+        let by_face = Self::is_flat(plan.shading()) && plan.is_on(Effect::Lighting);
         let by_pixel = plan.is_on(Effect::Phong) && plan.max_error().is_none();
         let by_vertex = !by_face && !by_pixel;
         // Of a closed body nobody sees the back.
@@ -283,8 +283,8 @@ impl ObjectState {
                 geometry: &geometry,
                 whole,
                 view: &source.view,
-                nearest: match plan.decision(Effect::NearClipping).why {
-                    Why::Nearest { nearest, .. } => nearest,
+                nearest: match plan.decision(Effect::NearClipping).reason {
+                    Reason::Nearest { nearest, .. } => nearest,
                     _ => source.view.reach(object.mesh().bounds()).nearest,
                 },
                 lights: &lights,
@@ -301,7 +301,7 @@ impl ObjectState {
             self.decided.clear();
         }
         if by_pixel {
-            if source.rung.0 == Rung::PhongTable && !channels {
+            if source.shading.0 == Shading::PhongTable && !channels {
                 vertex::slopes(&geometry, &source.view, &mut self.extras);
                 self.tables_of_normals(scene, object, view);
             } else {
@@ -361,7 +361,7 @@ impl ObjectState {
         self.normal_tables.get(usize::from(surface)).map(|(_, _, table)| table.as_array())
     }
 
-    pub(super) fn paints(&self) -> &[Paint] {
+    pub(super) fn paints(&self) -> &[SurfaceMaterial] {
         &self.paints
     }
 
@@ -377,7 +377,7 @@ impl ObjectState {
         self.made_by?;
         let source = self.source.as_ref()?;
         Some(Faces {
-            rung: plan.rung(),
+            shading: plan.shading(),
             geometry: if self.is_tessellated { self.tessellated.geometry() } else { mesh_geometry(object) },
             view: &source.view,
             lights: self.lights(plan),
@@ -389,7 +389,7 @@ impl ObjectState {
             is_lit: plan.is_on(Effect::Lighting),
             runs: plan.is_on(Effect::Gouraud),
             full: plan.is_on(Effect::PositionalLights) || plan.is_on(Effect::Specular),
-            flat: Self::is_flat(plan.rung()),
+            flat: Self::is_flat(plan.shading()),
             channels: plan.is_on(Effect::RgbChannels),
             affine: !plan.is_on(Effect::Perspective)
                 || plan.decision(Effect::Perspective).choice == Mapping::Affine.name(),
@@ -414,7 +414,7 @@ impl ObjectState {
         core::mem::take(&mut self.decided)
     }
 
-    /// How many triangles a budget's choices gave to each rung, and why, in words; `None` without a budget.
+    /// How many triangles a budget's choices gave to each shading, and why, in words; `None` without a budget.
     pub(super) fn shares(&self) -> Option<String> {
         self.has_budget.then(|| budget::shares(&self.decided))
     }
@@ -431,8 +431,8 @@ impl ObjectState {
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
         self.lit.bytes()
-            + self.extras.capacity() * size_of::<Extra>()
-            + self.paints.capacity() * size_of::<Paint>()
+            + self.extras.capacity() * size_of::<VertexAttributes>()
+            + self.paints.capacity() * size_of::<SurfaceMaterial>()
             + self.lamps.capacity() * size_of::<LampBeam>()
             + self.tessellated.bytes()
             + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)

@@ -8,11 +8,11 @@ use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
 
 use super::Screen;
-use super::look::Looks;
+use super::pipelines::Pipelines;
 use super::trace::Met;
 use crate::palette::Table;
-use crate::raster::effects::{Attributes, Lighting, Look, Mix, Source, TextureLook};
-use crate::raster::{Drawn, Frame, Raster, Rect, Vertex};
+use crate::raster::effects::{Attributes, Lighting, Mix, PixelPipeline, ShadeSource, TextureStage};
+use crate::raster::{DrawStats, Frame, Raster, Rect, Vertex};
 use crate::span::Kernel;
 use crate::span::lit::{LANES, Lanes, Points};
 use crate::span::texture::{Levels, Texels};
@@ -80,7 +80,7 @@ pub(super) struct OnePixel {
 
 impl OnePixel {
     /// The byte that `draw` leaves where `behind` was before; `None` if it does not draw the pixel.
-    pub(super) fn draw(&mut self, behind: u8, draw: impl FnOnce(&mut Raster<'_>) -> Drawn) -> Option<u8> {
+    pub(super) fn draw(&mut self, behind: u8, draw: impl FnOnce(&mut Raster<'_>) -> DrawStats) -> Option<u8> {
         let Screen { width, height, .. } = self.screen;
         let (x, y) = (self.x, self.y);
         *self.row.get_mut(x as usize)? = behind;
@@ -92,7 +92,7 @@ impl OnePixel {
     }
 
     /// The byte of a face by a look with some stages taken away.
-    fn look(&mut self, met: (&[Vertex; 3], &[Attributes; 3]), behind: u8, look: &Look<'_>) -> u8 {
+    fn look(&mut self, met: (&[Vertex; 3], &[Attributes; 3]), behind: u8, look: &PixelPipeline<'_>) -> u8 {
         self.draw(behind, |raster| raster.triangle_with_effects(met.0, met.1, look)).unwrap_or(behind)
     }
 
@@ -192,7 +192,7 @@ impl Lighting for Numbers {
 }
 
 /// What a face makes of the pixel, where `behind` is.
-pub(super) fn bytes(looks: &Looks<'_>, met: &Met, pixel: &mut OnePixel, behind: u8, scan_line: bool) -> Bytes {
+pub(super) fn bytes(looks: &Pipelines<'_>, met: &Met, pixel: &mut OnePixel, behind: u8, scan_line: bool) -> Bytes {
     let plain = |shade: u8, exact_cover: bool| Bytes {
         shaded_by: ShadedBy::Corners,
         exact_cover,
@@ -209,48 +209,51 @@ pub(super) fn bytes(looks: &Looks<'_>, met: &Met, pixel: &mut OnePixel, behind: 
     };
     let (Some(attributes), Some(surface)) = (met.attributes, met.surface) else {
         // The scan-line method finds the pixels itself, and takes a shading's shades alone.
-        let look = Look { source: Source::Shaded(met.shading), ..Look::PLAIN };
+        let look = PixelPipeline { source: ShadeSource::Shaded(met.interpolation), ..PixelPipeline::PLAIN };
         let byte = if scan_line {
             pixel.look((&met.vertices, &Default::default()), behind, &look)
         } else {
-            pixel.draw(behind, |raster| raster.triangle(&met.vertices, met.shading)).unwrap_or(behind)
+            pixel.draw(behind, |raster| raster.triangle(&met.vertices, met.interpolation)).unwrap_or(behind)
         };
-        return plain(byte, scan_line || met.shading.has_exact_cover());
+        return plain(byte, scan_line || met.interpolation.has_exact_cover());
     };
     let mut made = plain(behind, true);
     looks.with((met.object, surface, met.manner), |look| {
         made = stages(look, (&met.vertices, &attributes), pixel, behind, made);
-        Drawn::default()
+        DrawStats::default()
     });
     made
 }
 
 /// What each stage of a look makes of the pixel.
 fn stages(
-    look: &Look<'_>,
+    look: &PixelPipeline<'_>,
     met: (&[Vertex; 3], &[Attributes; 3]),
     pixel: &mut OnePixel,
     behind: u8,
     mut made: Bytes,
 ) -> Bytes {
-    let bare = Look { dither: None, texture: None, fog: None, blend: None, ..*look };
-    let single = Look { channels: None, ..bare };
+    let bare = PixelPipeline { dither: None, texture: None, fog: None, blend: None, ..*look };
+    let single = PixelPipeline { channels: None, ..bare };
     made.channels = look.channels.is_some();
-    let mut channels =
-        |look: Look<'_>| [0, 1, 2].map(|i| pixel.look(met, behind, &Look { channels: Some(Mix::Only(i)), ..look }));
+    let mut channels = |look: PixelPipeline<'_>| {
+        [0, 1, 2].map(|i| pixel.look(met, behind, &PixelPipeline { channels: Some(Mix::Only(i)), ..look }))
+    };
     made.shades = if made.channels { channels(bare) } else { [0; 3] };
-    made.textured = look.texture.filter(|_| made.channels).map(|_| channels(Look { texture: look.texture, ..bare }));
+    made.textured =
+        look.texture.filter(|_| made.channels).map(|_| channels(PixelPipeline { texture: look.texture, ..bare }));
     if !made.channels {
         made.shades = [pixel.look(met, behind, &bare); 3];
     }
     match look.source {
-        Source::Shaded(_) => {}
-        Source::Curved(_) => made.shaded_by = ShadedBy::BetweenSix(met.1.map(|corner| corner.lit)),
-        Source::NormalTable(_) => made.shaded_by = ShadedBy::NormalTable,
-        Source::Lit(light) => {
+        ShadeSource::Shaded(_) => {}
+        ShadeSource::Curved(_) => made.shaded_by = ShadedBy::BetweenSix(met.1.map(|corner| corner.lit)),
+        ShadeSource::NormalTable(_) => made.shaded_by = ShadedBy::NormalTable,
+        ShadeSource::Lit(light) => {
             let noted = Noted { light, last: Cell::new(None) };
-            pixel.look(met, behind, &Look { source: Source::Lit(&noted), ..bare });
-            let lane = usize::from(pixel.look(met, behind, &Look { source: Source::Lit(&Numbers), ..single }));
+            pixel.look(met, behind, &PixelPipeline { source: ShadeSource::Lit(&noted), ..bare });
+            let lane =
+                usize::from(pixel.look(met, behind, &PixelPipeline { source: ShadeSource::Lit(&Numbers), ..single }));
             if let Some((points, shades)) = noted.last.get() {
                 // Below 8.
                 let [nx, ny, nz, x, y, z] = points.map(|of| of[lane]);
@@ -258,12 +261,13 @@ fn stages(
                 made.shaded_by = ShadedBy::Light { normal: [nx, ny, nz], position: [x, y, z], shades };
             }
         }
-        Source::LitEvery(apart, light) => {
+        ShadeSource::LitEvery(apart, light) => {
             let listed = Listed { light, all: RefCell::default() };
-            pixel.look(met, behind, &Look { source: Source::LitEvery(apart, &listed), ..bare });
+            pixel.look(met, behind, &PixelPipeline { source: ShadeSource::LitEvery(apart, &listed), ..bare });
             // Numbered, and rounded down, it is the number of the pixel before.
             let numbers = Counted::default();
-            let numbered = Look { source: Source::LitEvery(apart, &numbers), dither: Some(&[[0; 8]; 8]), ..single };
+            let numbered =
+                PixelPipeline { source: ShadeSource::LitEvery(apart, &numbers), dither: Some(&[[0; 8]; 8]), ..single };
             let place = usize::from(pixel.look(met, behind, &numbered));
             let all = listed.all.borrow();
             let of = |place: usize| all.get(place).or(all.last()).copied().unwrap_or_default();
@@ -274,8 +278,8 @@ fn stages(
     let columns = Table::from_fn(|_, column| column);
     let rows = Table::from_fn(|row, _| row);
     made.texel = look.texture.map(|texture| {
-        let texture = TextureLook { tables: [columns.as_array(); 3], ..texture };
-        pixel.look(met, behind, &Look { texture: Some(texture), ..single })
+        let texture = TextureStage { tables: [columns.as_array(); 3], ..texture };
+        pixel.look(met, behind, &PixelPipeline { texture: Some(texture), ..single })
     });
     made.level = look.texture.and_then(|texture| {
         // An image whose texels are the numbers of their levels.
@@ -288,13 +292,13 @@ fn stages(
             let deeper = Levels::length(ubits.saturating_sub(level), vbits.saturating_sub(level));
             numbers.resize(all - deeper, number);
         }
-        let texture = TextureLook {
+        let texture = TextureStage {
             texels: Texels::new(&zeros, ubits, vbits).ok()?,
             levels: Some(Levels::new(&numbers, ubits, vbits).ok()?),
             tables: [columns.as_array(); 3],
             ..texture
         };
-        Some(pixel.look(met, behind, &Look { texture: Some(texture), ..single }))
+        Some(pixel.look(met, behind, &PixelPipeline { texture: Some(texture), ..single }))
     });
     let mut so_far = bare;
     if let Some(thresholds) = look.dither {
@@ -311,7 +315,7 @@ fn stages(
         made.mixed = Some(pixel.look(met, behind, &so_far));
     }
     if look.fog.is_some() {
-        let level = pixel.look(met, behind, &Look { fog: Some(rows.as_array()), ..single });
+        let level = pixel.look(met, behind, &PixelPipeline { fog: Some(rows.as_array()), ..single });
         so_far.fog = look.fog;
         made.fogged = Some((level, pixel.look(met, behind, &so_far)));
     }

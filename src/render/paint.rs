@@ -1,15 +1,15 @@
 //! A material in its scene: what its shades are made with.
 
 use crate::fixed::U8F8;
-use crate::light::{Answer, Blend, Material};
+use crate::light::{Blend, Material, Reflectance};
 use crate::palette::{Palette, Ramp};
 use crate::plan::{Effect, ObjectPlan};
 use crate::texture::Texture;
 
 /// A material in its scene.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Paint {
-    pub(super) answer: Answer,
+pub(super) struct SurfaceMaterial {
+    pub(super) answer: Reflectance,
     /// Where one channel's shades lie: the material's entries, or, of an image or of channels, all 256.
     pub(super) ramp: Ramp,
     /// The image's width and height, if it is on.
@@ -20,7 +20,7 @@ pub(super) struct Paint {
     pub(super) has_effects: bool,
 }
 
-impl Paint {
+impl SurfaceMaterial {
     pub(super) fn new(material: &Material, ambient: f32, palette: Option<&Palette>, plan: &ObjectPlan) -> Self {
         let size = |texture: &Texture| [1_u32 << texture.width_bits(), 1 << texture.height_bits()];
         let texture_size = material.texture.as_deref().filter(|_| plan.is_on(Effect::Texture)).map(size);
@@ -37,9 +37,9 @@ impl Paint {
         // Switched on by hand, an effect runs on every surface, with neutral input where it has none.
         let forced = [Effect::Texture, Effect::EnvironmentMap, Effect::Transparency]
             .iter()
-            .any(|effect| plan.is_on(*effect) && plan.decision(*effect).why == crate::plan::Why::Forced);
+            .any(|effect| plan.is_on(*effect) && plan.decision(*effect).reason == crate::plan::Reason::Overrides);
         Self {
-            answer: Answer {
+            answer: Reflectance {
                 ambient: f64::from(material.ambient) * f64::from(ambient),
                 diffuse: f64::from(material.diffuse),
                 specular: if plan.is_on(Effect::Specular) { f64::from(material.specular) } else { 0.0 },

@@ -1,6 +1,6 @@
 //! Light at every pixel: S1's Phong, and the table that stood in for it in 1994.
 
-use super::paint::Paint;
+use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
 use crate::light::Lights;
 use crate::palette::Table;
@@ -14,7 +14,7 @@ use crate::span::lit::{LANES, Lanes, Points};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelLight<'a> {
     pub(super) lights: Lights<'a>,
-    pub(super) paint: &'a Paint,
+    pub(super) paint: &'a SurfaceMaterial,
     pub(super) kernel: Kernel,
 }
 
@@ -28,7 +28,7 @@ impl Lighting for PixelLight<'_> {
     #[inline(never)]
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
         let channels = self.lights.front_of_three_channels(&self.paint.answer, points, self.kernel);
-        channels.map(|channel| Paint::channel_of_eight(&channel).map(U8F8::to_bits))
+        channels.map(|channel| SurfaceMaterial::channel_of_eight(&channel).map(U8F8::to_bits))
     }
 }
 
@@ -37,7 +37,7 @@ impl Lighting for PixelLight<'_> {
 ///
 /// `lights` are in the eye's space, the eye far away on z.
 #[inline(never)]
-pub(super) fn fill_normal_table(table: &mut Table, lights: &Lights<'_>, paint: &Paint) {
+pub(super) fn fill_normal_table(table: &mut Table, lights: &Lights<'_>, paint: &SurfaceMaterial) {
     let mut eight = [0; LANES];
     table.fill(|row, column| {
         let at = |step: u8| (f32::from(step) - 127.5) / 127.5;

@@ -3,24 +3,24 @@
 
 use alloc::vec::Vec;
 
-use super::face::{Manner, Sink};
-use super::look::Looks;
+use super::face::{ShadeMode, Sink};
+use super::pipelines::Pipelines;
 use super::sift::Sieve;
 use crate::raster::batch::numbered::Numbered;
 use crate::raster::effects::Attributes;
-use crate::raster::{Batch, Drawn, Raster, Shading, Vertex};
+use crate::raster::{Batch, DrawStats, Interpolation, Raster, Vertex};
 
 /// A face with effects that is drawn when all are known.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kept {
+pub(super) struct DeferredFace {
     pub(super) vertices: [Vertex; 3],
     pub(super) attributes: [Attributes; 3],
     pub(super) object: usize,
     pub(super) surface: u16,
-    pub(super) manner: Manner,
+    pub(super) manner: ShadeMode,
 }
 
-impl Kept {
+impl DeferredFace {
     pub(super) fn depth(&self) -> u64 {
         depth_of(&self.vertices)
     }
@@ -32,55 +32,55 @@ pub(super) fn depth_of(vertices: &[Vertex; 3]) -> u64 {
 }
 
 /// Faces without what effects need.
-pub(super) struct Bare<F>(pub(super) F);
+pub(super) struct ForEachSink<F>(pub(super) F);
 
-impl<F: FnMut(&[Vertex; 3], Shading)> Sink for Bare<F> {
-    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        (self.0)(vertices, shading);
+impl<F: FnMut(&[Vertex; 3], Interpolation)> Sink for ForEachSink<F> {
+    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+        (self.0)(vertices, interpolation);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: Manner) {
-        (self.0)(vertices, Shading::default());
+    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: ShadeMode) {
+        (self.0)(vertices, Interpolation::default());
     }
 }
 
 /// Draws faces as they come; keeps those that shine through.
-pub(super) struct Direct<'a, 'b, const CLIPS: bool> {
+pub(super) struct ImmediateSink<'a, 'b, const CLIPS: bool> {
     pub(super) batched: Batched<'a, 'b, CLIPS>,
-    pub(super) looks: &'a Looks<'a>,
+    pub(super) looks: &'a Pipelines<'a>,
     pub(super) object: usize,
-    pub(super) transparent: &'a mut Vec<Kept>,
+    pub(super) transparent: &'a mut Vec<DeferredFace>,
 }
 
-impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
+impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
     fn sieve(&self) -> Option<Sieve> {
         let raster = &self.batched.raster;
         Some(Sieve { clip: raster.clip(), kernel: raster.kernel() })
     }
 
     #[inline]
-    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        self.batched.triangle(vertices, shading);
+    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+        self.batched.triangle(vertices, interpolation);
     }
 
-    fn takes_numbers(&self, shading: Shading) -> bool {
-        Batch::takes(shading)
+    fn takes_numbers(&self, interpolation: Interpolation) -> bool {
+        Batch::takes(interpolation)
     }
 
-    fn numbered(&mut self, from: &Numbered<'_>, numbers: &[u32], shading: Shading) {
+    fn numbered(&mut self, from: &Numbered<'_>, numbers: &[u32], interpolation: Interpolation) {
         // Those that came before, if any.
         self.batched.draw();
         let kernel = self.batched.raster.kernel();
         for numbers in numbers.chunks(Batch::CAPACITY) {
-            self.batched.batch.refill(from, numbers, shading, kernel);
+            self.batched.batch.refill(from, numbers, interpolation, kernel);
             self.batched.draw();
         }
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner) {
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode) {
         if self.looks.is_transparent(self.object, surface) {
             let (vertices, attributes) = (*vertices, *attributes);
-            self.transparent.push(Kept { vertices, attributes, object: self.object, surface, manner });
+            self.transparent.push(DeferredFace { vertices, attributes, object: self.object, surface, manner });
             return;
         }
         // In the order in which they came: of equal depths the first stays.
@@ -100,27 +100,27 @@ impl<const CLIPS: bool> Sink for Direct<'_, '_, CLIPS> {
 pub(super) struct Batched<'a, 'b, const CLIPS: bool> {
     pub(super) raster: &'a mut Raster<'b>,
     pub(super) batch: &'a mut Batch,
-    pub(super) drawn: &'a mut Drawn,
+    pub(super) drawn: &'a mut DrawStats,
 }
 
 impl<const CLIPS: bool> Batched<'_, '_, CLIPS> {
     #[inline]
-    pub(super) fn triangle(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        if !self.batch.push(vertices, shading) {
+    pub(super) fn triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+        if !self.batch.push(vertices, interpolation) {
             // By value, so that only here they have to be in memory.
-            self.past_the_batch(*vertices, shading);
+            self.past_the_batch(*vertices, interpolation);
         }
     }
 
     /// A triangle that a full batch has no room for, or that is for no batch.
     #[inline(never)]
-    fn past_the_batch(&mut self, vertices: [Vertex; 3], shading: Shading) {
+    fn past_the_batch(&mut self, vertices: [Vertex; 3], interpolation: Interpolation) {
         self.draw();
-        if !self.batch.push(&vertices, shading) {
+        if !self.batch.push(&vertices, interpolation) {
             *self.drawn += if CLIPS {
-                self.raster.triangle(&vertices, shading)
+                self.raster.triangle(&vertices, interpolation)
             } else {
-                self.raster.triangle_inside(&vertices, shading)
+                self.raster.triangle_inside(&vertices, interpolation)
             };
         }
     }
@@ -135,33 +135,33 @@ impl<const CLIPS: bool> Batched<'_, '_, CLIPS> {
 }
 
 /// Keeps faces for when all are known.
-pub(super) struct Gathered<'a> {
-    pub(super) triangles: &'a mut Vec<([Vertex; 3], Shading)>,
+pub(super) struct DeferredSink<'a> {
+    pub(super) triangles: &'a mut Vec<([Vertex; 3], Interpolation)>,
     pub(super) places: &'a mut Vec<Option<u32>>,
-    pub(super) kept: &'a mut Vec<Kept>,
-    pub(super) transparent: &'a mut Vec<Kept>,
-    pub(super) looks: &'a Looks<'a>,
+    pub(super) kept: &'a mut Vec<DeferredFace>,
+    pub(super) transparent: &'a mut Vec<DeferredFace>,
+    pub(super) looks: &'a Pipelines<'a>,
     pub(super) object: usize,
     pub(super) sieve: Sieve,
 }
 
-impl Sink for Gathered<'_> {
+impl Sink for DeferredSink<'_> {
     fn sieve(&self) -> Option<Sieve> {
         Some(self.sieve)
     }
 
-    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        self.triangles.push((*vertices, shading));
+    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+        self.triangles.push((*vertices, interpolation));
         self.places.push(None);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner) {
-        let face = Kept { vertices: *vertices, attributes: *attributes, object: self.object, surface, manner };
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode) {
+        let face = DeferredFace { vertices: *vertices, attributes: *attributes, object: self.object, surface, manner };
         if self.looks.is_transparent(self.object, surface) {
             self.transparent.push(face);
             return;
         }
-        self.triangles.push((*vertices, Shading::default()));
+        self.triangles.push((*vertices, Interpolation::default()));
         // Fewer than 2³² faces.
         self.places.push(Some(self.kept.len() as u32));
         self.kept.push(face);

@@ -2,16 +2,16 @@
 
 use core::fmt;
 
-use super::{HiddenSurfaces, Rung, VertexPath};
-use crate::raster::Drawn;
+use super::{HiddenSurfaces, Shading, VertexPath};
+use crate::raster::DrawStats;
 use crate::span::Kernel;
 
 /// The work of one frame.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Stats {
-    /// The rung that shaded, where there was no budget.
-    pub rung: Rung,
+    /// The shading that shaded, where there was no budget.
+    pub shading: Shading,
     /// The budget: how many shades of error were accepted.
     pub max_error: Option<f32>,
     /// The way from mesh to vertices.
@@ -40,43 +40,48 @@ pub struct Stats {
     pub culled: u64,
     /// Triangles handed to the raster: faces, and the parts of those that were clipped.
     pub drawn: u64,
-    /// The rungs that shaded them.
+    /// The shadings that shaded them.
     pub shares: Shares,
     /// What the raster did with them.
-    pub raster: Drawn,
+    pub raster: DrawStats,
 }
 
-/// How many triangles each rung shaded.
+/// How many triangles each shading shaded.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Shares([u64; Rung::ALL.len()]);
+pub struct Shares([u64; Shading::ALL.len()]);
 
 impl Shares {
     /// Counts more triangles.
-    pub(super) fn add(&mut self, rung: Rung, triangles: u64) {
-        self.0[rung as usize] += triangles;
+    pub(super) fn add(&mut self, shading: Shading, triangles: u64) {
+        self.0[shading as usize] += triangles;
     }
 
     /// Counts those that were not counted yet, of `drawn`.
-    pub(super) fn complete(&mut self, rung: Rung, drawn: u64) {
-        self.add(rung, drawn - self.0.iter().sum::<u64>());
+    pub(super) fn complete(&mut self, shading: Shading, drawn: u64) {
+        self.add(shading, drawn - self.0.iter().sum::<u64>());
     }
 
-    /// The triangles of one rung.
+    /// The triangles of one shading.
     #[must_use]
-    pub fn of(&self, rung: Rung) -> u64 {
-        self.0[rung as usize]
+    pub fn of(&self, shading: Shading) -> u64 {
+        self.0[shading as usize]
     }
 
-    /// Each rung that shaded any, from cheap to exact, and how many.
-    pub fn iter(&self) -> impl Iterator<Item = (Rung, u64)> {
-        Rung::ALL.into_iter().zip(self.0).filter(|(_, triangles)| *triangles > 0)
+    /// Each shading that shaded any, from cheap to exact, and how many.
+    pub fn iter(&self) -> impl Iterator<Item = (Shading, u64)> {
+        Shading::ALL.into_iter().zip(self.0).filter(|(_, triangles)| *triangles > 0)
     }
 }
 
 impl Stats {
-    pub(super) fn new(rung: Rung, vertex_path: VertexPath, kernel: Kernel, hidden_surfaces: HiddenSurfaces) -> Self {
+    pub(super) fn new(
+        shading: Shading,
+        vertex_path: VertexPath,
+        kernel: Kernel,
+        hidden_surfaces: HiddenSurfaces,
+    ) -> Self {
         Self {
-            rung,
+            shading,
             max_error: None,
             vertex_path,
             kernel: kernel.name(),
@@ -92,18 +97,18 @@ impl Stats {
             culled: 0,
             drawn: 0,
             shares: Shares::default(),
-            raster: Drawn::default(),
+            raster: DrawStats::default(),
         }
     }
 }
 
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { rung, vertex_path, kernel, hidden_surfaces, redrawn, kept, allocated, .. } = self;
+        let Self { shading, vertex_path, kernel, hidden_surfaces, redrawn, kept, allocated, .. } = self;
         let Self { vertices, lit, faces, clipped, culled, drawn, raster, .. } = self;
         write!(
             f,
-            "{rung}, {vertex_path} vertices, kernel {kernel}, {hidden_surfaces}: {vertices} vertices, {lit} lit, {faces} faces, \
+            "{shading}, {vertex_path} vertices, kernel {kernel}, {hidden_surfaces}: {vertices} vertices, {lit} lit, {faces} faces, \
              {clipped} clipped, {culled} culled, {drawn} drawn, {} spans, {} pixels covered, {} written",
             raster.spans, raster.covered, raster.pixels
         )?;

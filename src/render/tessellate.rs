@@ -19,7 +19,7 @@ use core::mem;
 use glam::{Vec2, Vec3};
 
 use super::edge_map::EdgeMap;
-use super::paint::Paint;
+use super::paint::SurfaceMaterial;
 use super::vertex::Geometry;
 use crate::light::Lights;
 use crate::mesh::normals::unit;
@@ -73,7 +73,7 @@ impl Tessellated {
         geometry: &Geometry<'_>,
         (points, twins): (&[u32], &[u64]),
         lights: &Lights<'_>,
-        paints: &[Paint],
+        paints: &[SurfaceMaterial],
         tolerance: f32,
     ) {
         self.positions.clear();
@@ -269,7 +269,7 @@ fn two(a: u32, b: u32, c: u32, ab: u32, bc: u32) -> [Option<[u32; 3]>; 3] {
 /// How much light bends along an edge.
 struct Bend<'a> {
     lights: &'a Lights<'a>,
-    paints: &'a [Paint],
+    paints: &'a [SurfaceMaterial],
     /// Of full intensity.
     tolerance: f64,
     /// Whether any surface has one.
@@ -329,7 +329,7 @@ impl Bend<'_> {
     }
 
     /// Whether a highlight near the edge bends too much along it.
-    fn mirrors(&self, mesh: &Tessellated, edge: [usize; 2], paint: &Paint, square: f64, eight: f64) -> bool {
+    fn mirrors(&self, mesh: &Tessellated, edge: [usize; 2], paint: &SurfaceMaterial, square: f64, eight: f64) -> bool {
         let ends = edge.map(|vertex| widen(mesh.positions[vertex]));
         let normals = edge.map(|vertex| mesh.normals[vertex]);
         let count = self.lights.suns.len() + self.lights.lamps.len();

@@ -5,17 +5,17 @@ use alloc::vec::Vec;
 use core::mem;
 
 use super::budget::Decided;
-use super::face::{Manner, Sink};
-use super::look::Looks;
+use super::face::{ShadeMode, Sink};
 use super::one_pixel::{Bytes, OnePixel, bytes};
+use super::pipelines::Pipelines;
 use super::sinks::depth_of;
 use super::vertex::Geometry;
 use super::{Effect, HiddenSurfaces, RenderError, Renderer, Screen, Stats, VertexPath};
 use crate::palette::Ramp;
-use crate::raster::cover::Ordered;
+use crate::raster::cover::SortedTriangle;
 use crate::raster::depth::DepthPlane;
 use crate::raster::effects::Attributes;
-use crate::raster::{Shading, Vertex};
+use crate::raster::{Interpolation, Vertex};
 use crate::scene::Scene;
 
 /// A triangle that covers the pixel, or whose edge runs through its centre.
@@ -25,9 +25,9 @@ pub struct Met {
     /// Its place in the mesh, or in what splitting made of it; `None` where that is not known.
     pub place: Option<usize>,
     pub vertices: [Vertex; 3],
-    pub shading: Shading,
+    pub interpolation: Interpolation,
     /// Of a face with effects.
-    pub(super) manner: Manner,
+    pub(super) manner: ShadeMode,
     /// Of a face with effects.
     pub attributes: Option<[Attributes; 3]>,
     pub(super) surface: Option<u16>,
@@ -65,7 +65,7 @@ pub struct Trace {
 /// Keeps the faces that meet the pixel.
 struct Meeting<'a> {
     pixel: &'a mut OnePixel,
-    looks: Looks<'a>,
+    looks: Pipelines<'a>,
     object: usize,
     /// Whether every shading covers exactly: with the scan-line method.
     exact: bool,
@@ -73,13 +73,18 @@ struct Meeting<'a> {
 }
 
 impl Meeting<'_> {
-    fn keep(&mut self, vertices: &[Vertex; 3], shading: Shading, of_effects: Option<([Attributes; 3], u16, Manner)>) {
-        let by = if self.exact || of_effects.is_some() { Shading::Flat(0) } else { shading };
+    fn keep(
+        &mut self,
+        vertices: &[Vertex; 3],
+        interpolation: Interpolation,
+        of_effects: Option<([Attributes; 3], u16, ShadeMode)>,
+    ) {
+        let by = if self.exact || of_effects.is_some() { Interpolation::Flat(0) } else { interpolation };
         let covers = self.pixel.draw(0, |raster| raster.triangle(vertices, by)).is_some();
         if !covers && (!by.has_exact_cover() || !self.pixel.is_on_edge(vertices)) {
             return;
         }
-        let triangle = Ordered::new(vertices);
+        let triangle = SortedTriangle::new(vertices);
         // Columns and rows of a frame.
         let depth = DepthPlane::new(&triangle).at(self.pixel.x as i32, self.pixel.y as i32);
         let fate = match of_effects {
@@ -91,8 +96,8 @@ impl Meeting<'_> {
             object: self.object,
             place: None,
             vertices: *vertices,
-            shading,
-            manner: of_effects.map_or(Manner::default(), |(_, _, manner)| manner),
+            interpolation,
+            manner: of_effects.map_or(ShadeMode::default(), |(_, _, manner)| manner),
             attributes: of_effects.map(|(attributes, ..)| attributes),
             surface: of_effects.map(|(_, surface, _)| surface),
             depth,
@@ -103,12 +108,12 @@ impl Meeting<'_> {
 }
 
 impl Sink for Meeting<'_> {
-    fn plain(&mut self, vertices: &[Vertex; 3], shading: Shading) {
-        self.keep(vertices, shading, None);
+    fn plain(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
+        self.keep(vertices, interpolation, None);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: Manner) {
-        self.keep(vertices, manner.rung.shading(), Some((*attributes, surface, manner)));
+    fn with_effects(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3], surface: u16, manner: ShadeMode) {
+        self.keep(vertices, manner.shading.interpolation(), Some((*attributes, surface, manner)));
     }
 }
 
@@ -126,11 +131,11 @@ impl Same<'_> {
 }
 
 impl Sink for Same<'_> {
-    fn plain(&mut self, vertices: &[Vertex; 3], _: Shading) {
+    fn plain(&mut self, vertices: &[Vertex; 3], _: Interpolation) {
         self.look(vertices);
     }
 
-    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: Manner) {
+    fn with_effects(&mut self, vertices: &[Vertex; 3], _: &[Attributes; 3], _: u16, _: ShadeMode) {
         self.look(vertices);
     }
 }
@@ -149,7 +154,8 @@ impl Renderer {
         let hidden_surfaces = self.plan.hidden_surfaces();
         decide_fates(&mut met, hidden_surfaces, self.plan.is_chosen());
         let mut byte = scene.background;
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        let looks =
+            Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         // The one that hides what is behind it comes first, and those that shine through follow far to near.
         let seen = met.iter_mut().filter(|met| met.fate == Fate::Seen).count();
         debug_assert!(seen <= 1);
@@ -171,13 +177,14 @@ impl Renderer {
     fn meet(&mut self, scene: &Scene, stats: &mut Stats, pixel: &mut OnePixel) -> Vec<Met> {
         let exact = self.plan.hidden_surfaces() == HiddenSurfaces::ScanLine;
         let mut integer = mem::take(&mut self.integer);
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        let looks =
+            Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         let mut met = Vec::new();
         for &object in &self.plan.order {
             let mut sink = Meeting { pixel: &mut *pixel, looks, object, exact, met: &mut met };
             if self.vertex_path == VertexPath::Integer {
-                let mut plain = |vertices: &[Vertex; 3], shading| sink.plain(vertices, shading);
-                integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
+                let mut plain = |vertices: &[Vertex; 3], interpolation| sink.plain(vertices, interpolation);
+                integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
                 let mut decided = self.states[object].decided().clone();
@@ -195,14 +202,14 @@ impl Renderer {
         }
         let object = scene.objects().get(met.object)?;
         let mut faces = self.states.get(met.object)?.faces(object, self.plan.objects.get(met.object)?)?;
-        let mut ignored = Stats::new(faces.rung, self.vertex_path, self.kernel, self.plan.hidden_surfaces());
+        let mut ignored = Stats::new(faces.shading, self.vertex_path, self.kernel, self.plan.hidden_surfaces());
         let Geometry { triangles, triangle_surfaces, .. } = faces.geometry;
         (0..triangles.len()).find(|&i| {
             faces.geometry.triangles = &triangles[i..=i];
             faces.geometry.triangle_surfaces = &triangle_surfaces[i..=i];
             faces.twins = &[];
             let mut same = Same { wanted: &met.vertices, found: false };
-            // Which rung draws it changes no vertex's place.
+            // Which shading draws it changes no vertex's place.
             let mut undecided = Decided::default();
             undecided.nothing_of(1);
             faces.draw(&mut undecided, &mut ignored, &mut same);
@@ -228,9 +235,9 @@ impl Renderer {
         }
     }
 
-    /// Whether the rung was chosen for this renderer, whatever the scene asks for.
-    pub(crate) fn has_own_rung(&self) -> bool {
-        self.rung.is_some()
+    /// Whether the shading was chosen for this renderer, whatever the scene asks for.
+    pub(crate) fn has_own_shading(&self) -> bool {
+        self.shading.is_some()
     }
 }
 

@@ -1,19 +1,19 @@
-//! The stage of an object's faces within an error budget: each is drawn by the rung that is decided for it.
+//! The stage of an object's faces within an error budget: each is drawn by the shading that is decided for it.
 
 use super::Stats;
 use super::budget::{Bodies, Budget, Choice, Decided, Question, Vain};
 use super::clip::WithEffects;
-use super::face::{Faces, LitAt, Manner, Sink, is_turned_away};
+use super::face::{Faces, LightSampling, ShadeMode, Sink, is_turned_away};
 use super::sift;
 use super::vertex::Geometry;
 use crate::fixed::U8F8;
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::Attributes;
-use crate::raster::{Shading, Vertex};
-use crate::scene::Rung;
+use crate::raster::{Interpolation, Vertex};
+use crate::scene::Shading;
 
 /// What linear faces are drawn by within a budget.
-const LINEAR_RUNG: Rung = Rung::Gouraud88Reseeded;
+const LINEAR_SHADING: Shading = Shading::Gouraud88Reseeded;
 
 /// In pixels.
 const SMALL: u64 = 64;
@@ -23,7 +23,7 @@ const SMALL: u64 = 64;
 pub(super) const WORTH_SAMPLES: u64 = 5;
 
 impl Faces<'_> {
-    /// The same, with effects or without, each by the rung that is decided for it. (Every rung that there is a choice of
+    /// The same, with effects or without, each by the shading that is decided for it. (Every shading that there is a choice of
     /// has exact cover.) On what covers no pixel centre nothing is decided.
     #[inline(never)]
     pub(super) fn each_within<const CULLS: bool, const EFFECTS: bool>(
@@ -35,7 +35,7 @@ impl Faces<'_> {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         let sieve = sink.sieve();
         let (mut linear, mut vain) = (0, Vain::default());
-        let mut listed = self.listed::<EFFECTS>(sink, LINEAR_RUNG.shading());
+        let mut listed = self.listed::<EFFECTS>(sink, LINEAR_SHADING.interpolation());
         for (chunk, triangles) in triangles.chunks(sift::MOST).enumerate() {
             let first = chunk * sift::MOST;
             let surfaces = &triangle_surfaces[first..];
@@ -48,13 +48,13 @@ impl Faces<'_> {
                 if settled == left {
                     listed.add(sides, left, sieve.kernel);
                     if let Some(whole) = listed.whole() {
-                        sink.numbered(numbered, whole, LINEAR_RUNG.shading());
+                        sink.numbered(numbered, whole, LINEAR_SHADING.interpolation());
                         listed.take_whole();
                     }
                     continue;
                 }
                 // In the order of their numbers.
-                sink.numbered(numbered, listed.all(), LINEAR_RUNG.shading());
+                sink.numbered(numbered, listed.all(), LINEAR_SHADING.interpolation());
                 listed.clear();
             }
             if left == 0 {
@@ -71,10 +71,10 @@ impl Faces<'_> {
                     let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
                     if EFFECTS && self.paints[usize::from(surface)].has_effects {
                         let attributes = indices.map(|i| self.extras[i as usize].side(turned));
-                        let manner = Manner { rung: LINEAR_RUNG, lit_at: LitAt::Pixels };
+                        let manner = ShadeMode { shading: LINEAR_SHADING, sampling: LightSampling::Pixels };
                         sink.with_effects(&vertices, &attributes, surface, manner);
                     } else {
-                        sink.plain(&vertices, LINEAR_RUNG.shading());
+                        sink.plain(&vertices, LINEAR_SHADING.interpolation());
                     }
                     continue;
                 }
@@ -90,9 +90,9 @@ impl Faces<'_> {
             }
         }
         if let Some((listed, numbered)) = &listed {
-            sink.numbered(numbered, listed.all(), LINEAR_RUNG.shading());
+            sink.numbered(numbered, listed.all(), LINEAR_SHADING.interpolation());
         }
-        stats.shares.add(LINEAR_RUNG, linear);
+        stats.shares.add(LINEAR_SHADING, linear);
     }
 
     /// A face that its cluster says nothing of.
@@ -123,7 +123,7 @@ impl Faces<'_> {
             };
         }
         let choice = *choice;
-        stats.shares.add(choice.rung(), 1);
+        stats.shares.add(choice.shading(), 1);
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.needs_light() {
             let mut attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             if choice == Choice::Curved {
@@ -131,7 +131,7 @@ impl Faces<'_> {
             }
             hand_on_within(vertices, attributes, surface, choice, sink);
         } else {
-            sink.plain(&vertices, choice.shading(&vertices));
+            sink.plain(&vertices, choice.interpolation(&vertices));
         }
     }
 
@@ -153,19 +153,19 @@ impl Faces<'_> {
             *choice = self.decide::<EFFECTS>((budget, known), (triangle, indices, surface, turned), (shades, None));
         }
         let (choice, before) = (*choice, stats.drawn);
-        let shading = choice.rung().shading();
+        let interpolation = choice.shading().interpolation();
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || choice.needs_light() {
             let attributes = self.attributes::<EFFECTS>(indices, turned, choice);
             let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
-            self.parts::<CULLS, _>(at, corners, carried, (shading, turned), stats, |vertices, carried, _| {
+            self.parts::<CULLS, _>(at, corners, carried, (interpolation, turned), stats, |vertices, carried, _| {
                 hand_on_within(vertices, carried.map(|carried| carried.attributes), surface, choice, sink);
             });
         } else {
-            self.parts::<CULLS, _>(at, corners, [(); 3], (shading, turned), stats, |vertices, _, _| {
-                sink.plain(&vertices, choice.shading(&vertices));
+            self.parts::<CULLS, _>(at, corners, [(); 3], (interpolation, turned), stats, |vertices, _, _| {
+                sink.plain(&vertices, choice.interpolation(&vertices));
             });
         }
-        stats.shares.add(choice.rung(), stats.drawn - before);
+        stats.shares.add(choice.shading(), stats.drawn - before);
     }
 
     /// Decides on a face on which nothing was known at once.
@@ -214,16 +214,16 @@ fn hand_on_within(
     choice: Choice,
     sink: &mut impl Sink,
 ) {
-    let mut rung = choice.rung();
+    let mut shading = choice.shading();
     if choice == Choice::Flat {
         let shade = middle(vertices.map(|vertex| vertex.shade()));
         vertices = vertices.map(|vertex| vertex.with_shade(shade));
         let [a, b, c] = attributes.map(|corner| corner.channels);
         let channels = [0, 1, 2].map(|channel| middle([a[channel], b[channel], c[channel]]));
         attributes.iter_mut().for_each(|corner| corner.channels = channels);
-        rung = Rung::Gouraud88Reseeded;
+        shading = Shading::Gouraud88Reseeded;
     }
-    sink.with_effects(&vertices, &attributes, surface, Manner { rung, lit_at: choice.lit_at() });
+    sink.with_effects(&vertices, &attributes, surface, ShadeMode { shading, sampling: choice.sampling() });
 }
 
 /// Half-way between the least and the greatest.
@@ -235,10 +235,10 @@ fn middle([a, b, c]: [U8F8; 3]) -> U8F8 {
 impl Choice {
     /// How the raster shades a face without effects.
     #[inline]
-    fn shading(self, vertices: &[Vertex; 3]) -> Shading {
+    fn interpolation(self, vertices: &[Vertex; 3]) -> Interpolation {
         match self {
-            Self::Flat => Shading::Flat(middle(vertices.map(|vertex| vertex.shade())).nearest()),
-            choice => choice.rung().shading(),
+            Self::Flat => Interpolation::Flat(middle(vertices.map(|vertex| vertex.shade())).nearest()),
+            choice => choice.shading().interpolation(),
         }
     }
 }

@@ -12,7 +12,7 @@
 //! | `fog` | [`Fog`] |
 //! | `motion` | [`Motion`]: everything from absolute time |
 //! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
-//! | `wishes` | [`Wishes`]: rung, hidden surfaces, mapping, mipmaps, tessellation, dither |
+//! | `preferences` | [`Preferences`]: shading, hidden surfaces, mapping, mipmaps, tessellation, dither |
 //! | `names` | choices that are typed by name |
 //! | `file` | scenes as TOML files (feature `scene-files`) |
 //! | `shipped` | those that are compiled in (feature `scene-files`) |
@@ -26,9 +26,9 @@ pub(crate) mod framing;
 mod motion;
 mod names;
 pub(crate) mod object;
+mod preferences;
 #[cfg(feature = "scene-files")]
 pub mod shipped;
-mod wishes;
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -46,7 +46,9 @@ pub use motion::{Motion, Moving, Path};
 pub(crate) use names::named;
 pub(crate) use object::matrix_product;
 pub use object::{Object, UpAxis};
-pub use wishes::{HiddenSurfaces, Mapping, Rung, UnknownHiddenSurfaces, UnknownMapping, UnknownRung, Wishes};
+pub use preferences::{
+    HiddenSurfaces, Mapping, Preferences, Shading, UnknownHiddenSurfaces, UnknownMapping, UnknownShading,
+};
 
 /// A mesh or a texture that several objects, scenes and threads may share. Where the processor has no
 /// atomic counter (Cortex-M0) it stays within one thread.
@@ -89,7 +91,7 @@ pub struct Scene {
     /// What lies between the eye and what is far away.
     pub fog: Option<Fog>,
     /// What is asked for.
-    pub wishes: Wishes,
+    pub preferences: Preferences,
     /// How things move; [`set_time`](Self::set_time) puts them where they are.
     pub motions: Vec<Motion>,
     /// How long one round of it takes, in seconds; above 0. A film of that length that is played again and again has
@@ -118,7 +120,7 @@ impl Scene {
             palette: Some(builtin::GREY.clone()),
             palette_animation: None,
             fog: None,
-            wishes: Wishes::default(),
+            preferences: Preferences::default(),
             motions: Vec::new(),
             duration: 4.0,
             picture: 0.0,

@@ -3,14 +3,14 @@
 //! Each loop writes as many pixels as the shortest of its rows has. `thresholds` and `x` are as in
 //! [`dither`](super::dither): 0 to 255 by the pixel's place in the frame.
 
-use crate::palette::{cube, expand};
+use crate::palette::{cube, dac6_to_8};
 
 /// The six levels of a channel in the colour cube: 0, 52, 101, 154, 203, 255.
 const LEVELS: [u8; 6] = {
     let mut levels = [0; 6];
     let mut i = 0;
     while i < 6 {
-        levels[i] = expand(cube::LEVELS[i]);
+        levels[i] = dac6_to_8(cube::LEVELS[i]);
         i += 1;
     }
     levels

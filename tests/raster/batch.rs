@@ -8,15 +8,15 @@ use crate::support::random::Random;
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
 use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
-use mode13h::raster::{Batch, DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::raster::{Batch, DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 
 /// Shadings that a batch takes.
-fn shading(random: &mut Random) -> Shading {
+fn interpolation(random: &mut Random) -> Interpolation {
     match random.within(0, 2) {
-        0 => Shading::Flat(random.within(0, 255) as u8),
-        1 => Shading::Gouraud,
-        _ => Shading::GouraudReseeded,
+        0 => Interpolation::Flat(random.within(0, 255) as u8),
+        1 => Interpolation::Gouraud,
+        _ => Interpolation::GouraudReseeded,
     }
 }
 
@@ -47,9 +47,9 @@ fn any(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
 }
 
 /// What batches are compared with.
-fn one_by_one(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Shading)]) -> Drawn {
-    let mut sum = Drawn::default();
-    triangles.iter().for_each(|(vertices, shading)| sum += raster.triangle(vertices, *shading));
+fn one_by_one(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Interpolation)]) -> DrawStats {
+    let mut sum = DrawStats::default();
+    triangles.iter().for_each(|(vertices, interpolation)| sum += raster.triangle(vertices, *interpolation));
     sum
 }
 
@@ -82,14 +82,14 @@ fn small_triangles_are_the_oracles_with_every_kernel() {
     for _ in 0..20_000 {
         let reach = random.one_of(&[100, 300, 900, 2_000]);
         let vertices = small(&mut random, SIDE.into(), SIDE.into(), reach);
-        let shading = shading(&mut random);
+        let interpolation = interpolation(&mut random);
         let mut expected = vec![None; (SIDE * SIDE) as usize];
-        for pixel in oracle::pixels(&vertices, shading, SIDE, SIDE) {
+        for pixel in oracle::pixels(&vertices, interpolation, SIDE, SIDE) {
             expected[(pixel.y * SIDE + pixel.x) as usize] = Some(pixel.byte);
             pixels += 1;
         }
         let mut batch = Batch::new();
-        assert!(batch.push(&vertices, shading));
+        assert!(batch.push(&vertices, interpolation));
         for kernel in Kernel::available() {
             let on = |empty: u8| {
                 let mut bytes = vec![empty; (SIDE * SIDE) as usize];
@@ -99,7 +99,7 @@ fn small_triangles_are_the_oracles_with_every_kernel() {
             };
             let drawn: Vec<Option<u8>> =
                 on(0).into_iter().zip(on(1)).map(|(on_0, on_1)| (on_0 == on_1).then_some(on_0)).collect();
-            assert_eq!(drawn, expected, "{kernel}, {shading:?}, {vertices:?}");
+            assert_eq!(drawn, expected, "{kernel}, {interpolation:?}, {vertices:?}");
         }
     }
     assert!(pixels > 50_000, "{pixels}");
@@ -119,9 +119,9 @@ struct Place {
 fn drawn(
     place: &Place,
     kernel: Kernel,
-    mut plain: impl FnMut(&mut Raster<'_>) -> Drawn,
-    mut deep: impl FnMut(&mut Raster<'_, u32>) -> Drawn,
-) -> (Vec<u8>, Vec<u32>, Drawn) {
+    mut plain: impl FnMut(&mut Raster<'_>) -> DrawStats,
+    mut deep: impl FnMut(&mut Raster<'_, u32>) -> DrawStats,
+) -> (Vec<u8>, Vec<u32>, DrawStats) {
     let mut bytes = vec![99; place.pitch * (place.band.end - place.band.start) as usize];
     let mut depths = Vec::new();
     let frame = Frame::band(&mut bytes, place.width, place.height, place.pitch, place.band.clone()).expect("legal");
@@ -136,7 +136,7 @@ fn drawn(
 #[test]
 fn batches_draw_what_single_triangles_do() {
     let mut random = Random::named("batches against single triangles");
-    let mut total = Drawn::default();
+    let mut total = DrawStats::default();
     for round in 0..600 {
         let (width, height) = random.one_of(&[(320, 200), (97, 40), (9, 300), (1, 1), (700, 3)]);
         let mut some_rect = |most_x: i64, most_y: i64| {
@@ -157,10 +157,10 @@ fn batches_draw_what_single_triangles_do() {
             depth: round % 2 == 0,
         };
         let count = random.within(0, Batch::CAPACITY as i64);
-        let triangles: Vec<([Vertex; 3], Shading)> =
-            (0..count).map(|_| (any(&mut random, width, height), shading(&mut random))).collect();
+        let triangles: Vec<([Vertex; 3], Interpolation)> =
+            (0..count).map(|_| (any(&mut random, width, height), interpolation(&mut random))).collect();
         let mut batch = Batch::new();
-        assert!(triangles.iter().all(|(vertices, shading)| batch.push(vertices, *shading)));
+        assert!(triangles.iter().all(|(vertices, interpolation)| batch.push(vertices, *interpolation)));
         let expected = drawn(
             &place,
             Kernel::PORTABLE,
@@ -181,7 +181,7 @@ fn batches_draw_what_single_triangles_do() {
 #[test]
 fn triangles_of_one_size_are_drawn_as_one_by_one() {
     let mut random = Random::named("batches of small triangles of one size");
-    let mut total = Drawn::default();
+    let mut total = DrawStats::default();
     for round in 0..600 {
         let (width, height) = random.one_of(&[(40, 30), (17, 9), (9, 40), (64, 64), (130, 5)]);
         let place = Place {
@@ -211,9 +211,9 @@ fn triangles_of_one_size_are_drawn_as_one_by_one() {
                 let (x, y) = (left + random.within(0, across), top + random.within(0, down));
                 vertex(x, y, random.within(0, 0xFF00), level.unwrap_or(random.log_uniform(30) as i64))
             });
-            let shading = shading(&mut random);
-            assert!(batch.push(&vertices, shading));
-            triangles.push((vertices, shading));
+            let interpolation = interpolation(&mut random);
+            assert!(batch.push(&vertices, interpolation));
+            triangles.push((vertices, interpolation));
         }
         let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
         let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
@@ -242,7 +242,7 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
     let mut random = Random::named("batches of large triangles");
     // The largest that batches draw themselves, and a little more, in each direction.
     let frames = [(320, 200), (640, 400), (512, 512), (520, 515), (1_024, 256), (1_030, 200), (63, 4_096), (65, 4_096)];
-    let mut total = Drawn::default();
+    let mut total = DrawStats::default();
     for round in 0..160 {
         let (width, height) = frames[round % frames.len()];
         let place = Place {
@@ -258,9 +258,9 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
         for _ in 0..random.within(1, 12) {
             let level = random.one_of(&[None, None, Some(9), Some(10)]);
             let vertices = [0; 3].map(|_| corner(&mut random, width, height, level));
-            let shading = shading(&mut random);
-            assert!(batch.push(&vertices, shading));
-            triangles.push((vertices, shading));
+            let interpolation = interpolation(&mut random);
+            assert!(batch.push(&vertices, interpolation));
+            triangles.push((vertices, interpolation));
         }
         let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
         let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
@@ -292,20 +292,20 @@ fn r4_large_triangles_of_batches_start_exactly() {
     // By their number of squares of a batch.
     let (mut larger, mut smaller) = (0, 0);
     for _ in 0..320 {
-        let shading = random.one_of(&[Shading::Gouraud, Shading::GouraudReseeded]);
-        let triangle = (shapes::with_exact_starts(&mut random), shading);
+        let interpolation = random.one_of(&[Interpolation::Gouraud, Interpolation::GouraudReseeded]);
+        let triangle = (shapes::with_exact_starts(&mut random), interpolation);
         let [columns, rows] = [Vertex::x, Vertex::y].map(|of| {
             let along = triangle.0.each_ref().map(|v| of(v).to_bits());
             (along.iter().max().expect("three") - along.iter().min().expect("three")) / 256
         });
         *if columns * rows > 1 << 18 { &mut larger } else { &mut smaller } += 1;
         let mut batch = Batch::new();
-        assert!(batch.push(&triangle.0, shading));
+        assert!(batch.push(&triangle.0, interpolation));
         let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &[triangle]);
-        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, |_| Drawn::default());
+        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, |_| DrawStats::default());
         // The bytes of the first pixels of rows, from the oracle.
         let points = triangle.0.each_ref().map(oracle::point);
-        let shades = oracle::Shades::of_vertices(&triangle.0, shading);
+        let shades = oracle::Shades::of_vertices(&triangle.0, interpolation);
         for y in (0..shapes::SIDE as i32).step_by(61) {
             let covers = |x: &i32| oracle::covers(points, oracle::centre(*x, y));
             if let Some(x) = (0..shapes::SIDE as i32).find(covers) {
@@ -314,7 +314,7 @@ fn r4_large_triangles_of_batches_start_exactly() {
             }
         }
         for kernel in Kernel::available() {
-            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |_| Drawn::default());
+            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |_| DrawStats::default());
             assert!(batched == expected, "{kernel}: {:?} and {:?} of {triangle:?}", batched.2, expected.2);
             tried.add(1);
         }
@@ -332,11 +332,11 @@ fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
         for _ in 0..50 {
             let (mut batch, mut triangles) = (Batch::new(), Vec::new());
             for _ in 0..50 {
-                let (vertices, shading) = (small(&mut random, WIDTH.into(), 16, 900), shading(&mut random));
-                assert!(batch.push(&vertices, shading));
-                triangles.push((vertices, shading));
+                let (vertices, interpolation) = (small(&mut random, WIDTH.into(), 16, 900), interpolation(&mut random));
+                assert!(batch.push(&vertices, interpolation));
+                triangles.push((vertices, interpolation));
             }
-            let on = |kernel: Kernel, draw: &dyn Fn(&mut Raster<'_>) -> Drawn| {
+            let on = |kernel: Kernel, draw: &dyn Fn(&mut Raster<'_>) -> DrawStats| {
                 let (mut bytes, mut depths) = ([99; 8 * WIDTH as usize], [5; 8 * WIDTH as usize]);
                 let mut other = bytes;
                 let other = Frame::band(&mut other, WIDTH, 16, WIDTH as usize, held.clone()).expect("legal");
@@ -361,11 +361,11 @@ fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
 fn a_batch_takes_what_it_has_room_for() {
     let vertices = [vertex(0, 0, 0, 0), vertex(512, 0, 0, 0), vertex(0, 512, 0, 0)];
     let mut batch = Batch::default();
-    assert!(!batch.push(&vertices, Shading::GouraudHyperbolic) && batch.is_empty());
+    assert!(!batch.push(&vertices, Interpolation::GouraudHyperbolic) && batch.is_empty());
     for _ in 0..Batch::CAPACITY {
-        assert!(!batch.is_full() && batch.push(&vertices, Shading::Flat(3)));
+        assert!(!batch.is_full() && batch.push(&vertices, Interpolation::Flat(3)));
     }
-    assert!(batch.is_full() && !batch.push(&vertices, Shading::Flat(3)));
+    assert!(batch.is_full() && !batch.push(&vertices, Interpolation::Flat(3)));
     assert_eq!(batch.len(), Batch::CAPACITY);
     batch.clear();
     assert!(batch.is_empty());

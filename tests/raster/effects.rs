@@ -7,8 +7,10 @@ use crate::support::random::Random;
 use crate::support::triangles;
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::effects::{Apart, Attributes, Lighting, Limits, Look, Mix, Source, TextureLook, TextureMapping};
-use mode13h::raster::{DepthBuffer, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::raster::effects::{
+    Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
+};
+use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
 use mode13h::span::depth::Cell;
@@ -84,25 +86,25 @@ fn limits(random: &mut Random) -> Limits {
     Limits { least: U8F8::from_bits(least), most: U8F8::from_bits(most) }
 }
 
-fn look<'a>(random: &mut Random, stock: &'a Stock) -> Look<'a> {
+fn look<'a>(random: &mut Random, stock: &'a Stock) -> PixelPipeline<'a> {
     let mut maybe = |n: i64| random.within(0, n) == 0;
     let (channels, dither, texture, fog, blend) = (maybe(3), maybe(2), maybe(1), maybe(2), maybe(3));
     let (ubits, vbits) = (random.within(0, 8) as u32, random.within(0, 8) as u32);
-    Look {
+    PixelPipeline {
         source: match random.within(0, 10) {
-            10 => Source::Curved([0, 1, 2].map(|_| limits(random))),
-            0 => Source::NormalTable(&stock.tables[0]),
-            1 => Source::Lit(&Sum),
-            2 => Source::LitEvery(random.one_of(&Apart::ALL), &Sum),
-            3 => Source::Shaded(Shading::Flat(random.within(0, 255) as u8)),
-            _ => Source::Shaded(random.one_of(Shading::INTERPOLATED)),
+            10 => ShadeSource::Curved([0, 1, 2].map(|_| limits(random))),
+            0 => ShadeSource::NormalTable(&stock.tables[0]),
+            1 => ShadeSource::Lit(&Sum),
+            2 => ShadeSource::LitEvery(random.one_of(&SampleSpacing::ALL), &Sum),
+            3 => ShadeSource::Shaded(Interpolation::Flat(random.within(0, 255) as u8)),
+            _ => ShadeSource::Shaded(random.one_of(Interpolation::INTERPOLATED)),
         },
         channels: channels.then(|| match random.within(0, 1) {
             0 => Mix::Cube,
             _ => Mix::Nearest { map: &stock.map, spread: random.within(0, 255) as u8 },
         }),
         dither: dither.then_some(&BAYER),
-        texture: texture.then(|| TextureLook {
+        texture: texture.then(|| TextureStage {
             texels: Texels::new(&stock.texels[..1 << (ubits + vbits)], ubits, vbits).expect("as many texels"),
             levels: (random.within(0, 1) == 0).then(|| {
                 let levels = &stock.levels[..Levels::length(ubits, vbits)];
@@ -122,19 +124,20 @@ struct Naive<'a> {
     corners: [Point; 3],
     vertices: &'a [Vertex; 3],
     attributes: &'a [Attributes; 3],
-    look: &'a Look<'a>,
+    look: &'a PixelPipeline<'a>,
     /// The shades of the corners, or each of their channels.
     shades: Vec<oracle::Shades>,
 }
 
 impl<'a> Naive<'a> {
-    fn new(vertices: &'a [Vertex; 3], attributes: &'a [Attributes; 3], look: &'a Look<'a>) -> Self {
+    fn new(vertices: &'a [Vertex; 3], attributes: &'a [Attributes; 3], look: &'a PixelPipeline<'a>) -> Self {
         // Of what is not shaded the channels are linear.
-        let shading = if let Source::Shaded(shading) = look.source { shading } else { Shading::default() };
+        let interpolation =
+            if let ShadeSource::Shaded(interpolation) = look.source { interpolation } else { Interpolation::default() };
         let channels = [0, 1, 2].map(|i| attributes.each_ref().map(|a| a.channels[i].to_bits()));
         let shades = match look.channels {
-            Some(_) => channels.map(|values| oracle::Shades::new(vertices, values, shading)).into(),
-            None => vec![oracle::Shades::of_vertices(vertices, shading)],
+            Some(_) => channels.map(|values| oracle::Shades::new(vertices, values, interpolation)).into(),
+            None => vec![oracle::Shades::of_vertices(vertices, interpolation)],
         };
         Self { corners: vertices.each_ref().map(oracle::point), vertices, attributes, look, shades }
     }
@@ -210,7 +213,7 @@ impl<'a> Naive<'a> {
         (0..last).find(|level| &doubled * 64 <= ((&square * 181) << level) * 256).unwrap_or(last)
     }
 
-    fn texel(&self, texture: &TextureLook<'_>, seed: i32, last: i32, x: i32, y: i32) -> (u32, u8) {
+    fn texel(&self, texture: &TextureStage<'_>, seed: i32, last: i32, x: i32, y: i32) -> (u32, u8) {
         let from = seed + (x - seed) / 16 * 16;
         let middle = (from + 8).min(last).max(from);
         let level = texture.levels.map_or(0, |levels| self.level(texture.mapping, levels.last(), middle, y));
@@ -254,7 +257,7 @@ impl<'a> Naive<'a> {
             let values = self.attributes.each_ref().map(|a| value(a).to_bits());
             byte_of(self.linear(values, seed, x, y), threshold)
         };
-        let lit_at = |x: i32| {
+        let sampling = |x: i32| {
             // Whole numbers below 2¹⁵ times depths below 2³⁰ times areas: the sum's nearest f64 is off by
             // some parts in 2⁵¹, the f32 by one in 2²⁴.
             let point = [0, 1, 2].map(|i| {
@@ -265,21 +268,21 @@ impl<'a> Naive<'a> {
         };
         // The shift of a channel, before what is between the lit pixels is made of it.
         let lit = |shift: usize| match self.look.source {
-            Source::LitEvery(apart, _) => {
+            ShadeSource::LitEvery(apart, _) => {
                 let apart = apart.pixels() as i32;
                 let from = seed + (x - seed) / apart * apart;
                 let to = (from + apart).min(last).max(from);
-                let [a, b] = [from, to].map(|x| i128::from(lit_at(x) >> shift));
+                let [a, b] = [from, to].map(|x| i128::from(sampling(x) >> shift));
                 let step = if to == from { 0 } else { (b - a) * 256 / i128::from(to - from) };
                 a + (step * i128::from(x - from)).div_euclid(256)
             }
-            _ => i128::from(lit_at(x) >> shift),
+            _ => i128::from(sampling(x) >> shift),
         };
         let textured = self.look.texture.as_ref().map(|texture| (texture, self.texel(texture, seed, last, x, y).1));
         let mut byte = if let Some(mix) = &self.look.channels {
             let mut channels = match self.look.source {
-                Source::Lit(_) | Source::LitEvery(..) => [0, 1, 2].map(|i| byte_of(lit(i), 128)),
-                Source::Curved(limits) => [0, 1, 2].map(|i| self.quadratic_byte(limits[i], i, x, y, 128)),
+                ShadeSource::Lit(_) | ShadeSource::LitEvery(..) => [0, 1, 2].map(|i| byte_of(lit(i), 128)),
+                ShadeSource::Curved(limits) => [0, 1, 2].map(|i| self.quadratic_byte(limits[i], i, x, y, 128)),
                 _ => [0, 1, 2].map(|i| self.shades[i].byte((first, last), x, y, None)),
             };
             if let Some((texture, texel)) = textured {
@@ -295,10 +298,12 @@ impl<'a> Naive<'a> {
             byte[0]
         } else {
             let shade = match self.look.source {
-                Source::Shaded(_) => self.shades[0].byte((first, last), x, y, self.look.dither.map(|_| threshold)),
-                Source::NormalTable(table) => lookup(table, linear(|a| a.slope[1], 128), linear(|a| a.slope[0], 128)),
-                Source::Lit(_) | Source::LitEvery(..) => byte_of(lit(0), threshold),
-                Source::Curved(limits) => self.quadratic_byte(limits[0], 0, x, y, threshold),
+                ShadeSource::Shaded(_) => self.shades[0].byte((first, last), x, y, self.look.dither.map(|_| threshold)),
+                ShadeSource::NormalTable(table) => {
+                    lookup(table, linear(|a| a.slope[1], 128), linear(|a| a.slope[0], 128))
+                }
+                ShadeSource::Lit(_) | ShadeSource::LitEvery(..) => byte_of(lit(0), threshold),
+                ShadeSource::Curved(limits) => self.quadratic_byte(limits[0], 0, x, y, threshold),
                 _ => unreachable!("all sources are tried"),
             };
             match textured {
@@ -336,7 +341,7 @@ impl<'a> Naive<'a> {
 fn draw(
     vertices: &[Vertex; 3],
     attributes: &[Attributes; 3],
-    look: &Look<'_>,
+    look: &PixelPipeline<'_>,
     clip: Option<Rect>,
     kernel: Kernel,
 ) -> Vec<u8> {
@@ -350,8 +355,8 @@ fn draw(
     bytes
 }
 
-fn sum_is_exact(look: &Look<'_>) -> bool {
-    !matches!(look.source, Source::Lit(_) | Source::LitEvery(..) | Source::Curved(_))
+fn sum_is_exact(look: &PixelPipeline<'_>) -> bool {
+    !matches!(look.source, ShadeSource::Lit(_) | ShadeSource::LitEvery(..) | ShadeSource::Curved(_))
 }
 
 #[test]
@@ -512,16 +517,16 @@ fn small_triangles_that_are_lit_are_those_of_their_rows() {
             Vertex::new(x, y, shade, random.log_uniform(30) as u32).expect("in range")
         });
         let attributes = attributes(&mut random);
-        let plain = Look {
-            source: Source::Lit(&Sum),
+        let plain = PixelPipeline {
+            source: ShadeSource::Lit(&Sum),
             dither: (random.within(0, 1) == 0).then_some(&BAYER),
             keeps_depth: random.within(0, 1) == 0,
-            ..Look::PLAIN
+            ..PixelPipeline::PLAIN
         };
         let (x, y) = (random.within(0, WIDTH.into()) as u32, random.within(0, HEIGHT.into()) as u32);
         let clip = random.one_of(&[None, Some(Rect { x0: x / 2, y0: y / 2, x1: x, y1: y })]);
         let (has_depth, kernel) = (random.within(0, 1) == 0, random.one_of(&kernels));
-        let draw = |look: &Look<'_>| {
+        let draw = |look: &PixelPipeline<'_>| {
             let (mut depths, mut bytes) = (before.clone(), vec![BEFORE; (WIDTH * HEIGHT) as usize]);
             let frame = Frame::new(&mut bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
             let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
@@ -537,7 +542,7 @@ fn small_triangles_that_are_lit_are_those_of_their_rows() {
             (drawn, bytes, depths)
         };
         let (drawn, bytes, depths) = draw(&plain);
-        let (mut by_rows, expected, expected_depths) = draw(&Look { blend: Some(&own), ..plain });
+        let (mut by_rows, expected, expected_depths) = draw(&PixelPipeline { blend: Some(&own), ..plain });
         assert_eq!(by_rows.blended, by_rows.covered);
         by_rows.blended = 0;
         assert!((drawn, &bytes, &depths) == (by_rows, &expected, &expected_depths), "{vertices:?}, {attributes:?}");
@@ -565,7 +570,7 @@ fn quadratic_shades_are_the_definition() {
         let (channel, limits) = (random.within(0, 2) as usize, [0, 1, 2].map(|_| limits(&mut random)));
         let channels = (random.within(0, 1) == 0).then_some(Mix::Only(channel));
         let channel = if channels.is_some() { channel } else { 0 };
-        let look = Look { source: Source::Curved(limits), channels, ..Look::PLAIN };
+        let look = PixelPipeline { source: ShadeSource::Curved(limits), channels, ..PixelPipeline::PLAIN };
         let naive = Naive::new(&vertices, &attributes, &look);
         let bytes = draw(&vertices, &attributes, &look, None, kernels[0]);
         for kernel in &kernels[1..] {
@@ -619,7 +624,7 @@ fn quadratic_shades_of_any_numbers_stay_within() {
             }
         });
         let limits = limits(&mut random);
-        let look = Look { source: Source::Curved([limits; 3]), ..Look::PLAIN };
+        let look = PixelPipeline { source: ShadeSource::Curved([limits; 3]), ..PixelPipeline::PLAIN };
         let bytes = draw(&vertices, &attributes, &look, None, kernels[0]);
         for kernel in &kernels[1..] {
             assert_eq!(
@@ -669,13 +674,13 @@ fn levels_are_the_definition() {
             ..Attributes::default()
         });
         let i = random.within(0, 2) as usize;
-        let texture = TextureLook {
+        let texture = TextureStage {
             texels: Texels::new(&zeros, ubits, vbits).expect("as many texels"),
             levels: Some(levels),
             mapping: mappings[i],
             tables: [&texel; 3],
         };
-        let look = Look { texture: Some(texture), ..Look::PLAIN };
+        let look = PixelPipeline { texture: Some(texture), ..PixelPipeline::PLAIN };
         let naive = Naive::new(&vertices, &attributes, &look);
         if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
             continue;
@@ -730,14 +735,14 @@ fn a_level_is_the_least_whose_texels_are_as_large_as_pixels() {
         let corner = |part: f64, step: [f64; 2]| step.map(|texels| (40.0 * part * texels * 65_536.0).round() as i32);
         let attributes = [[0; 2], corner(1.0, across), corner(1.0, down)]
             .map(|texture| Attributes { texture, ..Attributes::default() });
-        let look = Look {
-            texture: Some(TextureLook {
+        let look = PixelPipeline {
+            texture: Some(TextureStage {
                 texels: Texels::new(&zeros, 8, 8).expect("as many texels"),
                 levels: Some(Levels::new(&numbers, 8, 8).expect("as many texels")),
                 mapping,
                 tables: [&texel; 3],
             }),
-            ..Look::PLAIN
+            ..PixelPipeline::PLAIN
         };
         let level = draw(&vertices, &attributes, &look, None, Kernel::PORTABLE)[0];
         let longest = across[0].hypot(across[1]).max(down[0].hypot(down[1]));

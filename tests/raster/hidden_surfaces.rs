@@ -7,9 +7,9 @@ use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
 use mode13h::raster::scan_line::{EdgePair, Lists, Scratch, ScratchError};
-use mode13h::raster::{DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 
-type Face = ([Vertex; 3], Shading);
+type Face = ([Vertex; 3], Interpolation);
 
 /// A frame, drawn into by one method; with what the raster counted.
 #[derive(Clone, Copy)]
@@ -28,11 +28,11 @@ impl Sheet {
         Self { width, height, clip: Rect { x0: 0, y0: 0, x1: width, y1: height }, rows_each: height }
     }
 
-    fn draw(self, mut paint: impl FnMut(Raster<'_>) -> Drawn) -> (Vec<u8>, Drawn) {
+    fn draw(self, mut paint: impl FnMut(Raster<'_>) -> DrawStats) -> (Vec<u8>, DrawStats) {
         // Bytes between the rows, and after them, must stay.
         let pitch = self.width as usize + 3;
         let mut bytes = vec![Self::EMPTY; pitch * self.height as usize];
-        let mut drawn = Drawn::default();
+        let mut drawn = DrawStats::default();
         let mut frame = Frame::new(&mut bytes, self.width, self.height, pitch).expect("legal");
         for band in frame.bands(self.rows_each) {
             drawn += paint(Raster::new(band).with_clip(self.clip));
@@ -43,20 +43,20 @@ impl Sheet {
         (bytes, drawn)
     }
 
-    fn depth_buffer(self, faces: &[Face]) -> (Vec<u8>, Drawn) {
+    fn depth_buffer(self, faces: &[Face]) -> (Vec<u8>, DrawStats) {
         let mut depths: Vec<u32> = Vec::new();
         self.draw(|raster| in_turn(raster.with_cleared_depth(&mut depths), faces))
     }
 
-    fn scan_line(self, lists: &mut Lists, faces: &[Face]) -> (Vec<u8>, Drawn) {
+    fn scan_line(self, lists: &mut Lists, faces: &[Face]) -> (Vec<u8>, DrawStats) {
         self.draw(|mut raster| raster.scan_line(faces, lists.scratch(faces.len())).expect("room enough"))
     }
 }
 
-fn in_turn(mut raster: Raster<'_>, faces: &[Face]) -> Drawn {
-    let mut drawn = Drawn::default();
-    for (vertices, shading) in faces {
-        drawn += raster.triangle(vertices, *shading);
+fn in_turn(mut raster: Raster<'_>, faces: &[Face]) -> DrawStats {
+    let mut drawn = DrawStats::default();
+    for (vertices, interpolation) in faces {
+        drawn += raster.triangle(vertices, *interpolation);
     }
     drawn
 }
@@ -137,15 +137,16 @@ fn soups(mut tried: Tried) {
                 3 => vertices = with_depths(vertices, || 1000 + random.log_uniform(5) as i64),
                 _ => vertices = with_depths(vertices, || 7),
             }
-            let flat = random.one_of(&[Shading::Flat(0), Shading::Flat(200)]);
+            let flat = random.one_of(&[Interpolation::Flat(0), Interpolation::Flat(200)]);
             // The scan-line method gives exact cover to all.
-            let shading = Some(random.one_of(Shading::INTERPOLATED)).filter(|shading| shading.has_exact_cover());
-            let shading = if random.within(0, 2) == 0 { flat } else { shading.unwrap_or_default() };
-            faces.push((vertices, shading));
+            let interpolation = Some(random.one_of(Interpolation::INTERPOLATED))
+                .filter(|interpolation| interpolation.has_exact_cover());
+            let interpolation = if random.within(0, 2) == 0 { flat } else { interpolation.unwrap_or_default() };
+            faces.push((vertices, interpolation));
             if random.within(0, 5) == 0 {
                 // Again, and turned round, in other shades.
                 let [a, b, c] = vertices.map(|v| v.with_shade(U8F8::from_shade(77)));
-                faces.push((random.one_of(&[[a, b, c], [c, b, a]]), shading));
+                faces.push((random.one_of(&[[a, b, c], [c, b, a]]), interpolation));
             }
         }
         check(&mut tried, &mut random, &mut lists, (width, height), &faces);
@@ -165,14 +166,14 @@ fn d2_long_soups() {
 
 #[test]
 fn too_little_memory_is_refused_before_anything_is_drawn() {
-    let face = ([vertex(0, 0, 0, 9), vertex(999, 0, 0, 9), vertex(0, 999, 0, 9)], Shading::Flat(1));
+    let face = ([vertex(0, 0, 0, 9), vertex(999, 0, 0, 9), vertex(0, 999, 0, 9)], Interpolation::Flat(1));
     let faces = [face; 4];
     for (list, pairs, room) in [(12, 3, 3), (11, 4, 3), (0, 9, 0)] {
         let (mut list, mut pairs) = (vec![0; list], vec![EdgePair::default(); pairs]);
         let (bytes, _) = Sheet::new(8, 8).draw(|mut raster| {
             let refused = raster.scan_line(&faces, Scratch::new(&mut list, &mut pairs));
             assert_eq!(refused, Err(ScratchError { faces: 4, room }));
-            Drawn::default()
+            DrawStats::default()
         });
         assert!(bytes.iter().all(|byte| *byte == Sheet::EMPTY));
     }
@@ -192,7 +193,7 @@ const FAR: i64 = 10_000;
 fn face(corners: [Corner; 3], index: u8) -> Face {
     // round(2³⁰ · near / w).
     let depth = |m: i64| ((m << 31) + NEAR) / (2 * NEAR);
-    (corners.map(|(x, y, m)| vertex(x, y, 0, depth(m))), Shading::Flat(index))
+    (corners.map(|(x, y, m)| vertex(x, y, 0, depth(m))), Interpolation::Flat(index))
 }
 
 /// Draws the faces with indices 10, 11 … by depth buffer and by scan-line. Wherever a face's plane is in
@@ -343,7 +344,8 @@ fn d3_the_first_submitted_of_equals_wins() {
         let mut other = || of_one_depth(triangle(&mut random, WIDTH.into(), HEIGHT.into()));
         let constants = [other(), other(), other()];
         for triangles in [[[a, b, c], [c, a, b], [b, a, c]], constants] {
-            let faces: Vec<Face> = triangles.iter().zip(10..).map(|(v, index)| (*v, Shading::Flat(index))).collect();
+            let faces: Vec<Face> =
+                triangles.iter().zip(10..).map(|(v, index)| (*v, Interpolation::Flat(index))).collect();
             // Drawn from the last to the first without any depth: the first is on top.
             let reversed: Vec<Face> = faces.iter().rev().copied().collect();
             let (right, _) = sheet.draw(|raster| in_turn(raster, &reversed));
@@ -362,7 +364,7 @@ fn d3_the_first_submitted_of_equals_wins() {
                     let (x, y) = (i64::from(v.x().to_bits()), i64::from(v.y().to_bits()));
                     vertex(x, y, 0, (1 << 26) + dx * x + dy * y)
                 });
-                (v, Shading::Flat(10 + index))
+                (v, Interpolation::Flat(10 + index))
             })
             .collect();
         assert_eq!(sheet.depth_buffer(&soup).0, sheet.scan_line(&mut lists, &soup).0, "{soup:?}");
@@ -371,12 +373,12 @@ fn d3_the_first_submitted_of_equals_wins() {
 }
 
 /// With a u16 depth buffer.
-fn narrow_in_turn(raster: Raster<'_>, faces: &[Face]) -> Drawn {
+fn narrow_in_turn(raster: Raster<'_>, faces: &[Face]) -> DrawStats {
     let mut depths: Vec<u16> = Vec::new();
     let mut raster = raster.with_cleared_depth(&mut depths);
-    let mut drawn = Drawn::default();
-    for (vertices, shading) in faces {
-        drawn += raster.triangle(vertices, *shading);
+    let mut drawn = DrawStats::default();
+    for (vertices, interpolation) in faces {
+        drawn += raster.triangle(vertices, *interpolation);
     }
     drawn
 }
@@ -392,12 +394,13 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
         let faces: Vec<Face> = (0..8)
             .map(|_| {
                 let vertices = triangle(&mut random, width.into(), height.into());
-                (with_depths(vertices, || random.within(0, near)), Shading::GouraudReseeded)
+                (with_depths(vertices, || random.within(0, near)), Interpolation::GouraudReseeded)
             })
             .collect();
         let (mut bytes, mut cells) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0_u128; (WIDTH * HEIGHT) as usize]);
         for (vertices, _) in &faces {
-            for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, Shading::GouraudReseeded, width, height) {
+            for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, Interpolation::GouraudReseeded, width, height)
+            {
                 let place = (y * width + x) as usize;
                 let cell = u128::from(oracle::depth_at(vertices, x, y)).div_ceil(16_384).min(65_535);
                 if cell > cells[place] {
@@ -412,8 +415,8 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
         let mut depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
         depth.clear();
         let mut raster = Raster::new(frame).with_depth(depth);
-        for (vertices, shading) in &faces {
-            raster.triangle(vertices, *shading);
+        for (vertices, interpolation) in &faces {
+            raster.triangle(vertices, *interpolation);
         }
         assert_eq!(drawn, bytes, "{faces:?}");
         assert!(depths.iter().zip(&cells).all(|(is, should)| u128::from(*is) == *should), "{faces:?}");
@@ -426,7 +429,7 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
 fn depths_of_earlier_frames_do_not_count() {
     use mode13h::glam::Vec3;
     use mode13h::mesh::shapes;
-    use mode13h::render::{HiddenSurfaces, Renderer, Rung};
+    use mode13h::render::{HiddenSurfaces, Renderer, Shading};
     use mode13h::scene::Object;
     use mode13h::vga::Vga;
 
@@ -445,12 +448,12 @@ fn depths_of_earlier_frames_do_not_count() {
         let far = number(3.0);
         scene[second].position = Vec3::new(number(4.0) as f32, number(3.0) as f32, far as f32);
         scene.camera.eye = Vec3::new(number(1.0) as f32, number(1.0) as f32, 3.0 + number(1.5) as f32);
-        again.set_rung(random.one_of(&Rung::ALL));
+        again.set_shading(random.one_of(&Shading::ALL));
         let mut fresh = again.set_alike();
         let mut other = Vga::new();
         let stats = again.draw(&scene, &mut machine).expect("a legal scene");
         fresh.draw(&scene, &mut other).expect("a legal scene");
-        assert!(machine.pixels() == other.pixels(), "round {round}, {}", again.rung());
+        assert!(machine.pixels() == other.pixels(), "round {round}, {}", again.shading());
         drawn += stats.raster.pixels;
     }
     assert!(drawn > 1_000_000, "{drawn}");

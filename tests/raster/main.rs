@@ -12,9 +12,9 @@ mod effects;
 mod hidden_surfaces;
 mod machine;
 mod patterns;
-mod period;
 #[cfg(feature = "alloc")]
 mod polygons;
 mod shared_edges;
 mod triangles;
 mod vertex_rounding;
+mod vintage;

@@ -5,10 +5,10 @@ use crate::support::oracle::{self, Point, Ratio};
 use crate::support::random::Random;
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
-use mode13h::raster::cover::Ordered;
+use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::polygon::{PolygonError, TableRow};
 use mode13h::raster::shade::ShadePlane;
-use mode13h::raster::{Drawn, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::raster::{DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 
 const WIDTH: u32 = 150;
 const HEIGHT: u32 = 30;
@@ -24,7 +24,7 @@ struct Sheet {
 impl Sheet {
     const WHOLE: Self = Self { clip: Rect { x0: 0, y0: 0, x1: WIDTH, y1: HEIGHT }, rows_each: HEIGHT, empty: 0 };
 
-    fn draw(&self, vertices: &[Vertex], shading: Shading) -> Result<(Vec<u8>, Drawn), PolygonError> {
+    fn draw(&self, vertices: &[Vertex], interpolation: Interpolation) -> Result<(Vec<u8>, DrawStats), PolygonError> {
         let pitch = WIDTH as usize + 3;
         let mut bytes = vec![self.empty; pitch * HEIGHT as usize];
         // Rubbish of the polygon before makes no difference.
@@ -36,9 +36,9 @@ impl Sheet {
             right_shade: rubbish.shade(),
         };
         let mut table = vec![rubbish; self.rows_each as usize];
-        let mut drawn = Drawn::default();
+        let mut drawn = DrawStats::default();
         for band in Frame::new(&mut bytes, WIDTH, HEIGHT, pitch).expect("legal").bands(self.rows_each) {
-            drawn += Raster::new(band).with_clip(self.clip).polygon(vertices, shading, &mut table)?;
+            drawn += Raster::new(band).with_clip(self.clip).polygon(vertices, interpolation, &mut table)?;
         }
         assert!(bytes.chunks(pitch).all(|row| row[WIDTH as usize..] == [self.empty; 3]), "bytes between the rows stay");
         Ok((bytes.chunks(pitch).flat_map(|row| &row[..WIDTH as usize]).copied().collect(), drawn))
@@ -99,15 +99,15 @@ fn check(vertices: &[Vertex]) -> u32 {
     let (low, high) = (shades().min().unwrap_or(0), shades().max().unwrap_or(0));
     let range = (low + 128) >> 8..=(high + 128) >> 8;
     let mut covered = 0;
-    for (shading, reseed) in [(Shading::GouraudReseeded, RESEED), (Shading::Gouraud, 1 << 20)] {
+    for (interpolation, reseed) in [(Interpolation::GouraudReseeded, RESEED), (Interpolation::Gouraud, 1 << 20)] {
         let expected = expected(vertices, reseed);
-        let on = |empty| Sheet { empty, ..Sheet::WHOLE }.draw(vertices, shading).expect("convex");
+        let on = |empty| Sheet { empty, ..Sheet::WHOLE }.draw(vertices, interpolation).expect("convex");
         let ((on_0, drawn), (on_1, _)) = (on(0), on(1));
         covered = 0;
         for (place, expected) in expected.iter().enumerate() {
             let is = (on_0[place] == on_1[place]).then_some(on_0[place]);
             let (x, y) = (place % WIDTH as usize, place / WIDTH as usize);
-            assert_eq!(is, *expected, "{shading:?} at ({x}, {y}) of {vertices:?}");
+            assert_eq!(is, *expected, "{interpolation:?} at ({x}, {y}) of {vertices:?}");
             if let Some(byte) = is {
                 covered += 1;
                 assert!(range.contains(&u16::from(byte)), "range at ({x}, {y}) of {vertices:?}");
@@ -115,7 +115,7 @@ fn check(vertices: &[Vertex]) -> u32 {
         }
         assert_eq!((drawn.covered, drawn.pixels), (covered, covered));
     }
-    let (flat, _) = Sheet::WHOLE.draw(vertices, Shading::Flat(7)).expect("convex");
+    let (flat, _) = Sheet::WHOLE.draw(vertices, Interpolation::Flat(7)).expect("convex");
     assert_eq!(flat.iter().filter(|byte| **byte == 7).count() as u32, covered, "flat covers the same");
     covered
 }
@@ -187,13 +187,13 @@ fn the_table_is_s4s_and_cover_is_exact() {
         pixels += check(&vertices);
         corners = corners.max(vertices.len());
         // Neither the first vertex, nor the winding, nor one that is there twice makes a difference.
-        let first = Sheet::WHOLE.draw(&vertices, Shading::default());
+        let first = Sheet::WHOLE.draw(&vertices, Interpolation::default());
         let turn = random.within(0, vertices.len() as i64 - 1) as usize;
         vertices.rotate_left(turn);
         vertices.insert(0, vertices[0]);
-        assert_eq!(Sheet::WHOLE.draw(&vertices, Shading::default()), first);
+        assert_eq!(Sheet::WHOLE.draw(&vertices, Interpolation::default()), first);
         vertices.reverse();
-        assert_eq!(Sheet::WHOLE.draw(&vertices, Shading::default()), first);
+        assert_eq!(Sheet::WHOLE.draw(&vertices, Interpolation::default()), first);
     }
     assert!(pixels > 100_000 && corners > 10, "{pixels} pixels, up to {corners} corners");
 }
@@ -211,8 +211,8 @@ fn r8_polygons_clipped_and_in_bands() {
         };
         let ((x0, x1), (y0, y1)) = (ends(WIDTH), ends(HEIGHT));
         let rows_each = random.within(1, HEIGHT.into()) as u32;
-        for shading in [Shading::GouraudReseeded, Shading::Gouraud, Shading::Flat(9)] {
-            let (mut whole, _) = Sheet::WHOLE.draw(&vertices, shading).expect("convex");
+        for interpolation in [Interpolation::GouraudReseeded, Interpolation::Gouraud, Interpolation::Flat(9)] {
+            let (mut whole, _) = Sheet::WHOLE.draw(&vertices, interpolation).expect("convex");
             for (place, byte) in whole.iter_mut().enumerate() {
                 let (x, y) = (place as u32 % WIDTH, place as u32 / WIDTH);
                 if !((x0..x1).contains(&x) && (y0..y1).contains(&y)) {
@@ -220,7 +220,7 @@ fn r8_polygons_clipped_and_in_bands() {
                 }
             }
             let sheet = Sheet { clip: Rect { x0, y0, x1, y1 }, rows_each, empty: 0 };
-            let (part, _) = sheet.draw(&vertices, shading).expect("convex");
+            let (part, _) = sheet.draw(&vertices, interpolation).expect("convex");
             assert_eq!(part, whole, "({x0}, {y0}) to ({x1}, {y1}), bands of {rows_each}, {vertices:?}");
         }
     }
@@ -252,10 +252,10 @@ fn r5_polygons_that_share_edges() {
             let mut bytes = vec![0; counts.len()];
             let mut raster = Raster::new(Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal"));
             match vertices[..] {
-                [a, b, c] if random.within(0, 1) == 0 => drop(raster.triangle(&[a, b, c], Shading::Flat(1))),
+                [a, b, c] if random.within(0, 1) == 0 => drop(raster.triangle(&[a, b, c], Interpolation::Flat(1))),
                 _ => {
                     let mut table = [TableRow::default(); HEIGHT as usize];
-                    raster.polygon(&vertices, Shading::Flat(1), &mut table).expect("convex");
+                    raster.polygon(&vertices, Interpolation::Flat(1), &mut table).expect("convex");
                 }
             }
             counts.iter_mut().zip(bytes).for_each(|(count, byte)| *count += u32::from(byte));
@@ -281,7 +281,7 @@ fn r7_any_list_of_points_is_quiet() {
             .map(|(x, y)| (x.clamp(-BAND, BAND), y.clamp(-BAND, BAND)))
             .collect();
         let vertices = shaded(&mut random, &corners);
-        match Sheet::WHOLE.draw(&vertices, Shading::Flat(1)) {
+        match Sheet::WHOLE.draw(&vertices, Interpolation::Flat(1)) {
             Ok((bytes, _)) => {
                 drawn += 1;
                 let outline: Vec<Point> = vertices.iter().map(oracle::point).collect();
@@ -290,7 +290,7 @@ fn r7_any_list_of_points_is_quiet() {
                     assert_eq!(*byte, u8::from(oracle::polygon_covers(&outline, centre)), "{corners:?}");
                 }
                 // Gouraud must be as quiet.
-                Sheet::WHOLE.draw(&vertices, Shading::default()).expect("convex, as before");
+                Sheet::WHOLE.draw(&vertices, Interpolation::default()).expect("convex, as before");
             }
             Err(error) => {
                 refused += 1;
@@ -319,11 +319,11 @@ fn a_short_table_is_refused() {
     let mut bytes = [0; 20 * 20];
     let mut frame = Frame::new(&mut bytes, 20, 20, 20).expect("legal");
     let mut table = [TableRow::default(); 19];
-    let refused = Raster::new(frame.reborrow()).polygon(&vertices, Shading::Flat(1), &mut table);
+    let refused = Raster::new(frame.reborrow()).polygon(&vertices, Interpolation::Flat(1), &mut table);
     assert_eq!(refused, Err(PolygonError::Table { given: 19, needed: 20 }));
     // For a band its own rows are enough.
     for band in frame.bands(7) {
-        Raster::new(band).polygon(&vertices, Shading::Flat(1), &mut table[..7]).expect("seven rows at most");
+        Raster::new(band).polygon(&vertices, Interpolation::Flat(1), &mut table[..7]).expect("seven rows at most");
     }
     assert_eq!(bytes.iter().map(|byte| u32::from(*byte)).sum::<u32>(), 100);
 }
@@ -352,13 +352,13 @@ fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     let as_table = |vertices: &[Vertex]| {
         draw(&|raster| {
             let mut table = [TableRow::default(); SIDE];
-            raster.polygon(vertices, Shading::default(), &mut table).expect("convex");
+            raster.polygon(vertices, Interpolation::default(), &mut table).expect("convex");
         })
     };
     let as_triangles = |v: &[Vertex]| {
         draw(&|raster| {
-            raster.triangle(&[v[0], v[1], v[2]], Shading::default());
-            raster.triangle(&[v[0], v[2], v[3]], Shading::default());
+            raster.triangle(&[v[0], v[1], v[2]], Interpolation::default());
+            raster.triangle(&[v[0], v[2], v[3]], Interpolation::default());
         })
     };
     let quarter = |vertices: &[Vertex]| -> Vec<Vertex> {
@@ -425,7 +425,7 @@ fn n9_slip_5_two_faces_agree_along_their_edge() {
             [ends[0], ends[1], third]
         });
         let [Some(one), Some(two)] = sides.map(|vertices| {
-            let ordered = Ordered::new(&vertices);
+            let ordered = SortedTriangle::new(&vertices);
             (ordered.doubled_area != 0).then(|| ShadePlane::new(&ordered))
         }) else {
             continue;

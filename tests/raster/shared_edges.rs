@@ -4,7 +4,7 @@ use crate::support::oracle::{self, Point};
 use crate::support::random::Random;
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
-use mode13h::raster::cover::Ordered;
+use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::{Rect, Vertex};
 
 const WIDTH: i32 = 80;
@@ -22,7 +22,7 @@ fn check(parted: &Parted, tried: &mut Tried) {
     let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
     for corners in &parted.triangles {
         let vertices: [Vertex; 3] = corners.map(|(x, y)| vertex(x, y, 0, 0));
-        Ordered::new(&vertices).rows(WIDTH as u32, clip, |row| {
+        SortedTriangle::new(&vertices).rows(WIDTH as u32, clip, |row| {
             assert!(row.x0 < row.x1, "a row without a pixel: {row:?} of {corners:?}");
             for x in row.x0..row.x1 {
                 counts[(row.y * WIDTH + x) as usize] += 1;

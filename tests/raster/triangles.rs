@@ -5,37 +5,37 @@ use crate::support::random::Random;
 use crate::support::triangles::{draw, edge_beside, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::cover::Ordered;
+use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::depth::DepthPlane;
-use mode13h::raster::{DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex, VertexError};
+use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex, VertexError};
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 24;
 
 /// The shadings with exact cover, and what a report calls the farthest that a byte of theirs was off.
-const EXACT: &[(Shading, &str)] = &[
-    (Shading::Gouraud, "shades off in gouraud-8.8"),
-    (Shading::GouraudReseeded, "in gouraud-8.8-reseeded"),
-    (Shading::Gouraud1616, "in gouraud-16.16"),
-    (Shading::GouraudHyperbolic, "in gouraud-hyperbolic"),
+const EXACT: &[(Interpolation, &str)] = &[
+    (Interpolation::Gouraud, "shades off in gouraud-8.8"),
+    (Interpolation::GouraudReseeded, "in gouraud-8.8-reseeded"),
+    (Interpolation::Gouraud1616, "in gouraud-16.16"),
+    (Interpolation::GouraudHyperbolic, "in gouraud-hyperbolic"),
     #[cfg(feature = "alloc")]
-    (Shading::Float, "in float"),
+    (Interpolation::Float, "in float"),
 ];
 
 /// All shadings.
-fn shadings() -> impl Iterator<Item = Shading> {
-    Shading::INTERPOLATED.iter().copied().chain([Shading::Flat(9)])
+fn interpolations() -> impl Iterator<Item = Interpolation> {
+    Interpolation::INTERPOLATED.iter().copied().chain([Interpolation::Flat(9)])
 }
 
 #[test]
 fn every_shading_with_exact_cover_is_looked_at() {
-    let exact: Vec<Shading> =
-        Shading::INTERPOLATED.iter().copied().filter(|shading| shading.has_exact_cover()).collect();
-    assert_eq!(EXACT.iter().map(|(shading, _)| *shading).collect::<Vec<_>>(), exact);
-    let mut names: Vec<&str> = shadings().map(Shading::name).collect();
+    let exact: Vec<Interpolation> =
+        Interpolation::INTERPOLATED.iter().copied().filter(|interpolation| interpolation.has_exact_cover()).collect();
+    assert_eq!(EXACT.iter().map(|(interpolation, _)| *interpolation).collect::<Vec<_>>(), exact);
+    let mut names: Vec<&str> = interpolations().map(Interpolation::name).collect();
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), Shading::INTERPOLATED.len() + 1, "each has a name of its own");
+    assert_eq!(names.len(), Interpolation::INTERPOLATED.len() + 1, "each has a name of its own");
 }
 
 /// The pixels that one triangle covers, with its cover, bytes, range and error checked.
@@ -67,14 +67,14 @@ fn measure(vertices: &[Vertex; 3], width: u32, height: u32) -> Measured {
     let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
     let (low, high) = (*shades.iter().min().expect("three"), *shades.iter().max().expect("three"));
     let mut measured = Measured { off: vec![0.0; EXACT.len()], ..Measured::default() };
-    for ((shading, _), worst) in EXACT.iter().copied().zip(&mut measured.off) {
+    for ((interpolation, _), worst) in EXACT.iter().copied().zip(&mut measured.off) {
         let mut expected = vec![None; (width * height) as usize];
-        for pixel in oracle::pixels(vertices, shading, width as i32, height as i32) {
+        for pixel in oracle::pixels(vertices, interpolation, width as i32, height as i32) {
             expected[pixel.y as usize * width as usize + pixel.x as usize] = Some(pixel.byte);
         }
-        let (bound_n, bound_d) = oracle::bound(shading, width.into()).expect("a bound");
+        let (bound_n, bound_d) = oracle::bound(interpolation, width.into()).expect("a bound");
         // Two backgrounds tell a byte that is drawn from one that is left alone.
-        let on = |empty| draw(vertices, shading, width, height, None, empty);
+        let on = |empty| draw(vertices, interpolation, width, height, None, empty);
         let (on_0, on_1) = (on(0), on(1));
         measured.covered = 0;
         for y in 0..height as usize {
@@ -82,21 +82,21 @@ fn measure(vertices: &[Vertex; 3], width: u32, height: u32) -> Measured {
                 let place = y * width as usize + x;
                 let drawn = (on_0[place] == on_1[place]).then_some(on_0[place]);
                 measured.differ += u32::from(drawn != expected[place]);
-                assert_eq!(drawn, expected[place], "{shading:?} at ({x}, {y}) of {vertices:?}");
+                assert_eq!(drawn, expected[place], "{interpolation:?} at ({x}, {y}) of {vertices:?}");
                 let Some(byte) = drawn.map(i128::from) else { continue };
                 measured.covered += 1;
                 assert!((low + 128) >> 8 <= byte && byte <= (high + 128) >> 8, "range at ({x}, {y}) of {vertices:?}");
-                let exact = oracle::exact_shade(vertices, shading, oracle::centre(x as i32, y as i32));
+                let exact = oracle::exact_shade(vertices, interpolation, oracle::centre(x as i32, y as i32));
                 assert!(
                     exact.is_within(byte * 256, bound_n, bound_d),
-                    "{shading:?}, error at ({x}, {y}) of {vertices:?}"
+                    "{interpolation:?}, error at ({x}, {y}) of {vertices:?}"
                 );
                 // Rounded only in the quotient.
                 *worst = worst.max((exact.n - byte * 256 * exact.d).abs() as f64 / exact.d as f64 / 256.0);
             }
         }
     }
-    let flat = draw(vertices, Shading::Flat(7), width, height, None, 0);
+    let flat = draw(vertices, Interpolation::Flat(7), width, height, None, 0);
     assert_eq!(flat.iter().filter(|&&byte| byte == 7).count() as u32, measured.covered, "flat covers the same");
     measured
 }
@@ -204,19 +204,19 @@ fn r6_order_and_winding_make_no_difference() {
     let mut random = Random::named("r6");
     while tried.more() {
         let [a, b, c] = triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT));
-        for shading in shadings() {
-            let first = draw(&[a, b, c], shading, WIDTH, HEIGHT, None, 0);
-            let deep = draw_with_depth(&[a, b, c], shading);
+        for interpolation in interpolations() {
+            let first = draw(&[a, b, c], interpolation, WIDTH, HEIGHT, None, 0);
+            let deep = draw_with_depth(&[a, b, c], interpolation);
             for order in [[a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]] {
-                assert_eq!(draw(&order, shading, WIDTH, HEIGHT, None, 0), first, "{order:?}");
-                assert!(draw_with_depth(&order, shading) == deep, "with depths, {shading:?} of {order:?}");
+                assert_eq!(draw(&order, interpolation, WIDTH, HEIGHT, None, 0), first, "{order:?}");
+                assert!(draw_with_depth(&order, interpolation) == deep, "with depths, {interpolation:?} of {order:?}");
             }
         }
     }
 }
 
 /// Bytes and depths of 32 bits and of 16 of a triangle before a half that is near and one that is far.
-fn draw_with_depth(vertices: &[Vertex; 3], shading: Shading) -> (Vec<u8>, Vec<u32>, Vec<u16>) {
+fn draw_with_depth(vertices: &[Vertex; 3], interpolation: Interpolation) -> (Vec<u8>, Vec<u32>, Vec<u16>) {
     const SIZE: usize = (WIDTH * HEIGHT) as usize;
     let (mut bytes, mut wide) = (vec![0; 2 * SIZE], vec![1_u32; SIZE]);
     let mut narrow = vec![1_u16; SIZE];
@@ -226,8 +226,8 @@ fn draw_with_depth(vertices: &[Vertex; 3], shading: Shading) -> (Vec<u8>, Vec<u3
     let mut like = vec![0; SIZE];
     let like = Frame::new(&mut like, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
     let on = |bytes| Raster::new(Frame::new(bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal"));
-    on(first).with_depth(DepthBuffer::new(&mut wide, &like).expect("enough")).triangle(vertices, shading);
-    on(second).with_depth(DepthBuffer::new(&mut narrow, &like).expect("enough")).triangle(vertices, shading);
+    on(first).with_depth(DepthBuffer::new(&mut wide, &like).expect("enough")).triangle(vertices, interpolation);
+    on(second).with_depth(DepthBuffer::new(&mut narrow, &like).expect("enough")).triangle(vertices, interpolation);
     (bytes, wide, narrow)
 }
 
@@ -245,15 +245,15 @@ fn r8_a_clip_rectangle_changes_no_byte_inside_it() {
         };
         let ((x0, x1), (y0, y1)) = (ends(WIDE), ends(HEIGHT));
         let clip = Rect { x0, y0, x1, y1 };
-        for shading in shadings() {
-            let mut expected = draw(&vertices, shading, WIDE, HEIGHT, None, 0);
+        for interpolation in interpolations() {
+            let mut expected = draw(&vertices, interpolation, WIDE, HEIGHT, None, 0);
             for (place, byte) in expected.iter_mut().enumerate() {
                 let (x, y) = (place as u32 % WIDE, place as u32 / WIDE);
                 if !((x0..x1).contains(&x) && (y0..y1).contains(&y)) {
                     *byte = 0;
                 }
             }
-            assert_eq!(draw(&vertices, shading, WIDE, HEIGHT, Some(clip), 0), expected, "{clip:?} {vertices:?}");
+            assert_eq!(draw(&vertices, interpolation, WIDE, HEIGHT, Some(clip), 0), expected, "{clip:?} {vertices:?}");
         }
     }
 }
@@ -266,7 +266,9 @@ fn r8_bands_give_the_bytes_of_the_whole() {
     while tried.more() {
         let triangles: Vec<_> = (0..20).map(|_| triangle(&mut random, i64::from(WIDTH), i64::from(HEIGHT))).collect();
         let rows_each = random.within(1, i64::from(HEIGHT)) as u32;
-        for (with_depth, only) in [false, true].into_iter().flat_map(|with| shadings().map(move |only| (with, only))) {
+        for (with_depth, only) in
+            [false, true].into_iter().flat_map(|with| interpolations().map(move |only| (with, only)))
+        {
             let mut paint = |frame: Frame<'_>| {
                 let mut depths = vec![0; size];
                 let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
@@ -297,11 +299,11 @@ fn r11_moved_by_whole_pixels() {
         let corners = [corner(), corner(), corner()];
         let at = |dx: i64, dy: i64| corners.map(|(x, y, shade)| vertex(x + dx * 256, y + dy * 256, shade, 1));
         let (dx, dy) = (random.within(0, width - 41), random.within(0, height - 13));
-        for shading in shadings() {
-            let still = draw(&at(0, 0), shading, WIDTH, HEIGHT, None, 0);
-            let mut moved = draw(&at(dx, dy), shading, WIDTH, HEIGHT, None, 0);
+        for interpolation in interpolations() {
+            let still = draw(&at(0, 0), interpolation, WIDTH, HEIGHT, None, 0);
+            let mut moved = draw(&at(dx, dy), interpolation, WIDTH, HEIGHT, None, 0);
             moved.rotate_left((dy * width + dx) as usize);
-            assert_eq!(still, moved, "{shading:?} moved by ({dx}, {dy}): {corners:?}");
+            assert_eq!(still, moved, "{interpolation:?} moved by ({dx}, {dy}): {corners:?}");
         }
     }
 }
@@ -363,15 +365,15 @@ fn triangles_inside_the_frame_need_no_edges() {
             let (x, y) = (random.within(0, i64::from(WIDTH) * 256), random.within(0, i64::from(HEIGHT) * 256));
             vertex(x, y, random.within(0, 0xFF00), random.log_uniform(30) as i64)
         });
-        for shading in shadings() {
+        for interpolation in interpolations() {
             let on = |inside: bool| {
                 let mut bytes = vec![99; (WIDTH * HEIGHT) as usize];
                 let mut raster = Raster::new(Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal"));
                 let draw = if inside { Raster::triangle_inside } else { Raster::triangle };
-                (draw(&mut raster, &vertices, shading), bytes)
+                (draw(&mut raster, &vertices, interpolation), bytes)
             };
             let expected = on(false);
-            assert!(on(true) == expected, "{shading:?} of {vertices:?}");
+            assert!(on(true) == expected, "{interpolation:?} of {vertices:?}");
             pixels += expected.0.pixels;
         }
     }
@@ -425,8 +427,12 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
     let mut random = Random::named("d*");
     let mut replaced = 0;
     while tried.more() {
-        let shading =
-            random.one_of(&[Shading::GouraudReseeded, Shading::Gouraud, Shading::GouraudHyperbolic, Shading::Flat(7)]);
+        let interpolation = random.one_of(&[
+            Interpolation::GouraudReseeded,
+            Interpolation::Gouraud,
+            Interpolation::GouraudHyperbolic,
+            Interpolation::Flat(7),
+        ]);
         let triangles: Vec<_> = (0..6).map(|_| triangle(&mut random, WIDTH.into(), HEIGHT.into())).collect();
         // The last is the first again with other shades: of equal depths the first submitted wins.
         let twin = triangles[0].map(|v| vertex(v.x().to_bits().into(), v.y().to_bits().into(), 0, v.depth().into()));
@@ -434,9 +440,13 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
         let (mut expected, mut nearest) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
         let (mut covered, mut written) = (0, 0);
         for vertices in &all {
-            for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, shading, WIDTH as i32, HEIGHT as i32) {
+            for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, interpolation, WIDTH as i32, HEIGHT as i32) {
                 let depth = oracle::depth_at(vertices, x, y);
-                assert_eq!(DepthPlane::new(&Ordered::new(vertices)).at(x, y), depth, "({x}, {y}) of {vertices:?}");
+                assert_eq!(
+                    DepthPlane::new(&SortedTriangle::new(vertices)).at(x, y),
+                    depth,
+                    "({x}, {y}) of {vertices:?}"
+                );
                 let (low, high) =
                     vertices.iter().fold((u32::MAX, 0), |(low, high), v| (low.min(v.depth()), high.max(v.depth())));
                 assert!((low..=high).contains(&depth), "depth within the vertices' at ({x}, {y}) of {vertices:?}");
@@ -453,9 +463,9 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
         let frame = Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
         let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
         let mut raster = Raster::new(frame).with_depth(depth);
-        let mut drawn = Drawn::default();
+        let mut drawn = DrawStats::default();
         for vertices in &all {
-            drawn += raster.triangle(vertices, shading);
+            drawn += raster.triangle(vertices, interpolation);
         }
         assert_eq!((drawn.covered, drawn.pixels), (covered, written), "{all:?}");
         assert_eq!(bytes, expected, "{all:?}");
@@ -483,10 +493,10 @@ fn depth_buffers_hold_what_their_frame_holds() {
 }
 
 /// The shadings that are linear on the face, and how far they are off beside the half for the byte.
-const ON_THE_FACE: &[(Shading, f64)] = &[
-    (Shading::GouraudHyperbolic, 0.0),
+const ON_THE_FACE: &[(Interpolation, f64)] = &[
+    (Interpolation::GouraudHyperbolic, 0.0),
     #[cfg(feature = "alloc")]
-    (Shading::Float, 1.0 / 8192.0),
+    (Interpolation::Float, 1.0 / 8192.0),
 ];
 
 /// C5: w from 1 to 10⁴ within one triangle. Truth is the shade that is linear on the face, at the
@@ -508,8 +518,8 @@ fn perspective_correct_shades(mut tried: Tried) {
             .iter()
             .fold((u16::MAX, 0), |(low, high), v| (low.min(v.shade().to_bits()), high.max(v.shade().to_bits())));
         // Of the shadings that are linear on the face, in turn.
-        let (shading, more) = random.one_of(ON_THE_FACE);
-        let on = |empty| draw(&vertices, shading, WIDTH, HEIGHT, None, empty);
+        let (interpolation, more) = random.one_of(ON_THE_FACE);
+        let on = |empty| draw(&vertices, interpolation, WIDTH, HEIGHT, None, empty);
         let (on_0, on_1) = (on(0), on(1));
         for place in (0..on_0.len()).filter(|&place| on_0[place] == on_1[place]) {
             let byte = on_0[place];
@@ -525,7 +535,7 @@ fn perspective_correct_shades(mut tried: Tried) {
             // by at most twice that of 255: 0.0024. The byte is the nearest, in f32 to 1/8,192.
             let off = (f64::from(byte) - truth).abs();
             tried.worst("shades off", off);
-            assert!(off <= 0.5 + 0.0024 + more, "{shading:?}: {off} shades at {p:?} of {vertices:?}, w {w:?}");
+            assert!(off <= 0.5 + 0.0024 + more, "{interpolation:?}: {off} shades at {p:?} of {vertices:?}, w {w:?}");
             pixels += 1;
         }
     }

@@ -12,7 +12,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::{Decision, Effect};
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, Stats, VertexPath};
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Shading, Stats, VertexPath};
 use mode13h::scene::{Motion, Object, Scene, shipped};
 use mode13h::vga::Vga;
 
@@ -91,8 +91,8 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
         for way in HiddenSurfaces::ALL {
             try_one(format!("{name}, {way}"), &scene, &|_, renderer| renderer.set_hidden_surfaces(Some(way)));
         }
-        for rung in Rung::ALL {
-            try_one(format!("{name}, {rung}"), &scene, &|_, renderer| renderer.set_rung(rung));
+        for shading in Shading::ALL {
+            try_one(format!("{name}, {shading}"), &scene, &|_, renderer| renderer.set_shading(shading));
         }
         for mapping in Mapping::ALL {
             try_one(format!("{name}, {mapping}"), &scene, &|_, renderer| renderer.set_mapping(Some(mapping)));
@@ -101,7 +101,7 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
             try_one(format!("{name}, within {shades}"), &scene, &|_, renderer| renderer.set_max_error(Some(shades)));
         }
         try_one(format!("{name}, in integers"), &scene, &|_, renderer| renderer.set_vertex_path(VertexPath::Integer));
-        try_one(format!("{name}, dithered"), &scene, &|scene, _| scene.wishes.dither = true);
+        try_one(format!("{name}, dithered"), &scene, &|scene, _| scene.preferences.dither = true);
         for effect in Effect::ALL {
             try_one(format!("{name}, {effect} forced"), &scene, &|_, renderer| renderer.force(effect, Some(true)));
         }

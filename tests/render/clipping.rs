@@ -9,7 +9,7 @@ use crate::support::tried::Tried;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::raster::cover::Ordered;
+use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::{Rect, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
@@ -30,7 +30,7 @@ fn counts_by(renderer: &mut Renderer, scene: &Scene) -> (Vec<u32>, Stats) {
     let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
     let stats = renderer
         .for_each_triangle(scene, Screen::MODE_13H, |vertices, _| {
-            Ordered::new(vertices).rows(WIDTH as u32, clip, |row| {
+            SortedTriangle::new(vertices).rows(WIDTH as u32, clip, |row| {
                 for x in row.x0..row.x1 {
                     counts[row.y as usize * WIDTH + x as usize] += 1;
                 }

@@ -6,8 +6,8 @@
 use crate::support::oracle;
 use crate::support::tried::Tried;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::raster::{Shading, Vertex};
-use mode13h::render::{HiddenSurfaces, Renderer, Rung, Screen};
+use mode13h::raster::{Interpolation, Vertex};
+use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading};
 use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
@@ -16,12 +16,12 @@ const WIDTH: i32 = Vga::WIDTH as i32;
 const HEIGHT: i32 = Vga::HEIGHT as i32;
 
 /// Draws the scene twice, once by the oracle; returns how many pixels are not background.
-fn check(scene: &Scene, rung: Rung) -> usize {
+fn check(scene: &Scene, shading: Shading) -> usize {
     let mut renderer = Renderer::new();
-    renderer.set_rung(rung);
-    let mut triangles: Vec<([Vertex; 3], Shading)> = Vec::new();
+    renderer.set_shading(shading);
+    let mut triangles: Vec<([Vertex; 3], Interpolation)> = Vec::new();
     let stats = renderer
-        .for_each_triangle(scene, Screen::MODE_13H, |v, shading| triangles.push((*v, shading)))
+        .for_each_triangle(scene, Screen::MODE_13H, |v, interpolation| triangles.push((*v, interpolation)))
         .expect("a legal scene");
     // Of faces that are not compared the last is seen. With exact cover no two share a pixel then.
     let compares = stats.hidden_surfaces == HiddenSurfaces::DepthBuffer;
@@ -30,16 +30,16 @@ fn check(scene: &Scene, rung: Rung) -> usize {
     let mut nearest = vec![0; expected.len()];
     let mut covered = 0;
     let mut shown = vec![false; expected.len()];
-    for (vertices, shading) in &triangles {
-        for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, *shading, WIDTH, HEIGHT) {
+    for (vertices, interpolation) in &triangles {
+        for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, *interpolation, WIDTH, HEIGHT) {
             covered += 1;
-            if let Some((n, d)) = oracle::bound(*shading, WIDTH.into()) {
-                let exact = oracle::exact_shade(vertices, *shading, oracle::centre(x, y));
+            if let Some((n, d)) = oracle::bound(*interpolation, WIDTH.into()) {
+                let exact = oracle::exact_shade(vertices, *interpolation, oracle::centre(x, y));
                 assert!(exact.is_within(i128::from(byte) * 256, n, d), "({x}, {y}) of {vertices:?}");
             }
             let place = (y * WIDTH + x) as usize;
             shown[place] = true;
-            let depth = match shading.has_exact_cover() {
+            let depth = match interpolation.has_exact_cover() {
                 true => oracle::depth_at(vertices, x, y),
                 false => oracle::depth_beyond(vertices, x, y),
             };
@@ -68,11 +68,11 @@ fn turned(mesh: Mesh, degrees: f64) -> Scene {
 }
 
 #[test]
-fn every_shape_on_every_rung_is_the_oracles_frame() {
-    let mut tried = Tried::new("every_shape_on_every_rung_is_the_oracles_frame", 7 * 8);
+fn every_shape_on_every_shading_is_the_oracles_frame() {
+    let mut tried = Tried::new("every_shape_on_every_shading_is_the_oracles_frame", 7 * 8);
     for name in shapes::NAMES {
-        for rung in Rung::ALL.into_iter().filter(|rung| !rung.lights_pixels()) {
-            let pixels = check(&turned(shapes::by_name(name).expect("listed"), 33.0), rung);
+        for shading in Shading::ALL.into_iter().filter(|shading| !shading.lights_pixels()) {
+            let pixels = check(&turned(shapes::by_name(name).expect("listed"), 33.0), shading);
             assert!(pixels > 5000, "{name} is in the picture: {pixels} pixels");
             tried.add(1);
         }
@@ -91,7 +91,7 @@ fn close_up_the_clipped_frame_is_the_oracles() {
         let mut renderer = Renderer::new();
         let stats = renderer.for_each_triangle(&scene, Screen::MODE_13H, |_, _| ()).expect("a legal scene");
         assert!(step < 6 || stats.clipped > 0, "faces are clipped: {stats}");
-        check(&scene, Rung::Gouraud88Reseeded);
+        check(&scene, Shading::Gouraud88Reseeded);
         tried.add(1);
     }
 }
@@ -106,7 +106,7 @@ fn a_model_of_your_own() {
     let mut tried = Tried::new("a_model_of_your_own", 4);
     let mesh = mode13h::mesh::obj::load(&path).expect("a model").mesh;
     for quarter in 0..4 {
-        let pixels = check(&turned(mesh.clone(), f64::from(quarter) * 90.0), Rung::Gouraud88Reseeded);
+        let pixels = check(&turned(mesh.clone(), f64::from(quarter) * 90.0), Shading::Gouraud88Reseeded);
         assert!(pixels > 1000, "{path} is in the picture: {pixels} pixels");
         tried.add(1);
     }

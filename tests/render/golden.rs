@@ -4,7 +4,7 @@ use crate::support::golden::{Indexed, check};
 use crate::support::tried::Tried;
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
-use mode13h::render::{Renderer, Rung};
+use mode13h::render::{Renderer, Shading};
 use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
@@ -20,15 +20,15 @@ fn draw(scene: &Scene, kernel: Kernel) -> Indexed {
 #[test]
 fn golden_frames() {
     let mut tried = Tried::new("golden_frames", 9);
-    let mut all: Vec<(&str, Rung)> = shapes::NAMES.iter().map(|&name| (name, Rung::default())).collect();
-    all.extend([("torus", Rung::Flat), ("torus", Rung::Gouraud88)]);
+    let mut all: Vec<(&str, Shading)> = shapes::NAMES.iter().map(|&name| (name, Shading::default())).collect();
+    all.extend([("torus", Shading::Flat), ("torus", Shading::Gouraud88)]);
     let mut wrong = Vec::new();
-    for (name, rung) in all {
+    for (name, shading) in all {
         let mut scene = crate::support::scenes::framed(shapes::by_name(name).expect("listed"));
         scene.palette = Some(builtin::COPPER.clone());
         scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1]);
-        scene.wishes.rung = Some(rung);
-        wrong.extend(check(&format!("{name}-{rung}"), &mut tried, |kernel| draw(&scene, kernel)));
+        scene.preferences.shading = Some(shading);
+        wrong.extend(check(&format!("{name}-{shading}"), &mut tried, |kernel| draw(&scene, kernel)));
     }
     assert!(wrong.is_empty(), "frames that differ from their golden ones, or were written anew: {wrong:#?}");
 }
@@ -42,7 +42,7 @@ fn golden_frames_of_every_scene() {
     let mut wrong = Vec::new();
     for shipped in &shipped::ALL {
         let mut scene = shipped.load().expect("a scene that loads").scene;
-        if scene.wishes.auto_palette {
+        if scene.preferences.auto_palette {
             mode13h::render::automatic(&scene).expect("a legal scene").apply(&mut scene);
         }
         for third in 0..3_u8 {
@@ -87,7 +87,7 @@ fn golden_frames_of_a_house() {
         scene
     };
     let mut in_cube = in_palette("cube");
-    in_cube.wishes.dither = true;
+    in_cube.preferences.dither = true;
     let surfaces = house[id].mesh().surfaces();
     let own = in_cube[id].materials.iter().zip(surfaces).map(|(material, surface)| material.in_own_colors(surface));
     let own: Vec<_> = own.collect();

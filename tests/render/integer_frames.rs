@@ -11,9 +11,9 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::Effect;
-use mode13h::raster::cover::Ordered;
+use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::{Frame, Rect, Vertex};
-use mode13h::render::{RenderError, Renderer, Rung, Screen, Stats, VertexPath};
+use mode13h::render::{RenderError, Renderer, Screen, Shading, Stats, VertexPath};
 use mode13h::scene::{Camera, Object, Scene, UpAxis};
 use mode13h::vga::Vga;
 
@@ -161,27 +161,30 @@ fn both_paths_draw_the_same_picture() {
     assert!(differ < all as u64 / 200, "few bytes differ: {differ}");
 }
 
-/// Of a rung that a path lacks the plan names the one that is drawn instead.
+/// Of a shading that a path lacks the plan names the one that is drawn instead.
 #[test]
-fn the_plan_names_the_rung_that_is_drawn() {
-    let mut tried = Tried::new("the_plan_names_the_rung_that_is_drawn", 2 * 10);
+fn the_plan_names_the_shading_that_is_drawn() {
+    let mut tried = Tried::new("the_plan_names_the_shading_that_is_drawn", 2 * 10);
     let scene = crate::support::scenes::framed(shapes::torus(12, 8));
     for path in VertexPath::ALL {
-        for rung in Rung::ALL {
-            let drawn = if path == VertexPath::Integer { rung.in_integers() } else { rung };
+        for shading in Shading::ALL {
+            let drawn = if path == VertexPath::Integer { shading.in_integers() } else { shading };
             let mut renderer = renderer(path);
-            renderer.set_rung(rung);
-            let mut shadings = Vec::new();
+            renderer.set_shading(shading);
+            let mut interpolations = Vec::new();
             let stats = renderer
-                .for_each_triangle(&scene, Screen::MODE_13H, |_, shading| shadings.push(shading))
+                .for_each_triangle(&scene, Screen::MODE_13H, |_, interpolation| interpolations.push(interpolation))
                 .expect("a legal scene");
-            assert_eq!(stats.rung, drawn);
+            assert_eq!(stats.shading, drawn);
             let decision = renderer.plan().objects()[0].decision(Effect::Gouraud);
-            let shades_run = drawn != Rung::Flat && !drawn.lights_pixels();
-            assert_eq!(decision.on, shades_run, "{path}, {rung}");
+            let shades_run = drawn != Shading::Flat && !drawn.lights_pixels();
+            assert_eq!(decision.on, shades_run, "{path}, {shading}");
             if shades_run {
-                assert_eq!(decision.choice, drawn.name(), "{path}, {rung}");
-                assert!(shadings.iter().all(|shading| *shading == drawn.shading()), "{path}, {rung}");
+                assert_eq!(decision.choice, drawn.name(), "{path}, {shading}");
+                assert!(
+                    interpolations.iter().all(|interpolation| *interpolation == drawn.interpolation()),
+                    "{path}, {shading}"
+                );
             }
             tried.add(1);
         }
@@ -189,11 +192,11 @@ fn the_plan_names_the_rung_that_is_drawn() {
 }
 
 #[test]
-fn every_rung_and_odd_scene_is_drawn_and_counted_alike() {
-    let mut tried = Tried::new("every_rung_and_odd_scene_is_drawn_and_counted_alike", 5 * 4);
-    // Vertices that the paths have a unit apart may be a whole pixel apart on `gouraud-period`.
-    let known = |rung: &Rung| rung.in_integers() == *rung && rung.has_exact_cover();
-    for rung in Rung::ALL.into_iter().filter(known) {
+fn every_shading_and_odd_scene_is_drawn_and_counted_alike() {
+    let mut tried = Tried::new("every_shading_and_odd_scene_is_drawn_and_counted_alike", 5 * 4);
+    // Vertices that the paths have a unit apart may be a whole pixel apart on `gouraud-vintage`.
+    let known = |shading: &Shading| shading.in_integers() == *shading && shading.has_exact_cover();
+    for shading in Shading::ALL.into_iter().filter(known) {
         // A size and place of its own, the pivot aside, the mesh laid back; three materials.
         for (scale, place) in [(1.0_f32, 0.0_f32), (1e-5, 1e-6), (3.7e8, -2e9), (0.001, 5.0)] {
             let mut scene = Scene::new();
@@ -206,7 +209,7 @@ fn every_rung_and_odd_scene_is_drawn_and_counted_alike() {
             scene.camera = Camera::framing(Vec3::splat(place) - Vec3::Y * 2.0 * scale, 2.0 * scale);
             let [float, integer] = VertexPath::ALL.map(|path| {
                 let mut renderer = renderer(path);
-                renderer.set_rung(rung);
+                renderer.set_shading(shading);
                 let mut vga = Vga::new();
                 let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
                 (vga.pixels().to_vec(), stats)
@@ -214,13 +217,13 @@ fn every_rung_and_odd_scene_is_drawn_and_counted_alike() {
             let (f, i) = (float.1, integer.1);
             assert_eq!((f.vertices, f.faces, f.hidden_surfaces), (i.vertices, i.faces, i.hidden_surfaces));
             assert_eq!((i.clipped, i.culled + i.drawn), (0, i.faces));
-            assert_eq!(i.lit, if rung == Rung::Flat { i.drawn } else { i.vertices });
+            assert_eq!(i.lit, if shading == Shading::Flat { i.drawn } else { i.vertices });
             // A face seen on its edge may count as turned away on one path and not on the other.
             assert!(f.culled.abs_diff(i.culled) <= 4, "{f}; {i}");
             let differ = float.0.iter().zip(&integer.0).filter(|(a, b)| a.abs_diff(**b) > 1).count();
             let drawn = float.0.iter().filter(|b| **b != 0).count();
-            assert!(drawn > 1000, "{rung}, {scale}: {drawn}");
-            assert!(differ < 100, "{rung}, {scale}: {differ} of {drawn}");
+            assert!(drawn > 1000, "{shading}, {scale}: {drawn}");
+            assert!(differ < 100, "{shading}, {scale}: {differ} of {drawn}");
             tried.add(1);
         }
     }
@@ -339,7 +342,7 @@ fn counts(scene: &Scene) -> (Vec<u32>, Stats) {
     let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
     let stats = renderer(VertexPath::Integer)
         .for_each_triangle(scene, Screen::MODE_13H, |vertices, _| {
-            Ordered::new(vertices).rows(WIDTH as u32, clip, |row| {
+            SortedTriangle::new(vertices).rows(WIDTH as u32, clip, |row| {
                 for x in row.x0..row.x1 {
                     counts[row.y as usize * WIDTH + x as usize] += 1;
                 }

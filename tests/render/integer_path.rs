@@ -5,12 +5,12 @@ use crate::support::tried::Tried;
 use mode13h::fixed::I16F16;
 use mode13h::glam::Vec3;
 use mode13h::integer::{
-    Angle, Camera, FixedMesh, FixedMeshError, IntegerError, Lens, Object, Paint, Placement, Stage, Sun, Technique,
-    Vector, View, average_normals, face_normal, turn, unit_vector,
+    Angle, Camera, FixedMesh, FixedMeshError, IntegerError, Lens, Object, Paint, Placement, Sun, Technique, Vector,
+    VertexStage, View, average_normals, face_normal, turn, unit_vector,
 };
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::Ramp;
-use mode13h::raster::{Frame, Raster, Shading, Vertex};
+use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
 use mode13h::scene;
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -193,11 +193,15 @@ fn the_turn_is_the_f64_turn() {
 const PAINT: Paint = Paint { ambient: I16F16::from_bits(0), diffuse: I16F16::ONE, ramp: Ramp::WHOLE };
 
 /// The triangles of a mesh as the raster gets them.
-fn triangles(view: &View, object: Object<'_, u16>, suns: &[Sun]) -> Result<Vec<([Vertex; 3], Shading)>, IntegerError> {
+fn triangles(
+    view: &View,
+    object: Object<'_, u16>,
+    suns: &[Sun],
+) -> Result<Vec<([Vertex; 3], Interpolation)>, IntegerError> {
     let (mut lit, mut beams) = (vec![Default::default(); object.mesh.vertices()], vec![Default::default(); suns.len()]);
-    let stage = Stage::new(view, object, suns, Technique::default(), &mut lit, &mut beams)?;
+    let stage = VertexStage::new(view, object, suns, Technique::default(), &mut lit, &mut beams)?;
     let mut triangles = Vec::new();
-    let faces = stage.faces(|vertices, shading| triangles.push((*vertices, shading)));
+    let faces = stage.faces(|vertices, interpolation| triangles.push((*vertices, interpolation)));
     assert_eq!(faces.drawn, triangles.len() as u64);
     Ok(triangles)
 }
@@ -564,7 +568,7 @@ fn what_16_16_cannot_hold_is_refused() {
     let sun = Sun { direction: z, intensity: I16F16::ONE };
     let stage = |object, suns: &[Sun], lit, beams| {
         let (mut lit, mut beams) = (vec![Default::default(); lit], vec![Default::default(); beams]);
-        Stage::new(&view, object, suns, Technique::Flat, &mut lit, &mut beams).map(|_| ())
+        VertexStage::new(&view, object, suns, Technique::Flat, &mut lit, &mut beams).map(|_| ())
     };
     check(stage(object, &[sun], 1, 1).is_ok(), "enough room");
     check(stage(object, &[sun], 0, 1) == Err(IntegerError::Room { needed: 1 }), "no room for vertices");
@@ -626,12 +630,12 @@ fn r7_any_legal_input_is_quiet() {
         let mesh = mesh.with_exponent(random.within(-40, 3) as i8);
         let object = Object { mesh, placement, paints: &[paint] };
         let (mut lit, mut beams) = ([Default::default(); 3], vec![Default::default(); suns.len()]);
-        match Stage::new(&view, object, &suns, technique, &mut lit, &mut beams) {
+        match VertexStage::new(&view, object, &suns, technique, &mut lit, &mut beams) {
             Ok(stage) => {
                 let mut raster = Raster::new(Frame::new(&mut pixels, 64, 40, 64).expect("a frame"));
                 drawn += stage
-                    .faces(|vertices, shading| {
-                        raster.triangle(vertices, shading);
+                    .faces(|vertices, interpolation| {
+                        raster.triangle(vertices, interpolation);
                     })
                     .drawn;
             }

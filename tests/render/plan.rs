@@ -4,7 +4,7 @@ use crate::support::scenes;
 use crate::support::tried::Tried;
 use mode13h::plan::{Class, Effect};
 use mode13h::raster::Frame;
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, Screen, Stats};
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Screen, Shading, Stats};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
@@ -299,7 +299,7 @@ fn every_decision_has_a_reason() {
         assert_eq!(rows, draw(&scene, |_| ()).2.plan().rows(&scene), "{name}");
         assert_eq!(rows.len(), scene.objects().len() * Effect::COUNT);
         for row in rows {
-            assert!(!row.why.is_empty() && !row.why.contains('\n') && !row.object.is_empty(), "{name}: {row:?}");
+            assert!(!row.reason.is_empty() && !row.reason.contains('\n') && !row.object.is_empty(), "{name}: {row:?}");
             tried.add(1);
         }
     }
@@ -336,16 +336,16 @@ fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
             continue;
         };
         let printed = chosen.rows(&scene);
-        assert!(printed.iter().any(|row| row.why.contains("linear shades are off by at most")), "{name}");
+        assert!(printed.iter().any(|row| row.reason.contains("linear shades are off by at most")), "{name}");
         // A linear shade is off by three quarters, or over a row by 1.75, light at a pixel by a half, in
         // entries of the ramp; of which there are no more than 256.
         let allowed = bound + 1.75 + 0.5;
-        for (effect, rung) in [(Effect::Phong, Some(Rung::Phong)), (Effect::Tessellation, None)] {
-            let (bytes, stats, _) = draw(&scene, |renderer| match rung {
-                Some(rung) => renderer.set_rung(rung),
+        for (effect, shading) in [(Effect::Phong, Some(Shading::Phong)), (Effect::Tessellation, None)] {
+            let (bytes, stats, _) = draw(&scene, |renderer| match shading {
+                Some(shading) => renderer.set_shading(shading),
                 None => renderer.force(effect, Some(true)),
             });
-            assert!(rung.is_none() || stats.raster.lit > 0 || stats.lit == 0, "{name}: {stats}");
+            assert!(shading.is_none() || stats.raster.lit > 0 || stats.lit == 0, "{name}: {stats}");
             // A vertex that splitting makes is rounded to 1/256 pixel itself: along an outline a pixel may come or go.
             let shows = |byte: u8| byte != scene.background;
             let (both, one): (Vec<_>, Vec<_>) =
@@ -382,7 +382,8 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
         let (affine, _, renderer) = frame(false);
         let (perspective, _, _) = frame(true);
         let free = draw(&scene, |_| ()).2;
-        let mode13h::plan::Why::AffineError { texels } = free.plan().objects()[0].decision(Effect::Perspective).why
+        let mode13h::plan::Reason::AffineError { texels } =
+            free.plan().objects()[0].decision(Effect::Perspective).reason
         else {
             panic!("the plan prints the error");
         };
@@ -447,7 +448,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
         scene.camera.eye = mode13h::glam::Vec3::new(0.0, 0.0, distance);
         let (bytes, _, renderer) = draw(&scene, |_| ());
         let decision = *renderer.plan().objects()[0].decision(Effect::Mipmaps);
-        let mode13h::plan::Why::TexelsToPixel { texels } = decision.why else { panic!("the plan says how many") };
+        let mode13h::plan::Reason::TexelsToPixel { texels } = decision.reason else { panic!("the plan says how many") };
         // 128 texels on √2 units; a pixel is higher than it is wide, and half of the screen's rows lie within half the angle.
         let expected =
             8192.0_f64.sqrt() * f64::from(distance) * (f64::from(scene.camera.field_of_view) / 2.0).tan() / 100.0;
@@ -473,14 +474,14 @@ fn mipmaps_are_asked_for() {
         called_for(&renderer, Effect::Mipmaps)
     };
     assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [true, true, false]);
-    floor.wishes.mipmaps = Some(false);
+    floor.preferences.mipmaps = Some(false);
     assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [false, true, false]);
     let mut plain = scenes::showing("torus");
-    plain.wishes.mipmaps = Some(true);
+    plain.preferences.mipmaps = Some(true);
     assert!(!is_on(&plain, Some(true)));
-    let why = draw(&floor, |_| ()).2.plan().rows(&floor);
-    let why = why.iter().find(|row| row.effect == Effect::Mipmaps).expect("a row");
-    assert_eq!((why.on, why.why.as_str()), (false, "asked for"));
+    let reason = draw(&floor, |_| ()).2.plan().rows(&floor);
+    let reason = reason.iter().find(|row| row.effect == Effect::Mipmaps).expect("a row");
+    assert_eq!((reason.on, reason.reason.as_str()), (false, "asked for"));
 }
 
 /// Red, green and blue of each pixel.

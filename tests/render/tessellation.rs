@@ -8,8 +8,8 @@ use crate::support::tried::Tried;
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::raster::{Shading, Vertex};
-use mode13h::render::{Renderer, Rung, Screen};
+use mode13h::raster::{Interpolation, Vertex};
+use mode13h::render::{Renderer, Screen, Shading};
 use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
 
@@ -82,7 +82,7 @@ fn wall(random: &mut Random) -> Scene {
         let place = [coordinate(), coordinate(), 0.3 * coordinate()];
         scene.add_light(Light::lamp(place, 0.2 + 3.0 * random.unit() as f32));
     }
-    scene.wishes.tessellation = Some(random.one_of(&[0.5, 1.0, 2.0, 8.0]));
+    scene.preferences.tessellation = Some(random.one_of(&[0.5, 1.0, 2.0, 8.0]));
     scene
 }
 
@@ -103,7 +103,7 @@ fn r12_walls_that_are_split_are_closed() {
         let mut counts = vec![0_u32; Vga::SHOWN];
         for corners in &parts {
             let clip = mode13h::raster::Rect { x0: 0, y0: 0, x1: 320, y1: 200 };
-            mode13h::raster::cover::Ordered::new(corners).rows(320, clip, |row| {
+            mode13h::raster::cover::SortedTriangle::new(corners).rows(320, clip, |row| {
                 (row.x0..row.x1).for_each(|x| counts[(row.y * 320 + x) as usize] += 1);
             });
         }
@@ -131,7 +131,7 @@ fn r12_creases_are_split_alike_from_both_sides() {
         scene.add(cube);
         let mut coordinate = || 2.4 * random.unit() as f32 - 1.2;
         scene.add_light(Light::lamp([coordinate(), coordinate(), coordinate()], 2.0));
-        scene.wishes.tessellation = Some(1.0);
+        scene.preferences.tessellation = Some(1.0);
         let (parts, _) = triangles(&scene);
         // Convex: what is seen of it has one outline, unless rounding turned a face over.
         let outlines = outlines(&parts);
@@ -151,9 +151,9 @@ fn highlight() -> Scene {
     scene
 }
 
-fn middle(scene: &Scene, rung: Rung) -> u8 {
+fn middle(scene: &Scene, shading: Shading) -> u8 {
     let mut renderer = Renderer::new();
-    renderer.set_rung(rung);
+    renderer.set_shading(shading);
     let mut vga = Vga::new();
     renderer.draw(scene, &mut vga).expect("a legal scene");
     vga.pixels()[100 * 320 + 160]
@@ -164,16 +164,16 @@ fn n7_a_highlight_inside_a_face() {
     let mut tried = Tried::new("n7_a_highlight_inside_a_face", 9);
     let scene = highlight();
     // Straight before the eye the light is mirrored into it: 0.2 + 0.8 of 255.
-    let misses = |rung: &Rung| !rung.lights_pixels() && *rung != Rung::GouraudTessellated;
-    for rung in Rung::ALL.into_iter().filter(misses) {
-        let shade = middle(&scene, rung);
+    let misses = |shading: &Shading| !shading.lights_pixels() && *shading != Shading::GouraudTessellated;
+    for shading in Shading::ALL.into_iter().filter(misses) {
+        let shade = middle(&scene, shading);
         // A face's one shade is that of its own middle, off the highlight.
-        assert!(shade < 200, "{rung} misses it: {shade}");
+        assert!(shade < 200, "{shading} misses it: {shade}");
         tried.add(1);
     }
-    for rung in [Rung::GouraudTessellated, Rung::Phong] {
-        let shade = middle(&scene, rung);
-        assert!(shade >= 253, "{rung} shows it: {shade}");
+    for shading in [Shading::GouraudTessellated, Shading::Phong] {
+        let shade = middle(&scene, shading);
+        assert!(shade >= 253, "{shading} shows it: {shade}");
         tried.add(1);
     }
 }
@@ -196,26 +196,26 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
         let material = &mut scene.objects_mut()[0].materials[0];
         (material.specular, material.shininess) = (0.7, 10.0);
         material.ramp = mode13h::light::RampChoice::Number(2);
-        for rung in [Rung::PhongTable, Rung::Phong, Rung::GouraudTessellated] {
+        for shading in [Shading::PhongTable, Shading::Phong, Shading::GouraudTessellated] {
             for dither in [false, true] {
-                scene.wishes.dither = dither;
+                scene.preferences.dither = dither;
                 let mut renderer = Renderer::new();
-                renderer.set_rung(rung);
+                renderer.set_shading(shading);
                 let mut vga = Vga::new();
                 renderer.draw(&scene, &mut vga).expect("a legal scene");
                 // Every pixel that the face covers is in the ramp, whatever its byte, and no other is drawn.
                 let mut covered = vec![false; vga.pixels().len()];
                 renderer
                     .for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| {
-                        for pixel in oracle::pixels(vertices, Shading::Flat(0), 320, 200) {
+                        for pixel in oracle::pixels(vertices, Interpolation::Flat(0), 320, 200) {
                             covered[(pixel.y * 320 + pixel.x) as usize] = true;
                         }
                     })
                     .expect("a legal scene");
-                assert!(covered.iter().filter(|covered| **covered).count() > 5000, "{rung}: it is drawn");
+                assert!(covered.iter().filter(|covered| **covered).count() > 5000, "{shading}: it is drawn");
                 for (place, (&byte, &covered)) in vga.pixels().iter().zip(&covered).enumerate() {
                     let is_right = if covered { (128..192).contains(&byte) } else { byte == BACKGROUND };
-                    assert!(is_right, "{rung}, dither {dither}: {byte} at pixel {place}, {axis}");
+                    assert!(is_right, "{shading}, dither {dither}: {byte} at pixel {place}, {axis}");
                 }
                 tried.add(1);
             }
@@ -223,17 +223,17 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
     }
 }
 
-/// P2: with dither no index of another ramp, whatever the rung and the ramp.
+/// P2: with dither no index of another ramp, whatever the shading and the ramp.
 #[test]
 fn p2_dither_keeps_to_its_ramp() {
     let mut tried = Tried::new("p2_dither_keeps_to_its_ramp", 10 * 25);
-    for rung in Rung::ALL {
+    for shading in Shading::ALL {
         for (first, entries) in
             [(1, 1_u16), (7, 2), (64, 64), (192, 64), (255, 1)].into_iter().flat_map(|ramp| [ramp; 5])
         {
             let mut scene = crate::support::scenes::framed(shapes::torus(12, 8));
-            scene.wishes.dither = true;
-            scene.wishes.rung = Some(rung);
+            scene.preferences.dither = true;
+            scene.preferences.shading = Some(shading);
             scene.objects_mut()[0].set_angles([0.3, tried_angle(first, entries), 0.2]);
             let ramp = mode13h::palette::Ramp::new(first, entries).expect("a ramp");
             let material = &mut scene.objects_mut()[0].materials[0];
@@ -242,8 +242,8 @@ fn p2_dither_keeps_to_its_ramp() {
             let mut vga = Vga::new();
             let stats = Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
             // A table of normals holds whole shades: there is nothing between two entries.
-            assert_eq!(stats.raster.dithered > 1000, rung != Rung::PhongTable, "{rung}");
-            assert!(vga.pixels().iter().all(|byte| *byte == 0 || ramp.contains(*byte)), "{rung}, {ramp:?}");
+            assert_eq!(stats.raster.dithered > 1000, shading != Shading::PhongTable, "{shading}");
+            assert!(vga.pixels().iter().all(|byte| *byte == 0 || ramp.contains(*byte)), "{shading}, {ramp:?}");
             tried.add(1);
         }
     }

@@ -8,7 +8,7 @@ use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
 use mode13h::palette::file::{self, FORMATS, Format, PaletteError, PaletteErrorKind, Place};
 use mode13h::palette::gradient::{Key, fill};
-use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, cube, expand, reduce};
+use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, cube, dac6_to_8, to_dac6};
 use proptest::prelude::*;
 
 fn format(name: &str) -> &'static Format {
@@ -29,24 +29,24 @@ fn hash_like(i: u8, seed: u32) -> Rgb {
 fn p1_six_bit_values_survive_eight_bits() {
     let mut tried = Tried::new("p1_six_bit_values_survive_eight_bits", 64);
     for v in 0..=63 {
-        assert_eq!(reduce(expand(v)), v);
-        assert_eq!(expand(v), (v << 2) | (v >> 4));
+        assert_eq!(to_dac6(dac6_to_8(v)), v);
+        assert_eq!(dac6_to_8(v), (v << 2) | (v >> 4));
         // Spread evenly: within half a step of 255·v/63.
-        assert!((i32::from(expand(v)) * 63 - 255 * i32::from(v)).abs() < 63, "{v}");
+        assert!((i32::from(dac6_to_8(v)) * 63 - 255 * i32::from(v)).abs() < 63, "{v}");
         tried.add(1);
     }
-    assert_eq!((expand(0), expand(63)), (0, 255));
+    assert_eq!((dac6_to_8(0), dac6_to_8(63)), (0, 255));
 }
 
 #[test]
 fn p1_eight_bit_values_round_down_and_stay_there() {
     let mut tried = Tried::new("p1_eight_bit_values_round_down_and_stay_there", 256);
     for v in 0..=255_u8 {
-        assert_eq!(reduce(v), v / 4);
-        let once = expand(reduce(v));
-        assert_eq!(expand(reduce(once)), once);
+        assert_eq!(to_dac6(v), v / 4);
+        let once = dac6_to_8(to_dac6(v));
+        assert_eq!(dac6_to_8(to_dac6(once)), once);
         assert!(once.abs_diff(v) <= 3, "{v} shows as {once}");
-        assert_eq!(expand(v), expand(v & 63), "the DAC has no seventh bit");
+        assert_eq!(dac6_to_8(v), dac6_to_8(v & 63), "the DAC has no seventh bit");
         tried.add(1);
     }
 }

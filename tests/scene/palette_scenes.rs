@@ -324,7 +324,7 @@ fn highlights_are_shown_in_their_colours() {
             let body = material.color[i] * (material.ambient + material.diffuse);
             f64::from((body + material.highlight[i] * material.specular).min(1.0)) * 255.0
         });
-        scene.wishes.rung = Some(mode13h::render::Rung::Phong);
+        scene.preferences.shading = Some(mode13h::render::Shading::Phong);
         let middle = 100 * Vga::WIDTH + 160;
         let mut own = scene.clone();
         let made = made(&mut scene);
@@ -373,6 +373,6 @@ fn an_automatic_palette_has_the_colours_of_mipmaps() {
     };
     // A level of the DAC is 4 units, of which three are off.
     assert!(farthest(&scene) <= 3 * 16, "{}", farthest(&scene));
-    scene.wishes.mipmaps = Some(false);
+    scene.preferences.mipmaps = Some(false);
     assert!(farthest(&scene) > 3 * 64 * 64, "{}", farthest(&scene));
 }

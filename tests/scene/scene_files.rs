@@ -10,7 +10,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, RampChoice};
 use mode13h::palette::{Ramp, Rgb, builtin};
 use mode13h::scene::file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
-use mode13h::scene::{HiddenSurfaces, Mapping, Motion, Moving, PaletteAnimation, Path, Rung, Scene, UpAxis};
+use mode13h::scene::{HiddenSurfaces, Mapping, Motion, Moving, PaletteAnimation, Path, Scene, Shading, UpAxis};
 
 const TRIANGLE: &str = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\nusemtl oak\nf 3 2 1\n";
 
@@ -81,8 +81,20 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (path("{ circle = { middle = 1 } }"), "key `objects[0].path.circle.middle`: unknown key; known are centre, "),
         (cube("fog.begin = 1"), "2:5: key `fog.begin`: unknown key; known are color, start, end"),
         (cube("animation = { to = 1 }"), "2:15: key `animation.to`: unknown key; known are fade, cycle, rounds"),
-        (cube("render.hidden_surfaces = 1"), "2:8: key `render.hidden_surfaces`: unknown key; known are shading, hidd"),
+        (
+            cube("render.hidden_surfaces = 1"),
+            "2:8: key `render.hidden_surfaces`: unknown key; known are shading, hidden-",
+        ),
         (cube("\"`, expected one of `a`\" = 1"), "2:1: key ``, expected one of `a``: unknown key; known are name, "),
+        // Names of before.
+        (cube("[wishes]\nrung = 'flat'"), "2:2: key `wishes`: is now called `render`"),
+        (cube("wishes.rung = 'flat'"), "2:1: key `wishes`: is now called `render`"),
+        (cube("[render]\nrung = 'flat'"), "3:1: key `render.rung`: is now called `shading`"),
+        (cube("render = { rung = 'flat' }"), "2:12: key `render.rung`: is now called `shading`"),
+        (
+            cube("render.shading = 'gouraud-period'"),
+            "2:18: key `render.shading`: \"gouraud-period\" is now called \"gouraud-vintage\"",
+        ),
         // Wrong types.
         (list("name = 7"), "1:8: key `name`: expected a string, found integer `7`"),
         (list("objects = 7"), "1:11: key `objects`: expected a sequence, found integer `7`"),
@@ -118,7 +130,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             cube("duration = 1979-05-27"),
             "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found map",
         ),
-        (cube("render = { shading = 3 }"), "2:22: key `render.shading`: expected a name in quotes, found integer `3`"),
+        (cube("render = { shading = 3 }"), "2:19: key `render.shading`: expected a name in quotes, found integer `3`"),
         (cube("render.dither = 'yes'"), "2:17: key `render.dither`: expected a boolean, found string \"yes\""),
         // Out of range.
         (cube("duration = 0"), "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found 0"),
@@ -222,15 +234,9 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             object("material.blend = 'glass'"),
             "3:18: key `objects[0].material.blend`: expected \"opaque\", \"add\", or how opaque it is, a numb",
         ),
-        (cube("render.shading = 'best'"), "2:18: key `render.shading`: \"best\": unknown "),
-        // Names of before.
-        (cube("[wishes]\nrung = 'flat'"), "2:2: key `wishes`: is now called `render`"),
-        (cube("wishes.rung = 'flat'"), "2:1: key `wishes`: is now called `render`"),
-        (cube("[render]\nrung = 'flat'"), "3:1: key `render.rung`: is now called `shading`"),
-        (cube("render = { rung = 'flat' }"), "2:12: key `render.rung`: is now called `shading`"),
         (
-            cube("render.shading = 'gouraud-period'"),
-            "2:18: key `render.shading`: \"gouraud-period\" is now called \"gouraud-vintage\"",
+            cube("render.shading = 'best'"),
+            "2:15: key `render.shading`: \"best\": unknown shading; there are flat, gouraud-vintage, gouraud-8.8, ",
         ),
         (cube("render.mapping = 'best'"), "2:18: key `render.mapping`: \"best\": unknown mapping; there are affine, "),
         (
@@ -479,11 +485,11 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert_eq!((camera.up, camera.near), (Vec3::new(0.0, 0.5, 0.0), 0.5));
     assert_eq!(camera.field_of_view, std::f32::consts::FRAC_PI_2);
 
-    assert_eq!(scene.wishes.rung, Some(Rung::Phong));
-    assert_eq!(scene.wishes.hidden_surfaces, Some(HiddenSurfaces::ScanLine));
-    assert_eq!(scene.wishes.mapping, Some(Mapping::Every16));
-    assert_eq!((scene.wishes.tessellation, scene.wishes.max_error), (Some(1.5), Some(2.0)));
-    assert!(scene.wishes.dither && !scene.wishes.auto_palette);
+    assert_eq!(scene.preferences.shading, Some(Shading::Phong));
+    assert_eq!(scene.preferences.hidden_surfaces, Some(HiddenSurfaces::ScanLine));
+    assert_eq!(scene.preferences.mapping, Some(Mapping::Every16));
+    assert_eq!((scene.preferences.tessellation, scene.preferences.max_error), (Some(1.5), Some(2.0)));
+    assert!(scene.preferences.dither && !scene.preferences.auto_palette);
 
     let [bar, first, second] = scene.objects() else { panic!("{} objects", scene.objects().len()) };
     assert_eq!((bar.name.as_str(), bar.mesh().triangles().len()), ("bar", 16));
@@ -557,7 +563,7 @@ fn what_is_left_out_has_a_default() {
     let showing = Scene::new();
     assert_eq!((scene.duration, scene.ambient, scene.background), (4.0, 1.0, 0));
     assert_eq!(scene.palette, showing.palette);
-    assert_eq!((scene.fog, scene.wishes), (None, showing.wishes));
+    assert_eq!((scene.fog, scene.preferences), (None, showing.preferences));
     assert!(scene.lights().is_empty() && scene.motions.is_empty() && scene.palette_animation.is_none());
     let torus = &scene.objects()[0];
     assert_eq!((torus.name.as_str(), torus.scale, torus.position), ("torus", 1.0, Vec3::ZERO));
@@ -608,7 +614,7 @@ fn a_palette_is_a_name_a_file_or_left_to_the_program() {
     let palette = |text: &str| scene(&format!("{CUBE}palette = {text}"));
     assert_eq!(palette("'copper'").palette, Some(builtin::COPPER.clone()));
     assert_eq!(palette("'two.hex'").palette.map(|palette| palette.color(1)), Some(Rgb::WHITE));
-    assert!(palette("'auto'").wishes.auto_palette);
+    assert!(palette("'auto'").preferences.auto_palette);
 }
 
 #[test]
@@ -724,13 +730,13 @@ fn keys_in_documents_are_keys_of_scenes() {
     assert!(tried >= 5, "{tried} keys");
 }
 
-/// The rungs that the document lists are those that there are.
+/// The shadings that the document lists are those that there are.
 #[test]
-fn every_rung_is_documented() {
+fn every_shading_is_documented() {
     let row =
-        include_str!("../../scenes/README.md").lines().find(|line| line.starts_with("| `rung` |")).expect("a row");
+        include_str!("../../scenes/README.md").lines().find(|line| line.starts_with("| `shading` |")).expect("a row");
     let named = row.split('|').nth(2).expect("the values");
-    let all = mode13h::render::Rung::ALL.map(|rung| format!("`\"{rung}\"`"));
+    let all = mode13h::render::Shading::ALL.map(|shading| format!("`\"{shading}\"`"));
     assert_eq!(named.trim(), all.join(", "));
 }
 

@@ -2,7 +2,7 @@
 //! pixel of it may be drawn once only, and what it shows is compared with a picture of characters.
 
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::{Frame, Raster, Shading, Vertex};
+use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
 
 pub struct Display {
     width: u32,
@@ -25,7 +25,7 @@ impl Display {
         });
         let mut bytes = vec![0_u8; self.marks.len()];
         let frame = Frame::new(&mut bytes, self.width, self.height, self.width as usize).expect("a small frame");
-        let drawn = Raster::new(frame).triangle(&vertices, Shading::Flat(1));
+        let drawn = Raster::new(frame).triangle(&vertices, Interpolation::Flat(1));
         let mut written = 0;
         for (place, (byte, old)) in bytes.iter().zip(&mut self.marks).enumerate() {
             if *byte == 1 {

@@ -1,6 +1,6 @@
 //! A frame whose every byte is compared with the oracle's.
 
-use mode13h::raster::{Frame, Shading, Vertex};
+use mode13h::raster::{Frame, Interpolation, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats};
 use mode13h::scene::Scene;
 
@@ -8,7 +8,7 @@ use super::oracle;
 
 /// A frame, the triangles that the raster got for it, and how often each pixel is covered by them.
 pub struct Judged {
-    pub triangles: Vec<([Vertex; 3], Shading)>,
+    pub triangles: Vec<([Vertex; 3], Interpolation)>,
     pub counts: Vec<u32>,
     pub stats: Stats,
 }
@@ -17,13 +17,13 @@ pub struct Judged {
 pub fn judged(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Judged {
     let mut triangles = Vec::new();
     let stats = renderer
-        .for_each_triangle(scene, screen, |vertices, shading| triangles.push((*vertices, shading)))
+        .for_each_triangle(scene, screen, |vertices, interpolation| triangles.push((*vertices, interpolation)))
         .expect("a legal scene");
     let compares = stats.hidden_surfaces == HiddenSurfaces::DepthBuffer;
     let size = (screen.width * screen.height) as usize;
     let (mut expected, mut nearest, mut counts) = (vec![scene.background; size], vec![0; size], vec![0; size]);
-    for (vertices, shading) in &triangles {
-        let pixels = oracle::pixels(vertices, *shading, screen.width as i32, screen.height as i32);
+    for (vertices, interpolation) in &triangles {
+        let pixels = oracle::pixels(vertices, *interpolation, screen.width as i32, screen.height as i32);
         let depths = (!pixels.is_empty()).then(|| oracle::Depths::of_vertices(vertices));
         for (pixel, depths) in pixels.into_iter().filter_map(|pixel| Some((pixel, depths.as_ref()?))) {
             let place = (pixel.y * screen.width as i32 + pixel.x) as usize;

@@ -1,7 +1,7 @@
 //! The naive oracles of the raster: what DESIGN says, in i128, with no thought for speed. They share
 //! nothing with the raster but the vertices.
 
-use mode13h::raster::{Shading, Vertex};
+use mode13h::raster::{Interpolation, Vertex};
 
 /// Vertex position in 1/256 pixel.
 pub type Point = (i128, i128);
@@ -99,72 +99,75 @@ pub struct Pixel {
     pub byte: u8,
 }
 
-/// `Shading::Float`, which is there with `alloc` alone.
-fn is_float(shading: Shading) -> bool {
-    shading.name() == "float"
+/// `Interpolation::Float`, which is there with `alloc` alone.
+fn is_float(interpolation: Interpolation) -> bool {
+    interpolation.name() == "float"
 }
 
 /// How far a byte of a shading may be from its exact shade in a frame of so many columns, in 1/256 shade, as n / d; `None` where
 /// nothing is promised.
-pub fn bound(shading: Shading, width: i128) -> Option<(i128, i128)> {
-    match shading {
+pub fn bound(interpolation: Interpolation, width: i128) -> Option<(i128, i128)> {
+    match interpolation {
         // A half for the byte, and less than 1/256 for the start and for each step.
-        Shading::Gouraud => Some((128 + width, 1)),
-        Shading::GouraudReseeded => Some((128 + 64, 1)),
+        Interpolation::Gouraud => Some((128 + width, 1)),
+        Interpolation::GouraudReseeded => Some((128 + 64, 1)),
         // The same with 1/65,536.
-        Shading::Gouraud1616 => Some((128 * 256 + width, 256)),
-        Shading::GouraudHyperbolic => Some((128, 1)),
+        Interpolation::Gouraud1616 => Some((128 * 256 + width, 256)),
+        Interpolation::GouraudHyperbolic => Some((128, 1)),
         // Less than 1/8,192 beside the half.
-        _ if is_float(shading) => Some((128 * 32 + 1, 32)),
+        _ if is_float(interpolation) => Some((128 * 32 + 1, 32)),
         _ => None,
     }
 }
 
-/// The exact shade of a covered pixel in 1/256: what `shading` interpolates, without its rounding.
-pub fn exact_shade(vertices: &[Vertex; 3], shading: Shading, p: Point) -> Ratio {
-    Shades::of_vertices(vertices, shading).exact(p)
+/// The exact shade of a covered pixel in 1/256: what `interpolation` interpolates, without its rounding.
+pub fn exact_shade(vertices: &[Vertex; 3], interpolation: Interpolation, p: Point) -> Ratio {
+    Shades::of_vertices(vertices, interpolation).exact(p)
 }
 
 /// A row of a triangle on whole pixels: Ax, Bx, As and Bs.
-type PeriodRow = [i64; 4];
+type VintageRow = [i64; 4];
 
 /// A value over a triangle, by the letter of each shading's definition.
 pub struct Shades {
-    shading: Shading,
+    interpolation: Interpolation,
     /// The vertices from top to bottom, of one height from left to right, and their values.
     triangle: [Point; 3],
     values: [i128; 3],
     /// The value's change per pixel along a row.
     slope: Ratio,
-    /// Of `GouraudPeriod` the first row, and the rows.
+    /// Of `GouraudVintage` the first row, and the rows.
     top: i64,
-    rows: Vec<PeriodRow>,
+    rows: Vec<VintageRow>,
     depths: [i128; 3],
 }
 
 impl Shades {
-    pub fn of_vertices(vertices: &[Vertex; 3], shading: Shading) -> Self {
-        Self::new(vertices, vertices.each_ref().map(|v| v.shade().to_bits()), shading)
+    pub fn of_vertices(vertices: &[Vertex; 3], interpolation: Interpolation) -> Self {
+        Self::new(vertices, vertices.each_ref().map(|v| v.shade().to_bits()), interpolation)
     }
 
     /// Of these values at the vertices.
-    pub fn new(vertices: &[Vertex; 3], values: [u16; 3], shading: Shading) -> Self {
+    pub fn new(vertices: &[Vertex; 3], values: [u16; 3], interpolation: Interpolation) -> Self {
         let mut order = [0, 1, 2];
         order.sort_by_key(|&i| (vertices[i].y(), vertices[i].x()));
         let triangle = order.map(|i| point(&vertices[i]));
         let values = order.map(|i| i128::from(values[i]));
-        let (top, rows) =
-            if shading == Shading::GouraudPeriod { period_rows(triangle, values) } else { (0, Vec::new()) };
+        let (top, rows) = if interpolation == Interpolation::GouraudVintage {
+            vintage_rows(triangle, values)
+        } else {
+            (0, Vec::new())
+        };
         let depths = order.map(|i| i128::from(vertices[i].depth().max(1)));
-        Self { shading, triangle, values, slope: per_pixel(triangle, values), top, rows, depths }
+        Self { interpolation, triangle, values, slope: per_pixel(triangle, values), top, rows, depths }
     }
 
     /// The exact value.
     pub fn exact(&self, p: Point) -> Ratio {
-        match self.shading {
+        match self.interpolation {
             // Weighted by the depths, which are 1/w.
-            Shading::GouraudHyperbolic => self.on_face(p),
-            _ if is_float(self.shading) => self.on_face(p),
+            Interpolation::GouraudHyperbolic => self.on_face(p),
+            _ if is_float(self.interpolation) => self.on_face(p),
             _ => interpolate(self.triangle, self.values, p),
         }
     }
@@ -178,14 +181,14 @@ impl Shades {
     /// `last`; with dither, of this threshold.
     pub fn byte(&self, (first, last): (i32, i32), x: i32, y: i32, threshold: Option<u8>) -> u8 {
         let half = i128::from(threshold.unwrap_or(128));
-        let byte = match self.shading {
-            Shading::Flat(byte) => byte.into(),
-            Shading::GouraudPeriod => (self.period(x, y) + i128::from(threshold.unwrap_or(0))) >> 8,
-            Shading::GouraudHyperbolic => {
+        let byte = match self.interpolation {
+            Interpolation::Flat(byte) => byte.into(),
+            Interpolation::GouraudVintage => (self.vintage(x, y) + i128::from(threshold.unwrap_or(0))) >> 8,
+            Interpolation::GouraudHyperbolic => {
                 let exact = self.exact(centre(x, y));
                 Ratio { n: exact.n + half * exact.d, d: 256 * exact.d }.floor()
             }
-            _ if is_float(self.shading) => {
+            _ if is_float(self.interpolation) => {
                 let shade = self.float(first, last, x, y);
                 match threshold {
                     // In f32, and then cut.
@@ -195,9 +198,9 @@ impl Shades {
             }
             _ => {
                 // In 1/256 shade, or in 1/65,536.
-                let finer = if self.shading == Shading::Gouraud1616 { 256 } else { 1 };
-                let seed = match self.shading {
-                    Shading::GouraudReseeded => first + (x - first) / 64 * 64,
+                let finer = if self.interpolation == Interpolation::Gouraud1616 { 256 } else { 1 };
+                let seed = match self.interpolation {
+                    Interpolation::GouraudReseeded => first + (x - first) / 64 * 64,
                     _ => first,
                 };
                 let finer_of = |exact: Ratio| Ratio { n: exact.n * finer, d: exact.d };
@@ -231,7 +234,7 @@ impl Shades {
     }
 
     /// The shade in 1/256 at the nearest pixel of the nearest row.
-    fn period(&self, x: i32, y: i32) -> i128 {
+    fn vintage(&self, x: i32, y: i32) -> i128 {
         let Some(last) = self.rows.len().checked_sub(1) else { return self.values[0] };
         let [ax, bx, a_shade, b_shade] = self.rows[(i64::from(y) - self.top).clamp(0, last as i64) as usize];
         if bx <= ax {
@@ -244,7 +247,7 @@ impl Shades {
 
 /// The rows of a triangle as the sources have them, with the first one's number: edge by edge, a value added to
 /// at every row.
-fn period_rows(triangle: [Point; 3], values: [i128; 3]) -> (i64, Vec<PeriodRow>) {
+fn vintage_rows(triangle: [Point; 3], values: [i128; 3]) -> (i64, Vec<VintageRow>) {
     let whole = |c: i128| (c + 128).div_euclid(256) as i64;
     let corners = [0, 1, 2].map(|i| (whole(triangle[i].0), whole(triangle[i].1), values[i] as i64));
     let [a, b, c] = corners.map(|(x, y, _)| (i128::from(x), i128::from(y)));
@@ -272,15 +275,15 @@ fn period_rows(triangle: [Point; 3], values: [i128; 3]) -> (i64, Vec<PeriodRow>)
 
 /// The pixels of a triangle in a frame of `width × height`, by the letter of each shading's definition,
 /// row by row.
-pub fn pixels(vertices: &[Vertex; 3], shading: Shading, width: i32, height: i32) -> Vec<Pixel> {
+pub fn pixels(vertices: &[Vertex; 3], interpolation: Interpolation, width: i32, height: i32) -> Vec<Pixel> {
     let triangle = vertices.each_ref().map(point);
-    let shades = Shades::of_vertices(vertices, shading);
+    let shades = Shades::of_vertices(vertices, interpolation);
     let mut drawn = Vec::new();
-    if shading == Shading::GouraudPeriod {
+    if interpolation == Interpolation::GouraudVintage {
         for (y, [ax, bx, ..]) in (shades.top..).zip(&shades.rows).filter(|(y, _)| (0..height.into()).contains(y)) {
             for x in (*ax).max(0) as i32..(*bx).min(width.into()) as i32 {
                 let y = y as i32;
-                drawn.push(Pixel { x, y, byte: u8::try_from(shades.period(x, y) >> 8).expect("a byte") });
+                drawn.push(Pixel { x, y, byte: u8::try_from(shades.vintage(x, y) >> 8).expect("a byte") });
             }
         }
         return drawn;

@@ -4,7 +4,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Rgb, builtin};
-use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Rung, Scene, Shared, Wishes};
+use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Preferences, Scene, Shading, Shared};
 use mode13h::texture::Texture;
 
 use super::random::Random;
@@ -115,7 +115,7 @@ fn small() -> Vec<(&'static str, Scene)> {
     scenes.push(("far lamp", far_lamp));
 
     let mut split = lamp_on_wall(2);
-    split.wishes.tessellation = Some(1.0);
+    split.preferences.tessellation = Some(1.0);
     scenes.push(("tessellated", split));
 
     let mut columns = Scene::new();
@@ -148,7 +148,7 @@ fn small() -> Vec<(&'static str, Scene)> {
 
     let mut colors = showing("sphere");
     colors.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
-    colors.wishes.dither = true;
+    colors.preferences.dither = true;
     *colors.lights_mut() = vec![
         Light::sun([1.0, 0.0, 0.5]).with_color([1.0, 0.0, 0.0]),
         Light::sun([-1.0, 0.5, 0.5]).with_color([0.0, 1.0, 0.2]),
@@ -168,15 +168,15 @@ fn small() -> Vec<(&'static str, Scene)> {
 
     let mut dithered = showing("sphere");
     dithered.palette = Some(builtin::by_name("materials-16x16").expect("built in").palette.clone());
-    dithered.wishes.dither = true;
+    dithered.preferences.dither = true;
     scenes.push(("dither", dithered));
 
-    for rung in [Rung::PhongTable, Rung::Phong, Rung::Flat, Rung::GouraudHyperbolic] {
+    for shading in [Shading::PhongTable, Shading::Phong, Shading::Flat, Shading::GouraudHyperbolic] {
         let mut phong = showing("cone");
-        phong.wishes = Wishes { rung: Some(rung), ..Wishes::default() };
+        phong.preferences = Preferences { shading: Some(shading), ..Preferences::default() };
         let white = material(&mut phong, 0);
         (white.specular, white.shininess, white.diffuse) = (0.5, 10.0, 0.5);
-        scenes.push((rung.name(), phong));
+        scenes.push((shading.name(), phong));
     }
 
     let mut cycle = showing("torus");

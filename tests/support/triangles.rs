@@ -1,7 +1,7 @@
 //! Triangles for the tests of the raster: plain, thin, small, large, on the grid of centres.
 
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::{Frame, Raster, Rect, Shading, Vertex};
+use mode13h::raster::{Frame, Interpolation, Raster, Rect, Vertex};
 
 use super::random::Random;
 
@@ -80,7 +80,7 @@ pub fn triangle(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
 /// What a triangle draws into a frame full of `empty`, without a depth buffer.
 pub fn draw(
     vertices: &[Vertex; 3],
-    shading: Shading,
+    interpolation: Interpolation,
     width: u32,
     height: u32,
     clip: Option<Rect>,
@@ -92,6 +92,6 @@ pub fn draw(
     if let Some(clip) = clip {
         raster = raster.with_clip(clip);
     }
-    raster.triangle(vertices, shading);
+    raster.triangle(vertices, interpolation);
     bytes
 }

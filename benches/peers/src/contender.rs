@@ -3,7 +3,7 @@
 use std::ffi::c_int;
 
 use mode13h::fixed::U8F8;
-use mode13h::raster::{Batch, Frame, Raster, Shading, Vertex};
+use mode13h::raster::{Batch, Frame, Raster, Interpolation, Vertex};
 use mode13h::span::Kernel;
 use retrofire_core::geom::vertex;
 use retrofire_core::math::point::pt3;
@@ -12,7 +12,7 @@ use retrofire_core::render::raster::{ScreenPt, tri_fill};
 use crate::{HEIGHT, WIDTH};
 
 /// Draws what it was given into its own frame.
-pub trait Contender {
+pub trait Candidate {
     fn name(&self) -> String;
     /// Whether it is ours.
     fn is_ours(&self) -> bool {
@@ -31,8 +31,8 @@ pub enum Shade {
 }
 
 /// Everybody, with these triangles; ours with this kernel and the portable one.
-pub fn all(triangles: &[[Vertex; 3]], shade: Shade, kernel: Kernel) -> Vec<Box<dyn Contender>> {
-    let mut all: Vec<Box<dyn Contender>> = vec![
+pub fn all(triangles: &[[Vertex; 3]], shade: Shade, kernel: Kernel) -> Vec<Box<dyn Candidate>> {
+    let mut all: Vec<Box<dyn Candidate>> = vec![
         Box::new(Allegro::<Float>::new(triangles, shade)),
         Box::new(Allegro::<Fixed>::new(triangles, shade)),
         Box::new(Retrofire::new(triangles, shade)),
@@ -54,28 +54,28 @@ fn is_inside(triangles: &[[Vertex; 3]]) -> bool {
     triangles.iter().flatten().all(|v| within(v.x().to_bits(), WIDTH) && within(v.y().to_bits(), HEIGHT))
 }
 
-fn shading(vertices: &[Vertex; 3], shade: Shade) -> Shading {
+fn interpolation(vertices: &[Vertex; 3], shade: Shade) -> Interpolation {
     match shade {
-        Shade::Linear => Shading::GouraudReseeded,
-        Shade::Flat => Shading::Flat(vertices[0].shade().nearest()),
+        Shade::Linear => Interpolation::GouraudReseeded,
+        Shade::Flat => Interpolation::Flat(vertices[0].shade().nearest()),
     }
 }
 
 /// The raster, a triangle a call.
 struct Ours {
-    triangles: Vec<([Vertex; 3], Shading)>,
+    triangles: Vec<([Vertex; 3], Interpolation)>,
     kernel: Kernel,
     bytes: Vec<u8>,
 }
 
 impl Ours {
     fn new(triangles: &[[Vertex; 3]], shade: Shade, kernel: Kernel) -> Self {
-        let triangles = triangles.iter().map(|vertices| (*vertices, shading(vertices, shade))).collect();
+        let triangles = triangles.iter().map(|vertices| (*vertices, interpolation(vertices, shade))).collect();
         Self { triangles, kernel, bytes: vec![0; WIDTH * HEIGHT] }
     }
 }
 
-impl Contender for Ours {
+impl Candidate for Ours {
     fn name(&self) -> String {
         format!("one by one, {}", self.kernel)
     }
@@ -91,8 +91,8 @@ impl Contender for Ours {
     fn draw(&mut self) {
         let frame = Frame::new(&mut self.bytes, WIDTH as u32, HEIGHT as u32, WIDTH).expect("a legal frame");
         let mut raster = Raster::new(frame).with_kernel(self.kernel);
-        for (vertices, shading) in &self.triangles {
-            raster.triangle(vertices, *shading);
+        for (vertices, interpolation) in &self.triangles {
+            raster.triangle(vertices, *interpolation);
         }
     }
 
@@ -114,7 +114,7 @@ impl Batches {
         for triangles in triangles.chunks(Batch::CAPACITY) {
             let mut batch = Batch::new();
             for vertices in triangles {
-                assert!(batch.push(vertices, shading(vertices, shade)), "there is room");
+                assert!(batch.push(vertices, interpolation(vertices, shade)), "there is room");
             }
             batches.push(batch);
         }
@@ -122,7 +122,7 @@ impl Batches {
     }
 }
 
-impl Contender for Batches {
+impl Candidate for Batches {
     fn name(&self) -> String {
         format!("batches, {}", self.kernel)
     }
@@ -170,7 +170,7 @@ impl Retrofire {
     }
 }
 
-impl Contender for Retrofire {
+impl Candidate for Retrofire {
     fn name(&self) -> String {
         "retrofire".to_owned()
     }
@@ -291,7 +291,7 @@ impl<V: AllegroVertex> Allegro<V> {
     }
 }
 
-impl<V: AllegroVertex> Contender for Allegro<V> {
+impl<V: AllegroVertex> Candidate for Allegro<V> {
     fn name(&self) -> String {
         V::NAME.to_owned()
     }

@@ -19,7 +19,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use contender::{Contender, Shade};
+use contender::{Candidate, Shade};
 use mode13h::span::Kernel;
 use serde_json::{Value, json};
 use timing::{ROUNDS, Times};
@@ -184,15 +184,15 @@ fn triangles(workload: &Workload, shade: Shade, kernel: Kernel) -> Value {
 
 /// Pixels that a triangle covers inside the frame, by the engine's own count.
 fn mean_pixels(workload: &Workload) -> f64 {
-    use mode13h::raster::{Frame, Raster, Shading};
+    use mode13h::raster::{Frame, Raster, Interpolation};
     let mut bytes = vec![0; WIDTH * HEIGHT];
     let mut raster = Raster::new(Frame::new(&mut bytes, WIDTH as u32, HEIGHT as u32, WIDTH).expect("a legal frame"));
-    let covered: u64 = workload.triangles.iter().map(|t| u64::from(raster.triangle(t, Shading::Flat(1)).covered)).sum();
+    let covered: u64 = workload.triangles.iter().map(|t| u64::from(raster.triangle(t, Interpolation::Flat(1)).covered)).sum();
     covered as f64 / workload.triangles.len() as f64
 }
 
 /// How often it draws in a millisecond, at least once.
-fn turns(contender: &mut dyn Contender) -> u32 {
+fn turns(contender: &mut dyn Candidate) -> u32 {
     contender.draw();
     let started = Instant::now();
     contender.draw();

@@ -3,7 +3,7 @@
 use mode13h::raster::Vertex;
 use mode13h::span::Kernel;
 
-use crate::contender::{Contender, Shade};
+use crate::contender::{Candidate, Shade};
 use crate::{HEIGHT, WIDTH};
 
 /// How far a contender is from the truth, over the triangles that were looked at.
@@ -22,7 +22,7 @@ pub fn errors(triangles: &[[Vertex; 3]], shade: Shade, kernel: Kernel, contender
     let mut errors = Errors::default();
     let (mut black, mut white) = (vec![0; WIDTH * HEIGHT], vec![0; WIDTH * HEIGHT]);
     for vertices in triangles {
-        let mut contender: Box<dyn Contender> =
+        let mut contender: Box<dyn Candidate> =
             crate::contender::all(std::slice::from_ref(vertices), shade, kernel).swap_remove(contender);
         for (index, bytes) in [(0, &mut black), (255, &mut white)] {
             contender.clear(index);

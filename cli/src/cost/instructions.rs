@@ -1,8 +1,8 @@
 //! Instructions, counted by valgrind's callgrind: a figure without noise.
 //!
-//! The program runs itself under callgrind, with the same words and one more. There it draws each rung's frames in a
+//! The program runs itself under callgrind, with the same words and one more. There it draws each shading's frames in a
 //! call of [`draw_counted`], after it has drawn them once. Callgrind collects inside of that function only, and
-//! writes what it has collected before each call of [`rung_is_done`].
+//! writes what it has collected before each call of [`shading_is_done`].
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -12,7 +12,7 @@ use std::process::Command;
 use std::{env, fs, process};
 
 use mode13h::plan::Effect;
-use mode13h::render::{Renderer, Rung};
+use mode13h::render::{Renderer, Shading};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use mode13h_lab::cost::Study;
@@ -24,36 +24,36 @@ use crate::output;
 const COUNTED: &str = "*draw_counted*";
 
 /// The function before which it writes what it has collected.
-const DONE: &str = "*rung_is_done*";
+const DONE: &str = "*shading_is_done*";
 
-/// Instructions of a frame, by rung.
+/// Instructions of a frame, by shading.
 pub(super) struct Counts {
     /// The kernel that ran, by the name that forces it.
     pub(super) kernel: String,
-    of: BTreeMap<Rung, u64>,
+    of: BTreeMap<Shading, u64>,
 }
 
 impl Counts {
     pub(super) fn write_into(&self, study: &mut Study) {
-        for row in &mut study.rungs {
-            row.instructions = self.of.get(&row.rung).copied();
+        for row in &mut study.shadings {
+            row.instructions = self.of.get(&row.shading).copied();
         }
     }
 }
 
-/// Draws all frames by each rung, and says which kernel did: what callgrind looks at.
-pub(super) fn draw(frames: &[Scene], rungs: &[Rung], renderer: &dyn Fn() -> Renderer) -> Result<(), Failure> {
+/// Draws all frames by each shading, and says which kernel did: what callgrind looks at.
+pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -> Renderer) -> Result<(), Failure> {
     let mut vga = Vga::new();
     let mut kernel = renderer().kernel();
-    for rung in rungs {
+    for shading in shadings {
         let mut renderer = renderer();
-        renderer.set_rung(*rung);
+        renderer.set_shading(*shading);
         renderer.force(Effect::Transform, Some(true));
         for scene in frames {
             renderer.draw(scene, &mut vga).map_err(Failure::from)?;
         }
         draw_counted(frames, &mut renderer, &mut vga)?;
-        rung_is_done(rung);
+        shading_is_done(shading);
         kernel = renderer.kernel();
     }
     let level = if kernel.name() == "simd" { format!("simd-{}", kernel.level()) } else { kernel.name().to_string() };
@@ -69,12 +69,12 @@ fn draw_counted(frames: &[Scene], renderer: &mut Renderer, vga: &mut Vga) -> Res
 }
 
 #[inline(never)]
-fn rung_is_done(rung: &Rung) {
-    black_box(rung);
+fn shading_is_done(shading: &Shading) {
+    black_box(shading);
 }
 
-/// Counts the instructions of every rung, this program being run again with the words that it was run with.
-pub(super) fn count(rungs: &[Rung], frames: usize) -> Result<Counts, Failure> {
+/// Counts the instructions of every shading, this program being run again with the words that it was run with.
+pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failure> {
     let directory = Temporary::new()?;
     let program = env::current_exe().map_err(Failure::from)?;
     let out = Command::new("valgrind")
@@ -95,13 +95,13 @@ pub(super) fn count(rungs: &[Rung], frames: usize) -> Result<Counts, Failure> {
         return Err(Failure::file(format!("valgrind: {}", said.trim_start_matches("mode13h: "))));
     }
     let mut of = BTreeMap::new();
-    for (rung, number) in rungs.iter().zip(1..) {
+    for (shading, number) in shadings.iter().zip(1..) {
         // Numbered from 1.
         let path = directory.0.join(format!("counts.{number}"));
         let all = fs::read_to_string(&path).ok().and_then(|text| sum(&text));
         let all =
             all.ok_or_else(|| Failure::file("valgrind counted nothing: has the program been stripped of names?"))?;
-        of.insert(*rung, all / frames.max(1) as u64);
+        of.insert(*shading, all / frames.max(1) as u64);
     }
     Ok(Counts { kernel: String::from_utf8_lossy(&out.stdout).trim().to_string(), of })
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, RungRow, Study, Verdict};
+use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, ShadingRow, Study, Verdict};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -118,11 +118,11 @@ fn interval((low, high): (f64, f64)) -> [f64; 2] {
     [low, high]
 }
 
-impl From<&RungRow> for JsonShading {
-    fn from(row: &RungRow) -> Self {
+impl From<&ShadingRow> for JsonShading {
+    fn from(row: &ShadingRow) -> Self {
         let split = row.split;
         Self {
-            shading: row.rung.name(),
+            shading: row.shading.name(),
             ns_per_frame: row.per_frame.median,
             ns_per_frame_quartiles: quartiles(&row.per_frame),
             ns_per_pixel: row.per_pixel,
@@ -143,7 +143,7 @@ impl From<&RungRow> for JsonShading {
             cover_errors: row.cover_errors,
             swim: row.swim,
             efficient: row.efficient,
-            as_fast_as: row.as_fast_as.iter().map(|rung| rung.name()).collect(),
+            as_fast_as: row.as_fast_as.iter().map(|shading| shading.name()).collect(),
         }
     }
 }
@@ -158,11 +158,11 @@ impl From<&BudgetRow> for JsonBudget {
             largest_patch: row.patch,
             ns_per_frame: row.per_frame.median,
             ns_per_frame_quartiles: quartiles(&row.per_frame),
-            best_single_shading: row.best_single_rung.map(|rung| rung.name()),
+            best_single_shading: row.best_single_shading.map(|shading| shading.name()),
             best_single_ns: row.best_single.map(|time| time.median),
             ratio: row.ratio.map(|(ratio, _)| ratio),
             ratio_interval: row.ratio.map(|(_, of)| interval(of)),
-            triangles: row.triangles.iter().map(|(rung, triangles)| (rung.name(), *triangles)).collect(),
+            triangles: row.triangles.iter().map(|(shading, triangles)| (shading.name(), *triangles)).collect(),
         }
     }
 }
@@ -210,7 +210,7 @@ pub(super) fn json<'a>(study: &'a Study, warnings: &'a [String]) -> Json<'a> {
         kernel: &study.kernel,
         frames: study.frames,
         rounds: study.rounds,
-        shadings: study.rungs.iter().map(JsonShading::from).collect(),
+        shadings: study.shadings.iter().map(JsonShading::from).collect(),
         budget: study.budget.iter().map(JsonBudget::from).collect(),
         options: study.options.iter().map(JsonOption::from).collect(),
         claims: study.claims.iter().map(JsonClaim::from).collect(),

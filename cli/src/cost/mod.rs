@@ -13,14 +13,14 @@ use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::render::Rung;
+use mode13h::render::Shading;
 use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h_lab::cost::{self, Settings, Step, Subject, report};
 
 use crate::failure::{Failure, on_one_line};
 use crate::options::{Drawing, finite, one_of};
-use crate::stage::Stage;
+use crate::turntable::Turntable;
 use crate::{input, output};
 
 /// Frames that follow each other 0.25° apart, for what swims.
@@ -50,10 +50,10 @@ pub(crate) struct Options {
         long_help = long_help_on_shadings(),
         value_name = "NAME,...",
         value_delimiter = ',',
-        value_parser = one_of(Rung::ALL, Rung::name),
+        value_parser = one_of(Shading::ALL, Shading::name),
         hide_possible_values = true,
     )]
-    shadings: Vec<Rung>,
+    shadings: Vec<Shading>,
     /// How many frames, spread over one round
     ///
     /// A model turns once; a scene moves for as long as it says.
@@ -82,7 +82,7 @@ pub(crate) struct Options {
 fn long_help_on_shadings() -> String {
     format!(
         "The shadings to be studied, with commas between: {}\n\n[default: all]",
-        Rung::ALL.map(Rung::name).join(", ")
+        Shading::ALL.map(Shading::name).join(", ")
     )
 }
 
@@ -96,7 +96,7 @@ fn seconds(words: &str) -> Result<f64, String> {
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { input, out, force, json, frames, instructions, seconds, counted, drawing, .. } = options;
-    let rungs = if options.shadings.is_empty() { Rung::ALL.to_vec() } else { options.shadings.clone() };
+    let shadings = if options.shadings.is_empty() { Shading::ALL.to_vec() } else { options.shadings.clone() };
     let mut kernel = drawing.kernel()?;
     let input = drawing.input(input)?;
     let name = input.name().to_string();
@@ -104,7 +104,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let frames = turned(&mut stage, *frames, 360.0 / f64::from(*frames));
     let steps = turned(&mut stage, STEPS, 0.25);
     if *counted {
-        return instructions::draw(&frames, &rungs, &|| drawing.renderer(kernel));
+        return instructions::draw(&frames, &shadings, &|| drawing.renderer(kernel));
     }
     let directory = match (out, json) {
         (Some(directory), _) => Some(directory.clone()),
@@ -114,14 +114,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     // Before much time is spent.
     let overwrites = out.is_some() || *force;
     directory.as_deref().map_or(Ok(()), |directory| files::check(directory, overwrites))?;
-    let counts = if *instructions { Some(instructions::count(&rungs, frames.len())?) } else { None };
+    let counts = if *instructions { Some(instructions::count(&shadings, frames.len())?) } else { None };
     if let Some(counts) = &counts {
         kernel = Kernel::by_name(&counts.kernel).map_err(Failure::words)?;
     }
 
     let renderer = || drawing.renderer(kernel);
     let subject = Subject { name: &name, frames: &frames, steps: &steps, renderer: &renderer };
-    let mut settings = Settings { rungs, host: host::host(), clock: host::clock(), ..Settings::default() };
+    let mut settings = Settings { shadings, host: host::host(), clock: host::clock(), ..Settings::default() };
     if let Some(seconds) = *seconds {
         (settings.seconds, settings.at_most) = (seconds, true);
     }
@@ -160,7 +160,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// So many frames of what is shown, each turned by so many degrees more than the one before it.
-fn turned(stage: &mut Stage, frames: u32, degrees: f64) -> Vec<Scene> {
+fn turned(stage: &mut Turntable, frames: u32, degrees: f64) -> Vec<Scene> {
     let mut scenes = Vec::new();
     for frame in 0..frames {
         let (seconds, pose) = stage.turned(0.0, f64::from(frame) * degrees);

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use mode13h_lab::cost::{BudgetRow, OptionRow, RungRow, Study, Verdict};
+use mode13h_lab::cost::{BudgetRow, OptionRow, ShadingRow, Study, Verdict};
 
-/// The tables of rungs and budgets, and where the rest is.
+/// The tables of shadings and budgets, and where the rest is.
 pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
     let Study { input, host, kernel, frames, rounds, .. } = study;
     let mut text = format!(
@@ -12,7 +12,7 @@ pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
         host.processor, host.compiler, host.flags
     );
     text += &heading();
-    text.extend(study.rungs.iter().map(rung));
+    text.extend(study.shadings.iter().map(shading));
     text += "\n* none is as near to lit and faster, as far as times can be told apart. Errors in shades of 1/255: largest against gouraud, largest and root\n  \
              mean square against lit\n\n";
     text += "  budget  within E  largest   µs/frame  best single shading        µs/frame  ratio\n";
@@ -45,12 +45,12 @@ fn heading() -> String {
     )
 }
 
-fn rung(row: &RungRow) -> String {
+fn shading(row: &ShadingRow) -> String {
     let (low, high) = row.ratio_interval;
     format!(
         "{} {:22}{:>10.1}  {:>6.3} ({low:.3} to {high:.3})  {:>8.2}{:>8.2}{:>8.2}{:>8.2}{:>8}\n",
         if row.efficient { '*' } else { ' ' },
-        row.rung.name(),
+        row.shading.name(),
         row.per_frame.median / 1000.0,
         row.ratio,
         row.error_gouraud.max,
@@ -62,7 +62,7 @@ fn rung(row: &RungRow) -> String {
 }
 
 fn budget(row: &BudgetRow) -> String {
-    let best = row.best_single_rung.map_or("none keeps it", |rung| rung.name());
+    let best = row.best_single_shading.map_or("none keeps it", |shading| shading.name());
     let time = row.best_single.map_or(String::new(), |time| format!("{:.1}", time.median / 1000.0));
     let ratio = row.ratio.map_or(String::new(), |(ratio, (low, high))| format!("{ratio:.3} ({low:.3} to {high:.3})"));
     format!(

@@ -8,13 +8,13 @@ use std::mem;
 use std::time::Instant;
 
 use mode13h::palette::Rgb;
-use mode13h::render::{RenderError, Renderer, Rung};
+use mode13h::render::{RenderError, Renderer, Shading};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use mode13h::window::{Input, Key};
 use mode13h_lab::truth::Figures;
 
-use super::shading::Shading;
+use super::shading::ShadingChoice;
 use super::timing::Timing;
 use crate::overlay::{Row, Sheet, Side};
 
@@ -23,7 +23,7 @@ const CLICK: f32 = 2.0;
 
 /// A shading, what draws by it, and what it drew.
 pub(super) struct Half {
-    pub(super) shading: Shading,
+    pub(super) shading: ShadingChoice,
     pub(super) renderer: Renderer,
     pub(super) vga: Vga,
     pub(super) timing: Timing,
@@ -39,7 +39,7 @@ pub(super) struct Compare {
 impl Compare {
     pub(super) fn new() -> Compare {
         let right = Half {
-            shading: Shading::new(Rung::Phong, None),
+            shading: ShadingChoice::new(Shading::Phong, None),
             renderer: Renderer::new(),
             vga: Vga::new(),
             timing: Timing::default(),
@@ -47,9 +47,9 @@ impl Compare {
         Compare { is_on: false, right, divider: Divider::default() }
     }
 
-    /// Does what the user wishes, and says what that changed. `left` is how the left half is shaded, and `renderer` draws
+    /// Does what the user preferences, and says what that changed. `left` is how the left half is shaded, and `renderer` draws
     /// that.
-    pub(super) fn follow(&mut self, input: &Input, left: &Shading, renderer: &Renderer) -> Option<String> {
+    pub(super) fn follow(&mut self, input: &Input, left: &ShadingChoice, renderer: &Renderer) -> Option<String> {
         if input.pressed(Key::C) {
             self.is_on ^= true;
             if !self.is_on {
@@ -104,7 +104,7 @@ impl Compare {
     }
 
     /// The divider, and over each half its shading, its time and its error.
-    pub(super) fn lay_over(&self, sheet: &mut Sheet, left: (&Shading, &Timing), errors: [Option<Figures>; 2]) {
+    pub(super) fn lay_over(&self, sheet: &mut Sheet, left: (&ShadingChoice, &Timing), errors: [Option<Figures>; 2]) {
         let picture = sheet.picture_area();
         // Within the window.
         let x = picture.from_frame(self.divider.column as f32, 0.0).0 as i32;
@@ -127,7 +127,7 @@ impl Compare {
     }
 
     /// Swaps the halves.
-    pub(super) fn swap(&mut self, left: (&mut Shading, &mut Renderer, &mut Vga, &mut Timing)) {
+    pub(super) fn swap(&mut self, left: (&mut ShadingChoice, &mut Renderer, &mut Vga, &mut Timing)) {
         let Half { shading, renderer, vga, timing } = &mut self.right;
         mem::swap(shading, left.0);
         mem::swap(renderer, left.1);
@@ -137,9 +137,9 @@ impl Compare {
 }
 
 /// What a shading is compared with: light at every pixel, or where that is the shading itself the default.
-fn opposite(left: &Shading) -> Shading {
-    let exact = Shading::new(Rung::Phong, None);
-    if left.to_string() == exact.to_string() { Shading::new(Rung::default(), None) } else { exact }
+fn opposite(left: &ShadingChoice) -> ShadingChoice {
+    let exact = ShadingChoice::new(Shading::Phong, None);
+    if left.to_string() == exact.to_string() { ShadingChoice::new(Shading::default(), None) } else { exact }
 }
 
 /// Where the picture is divided.
@@ -215,7 +215,7 @@ mod tests {
     fn the_right_half_is_drawn_by_its_own_renderer() {
         let scene = Scene::showing(shapes::torus(24, 12));
         let (mut renderer, mut phong) = (Renderer::new(), Vga::new());
-        renderer.set_rung(Rung::Phong);
+        renderer.set_shading(Shading::Phong);
         renderer.draw(&scene, &mut phong).expect("a legal scene");
         let mut compare = Compare::new();
         assert!(compare.draw(&scene, 0.0).expect("a legal scene"));
@@ -241,9 +241,9 @@ mod tests {
 
     #[test]
     fn a_shading_is_compared_with_another() {
-        let names = |left: Shading| opposite(&left).to_string();
-        assert_eq!(names(Shading::new(Rung::Flat, None)), "phong");
-        assert_eq!(names(Shading::new(Rung::Phong, Some(2.0))), "phong", "a budget against exact");
-        assert_eq!(names(Shading::new(Rung::Phong, None)), Rung::default().name());
+        let names = |left: ShadingChoice| opposite(&left).to_string();
+        assert_eq!(names(ShadingChoice::new(Shading::Flat, None)), "phong");
+        assert_eq!(names(ShadingChoice::new(Shading::Phong, Some(2.0))), "phong", "a budget against exact");
+        assert_eq!(names(ShadingChoice::new(Shading::Phong, None)), Shading::default().name());
     }
 }

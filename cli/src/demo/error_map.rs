@@ -54,7 +54,7 @@ const STEPS: u8 = 32;
 /// What a colour keeps in the dark, of 256: else nobody could tell one from another there.
 const LEAST: u32 = 112;
 /// The same of what is right, which need not be told from anything.
-const LEAST_GREY: u32 = 0;
+const MIN_GREY: u32 = 0;
 
 /// Columns and rows from one pixel to the next that the first map judges.
 const COARSE: u32 = 4;
@@ -249,7 +249,7 @@ fn step(color: Rgb) -> u8 {
 fn palette() -> Palette {
     let mut colors = [Rgb::BLACK; 256];
     for (i, level) in LEVELS.iter().enumerate() {
-        let least = if i == 0 { LEAST_GREY } else { LEAST };
+        let least = if i == 0 { MIN_GREY } else { LEAST };
         for (step, color) in (0..).zip(&mut colors[i * usize::from(STEPS)..][..usize::from(STEPS)]) {
             let light = least + (256 - least) * step / u32::from(STEPS - 1);
             // At most 255 · 256 / 256.
@@ -397,7 +397,7 @@ fn level_of(error: f64) -> u8 {
 mod tests {
     use super::*;
     use mode13h::mesh::shapes;
-    use mode13h::render::Rung;
+    use mode13h::render::Shading;
     use mode13h_lab::truth::Standard;
 
     #[test]
@@ -412,33 +412,33 @@ mod tests {
         assert_eq!((step(Rgb::BLACK), step(Rgb::WHITE)), (0, STEPS - 1));
     }
 
-    fn frame(number: u64, scene: &Scene, rungs: &[Rung]) -> Frame {
+    fn frame(number: u64, scene: &Scene, shadings: &[Shading]) -> Frame {
         let mut picture = Vga::new();
-        let renderer = |&rung| {
+        let renderer = |&shading| {
             let mut renderer = Renderer::new();
-            renderer.set_rung(rung);
+            renderer.set_shading(shading);
             renderer.draw(scene, &mut picture).expect("a legal scene");
             renderer.set_alike()
         };
-        let renderers = rungs.iter().map(renderer).collect();
-        let shadings = rungs.iter().map(|rung| rung.name().to_string()).collect();
+        let renderers = shadings.iter().map(renderer).collect();
+        let shadings = shadings.iter().map(|shading| shading.name().to_string()).collect();
         let snapshot = Snapshot { number, seconds: 0.5, picture, divider: 100, shadings };
         Frame { snapshot, scene: scene.clone(), renderers, mouse: Pixel { x: 160, y: 100 } }
     }
 
     /// The whole truth against what is drawn.
-    fn errors(scene: &Scene, rung: Rung) -> ErrorMap {
+    fn errors(scene: &Scene, shading: Shading) -> ErrorMap {
         let mut renderer = Renderer::new();
-        renderer.set_rung(rung);
+        renderer.set_shading(shading);
         let shown = Probe::new(renderer).look(scene, Screen::MODE_13H).expect("a legal scene");
         let truth = Truth::new(scene, Screen::MODE_13H).expect("a legal scene").draw(Standard::Lit);
         ErrorMap::new(&truth, &shown).expect("of one size")
     }
 
     /// All that is found of a frame, and no newer one comes.
-    fn all_found(scene: &Scene, rungs: &[Rung], is_overtaken: bool) -> Vec<Found> {
+    fn all_found(scene: &Scene, shadings: &[Shading], is_overtaken: bool) -> Vec<Found> {
         let found = std::cell::RefCell::new(Vec::new());
-        let Frame { renderers, mouse, .. } = frame(0, scene, rungs);
+        let Frame { renderers, mouse, .. } = frame(0, scene, shadings);
         let mut probe = Probe::new(Renderer::new());
         let say = |some| found.borrow_mut().push(some);
         find(&mut probe, scene, renderers, mouse, &say, &|| is_overtaken).expect("a legal scene");
@@ -454,19 +454,19 @@ mod tests {
         while map.errors_of(3, 1).is_none() {
             let frame = || {
                 asked += 1;
-                frame(3, &scene, &[Rung::Flat, Rung::Phong])
+                frame(3, &scene, &[Shading::Flat, Shading::Phong])
             };
             map.follow(3, frame).expect("a thread");
         }
         assert_eq!(asked, 1);
         assert_eq!((map.state(3, 9.0), map.state(4, 0.75)), ("now".into(), "0.2 s ago".into()));
-        for (side, rung) in [Rung::Flat, Rung::Phong].into_iter().enumerate() {
-            assert_eq!(map.errors_of(3, side), Some(errors(&scene, rung).figures()));
+        for (side, shading) in [Shading::Flat, Shading::Phong].into_iter().enumerate() {
+            assert_eq!(map.errors_of(3, side), Some(errors(&scene, shading).figures()));
         }
         assert!(map.errors_of(4, 0).is_none() && map.errors_of(3, 2).is_none());
         let found = map.of(3).expect("it came");
         // Of each colour as many pixels as there are errors in its range.
-        let errors = errors(&scene, Rung::Flat);
+        let errors = errors(&scene, Shading::Flat);
         let mut from = 0.0;
         for (i, level) in (0..).zip(&LEVELS[..7]) {
             let expected = errors.errors().flatten().filter(|error| (from..level.below).contains(error)).count();
@@ -495,9 +495,9 @@ mod tests {
     #[test]
     fn a_map_is_coarse_at_first_and_right_where_it_was_judged() {
         let scene = Scene::showing(shapes::torus(24, 12));
-        let errors: Vec<Option<f64>> = errors(&scene, Rung::Flat).errors().collect();
+        let errors: Vec<Option<f64>> = errors(&scene, Shading::Flat).errors().collect();
         // Overtaken at once: what moves is judged coarsely all the same.
-        let found = all_found(&scene, &[Rung::Flat], true);
+        let found = all_found(&scene, &[Shading::Flat], true);
         assert_eq!(found.len(), 1);
         let levels = &found[0].sides[0].levels;
         for y in (2..200).step_by(4) {
@@ -509,7 +509,7 @@ mod tests {
         let judged = (0..64_000).filter(|i| i % 4 == 2 && i / 320 % 4 == 2);
         assert_eq!(found[0].sides[0].figures.count as usize, judged.filter(|&i| errors[i].is_some()).count());
         // With time it is refined.
-        let found = all_found(&scene, &[Rung::Flat], false);
+        let found = all_found(&scene, &[Shading::Flat], false);
         assert_eq!(found[0].sides[0].levels, *levels);
         let last = found.last().expect("the last");
         assert_eq!(last.refined, 1.0);

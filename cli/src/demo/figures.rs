@@ -14,8 +14,8 @@ const KEYS: [(&str, &str); 24] = [
     ("Space", "stop, go on"),
     ("arrows", "turn; the mouse too"),
     ("+ -", "zoom; the wheel too"),
-    ("1 to 9", "shade by this rung"),
-    ("[ ]", "the rung before, the next"),
+    ("1 to 9", "shade by this shading"),
+    ("[ ]", "the shading before, the next"),
     ("0", "shade by a budget of error"),
     ("B", "a smaller budget"),
     ("Shift-B", "a greater one"),
@@ -59,7 +59,7 @@ impl Demo {
         ];
         if let Some(Stats { hidden_surfaces, vertices, drawn, raster, shares, .. }) = &self.stats {
             let mut head = "shadings";
-            for share in of_rungs(shares) {
+            for share in of_shadings(shares) {
                 rows.push(Row::new(std::mem::take(&mut head), share));
             }
             let (vertices, drawn) = (counted(*vertices as usize, "vertex").replace("vertexs", "vertices"), *drawn);
@@ -99,9 +99,9 @@ impl Demo {
     }
 }
 
-/// How the triangles were shared out among the rungs.
-fn of_rungs(shares: &Shares) -> Vec<String> {
-    shares.iter().map(|(rung, triangles)| format!("{rung} {triangles}")).collect()
+/// How the triangles were shared out among the shadings.
+fn of_shadings(shares: &Shares) -> Vec<String> {
+    shares.iter().map(|(shading, triangles)| format!("{shading} {triangles}")).collect()
 }
 
 #[cfg(test)]
@@ -114,7 +114,7 @@ mod tests {
 
     use super::*;
     use crate::demo::loader::{self, Inputs};
-    use crate::demo::shading::Shading;
+    use crate::demo::shading::ShadingChoice;
     use crate::options::{Drawing, ShadingOptions};
     use crate::overlay::tests::WINDOWS;
 
@@ -144,7 +144,7 @@ mod tests {
         for scene in shipped::ALL {
             let mut demo = demo(scene.name);
             for budget in [None, Some(1.0)] {
-                demo.shading = Shading::new(demo.renderer.rung(), budget);
+                demo.shading = ShadingChoice::new(demo.renderer.shading(), budget);
                 demo.draw().expect("a legal scene");
                 for size in WINDOWS {
                     for (help, figures) in [(true, false), (false, true), (true, true)] {
@@ -198,11 +198,11 @@ mod tests {
     fn the_title_has_the_time_of_the_shading_that_it_names() {
         let mut demo = demo("torus");
         let times: Vec<f64> = ["flat", "phong"]
-            .map(|rung| {
-                demo.shading = Shading::new(rung.parse().expect("a rung"), None);
+            .map(|shading| {
+                demo.shading = ShadingChoice::new(shading.parse().expect("a shading"), None);
                 demo.forget_times();
                 demo.draw().expect("a legal scene");
-                assert_eq!(demo.title(), format!("torus - {rung} - {} - mode13h", demo.timing));
+                assert_eq!(demo.title(), format!("torus - {shading} - {} - mode13h", demo.timing));
                 demo.timing.frame
             })
             .into();

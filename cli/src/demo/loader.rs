@@ -11,7 +11,7 @@ use std::time::{Duration, SystemTime};
 
 use crate::failure::Failure;
 use crate::options::{Drawing, ShadingOptions};
-use crate::stage::Stage;
+use crate::turntable::Turntable;
 use crate::{input, read_files};
 
 /// How often it is looked whether a file has changed.
@@ -37,13 +37,13 @@ impl Inputs {
     }
 }
 
-/// An input that was loaded, or why it was not, and the files that it depends on.
+/// An input that was loaded, or reason it was not, and the files that it depends on.
 pub(super) struct Loading {
     /// Its place in the list of inputs.
     pub(super) at: usize,
     /// Whether it was loaded because a file changed.
     pub(super) is_again: bool,
-    pub(super) result: Result<Box<Stage>, Failure>,
+    pub(super) result: Result<Box<Turntable>, Failure>,
     watch: Watch,
 }
 
@@ -194,7 +194,7 @@ mod tests {
         stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum()
     }
 
-    fn why(loading: &Loading) -> String {
+    fn reason(loading: &Loading) -> String {
         loading.result.as_ref().err().map(ToString::to_string).unwrap_or_default()
     }
 
@@ -218,7 +218,7 @@ mod tests {
 
         fs::write(&model, format!("{TRIANGLE}f 1 2 9\n")).expect("written");
         let wrong = next(&loader);
-        assert!(wrong.is_again && why(&wrong).contains("model.obj:5"), "{}", why(&wrong));
+        assert!(wrong.is_again && reason(&wrong).contains("model.obj:5"), "{}", reason(&wrong));
         // As many editors do: a new file beside the old, which takes its name.
         let beside = folder.path().join("model.obj~");
         fs::write(&beside, format!("{TRIANGLE}v 1 1 1\nf 1 2 4\nf 2 3 4\n")).expect("written");
@@ -229,7 +229,7 @@ mod tests {
         thread::sleep(PERIOD * 2);
         fs::write(&model, TRIANGLE.replace("1 2 3", "3 2 1 2")).expect("written");
         let back = next(&loader);
-        assert!(back.result.is_ok(), "{}", why(&back));
+        assert!(back.result.is_ok(), "{}", reason(&back));
     }
 
     #[test]
@@ -253,7 +253,7 @@ mod tests {
         assert_eq!(diffuse(&next(&loader)), [0.0, 0.5, 0.0]);
         fs::write(&scene, "[[objects]]\nmodel = \"missing.obj\"\n").expect("written");
         let wrong = next(&loader);
-        assert!(why(&wrong).contains("scene.toml:2"), "{}", why(&wrong));
+        assert!(reason(&wrong).contains("scene.toml:2"), "{}", reason(&wrong));
         fs::write(in_folder("missing.obj"), TRIANGLE).expect("written");
         assert_eq!(triangles(&next(&loader)), 1);
     }
@@ -270,7 +270,7 @@ mod tests {
         loader.ask(1);
         let missing = next(&loader);
         assert_eq!((missing.at, missing.is_again), (1, false));
-        assert!(why(&missing).contains("b.obj"), "{}", why(&missing));
+        assert!(reason(&missing).contains("b.obj"), "{}", reason(&missing));
         loader.ask(2);
         let third = next(&loader);
         assert_eq!((third.at, triangles(&third)), (2, 2));

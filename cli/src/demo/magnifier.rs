@@ -23,8 +23,8 @@ use mode13h::vga::Vga;
 use mode13h::window::Area;
 use mode13h_lab::show::{Enlarged, Segment};
 
-use super::account;
 use super::background::{Background, Desk};
+use super::shade_trace;
 use super::step::Traced;
 use crate::failure::Failure;
 use crate::overlay::{self, Letters, Sheet};
@@ -99,7 +99,7 @@ impl Pixel {
         let upper = i32::from(self.y) < HEIGHT / 2;
         Places {
             lens: (if left { WIDTH - LENS.0 } else { 0 }, if upper { 0 } else { HEIGHT - LENS.1 }),
-            account: (0, if upper { LENS.1 } else { 0 }),
+            shade_trace: (0, if upper { LENS.1 } else { 0 }),
         }
     }
 }
@@ -107,7 +107,7 @@ impl Pixel {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 struct Places {
     lens: (i32, i32),
-    account: (i32, i32),
+    shade_trace: (i32, i32),
 }
 
 /// What the lens asks about.
@@ -128,7 +128,7 @@ struct Answer {
     cells: Cells,
     /// Edges of the faces that are seen in the lens, in pixels of the frame.
     edges: Vec<Segment>,
-    account: Vec<String>,
+    shade_trace: Vec<String>,
     /// The triangle that is seen at the pixel.
     seen: Option<Traced>,
 }
@@ -241,15 +241,15 @@ impl Magnifier {
     pub(super) fn write(&self, sheet: &mut Sheet, pixel: Pixel, byte: u8, first: Vec<String>) {
         let answer = self.last.as_ref().filter(|answer| answer.pixel == pixel);
         let waiting = [format!("({}, {}) byte {byte}", pixel.x, pixel.y), "computing".to_string()];
-        let account = answer.map_or(&waiting[..], |answer| &answer.account);
+        let shade_trace = answer.map_or(&waiting[..], |answer| &answer.shade_trace);
         let picture = sheet.picture_area();
-        let Places { account: (_, top), .. } = pixel.places();
+        let Places { shade_trace: (_, top), .. } = pixel.places();
         // Rows of the window.
         let row = |y: i32| picture.from_frame(0.0, y as f32).1 as usize;
         let (top, bottom) = (row(top), row(top + HEIGHT - LENS.1));
         let area = Area { left: picture.left, top, width: picture.width, height: bottom.saturating_sub(top) };
         sheet.block(area, PAPER.0, PAPER.1);
-        let lines: Vec<&str> = first.iter().chain(account).map(String::as_str).collect();
+        let lines: Vec<&str> = first.iter().chain(shade_trace).map(String::as_str).collect();
         let letters = [sheet.letters(), Letters::Small]
             .into_iter()
             .find(|&letters| laid_out(&lines, area, letters).1 == lines.len());
@@ -346,8 +346,8 @@ fn answer(question: Question) -> Answer {
         }
     });
     let edges = seen_edges(&triangles, columns, rows);
-    let (account, seen) = account::lines(&mut renderer, &scene, pixel);
-    Answer { number, pixel, cells, edges, account, seen }
+    let (shade_trace, seen) = shade_trace::lines(&mut renderer, &scene, pixel);
+    Answer { number, pixel, cells, edges, shade_trace, seen }
 }
 
 /// Whether the rectangle about a triangle meets the view.
@@ -451,13 +451,13 @@ mod tests {
     fn what_is_magnified_stays_in_sight() {
         for y in 0..200 {
             for x in 0..320 {
-                let Places { lens, account } = Pixel { x, y }.places();
+                let Places { lens, shade_trace } = Pixel { x, y }.places();
                 let (x, y) = (i32::from(x), i32::from(y));
                 assert!(!(lens.0..lens.0 + LENS.0).contains(&x) || !(lens.1..lens.1 + LENS.1).contains(&y));
-                assert!(!(account.1..account.1 + HEIGHT - LENS.1).contains(&y));
+                assert!(!(shade_trace.1..shade_trace.1 + HEIGHT - LENS.1).contains(&y));
                 // Lens and account lie on the frame and not on each other.
                 assert!(lens.0 >= 0 && lens.0 + LENS.0 <= WIDTH && lens.1 >= 0 && lens.1 + LENS.1 <= HEIGHT);
-                assert!(lens.1 + LENS.1 <= account.1 || account.1 + HEIGHT - LENS.1 <= lens.1);
+                assert!(lens.1 + LENS.1 <= shade_trace.1 || shade_trace.1 + HEIGHT - LENS.1 <= lens.1);
             }
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `shading` | the keys for rungs and the budget |
+//! | `shading` | the keys for shadings and the budget |
 //! | `motion` | what the clock and the user move |
 //! | `error_map` | how far each pixel is from the truth, over the picture |
 //! | `compare` | two shadings side by side |
@@ -13,7 +13,6 @@
 //! | `loader` | the inputs, loaded when they are asked for and when their files change |
 //! | `choice` | one of a list |
 
-mod account;
 mod background;
 mod choice;
 mod compare;
@@ -22,6 +21,7 @@ mod figures;
 mod loader;
 mod magnifier;
 mod motion;
+mod shade_trace;
 mod shading;
 mod step;
 mod timing;
@@ -42,8 +42,8 @@ use crate::failure::Failure;
 use crate::input::Colors;
 use crate::options::{Drawing, ShadingOptions};
 use crate::overlay::{self, Sheet, Side};
-use crate::stage::Stage;
-use crate::switches::Switch;
+use crate::toggles::Switch;
+use crate::turntable::Turntable;
 use crate::{input, output};
 use choice::Choice;
 use compare::Compare;
@@ -51,7 +51,7 @@ use error_map::Map;
 use loader::{Inputs, Loader, Loading};
 use magnifier::{Cells, Magnifier, Pixel};
 use motion::Motion;
-use shading::Shading;
+use shading::ShadingChoice;
 use step::Stepper;
 use timing::Timing;
 
@@ -126,7 +126,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Ok(window) => window,
         Err(no_display) => return demo.save_each(&no_display),
     };
-    let (mut title, mut shown) = (String::new(), Look::of(&Vga::new(), Sheet::new((0, 0))));
+    let (mut title, mut shown) = (String::new(), PixelPipeline::of(&Vga::new(), Sheet::new((0, 0))));
     // When what is shown last changed.
     let mut changed = 0.0;
     loop {
@@ -147,7 +147,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             title = new;
         }
         let sheet = demo.sheet(window.size());
-        let look = Look::of(demo.on_screen(), sheet);
+        let look = PixelPipeline::of(demo.on_screen(), sheet);
         let flow = if look == shown {
             let is_still = window.seconds() - changed > STILL.as_secs_f64();
             window.rest(if is_still { STILL_REST } else { SHORT_REST })
@@ -163,15 +163,15 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 
 /// All that can be seen in the window.
 #[derive(PartialEq)]
-struct Look {
+struct PixelPipeline {
     pixels: Vec<u8>,
     palette: Palette,
     sheet: Sheet,
 }
 
-impl Look {
-    fn of(vga: &Vga, sheet: Sheet) -> Look {
-        Look { pixels: vga.pixels().to_vec(), palette: vga.palette(), sheet }
+impl PixelPipeline {
+    fn of(vga: &Vga, sheet: Sheet) -> PixelPipeline {
+        PixelPipeline { pixels: vga.pixels().to_vec(), palette: vga.palette(), sheet }
     }
 }
 
@@ -193,11 +193,11 @@ struct Demo {
     name: String,
     triangles: usize,
     /// What is shown; without objects until something could be loaded.
-    stage: Stage,
+    stage: Turntable,
     /// Why what is shown is not what the files say.
     wrong: Option<Failure>,
     renderer: Renderer,
-    shading: Shading,
+    shading: ShadingChoice,
     /// Whether a key chose it.
     chose_shading: bool,
     kernels: Choice<Kernel>,
@@ -244,14 +244,14 @@ impl Demo {
     /// With nothing to show yet.
     fn new(inputs: Arc<Inputs>, kernel: Kernel) -> Demo {
         let Inputs { drawing, shading, .. } = &*inputs;
-        let stage = Stage::of_scene(Scene::new());
+        let stage = Turntable::of_scene(Scene::new());
         Demo {
             at: 0,
             name: inputs.name(0),
             triangles: 0,
             wrong: None,
             renderer: shading.renderer(drawing, kernel),
-            shading: Shading::new(shading.shading(None), shading.max_error(None)),
+            shading: ShadingChoice::new(shading.shading(None), shading.max_error(None)),
             chose_shading: false,
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
             palettes: palettes(&stage, drawing),
@@ -318,21 +318,22 @@ impl Demo {
                 if is_again {
                     return Ok(());
                 }
-                Stage::of_scene(Scene::new())
+                Turntable::of_scene(Scene::new())
             }
         };
         self.set(stage, keeps)
     }
 
     /// Shows another stage, as what is shown has been changed by keys if it `keeps` that.
-    fn set(&mut self, stage: Stage, keeps: bool) -> Result<(), Failure> {
+    fn set(&mut self, stage: Turntable, keeps: bool) -> Result<(), Failure> {
         let Inputs { drawing, shading, .. } = &*self.inputs;
         self.name = self.inputs.name(self.at);
         self.triangles = stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
         self.stage = stage;
         if !self.chose_shading {
-            let wishes = &self.stage.scene.wishes;
-            self.shading = Shading::new(shading.shading(wishes.rung), shading.max_error(wishes.max_error));
+            let preferences = &self.stage.scene.preferences;
+            self.shading =
+                ShadingChoice::new(shading.shading(preferences.shading), shading.max_error(preferences.max_error));
         }
         let before = std::mem::replace(&mut self.palettes, palettes(&self.stage, drawing));
         if keeps && self.chose_palette && self.palettes.choose(|(name, _)| *name == before.chosen().0) {
@@ -668,7 +669,7 @@ impl Demo {
 }
 
 /// The palettes that P goes through, of which the stage's is chosen.
-fn palettes(stage: &Stage, drawing: &Drawing) -> Choice<(String, Colors)> {
+fn palettes(stage: &Turntable, drawing: &Drawing) -> Choice<(String, Colors)> {
     // A palette without ramps has no order of shades: what has no colours of its own is shown in such a one only if that
     // was asked for.
     let has_colors = stage.has_colors();

@@ -5,7 +5,7 @@ use std::fmt;
 use mode13h::vga::Vga;
 use mode13h::window::{Input, Key};
 
-use crate::stage::Pose;
+use crate::turntable::Pose;
 
 /// How fast the arrow keys turn, in radians a second.
 const ARROW_SPEED: f64 = 2.0;
@@ -24,10 +24,10 @@ const LONGEST_FRAME: f64 = 0.1;
 
 /// What moves: the scene's time, by the clock unless it is stopped, and what the user has turned.
 pub(super) struct Motion {
-    /// The scene's time at the time `since`, in seconds.
+    /// The scene's time at the time `change`, in seconds.
     time: f64,
     /// When the clock began to move it, in seconds; nothing while it is stopped.
-    since: Option<f64>,
+    change: Option<f64>,
     pub(super) pose: Pose,
     now: f64,
     /// What the user changed last.
@@ -45,7 +45,7 @@ impl fmt::Display for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Pose { turn, tilt, zoom } = self.pose;
         match self.changed {
-            Changed::Clock => f.write_str(if self.since.is_some() { "goes on" } else { "stopped" }),
+            Changed::Clock => f.write_str(if self.change.is_some() { "goes on" } else { "stopped" }),
             // Of what is turned on and on, what it comes to.
             Changed::Turn => {
                 write!(f, "turned {:.0}°, tilted {:.0}°", turn.to_degrees() % 360.0, tilt.to_degrees() % 360.0)
@@ -57,29 +57,29 @@ impl fmt::Display for Motion {
 
 impl Motion {
     pub(super) fn new() -> Motion {
-        Motion { time: 0.0, since: Some(0.0), pose: Pose::FIRST, now: 0.0, changed: Changed::Clock }
+        Motion { time: 0.0, change: Some(0.0), pose: Pose::FIRST, now: 0.0, changed: Changed::Clock }
     }
 
     /// At time 0, in the first pose; stopped if it is.
     pub(super) fn begin_anew(&mut self) {
         (self.time, self.pose) = (0.0, Pose::FIRST);
-        self.since = self.since.map(|_| self.now);
+        self.change = self.change.map(|_| self.now);
     }
 
     /// Puts the scene's time to `seconds`; it goes on from there.
     pub(super) fn go_to(&mut self, seconds: f64) {
         self.time = seconds;
-        self.since = self.since.map(|_| self.now);
+        self.change = self.change.map(|_| self.now);
     }
 
     /// Moves by what the user did until the time `seconds`. Whether a key changed something.
     pub(super) fn follow(&mut self, input: &Input, seconds: f64) -> bool {
-        let was = (self.since.is_some(), self.pose);
+        let was = (self.change.is_some(), self.pose);
         let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);
         self.now = seconds;
         if input.pressed(Key::Space) {
             self.time = self.seconds();
-            self.since = if self.since.is_none() { Some(seconds) } else { None };
+            self.change = if self.change.is_none() { Some(seconds) } else { None };
         }
         let arrow = |key| {
             let held = if input.held(key) { ARROW_SPEED * passed } else { 0.0 };
@@ -98,7 +98,7 @@ impl Motion {
             notches -= 1.0;
         }
         self.pose.zoom = (self.pose.zoom * NOTCH.powf(notches)).clamp(ZOOM.0, ZOOM.1);
-        self.changed = if self.since.is_some() != was.0 {
+        self.changed = if self.change.is_some() != was.0 {
             Changed::Clock
         } else if notches != 0.0 {
             Changed::Zoom
@@ -113,13 +113,13 @@ impl Motion {
     /// Stops the clock.
     pub(super) fn stop(&mut self) {
         self.time = self.seconds();
-        self.since = None;
+        self.change = None;
     }
 
     /// The scene's time at the time of the last [`follow`](Self::follow). It comes from the clock and not from the frames
     /// that were drawn since.
     pub(super) fn seconds(&self) -> f64 {
-        self.time + self.since.map_or(0.0, |since| self.now - since)
+        self.time + self.change.map_or(0.0, |change| self.now - change)
     }
 }
 

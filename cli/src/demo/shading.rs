@@ -1,16 +1,16 @@
-//! What the keys choose for the shades: a rung, or a budget of error.
+//! What the keys choose for the shades: a shading, or a budget of error.
 
 use std::fmt;
 
-use mode13h::render::{Renderer, Rung};
+use mode13h::render::{Renderer, Shading};
 use mode13h::window::{Input, Key};
 
 /// The budgets that B goes through, in shades of 1/255 of full intensity.
 pub(super) const BUDGETS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
-/// The budget of a scene that wishes for none.
+/// The budget of a scene that preferences for none.
 const USUAL: f32 = 2.0;
 
-/// The keys 1 to 9, in the top row and in the number pad, and what they type. The tenth rung has no digit.
+/// The keys 1 to 9, in the top row and in the number pad, and what they type. The tenth shading has no digit.
 const DIGITS: [(Key, Key, char); 9] = [
     (Key::Key1, Key::NumPad1, '1'),
     (Key::Key2, Key::NumPad2, '2'),
@@ -26,9 +26,9 @@ const DIGITS: [(Key, Key, char); 9] = [
 /// What a key does.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Wish {
-    /// This rung.
-    Rung(Rung),
-    /// The next cheaper rung.
+    /// This shading.
+    Shading(Shading),
+    /// The next cheaper shading.
     Cheaper,
     /// The next dearer one.
     Dearer,
@@ -40,15 +40,17 @@ enum Wish {
     More,
 }
 
-/// What the user wishes, if anything.
+/// What the user preferences, if anything.
 fn wish(input: &Input) -> Option<Wish> {
     let typed = |character: char| input.typed().contains(character);
     let is_down = |&(key, pad, character): &(Key, Key, char)| {
         // Where digits are typed with Shift, as in France, a key of the top row means what it types.
         input.pressed(pad) || typed(character) || (input.pressed(key) && input.typed().is_empty())
     };
-    if let Some(rung) = DIGITS.iter().zip(Rung::ALL).find_map(|(digit, rung)| is_down(digit).then_some(rung)) {
-        return Some(Wish::Rung(rung));
+    if let Some(shading) =
+        DIGITS.iter().zip(Shading::ALL).find_map(|(digit, shading)| is_down(digit).then_some(shading))
+    {
+        return Some(Wish::Shading(shading));
     }
     if is_down(&(Key::Key0, Key::NumPad0, '0')) {
         return Some(Wish::Budget);
@@ -63,13 +65,15 @@ fn wish(input: &Input) -> Option<Wish> {
     (without_shift(Key::RightBracket) || typed(']')).then_some(Wish::Dearer)
 }
 
-/// What the user wishes for the right half of a picture: the same keys with Shift.
+/// What the user preferences for the right half of a picture: the same keys with Shift.
 fn shifted_wish(input: &Input) -> Option<Wish> {
     let typed = |character: char| input.typed().contains(character);
     // Where digits are typed with Shift they are the left half's.
     let is_down = |&(key, _, character): &(Key, Key, char)| input.pressed_with_shift(key) && !typed(character);
-    if let Some(rung) = DIGITS.iter().zip(Rung::ALL).find_map(|(digit, rung)| is_down(digit).then_some(rung)) {
-        return Some(Wish::Rung(rung));
+    if let Some(shading) =
+        DIGITS.iter().zip(Shading::ALL).find_map(|(digit, shading)| is_down(digit).then_some(shading))
+    {
+        return Some(Wish::Shading(shading));
     }
     if is_down(&(Key::Key0, Key::NumPad0, '0')) {
         return Some(Wish::Budget);
@@ -80,29 +84,29 @@ fn shifted_wish(input: &Input) -> Option<Wish> {
     input.pressed_with_shift(Key::RightBracket).then_some(Wish::Dearer)
 }
 
-/// A rung and a budget, one of which is in force.
+/// A shading and a budget, one of which is in force.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Shading {
-    rung: Rung,
+pub(super) struct ShadingChoice {
+    shading: Shading,
     /// Shades of error.
     budget: f32,
     by_budget: bool,
 }
 
-impl Shading {
-    /// The budget, if there is one, or else the rung.
-    pub(super) fn new(rung: Rung, budget: Option<f32>) -> Shading {
-        Shading { rung, budget: budget.unwrap_or(USUAL), by_budget: budget.is_some() }
+impl ShadingChoice {
+    /// The budget, if there is one, or else the shading.
+    pub(super) fn new(shading: Shading, budget: Option<f32>) -> ShadingChoice {
+        ShadingChoice { shading, budget: budget.unwrap_or(USUAL), by_budget: budget.is_some() }
     }
 
-    /// Does what the user wishes. Whether they wished anything.
+    /// Does what the user render. Whether they wished anything.
     pub(super) fn follow(&mut self, input: &Input) -> bool {
         let wish = wish(input);
         wish.into_iter().for_each(|wish| self.fulfil(wish));
         wish.is_some()
     }
 
-    /// Does what the user wishes for the right half of a picture. Whether they wished anything.
+    /// Does what the user preferences for the right half of a picture. Whether they wished anything.
     pub(super) fn follow_shifted(&mut self, input: &Input) -> bool {
         let wish = shifted_wish(input);
         wish.into_iter().for_each(|wish| self.fulfil(wish));
@@ -113,11 +117,11 @@ impl Shading {
         let was_by_budget = self.by_budget;
         self.by_budget = matches!(wish, Wish::Budget | Wish::Less | Wish::More);
         // The variants are numbered in the order of ALL.
-        let place = self.rung as usize;
+        let place = self.shading as usize;
         match wish {
-            Wish::Rung(rung) => self.rung = rung,
-            Wish::Cheaper => self.rung = Rung::ALL[place.saturating_sub(1)],
-            Wish::Dearer => self.rung = Rung::ALL[(place + 1).min(Rung::ALL.len() - 1)],
+            Wish::Shading(shading) => self.shading = shading,
+            Wish::Cheaper => self.shading = Shading::ALL[place.saturating_sub(1)],
+            Wish::Dearer => self.shading = Shading::ALL[(place + 1).min(Shading::ALL.len() - 1)],
             Wish::Budget => {}
             _ if !was_by_budget => {}
             // The next in the list, from whatever the command line or the scene says.
@@ -137,7 +141,7 @@ impl Shading {
         if self.by_budget {
             renderer.set_max_error(Some(self.budget));
         } else {
-            renderer.set_rung(self.rung);
+            renderer.set_shading(self.shading);
         }
     }
 
@@ -147,12 +151,12 @@ impl Shading {
     }
 }
 
-impl fmt::Display for Shading {
+impl fmt::Display for ShadingChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.by_budget {
             write!(f, "budget {} {}", self.budget, if self.budget == 1.0 { "shade" } else { "shades" })
         } else {
-            f.write_str(self.rung.name())
+            f.write_str(self.shading.name())
         }
     }
 }
@@ -162,15 +166,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digits_are_the_first_nine_rungs_and_brackets_reach_them_all() {
-        assert_eq!(DIGITS.len(), Rung::ALL.len() - 1);
-        let mut shading = Shading::new(Rung::ALL[4], None);
+    fn digits_are_the_first_nine_shadings_and_brackets_reach_them_all() {
+        assert_eq!(DIGITS.len(), Shading::ALL.len() - 1);
+        let mut shading = ShadingChoice::new(Shading::ALL[4], None);
         (0..20).for_each(|_| shading.fulfil(Wish::Cheaper));
-        for rung in Rung::ALL {
-            assert_eq!((shading.rung, shading.to_string()), (rung, rung.name().to_string()));
+        for expected in Shading::ALL {
+            assert_eq!((shading.shading, shading.to_string()), (expected, expected.name().to_string()));
             shading.fulfil(Wish::Dearer);
         }
-        assert_eq!(shading.rung, Rung::ALL[9]);
+        assert_eq!(shading.shading, Shading::ALL[9]);
         for (i, (key, pad, character)) in DIGITS.into_iter().enumerate() {
             assert_eq!(key as usize, i + 1);
             assert_eq!(pad as usize, Key::NumPad0 as usize + i + 1);
@@ -180,10 +184,10 @@ mod tests {
 
     #[test]
     fn b_goes_through_the_budgets_and_shift_b_back() {
-        let mut shading = Shading::new(Rung::Flat, None);
-        // The first press changes from the rung to the budget and nothing else.
+        let mut shading = ShadingChoice::new(Shading::Flat, None);
+        // The first press changes from the shading to the budget and nothing else.
         shading.fulfil(Wish::Less);
-        assert_eq!(shading, Shading::new(Rung::Flat, Some(USUAL)));
+        assert_eq!(shading, ShadingChoice::new(Shading::Flat, Some(USUAL)));
         (0..9).for_each(|_| shading.fulfil(Wish::More));
         for budget in BUDGETS {
             let shades = if budget == 1.0 { "shade" } else { "shades" };
@@ -193,15 +197,15 @@ mod tests {
         assert_eq!(shading.budget(), 0.5);
         shading.fulfil(Wish::More);
         assert_eq!(shading.budget(), 1.0);
-        shading.fulfil(Wish::Rung(Rung::Phong));
+        shading.fulfil(Wish::Shading(Shading::Phong));
         assert_eq!(shading.to_string(), "phong");
         shading.fulfil(Wish::Budget);
         assert_eq!(shading.to_string(), "budget 1 shade");
         // One that is not in the list.
-        let mut shading = Shading::new(Rung::Flat, Some(3.0));
+        let mut shading = ShadingChoice::new(Shading::Flat, Some(3.0));
         shading.fulfil(Wish::More);
         assert_eq!(shading.budget(), 4.0);
-        let mut shading = Shading::new(Rung::Flat, Some(0.1));
+        let mut shading = ShadingChoice::new(Shading::Flat, Some(0.1));
         shading.fulfil(Wish::Less);
         assert_eq!(shading.budget(), 0.1);
     }
@@ -210,9 +214,9 @@ mod tests {
     fn a_renderer_draws_by_what_was_chosen() {
         let scene = mode13h::scene::Scene::new();
         let mut renderer = Renderer::new();
-        Shading::new(Rung::Flat, Some(4.0)).set(&mut renderer);
+        ShadingChoice::new(Shading::Flat, Some(4.0)).set(&mut renderer);
         assert_eq!(renderer.max_error(&scene), Some(4.0));
-        Shading::new(Rung::Phong, None).set(&mut renderer);
-        assert_eq!((renderer.max_error(&scene), renderer.rung()), (None, Rung::Phong));
+        ShadingChoice::new(Shading::Phong, None).set(&mut renderer);
+        assert_eq!((renderer.max_error(&scene), renderer.shading()), (None, Shading::Phong));
     }
 }

@@ -2,10 +2,10 @@
 //!
 //! It begins with the face that is seen under the mouse and stops the clock. It ends when the mouse goes to another pixel.
 
-use mode13h::raster::{Shading, Vertex};
+use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::Screen;
 use mode13h::window::{Input, Key};
-use mode13h_lab::explain::{self, FaceHere, Seen, ShadedBy, Walk, Way};
+use mode13h_lab::explain::{self, FaceHere, Progression, Seen, ShadedBy, Walk};
 
 use super::magnifier::Pixel;
 
@@ -14,7 +14,7 @@ use super::magnifier::Pixel;
 pub(super) struct Traced {
     name: String,
     corners: [Vertex; 3],
-    shading: Shading,
+    interpolation: Interpolation,
     exact_cover: bool,
     /// Where its shades come from, if the loop does not make them.
     other: Option<&'static str>,
@@ -24,29 +24,31 @@ pub(super) struct Traced {
 
 impl Traced {
     /// What is seen at a pixel that gave this account.
-    pub(super) fn of(account: &explain::Pixel) -> Option<Traced> {
-        let (face, seen) = account.front()?;
-        let object = account.objects.get(face.object).map_or("", String::as_str);
+    pub(super) fn of(shade_trace: &explain::Pixel) -> Option<Traced> {
+        let (face, seen) = shade_trace.front()?;
+        let object = shade_trace.objects.get(face.object).map_or("", String::as_str);
         let name = match face.triangle {
             Some(triangle) => format!("{object}, triangle {triangle}"),
             None => object.to_string(),
         };
-        let (corners, shading, exact_cover) = (face.corners, face.shading, seen.exact_cover);
+        let (corners, interpolation, exact_cover) = (face.corners, face.interpolation, seen.exact_cover);
         let has_effects = seen.stages.len() > 1;
-        Some(Traced { name, corners, shading, exact_cover, other: other(face, seen), has_effects })
+        Some(Traced { name, corners, interpolation, exact_cover, other: other(face, seen), has_effects })
     }
 }
 
 /// Where a face's shades come from, if the loop does not make them.
 fn other(face: &FaceHere, seen: &Seen) -> Option<&'static str> {
-    match (seen.shaded_by, face.shading) {
+    match (seen.shaded_by, face.interpolation) {
         (ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_), _) => {
             Some("light worked out at the pixels")
         }
         (ShadedBy::NormalTable, _) => Some("a table of normals"),
         (ShadedBy::Corners, _) if seen.accounts.len() != 1 => Some("red, green and blue, a sum each"),
-        (ShadedBy::Corners, Shading::Flat(_)) => Some("one shade for the face"),
-        (ShadedBy::Corners, Shading::GouraudHyperbolic | Shading::Float) => Some("a quotient at every pixel"),
+        (ShadedBy::Corners, Interpolation::Flat(_)) => Some("one shade for the face"),
+        (ShadedBy::Corners, Interpolation::GouraudHyperbolic | Interpolation::Float) => {
+            Some("a quotient at every pixel")
+        }
         (ShadedBy::Corners, _) => None,
     }
 }
@@ -128,8 +130,8 @@ impl Stepper {
         }
         place.number = number;
         place.walk = seen.map(|traced| {
-            let Traced { corners, shading, exact_cover, .. } = traced;
-            (traced.clone(), Walk::new(corners, *shading, *exact_cover, Screen::MODE_13H))
+            let Traced { corners, interpolation, exact_cover, .. } = traced;
+            (traced.clone(), Walk::new(corners, *interpolation, *exact_cover, Screen::MODE_13H))
         });
         if place.walk.is_none() {
             place.waiting = Wished::default();
@@ -150,7 +152,9 @@ impl Stepper {
         let mut lines =
             vec![format!("{}: row {row} of {}, pixel {column} of {}", traced.name, walk.rows(), step.columns)];
         let at = format!("({}, {})", step.x, step.y);
-        let (Way::Sums(sums), Some(registers), None) = (step.account.way, step.registers, traced.other) else {
+        let (Progression::Accumulator(sums), Some(registers), None) =
+            (step.shade_trace.way, step.registers, traced.other)
+        else {
             let other = traced.other.unwrap_or_default();
             lines.push(format!("{at} has the byte {byte}; registers are of the loop for linear shades, here: {other}"));
             return lines;
@@ -160,7 +164,7 @@ impl Stepper {
             8 => format!("EDI {edi:04X}  AX {eax:04X}  BX {ebx:04X}  CX {cx:04X}"),
             _ => format!("EDI {edi:04X}  EAX {eax:08X}  EBX {ebx:08X}  CX {cx:04X}"),
         });
-        let written = step.account.byte;
+        let written = step.shade_trace.byte;
         let unit = f64::from(1_u32 << sums.fraction_bits);
         let from = if sums.fraction_bits == 8 { "AH" } else { "EAX shifted by 16" };
         let in_frame = match written == byte {
@@ -169,14 +173,14 @@ impl Stepper {
             false => format!("; the frame has {byte}: another face is in front"),
         };
         lines.push(format!("{at} gets {from}: {written:02X}h = {written}{in_frame}"));
-        if let Some(exact) = step.account.exact {
+        if let Some(exact) = step.shade_trace.exact {
             let shade = exact.to_f64() / 256.0;
             let off = f64::from(written) - shade;
             lines.push(format!("exact {shade:.4}: the byte is off by {off:+.4}"));
             lines.push(format!("= {} / {} / 256", exact.numerator, exact.denominator));
         }
         let half = if sums.half > 0 { ", half a shade included" } else { "" };
-        let again = if traced.shading == Shading::GouraudReseeded { ", anew every 64" } else { "" };
+        let again = if traced.interpolation == Interpolation::GouraudReseeded { ", anew every 64" } else { "" };
         lines.push(format!("shade {:.4}{half}, step {:+.4}", f64::from(eax) / unit, sums.step as f64 / unit));
         lines.push(format!("started at column {}{again}; {cx} left", step.start));
         lines
@@ -206,19 +210,19 @@ impl Place {
 mod tests {
     use super::*;
     use mode13h::fixed::{I24F8, U8F8};
-    use mode13h::render::{Renderer, Rung};
+    use mode13h::render::{Renderer, Shading};
     use mode13h::scene::Scene;
     use mode13h::vga::Vga;
 
     /// Eight pixels wide at the top, one at the bottom, four rows high; the shade of pixel x of row 0 is 50 + 20·x.
-    fn traced(shading: Shading) -> Traced {
+    fn traced(interpolation: Interpolation) -> Traced {
         let corner = |x, y, shade| {
             let (x, y) = (I24F8::from_pixels(x), I24F8::from_pixels(y));
             Vertex::new(x, y, U8F8::from_shade(shade), 100).expect("a legal vertex")
         };
         let corners = [corner(10, 20, 40), corner(18, 20, 200), corner(10, 24, 40)];
         let name = "body, triangle 7".to_string();
-        Traced { name, corners, shading, exact_cover: true, other: None, has_effects: false }
+        Traced { name, corners, interpolation, exact_cover: true, other: None, has_effects: false }
     }
 
     const MOUSE: Pixel = Pixel { x: 12, y: 20 };
@@ -236,7 +240,7 @@ mod tests {
             assert!(stepper.wish(Wished { pixels: 1, rows: 0 }, MOUSE));
         }
         assert_eq!(at(&stepper), (12, 20));
-        stepper.take_up(5, Some(&traced(Shading::Gouraud)));
+        stepper.take_up(5, Some(&traced(Interpolation::Gouraud)));
         assert_eq!(at(&stepper), (14, 20));
         let mut go = |pixels, rows| {
             stepper.wish(Wished { pixels, rows }, MOUSE);
@@ -255,7 +259,7 @@ mod tests {
         let mut stepper = Stepper::default();
         stepper.wish(Wished { pixels: 1, rows: 0 }, MOUSE);
         assert_eq!(stepper.lines(5, 0), ["no triangle to step through here"]);
-        stepper.take_up(5, Some(&traced(Shading::GouraudReseeded)));
+        stepper.take_up(5, Some(&traced(Interpolation::GouraudReseeded)));
         // 320·20 + 13 is 190Dh; three times 20 more than 50.5.
         let lines = stepper.lines(5, 110);
         let registers = [
@@ -271,9 +275,9 @@ mod tests {
         assert!(stepper.lines(5, 9)[2].ends_with("the frame has 9: another face is in front"));
         // Another picture: the walk is of none, until it is known what is seen there.
         assert_eq!(stepper.lines(6, 110).len(), 1);
-        stepper.take_up(6, Some(&traced(Shading::Gouraud1616)));
+        stepper.take_up(6, Some(&traced(Interpolation::Gouraud1616)));
         assert_eq!(stepper.lines(6, 110)[1], "EDI 190D  EAX 006E8000  EBX 00140000  CX 0004");
-        let quotient = Traced { other: Some("a quotient at every pixel"), ..traced(Shading::Float) };
+        let quotient = Traced { other: Some("a quotient at every pixel"), ..traced(Interpolation::Float) };
         stepper.take_up(7, Some(&quotient));
         let lines = stepper.lines(7, 110);
         assert!(lines[1].ends_with("registers are of the loop for linear shades, here: a quotient at every pixel"));
@@ -283,20 +287,21 @@ mod tests {
     #[test]
     fn every_shading_can_be_stepped_through() {
         let scene = Scene::showing(mode13h::mesh::shapes::torus(24, 12));
-        for rung in Rung::ALL {
+        for shading in Shading::ALL {
             let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-            renderer.set_rung(rung);
+            renderer.set_shading(shading);
             renderer.draw(&scene, &mut vga).expect("a legal scene");
-            let account = explain::pixel(&mut renderer, &scene, Screen::MODE_13H, 100, 100).expect("a legal scene");
-            let traced = Traced::of(&account).expect("the torus is there");
+            let shade_trace = explain::pixel(&mut renderer, &scene, Screen::MODE_13H, 100, 100).expect("a legal scene");
+            let traced = Traced::of(&shade_trace).expect("the torus is there");
             let (mut stepper, mouse) = (Stepper::default(), Pixel { x: 100, y: 100 });
             stepper.wish(Wished { pixels: 0, rows: 0 }, mouse);
             stepper.wish(Wished { pixels: 1, rows: 0 }, mouse);
             stepper.take_up(1, Some(&traced));
-            let keeps_sums = [Rung::Gouraud88, Rung::Gouraud88Reseeded, Rung::Gouraud1616, Rung::GouraudPeriod]
-                .contains(&rung)
-                || rung == Rung::GouraudTessellated;
-            assert_eq!(stepper.lines(1, 0).iter().any(|line| line.starts_with("EDI")), keeps_sums, "{rung}");
+            let keeps_sums =
+                [Shading::Gouraud88, Shading::Gouraud88Reseeded, Shading::Gouraud1616, Shading::GouraudVintage]
+                    .contains(&shading)
+                    || shading == Shading::GouraudTessellated;
+            assert_eq!(stepper.lines(1, 0).iter().any(|line| line.starts_with("EDI")), keeps_sums, "{shading}");
         }
     }
 }

@@ -6,7 +6,7 @@ pub(super) struct Timing {
     sum: f64,
     drawn: u32,
     frames: u32,
-    since: f64,
+    change: f64,
     /// Seconds for a frame that was drawn, over the last period in which one was.
     pub(super) frame: f64,
     /// Frames a second, drawn or not, over the last period.
@@ -22,13 +22,13 @@ impl Timing {
         self.sum += taken.unwrap_or(0.0);
         self.drawn += u32::from(taken.is_some());
         self.frames += 1;
-        let passed = now - self.since;
+        let passed = now - self.change;
         if passed >= Self::PERIOD || self.frame == 0.0 {
             if self.drawn > 0 {
                 self.frame = self.sum / f64::from(self.drawn);
             }
             self.rate = if passed > 0.0 { f64::from(self.frames) / passed } else { 0.0 };
-            (self.sum, self.drawn, self.frames, self.since) = (0.0, 0, 0, now);
+            (self.sum, self.drawn, self.frames, self.change) = (0.0, 0, 0, now);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! How faces are shaded: `--shading` and `--max-error`.
 
 use clap::Args;
-use mode13h::render::{Renderer, Rung};
+use mode13h::render::{Renderer, Shading};
 use mode13h::span::Kernel;
 
 use super::{Drawing, one_of, shades};
@@ -13,12 +13,12 @@ pub(crate) struct ShadingOptions {
     #[arg(
         long,
         value_name = "NAME",
-        value_parser = one_of(Rung::ALL, Rung::name),
+        value_parser = one_of(Shading::ALL, Shading::name),
         hide_possible_values = true,
         help = "The shading of every face",
         long_help = long_help(),
     )]
-    shading: Option<Rung>,
+    shading: Option<Shading>,
     /// Give each face the cheapest shading that is off by at most E shades
     ///
     /// A shade is 1/255 of full intensity. Not beside --shading.
@@ -28,7 +28,7 @@ pub(crate) struct ShadingOptions {
 
 impl ShadingOptions {
     /// The shading of a scene that prefers this one.
-    pub(crate) fn shading(&self, preferred: Option<Rung>) -> Rung {
+    pub(crate) fn shading(&self, preferred: Option<Shading>) -> Shading {
         self.shading.or(preferred).unwrap_or_default()
     }
 
@@ -41,7 +41,7 @@ impl ShadingOptions {
     pub(crate) fn renderer(&self, drawing: &Drawing, kernel: Kernel) -> Renderer {
         let mut renderer = drawing.renderer(kernel);
         if let Some(shading) = self.shading {
-            renderer.set_rung(shading);
+            renderer.set_shading(shading);
         }
         renderer.set_max_error(self.max_error);
         renderer
@@ -49,9 +49,9 @@ impl ShadingOptions {
 }
 
 fn long_help() -> String {
-    let names = Rung::ALL.map(Rung::name).join(", ");
+    let names = Shading::ALL.map(Shading::name).join(", ");
     format!(
         "The shading of every face, from cheap to exact: {names}\n\n[default: the scene's, otherwise {}]",
-        Rung::default()
+        Shading::default()
     )
 }

@@ -19,7 +19,7 @@ use mode13h::vga::Vga;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The program in a directory, with no display and no wishes from the environment.
+/// The program in a directory, with no display and no preferences from the environment.
 fn program(directory: &TempDir) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
     command.current_dir(directory).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("MODE13H_KERNEL");
@@ -853,7 +853,7 @@ fn a_plan_for_programs_is_that_of_the_second_of_two_frames_and_the_same_on_every
                     assert_eq!(effect["effect"], row.effect.name());
                     assert_eq!(effect["on"], row.on);
                     assert_eq!(effect["choice"], row.choice);
-                    assert_eq!(effect["reason"], row.why.as_str());
+                    assert_eq!(effect["reason"], row.reason.as_str());
                 }
             }
         }
@@ -1317,10 +1317,10 @@ fn explain_says_why_a_pixel_has_its_byte() {
             assert_eq!((json["byte"].clone(), text.contains("the background")), (Value::from(0), true));
             continue;
         };
-        let account = &seen["traces"][0];
-        let sums = account["sums"].as_array().expect("sums");
+        let shade_trace = &seen["traces"][0];
+        let sums = shade_trace["sums"].as_array().expect("sums");
         let last = sums.last().and_then(Value::as_u64).expect("a sum");
-        assert_eq!((last >> 8, sums.len() as u64 - 1), (byte.into(), account["steps"].as_u64().expect("steps")));
+        assert_eq!((last >> 8, sums.len() as u64 - 1), (byte.into(), shade_trace["steps"].as_u64().expect("steps")));
         assert!(text.contains(&format!("{last:04x}")), "{text}");
         let face = &json["faces"][seen["face"].as_u64().expect("a place") as usize];
         assert!(text.contains(&format!("cone, triangle {}", face["triangle"])), "{text}");

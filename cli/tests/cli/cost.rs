@@ -9,7 +9,7 @@ use std::time::Duration;
 use crate::support::tried::is_here;
 use mode13h::light::Material;
 use mode13h::mesh::shapes;
-use mode13h::render::{Renderer, Rung};
+use mode13h::render::{Renderer, Shading};
 use mode13h::scene::{Object, Scene};
 use mode13h_lab::cost::{BUDGETS, Settings, Subject, measure};
 use serde_json::Value;
@@ -75,9 +75,9 @@ fn everything_is_measured_and_written() {
     assert!(json["host"]["compiler"].as_str().is_some_and(|compiler| compiler.contains("rustc ")), "{json}");
     assert!(number(&json["host"]["clock_step_ns"]) > 0.0);
 
-    let rungs = json["shadings"].as_array().expect("a list");
-    assert!(rungs.iter().map(|row| row["shading"].as_str()).eq(Rung::ALL.map(|rung| Some(rung.name()))));
-    for row in rungs {
+    let shadings = json["shadings"].as_array().expect("a list");
+    assert!(shadings.iter().map(|row| row["shading"].as_str()).eq(Shading::ALL.map(|shading| Some(shading.name()))));
+    for row in shadings {
         assert_time(row);
         assert_errors(&row["error_gouraud"]);
         assert_errors(&row["error_lit"]);
@@ -90,26 +90,28 @@ fn everything_is_measured_and_written() {
         let itself = row["shading"] == "gouraud-8.8";
         assert_eq!(itself, row["ratio"] == 1.0 && row["ratio_interval"][0] == 1.0 && row["ratio_interval"][1] == 1.0);
     }
-    let of = |rung: Rung| &rungs[Rung::ALL.iter().position(|of| *of == rung).expect("listed")];
-    // What the rungs promise, and what they do not.
-    assert!(number(&of(Rung::Gouraud88Reseeded)["error_gouraud"]["max"]) < 1.0);
-    assert!(number(&of(Rung::Phong)["error_lit"]["rms"]) < number(&of(Rung::Flat)["error_lit"]["rms"]));
+    let of = |shading: Shading| &shadings[Shading::ALL.iter().position(|of| *of == shading).expect("listed")];
+    // What the shadings promise, and what they do not.
+    assert!(number(&of(Shading::Gouraud88Reseeded)["error_gouraud"]["max"]) < 1.0);
+    assert!(number(&of(Shading::Phong)["error_lit"]["rms"]) < number(&of(Shading::Flat)["error_lit"]["rms"]));
     // Where cover is exact, only depths that are equal but for rounding show another face than the truth has: in the same
     // pixels, however they are shaded.
-    let cover_errors = |rung| of(rung)["cover_errors"].as_u64().expect("a count");
-    for rung in [Rung::Gouraud88Reseeded, Rung::Gouraud1616, Rung::GouraudHyperbolic, Rung::Phong, Rung::Float] {
-        assert_eq!(cover_errors(rung), cover_errors(Rung::Gouraud88), "{rung}");
+    let cover_errors = |shading| of(shading)["cover_errors"].as_u64().expect("a count");
+    for shading in
+        [Shading::Gouraud88Reseeded, Shading::Gouraud1616, Shading::GouraudHyperbolic, Shading::Phong, Shading::Float]
+    {
+        assert_eq!(cover_errors(shading), cover_errors(Shading::Gouraud88), "{shading}");
     }
-    assert!(cover_errors(Rung::GouraudPeriod) > 1_000 * cover_errors(Rung::Gouraud88).max(1));
+    assert!(cover_errors(Shading::GouraudVintage) > 1_000 * cover_errors(Shading::Gouraud88).max(1));
     // None is nearer to `lit`.
-    assert_eq!(of(Rung::Phong)["efficient"], true);
+    assert_eq!(of(Shading::Phong)["efficient"], true);
 
     let budgets = json["budget"].as_array().expect("a list");
     assert!(budgets.iter().map(|row| number(&row["max_error"])).eq(BUDGETS));
     for row in budgets {
         assert_time(row);
         assert!((0.0..=1.0).contains(&number(&row["within"])) && number(&row["largest"]) > 0.0, "{row}");
-        let triangles = row["triangles"].as_object().expect("numbers by rung");
+        let triangles = row["triangles"].as_object().expect("numbers by shading");
         assert!(!triangles.is_empty() && triangles.values().all(|count| count.as_u64() > Some(0)), "{row}");
         // Phong is within a shade of its own model.
         assert!(row["best_single_shading"].is_string() && number(&row["best_single_ns"]) > 0.0, "{row}");
@@ -119,17 +121,9 @@ fn everything_is_measured_and_written() {
     options.iter().for_each(assert_time);
     options.iter().for_each(|row| assert_errors(&row["error_gouraud_unrounded"]));
     let aspects: BTreeSet<&str> = options.iter().filter_map(|row| row["aspect"].as_str()).collect();
-    assert!(
-        aspects.iter().eq([
-            "dither",
-            "hidden surfaces",
-            "kernel",
-            "rung, portable kernel",
-            "vertex path",
-            "vertex rounding"
-        ]
-        .iter())
-    );
+    assert!(aspects.iter().eq(
+        ["dither", "hidden surfaces", "kernel", "shading, portable kernel", "vertex path", "vertex rounding"].iter()
+    ));
     let option = |name: &str| options.iter().find(|row| row["name"] == name).expect("a choice");
     let rms = |name: &str, of: &str| number(&option(name)["error_gouraud_unrounded"][of]);
     assert!(rms("whole pixels", "rms") > rms("1/256 pixel", "rms"));
@@ -159,9 +153,9 @@ fn everything_is_measured_and_written() {
     let times = |kind: &str, name: &str| {
         samples.lines().filter(|line| line.contains(&format!(",{kind},{name},3,"))).count() as u64
     };
-    assert!(rounds >= 7 && times("rung", "gouraud-8.8") == rounds && times("budget", "4") == rounds, "{rounds}");
+    assert!(rounds >= 7 && times("shading", "gouraud-8.8") == rounds && times("budget", "4") == rounds, "{rounds}");
     // What is slow sits out rounds, not all of them.
-    assert!((rounds / 4..=rounds).contains(&times("rung", "gouraud-tessellated")));
+    assert!((rounds / 4..=rounds).contains(&times("shading", "gouraud-tessellated")));
     assert!(
         lines.all(|line| line.rsplit(',').next().is_some_and(|time| time.parse::<u64>().is_ok_and(|time| time > 0)))
     );
@@ -172,13 +166,14 @@ fn rungs_that_are_asked_for_are_the_rungs_there_are() {
     let directory = directory();
     let output = run(&directory, &["cube", "--frames", "1", "--seconds", "0", "--json", "--shadings", "phong,flat"]);
     let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let rungs: Vec<&Value> = json["shadings"].as_array().expect("a list").iter().map(|row| &row["shading"]).collect();
-    assert_eq!(rungs, ["flat", "phong"]);
+    let shadings: Vec<&Value> =
+        json["shadings"].as_array().expect("a list").iter().map(|row| &row["shading"]).collect();
+    assert_eq!(shadings, ["flat", "phong"]);
     assert!(number(&json["shadings"][1]["ratio"]) > 1.0, "to gouraud-8.8, which was drawn all the same");
     assert!(fs::read_dir(&directory).expect("a directory").next().is_none(), "without -o nothing is written");
 }
 
-/// Light from everywhere: one shade, which every rung has.
+/// Light from everywhere: one shade, which every shading has.
 #[test]
 fn where_the_picture_is_the_truth_nothing_is_off() {
     let mut scene = Scene::new();
@@ -192,21 +187,21 @@ fn where_the_picture_is_the_truth_nothing_is_off() {
     let mut settings = Settings::default();
     (settings.choices, settings.claims, settings.seconds) = (false, false, 0.0);
     let (study, samples) = measure(&subject, &settings, &|_, _| {}).expect("a legal scene");
-    assert_eq!((study.rungs.len(), study.budget.len()), (Rung::ALL.len(), BUDGETS.len()));
-    for row in &study.rungs {
-        assert!(row.error_gouraud.max < 1e-6 && row.error_lit.max < 1e-6 && row.swim < 1e-6, "{}", row.rung);
+    assert_eq!((study.shadings.len(), study.budget.len()), (Shading::ALL.len(), BUDGETS.len()));
+    for row in &study.shadings {
+        assert!(row.error_gouraud.max < 1e-6 && row.error_lit.max < 1e-6 && row.swim < 1e-6, "{}", row.shading);
         assert_eq!(row.error_palette, 0.0);
-        assert!(!row.rung.has_exact_cover() || row.cover_errors == 0, "{}", row.rung);
+        assert!(!row.shading.has_exact_cover() || row.cover_errors == 0, "{}", row.shading);
         assert!(row.picture.contains(&51) && row.picture.iter().all(|byte| [0, 51].contains(byte)));
         assert_eq!((row.picture.len(), row.error_map.len()), (64_000, 64_000));
     }
-    let exact = study.rungs.iter().filter(|row| row.rung.has_exact_cover());
+    let exact = study.shadings.iter().filter(|row| row.shading.has_exact_cover());
     let cheapest = exact.min_by(|a, b| a.per_frame.median.total_cmp(&b.per_frame.median)).expect("there are some");
     for row in &study.budget {
         assert!(row.within == 1.0 && row.patch == 0 && row.largest < 1e-6, "{row:?}");
-        assert_eq!(row.best_single_rung, Some(cheapest.rung), "all keep it");
+        assert_eq!(row.best_single_shading, Some(cheapest.shading), "all keep it");
     }
-    let (samples, all) = (samples.to_csv().lines().count() - 1, study.rounds * (Rung::ALL.len() + BUDGETS.len()));
+    let (samples, all) = (samples.to_csv().lines().count() - 1, study.rounds * (Shading::ALL.len() + BUDGETS.len()));
     assert!((all / 4..=all).contains(&samples), "{samples} of {all}");
 }
 
@@ -297,7 +292,7 @@ fn an_interrupted_study_leaves_nothing_behind() {
     assert!(output.stdout.is_empty() && fs::read_dir(&directory).expect("a directory").next().is_none());
 }
 
-/// Where valgrind is: each rung's instructions, and the times with the kernel that they were counted of.
+/// Where valgrind is: each shading's instructions, and the times with the kernel that they were counted of.
 #[test]
 fn instructions_are_counted_where_valgrind_is() {
     if !is_here("valgrind", Command::new("valgrind").arg("--version").output().is_ok()) {
@@ -308,12 +303,12 @@ fn instructions_are_counted_where_valgrind_is() {
         ["cube", "--frames", "2", "--seconds", "0", "--json", "--instructions", "--shadings", "gouraud-8.8,phong"];
     let output = run(&directory, &words);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
-    let of = |rung: usize| json["shadings"][rung]["instructions_per_frame"].as_u64().expect("a count");
+    let of = |shading: usize| json["shadings"][shading]["instructions_per_frame"].as_u64().expect("a count");
     // 64,000 bytes are cleared, by 64 at a time at most; Phong has a square root and more at each of its pixels.
     assert!(of(0) > 1000 && of(1) > 4 * of(0), "{json}");
     let kernel = json["kernel"].as_str().expect("a name");
     assert!(!kernel.contains("avx512") && kernel != "simd", "{kernel}");
     let again: Value = serde_json::from_slice(&run(&directory, &words).stdout).expect("JSON");
-    let off = again["rungs"][1]["instructions_per_frame"].as_u64().expect("a count").abs_diff(of(1));
+    let off = again["shadings"][1]["instructions_per_frame"].as_u64().expect("a count").abs_diff(of(1));
     assert!(off * 1000 <= of(1), "without noise: {off} of {}", of(1));
 }

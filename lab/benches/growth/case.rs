@@ -7,7 +7,7 @@ use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::raster::{Batch, Frame, Raster, Shading, Vertex};
+use mode13h::raster::{Batch, Frame, Interpolation, Raster, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer};
 use mode13h::scene::{Camera, Object, Scene, Shared};
 use mode13h::vga::Vga;
@@ -185,9 +185,9 @@ pub(crate) fn pixels() -> Vec<Case> {
                 pixels
             };
             for triangle in &triangles {
-                while !batch.push(triangle, Shading::GouraudReseeded) {
+                while !batch.push(triangle, Interpolation::GouraudReseeded) {
                     if batch.is_empty() {
-                        written += u64::from(raster.triangle(triangle, Shading::GouraudReseeded).pixels);
+                        written += u64::from(raster.triangle(triangle, Interpolation::GouraudReseeded).pixels);
                         break;
                     }
                     written += draw(&mut batch, &mut raster);

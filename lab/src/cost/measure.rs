@@ -4,20 +4,20 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
+use super::accuracy::{Referee, Results};
 use super::claims::claims;
 use super::clock::Clock;
-use super::contest::{Outcome, Samples, Spent, contest};
-use super::judge::{Court, Findings};
+use super::configuration::{BUDGETS, Configuration, Kind, REFERENCE};
+use super::interleaved::{Outcome, Samples, Spent, contest};
 use super::split::split;
-use super::statistics::{Chance, Ratio, quartiles};
-use super::way::{BUDGETS, Kind, REFERENCE, Way};
-use super::{Aspect, BudgetRow, Host, OptionRow, ProbeError, RungRow, Split, Study};
+use super::statistics::{Ratio, Rng, quartiles};
+use super::{Aspect, BudgetRow, Host, OptionRow, ProbeError, ShadingRow, Split, Study};
 use crate::truth::TruthError;
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, Rung, Screen};
+use mode13h::render::{RenderError, Renderer, Screen, Shading};
 use mode13h::scene::Scene;
 
-/// The share of pixels that a budget, and a rung that is compared with it, must keep within the bound.
+/// The share of pixels that a budget, and a shading that is compared with it, must keep within the bound.
 const PROMISE: f64 = 0.999;
 
 /// What a study is made of.
@@ -28,15 +28,15 @@ pub struct Subject<'a> {
     pub frames: &'a [Scene],
     /// Frames 0.25° of a turn apart, for what swims; there may be none.
     pub steps: &'a [Scene],
-    /// Makes renderers that are set as everything is to be drawn, but for the rung: kernel, vertex path and the like.
+    /// Makes renderers that are set as everything is to be drawn, but for the shading: kernel, vertex path and the like.
     pub renderer: &'a (dyn Fn() -> Renderer + Sync),
 }
 
 /// How a study is made.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The rungs that are studied. `gouraud-8.8` is drawn in any case, as ratios are to it.
-    pub rungs: Vec<Rung>,
+    /// The shadings that are studied. `gouraud-8.8` is drawn in any case, as ratios are to it.
+    pub shadings: Vec<Shading>,
     /// Whether vertex path, vertex rounding, kernels, dither and the ways to visible surfaces are compared, too.
     pub choices: bool,
     /// Whether the sources' claims are measured, on scenes of their own.
@@ -56,7 +56,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            rungs: Rung::ALL.to_vec(),
+            shadings: Shading::ALL.to_vec(),
             choices: true,
             claims: true,
             clock: Clock::WALL,
@@ -141,8 +141,8 @@ impl From<TruthError> for CostError {
 /// let frames = [Scene::showing(shapes::torus(48, 24))];
 /// let subject = Subject { name: "torus", frames: &frames, steps: &[], renderer: &Renderer::new };
 /// let (study, _) = measure(&subject, &Settings::default(), &|_, _| {})?;
-/// for row in &study.rungs {
-///     println!("{}: {:.0} ns, off by {:.2} at most", row.rung, row.per_frame.median, row.error_lit.max);
+/// for row in &study.shadings {
+///     println!("{}: {:.0} ns, off by {:.2} at most", row.shading, row.per_frame.median, row.error_lit.max);
 /// }
 /// # Ok::<(), mode13h_lab::cost::CostError>(())
 /// ```
@@ -155,39 +155,40 @@ pub fn measure(
     progress: &(dyn Fn(Step, f64) + Sync),
 ) -> Result<(Study, Samples), CostError> {
     let Subject { name, frames, steps, renderer } = *subject;
-    let Settings { rungs, choices: with_choices, claims: with_claims, clock, seconds, at_most, seed, host } = settings;
+    let Settings { shadings, choices: with_choices, claims: with_claims, clock, seconds, at_most, seed, host } =
+        settings;
     if frames.is_empty() {
         return Err(CostError::NoFrames);
     }
     let spent = |share: f64| Spent { clock: *clock, seconds: share * seconds, at_most: *at_most, seed: *seed };
-    let mut ways = Way::rungs_and_budgets(rungs);
+    let mut ways = Configuration::shadings_and_budgets(shadings);
     if *with_choices {
-        ways.extend(choices(frames, renderer, rungs)?);
+        ways.extend(choices(frames, renderer, shadings)?);
     }
-    let court = Court { ways: &ways, base: renderer, frames, steps };
+    let court = Referee { ways: &ways, base: renderer, frames, steps };
     let findings = court.judge(&|share| progress(Step::Errors, share))?;
 
     let dithered = [false, true].map(|dither| with_dither(frames, dither));
-    let entrants: Vec<(&Way<'_>, &[Scene])> =
+    let entrants: Vec<(&Configuration<'_>, &[Scene])> =
         ways.iter().map(|way| (way, way.dither.map_or(frames, |dither| &dithered[usize::from(dither)]))).collect();
     let outcome = contest(&entrants, renderer, &spent(0.5), &|share| progress(Step::Times, share))?;
-    let of_rungs: Vec<&Way<'_>> = ways.iter().filter(|way| matches!(way.kind, Kind::Rung(_))).collect();
-    let splits = split(&of_rungs, frames, renderer, &spent(0.25), &|share| progress(Step::Split, share))?;
+    let of_shadings: Vec<&Configuration<'_>> = ways.iter().filter(|way| matches!(way.kind, Kind::Shading(_))).collect();
+    let splits = split(&of_shadings, frames, renderer, &spent(0.25), &|share| progress(Step::Split, share))?;
 
     let claims =
         if *with_claims { claims(renderer, &spent(0.25), &|share| progress(Step::Claims, share))? } else { Vec::new() };
 
     let rows = Rows { ways: &ways, times: times(&ways, &outcome.samples), findings, outcome: &outcome, seed: *seed };
-    let mut of_rungs = rows.rungs(&splits, frames.len());
+    let mut of_shadings = rows.shadings(&splits, frames.len());
     let budget = rows.budgets();
-    of_rungs.retain(|row| rungs.contains(&row.rung));
+    of_shadings.retain(|row| shadings.contains(&row.shading));
     let study = Study {
         input: name.to_string(),
         host: Host { clock: clock.name.to_string(), clock_step: clock.step(), ..host.clone() },
         kernel: renderer().kernel().to_string(),
         frames: frames.len(),
         rounds: outcome.samples.rounds(),
-        rungs: of_rungs,
+        shadings: of_shadings,
         budget,
         options: rows.choices(),
         claims,
@@ -196,9 +197,13 @@ pub fn measure(
 }
 
 /// The choices that this scene can be drawn by.
-fn choices(frames: &[Scene], base: &dyn Fn() -> Renderer, rungs: &[Rung]) -> Result<Vec<Way<'static>>, CostError> {
+fn choices(
+    frames: &[Scene],
+    base: &dyn Fn() -> Renderer,
+    shadings: &[Shading],
+) -> Result<Vec<Configuration<'static>>, CostError> {
     let mut ways = Vec::new();
-    for way in Way::choices(rungs) {
+    for way in Configuration::choices(shadings) {
         let mut renderer = way.apply(base());
         let mut drawable = true;
         for scene in frames {
@@ -221,54 +226,54 @@ fn choices(frames: &[Scene], base: &dyn Fn() -> Renderer, rungs: &[Rung]) -> Res
 /// The frames with dither, or without.
 fn with_dither(frames: &[Scene], dither: bool) -> Vec<Scene> {
     let mut frames = frames.to_vec();
-    frames.iter_mut().for_each(|scene| scene.wishes.dither = dither);
+    frames.iter_mut().for_each(|scene| scene.preferences.dither = dither);
     frames
 }
 
-fn times(ways: &[Way<'_>], samples: &Samples) -> Vec<Vec<f64>> {
+fn times(ways: &[Configuration<'_>], samples: &Samples) -> Vec<Vec<f64>> {
     (0..ways.len()).map(|way| samples.of(way)).collect()
 }
 
 /// All that was found out, way by way.
 struct Rows<'a> {
-    ways: &'a [Way<'a>],
+    ways: &'a [Configuration<'a>],
     /// For a frame, round by round.
     times: Vec<Vec<f64>>,
-    findings: Vec<Findings>,
+    findings: Vec<Results>,
     outcome: &'a Outcome,
     seed: u64,
 }
 
 impl Rows<'_> {
     fn ratio(&self, way: usize, to: usize) -> Ratio {
-        Ratio::new(&self.times[way], &self.times[to], &mut Chance::new(self.seed))
+        Ratio::new(&self.times[way], &self.times[to], &mut Rng::new(self.seed))
     }
 
-    /// The rungs' places and names.
-    fn each_rung(&self) -> impl Iterator<Item = (usize, Rung)> {
+    /// The shadings' places and names.
+    fn each_shading(&self) -> impl Iterator<Item = (usize, Shading)> {
         self.ways.iter().enumerate().filter_map(|(i, way)| match way.kind {
-            Kind::Rung(rung) => Some((i, rung)),
+            Kind::Shading(shading) => Some((i, shading)),
             _ => None,
         })
     }
 
-    /// All rungs that were drawn.
-    fn rungs(&self, splits: &[Split], frames: usize) -> Vec<RungRow> {
+    /// All shadings that were drawn.
+    fn shadings(&self, splits: &[Split], frames: usize) -> Vec<ShadingRow> {
         // It is always drawn.
-        let reference = self.each_rung().find(|(_, rung)| *rung == REFERENCE).map_or(0, |(place, _)| place);
+        let reference = self.each_shading().find(|(_, shading)| *shading == REFERENCE).map_or(0, |(place, _)| place);
         let mut rows = Vec::new();
-        for ((place, rung), split) in self.each_rung().zip(splits) {
+        for ((place, shading), split) in self.each_shading().zip(splits) {
             let findings = &self.findings[place];
             let per_frame = quartiles(&self.times[place]);
             let work = &self.outcome.work[place];
             // Below 2⁵³: pixels and triangles of some frames.
             let of_each = |count: u64| per_frame.median * frames as f64 / count.max(1) as f64;
             let ratio = self.ratio(place, reference);
-            let as_fast = |(other, name): (usize, Rung)| {
+            let as_fast = |(other, name): (usize, Shading)| {
                 (other != place && self.ratio(place, other).cannot_be_told()).then_some(name)
             };
-            rows.push(RungRow {
-                rung,
+            rows.push(ShadingRow {
+                shading,
                 per_frame,
                 per_pixel: of_each(work.pixels),
                 per_triangle: of_each(work.triangles),
@@ -282,7 +287,7 @@ impl Rows<'_> {
                 cover_errors: findings.cover_errors(),
                 swim: findings.swim(),
                 efficient: true,
-                as_fast_as: self.each_rung().filter_map(as_fast).collect(),
+                as_fast_as: self.each_shading().filter_map(as_fast).collect(),
                 picture: findings.picture.clone(),
                 error_map: findings.error_map.clone(),
             });
@@ -298,12 +303,12 @@ impl Rows<'_> {
         });
         let row = |(bound, (place, max_error)): (usize, (usize, f64))| {
             let findings = &self.findings[place];
-            let keeps = |&(other, rung): &(usize, Rung)| {
-                rung.has_exact_cover() && self.findings[other].within(bound) >= PROMISE
+            let keeps = |&(other, shading): &(usize, Shading)| {
+                shading.has_exact_cover() && self.findings[other].within(bound) >= PROMISE
             };
-            let median = |&(other, _): &(usize, Rung)| quartiles(&self.times[other]).median;
-            let best = self.each_rung().filter(keeps).min_by(|a, b| median(a).total_cmp(&median(b)));
-            let shares = Rung::ALL.into_iter().zip(self.outcome.work[place].shares);
+            let median = |&(other, _): &(usize, Shading)| quartiles(&self.times[other]).median;
+            let best = self.each_shading().filter(keeps).min_by(|a, b| median(a).total_cmp(&median(b)));
+            let shares = Shading::ALL.into_iter().zip(self.outcome.work[place].shares);
             BudgetRow {
                 max_error,
                 within: findings.within(bound),
@@ -311,7 +316,7 @@ impl Rows<'_> {
                 rms: findings.lit().rms,
                 patch: findings.kept[bound].patch,
                 per_frame: quartiles(&self.times[place]),
-                best_single_rung: best.map(|(_, rung)| rung),
+                best_single_shading: best.map(|(_, shading)| shading),
                 best_single: best.map(|(other, _)| quartiles(&self.times[other])),
                 ratio: best.map(|(other, _)| {
                     let ratio = self.ratio(place, other);
@@ -349,11 +354,11 @@ impl Rows<'_> {
     }
 }
 
-/// A rung is efficient if none is both faster and as near to `lit` or nearer in the root mean square. One whose time
+/// A shading is efficient if none is both faster and as near to `lit` or nearer in the root mean square. One whose time
 /// cannot be told from its own is not faster: what cannot be told from the best is among the best.
-fn mark_efficient(rows: &mut [RungRow]) {
-    let beats = |a: &RungRow, b: &RungRow| {
-        let tied = b.as_fast_as.contains(&a.rung);
+fn mark_efficient(rows: &mut [ShadingRow]) {
+    let beats = |a: &ShadingRow, b: &ShadingRow| {
+        let tied = b.as_fast_as.contains(&a.shading);
         !tied && a.per_frame.median < b.per_frame.median && a.error_lit.rms <= b.error_lit.rms
     };
     let beaten: Vec<bool> = rows.iter().map(|row| rows.iter().any(|other| beats(other, row))).collect();
@@ -366,11 +371,11 @@ fn mark_efficient(rows: &mut [RungRow]) {
 /// they promise.
 #[must_use]
 pub fn warnings(study: &Study) -> Vec<String> {
-    let mut rows: Vec<&RungRow> = study.rungs.iter().collect();
+    let mut rows: Vec<&ShadingRow> = study.shadings.iter().collect();
     rows.sort_by(|a, b| a.per_frame.median.total_cmp(&b.per_frame.median));
-    let tied = rows.windows(2).filter(|pair| pair[1].as_fast_as.contains(&pair[0].rung));
-    let tied =
-        tied.map(|pair| alloc::format!("{} and {} cannot be told apart by their times", pair[0].rung, pair[1].rung));
+    let tied = rows.windows(2).filter(|pair| pair[1].as_fast_as.contains(&pair[0].shading));
+    let tied = tied
+        .map(|pair| alloc::format!("{} and {} cannot be told apart by their times", pair[0].shading, pair[1].shading));
     let broken = study.budget.iter().filter(|row| row.within < PROMISE).map(|row| {
         let (share, promise) = (100.0 * row.within, 100.0 * PROMISE);
         let error = row.max_error;
@@ -389,9 +394,9 @@ mod tests {
     use super::*;
     use crate::cost::{Errors, Nanoseconds};
 
-    fn row(rung: Rung, time: f64, rms: f64, tied: &[Rung]) -> RungRow {
-        RungRow {
-            rung,
+    fn row(shading: Shading, time: f64, rms: f64, tied: &[Shading]) -> ShadingRow {
+        ShadingRow {
+            shading,
             per_frame: Nanoseconds { median: time, ..Nanoseconds::default() },
             per_pixel: 0.0,
             per_triangle: 0.0,
@@ -418,10 +423,10 @@ mod tests {
     /// Rounds of a study.
     const ROUNDS: usize = 232;
 
-    /// What a study says of two rungs, one of which takes `slower` times as long as the other: their ratio, and whether
-    /// they can be told apart. Each of its rounds is one of those recorded, and in it the rungs take the times of two of
+    /// What a study says of two shadings, one of which takes `slower` times as long as the other: their ratio, and whether
+    /// they can be told apart. Each of its rounds is one of those recorded, and in it the shadings take the times of two of
     /// the six, chosen by chance: the noise that there is, and no difference but the one that is planted.
-    fn told(recorded: &[Vec<f64>], slower: f64, chance: &mut Chance) -> (f64, bool) {
+    fn told(recorded: &[Vec<f64>], slower: f64, chance: &mut Rng) -> (f64, bool) {
         let mut times = alloc::vec![Vec::new(), Vec::new()];
         for _ in 0..ROUNDS {
             let round = &recorded[chance.below(recorded.len())];
@@ -430,24 +435,24 @@ mod tests {
             times[0].push(round[one]);
             times[1].push(round[other] * slower);
         }
-        let ways = [Way::rung(REFERENCE), Way::rung(Rung::Gouraud1616)];
+        let ways = [Configuration::shading(REFERENCE), Configuration::shading(Shading::Gouraud1616)];
         let outcome = Outcome { samples: Samples::default(), work: alloc::vec![Default::default(); 2] };
         // Below 2⁶³.
         let seed = chance.below(usize::MAX) as u64;
-        let rows = Rows { ways: &ways, times, findings: alloc::vec![Findings::default(); 2], outcome: &outcome, seed };
-        let rungs = rows.rungs(&[Split::default(); 2], 1);
+        let rows = Rows { ways: &ways, times, findings: alloc::vec![Results::default(); 2], outcome: &outcome, seed };
+        let shadings = rows.shadings(&[Split::default(); 2], 1);
         let study = Study {
             input: String::new(),
             host: Host::default(),
             kernel: String::new(),
             frames: 1,
             rounds: ROUNDS,
-            rungs,
+            shadings,
             budget: Vec::new(),
             options: Vec::new(),
             claims: Vec::new(),
         };
-        (study.rungs[1].ratio, warnings(&study).is_empty())
+        (study.shadings[1].ratio, warnings(&study).is_empty())
     }
 
     fn recorded() -> Vec<Vec<f64>> {
@@ -457,7 +462,7 @@ mod tests {
 
     #[test]
     fn a_slowdown_of_a_twentieth_is_found() {
-        let (recorded, mut chance) = (recorded(), Chance::new(13));
+        let (recorded, mut chance) = (recorded(), Rng::new(13));
         let found = (0..100).filter(|_| {
             let (ratio, told) = told(&recorded, 1.05, &mut chance);
             told && ratio > 1.0
@@ -470,7 +475,7 @@ mod tests {
     /// √(1000 · 0.95 · 0.05) = 6.9, so in 929 to 971, three of them off. An interval of 90 % would hold in 900.
     #[test]
     fn what_takes_the_same_time_is_said_to_be_slower_as_seldom_as_is_promised() {
-        let (recorded, mut chance) = (recorded(), Chance::new(14));
+        let (recorded, mut chance) = (recorded(), Rng::new(14));
         let tied = (0..1000).filter(|_| !told(&recorded, 1.0, &mut chance).1).count();
         assert!((929..=971).contains(&tied), "in {tied} of 1000 studies");
     }
@@ -484,7 +489,7 @@ mod tests {
             rms: 0.0,
             patch: 0,
             per_frame: Nanoseconds::default(),
-            best_single_rung: None,
+            best_single_shading: None,
             best_single: None,
             ratio: None,
             triangles: Vec::new(),
@@ -495,7 +500,7 @@ mod tests {
             kernel: String::new(),
             frames: 1,
             rounds: 25,
-            rungs: alloc::vec![self::row(Rung::Flat, 1.0, 1.0, &[])],
+            shadings: alloc::vec![self::row(Shading::Flat, 1.0, 1.0, &[])],
             budget: alloc::vec![row(16.0, 1.0), row(8.0, PROMISE), row(0.5, 0.9956)],
             options: Vec::new(),
             claims: Vec::new(),
@@ -505,8 +510,8 @@ mod tests {
     }
 
     #[test]
-    fn a_rung_is_efficient_that_none_beats() {
-        use Rung::{Flat, Float, Gouraud88, Gouraud1616, Phong};
+    fn a_shading_is_efficient_that_none_beats() {
+        use Shading::{Flat, Float, Gouraud88, Gouraud1616, Phong};
         let mut rows = [
             row(Flat, 10.0, 9.0, &[]),
             row(Gouraud88, 20.0, 5.0, &[Gouraud1616]),

@@ -11,13 +11,13 @@ use mode13h::mesh::{Mesh, Surface};
 use mode13h::palette::Ramp;
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, FrameError};
-use mode13h::render::{RenderError, Renderer, Rung, Screen};
+use mode13h::render::{RenderError, Renderer, Screen, Shading};
 use mode13h::scene::{Object, Scene, Shared};
 
 /// Finds out what a renderer shows, by nothing but drawing with it.
 ///
 /// The **shades** are the bytes of the scene on a ramp of all 256 entries, without texture, mirror, fog and
-/// dither, and with bodies that shine through made opaque: what every rung does is before all of these. Where
+/// dither, and with bodies that shine through made opaque: what every shading does is before all of these. Where
 /// light or material is coloured each channel is drawn by itself.
 ///
 /// The **faces** are drawn, too: every triangle is numbered, and the scene is drawn once for each digit of the
@@ -50,7 +50,7 @@ pub struct Probe {
 const COARSE: u16 = 32;
 
 impl Probe {
-    /// Watches this renderer, as it is set: rung, kernel, vertex path and all.
+    /// Watches this renderer, as it is set: shading, kernel, vertex path and all.
     #[must_use]
     pub fn new(renderer: Renderer) -> Self {
         Self { renderer, numbered: Numbered::default(), dither: None }
@@ -75,7 +75,7 @@ impl Probe {
     pub fn look(&mut self, scene: &Scene, screen: Screen) -> Result<Shown, ProbeError> {
         let mut scene = scene.clone();
         scene.fog = None;
-        scene.wishes.dither = self.dither == Some(true);
+        scene.preferences.dither = self.dither == Some(true);
         let ramp = if self.dither.is_some() { Ramp::new(0, COARSE).unwrap_or(Ramp::WHOLE) } else { Ramp::WHOLE };
         for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
             let ramp = RampChoice::Entries(ramp);
@@ -86,7 +86,7 @@ impl Probe {
             let step = 255.0 / f64::from(ramp.entries() - 1);
             shades.iter_mut().for_each(|shades| *shades = shades.map(|entry| entry * step));
         }
-        scene.wishes.dither = false;
+        scene.preferences.dither = false;
         let faces = self.faces(scene, screen)?;
         Ok(Shown { width: screen.width, height: screen.height, faces, shades })
     }
@@ -118,11 +118,11 @@ impl Probe {
             *light = light.with_color([1.0; 3]).with_intensity(light.brightness());
         }
         // Making a table for every digit would take long.
-        let needs_tables = hooks::rung_for(&self.renderer, &scene) == Rung::PhongTable;
-        let replaced = needs_tables.then(|| hooks::replace_rung(&mut self.renderer, Some(Rung::Phong)));
+        let needs_tables = hooks::shading_for(&self.renderer, &scene) == Shading::PhongTable;
+        let replaced = needs_tables.then(|| hooks::replace_shading(&mut self.renderer, Some(Shading::Phong)));
         let numbers = self.numbers(scene, screen);
-        if let Some(rung) = replaced {
-            hooks::replace_rung(&mut self.renderer, rung);
+        if let Some(shading) = replaced {
+            hooks::replace_shading(&mut self.renderer, shading);
         }
         Ok(numbers?.into_iter().map(|number| self.numbered.face(number)).collect())
     }

@@ -21,9 +21,9 @@ use std::time::Instant;
 
 use super::Split;
 use super::clock::Clock;
-use super::contest::{Spent, always_drawing};
-use super::statistics::{Chance, median};
-use super::way::Way;
+use super::configuration::Configuration;
+use super::interleaved::{Spent, always_drawing};
+use super::statistics::{Rng, median};
 use mode13h::hooks;
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Renderer, Screen};
@@ -66,13 +66,13 @@ impl Part {
 /// Splits the time of each way's frames, for about as long as `spent` says. Rounds are shuffled, as in a
 /// [contest](super::contest); of each part the median counts.
 pub(super) fn split(
-    ways: &[&Way<'_>],
+    ways: &[&Configuration<'_>],
     frames: &[Scene],
     base: &dyn Fn() -> Renderer,
     spent: &Spent,
     progress: &dyn Fn(f64),
 ) -> Result<Vec<Split>, RenderError> {
-    let mut chance = Chance::new(spent.seed);
+    let mut chance = Rng::new(spent.seed);
     let frames: Vec<&Scene> = frames.iter().step_by(frames.len().div_ceil(FRAMES)).collect();
     let mut renderers: Vec<[Renderer; 4]> =
         ways.iter().map(|way| PARTS.map(|_| always_drawing(way.apply(base())))).collect();
@@ -138,13 +138,13 @@ fn scan_out(clock: Clock) -> f64 {
 mod tests {
     use super::*;
     use mode13h::mesh::shapes;
-    use mode13h::render::Rung;
+    use mode13h::render::Shading;
 
     #[test]
     fn the_parts_are_those_of_the_frame() {
         let frames = [Scene::showing(shapes::sphere(24, 12))];
-        let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong)];
-        let ways: Vec<&Way<'_>> = ways.iter().collect();
+        let ways = [Configuration::shading(Shading::Gouraud88), Configuration::shading(Shading::Phong)];
+        let ways: Vec<&Configuration<'_>> = ways.iter().collect();
         let Ok(split) = split(
             &ways,
             &frames,

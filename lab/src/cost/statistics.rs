@@ -12,9 +12,9 @@ const TAIL: f64 = 0.025;
 
 /// Numbers by chance: splitmix64 (Steele, Lea and Flood 2014), the same from the same seed.
 #[derive(Clone, Debug)]
-pub(super) struct Chance(u64);
+pub(super) struct Rng(u64);
 
-impl Chance {
+impl Rng {
     pub(super) fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -87,7 +87,7 @@ impl Ratio {
     ///
     /// The interval is the percentile bootstrap's (Efron 1979): as many rounds as there are, drawn from them with
     /// replacement, a thousand times.
-    pub(super) fn new(times: &[f64], others: &[f64], chance: &mut Chance) -> Self {
+    pub(super) fn new(times: &[f64], others: &[f64], chance: &mut Rng) -> Self {
         let ratios: Vec<f64> = times.iter().zip(others).map(|(time, other)| time / other).collect();
         let ratios = sorted(&ratios);
         let count = ratios.len();
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn a_shuffle_loses_nothing_and_leaves_no_order_out() {
-        let mut chance = Chance::new(1);
+        let mut chance = Rng::new(1);
         let mut seen = alloc::collections::BTreeMap::<[u8; 3], u32>::new();
         for _ in 0..6000 {
             let mut list = [1, 2, 3];
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn the_interval_is_that_of_the_binomial_law() {
         let times: Vec<f64> = (0..25).map(|i| 100.0 + f64::from(i)).collect();
-        let ratio = Ratio::new(&times, &[100.0; 25], &mut Chance::new(2));
+        let ratio = Ratio::new(&times, &[100.0; 25], &mut Rng::new(2));
         assert!(close(ratio.median, 1.12));
         let (low, high) = ratio.interval;
         assert!((1.06..=1.08).contains(&low) && (1.16..=1.18).contains(&high), "{ratio:?}");
@@ -166,29 +166,29 @@ mod tests {
         // Rounds that are ten times as slow as others, the second always half of the first.
         let times = [10.0, 100.0, 12.0, 90.0, 11.0];
         let halves = times.map(|time| time / 2.0);
-        let ratio = Ratio::new(&times, &halves, &mut Chance::new(3));
+        let ratio = Ratio::new(&times, &halves, &mut Rng::new(3));
         assert_eq!(ratio, Ratio { median: 2.0, interval: (2.0, 2.0) });
         assert!(!ratio.cannot_be_told() && close(ratio.spread(), 0.0));
         let sat_out = [20.0, f64::NAN, 36.0, f64::NAN, f64::NAN];
-        assert!(close(Ratio::new(&sat_out, &times, &mut Chance::new(3)).median, 2.5), "2 and 3");
+        assert!(close(Ratio::new(&sat_out, &times, &mut Rng::new(3)).median, 2.5), "2 and 3");
         assert!(close(quartiles(&sat_out).median, 28.0));
     }
 
     #[test]
     fn what_differs_by_chance_cannot_be_told_apart() {
-        let mut chance = Chance::new(4);
+        let mut chance = Rng::new(4);
         let mut noise =
             |mean: f64| -> Vec<f64> { (0..101).map(|_| mean + chance.below(1000) as f64 / 100.0).collect() };
         let (a, b, slower) = (noise(100.0), noise(100.0), noise(110.0));
-        assert!(Ratio::new(&a, &b, &mut Chance::new(5)).cannot_be_told());
-        assert!(!Ratio::new(&slower, &a, &mut Chance::new(5)).cannot_be_told());
-        assert!(Ratio::new(&[], &[], &mut Chance::new(5)).cannot_be_told());
+        assert!(Ratio::new(&a, &b, &mut Rng::new(5)).cannot_be_told());
+        assert!(!Ratio::new(&slower, &a, &mut Rng::new(5)).cannot_be_told());
+        assert!(Ratio::new(&[], &[], &mut Rng::new(5)).cannot_be_told());
     }
 
     /// Of a hundred pairs that are alike the interval holds 1 in about 95: at least 88, three standard deviations below.
     #[test]
     fn the_interval_holds_the_truth_as_often_as_it_says() {
-        let mut chance = Chance::new(6);
+        let mut chance = Rng::new(6);
         let mut held = 0;
         for _ in 0..100 {
             let mut times = || -> Vec<f64> { (0..41).map(|_| 1000.0 + chance.below(1000) as f64).collect() };

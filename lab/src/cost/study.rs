@@ -3,7 +3,7 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use mode13h::render::Rung;
+use mode13h::render::Shading;
 
 /// The cost of accuracy on one scene or model.
 #[derive(Clone, PartialEq, Debug)]
@@ -17,10 +17,10 @@ pub struct Study {
     pub kernel: String,
     /// Frames in a round.
     pub frames: usize,
-    /// Rounds that were measured, each of all rungs in shuffled order.
+    /// Rounds that were measured, each of all shadings in shuffled order.
     pub rounds: usize,
-    /// A rung each, in the order of [`Rung::ALL`].
-    pub rungs: Vec<RungRow>,
+    /// A shading each, in the order of [`Shading::ALL`].
+    pub shadings: Vec<ShadingRow>,
     /// A budget each, the greatest error first.
     pub budget: Vec<BudgetRow>,
     /// What else may be chosen, grouped by aspect.
@@ -86,11 +86,11 @@ pub struct Errors {
     pub rms_of_blocks: f64,
 }
 
-/// One rung.
+/// One shading.
 #[derive(Clone, PartialEq, Debug)]
-pub struct RungRow {
+pub struct ShadingRow {
     /// Which.
-    pub rung: Rung,
+    pub shading: Shading,
     /// For a frame, scan-out left out.
     pub per_frame: Nanoseconds,
     /// For a pixel written.
@@ -115,10 +115,10 @@ pub struct RungRow {
     pub cover_errors: u64,
     /// How much errors change from a frame to the next, root mean square.
     pub swim: f64,
-    /// Whether no other rung is as near to `lit` and faster, as far as times can be told apart.
+    /// Whether no other shading is as near to `lit` and faster, as far as times can be told apart.
     pub efficient: bool,
-    /// Rungs whose time cannot be told from this one's.
-    pub as_fast_as: Vec<Rung>,
+    /// Shadings whose time cannot be told from this one's.
+    pub as_fast_as: Vec<Shading>,
     /// The first frame: indices of a ramp of 256 greys, row-major.
     pub picture: Vec<u8>,
     /// Its error against `lit` at each pixel; NaN where none was taken.
@@ -140,17 +140,17 @@ pub struct BudgetRow {
     pub patch: usize,
     /// For a frame.
     pub per_frame: Nanoseconds,
-    /// The cheapest rung with exact cover that keeps 99.9 % of the pixels within; none may.
-    pub best_single_rung: Option<Rung>,
+    /// The cheapest shading with exact cover that keeps 99.9 % of the pixels within; none may.
+    pub best_single_shading: Option<Shading>,
     /// Its time for a frame, measured beside the budget's.
     pub best_single: Option<Nanoseconds>,
     /// The budget's time as a ratio to that, and the ratio's 95 % interval.
     pub ratio: Option<(f64, (f64, f64))>,
-    /// Triangles of all frames that each rung drew, those of none left out.
-    pub triangles: Vec<(Rung, u64)>,
+    /// Triangles of all frames that each shading drew, those of none left out.
+    pub triangles: Vec<(Shading, u64)>,
 }
 
-/// What may be chosen beside the rung.
+/// What may be chosen beside the shading.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[non_exhaustive]
 pub enum Aspect {
@@ -165,8 +165,8 @@ pub enum Aspect {
     Dither,
     /// The way to visible surfaces.
     HiddenSurfaces,
-    /// Each rung by the portable kernel.
-    PortableRung,
+    /// Each shading by the portable kernel.
+    PortableShading,
 }
 
 impl Aspect {
@@ -179,7 +179,7 @@ impl Aspect {
             Self::Kernel => "kernel",
             Self::Dither => "dither",
             Self::HiddenSurfaces => "hidden surfaces",
-            Self::PortableRung => "rung, portable kernel",
+            Self::PortableShading => "shading, portable kernel",
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use mode13h::raster::{Shading, Vertex};
+use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::Fate;
 
 /// A triangle that covers the pixel, or whose edge runs through its centre.
@@ -16,7 +16,7 @@ pub struct FaceHere {
     /// Whether it is but a part of that triangle, which was split.
     pub is_part: bool,
     /// How its shades run, where they come from its corners.
-    pub shading: Shading,
+    pub interpolation: Interpolation,
     /// Its corners: the upper one first (of equal heights the left one), then clockwise as one sees them.
     pub corners: [Vertex; 3],
     /// Its depth at the pixel; greater is nearer.

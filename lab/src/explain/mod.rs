@@ -10,7 +10,7 @@
 //!
 //! The bytes are the raster's own: every face is drawn again, clipped to the one pixel, and every stage's byte is what
 //! is drawn with the stages after it left out. Starts, steps and sums come from the planes that the loops start from
-//! ([`raster::account`](mode13h::raster::account)). So an account agrees with the frame for every rung, kernel, way to hidden surfaces and
+//! ([`hooks::ShadeTrace`](mode13h::hooks::ShadeTrace)). So an account agrees with the frame for every shading, kernel, way to hidden surfaces and
 //! effect.
 //!
 //! ```
@@ -39,11 +39,11 @@ use core::fmt;
 use crate::cost::ProbeError;
 use crate::truth::TruthError;
 pub use face::{Edge, EdgeKind, FaceHere};
-pub use mode13h::hooks::{Account, Ratio, Sums, Way};
+pub use mode13h::hooks::{Accumulator, Progression, Ratio, ShadeTrace};
 use mode13h::raster::Frame;
 pub use mode13h::render::{Fate, ShadedBy};
 use mode13h::render::{RenderError, Screen};
-pub use pixel::{Against, Pixel, Seen, Stage, pixel};
+pub use pixel::{Against, Pixel, PixelStage, Seen, pixel};
 pub use row::{Column, Row, row};
 pub use walk::{Registers, Step, Walk};
 

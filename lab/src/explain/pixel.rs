@@ -10,13 +10,13 @@ use crate::truth::{Face, Standard, Truth};
 use mode13h::hooks;
 use mode13h::hooks::Bytes;
 use mode13h::hooks::Met;
-use mode13h::hooks::{Account, row_of};
+use mode13h::hooks::{ShadeTrace, row_of};
 use mode13h::palette::{Ramp, Rgb};
 use mode13h::plan::{self, Effect};
-use mode13h::raster::cover::Ordered;
+use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::effects::Attributes;
-use mode13h::raster::{Shading, Vertex};
-use mode13h::render::{Fate, HiddenSurfaces, Renderer, Rung, Screen, ShadedBy, VertexPath};
+use mode13h::raster::{Interpolation, Vertex};
+use mode13h::render::{Fate, HiddenSurfaces, Renderer, Screen, ShadedBy, Shading, VertexPath};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
@@ -39,10 +39,10 @@ pub struct Pixel {
     /// Why so, in words; empty where there is no object.
     pub hidden_surfaces_why: String,
     /// The technique of shading.
-    pub rung: Rung,
+    pub shading: Shading,
     /// Why so, in words.
-    pub rung_why: String,
-    /// The budget that chooses a technique for each face in place of `rung`, in shades, if there is one.
+    pub shading_why: String,
+    /// The budget that chooses a technique for each face in place of `shading`, in shades, if there is one.
     pub max_error: Option<f32>,
     /// The numbers that the vertices were made in.
     pub vertex_path: VertexPath,
@@ -70,9 +70,9 @@ pub struct Seen {
     pub exact_cover: bool,
     /// How each of its values came here: of shades from corners one, or three of red, green and blue; of a table of
     /// normals two, the normal's column and row in it; of light at the pixel none.
-    pub accounts: Vec<Account>,
+    pub accounts: Vec<ShadeTrace>,
     /// What each stage made of the pixel, in their order. The last one's byte is what the face leaves in the frame.
-    pub stages: Vec<Stage>,
+    pub stages: Vec<PixelStage>,
     /// How far the shade is from the truth, by several standards; fewer where truth has no such face here.
     pub against: Vec<Against>,
     /// The effects that are on for its object, with their reasons.
@@ -82,7 +82,7 @@ pub struct Seen {
 /// What a stage made of the pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
-pub enum Stage {
+pub enum PixelStage {
     /// The shade.
     Shade(u8),
     /// The shades of red, green and blue.
@@ -135,7 +135,7 @@ pub enum Stage {
     },
 }
 
-impl Stage {
+impl PixelStage {
     /// The byte that came of it; `None` of three channels.
     #[must_use]
     pub const fn byte(self) -> Option<u8> {
@@ -191,9 +191,9 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
         color: color(renderer, scene, trace.byte),
         background: scene.background,
         hidden_surfaces: trace.stats.hidden_surfaces,
-        hidden_surfaces_why: hidden.map(|row| row.why.clone()).unwrap_or_default(),
-        rung: trace.stats.rung,
-        rung_why: rung_why(renderer, scene, trace.stats.rung),
+        hidden_surfaces_why: hidden.map(|row| row.reason.clone()).unwrap_or_default(),
+        shading: trace.stats.shading,
+        shading_why: shading_why(renderer, scene, trace.stats.shading),
         max_error: renderer.max_error(scene),
         vertex_path: trace.stats.vertex_path,
         objects: (0..scene.objects().len()).map(|object| hooks::name_of(scene, object)).collect(),
@@ -213,14 +213,14 @@ fn color(renderer: &Renderer, scene: &Scene, entry: u8) -> Rgb {
     vga.palette().colors()[usize::from(entry)]
 }
 
-fn rung_why(renderer: &Renderer, scene: &Scene, drawn: Rung) -> String {
-    let wanted = hooks::rung_for(renderer, scene);
+fn shading_why(renderer: &Renderer, scene: &Scene, drawn: Shading) -> String {
+    let wanted = hooks::shading_for(renderer, scene);
     if wanted != drawn {
         return format!("16.16 vertices have no {wanted}");
     }
-    if hooks::has_own_rung(renderer) {
+    if hooks::has_own_shading(renderer) {
         "asked for".into()
-    } else if scene.wishes.rung.is_some() {
+    } else if scene.preferences.shading.is_some() {
         "the scene asks for it".into()
     } else {
         "the default".into()
@@ -235,7 +235,7 @@ fn here(renderer: &Renderer, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> Fa
         object: met.object,
         triangle,
         is_part,
-        shading: met.shading,
+        interpolation: met.interpolation,
         corners: clockwise(met.vertices),
         depth: met.depth,
         fate: met.fate,
@@ -286,9 +286,9 @@ impl Inputs<'_> {
         }
     }
 
-    fn accounts(&self, met: &Met, bytes: &Bytes) -> Option<Vec<Account>> {
-        let triangle = Ordered::new(&met.vertices);
-        let covers = (!bytes.exact_cover).then_some(met.shading);
+    fn accounts(&self, met: &Met, bytes: &Bytes) -> Option<Vec<ShadeTrace>> {
+        let triangle = SortedTriangle::new(&met.vertices);
+        let covers = (!bytes.exact_cover).then_some(met.interpolation);
         let row = row_of(&triangle, covers, self.screen.width, self.x, self.y)?;
         // A column.
         let x = self.x as i32;
@@ -300,25 +300,25 @@ impl Inputs<'_> {
             };
             Some(triangle.vertices.each_ref().map(of_corner))
         };
-        let account = |values, shading| Account::new(&triangle, values, shading, &row, x);
+        let shade_trace = |values, interpolation| ShadeTrace::new(&triangle, values, interpolation, &row, x);
         Some(match bytes.shaded_by {
             ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_) => Vec::new(),
             ShadedBy::NormalTable => [0, 1]
                 .iter()
-                .filter_map(|&i| Some(account(values(&|a| a.slope[i].to_bits())?, Shading::default())))
+                .filter_map(|&i| Some(shade_trace(values(&|a| a.slope[i].to_bits())?, Interpolation::default())))
                 .collect(),
             ShadedBy::Corners if bytes.channels => [0, 1, 2]
                 .iter()
-                .filter_map(|&i| Some(account(values(&|a| a.channels[i].to_bits())?, met.shading)))
+                .filter_map(|&i| Some(shade_trace(values(&|a| a.channels[i].to_bits())?, met.interpolation)))
                 .collect(),
-            ShadedBy::Corners => [account(triangle.shades(), met.shading)].into(),
+            ShadedBy::Corners => [shade_trace(triangle.shades(), met.interpolation)].into(),
         })
     }
 
     fn against(&self, met: &Met, triangle: usize, shown: [u8; 3], ramp: Ramp) -> Vec<Against> {
         let Some(steps) = ramp.entries().checked_sub(1).filter(|steps| *steps > 0) else { return Vec::new() };
         let shown = shown.map(|byte| 255.0 * (f64::from(byte) - f64::from(ramp.first())) / f64::from(steps));
-        let on_face = matches!(met.shading, Shading::GouraudHyperbolic | Shading::Float);
+        let on_face = matches!(met.interpolation, Interpolation::GouraudHyperbolic | Interpolation::Float);
         let standards = [Standard::Gouraud, Standard::GouraudPerspective, Standard::Lit];
         let wanted = standards.into_iter().filter(|s| *s != Standard::GouraudPerspective || on_face);
         let face = Face { object: met.object, triangle };
@@ -332,20 +332,20 @@ impl Inputs<'_> {
     }
 }
 
-fn stages(bytes: &Bytes) -> Vec<Stage> {
+fn stages(bytes: &Bytes) -> Vec<PixelStage> {
     let Bytes { shades, channels, texel, level, dithered, textured, mixed, fogged, blended, .. } = *bytes;
     let texel = texel.unwrap_or_default();
-    let first = if channels { Stage::Channels(shades) } else { Stage::Shade(shades[0]) };
+    let first = if channels { PixelStage::Channels(shades) } else { PixelStage::Shade(shades[0]) };
     [
         Some(first),
-        dithered.filter(|_| !channels).map(|(threshold, byte)| Stage::Dither { threshold, byte }),
+        dithered.filter(|_| !channels).map(|(threshold, byte)| PixelStage::Dither { threshold, byte }),
         textured.map(|values| match channels {
-            true => Stage::TextureChannels { texel, level, channels: values },
-            false => Stage::Texture { texel, level, byte: values[0] },
+            true => PixelStage::TextureChannels { texel, level, channels: values },
+            false => PixelStage::Texture { texel, level, byte: values[0] },
         }),
-        mixed.map(|byte| Stage::Mix { threshold: dithered.map(|(threshold, _)| threshold), byte }),
-        fogged.map(|(level, byte)| Stage::Fog { level, byte }),
-        blended.map(|(behind, byte)| Stage::Blend { behind, byte }),
+        mixed.map(|byte| PixelStage::Mix { threshold: dithered.map(|(threshold, _)| threshold), byte }),
+        fogged.map(|(level, byte)| PixelStage::Fog { level, byte }),
+        blended.map(|(behind, byte)| PixelStage::Blend { behind, byte }),
     ]
     .into_iter()
     .flatten()

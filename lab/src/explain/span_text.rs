@@ -5,66 +5,70 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::text::Text;
-use mode13h::hooks::{Account, Ratio, Sums, Way};
+use mode13h::hooks::{Accumulator, Progression, Ratio, ShadeTrace};
 
 /// Sums that are shown of either end of a span.
 const ENDS: i32 = 5;
 
 /// A sum as its register shows it, in hexadecimal.
-fn hex(sums: &Sums, sum: u32) -> String {
+fn hex(sums: &Accumulator, sum: u32) -> String {
     if sums.fraction_bits == 16 { format!("{sum:06x}") } else { format!("{sum:04x}") }
 }
 
-fn in_units(sums: &Sums, value: f64) -> f64 {
+fn in_units(sums: &Accumulator, value: f64) -> f64 {
     value / f64::from(1_u32 << sums.fraction_bits)
 }
 
 /// A step as the loop adds it: modulo the size of its register.
-fn step_in_hex(sums: &Sums) -> String {
+fn step_in_hex(sums: &Accumulator) -> String {
     // Of the register's bits.
     if sums.fraction_bits == 16 { format!("{:#010x}", sums.step as u32) } else { format!("{:#06x}", sums.step as u16) }
 }
 
-pub(super) fn short_account(account: &Account) -> Option<String> {
-    Some(match account.way {
-        Way::Flat(byte) => format!("one shade for the face: {byte}"),
-        Way::Sums(sums) => {
-            let Sums { start_at, start, steps, .. } = sums;
+pub(super) fn short_account(shade_trace: &ShadeTrace) -> Option<String> {
+    Some(match shade_trace.way {
+        Progression::Flat(byte) => format!("one shade for the face: {byte}"),
+        Progression::Accumulator(sums) => {
+            let Accumulator { start_at, start, steps, .. } = sums;
             let step = in_units(&sums, sums.step as f64);
             let start = hex(&sums, start);
             format!("{start} at {start_at} + {steps} x {step:+.3} = {}", hex(&sums, sums.sum()))
         }
-        Way::Quotient => format!("exact quotient {:.4}", account.exact?.to_f64() / 256.0),
-        Way::Float { shade, .. } => format!("quotient in f32: {shade:.4}"),
+        Progression::Quotient => format!("exact quotient {:.4}", shade_trace.exact?.to_f64() / 256.0),
+        Progression::Float { shade, .. } => format!("quotient in f32: {shade:.4}"),
     })
 }
 
-pub(super) fn say_account(text: &mut Text, account: &Account, x: u32) {
-    match account.way {
-        Way::Flat(byte) => text.say("span", &format!("one byte for the whole face, {byte}: a plain fill")),
-        Way::Sums(sums) => say_sums(text, &sums, x),
-        Way::Quotient => text.say(
+pub(super) fn say_account(text: &mut Text, shade_trace: &ShadeTrace, x: u32) {
+    match shade_trace.way {
+        Progression::Flat(byte) => text.say("span", &format!("one byte for the whole face, {byte}: a plain fill")),
+        Progression::Accumulator(sums) => say_sums(text, &sums, x),
+        Progression::Quotient => text.say(
             "quotient",
             "at every pixel exactly: the corners' shades weighted by their areas and depths (which stand for 1/w); the \
              byte is the nearest shade",
         ),
-        Way::Float { start, n: [n, dn], d: [d, dd], shade } => {
+        Progression::Float { start, n: [n, dn], d: [d, dd], shade } => {
             let k = i64::from(x) - i64::from(start);
             let words = format!(
                 "k = {k} pixels from column {start}, the row's far end: ({n:e} + k x {dn:e}) / ({d:e} + k x {dd:e}) = \
                  {shade:.6}, nearest byte {}",
-                account.byte
+                shade_trace.byte
             );
             text.say("f32", &words);
         }
     }
-    if let Some(exact @ Ratio { numerator, denominator }) = account.exact {
+    if let Some(exact @ Ratio { numerator, denominator }) = shade_trace.exact {
         let shade = exact.to_f64() / 256.0;
-        let off = f64::from(account.byte) - shade;
-        let cut = match account.way {
-            Way::Sums(sums) => {
+        let off = f64::from(shade_trace.byte) - shade;
+        let cut = match shade_trace.way {
+            Progression::Accumulator(sums) => {
                 let held = in_units(&sums, f64::from(sums.sum()) - f64::from(sums.half));
-                format!(": {:+.4} by start and steps, {:+.4} by rounding", held - shade, f64::from(account.byte) - held)
+                format!(
+                    ": {:+.4} by start and steps, {:+.4} by rounding",
+                    held - shade,
+                    f64::from(shade_trace.byte) - held
+                )
             }
             _ => String::new(),
         };
@@ -75,8 +79,8 @@ pub(super) fn say_account(text: &mut Text, account: &Account, x: u32) {
     }
 }
 
-fn say_sums(text: &mut Text, sums: &Sums, x: u32) {
-    let Sums { first, start_at, start, steps, half, .. } = *sums;
+fn say_sums(text: &mut Text, sums: &Accumulator, x: u32) {
+    let Accumulator { first, start_at, start, steps, half, .. } = *sums;
     let anew = if start_at == first { String::new() } else { format!(", and anew every 64 pixels: at {start_at}") };
     let half_words = if half > 0 { ", half a shade added to make the byte the nearest" } else { ", no half added" };
     let back = match sums.step {

@@ -6,11 +6,11 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::face::{EdgeKind, FaceHere};
-use super::pixel::{Pixel, Seen, Stage};
+use super::pixel::{Pixel, PixelStage, Seen};
 use super::span_text::{say_account, short_account};
 use mode13h::plan::Effect;
-use mode13h::raster::Shading;
-use mode13h::render::{Fate, Rung, ShadedBy};
+use mode13h::raster::Interpolation;
+use mode13h::render::{Fate, ShadedBy, Shading};
 
 /// Columns of text.
 const WIDTH: usize = 100;
@@ -121,31 +121,38 @@ impl Pixel {
     }
 
     /// The technique that a face is shaded by, whatever was asked for.
-    fn shading_of(&self, face: &FaceHere, seen: &Seen) -> Rung {
-        let by_shading = match face.shading {
-            Shading::Flat(_) => Rung::Flat,
-            Shading::GouraudPeriod => Rung::GouraudPeriod,
-            Shading::Gouraud => Rung::Gouraud88,
-            Shading::GouraudReseeded => Rung::Gouraud88Reseeded,
-            Shading::Gouraud1616 => Rung::Gouraud1616,
-            Shading::GouraudHyperbolic => Rung::GouraudHyperbolic,
-            Shading::Float => Rung::Float,
-            _ => self.rung,
+    fn shading_of(&self, face: &FaceHere, seen: &Seen) -> Shading {
+        let by_shading = match face.interpolation {
+            Interpolation::Flat(_) => Shading::Flat,
+            Interpolation::GouraudVintage => Shading::GouraudVintage,
+            Interpolation::Gouraud => Shading::Gouraud88,
+            Interpolation::GouraudReseeded => Shading::Gouraud88Reseeded,
+            Interpolation::Gouraud1616 => Shading::Gouraud1616,
+            Interpolation::GouraudHyperbolic => Shading::GouraudHyperbolic,
+            Interpolation::Float => Shading::Float,
+            _ => self.shading,
         };
         match seen.shaded_by {
-            ShadedBy::NormalTable => Rung::PhongTable,
-            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_) => Rung::Phong,
-            ShadedBy::Corners if face.is_part && by_shading == Rung::Gouraud88Reseeded => Rung::GouraudTessellated,
-            ShadedBy::Corners if self.rung == Rung::Flat => Rung::Flat,
+            ShadedBy::NormalTable => Shading::PhongTable,
+            ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_) => Shading::Phong,
+            ShadedBy::Corners if face.is_part && by_shading == Shading::Gouraud88Reseeded => {
+                Shading::GouraudTessellated
+            }
+            ShadedBy::Corners if self.shading == Shading::Flat => Shading::Flat,
             ShadedBy::Corners => by_shading,
         }
     }
 
     /// A face that is seen through another, in short.
     fn say_behind(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
-        let account =
-            seen.accounts.first().and_then(short_account).map(|account| format!("{account}; ")).unwrap_or_default();
-        let words = format!("{}, {}: {account}{}", self.name(face), self.shading_of(face, seen), stages(seen, false));
+        let shade_trace = seen
+            .accounts
+            .first()
+            .and_then(short_account)
+            .map(|shade_trace| format!("{shade_trace}; "))
+            .unwrap_or_default();
+        let words =
+            format!("{}, {}: {shade_trace}{}", self.name(face), self.shading_of(face, seen), stages(seen, false));
         text.say("through", &words);
     }
 
@@ -153,7 +160,7 @@ impl Pixel {
         let through = if face.fate == Fate::SeenThrough { ", which shines through" } else { "" };
         text.say("seen", &format!("{}{through}", self.name(face)));
         self.say_corners(text, face, seen);
-        self.say_rung(text, face, seen);
+        self.say_shading(text, face, seen);
         match (&seen.shaded_by, seen.accounts.as_slice()) {
             (ShadedBy::Light { normal, position, shades }, _) => {
                 let point = |p: &[f32; 3]| format!("({:.4}, {:.4}, {:.4})", p[0], p[1], p[2]);
@@ -194,8 +201,8 @@ impl Pixel {
             }
             (_, [only]) => say_account(text, only, self.x),
             (_, all) => {
-                for (name, account) in ["red", "green", "blue"].iter().zip(all) {
-                    text.say(name, &short_account(account).unwrap_or_else(|| account.byte.to_string()));
+                for (name, shade_trace) in ["red", "green", "blue"].iter().zip(all) {
+                    text.say(name, &short_account(shade_trace).unwrap_or_else(|| shade_trace.byte.to_string()));
                 }
             }
         }
@@ -212,7 +219,7 @@ impl Pixel {
             .collect();
         if !errors.is_empty() {
             let shown = match (seen.stages.first(), seen.ramp.entries()) {
-                (Some(Stage::Shade(shade)), entries @ 2..256) => {
+                (Some(PixelStage::Shade(shade)), entries @ 2..256) => {
                     // A shade lies in its ramp.
                     let (step, steps) = (f64::from(*shade) - f64::from(seen.ramp.first()), f64::from(entries - 1));
                     format!("; the byte is step {step} of the ramp's {steps}: {:.3}", 255.0 * step / steps)
@@ -235,7 +242,7 @@ impl Pixel {
 
     /// The corners, and the edges between them.
     fn say_corners(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
-        let flat = matches!(face.shading, Shading::Flat(_));
+        let flat = matches!(face.interpolation, Interpolation::Flat(_));
         let has_shades = seen.shaded_by == ShadedBy::Corners && seen.accounts.len() == 1 && !flat;
         text.row("corners", "     x/256     y/256          in pixels     shade (8.8)         depth");
         for (name, corner) in ["A", "B", "C"].iter().zip(&face.corners) {
@@ -259,19 +266,19 @@ impl Pixel {
         }
     }
 
-    fn say_rung(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
+    fn say_shading(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
         let drawn = self.shading_of(face, seen);
         let runs = seen.effects.iter().any(|row| row.effect == Effect::Gouraud);
         let words = if let Some(shades) = self.max_error {
             format!("{drawn}: chosen for this face by the budget of {shades} shades")
-        } else if drawn == self.rung {
-            format!("{drawn}: {}", self.rung_why)
-        } else if drawn == Rung::Flat && !runs {
-            format!("{drawn}: its corners have one shade (else {}: {})", self.rung, self.rung_why)
+        } else if drawn == self.shading {
+            format!("{drawn}: {}", self.shading_why)
+        } else if drawn == Shading::Flat && !runs {
+            format!("{drawn}: its corners have one shade (else {}: {})", self.shading, self.shading_why)
         } else {
-            format!("{drawn}, where {} is on ({})", self.rung, self.rung_why)
+            format!("{drawn}, where {} is on ({})", self.shading, self.shading_why)
         };
-        text.say("rung", &words);
+        text.say("shading", &words);
     }
 
     /// What else meets the pixel.
@@ -281,7 +288,7 @@ impl Pixel {
         let method = format!("hidden surfaces by {}", self.hidden_surfaces);
         let method = match self.hidden_surfaces_why.as_str() {
             "" => method,
-            why => format!("{method}: {why}"),
+            reason => format!("{method}: {reason}"),
         };
         let seen: Vec<String> =
             self.seen.iter().filter_map(|s| Some(self.faces.get(s.face)?.depth.to_string())).collect();
@@ -322,7 +329,7 @@ fn short_edges(face: &FaceHere, x: u32, y: u32) -> String {
 /// A shade in light, of one channel or of three.
 fn in_shades(seen: &Seen, shades: &[u16; 3]) -> String {
     let [r, g, b] = shades.map(|shade| f64::from(shade) / 256.0);
-    if matches!(seen.stages.first(), Some(Stage::Channels(_))) {
+    if matches!(seen.stages.first(), Some(PixelStage::Channels(_))) {
         format!("red {r:.3}, green {g:.3}, blue {b:.3}")
     } else {
         format!("shade {r:.3} ({:#06x})", shades[0])
@@ -336,22 +343,22 @@ fn of_level(level: Option<u8>) -> String {
 
 /// The way of the byte through the stages.
 fn stages(seen: &Seen, whole: bool) -> String {
-    if whole && let [Stage::Shade(byte)] = seen.stages.as_slice() {
+    if whole && let [PixelStage::Shade(byte)] = seen.stages.as_slice() {
         let (first, last) = (seen.ramp.first(), seen.ramp.last());
         return format!("the shade is the byte: entry {byte} of the palette, in the ramp of entries {first} to {last}");
     }
     let words = seen.stages.iter().map(|stage| match *stage {
-        Stage::Shade(shade) => format!("shade {shade}"),
-        Stage::Channels([r, g, b]) => format!("rgb {r} {g} {b}"),
-        Stage::Dither { threshold, byte } => format!("dither by {threshold}: {byte}"),
-        Stage::Texture { texel, level, byte } => format!("texel {texel}{}: {byte}", of_level(level)),
-        Stage::TextureChannels { texel, level, channels: [r, g, b] } => {
+        PixelStage::Shade(shade) => format!("shade {shade}"),
+        PixelStage::Channels([r, g, b]) => format!("rgb {r} {g} {b}"),
+        PixelStage::Dither { threshold, byte } => format!("dither by {threshold}: {byte}"),
+        PixelStage::Texture { texel, level, byte } => format!("texel {texel}{}: {byte}", of_level(level)),
+        PixelStage::TextureChannels { texel, level, channels: [r, g, b] } => {
             format!("texel {texel}{}: {r} {g} {b}", of_level(level))
         }
-        Stage::Mix { threshold: Some(threshold), byte } => format!("mix, dither by {threshold}: {byte}"),
-        Stage::Mix { threshold: None, byte } => format!("mix: {byte}"),
-        Stage::Fog { level, byte } => format!("fog of {level}: {byte}"),
-        Stage::Blend { behind, byte } => format!("over {behind}: {byte}"),
+        PixelStage::Mix { threshold: Some(threshold), byte } => format!("mix, dither by {threshold}: {byte}"),
+        PixelStage::Mix { threshold: None, byte } => format!("mix: {byte}"),
+        PixelStage::Fog { level, byte } => format!("fog of {level}: {byte}"),
+        PixelStage::Blend { behind, byte } => format!("over {behind}: {byte}"),
     });
     words.collect::<Vec<_>>().join(" > ")
 }

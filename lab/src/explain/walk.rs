@@ -2,10 +2,10 @@
 
 use alloc::vec::Vec;
 
-use mode13h::hooks::{Account, Way, rows_of};
-use mode13h::raster::cover::{Ordered, Row};
+use mode13h::hooks::{Progression, ShadeTrace, rows_of};
+use mode13h::raster::cover::{Row, SortedTriangle};
 use mode13h::raster::shade::RESEED;
-use mode13h::raster::{Shading, Vertex};
+use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::Screen;
 
 /// What the registers hold when the loop comes to `mov [edi], ah`.
@@ -41,7 +41,7 @@ pub struct Step {
     /// Where the loop was last started in this row: its first pixel, or so many times 64 after it.
     pub start: u32,
     /// Its value, the byte among others.
-    pub account: Account,
+    pub shade_trace: ShadeTrace,
     /// The registers; `None` where no sum is kept, of one shade a face or a quotient a pixel.
     pub registers: Option<Registers>,
 }
@@ -53,14 +53,14 @@ pub struct Step {
 /// ```
 /// use mode13h_lab::explain::Walk;
 /// use mode13h::fixed::{I24F8, U8F8};
-/// use mode13h::raster::{Shading, Vertex};
+/// use mode13h::raster::{Interpolation, Vertex};
 /// use mode13h::render::Screen;
 ///
 /// let corner = |x, y, shade| {
 ///     Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(shade), 1)
 /// };
 /// let triangle = [corner(0, 0, 40)?, corner(8, 0, 200)?, corner(0, 4, 40)?];
-/// let walk = Walk::new(&triangle, Shading::Gouraud, true, Screen::MODE_13H);
+/// let walk = Walk::new(&triangle, Interpolation::Gouraud, true, Screen::MODE_13H);
 /// let registers = walk.step(2).and_then(|step| step.registers).expect("the loop's");
 /// // From 50 in the first pixel, and a half, by 20 a pixel.
 /// assert_eq!((registers.edi, registers.eax, registers.ebx, registers.cx), (2, 0x5A80, 0x1400, 5));
@@ -68,8 +68,8 @@ pub struct Step {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Walk {
-    triangle: Ordered,
-    shading: Shading,
+    triangle: SortedTriangle,
+    interpolation: Interpolation,
     width: u32,
     rows: Vec<Row>,
     /// Pixels before each row.
@@ -79,18 +79,18 @@ pub struct Walk {
 
 impl Walk {
     /// The pixels of a triangle that is shaded from its corners: those whose centres it covers or, without
-    /// `exact_cover`, those that `shading` covers.
+    /// `exact_cover`, those that `interpolation` covers.
     #[must_use]
-    pub fn new(triangle: &[Vertex; 3], shading: Shading, exact_cover: bool, screen: Screen) -> Self {
-        let triangle = Ordered::new(triangle);
-        let rows = rows_of(&triangle, (!exact_cover).then_some(shading), screen.width, screen.height);
+    pub fn new(triangle: &[Vertex; 3], interpolation: Interpolation, exact_cover: bool, screen: Screen) -> Self {
+        let triangle = SortedTriangle::new(triangle);
+        let rows = rows_of(&triangle, (!exact_cover).then_some(interpolation), screen.width, screen.height);
         let mut pixels = 0;
         let mut before = Vec::with_capacity(rows.len());
         for row in &rows {
             before.push(pixels);
             pixels += row.range().len();
         }
-        Self { triangle, shading, width: screen.width, rows, before, pixels }
+        Self { triangle, interpolation, width: screen.width, rows, before, pixels }
     }
 
     /// How many pixels there are.
@@ -129,10 +129,10 @@ impl Walk {
         let (row, column) = (self.rows[place], number - self.before[place]);
         // A column of a frame.
         let x = row.x0 + column as i32;
-        let account = Account::new(&self.triangle, self.triangle.shades(), self.shading, &row, x);
+        let shade_trace = ShadeTrace::new(&self.triangle, self.triangle.shades(), self.interpolation, &row, x);
         let (mut start, mut registers) = (row.x0, None);
-        if let Way::Sums(sums) = account.way {
-            let reseeds = self.shading == Shading::GouraudReseeded;
+        if let Progression::Accumulator(sums) = shade_trace.way {
+            let reseeds = self.interpolation == Interpolation::GouraudReseeded;
             start = if reseeds { sums.start_at } else { row.x0 };
             let end = if reseeds { row.x1.min(start + RESEED) } else { row.x1 };
             // The step is added modulo the register's size.
@@ -152,7 +152,7 @@ impl Walk {
             column,
             columns: row.range().len(),
             start: start as u32,
-            account,
+            shade_trace,
             registers,
         })
     }
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn there_is_nothing_to_walk_over_without_a_pixel() {
-        let walk = Walk::new(&[Vertex::default(); 3], Shading::Gouraud, true, Screen::MODE_13H);
+        let walk = Walk::new(&[Vertex::default(); 3], Interpolation::Gouraud, true, Screen::MODE_13H);
         assert_eq!((walk.pixels(), walk.rows(), walk.first_in(0), walk.number(0, 0)), (0, 0, None, None));
         assert_eq!(walk.step(0), None);
     }

@@ -22,7 +22,7 @@
 //! end
 //! ```
 //!
-//! The shadings are those of [`Shading`], by [`name`](Shading::name): `flat`, `gouraud-period`, `gouraud`,
+//! The shadings are those of [`Interpolation`], by [`name`](Interpolation::name): `flat`, `gouraud-vintage`, `gouraud`,
 //! `gouraud-reseeded`, `gouraud-16.16`, `gouraud-hyperbolic`, `float`.
 //!
 //! x and y are in 1/256 pixel, to the right and down; a shade is 8.8; a depth is a u32, greater is
@@ -42,7 +42,7 @@ pub use error::{RecordError, RecordErrorKind};
 use mode13h::export::{ExportError, write_atomically};
 use mode13h::palette::Palette;
 use mode13h::plan::Effect;
-use mode13h::raster::{Frame, FrameError, Rect, Shading, Vertex};
+use mode13h::raster::{Frame, FrameError, Interpolation, Rect, Vertex};
 use mode13h::render::{HiddenSurfaces, RenderError, Renderer, Screen};
 use mode13h::scene::Scene;
 
@@ -77,7 +77,7 @@ pub struct Record {
     /// What the DAC was set to, if it was.
     pub palette: Option<Palette>,
     /// The triangles, in the order in which they are handed to the raster.
-    pub triangles: Vec<([Vertex; 3], Shading)>,
+    pub triangles: Vec<([Vertex; 3], Interpolation)>,
 }
 
 impl Record {
@@ -109,8 +109,9 @@ impl Record {
     pub fn of_scene(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Result<Self, RenderError> {
         let mut record = Self::new(screen.width, screen.height)
             .map_err(|_| RenderError::Camera("the frame's sides must be 1 to 4,096"))?;
-        let stats = renderer
-            .for_each_triangle(scene, screen, |vertices, shading| record.triangles.push((*vertices, shading)))?;
+        let stats = renderer.for_each_triangle(scene, screen, |vertices, interpolation| {
+            record.triangles.push((*vertices, interpolation))
+        })?;
         let effects = [
             Effect::Fog,
             Effect::Phong,

@@ -6,7 +6,7 @@ use std::str::{FromStr, SplitAsciiWhitespace};
 use super::{Record, RecordError, RecordErrorKind, VERSION};
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::palette::{Palette, Rgb};
-use mode13h::raster::{Rect, Shading, Vertex};
+use mode13h::raster::{Interpolation, Rect, Vertex};
 use mode13h::render::HiddenSurfaces;
 
 /// No line of a record is longer; what comes of one that is, is not kept.
@@ -103,13 +103,14 @@ fn palette(lines: &mut Lines<impl BufRead>) -> Result<Palette, RecordErrorKind> 
     })
 }
 
-fn triangle(fields: &mut Fields<'_>) -> Result<([Vertex; 3], Shading), RecordErrorKind> {
+fn triangle(fields: &mut Fields<'_>) -> Result<([Vertex; 3], Interpolation), RecordErrorKind> {
     const SHADINGS: &str = "a shading (\"flat\", \"gouraud-reseeded\" …) or \"end\"";
-    let shading = match fields.next(SHADINGS)? {
-        "flat" => Shading::Flat(fields.number("a palette index")?),
-        name => {
-            *Shading::INTERPOLATED.iter().find(|shading| shading.name() == name).ok_or_else(|| fields.not(SHADINGS))?
-        }
+    let interpolation = match fields.next(SHADINGS)? {
+        "flat" => Interpolation::Flat(fields.number("a palette index")?),
+        name => *Interpolation::INTERPOLATED
+            .iter()
+            .find(|interpolation| interpolation.name() == name)
+            .ok_or_else(|| fields.not(SHADINGS))?,
     };
     let mut vertices = [Vertex::default(); 3];
     for vertex in &mut vertices {
@@ -119,7 +120,7 @@ fn triangle(fields: &mut Fields<'_>) -> Result<([Vertex; 3], Shading), RecordErr
             .map_err(RecordErrorKind::Vertex)?;
     }
     fields.end()?;
-    Ok((vertices, shading))
+    Ok((vertices, interpolation))
 }
 
 /// The lines that count.

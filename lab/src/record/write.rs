@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::{Record, VERSION};
-use mode13h::raster::Shading;
+use mode13h::raster::Interpolation;
 
 pub(super) fn write(record: &Record, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "mode13h record {VERSION}")?;
@@ -22,10 +22,10 @@ pub(super) fn write(record: &Record, out: &mut dyn Write) -> io::Result<()> {
     }
     writeln!(out, "triangles")?;
     writeln!(out, "# x y in 1/256 pixel, shade in 1/256, depth (greater is nearer), of each vertex")?;
-    for (vertices, shading) in &record.triangles {
-        match shading {
-            Shading::Flat(index) => write!(out, "{} {index}", shading.name())?,
-            _ => write!(out, "{}", shading.name())?,
+    for (vertices, interpolation) in &record.triangles {
+        match interpolation {
+            Interpolation::Flat(index) => write!(out, "{} {index}", interpolation.name())?,
+            _ => write!(out, "{}", interpolation.name())?,
         }
         for v in vertices {
             write!(out, "  {} {} {} {}", v.x().to_bits(), v.y().to_bits(), v.shade().to_bits(), v.depth())?;

@@ -2,12 +2,12 @@
 
 use super::face::{Face, Segment};
 use super::panel::Panel;
-use mode13h::raster::{Frame, Raster, Shading, Vertex};
+use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
 
 /// A triangle as the raster is given it.
-pub type Triangle = ([Vertex; 3], Shading);
+pub type Triangle = ([Vertex; 3], Interpolation);
 
 /// Bytes that drawing begins on. Twice, so that what was drawn can be told from what was there.
 const EMPTY: [u8; 2] = [0x00, 0xFF];
@@ -35,8 +35,8 @@ pub(super) fn draw_in_bands((width, height): (usize, usize), triangles: &[Triang
         if let Ok(mut frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
             for band in frame.bands(rows as u32) {
                 let mut raster = Raster::new(band);
-                triangles.iter().for_each(|(vertices, shading)| {
-                    raster.triangle(vertices, *shading);
+                triangles.iter().for_each(|(vertices, interpolation)| {
+                    raster.triangle(vertices, *interpolation);
                 });
             }
         }
@@ -65,13 +65,13 @@ fn bytes((width, height): (usize, usize), triangles: &[Triangle], depth_tested: 
         let raster = Raster::new(frame);
         if depth_tested {
             let mut raster = raster.with_cleared_depth(&mut depths);
-            triangles.iter().for_each(|(vertices, shading)| {
-                raster.triangle(vertices, *shading);
+            triangles.iter().for_each(|(vertices, interpolation)| {
+                raster.triangle(vertices, *interpolation);
             });
         } else {
             let mut raster = raster;
-            triangles.iter().for_each(|(vertices, shading)| {
-                raster.triangle(vertices, *shading);
+            triangles.iter().for_each(|(vertices, interpolation)| {
+                raster.triangle(vertices, *interpolation);
             });
         }
     }
@@ -96,7 +96,8 @@ pub(super) fn draw_scene(size: (usize, usize), scene: &Scene) -> (Panel, Vec<Tri
     panel.write_where_equal(&a, &b);
     let mut triangles = Vec::new();
     let screen = Screen { width, height, pixel_aspect: (1, 1) };
-    let _ = renderer.for_each_triangle(scene, screen, |vertices, shading| triangles.push((*vertices, shading)));
+    let _ =
+        renderer.for_each_triangle(scene, screen, |vertices, interpolation| triangles.push((*vertices, interpolation)));
     (panel, triangles)
 }
 

@@ -1,7 +1,7 @@
 //! A face as both sides of a picture get it: three corners on the screen.
 
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::{Shading, Vertex};
+use mode13h::raster::{Interpolation, Vertex};
 
 /// A corner on the screen.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -49,23 +49,23 @@ impl Corner {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Face {
     pub(super) corners: [Corner; 3],
-    pub(super) shading: Shading,
+    pub(super) interpolation: Interpolation,
 }
 
 /// A face shaded linearly between its corners.
 pub(super) const fn gouraud(corners: [Corner; 3]) -> Face {
-    Face { corners, shading: Shading::GouraudReseeded }
+    Face { corners, interpolation: Interpolation::GouraudReseeded }
 }
 
 /// A face of one byte.
 pub(super) const fn flat(corners: [Corner; 3], byte: u8) -> Face {
-    Face { corners, shading: Shading::Flat(byte) }
+    Face { corners, interpolation: Interpolation::Flat(byte) }
 }
 
 impl Face {
     /// What the raster is given.
-    pub(super) fn for_raster(&self) -> ([Vertex; 3], Shading) {
-        (self.corners.map(Corner::vertex), self.shading)
+    pub(super) fn for_raster(&self) -> ([Vertex; 3], Interpolation) {
+        (self.corners.map(Corner::vertex), self.interpolation)
     }
 
     /// Its three edges.

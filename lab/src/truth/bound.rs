@@ -1,14 +1,14 @@
-//! How far a rung may be from what is right for it.
+//! How far a shading may be from what is right for it.
 
 use super::Standard;
-use mode13h::scene::Rung;
+use mode13h::scene::Shading;
 
-/// How far a rung's shades may be from a standard.
+/// How far a shading's shades may be from a standard.
 ///
-/// | rung | standard | off by at most, in shades | of which beyond the byte's ½ and the vertices' 1/512 |
+/// | shading | standard | off by at most, in shades | of which beyond the byte's ½ and the vertices' 1/512 |
 /// |---|---|---|---|
 /// | `flat` | – | – | one shade of its own: see below |
-/// | `gouraud-period` | – | – | other vertices, other cover |
+/// | `gouraud-vintage` | – | – | other vertices, other cover |
 /// | `gouraud-8.8` | `gouraud` | ½ + 1/512 + w/256 in a frame of w columns: 1.75 of 320 | start and steps, each less than 1/256 |
 /// | `gouraud-8.8-reseeded` | `gouraud` | ½ + 1/512 + ¼ | the same over 64 pixels |
 /// | `gouraud-16.16` | `gouraud` | ½ + 1/512 + w/65,536 | start and steps, each less than 1/65,536 |
@@ -19,7 +19,7 @@ use mode13h::scene::Rung;
 /// | `float` | `gouraud-perspective` | ½ + 1/512 + 1/256 + 1/8,192 | and f32 |
 ///
 /// A vertex's shade is rounded to 1/256, so by 1/512; what is made from it is a mean of three, and no farther off. The
-/// rest is what the raster adds ([`Shading`](mode13h::raster::Shading)). A depth is rounded to half of 2⁻³⁰·near/w's unit: of
+/// rest is what the raster adds ([`Interpolation`](mode13h::raster::Shading)). A depth is rounded to half of 2⁻³⁰·near/w's unit: of
 /// w up to 4,096 times the near distance that is 2⁻¹⁹ of it, either way, and a quotient of sums that are off by so
 /// much is off by 2⁻¹⁸ of 255 shades: 1/1,000, and less than 1/256 up to 10,000 times.
 ///
@@ -38,29 +38,29 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// Of a rung in a frame of so many columns; `None` of one that claims none.
+    /// Of a shading in a frame of so many columns; `None` of one that claims none.
     ///
     /// ```
-    /// use mode13h::scene::Rung;
+    /// use mode13h::scene::Shading;
     /// use mode13h_lab::truth::{Bound, Standard};
     ///
-    /// let bound = Bound::of(Rung::Gouraud88Reseeded, 320).expect("it claims one");
+    /// let bound = Bound::of(Shading::Gouraud88Reseeded, 320).expect("it claims one");
     /// assert!(bound.standard == Standard::Gouraud && bound.shades < 1.0);
-    /// assert_eq!(Bound::of(Rung::GouraudPeriod, 320), None);
+    /// assert_eq!(Bound::of(Shading::GouraudVintage, 320), None);
     /// ```
     #[must_use]
-    pub fn of(rung: Rung, width: u32) -> Option<Self> {
+    pub fn of(shading: Shading, width: u32) -> Option<Self> {
         const ROUNDING: f64 = 0.5 + 1.0 / 512.0;
         const DEPTHS: f64 = 1.0 / 256.0;
 
         let width = f64::from(width);
-        let (standard, more) = match rung {
-            Rung::Gouraud88 => (Standard::Gouraud, width / 256.0),
-            Rung::Gouraud88Reseeded => (Standard::Gouraud, 0.25),
-            Rung::Gouraud1616 => (Standard::Gouraud, width / 65_536.0),
-            Rung::GouraudHyperbolic => (Standard::GouraudPerspective, DEPTHS),
-            Rung::Float => (Standard::GouraudPerspective, DEPTHS + 1.0 / 8_192.0),
-            Rung::Phong => (Standard::Lit, 0.01),
+        let (standard, more) = match shading {
+            Shading::Gouraud88 => (Standard::Gouraud, width / 256.0),
+            Shading::Gouraud88Reseeded => (Standard::Gouraud, 0.25),
+            Shading::Gouraud1616 => (Standard::Gouraud, width / 65_536.0),
+            Shading::GouraudHyperbolic => (Standard::GouraudPerspective, DEPTHS),
+            Shading::Float => (Standard::GouraudPerspective, DEPTHS + 1.0 / 8_192.0),
+            Shading::Phong => (Standard::Lit, 0.01),
             // The others claim none.
             _ => return None,
         };

@@ -280,7 +280,7 @@ impl<'a> Truth<'a> {
     /// in pixels from the frame's upper left corner. `None` if the face cannot be seen there, whatever
     /// may hide it.
     #[must_use]
-    pub fn lit_at(&self, face: Face, x: f64, y: f64) -> Option<TruePixel> {
+    pub fn sampling(&self, face: Face, x: f64, y: f64) -> Option<TruePixel> {
         self.pixel(Standard::Lit, self.met(face, [x, y])?)
     }
 

@@ -1,15 +1,15 @@
 //! Group C: what reaches behind the eye or beyond the guard band; and R7, R9, R10 and R13 on the way to
 //! the raster.
 
-use super::drawing::{self, Way};
+use super::drawing::{self, Configuration};
 use super::random::Random;
 use super::{Group, replay};
 use crate::record::Record;
 use mode13h::fixed::{I16F16, I24F8};
 use mode13h::glam::Vec3;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::raster::cover::Ordered;
-use mode13h::raster::{Rect, Shading, Vertex};
+use mode13h::raster::cover::SortedTriangle;
+use mode13h::raster::{Interpolation, Rect, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::span::Kernel;
@@ -66,10 +66,10 @@ fn seen_from_origin(mesh: Mesh) -> Scene {
 }
 
 /// How often each pixel is covered.
-fn counts(triangles: &[([Vertex; 3], Shading)]) -> Vec<u32> {
+fn counts(triangles: &[([Vertex; 3], Interpolation)]) -> Vec<u32> {
     let mut counts = vec![0; (WIDTH * HEIGHT) as usize];
     for (vertices, _) in triangles {
-        Ordered::new(vertices).rows(WIDTH, Rect { x0: 0, y0: 0, x1: WIDTH, y1: HEIGHT }, |row| {
+        SortedTriangle::new(vertices).rows(WIDTH, Rect { x0: 0, y0: 0, x1: WIDTH, y1: HEIGHT }, |row| {
             let start = row.y as usize * Vga::WIDTH;
             counts[start + row.x0 as usize..start + row.x1 as usize].iter_mut().for_each(|count| *count += 1);
         });
@@ -183,13 +183,13 @@ fn odd_views(group: &mut Group, random: &mut Random, project: Project<'_>) {
         if case >= 6 {
             // The depth buffer alone, against the scan-line method: the oracle takes its time.
             let ways = [HiddenSurfaces::DepthBuffer, HiddenSurfaces::ScanLine];
-            let [depth, line] = ways.map(|way| drawing::draw(&record, Way::new(way, Kernel::fastest())));
+            let [depth, line] = ways.map(|way| drawing::draw(&record, Configuration::new(way, Kernel::fastest())));
             group
                 .check(depth.is_ok() && depth == line, || format!("c4 {:?}: depth buffer and scan-line", scene.camera));
             continue;
         }
         record.palette = None;
-        let way = Way::new(HiddenSurfaces::DepthBuffer, Kernel::fastest());
+        let way = Configuration::new(HiddenSurfaces::DepthBuffer, Kernel::fastest());
         group.check_record("c4", &record, &|record| replay::against_oracle(record, way, &drawing::draw));
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::record::Record;
 use mode13h::raster::scan_line::Lists;
-use mode13h::raster::{Batch, Frame, FrameError, Raster, Shading, Vertex};
+use mode13h::raster::{Batch, Frame, FrameError, Interpolation, Raster, Vertex};
 use mode13h::render::HiddenSurfaces;
 use mode13h::span::Kernel;
 
 /// How a record is drawn.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Way {
+pub(super) struct Configuration {
     /// Back faces only: the triangles one after the other, each over what is there.
     pub(super) hidden_surfaces: HiddenSurfaces,
     pub(super) kernel: Kernel,
@@ -16,7 +16,7 @@ pub(super) struct Way {
     pub(super) rows_each: u32,
 }
 
-impl Way {
+impl Configuration {
     pub(super) fn new(hidden_surfaces: HiddenSurfaces, kernel: Kernel) -> Self {
         Self { hidden_surfaces, kernel, rows_each: 0 }
     }
@@ -24,7 +24,7 @@ impl Way {
 
 /// What draws a record, row-major; that it wrote beside the frame, if it did. The checks are given it,
 /// so that the tests can give them a wrong one.
-pub(super) type Draw<'a> = &'a dyn Fn(&Record, Way) -> Result<Vec<u8>, Stray>;
+pub(super) type Draw<'a> = &'a dyn Fn(&Record, Configuration) -> Result<Vec<u8>, Stray>;
 
 /// A byte beside the frame was written, or the frame could not be drawn at all.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -47,7 +47,7 @@ const GUARD_BYTE: u8 = 0xA5;
 const GUARD: usize = 7;
 
 /// The raster itself.
-pub(super) fn draw(record: &Record, way: Way) -> Result<Vec<u8>, Stray> {
+pub(super) fn draw(record: &Record, way: Configuration) -> Result<Vec<u8>, Stray> {
     let (width, height) = (record.width() as usize, record.height());
     let pitch = width + GUARD;
     let mut bytes = vec![GUARD_BYTE; GUARD + pitch * height as usize];
@@ -65,15 +65,15 @@ pub(super) fn draw(record: &Record, way: Way) -> Result<Vec<u8>, Stray> {
     Ok(rows.flat_map(|(pixels, _)| pixels).copied().collect())
 }
 
-fn draw_band(record: &Record, way: Way, band: Frame<'_>) {
+fn draw_band(record: &Record, way: Configuration, band: Frame<'_>) {
     let mut raster = Raster::new(band).with_kernel(way.kernel);
     if let Some(clip) = record.clip() {
         raster = raster.with_clip(clip);
     }
     match way.hidden_surfaces {
         HiddenSurfaces::PainterOrder => {
-            for (vertices, shading) in far_to_near(&record.triangles) {
-                raster.triangle(vertices, *shading);
+            for (vertices, interpolation) in far_to_near(&record.triangles) {
+                raster.triangle(vertices, *interpolation);
             }
         }
         HiddenSurfaces::DepthBuffer => {
@@ -91,23 +91,23 @@ fn draw_band(record: &Record, way: Way, band: Frame<'_>) {
 }
 
 /// As the renderer draws them.
-fn in_batches(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Shading)]) {
+fn in_batches(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Interpolation)]) {
     let mut batch = Batch::new();
-    for (vertices, shading) in triangles {
-        if batch.push(vertices, *shading) {
+    for (vertices, interpolation) in triangles {
+        if batch.push(vertices, *interpolation) {
             continue;
         }
         raster.batch(&batch);
         batch.clear();
-        if !batch.push(vertices, *shading) {
-            raster.triangle(vertices, *shading);
+        if !batch.push(vertices, *interpolation) {
+            raster.triangle(vertices, *interpolation);
         }
     }
     raster.batch(&batch);
 }
 
 /// Painter's order, by the mean depth of the three vertices.
-fn far_to_near(triangles: &[([Vertex; 3], Shading)]) -> Vec<&([Vertex; 3], Shading)> {
+fn far_to_near(triangles: &[([Vertex; 3], Interpolation)]) -> Vec<&([Vertex; 3], Interpolation)> {
     let mut order: Vec<_> = triangles.iter().collect();
     order.sort_by_key(|(vertices, _)| vertices.iter().map(|v| u64::from(v.depth())).sum::<u64>());
     order

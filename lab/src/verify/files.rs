@@ -92,7 +92,7 @@ fn records(group: &mut Group, random: &mut Random) {
             && read.width() < 100
             && read.height() < 100
         {
-            let way = drawing::Way::new(HiddenSurfaces::DepthBuffer, mode13h::span::Kernel::PORTABLE);
+            let way = drawing::Configuration::new(HiddenSurfaces::DepthBuffer, mode13h::span::Kernel::PORTABLE);
             let drawn = drawing::draw(&read, way);
             group.check(drawn.is_ok(), || format!("f5 a record that was read cannot be drawn: {drawn:?}"));
         }

@@ -5,7 +5,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::builtin;
-use mode13h::render::{HiddenSurfaces, Renderer, Rung, VertexPath};
+use mode13h::render::{HiddenSurfaces, Renderer, Shading, VertexPath};
 use mode13h::scene::{Object, Scene, Shared};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
@@ -32,7 +32,7 @@ impl Frames {
     }
 }
 
-/// Draws every shape on every rung by both vertex paths at four angles, then two tori that pass through
+/// Draws every shape on every shading by both vertex paths at four angles, then two tori that pass through
 /// each other and reach behind the eye by every hidden-surface method, with `kernel`.
 ///
 /// ```
@@ -46,12 +46,12 @@ pub fn frames(kernel: Kernel) -> Frames {
     renderer.set_kernel(kernel);
     let mut frames = Frames { count: 0, hash: START };
     let mut vga = Vga::new();
-    let ways = VertexPath::ALL.into_iter().flat_map(|path| Rung::ALL.map(|rung| (path, rung)));
+    let ways = VertexPath::ALL.into_iter().flat_map(|path| Shading::ALL.map(|shading| (path, shading)));
     for (shape, name) in shapes::NAMES.iter().enumerate() {
         let Some(mesh) = shapes::by_name(name).map(Shared::new) else { continue };
-        for (number, (path, rung)) in ways.clone().enumerate() {
+        for (number, (path, shading)) in ways.clone().enumerate() {
             renderer.set_vertex_path(path);
-            renderer.set_rung(rung);
+            renderer.set_shading(shading);
             for step in 0..4_u8 {
                 let mut scene = super::framed(mesh.clone());
                 scene.palette = Some(builtin::ALL[(shape + number) % builtin::ALL.len()].palette.clone());
@@ -64,9 +64,9 @@ pub fn frames(kernel: Kernel) -> Frames {
     let torus = Shared::new(shapes::torus(24, 12));
     for way in HiddenSurfaces::ALL {
         renderer.set_hidden_surfaces(Some(way));
-        for (path, rung) in ways.clone() {
+        for (path, shading) in ways.clone() {
             renderer.set_vertex_path(path);
-            renderer.set_rung(rung);
+            renderer.set_shading(shading);
             for step in 0..4_u8 {
                 frames.draw(&mut renderer, &close_up(&torus, f64::from(step)), &mut vga);
             }

@@ -1,12 +1,12 @@
 //! Group D: depth buffer, scan-line and the definition agree.
 
-use super::drawing::{self, Draw, Way};
+use super::drawing::{self, Configuration, Draw};
 use super::random::Random;
 use super::triangles::{any_clip, any_shading, any_triangle, vertex};
 use super::{Group, oracle, replay};
 use crate::record::Record;
 use mode13h::mesh::shapes;
-use mode13h::raster::{Shading, Vertex};
+use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen};
 use mode13h::span::Kernel;
 
@@ -40,7 +40,7 @@ fn check(seed: u64, cases: u32, draw: Draw<'_>) -> Group {
         let kernel = random.one_of(&kernels);
         let rows_each = if random.below(4) == 0 { 1 + random.below(height) } else { 0 };
         for hidden_surfaces in [HiddenSurfaces::DepthBuffer, HiddenSurfaces::ScanLine] {
-            let way = Way { hidden_surfaces, kernel, rows_each };
+            let way = Configuration { hidden_surfaces, kernel, rows_each };
             group.check_record("d1", &record, &|record| replay::against_oracle(record, way, draw));
         }
     }
@@ -49,7 +49,7 @@ fn check(seed: u64, cases: u32, draw: Draw<'_>) -> Group {
 }
 
 /// A face for a frame, with depths that meet those of the others.
-fn face(random: &mut Random, record: &Record) -> ([Vertex; 3], Shading) {
+fn face(random: &mut Random, record: &Record) -> ([Vertex; 3], Interpolation) {
     let vertices = any_triangle(random, record.width(), record.height());
     let (kind, one) = (random.below(6), random.within(0, 3));
     let deep = |v: Vertex, depth: i64| {
@@ -66,9 +66,9 @@ fn face(random: &mut Random, record: &Record) -> ([Vertex; 3], Shading) {
         (4, _) => vertices.map(|v| deep(v, random.one_of(&[0, 1, 1 << 30, u32::MAX.into()]))),
         _ => vertices,
     };
-    let shading = any_shading(random);
+    let interpolation = any_shading(random);
     // The scan-line method gives exact cover to all.
-    (vertices, if shading.has_exact_cover() { shading } else { Shading::default() })
+    (vertices, if interpolation.has_exact_cover() { interpolation } else { Interpolation::default() })
 }
 
 /// D4: convex shapes from all sides.
@@ -83,7 +83,7 @@ fn convex(group: &mut Group, random: &mut Random, draw: Draw<'_>) {
             group.check_record("d4", &record, &|record| {
                 let by_definition = oracle::frame(record, oracle::NEAREST);
                 HiddenSurfaces::ALL.into_iter().find_map(|hidden_surfaces| {
-                    let way = Way::new(hidden_surfaces, Kernel::fastest());
+                    let way = Configuration::new(hidden_surfaces, Kernel::fastest());
                     let mut drawn = match draw(record, way) {
                         Ok(drawn) => drawn,
                         Err(stray) => return Some(format!("{way}: {stray}")),
@@ -116,7 +116,7 @@ mod tests {
     /// Of equal depths the last wins: found by two faces, of which the second is wrong.
     #[test]
     fn a_tie_decided_wrongly_is_told_by_two_triangles() {
-        let last = |record: &Record, way: Way| {
+        let last = |record: &Record, way: Configuration| {
             let mut turned = record.clone();
             turned.triangles.reverse();
             drawing::draw(&turned, way)
@@ -129,8 +129,8 @@ mod tests {
 
     #[test]
     fn painters_order_is_found_out() {
-        let painted = |record: &Record, way: Way| {
-            drawing::draw(record, Way { hidden_surfaces: HiddenSurfaces::PainterOrder, ..way })
+        let painted = |record: &Record, way: Configuration| {
+            drawing::draw(record, Configuration { hidden_surfaces: HiddenSurfaces::PainterOrder, ..way })
         };
         let group = check(1, 100, &painted);
         assert!(!group.passed() && group.record.is_some());

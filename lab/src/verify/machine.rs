@@ -3,7 +3,7 @@
 use super::Group;
 use super::random::Random;
 use mode13h::fixed::U8F8;
-use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, expand, reduce};
+use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, dac6_to_8, to_dac6};
 use mode13h::vga::{Dac, Vga};
 
 /// 6 bits to 8 and back (P1), shades that stay in their ramp (P2), offsets that wrap (P3), and random
@@ -15,21 +15,21 @@ use mode13h::vga::{Dac, Vga};
 /// ```
 #[must_use]
 pub fn machine(seed: u64) -> Group {
-    check(seed, &expand, &U8F8::from_intensity, &|vga, port, value| vga.write_port(port, value))
+    check(seed, &dac6_to_8, &U8F8::from_intensity, &|vga, port, value| vga.write_port(port, value))
 }
 
 type Expand<'a> = &'a dyn Fn(u8) -> u8;
 type Shade<'a> = &'a dyn Fn(f32, u8, u16) -> U8F8;
 type Out<'a> = &'a dyn Fn(&mut Vga, u16, u8);
 
-fn check(seed: u64, expand: Expand<'_>, shade: Shade<'_>, out: Out<'_>) -> Group {
+fn check(seed: u64, dac6_to_8: Expand<'_>, shade: Shade<'_>, out: Out<'_>) -> Group {
     let mut group = Group::new("machine");
     let mut random = Random::new(seed, "machine");
     for value in 0..64 {
-        let eight = expand(value);
+        let eight = dac6_to_8(value);
         // 255 in 63 steps, each of 4 or 5: within one of the straight line.
-        let right = reduce(eight) == value && eight.abs_diff((u16::from(value) * 255 / 63) as u8) <= 1;
-        group.check(right, || format!("p1 6-bit {value} becomes {eight}, and back {}", reduce(eight)));
+        let right = to_dac6(eight) == value && eight.abs_diff((u16::from(value) * 255 / 63) as u8) <= 1;
+        group.check(right, || format!("p1 6-bit {value} becomes {eight}, and back {}", to_dac6(eight)));
     }
     for value in 0..=255 {
         let once = Rgb::new(value, value, value).on_dac();
@@ -149,8 +149,8 @@ mod tests {
         assert!(group.cases > 14_000);
     }
 
-    fn first_failure(expand: Expand<'_>, shade: Shade<'_>, out: Out<'_>) -> String {
-        let group = check(1, expand, shade, out);
+    fn first_failure(dac6_to_8: Expand<'_>, shade: Shade<'_>, out: Out<'_>) -> String {
+        let group = check(1, dac6_to_8, shade, out);
         group.failures.into_iter().next().expect("a failure")
     }
 
@@ -161,7 +161,7 @@ mod tests {
         assert!(line.starts_with("p1 6-bit "), "{line}");
         // A ramp's entries counted from 1.
         let over = |intensity: f32, first: u8, entries: u16| U8F8::from_intensity(intensity, first, entries + 1);
-        let line = first_failure(&expand, &over, out);
+        let line = first_failure(&dac6_to_8, &over, out);
         assert!(line.starts_with("p2 intensity "), "{line}");
         // A write index that does not start the count of three anew.
         let keeps = |vga: &mut Vga, port: u16, value: u8| {
@@ -169,7 +169,7 @@ mod tests {
                 vga.write_port(port, value);
             }
         };
-        let line = first_failure(&expand, &U8F8::from_intensity, &keeps);
+        let line = first_failure(&dac6_to_8, &U8F8::from_intensity, &keeps);
         assert!(line.starts_with("p4 write "), "{line}");
     }
 }

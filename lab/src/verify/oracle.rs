@@ -2,7 +2,7 @@
 //! raster but the vertices.
 
 use crate::record::Record;
-use mode13h::raster::{Rect, Shading, Vertex};
+use mode13h::raster::{Interpolation, Rect, Vertex};
 
 type Point = (i128, i128);
 
@@ -58,15 +58,15 @@ fn interpolate(triangle: [Point; 3], values: [i128; 3], p: Point) -> (i128, i128
 /// Calls `pixel` for all pixels that a triangle draws in a frame of `width × height`, row by row.
 pub(super) fn draw(
     vertices: &[Vertex; 3],
-    shading: Shading,
+    interpolation: Interpolation,
     (width, height): (u32, u32),
     mut pixel: impl FnMut(Pixel),
 ) {
     let mut pixel = |x: i32, y: i32, byte: u8| {
         pixel(Pixel { x: x as u32, y: y as u32, byte, depth: depth_at(vertices, x, y) });
     };
-    if shading == Shading::GouraudPeriod {
-        return period(vertices, (width as i32, height as i32), pixel);
+    if interpolation == Interpolation::GouraudVintage {
+        return vintage(vertices, (width as i32, height as i32), pixel);
     }
     let triangle = points(vertices);
     let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
@@ -85,21 +85,22 @@ pub(super) fn draw(
         let mut sum = 0;
         for x in covered {
             // A sum out of range shows as a byte that no drawing has.
-            let byte = match shading {
-                Shading::Flat(index) => index,
-                Shading::GouraudHyperbolic => {
+            let byte = match interpolation {
+                Interpolation::Flat(index) => index,
+                Interpolation::GouraudHyperbolic => {
                     let ((n, _), (d, _)) =
                         (interpolate(triangle, products, centre(x, y)), interpolate(triangle, depths, centre(x, y)));
                     (n + 128 * d).div_euclid(256 * d) as u8
                 }
-                Shading::Float => float(vertices, first, last, x, y),
+                Interpolation::Float => float(vertices, first, last, x, y),
                 _ => {
                     // In units of 1/256 shade, or of 1/65,536.
-                    let bits = if shading == Shading::Gouraud1616 { 16 } else { 8 };
+                    let bits = if interpolation == Interpolation::Gouraud1616 { 16 } else { 8 };
                     let values = shades.map(|shade| shade << (bits - 8));
                     let ((here, area), (there, _)) =
                         (interpolate(triangle, values, centre(x, y)), interpolate(triangle, values, centre(x + 1, y)));
-                    let starts = x == first || (shading == Shading::GouraudReseeded && (x - first) % 64 == 0);
+                    let starts =
+                        x == first || (interpolation == Interpolation::GouraudReseeded && (x - first) % 64 == 0);
                     sum = match starts {
                         // Back toward where the shades come from.
                         true if there < here => -(-here).div_euclid(area),
@@ -140,8 +141,8 @@ fn float(vertices: &[Vertex; 3], first: i32, last: i32, x: i32, y: i32) -> u8 {
     (shade + 256.5) as u16 as u8
 }
 
-/// The pixels of [`raster::period`](mode13h::raster::period), row by row with one addition for each edge.
-fn period(vertices: &[Vertex; 3], (width, height): (i32, i32), mut pixel: impl FnMut(i32, i32, u8)) {
+/// The pixels of [`raster::vintage`](mode13h::raster::vintage), row by row with one addition for each edge.
+fn vintage(vertices: &[Vertex; 3], (width, height): (i32, i32), mut pixel: impl FnMut(i32, i32, u8)) {
     let triangle = points(vertices);
     let mut order = *vertices;
     order.sort_by_key(|v| (v.y(), v.x()));
@@ -222,8 +223,8 @@ pub(super) fn frame(record: &Record, test: Test) -> Drawing {
     let mut depths = vec![0; count];
     let mut drawing =
         Drawing { pixels: vec![record.background; count], owners: vec![None; count], covered: vec![0; count] };
-    for (number, (vertices, shading)) in record.triangles.iter().enumerate() {
-        draw(vertices, *shading, (width, height), |pixel| {
+    for (number, (vertices, interpolation)) in record.triangles.iter().enumerate() {
+        draw(vertices, *interpolation, (width, height), |pixel| {
             let Pixel { x, y, byte, depth } = pixel;
             if !(clip.x0..clip.x1).contains(&x) || !(clip.y0..clip.y1).contains(&y) {
                 return;

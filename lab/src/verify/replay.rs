@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use super::drawing::{self, Draw, Stray, Way};
+use super::drawing::{self, Configuration, Draw, Stray};
 use super::oracle::{self, Drawing};
 use super::shrink;
 use crate::record::Record;
-use mode13h::raster::{Shading, Vertex};
+use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::HiddenSurfaces;
 use mode13h::span::Kernel;
 
@@ -71,15 +71,15 @@ fn replay_by(record: &Record, draw: Draw<'_>) -> Replay {
     let count = |least: u32| by_definition.covered.iter().filter(|times| **times >= least).count() as u64;
     let mut replay =
         Replay { covered: count(1), overlaid: count(2), comparisons: Vec::new(), failures: Vec::new(), smallest: None };
-    let reference = Way::new(HiddenSurfaces::DepthBuffer, Kernel::PORTABLE);
+    let reference = Configuration::new(HiddenSurfaces::DepthBuffer, Kernel::PORTABLE);
     let mut wrong: Vec<Wrong<'_>> = vec![Box::new(move |record| against_oracle(record, reference, draw))];
-    for way in HiddenSurfaces::ALL.map(|hidden_surfaces| Way { hidden_surfaces, ..reference }) {
+    for way in HiddenSurfaces::ALL.map(|hidden_surfaces| Configuration { hidden_surfaces, ..reference }) {
         for kernel in Kernel::available().skip(1) {
-            wrong.push(Box::new(move |record| differs(record, way, Way { kernel, ..way }, draw)));
+            wrong.push(Box::new(move |record| differs(record, way, Configuration { kernel, ..way }, draw)));
         }
-        wrong.push(Box::new(move |record| differs(record, way, Way { rows_each: 13, ..way }, draw)));
+        wrong.push(Box::new(move |record| differs(record, way, Configuration { rows_each: 13, ..way }, draw)));
         let must_agree = way.hidden_surfaces == HiddenSurfaces::ScanLine
-            && record.triangles.iter().all(|(_, shading)| shading.has_exact_cover());
+            && record.triangles.iter().all(|(_, interpolation)| interpolation.has_exact_cover());
         if must_agree {
             wrong.push(Box::new(move |record| differs(record, reference, way, draw)));
         }
@@ -103,7 +103,7 @@ fn replay_by(record: &Record, draw: Draw<'_>) -> Replay {
 /// What is wrong with a record, if anything.
 type Wrong<'a> = Box<dyn Fn(&Record) -> Option<String> + 'a>;
 
-impl fmt::Display for Way {
+impl fmt::Display for Configuration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, {}", self.hidden_surfaces, self.kernel)?;
         if self.rows_each > 0 { write!(f, ", bands of {} rows", self.rows_each) } else { Ok(()) }
@@ -111,7 +111,7 @@ impl fmt::Display for Way {
 }
 
 /// Two drawings of a record that should be one.
-fn differs(record: &Record, should: Way, is: Way, draw: Draw<'_>) -> Option<String> {
+fn differs(record: &Record, should: Configuration, is: Configuration, draw: Draw<'_>) -> Option<String> {
     match (draw(record, is), draw(record, should)) {
         (Ok(drawn), Ok(expected)) => difference(record, &drawn, &expected)
             .map(|difference| format!("{is}: {difference}, by {should} {:#04x}", difference.should)),
@@ -121,7 +121,7 @@ fn differs(record: &Record, should: Way, is: Way, draw: Draw<'_>) -> Option<Stri
 }
 
 /// A drawing against the oracle's; the depth buffer's and the scan-line's by depth, others in turn.
-pub(super) fn against_oracle(record: &Record, way: Way, draw: Draw<'_>) -> Option<String> {
+pub(super) fn against_oracle(record: &Record, way: Configuration, draw: Draw<'_>) -> Option<String> {
     let test = match way.hidden_surfaces {
         HiddenSurfaces::DepthBuffer | HiddenSurfaces::ScanLine => oracle::NEAREST,
         _ => oracle::LAST,
@@ -145,11 +145,11 @@ fn out_of_range(record: &Record, should: &Drawing, is: &[u8]) -> Option<String> 
     let ranges: Vec<(u8, u8)> = record
         .triangles
         .iter()
-        .map(|(vertices, shading)| match shading {
-            Shading::Flat(index) => (*index, *index),
+        .map(|(vertices, interpolation)| match interpolation {
+            Interpolation::Flat(index) => (*index, *index),
             _ => {
                 // At most 0xFF00 + 128; at most 255.
-                let byte = |v: &Vertex| ((v.shade().to_bits() + u16::from(shading.rounding())) >> 8) as u8;
+                let byte = |v: &Vertex| ((v.shade().to_bits() + u16::from(interpolation.rounding())) >> 8) as u8;
                 let bytes = vertices.each_ref().map(byte);
                 let [low, high] = [bytes.into_iter().min(), bytes.into_iter().max()].map(Option::unwrap_or_default);
                 (low, high)
@@ -228,7 +228,7 @@ mod tests {
     }
 
     /// The frame with one pixel more by one, wherever it is drawn `wrongly`.
-    fn with_a_wrong_pixel(record: &Record, way: Way, wrongly: bool) -> Result<Vec<u8>, Stray> {
+    fn with_a_wrong_pixel(record: &Record, way: Configuration, wrongly: bool) -> Result<Vec<u8>, Stray> {
         let mut pixels = drawing::draw(record, way)?;
         let drawn = pixels.iter().position(|pixel| *pixel != record.background);
         if let Some(place) = drawn.filter(|_| wrongly) {
@@ -240,7 +240,8 @@ mod tests {
     #[test]
     fn a_wrong_kernel_is_told_by_one_triangle() {
         let Some(guilty) = Kernel::available().last().filter(|kernel| kernel.name() != "portable") else { return };
-        let wrong = |record: &Record, way: Way| with_a_wrong_pixel(record, way, way.kernel.name() == guilty.name());
+        let wrong =
+            |record: &Record, way: Configuration| with_a_wrong_pixel(record, way, way.kernel.name() == guilty.name());
         let replay = replay_by(&torus(), &wrong);
         // By each of the four ways.
         assert_eq!(replay.failures.len(), 4);
@@ -252,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_wrong_method_is_told() {
-        let wrong = |record: &Record, way: Way| {
+        let wrong = |record: &Record, way: Configuration| {
             with_a_wrong_pixel(record, way, way.hidden_surfaces == HiddenSurfaces::ScanLine)
         };
         let replay = replay_by(&torus(), &wrong);
@@ -267,7 +268,7 @@ mod tests {
 
     #[test]
     fn a_pixel_that_is_not_the_definitions_is_told_with_its_triangle() {
-        let wrong = |record: &Record, way: Way| with_a_wrong_pixel(record, way, true);
+        let wrong = |record: &Record, way: Configuration| with_a_wrong_pixel(record, way, true);
         let line = &replay_by(&torus(), &wrong).failures[0];
         assert!(line.starts_with("depth-buffer, portable: pixel ("), "{line}");
         assert!(line.contains(", by the definition 0x") && line.contains(" of triangle "), "{line}");

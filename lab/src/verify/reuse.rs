@@ -5,12 +5,12 @@ use super::random::Random;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, builtin};
-use mode13h::render::{HiddenSurfaces, Renderer, Rung, VertexPath};
+use mode13h::render::{HiddenSurfaces, Renderer, Shading, VertexPath};
 use mode13h::scene::{Object, Scene, Shared};
 use mode13h::vga::Vga;
 
 /// Scenes one after the other by one renderer into two machines that somebody draws over: meshes,
-/// palettes, lights, rungs, vertex paths and hidden-surface methods change, and the bytes must be a fresh renderer's
+/// palettes, lights, shadings, vertex paths and hidden-surface methods change, and the bytes must be a fresh renderer's
 /// (E1).
 ///
 /// ```
@@ -36,7 +36,7 @@ fn check(seed: u64, draw: Draw<'_>) -> Group {
     let mut scene = super::framed(meshes[0].clone());
     for case in 0..150 {
         let what = change(&mut random, &mut scene, &meshes, &palettes);
-        let (rung, way) = (random.one_of(&Rung::ALL), random.one_of(&HiddenSurfaces::ALL));
+        let (shading, way) = (random.one_of(&Shading::ALL), random.one_of(&HiddenSurfaces::ALL));
         let forced = (random.below(2) == 0).then_some(way);
         let vga = &mut machines[random.below(2) as usize];
         // Somebody draws over the frame, and behind it.
@@ -46,7 +46,7 @@ fn check(seed: u64, draw: Draw<'_>) -> Group {
         let path = random.one_of(&VertexPath::ALL);
         let mut fresh = (Renderer::new(), Vga::new());
         for renderer in [&mut used, &mut fresh.0] {
-            renderer.set_rung(rung);
+            renderer.set_shading(shading);
             renderer.set_hidden_surfaces(forced);
             renderer.set_vertex_path(path);
         }

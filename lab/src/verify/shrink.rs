@@ -113,7 +113,7 @@ mod tests {
     use super::*;
     use crate::verify::random::Random;
     use crate::verify::triangles::any_triangle;
-    use mode13h::raster::Shading;
+    use mode13h::raster::Interpolation;
 
     /// Of a hundred triangles one is at fault, for the shade of its second vertex.
     #[test]
@@ -121,7 +121,7 @@ mod tests {
         let mut random = Random::new(5, "shrink");
         let mut record = Record::new(64, 48).expect("a frame").with_clip(None);
         for _ in 0..100 {
-            record.triangles.push((any_triangle(&mut random, 64, 48), Shading::Gouraud));
+            record.triangles.push((any_triangle(&mut random, 64, 48), Interpolation::Gouraud));
         }
         record.background = 7;
         let guilty = record.triangles.iter().map(|(v, _)| v[1].shade()).max().expect("a shade");

@@ -1,12 +1,12 @@
 //! Group R: triangles against the definition.
 
-use super::drawing::{self, Draw, Way};
+use super::drawing::{self, Configuration, Draw};
 use super::oracle;
 use super::random::Random;
 use super::{Group, replay};
 use crate::record::Record;
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::{Rect, Shading, Vertex};
+use mode13h::raster::{Interpolation, Rect, Vertex};
 use mode13h::render::HiddenSurfaces::BackFaces;
 use mode13h::span::Kernel;
 
@@ -39,7 +39,7 @@ fn check(seed: u64, cases: u32, draw: Draw<'_>) -> Group {
         record.background = random.below(256) as u8;
         let vertices = any_triangle(&mut random, width, height);
         record.triangles.push((vertices, any_shading(&mut random)));
-        let way = Way::new(BackFaces, random.one_of(&kernels));
+        let way = Configuration::new(BackFaces, random.one_of(&kernels));
 
         group.check_record("r2", &record, &|record| replay::against_oracle(record, way, draw));
         let order = random.one_of(&[[0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]]);
@@ -54,7 +54,7 @@ fn check(seed: u64, cases: u32, draw: Draw<'_>) -> Group {
         let rows_each = 1 + random.below(height);
         group.check_record("r8", &record, &|record| {
             let what = format!("in bands of {rows_each} rows, {}", way.kernel);
-            same(&what, record, draw(record, way), draw(record, Way { rows_each, ..way }))
+            same(&what, record, draw(record, way), draw(record, Configuration { rows_each, ..way }))
         });
         let clip = any_clip(&mut random, width, height);
         group.check_record("r8", &record, &|record| inside_clip(record, clip, way, draw));
@@ -82,7 +82,7 @@ fn same(
 }
 
 /// R8: inside the clip rectangle the bytes that there are without it, outside the background.
-fn inside_clip(record: &Record, clip: Rect, way: Way, draw: Draw<'_>) -> Option<String> {
+fn inside_clip(record: &Record, clip: Rect, way: Configuration, draw: Draw<'_>) -> Option<String> {
     let clipped = record.clone().with_clip(Some(clip));
     let whole = draw(&record.clone().with_clip(None), way).map(|mut pixels| {
         for (place, pixel) in (0..).zip(&mut pixels) {
@@ -97,7 +97,7 @@ fn inside_clip(record: &Record, clip: Rect, way: Way, draw: Draw<'_>) -> Option<
 }
 
 /// R11: a triangle inside the frame, moved by whole pixels in a frame that is larger by as many.
-fn moved(record: &Record, (right, down): (u32, u32), way: Way, draw: Draw<'_>) -> Option<String> {
+fn moved(record: &Record, (right, down): (u32, u32), way: Configuration, draw: Draw<'_>) -> Option<String> {
     let (width, height) = (record.width(), record.height());
     let inside = |v: &Vertex| {
         let (x, y) = (v.x().to_bits(), v.y().to_bits());
@@ -109,11 +109,11 @@ fn moved(record: &Record, (right, down): (u32, u32), way: Way, draw: Draw<'_>) -
     }
     let mut larger = Record::new(width + right, height + down).ok()?;
     larger.background = record.background;
-    for (vertices, shading) in &record.triangles {
+    for (vertices, interpolation) in &record.triangles {
         let place = |c: I24F8, pixels: u32| I24F8::from_bits(c.to_bits() + pixels as i32 * 256);
         let [a, b, c] =
             vertices.each_ref().map(|v| Vertex::new(place(v.x(), right), place(v.y(), down), v.shade(), v.depth()));
-        larger.triangles.push(([a.ok()?, b.ok()?, c.ok()?], *shading));
+        larger.triangles.push(([a.ok()?, b.ok()?, c.ok()?], *interpolation));
     }
     let cut = draw(&larger, way).map(|pixels| {
         let rows = pixels.chunks((width + right) as usize).skip(down as usize);
@@ -123,7 +123,7 @@ fn moved(record: &Record, (right, down): (u32, u32), way: Way, draw: Draw<'_>) -
 }
 
 /// R5: the triangle split at points inside it, and those parts again.
-fn split(group: &mut Group, random: &mut Random, record: &Record, way: Way, draw: Draw<'_>) {
+fn split(group: &mut Group, random: &mut Random, record: &Record, way: Configuration, draw: Draw<'_>) {
     let Some((whole, _)) = record.triangles.first() else { return };
     let mut parts = vec![*whole];
     for _ in 0..=random.below(4) {
@@ -134,14 +134,14 @@ fn split(group: &mut Group, random: &mut Random, record: &Record, way: Way, draw
         parts.extend([[b, c, p], [c, a, p]]);
     }
     let mut counts = vec![0_u32; record.width() as usize * record.height() as usize];
-    oracle::draw(whole, Shading::Flat(0), (record.width(), record.height()), |pixel| {
+    oracle::draw(whole, Interpolation::Flat(0), (record.width(), record.height()), |pixel| {
         counts[pixel.y as usize * record.width() as usize + pixel.x as usize] += 1;
     });
     let mut drawn = vec![0_u32; counts.len()];
     let mut stray = None;
     for part in &parts {
         let mut one = record.clone();
-        (one.background, one.triangles) = (0, vec![(*part, Shading::Flat(1))]);
+        (one.background, one.triangles) = (0, vec![(*part, Interpolation::Flat(1))]);
         match draw(&one, way) {
             Ok(pixels) => drawn.iter_mut().zip(pixels).for_each(|(count, pixel)| *count += u32::from(pixel)),
             Err(error) => stray = Some(error),
@@ -211,9 +211,9 @@ pub(super) fn vertex(x: i64, y: i64, shade: i64, depth: i64) -> Vertex {
 }
 
 /// Flat, or any that interpolates.
-pub(super) fn any_shading(random: &mut Random) -> Shading {
+pub(super) fn any_shading(random: &mut Random) -> Interpolation {
     let flat = random.below(256) as u8;
-    if random.below(4) == 0 { Shading::Flat(flat) } else { random.one_of(Shading::INTERPOLATED) }
+    if random.below(4) == 0 { Interpolation::Flat(flat) } else { random.one_of(Interpolation::INTERPOLATED) }
 }
 
 pub(super) fn any_clip(random: &mut Random, width: u32, height: u32) -> Rect {
@@ -274,7 +274,7 @@ mod tests {
     }
 
     /// Vertices rounded to whole pixels, as in 1994.
-    fn whole_pixels(record: &Record, way: Way) -> Result<Vec<u8>, Stray> {
+    fn whole_pixels(record: &Record, way: Configuration) -> Result<Vec<u8>, Stray> {
         let mut record = record.clone();
         for (vertices, _) in &mut record.triangles {
             *vertices = vertices.map(|v| {
@@ -292,7 +292,7 @@ mod tests {
         assert!(group.failures.iter().any(names_a_pixel), "{:?}", group.failures);
         let record = group.record.expect("a record");
         assert_eq!(record.triangles.len(), 1);
-        let way = Way::new(BackFaces, Kernel::PORTABLE);
+        let way = Configuration::new(BackFaces, Kernel::PORTABLE);
         assert!(replay::against_oracle(&record, way, &whole_pixels).is_some(), "it still fails");
         assert_eq!(replay::against_oracle(&record, way, &drawing::draw), None);
     }
@@ -300,7 +300,7 @@ mod tests {
     /// A raster that begins anew at every clip rectangle, and one that writes a byte too many.
     #[test]
     fn clip_rectangles_and_bytes_beside_are_looked_at() {
-        let shifted = |record: &Record, way: Way| match record.clip() {
+        let shifted = |record: &Record, way: Configuration| match record.clip() {
             Some(clip) if clip.x0 > 0 => whole_pixels(record, way),
             _ => drawing::draw(record, way),
         };
@@ -313,9 +313,9 @@ mod tests {
     /// No fill rule: what lies on an edge is drawn by both neighbours.
     #[test]
     fn pixels_drawn_twice_are_counted() {
-        let fat = |record: &Record, way: Way| {
+        let fat = |record: &Record, way: Configuration| {
             let mut pixels = drawing::draw(record, way)?;
-            if let Some((vertices, Shading::Flat(1))) = record.triangles.first() {
+            if let Some((vertices, Interpolation::Flat(1))) = record.triangles.first() {
                 let place = vertices[2].x().to_bits() / 256 + vertices[2].y().to_bits() / 256 * record.width() as i32;
                 if let Some(pixel) = usize::try_from(place).ok().and_then(|place| pixels.get_mut(place)) {
                     *pixel = 1;

@@ -7,7 +7,7 @@ use mode13h::light::{Blend, Light};
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, Rung, Stats, VertexPath};
+use mode13h::render::{RenderError, Renderer, Shading, Stats, VertexPath};
 use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
 use mode13h_lab::cost::Probe;
@@ -179,13 +179,13 @@ fn faces_that_are_quadratic_are_within() {
         let scene = large_faces(&mut random);
         let truth = Truth::new(&scene, SCREEN).expect("a legal scene").draw(Standard::Lit);
         let mut phong = Renderer::new();
-        phong.set_rung(Rung::Phong);
+        phong.set_shading(Shading::Phong);
         let lit = ErrorMap::new(&truth, &look(phong, &scene)).expect("of one size");
         for max_error in [6.0, 3.0, 1.5] {
             let mut renderer = within(max_error);
             renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
             let rows = renderer.rows(&scene);
-            let count = rows.iter().filter(|row| row.why.contains("quadratic on the screen")).count();
+            let count = rows.iter().filter(|row| row.reason.contains("quadratic on the screen")).count();
             quadratic += count;
             if count == 0 {
                 continue;
@@ -221,14 +221,14 @@ fn cover(mut renderer: Renderer, scene: &Scene) -> (Vec<bool>, Stats) {
     (one.iter().zip(&other).map(|(one, other)| one == other).collect(), stats)
 }
 
-/// Faces that are shaded by different rungs meet as those of one: on the very frame in which they are mixed each pixel is
+/// Faces that are shaded by different shadings meet as those of one: on the very frame in which they are mixed each pixel is
 /// drawn that is drawn without a budget, and no other, each is covered as often, and shows the same face.
 #[test]
-fn r12_neighbours_on_different_rungs_leave_no_crack() {
-    let mut tried = Tried::new("r12_neighbours_on_different_rungs_leave_no_crack", 60);
+fn r12_neighbours_on_different_shadings_leave_no_crack() {
+    let mut tried = Tried::new("r12_neighbours_on_different_shadings_leave_no_crack", 60);
     let (mut mixed, mut pixels, mut transparent) = (0, 0_u64, 0);
     for (name, mut scene) in scenes::all() {
-        scene.wishes.tessellation = None;
+        scene.preferences.tessellation = None;
         let is_opaque = |object: &Object| object.materials.iter().all(|material| material.blend == Blend::Opaque);
         if !scene.objects().iter().all(is_opaque) {
             // What is behind shows through, and so do the backgrounds.
@@ -251,13 +251,13 @@ fn r12_neighbours_on_different_rungs_leave_no_crack() {
             pixels += u64::from(is_mixed) * drawn.iter().filter(|drawn| **drawn).count() as u64;
         }
     }
-    tried.worst("frames of several rungs", mixed as f64);
+    tried.worst("frames of several shadings", mixed as f64);
     tried.worst("their pixels", pixels as f64);
     tried.worst("scenes left out, through which one sees", f64::from(transparent));
-    assert!(mixed > 20 && pixels > 100_000 && transparent < 5, "{mixed} frames of several rungs, {pixels} pixels");
+    assert!(mixed > 20 && pixels > 100_000 && transparent < 5, "{mixed} frames of several shadings, {pixels} pixels");
 }
 
-/// Every triangle that is drawn got a rung; of an object without light, and where there is one rung, its own.
+/// Every triangle that is drawn got a shading; of an object without light, and where there is one shading, its own.
 #[test]
 fn shares_are_of_all_triangles() {
     for (name, scene) in scenes::all() {
@@ -267,9 +267,9 @@ fn shares_are_of_all_triangles() {
             assert_eq!(shared, stats.drawn, "{name}: {stats}");
         }
         let mut flat = Renderer::new();
-        flat.set_rung(Rung::Flat);
+        flat.set_shading(Shading::Flat);
         let stats = flat.draw(&scene, &mut Vga::new()).expect("a legal scene");
-        assert_eq!(stats.shares.of(Rung::Flat), stats.drawn, "{name}");
+        assert_eq!(stats.shares.of(Shading::Flat), stats.drawn, "{name}");
     }
 }
 
@@ -309,7 +309,7 @@ fn kept_decisions_are_those_that_would_be_made() {
 fn a_wider_budget_lights_fewer_pixels() {
     for (name, scene) in scenes::all() {
         let lit = BUDGETS.map(|max_error| {
-            within(max_error).draw(&scene, &mut Vga::new()).expect("a legal scene").shares.of(Rung::Phong)
+            within(max_error).draw(&scene, &mut Vga::new()).expect("a legal scene").shares.of(Shading::Phong)
         });
         assert!(lit.is_sorted(), "{name}: {lit:?}");
     }
@@ -318,18 +318,18 @@ fn a_wider_budget_lights_fewer_pixels() {
 #[test]
 fn the_budget_is_the_renderers_or_the_scenes() {
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
-    scene.wishes.max_error = Some(3.0);
+    scene.preferences.max_error = Some(3.0);
     let mut renderer = Renderer::new();
     assert_eq!(renderer.max_error(&scene), Some(3.0));
     renderer.set_max_error(Some(5.0));
     assert_eq!(renderer.max_error(&scene), Some(5.0));
-    renderer.set_rung(Rung::Phong);
+    renderer.set_shading(Shading::Phong);
     assert_eq!(renderer.max_error(&scene), None);
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
-    assert_eq!((stats.max_error, stats.shares.of(Rung::Phong)), (None, stats.drawn));
+    assert_eq!((stats.max_error, stats.shares.of(Shading::Phong)), (None, stats.drawn));
     for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         let drawn = within(wrong).draw(&scene, &mut Vga::new());
-        assert!(matches!(drawn, Err(RenderError::Wishes(_))), "{wrong}");
+        assert!(matches!(drawn, Err(RenderError::Preferences(_))), "{wrong}");
     }
 }
 
@@ -341,7 +341,7 @@ fn integers_know_no_budget() {
     renderer.set_vertex_path(VertexPath::Integer);
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     assert_eq!(stats.max_error, None);
-    assert_eq!(stats.shares.of(Rung::Gouraud88Reseeded), stats.drawn);
+    assert_eq!(stats.shares.of(Shading::Gouraud88Reseeded), stats.drawn);
     assert_eq!(renderer.plan().objects()[0].max_error(), None);
 }
 
@@ -353,10 +353,10 @@ fn the_plan_says_who_got_what() {
     renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     let rows = renderer.rows(&scene);
     let row = rows.iter().find(|row| row.effect == Effect::Gouraud).expect("listed");
-    assert!(row.on && row.why.starts_with("within an error budget of 14 shades"), "{}", row.why);
-    assert!(row.why.contains(" gouraud-8.8-reseeded (") && row.why.contains(" not drawn"), "{}", row.why);
+    assert!(row.on && row.reason.starts_with("within an error budget of 14 shades"), "{}", row.reason);
+    assert!(row.reason.contains(" gouraud-8.8-reseeded (") && row.reason.contains(" not drawn"), "{}", row.reason);
     let cube = crate::support::scenes::framed(shapes::cube());
     renderer.draw(&cube, &mut Vga::new()).expect("a legal scene");
     let row = renderer.rows(&cube).into_iter().find(|row| row.effect == Effect::Gouraud).expect("listed");
-    assert!(!row.on && row.why.contains("one shade a face is right"), "{}", row.why);
+    assert!(!row.on && row.reason.contains("one shade a face is right"), "{}", row.reason);
 }

@@ -7,11 +7,13 @@ use crate::support::triangles;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
-use mode13h::raster::{Frame, Shading};
-use mode13h::render::{HiddenSurfaces, Renderer, Rung, Screen, VertexPath};
+use mode13h::raster::{Frame, Interpolation};
+use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h_lab::cost::Probe;
-use mode13h_lab::explain::{self, Account, Column, EdgeKind, ExplainError, Fate, Pixel, ShadedBy, Stage, Walk, Way};
+use mode13h_lab::explain::{
+    self, Column, EdgeKind, ExplainError, Fate, Pixel, PixelStage, Progression, ShadeTrace, ShadedBy, Walk,
+};
 use mode13h_lab::truth::{Face, Standard, Truth};
 
 const SCREEN: Screen = Screen::MODE_13H;
@@ -61,18 +63,18 @@ fn check_front(pixel: &Pixel, what: &str) -> bool {
         assert_eq!(face.depth, oracle::depth_at(&face.corners, x, y), "{what}");
     }
     match (&seen.shaded_by, seen.accounts.as_slice(), seen.stages[0]) {
-        (ShadedBy::Light { shades, .. }, [], Stage::Shade(byte)) => {
+        (ShadedBy::Light { shades, .. }, [], PixelStage::Shade(byte)) => {
             assert_eq!((shades[0] + 128) >> 8, u16::from(byte), "{what}");
         }
-        (ShadedBy::Light { shades, .. }, [], Stage::Channels(bytes)) => {
+        (ShadedBy::Light { shades, .. }, [], PixelStage::Channels(bytes)) => {
             assert_eq!(shades.map(|shade| (shade + 128) >> 8), bytes.map(u16::from), "{what}");
         }
-        (ShadedBy::NormalTable, [_, _], Stage::Shade(_)) => {}
-        (ShadedBy::Corners, [account], Stage::Shade(byte)) => {
-            assert_eq!(account.byte, byte, "{what}");
-            check_account(account, face, seen.exact_cover, x, y, what);
+        (ShadedBy::NormalTable, [_, _], PixelStage::Shade(_)) => {}
+        (ShadedBy::Corners, [shade_trace], PixelStage::Shade(byte)) => {
+            assert_eq!(shade_trace.byte, byte, "{what}");
+            check_account(shade_trace, face, seen.exact_cover, x, y, what);
         }
-        (ShadedBy::Corners, [red, green, blue], Stage::Channels(bytes)) => {
+        (ShadedBy::Corners, [red, green, blue], PixelStage::Channels(bytes)) => {
             assert_eq!([red.byte, green.byte, blue.byte], bytes, "{what}");
         }
         other => panic!("{what}: {other:?}"),
@@ -90,44 +92,44 @@ fn reduced(n: i128, d: i128) -> (i128, i128) {
 }
 
 /// An account of shades from corners against the definition of the shading.
-fn check_account(account: &Account, face: &explain::FaceHere, exact_cover: bool, x: i32, y: i32, what: &str) {
-    let shades = Shades::of_vertices(&face.corners, face.shading);
+fn check_account(shade_trace: &ShadeTrace, face: &explain::FaceHere, exact_cover: bool, x: i32, y: i32, what: &str) {
+    let shades = Shades::of_vertices(&face.corners, face.interpolation);
     let byte = if exact_cover {
         let triangle = face.corners.each_ref().map(oracle::point);
         let row: Vec<i32> = (0..320).filter(|&x| oracle::covers(triangle, oracle::centre(x, y))).collect();
         shades.byte((row[0], row[row.len() - 1]), x, y, None)
     } else {
-        let all = oracle::pixels(&face.corners, face.shading, 320, 200);
+        let all = oracle::pixels(&face.corners, face.interpolation, 320, 200);
         all.iter().find(|pixel| (pixel.x, pixel.y) == (x, y)).expect("covered").byte
     };
-    assert_eq!(account.byte, byte, "{what}");
-    if let Some(exact) = account.exact {
-        let right = oracle::exact_shade(&face.corners, face.shading, oracle::centre(x, y));
+    assert_eq!(shade_trace.byte, byte, "{what}");
+    if let Some(exact) = shade_trace.exact {
+        let right = oracle::exact_shade(&face.corners, face.interpolation, oracle::centre(x, y));
         assert_eq!(reduced(exact.numerator, exact.denominator), reduced(right.n, right.d), "{what}");
-        if let Some((n, d)) = oracle::bound(face.shading, 320) {
-            assert!(right.is_within(i128::from(account.byte) * 256, n, d), "{what}");
+        if let Some((n, d)) = oracle::bound(face.interpolation, 320) {
+            assert!(right.is_within(i128::from(shade_trace.byte) * 256, n, d), "{what}");
         }
     } else {
-        assert!(matches!(account.way, Way::Flat(_)), "{what}");
+        assert!(matches!(shade_trace.way, Progression::Flat(_)), "{what}");
     }
-    if let Way::Sums(sums) = account.way {
-        assert!(face.shading == Shading::GouraudPeriod || sums.start_at + sums.steps == x, "{what}");
-        assert_eq!(sums.sum() >> sums.fraction_bits, u32::from(account.byte), "{what}");
+    if let Progression::Accumulator(sums) = shade_trace.way {
+        assert!(face.interpolation == Interpolation::GouraudVintage || sums.start_at + sums.steps == x, "{what}");
+        assert_eq!(sums.sum() >> sums.fraction_bits, u32::from(shade_trace.byte), "{what}");
     }
 }
 
-/// What an account ends with is the frame's byte: every scene by every rung, pixels here and there.
+/// What an account ends with is the frame's byte: every scene by every shading, pixels here and there.
 #[test]
 fn an_account_ends_with_the_byte_of_the_frame() {
     let mut random = Random::new(0x5EED);
     let (mut with_face, mut all) = (0, 0);
     for (name, scene) in scenes::all() {
-        for rung in Rung::ALL {
+        for shading in Shading::ALL {
             let mut renderer = Renderer::new();
-            renderer.set_rung(rung);
+            renderer.set_shading(shading);
             let bytes = frame(&mut renderer, &scene);
             for (x, y) in some_pixels(&bytes, scene.background, 7, &mut random) {
-                let what = format!("{name} by {rung} at ({x}, {y})");
+                let what = format!("{name} by {shading} at ({x}, {y})");
                 let pixel = explain(&mut renderer, &scene, x, y);
                 assert_eq!(pixel.byte, bytes[y as usize * 320 + x as usize], "{what}:\n{pixel}");
                 with_face += usize::from(check_front(&pixel, &what));
@@ -155,7 +157,7 @@ fn an_account_follows_the_way_to_hidden_surfaces() {
                 renderer.set_hidden_surfaces(Some(way));
                 renderer.set_vertex_path(path);
                 if random.unit() < 0.3 {
-                    renderer.set_rung(Rung::GouraudPeriod);
+                    renderer.set_shading(Shading::GouraudVintage);
                 }
                 let bytes = frame(&mut renderer, &scene);
                 for (x, y) in some_pixels(&bytes, scene.background, 9, &mut random) {
@@ -244,7 +246,7 @@ fn a_tie_on_a_shared_edge_is_the_left_edges() {
     }
 }
 
-/// Every pixel of a long row, in which spans start anew, by every rung; and of two bodies in one place, whose depths are
+/// Every pixel of a long row, in which spans start anew, by every shading; and of two bodies in one place, whose depths are
 /// equal everywhere, by every way to hidden surfaces.
 #[test]
 fn every_pixel_of_a_long_row_and_of_equal_depths() {
@@ -255,36 +257,36 @@ fn every_pixel_of_a_long_row_and_of_equal_depths() {
     let mut twin = twins.objects()[0].clone().named("twin");
     twin.materials[0].diffuse *= 0.5;
     twins.add(twin);
-    for rung in Rung::ALL {
+    for shading in Shading::ALL {
         for way in HiddenSurfaces::ALL {
             let mut renderer = Renderer::new();
-            renderer.set_rung(rung);
+            renderer.set_shading(shading);
             renderer.set_hidden_surfaces(Some(way));
             let bytes = frame(&mut renderer, &twins);
             for x in (0..320).step_by(5) {
                 let pixel = explain(&mut renderer, &twins, x, 90);
-                assert_eq!(pixel.byte, bytes[90 * 320 + x as usize], "{rung}, {way}:\n{pixel}");
+                assert_eq!(pixel.byte, bytes[90 * 320 + x as usize], "{shading}, {way}:\n{pixel}");
             }
         }
         let mut renderer = Renderer::new();
-        renderer.set_rung(rung);
+        renderer.set_shading(shading);
         let bytes = frame(&mut renderer, &scene);
         let mut anew = 0;
         for x in 0..320 {
             let pixel = explain(&mut renderer, &scene, x, 90);
             assert_eq!(pixel.byte, bytes[90 * 320 + x as usize], "{pixel}");
-            check_front(&pixel, &format!("{rung} at {x}"));
-            let account = pixel.front().and_then(|(_, seen)| seen.accounts.first().copied());
-            if let Some(Account { way: Way::Sums(sums), .. }) = account {
+            check_front(&pixel, &format!("{shading} at {x}"));
+            let shade_trace = pixel.front().and_then(|(_, seen)| seen.accounts.first().copied());
+            if let Some(ShadeTrace { way: Progression::Accumulator(sums), .. }) = shade_trace {
                 anew += usize::from(sums.start_at != sums.first);
-                assert!(rung != Rung::Gouraud88Reseeded || sums.steps < 64, "{pixel}");
+                assert!(shading != Shading::Gouraud88Reseeded || sums.steps < 64, "{pixel}");
             }
         }
-        assert!(rung != Rung::Gouraud88Reseeded || anew > 100, "{anew}");
+        assert!(shading != Shading::Gouraud88Reseeded || anew > 100, "{anew}");
     }
 }
 
-/// The triangle that is named is the one that truth finds, and the shade as far from it as the rung may be.
+/// The triangle that is named is the one that truth finds, and the shade as far from it as the shading may be.
 #[test]
 fn the_face_and_the_errors_are_those_against_the_truth() {
     let mut random = Random::named("explain truth");
@@ -304,7 +306,7 @@ fn the_face_and_the_errors_are_those_against_the_truth() {
             }
             let gouraud = seen.against.iter().find(|a| a.standard == Standard::Gouraud).expect("a ramp of 256");
             assert_eq!(gouraud.shades[0], 255.0 * right.intensity[0]);
-            // What the rung promises, a rounding of each corner's shade, and f32 before it.
+            // What the shading promises, a rounding of each corner's shade, and f32 before it.
             assert!(gouraud.error.abs() <= bound + 1.0 / 512.0 + 0.01, "{pixel}");
             compared += 1;
         }
@@ -328,7 +330,7 @@ fn a_row_is_its_pixels() {
         };
         with_face += 1;
         assert_eq!(column.face.map(|face| (face.object, Some(face.triangle))), Some((face.object, face.triangle)));
-        assert_eq!(column.drawn.map(|shade| Stage::Shade(shade as u8)), Some(seen.stages[0]));
+        assert_eq!(column.drawn.map(|shade| PixelStage::Shade(shade as u8)), Some(seen.stages[0]));
         for against in &seen.against {
             let shades = if against.standard == Standard::Lit { column.lit } else { column.gouraud };
             // The mean of three alike, and 255 times it, in another order: some roundings of f64.
@@ -374,8 +376,12 @@ fn what_is_not_in_the_frame_is_refused() {
 }
 
 /// The shadings whose loop keeps a sum, and how many bits of it are its fraction.
-const LOOPS: [(Shading, u32); 4] =
-    [(Shading::Gouraud, 8), (Shading::GouraudReseeded, 8), (Shading::Gouraud1616, 16), (Shading::GouraudPeriod, 8)];
+const LOOPS: [(Interpolation, u32); 4] = [
+    (Interpolation::Gouraud, 8),
+    (Interpolation::GouraudReseeded, 8),
+    (Interpolation::Gouraud1616, 16),
+    (Interpolation::GouraudVintage, 8),
+];
 
 /// Walks over a triangle as the loop would: what it writes, by its registers alone. Every stretch of it begins with what
 /// the walk says and goes on by additions.
@@ -402,7 +408,7 @@ fn run_the_loop(walk: &Walk, bits: u32, pixels: &mut [Option<u8>], what: &str) {
         assert!(pixels[registers.edi as usize].is_none(), "{what}: pixel {number} is written twice");
         // AH, or the third byte of EAX.
         pixels[registers.edi as usize] = Some((registers.eax >> bits) as u8);
-        assert_eq!(step.account.byte, (registers.eax >> bits) as u8, "{what}");
+        assert_eq!(step.shade_trace.byte, (registers.eax >> bits) as u8, "{what}");
     }
     assert_eq!(left, None, "{what}: the last count is 1");
 }
@@ -413,11 +419,11 @@ fn a_walk_writes_what_the_raster_does() {
     let mut tried = [0; 4];
     for i in 0..400 {
         let triangle = triangles::triangle(&mut random, 320, 200);
-        for ((shading, bits), tried) in LOOPS.into_iter().zip(&mut tried) {
-            let what = format!("triangle {i} by {shading:?}: {triangle:?}");
+        for ((interpolation, bits), tried) in LOOPS.into_iter().zip(&mut tried) {
+            let what = format!("triangle {i} by {interpolation:?}: {triangle:?}");
             // Whatever a byte is, one of the two frames shows that it was written.
-            let [zeros, ones] = [0, 255].map(|empty| triangles::draw(&triangle, shading, 320, 200, None, empty));
-            let walk = Walk::new(&triangle, shading, shading.has_exact_cover(), SCREEN);
+            let [zeros, ones] = [0, 255].map(|empty| triangles::draw(&triangle, interpolation, 320, 200, None, empty));
+            let walk = Walk::new(&triangle, interpolation, interpolation.has_exact_cover(), SCREEN);
             let mut walked = vec![None; 64_000];
             run_the_loop(&walk, bits, &mut walked, &what);
             for (place, walked) in walked.into_iter().enumerate() {
@@ -432,39 +438,41 @@ fn a_walk_writes_what_the_raster_does() {
 
 #[test]
 fn a_walk_over_what_is_seen_has_the_frames_bytes() {
-    let loops = [Rung::Gouraud88, Rung::Gouraud88Reseeded, Rung::Gouraud1616, Rung::GouraudPeriod];
+    let loops = [Shading::Gouraud88, Shading::Gouraud88Reseeded, Shading::Gouraud1616, Shading::GouraudVintage];
     let mut random = Random::named("walk of scenes");
-    for (shape, rung) in ["torus", "cube", "cone", "teapot"].into_iter().flat_map(|s| loops.map(|rung| (s, rung))) {
+    for (shape, shading) in
+        ["torus", "cube", "cone", "teapot"].into_iter().flat_map(|s| loops.map(|shading| (s, shading)))
+    {
         let scene = scenes::showing(shape);
         let mut renderer = Renderer::new();
-        renderer.set_rung(rung);
+        renderer.set_shading(shading);
         let bytes = frame(&mut renderer, &scene);
         let shown = Probe::new(renderer.set_alike()).look(&scene, SCREEN).expect("a legal scene");
         let mut seen = 0;
         for (x, y) in some_pixels(&bytes, scene.background, 12, &mut random) {
             let pixel = explain(&mut renderer, &scene, x, y);
             let Some((face, of_face)) = pixel.front() else { continue };
-            let walk = Walk::new(&face.corners, face.shading, of_face.exact_cover, SCREEN);
+            let walk = Walk::new(&face.corners, face.interpolation, of_face.exact_cover, SCREEN);
             let asked = walk.number(x, y).and_then(|number| walk.step(number)).expect("it covers the pixel");
-            assert_eq!(vec![asked.account], of_face.accounts, "{shape} by {rung} at ({x}, {y})");
+            assert_eq!(vec![asked.shade_trace], of_face.accounts, "{shape} by {shading} at ({x}, {y})");
             let name = face.triangle.map(|triangle| Face { object: face.object, triangle });
             for step in (0..walk.pixels()).filter_map(|number| walk.step(number)) {
                 let place = (320 * step.y + step.x) as usize;
                 if shown.faces[place] == name {
-                    assert_eq!(step.account.byte, bytes[place], "{shape} by {rung} at ({}, {})", step.x, step.y);
+                    assert_eq!(step.shade_trace.byte, bytes[place], "{shape} by {shading} at ({}, {})", step.x, step.y);
                     seen += 1;
                 }
             }
         }
-        assert!(seen > 12, "{shape} by {rung}: {seen}");
+        assert!(seen > 12, "{shape} by {shading}: {seen}");
     }
 }
 
 #[test]
 fn what_keeps_no_sum_has_no_registers() {
     let triangle = triangles::triangle(&mut Random::named("no registers"), 320, 200);
-    for shading in [Shading::Flat(9), Shading::GouraudHyperbolic, Shading::Float] {
-        let walk = Walk::new(&triangle, shading, true, SCREEN);
+    for interpolation in [Interpolation::Flat(9), Interpolation::GouraudHyperbolic, Interpolation::Float] {
+        let walk = Walk::new(&triangle, interpolation, true, SCREEN);
         assert!((0..walk.pixels()).all(|i| walk.step(i).is_some_and(|step| step.registers.is_none())));
     }
 }
@@ -483,7 +491,7 @@ fn the_level_of_a_texel_is_named() {
         let (_, seen) = pixel.front().expect("the floor");
         let text = pixel.to_string();
         seen.stages.iter().find_map(|stage| match *stage {
-            Stage::Texture { level, .. } => {
+            PixelStage::Texture { level, .. } => {
                 assert_eq!(text.contains(" of level "), level.is_some(), "{text}");
                 Some(level)
             }

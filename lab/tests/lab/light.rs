@@ -10,7 +10,7 @@ use mode13h::light::{Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::builtin;
 use mode13h::raster::Vertex;
-use mode13h::render::{RenderError, Renderer, Rung, Screen};
+use mode13h::render::{RenderError, Renderer, Screen, Shading};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::vga::Vga;
 use mode13h_lab::cost::Probe;
@@ -141,7 +141,7 @@ fn model(scene: &Scene, material: &Material, (at, normal): (Wide, Wide)) -> f64 
 }
 
 /// Lamps at a corner, on the face, in its plane, behind it, at the eye, and a hair before the face: every corner has the
-/// model's shade, 0 to 1, and is shaded so by every rung that is linear between corners.
+/// model's shade, 0 to 1, and is shaded so by every shading that is linear between corners.
 #[test]
 fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
     let mut tried = Tried::new("n4_lamps_on_a_surface_at_a_vertex_at_the_eye", 3 * 2_000);
@@ -253,9 +253,9 @@ fn n5_lights_from_any_direction_on_three_channels() {
             let of = |sum: f64| (0.8 * sum * f64::from(color[i]) + 0.2 * 0.5 * f64::from(color[i])).clamp(0.0, 1.0);
             (255.0 * of(sum - reach), 255.0 * of(sum + reach))
         });
-        for rung in [Rung::Gouraud88Reseeded, Rung::Phong] {
+        for shading in [Shading::Gouraud88Reseeded, Shading::Phong] {
             let mut renderer = Renderer::new();
-            renderer.set_rung(rung);
+            renderer.set_shading(shading);
             let screen = Screen { width: 24, height: 16, ..Screen::MODE_13H };
             let shown = Probe::new(renderer).look(&scene, screen).expect("a legal scene");
             let middle = 24 * 8 + 12;
@@ -263,7 +263,7 @@ fn n5_lights_from_any_direction_on_three_channels() {
             for (&(low, high), shade) in between.iter().zip(shown.shades[middle]) {
                 // A byte: half, and a shade's 256th.
                 let is_there = (low - 0.51..=high + 0.51).contains(&shade);
-                assert!(is_there, "case {case}, {rung}: {shade}, not {low} to {high}");
+                assert!(is_there, "case {case}, {shading}: {shade}, not {low} to {high}");
                 inside += u64::from(high - low < 0.1 && low > 1.0 && high < 254.0);
             }
             tried.add(1);

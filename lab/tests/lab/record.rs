@@ -7,8 +7,8 @@ use crate::support::triangles::triangle;
 use crate::support::tried::Tried;
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
-use mode13h::raster::{Rect, Shading};
-use mode13h::render::{HiddenSurfaces, Renderer, Rung, Screen};
+use mode13h::raster::{Interpolation, Rect};
+use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading};
 use mode13h::scene::Scene;
 use mode13h_lab::record::{Record, RecordErrorKind};
 use mode13h_lab::verify;
@@ -33,9 +33,9 @@ fn any_record(random: &mut Random) -> Record {
     record.hidden_surfaces = random.one_of(&HiddenSurfaces::ALL);
     record.palette = random.one_of(&[None, Some(0), Some(2)]).map(|i: usize| builtin::ALL[i].palette.clone());
     for _ in 0..random.within(0, 20) {
-        let flat = Shading::Flat(random.within(0, 255) as u8);
-        let shading = if random.within(0, 4) == 0 { flat } else { random.one_of(Shading::INTERPOLATED) };
-        record.triangles.push((triangle(random, width.into(), height.into()), shading));
+        let flat = Interpolation::Flat(random.within(0, 255) as u8);
+        let interpolation = if random.within(0, 4) == 0 { flat } else { random.one_of(Interpolation::INTERPOLATED) };
+        record.triangles.push((triangle(random, width.into(), height.into()), interpolation));
     }
     record
 }
@@ -62,7 +62,7 @@ fn f5_broken_records_are_refused_by_their_line() {
     let record = Record::read(SMALL.as_bytes()).expect("a record");
     assert_eq!((record.width(), record.height(), record.background), (8, 4, 9));
     assert_eq!(record.clip(), Some(Rect { x0: 1, y0: 0, x1: 8, y1: 4 }));
-    assert_eq!((record.triangles[0].1, record.triangles[0].0[2].depth()), (Shading::Flat(7), u32::MAX));
+    assert_eq!((record.triangles[0].1, record.triangles[0].0[2].depth()), (Interpolation::Flat(7), u32::MAX));
 
     let mut tried = Tried::new("f5_broken_records_are_refused_by_their_line", 25);
     for (from, to, says) in [
@@ -191,10 +191,10 @@ fn f5_any_text_is_refused_or_read() {
 fn d4_recorded_frames_replay() {
     let mut tried = Tried::new("d4_recorded_frames_replay", 7 * 8);
     for name in shapes::NAMES {
-        for rung in Rung::ALL {
+        for shading in Shading::ALL {
             let mut renderer = Renderer::new();
-            renderer.set_rung(rung);
-            if rung.lights_pixels() {
+            renderer.set_shading(shading);
+            if shading.lights_pixels() {
                 assert!(Record::of_scene(&mut renderer, &scene(name), Screen::MODE_13H).is_err());
                 continue;
             }
@@ -203,9 +203,9 @@ fn d4_recorded_frames_replay() {
             let stats = renderer.draw(&scene(name), &mut vga).expect("legal");
             assert_eq!((record.triangles.len() as u64, record.hidden_surfaces), (stats.drawn, stats.hidden_surfaces));
             let replay = verify::replay(&record);
-            assert!(replay.failures.is_empty(), "{name}, {rung}: {:#?}", replay.failures);
+            assert!(replay.failures.is_empty(), "{name}, {shading}: {:#?}", replay.failures);
             let by_line = replay.comparisons.iter().find(|c| c.hidden_surfaces == HiddenSurfaces::ScanLine);
-            assert_eq!(by_line.map(|c| c.must_agree), Some(rung.has_exact_cover()), "{name}, {rung}");
+            assert_eq!(by_line.map(|c| c.must_agree), Some(shading.has_exact_cover()), "{name}, {shading}");
             let drawn = vga.pixels().iter().filter(|pixel| **pixel != 0).count() as u64;
             assert!(replay.covered >= drawn && drawn > 1000, "{name}: {drawn} of {}", replay.covered);
             tried.add(1);

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use mode13h::mesh::shapes;
-use mode13h::render::{Renderer, Rung};
+use mode13h::render::{Renderer, Shading};
 use mode13h::scene::Scene;
 use mode13h_lab::cost::{Settings, Subject, measure, report};
 
@@ -14,15 +14,16 @@ fn what_was_measured_is_reported() {
     let frames = [Scene::showing(shapes::torus(24, 12))];
     let subject = Subject { name: "torus", frames: &frames, steps: &[], renderer: &Renderer::new };
     let mut settings = Settings::default();
-    (settings.rungs, settings.seconds) = (vec![Rung::Flat, Rung::Gouraud88, Rung::Gouraud1616, Rung::Phong], 0.2);
+    (settings.shadings, settings.seconds) =
+        (vec![Shading::Flat, Shading::Gouraud88, Shading::Gouraud1616, Shading::Phong], 0.2);
     let (study, _) = measure(&subject, &settings, &|_, _| {}).expect("a torus can be measured");
 
     let page = report::html(&study);
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR"));
     fs::write(directory.join("report.html"), &page).expect("a file");
-    for row in &study.rungs {
-        assert!(page.contains(&format!("frame of {}", row.rung)), "{}", row.rung);
+    for row in &study.shadings {
+        assert!(page.contains(&format!("frame of {}", row.shading)), "{}", row.shading);
     }
-    assert_eq!(page.matches("data:image/png;base64,").count(), 2 * study.rungs.len());
+    assert_eq!(page.matches("data:image/png;base64,").count(), 2 * study.shadings.len());
     assert_eq!(page.matches("<svg").count(), 2, "both charts");
 }

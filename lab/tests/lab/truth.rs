@@ -117,7 +117,7 @@ fn a_lamp_falls_off_and_shines_aslant() {
     assert_close(at(&draw(&scene, 65, Standard::Lit), 32, 32).intensity[0], 0.5625);
     // At 1 to the right the distance squared is 5, and the light comes in at a cosine of 2/√5.
     let right =
-        Truth::new(&scene, screen(65)).expect("a legal scene").lit_at(Face { object: 0, triangle: 0 }, 40.4999, 32.5);
+        Truth::new(&scene, screen(65)).expect("a legal scene").sampling(Face { object: 0, triangle: 0 }, 40.4999, 32.5);
     assert_close(right.expect("it is met").intensity[0], 2.0 / f64::sqrt(5.0) * (11.0 / 16.0) * (11.0 / 16.0));
     // At all four corners: 6, and 2/√6.
     let corner = 2.0 / f64::sqrt(6.0) * (10.0 / 16.0) * (10.0 / 16.0);
@@ -148,7 +148,7 @@ fn a_highlight_straight_ahead() {
     scene.lights_mut()[0] = Light::sun([0.0, 3.0, 4.0]);
     let along = (0.6 + 3.2) / f64::sqrt(17.0);
     let truth = Truth::new(&scene, screen(64)).expect("a legal scene");
-    let top = truth.lit_at(Face { object: 0, triangle: 1 }, 31.9999, 24.0001).expect("it is met");
+    let top = truth.sampling(Face { object: 0, triangle: 1 }, 31.9999, 24.0001).expect("it is met");
     assert!((top.intensity[0] - 0.5 * along.powi(4)).abs() < 1e-4, "{top:?}");
 }
 

@@ -1,4 +1,4 @@
-//! The engine against the truth: every rung that claims something, on every scene.
+//! The engine against the truth: every shading that claims something, on every scene.
 
 use crate::support::random::Random;
 use crate::support::scenes;
@@ -9,7 +9,7 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
 use mode13h::raster::FrameError;
-use mode13h::render::{HiddenSurfaces, RenderError, Renderer, Rung, VertexPath};
+use mode13h::render::{HiddenSurfaces, RenderError, Renderer, Shading, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::span::channels::mix_cube;
 use mode13h::vga::Vga;
@@ -22,14 +22,14 @@ fn truth(scene: &Scene) -> Truth<'_> {
     Truth::new(scene, SCREEN).expect("a legal scene")
 }
 
-fn probe(rung: Rung) -> Probe {
+fn probe(shading: Shading) -> Probe {
     let mut renderer = Renderer::new();
-    renderer.set_rung(rung);
+    renderer.set_shading(shading);
     Probe::new(renderer)
 }
 
-fn look(scene: &Scene, rung: Rung) -> Shown {
-    probe(rung).look(scene, SCREEN).expect("a legal scene")
+fn look(scene: &Scene, shading: Shading) -> Shown {
+    probe(shading).look(scene, SCREEN).expect("a legal scene")
 }
 
 fn compare(frame: &TruthFrame, shown: &Shown) -> ErrorMap {
@@ -47,7 +47,7 @@ fn all() -> Vec<(String, Scene)> {
         }
     }
     // What is split is another mesh, of which this one's vertices say little.
-    all.iter_mut().for_each(|(_, scene)| scene.wishes.tessellation = None);
+    all.iter_mut().for_each(|(_, scene)| scene.preferences.tessellation = None);
     all
 }
 
@@ -71,7 +71,7 @@ fn may_be_taken_for(
     (x, y): (usize, usize),
 ) -> bool {
     about(x, y).any(|(x, y)| {
-        let met = |face: Option<Face>| face.and_then(|face| truth.lit_at(face, x, y)).map(|pixel| 1.0 / pixel.w);
+        let met = |face: Option<Face>| face.and_then(|face| truth.sampling(face, x, y)).map(|pixel| 1.0 / pixel.w);
         match (met(right), met(shown)) {
             // An edge of the right face lies here.
             (None, None) => shown.is_none() && right.is_some(),
@@ -151,26 +151,26 @@ fn beyond(what: &str, frame: &TruthFrame, errors: &ErrorMap, bound: f64) -> Exem
     exempt
 }
 
-/// Checks every rung that claims a bound, and is linear between vertices, on a scene.
+/// Checks every shading that claims a bound, and is linear between vertices, on a scene.
 fn check_linear(tried: &mut Tried, name: &str, scene: &Scene) -> Exempt {
     let mut all_exempt = Exempt::default();
     let truth = truth(scene);
     let right = [Standard::Gouraud, Standard::GouraudPerspective].map(|standard| truth.draw(standard));
-    for rung in Rung::ALL {
-        let Some(Bound { standard, shades }) = Bound::of(rung, SCREEN.width) else { continue };
+    for shading in Shading::ALL {
+        let Some(Bound { standard, shades }) = Bound::of(shading, SCREEN.width) else { continue };
         if standard == Standard::Lit {
             continue;
         }
-        let shown = look(scene, rung);
+        let shown = look(scene, shading);
         let frame = &right[usize::from(standard == Standard::GouraudPerspective)];
         let errors = compare(frame, &shown);
         let figures = errors.figures();
         // A pixel of a face that is moved: what is left to a whole shade, or to two.
-        assert!(figures.max <= shades.ceil(), "{name}, {rung}: {:.3} shades from {standard}", figures.max);
-        let exempt = beyond(&format!("{name}, {rung}"), frame, &errors, shades + F32);
+        assert!(figures.max <= shades.ceil(), "{name}, {shading}: {:.3} shades from {standard}", figures.max);
+        let exempt = beyond(&format!("{name}, {shading}"), frame, &errors, shades + F32);
         // Whatever exempts them, few are.
         let (Exempt { moved, narrow }, all) = (exempt, figures.count);
-        assert!((moved + narrow) * 1_000 <= all, "{name}, {rung}: {moved} and {narrow} of {all} beyond {shades:.4}");
+        assert!((moved + narrow) * 1_000 <= all, "{name}, {shading}: {moved} and {narrow} of {all} beyond {shades:.4}");
         (all_exempt.moved, all_exempt.narrow) = (all_exempt.moved + moved, all_exempt.narrow + narrow);
         tried.add(figures.count);
         tried.worst("shades", figures.max);
@@ -178,7 +178,7 @@ fn check_linear(tried: &mut Tried, name: &str, scene: &Scene) -> Exempt {
         tried.worst("pixels of another face", others as f64);
         assert_eq!(others, errors.cover_errors());
         // Rounded alike, they differ in one pixel of thousands.
-        assert!(others <= 5, "{name}, {rung}: {others} pixels show another face");
+        assert!(others <= 5, "{name}, {shading}: {others} pixels show another face");
     }
     all_exempt
 }
@@ -200,22 +200,22 @@ fn stated() -> u64 {
 }
 
 #[test]
-fn linear_rungs_keep_their_bounds_on_every_scene() {
-    check_all_linear(Tried::new("linear_rungs_keep_their_bounds_on_every_scene", stated()), all().into_iter());
+fn linear_shadings_keep_their_bounds_on_every_scene() {
+    check_all_linear(Tried::new("linear_shadings_keep_their_bounds_on_every_scene", stated()), all().into_iter());
 }
 
 #[test]
-fn linear_rungs_keep_their_bounds_on_random_scenes() {
+fn linear_shadings_keep_their_bounds_on_random_scenes() {
     let mut random = Random::named("truth linear");
     let scenes = (0..12).map(|i| (format!("random scene {i}"), scenes::random(&mut random)));
-    check_all_linear(Tried::new("linear_rungs_keep_their_bounds_on_random_scenes", 200_000), scenes);
+    check_all_linear(Tried::new("linear_shadings_keep_their_bounds_on_random_scenes", 200_000), scenes);
 }
 
 /// Light at every pixel is right but for the rounding of a shade to 1/256 and to a byte, and for vertices that are
 /// rounded. Those move the point of a face that is seen at a pixel: with the weights λ of its corners there, which are
 /// moved by δ each, what is seen is what should be at p − Σ λδ, no farther from p than a vertex is moved.
 fn check_lit(tried: &mut Tried, name: &str, scene: &Scene) {
-    let (truth, shown) = (truth(scene), look(scene, Rung::Phong));
+    let (truth, shown) = (truth(scene), look(scene, Shading::Phong));
     let frame = truth.draw(Standard::Lit);
     let errors = compare(&frame, &shown);
     for (place, (error, right)) in errors.errors().zip(&frame.pixels).enumerate() {
@@ -226,7 +226,7 @@ fn check_lit(tried: &mut Tried, name: &str, scene: &Scene) {
         if error <= rounding {
             continue;
         }
-        let near = about(place % 320, place / 320).filter_map(|(x, y)| truth.lit_at(right.face, x, y));
+        let near = about(place % 320, place / 320).filter_map(|(x, y)| truth.sampling(right.face, x, y));
         let moved =
             near.map(|near| (0..3).fold(0.0, |most, i| f64::max(most, (near.intensity[i] - right.intensity[i]).abs())));
         // Between the places that are tried, light changes a little more.
@@ -324,7 +324,7 @@ fn middle(parted: &Truth, face: Face) -> Option<[f64; 2]> {
 fn flat_faces_have_the_light_at_their_middle() {
     let mut tried = Tried::new("flat_faces_have_the_light_at_their_middle", stated() / 4);
     for (name, scene) in all() {
-        let shown = look(&scene, Rung::Flat);
+        let shown = look(&scene, Shading::Flat);
         let [flat, parted] = flattened(&scene);
         let (truth, parted) = (truth(&flat), self::truth(&parted));
         let mut shades = std::collections::BTreeMap::new();
@@ -332,7 +332,7 @@ fn flat_faces_have_the_light_at_their_middle() {
             let Some(face) = *face else { continue };
             let right = shades.entry(face).or_insert_with(|| {
                 let [x, y] = middle(&parted, face)?;
-                let at = |dx: f64, dy: f64| Some(truth.lit_at(face, x + VERTEX * dx, y + VERTEX * dy)?.intensity);
+                let at = |dx: f64, dy: f64| Some(truth.sampling(face, x + VERTEX * dx, y + VERTEX * dy)?.intensity);
                 let right = at(0.0, 0.0)?;
                 let mut moved = 0.0_f64;
                 for (dx, dy) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
@@ -350,24 +350,24 @@ fn flat_faces_have_the_light_at_their_middle() {
     }
 }
 
-/// Rungs that claim no bound are measured as all others; and splitting brings linear shades nearer to `lit`.
+/// Shadings that claim no bound are measured as all others; and splitting brings linear shades nearer to `lit`.
 #[test]
-fn rungs_without_a_bound_are_measured() {
-    let mut tried = Tried::new("rungs_without_a_bound_are_measured", 8 * stated() / 10);
+fn shadings_without_a_bound_are_measured() {
+    let mut tried = Tried::new("shadings_without_a_bound_are_measured", 8 * stated() / 10);
     let (mut split, mut linear) = (0.0, 0.0);
     for (name, scene) in all() {
         let truth = truth(&scene);
         let frame = truth.draw(Standard::Lit);
-        let rms = |rung: Rung| {
-            let figures = compare(&frame, &look(&scene, rung)).figures();
-            assert!(figures.max.is_finite() && figures.rms() <= figures.max + 1e-9, "{name}, {rung}: {figures:?}");
+        let rms = |shading: Shading| {
+            let figures = compare(&frame, &look(&scene, shading)).figures();
+            assert!(figures.max.is_finite() && figures.rms() <= figures.max + 1e-9, "{name}, {shading}: {figures:?}");
             (figures.rms(), figures.count)
         };
-        let (reseeded, _) = rms(Rung::Gouraud88Reseeded);
-        for rung in Rung::ALL.into_iter().filter(|rung| Bound::of(*rung, SCREEN.width).is_none()) {
-            let (rms, count) = rms(rung);
+        let (reseeded, _) = rms(Shading::Gouraud88Reseeded);
+        for shading in Shading::ALL.into_iter().filter(|shading| Bound::of(*shading, SCREEN.width).is_none()) {
+            let (rms, count) = rms(shading);
             tried.add(count);
-            if rung == Rung::GouraudTessellated {
+            if shading == Shading::GouraudTessellated {
                 // The split faces' corners are rounded anew, and a byte has its half.
                 assert!(rms <= reseeded + 0.5, "{name}: {rms} split, {reseeded} not");
                 (split, linear) = (split + rms, linear + reseeded);
@@ -389,7 +389,7 @@ fn the_probe_shows_what_is_drawn() {
             // As the probe sees it: grey, 256 shades, nothing over them.
             scene.palette = Some(builtin::GREY.clone());
             scene.fog = None;
-            scene.wishes.dither = false;
+            scene.preferences.dither = false;
             for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
                 *material = Material { texture: None, environment: None, ..material.clone() };
                 material.ramp = Material::white().ramp;
@@ -415,10 +415,10 @@ fn the_probe_shows_the_channels_that_are_mixed() {
     scene.add_light(Light::sun([-1.0, 0.5, 0.5]).with_color([1.0, 0.4, 0.2]));
     // A body without colour beside one that has one: both are on channels, as the light is coloured.
     scene.add(Object::new(shapes::cube()));
-    for rung in Rung::ALL {
-        let (shown, mut vga) = (look(&scene, rung), Vga::new());
+    for shading in Shading::ALL {
+        let (shown, mut vga) = (look(&scene, shading), Vga::new());
         let mut renderer = Renderer::new();
-        renderer.set_rung(rung);
+        renderer.set_shading(shading);
         renderer.draw(&scene, &mut vga).expect("a legal scene");
         let mut seen = 0;
         for ((face, shades), &drawn) in shown.faces.iter().zip(&shown.shades).zip(vga.pixels()) {
@@ -427,19 +427,19 @@ fn the_probe_shows_the_channels_that_are_mixed() {
                 let [r, g, b] = shades.map(|shade| shade as u8);
                 let mut mixed = [0];
                 mix_cube(&mut mixed, &[r], &[g], &[b], &[128; 8], 0);
-                assert_eq!(mixed[0], drawn, "{rung}");
+                assert_eq!(mixed[0], drawn, "{shading}");
                 seen += 1;
             }
         }
         assert!(seen > 10_000);
     }
     // What the renderer drew through the probe is no longer there.
-    let mut probe = probe(Rung::Phong);
+    let mut probe = probe(Shading::Phong);
     probe.look(&scene, SCREEN).expect("a legal scene");
     let (mut by_probe, mut fresh) = (Vga::new(), Vga::new());
     probe.renderer().draw(&scene, &mut by_probe).expect("a legal scene");
     let mut renderer = Renderer::new();
-    renderer.set_rung(Rung::Phong);
+    renderer.set_shading(Shading::Phong);
     renderer.draw(&scene, &mut fresh).expect("a legal scene");
     assert!(by_probe.pixels() == fresh.pixels());
 }
@@ -454,7 +454,7 @@ fn the_probe_numbers_any_triangle() {
         scene[wall].set_angles([0.3, 0.2, 0.0]);
     }
     scene.add_light(Light::lamp([0.3, 0.4, 1.0], 3.0));
-    let (truth, shown) = (truth(&scene), look(&scene, Rung::GouraudHyperbolic));
+    let (truth, shown) = (truth(&scene), look(&scene, Shading::GouraudHyperbolic));
     let frame = truth.draw(Standard::GouraudPerspective);
     let errors = compare(&frame, &shown);
     let numbers: Vec<usize> = shown.faces.iter().flatten().map(|face| face.triangle).collect();
@@ -466,7 +466,7 @@ fn the_probe_numbers_any_triangle() {
 
     let mut torus = crate::support::scenes::framed(shapes::torus(48, 24));
     torus.objects_mut()[0].set_angles([0.3, 0.2, 0.0]);
-    let mut probe = probe(Rung::Gouraud88Reseeded);
+    let mut probe = probe(Shading::Gouraud88Reseeded);
     probe.renderer().set_vertex_path(VertexPath::Integer);
     let shown = probe.look(&torus, SCREEN).expect("a legal scene");
     let errors = compare(&self::truth(&torus).draw(Standard::Gouraud), &shown);
@@ -512,9 +512,9 @@ fn triangle(corners: [([f64; 2], f64, f64); 3], near: f32) -> Scene {
     scene
 }
 
-/// How far a rung is from a standard on a scene; no pixel is without a reason another face's.
-fn figures(name: &str, scene: &Scene, rung: Rung, standard: Standard) -> mode13h_lab::truth::Figures {
-    let (truth, shown) = (truth(scene), look(scene, rung));
+/// How far a shading is from a standard on a scene; no pixel is without a reason another face's.
+fn figures(name: &str, scene: &Scene, shading: Shading, standard: Standard) -> mode13h_lab::truth::Figures {
+    let (truth, shown) = (truth(scene), look(scene, shading));
     let frame = truth.draw(standard);
     check_cover(name, scene, &truth, &frame, &shown);
     compare(&frame, &shown).figures()
@@ -532,11 +532,11 @@ fn c5_a_face_from_1_to_10_000_against_the_truth() {
         };
         let scene = triangle([corner(), corner(), corner()], 1.0);
         let name = format!("triangle {i}");
-        let hyperbolic = figures(&name, &scene, Rung::GouraudHyperbolic, Standard::GouraudPerspective);
+        let hyperbolic = figures(&name, &scene, Shading::GouraudHyperbolic, Standard::GouraudPerspective);
         assert!(hyperbolic.max <= 1.0, "{name}: {hyperbolic:?}");
         tried.worst("shades", hyperbolic.max);
         tried.add(hyperbolic.count);
-        linear = linear.max(figures(&name, &scene, Rung::Gouraud88Reseeded, Standard::GouraudPerspective).max);
+        linear = linear.max(figures(&name, &scene, Shading::Gouraud88Reseeded, Standard::GouraudPerspective).max);
     }
     assert!(linear > 100.0, "linear shades show what is tried: {linear}");
 }
@@ -551,20 +551,20 @@ fn n7_a_highlight_inside_a_face_against_the_truth() {
     scene.add_light(Light::sun([0.2, 0.1, 1.0]));
     for angle in [0.0, 0.05, 0.1, 0.15] {
         scene[wall].set_angles([0.5 * angle, angle, 2.0 * angle]);
-        for (rung, most) in [
+        for (shading, most) in [
             // The loop at every pixel: a half, and vertices.
-            (Rung::Phong, 1.0),
+            (Shading::Phong, 1.0),
             // Split until an edge is within a shade; a face inside of three edges by as much again.
-            (Rung::GouraudTessellated, 2.5),
+            (Shading::GouraudTessellated, 2.5),
         ] {
-            let figures = figures("wall", &scene, rung, Standard::Lit);
-            assert!(figures.max <= most, "{rung} at {angle}: {figures:?}");
-            tried.worst(rung.name(), figures.max);
+            let figures = figures("wall", &scene, shading, Standard::Lit);
+            assert!(figures.max <= most, "{shading} at {angle}: {figures:?}");
+            tried.worst(shading.name(), figures.max);
             tried.add(figures.count);
         }
-        for rung in [Rung::Gouraud88, Rung::Gouraud88Reseeded, Rung::GouraudHyperbolic] {
-            let figures = figures("wall", &scene, rung, Standard::Lit);
-            assert!(figures.max > 50.0, "{rung} at {angle}: {figures:?}");
+        for shading in [Shading::Gouraud88, Shading::Gouraud88Reseeded, Shading::GouraudHyperbolic] {
+            let figures = figures("wall", &scene, shading, Standard::Lit);
+            assert!(figures.max > 50.0, "{shading} at {angle}: {figures:?}");
             tried.add(figures.count);
         }
     }
@@ -891,7 +891,7 @@ fn n2_models_with_faults_have_no_specks() {
         scene.add_light(Light::sun([0.3, 0.7, 1.0]));
         for (i, eye) in eyes().into_iter().enumerate() {
             scene.camera = Camera { eye, target: Vec3::ZERO, near: 0.1, ..Camera::default() };
-            let mut probe = probe(Rung::Gouraud88Reseeded);
+            let mut probe = probe(Shading::Gouraud88Reseeded);
             // The others are right for what is convex and far to near.
             let way = if i == 1 { HiddenSurfaces::ScanLine } else { HiddenSurfaces::DepthBuffer };
             probe.renderer().set_hidden_surfaces(Some(way));
@@ -907,7 +907,7 @@ fn n2_models_with_faults_have_no_specks() {
 }
 
 /// Of two faces back to back the one that looks toward the eye is drawn, by every way to hidden surfaces, in floats and in
-/// 16.16, on every rung and within a budget, whichever comes first, and where the near plane cuts them.
+/// 16.16, on every shading and within a budget, whichever comes first, and where the near plane cuts them.
 #[test]
 fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
     let mut tried = Tried::new("d3_of_faces_back_to_back_the_one_in_front_is_seen", 2 * 2 * 3 * 4 * 12);
@@ -944,7 +944,7 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
                         continue;
                     }
                     for setting in 0..12 {
-                        let mut probe = probe(Rung::ALL[setting % Rung::ALL.len()]);
+                        let mut probe = probe(Shading::ALL[setting % Shading::ALL.len()]);
                         probe.renderer().set_hidden_surfaces(Some(way));
                         match setting {
                             10 => probe.renderer().set_vertex_path(VertexPath::Integer),

@@ -2,13 +2,13 @@
 //! pixel: `teapot` and `phong` 8 % sooner, the torus, whose rows are of four pixels, no sooner.)
 
 use super::Wides;
-use crate::light::{Answer, Lights};
+use crate::light::{Lights, Reflectance};
 use crate::span::lit::Points;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
-pub(super) fn one_channel<const UNIT: bool>(lights: &Lights<'_>, answer: &Answer, points: &Points) -> Wides {
+pub(super) fn one_channel<const UNIT: bool>(lights: &Lights<'_>, answer: &Reflectance, points: &Points) -> Wides {
     #[target_feature(enable = "avx2")]
-    fn avx2<const UNIT: bool>(lights: &Lights<'_>, answer: &Answer, points: &Points) -> Wides {
+    fn avx2<const UNIT: bool>(lights: &Lights<'_>, answer: &Reflectance, points: &Points) -> Wides {
         lights.one_channel_of_eight::<UNIT, false>(answer, points)
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.
@@ -16,9 +16,13 @@ pub(super) fn one_channel<const UNIT: bool>(lights: &Lights<'_>, answer: &Answer
 }
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
-pub(super) fn three_channels<const UNIT: bool>(lights: &Lights<'_>, answer: &Answer, points: &Points) -> [Wides; 3] {
+pub(super) fn three_channels<const UNIT: bool>(
+    lights: &Lights<'_>,
+    answer: &Reflectance,
+    points: &Points,
+) -> [Wides; 3] {
     #[target_feature(enable = "avx2")]
-    fn avx2<const UNIT: bool>(lights: &Lights<'_>, answer: &Answer, points: &Points) -> [Wides; 3] {
+    fn avx2<const UNIT: bool>(lights: &Lights<'_>, answer: &Reflectance, points: &Points) -> [Wides; 3] {
         lights.three_channels_of_eight::<UNIT, false>(answer, points)
     }
     // SAFETY: such a kernel is given out only where AVX2 was found.

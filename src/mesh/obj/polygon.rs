@@ -13,7 +13,7 @@ use crate::mesh::wide::{Wide, add, cross, sub, widen};
 /// The most corners of a concave face, unless it is monotone. Cutting ears takes time by the square of their number when corners are spread
 /// unevenly or edges cross: 20,000 take 0.1 s in the shape of a star, 4 s in the shape of many crossing pentagrams, and
 /// 64,000 already 10 s and more. So no corner of a file costs more than 20,000 steps.
-pub(super) const MOST_CONCAVE: usize = 20_000;
+pub(super) const MAX_CONCAVE: usize = 20_000;
 
 /// Buffers that one face after the other uses.
 pub(super) struct Splitter {
@@ -43,7 +43,7 @@ impl Splitter {
     pub(super) fn split(&mut self, corners: &[Vec3]) -> Result<&[[u32; 3]], ObjErrorKind> {
         self.triangles.clear();
         if corners.len() > 3 && self.flatten(corners) && !self.is_convex() {
-            if corners.len() <= MOST_CONCAVE {
+            if corners.len() <= MAX_CONCAVE {
                 if !self.repeats_an_edge() {
                     self.cut_ears();
                 }
@@ -200,7 +200,7 @@ impl Splitter {
         self.edges.clear();
         self.edges.extend(cut.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]));
         self.edges.sort_unstable();
-        // At most `MOST_CONCAVE`.
+        // At most `MAX_CONCAVE`.
         let n = corners as u32;
         for &[a, b, c] in &cut {
             // From corner to corner round the triangle, through what its outer edges pass by.

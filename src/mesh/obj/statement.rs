@@ -8,7 +8,7 @@ use std::vec::Vec;
 use glam::{Vec2, Vec3};
 
 use super::line::{Lines, keyword, name, number, numbers, shown, words};
-use super::polygon::MOST_CONCAVE;
+use super::polygon::MAX_CONCAVE;
 use super::{Mesh, ObjError, ObjErrorKind};
 
 /// Position, texture coordinates, normal, from 0; [`NONE`](Self::NONE) for one that was left out.
@@ -161,7 +161,7 @@ fn face(model: &mut Model, later: &mut Later, line: u64, rest: &[u8]) -> Result<
     if model.corners.len() - 2 * model.sizes.len() > Mesh::MOST + 2 {
         return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 triangles"));
     }
-    if size > MOST_CONCAVE {
+    if size > MAX_CONCAVE {
         model.large.push((model.sizes.len(), line));
     }
     // Fits by the lines above.

@@ -151,7 +151,7 @@ fn gradients(numerators: &Floats, areas: &Floats, inverses: &Floats, gradients: 
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::rows::{MOST_COLUMNS, MOST_ROWS, Spans, set_up};
+    use super::super::rows::{MAX_COLUMNS, MAX_ROWS, Spans, set_up};
     use super::*;
     use crate::raster::depth::DepthPlane;
 
@@ -168,7 +168,7 @@ mod tests {
     }
 
     fn triangle() -> BoxedStrategy<[(i32, i32, u32); 3]> {
-        let (width, height) = (MOST_COLUMNS * 256, MOST_ROWS * 256);
+        let (width, height) = (MAX_COLUMNS * 256, MAX_ROWS * 256);
         let sizes = prop_oneof![2 => Just((width, height)), 2 => Just((600, 600)), 2 => Just((40, 40)), 1 => Just((3, 3)),
             1 => Just((width, 4)), 1 => Just((4, height))];
         let corners = sizes.prop_flat_map(|(w, h)| [corner(w, h), corner(w, h), corner(w, h)]);
@@ -201,8 +201,8 @@ mod tests {
                 let plane = DepthPlane::of_corners(corners);
                 let mut walk = planes.walk(lane, group, place, width);
                 let mut pixel = group.at[lane];
-                for row in 0..=MOST_ROWS {
-                    for column in [0, 1, 17, MOST_COLUMNS] {
+                for row in 0..=MAX_ROWS {
+                    for column in [0, 1, 17, MAX_COLUMNS] {
                         let depths = walk.at(pixel.wrapping_add(column));
                         prop_assert_eq!(depths.z, plane.fixed_at(group.column[lane] + column, group.row[lane] + row));
                         prop_assert_eq!(depths.dz, plane.step());

@@ -15,10 +15,10 @@
 //! What is larger than 2¹⁸ pixels, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
 //! when its turn comes. The bytes are those of a call of it for each triangle in turn.
 
-use super::Shading;
+use super::Interpolation;
 use super::depth::{Cell, DepthPlane};
 use super::frame::Rect;
-use super::triangle::{Drawn, Raster};
+use super::triangle::{DrawStats, Raster};
 use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, I24F8, U8F8};
 use crate::span::Kernel;
@@ -36,7 +36,7 @@ mod sieve;
 mod x86;
 
 use crate::raster::shade::RESEED;
-use rows::{DEPTHS, Draw, MOST_PIECES, Place, Spans};
+use rows::{DEPTHS, Draw, MAX_PIECES, Place, Spans};
 use sieve::{Chosen, Kept, Kind};
 
 /// Triangles to be drawn one after the other, in arrays.
@@ -50,7 +50,7 @@ pub struct Batch {
     y: [[i32; Self::CAPACITY]; 3],
     shade: [[u16; Self::CAPACITY]; 3],
     depth: [[u32; Self::CAPACITY]; 3],
-    shading: [Shading; Self::CAPACITY],
+    interpolation: [Interpolation; Self::CAPACITY],
 }
 
 impl Batch {
@@ -67,7 +67,7 @@ impl Batch {
             y: [[0; Self::CAPACITY]; 3],
             shade: [[0; Self::CAPACITY]; 3],
             depth: [[0; Self::CAPACITY]; 3],
-            shading: [Shading::Flat(0); Self::CAPACITY],
+            interpolation: [Interpolation::Flat(0); Self::CAPACITY],
         }
     }
 
@@ -80,29 +80,29 @@ impl Batch {
     /// Whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
     #[must_use]
     #[inline]
-    pub const fn takes(shading: Shading) -> bool {
-        matches!(shading, Shading::Flat(_) | Shading::Gouraud | Shading::GouraudReseeded)
+    pub const fn takes(interpolation: Interpolation) -> bool {
+        matches!(interpolation, Interpolation::Flat(_) | Interpolation::Gouraud | Interpolation::GouraudReseeded)
     }
 
     /// Puts a triangle behind the others. Returns `false`, and leaves it out, if the batch is full or does not
     /// [take](Self::takes) this shading.
     #[inline]
-    pub fn push(&mut self, vertices: &[Vertex; 3], shading: Shading) -> bool {
+    pub fn push(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> bool {
         let at = self.count;
-        if at >= Self::CAPACITY || !Self::takes(shading) {
+        if at >= Self::CAPACITY || !Self::takes(interpolation) {
             return false;
         }
         for (corner, v) in vertices.iter().enumerate() {
             self.x[corner][at] = v.x().to_bits();
             self.y[corner][at] = v.y().to_bits();
             // A flat triangle is one whose corners agree: the nearest of a whole shade is that shade.
-            self.shade[corner][at] = match shading {
-                Shading::Flat(index) => u16::from(index) << 8,
+            self.shade[corner][at] = match interpolation {
+                Interpolation::Flat(index) => u16::from(index) << 8,
                 _ => v.shade().to_bits(),
             };
             self.depth[corner][at] = v.depth();
         }
-        self.shading[at] = shading;
+        self.interpolation[at] = interpolation;
         self.count = at + 1;
         true
     }
@@ -141,24 +141,24 @@ impl Batch {
 
     /// The most pieces that start anew in a row of a tall triangle.
     fn pieces(&self, at: usize) -> usize {
-        if self.shading[at] != Shading::GouraudReseeded {
+        if self.interpolation[at] != Interpolation::GouraudReseeded {
             return 1;
         }
         let [a, b, c] = self.x.each_ref().map(|x| x[at]);
         // As in `sieve`; at most 1,024 pixels.
         let columns = ((a.max(b).max(c) + 127) >> 8) - ((a.min(b).min(c) + 127) >> 8);
-        ((columns - 1) as usize / RESEED as usize + 1).clamp(1, MOST_PIECES)
+        ((columns - 1) as usize / RESEED as usize + 1).clamp(1, MAX_PIECES)
     }
 
     /// A triangle as it was put in, but that the vertices of a flat one have its shade.
-    fn triangle(&self, at: usize) -> ([Vertex; 3], Shading) {
+    fn triangle(&self, at: usize) -> ([Vertex; 3], Interpolation) {
         let vertex = |corner: usize| {
             let (x, y) = (I24F8::from_bits(self.x[corner][at]), I24F8::from_bits(self.y[corner][at]));
             let shade = U8F8::from_bits(self.shade[corner][at]);
             // They came out of a vertex; with another shade none would be drawn.
             Vertex::new(x, y, shade, self.depth[corner][at]).unwrap_or_default()
         };
-        ([vertex(0), vertex(1), vertex(2)], self.shading[at])
+        ([vertex(0), vertex(1), vertex(2)], self.interpolation[at])
     }
 }
 
@@ -171,18 +171,18 @@ impl Default for Batch {
 impl<D: Cell> Raster<'_, D> {
     /// Draws the triangles of a batch, one after the other: the bytes, depths and counts are those of
     /// [`triangle`](Self::triangle) called for each.
-    pub fn batch(&mut self, batch: &Batch) -> Drawn {
+    pub fn batch(&mut self, batch: &Batch) -> DrawStats {
         self.draw_batch::<true>(batch)
     }
 
     /// The same for triangles that all lie wholly inside the frame, as
     /// [`triangle_inside`](Self::triangle_inside).
-    pub fn batch_inside(&mut self, batch: &Batch) -> Drawn {
+    pub fn batch_inside(&mut self, batch: &Batch) -> DrawStats {
         self.draw_batch::<false>(batch)
     }
 
-    fn draw_batch<const CLIPS: bool>(&mut self, batch: &Batch) -> Drawn {
-        let mut drawn = Drawn::default();
+    fn draw_batch<const CLIPS: bool>(&mut self, batch: &Batch) -> DrawStats {
+        let mut drawn = DrawStats::default();
         let (_, pitch) = self.frame.pixels_mut();
         let (width, rows) = (self.frame.width(), self.frame.rows());
         // Offsets of pixels are kept in 32 bits, and a depth buffer has to hold the frame's rows and no others.
@@ -211,8 +211,14 @@ impl<D: Cell> Raster<'_, D> {
     }
 
     /// Draws what the sieve has kept, all but others together.
-    fn draw_at_once<const CLIPS: bool>(&mut self, batch: &Batch, at_once: AtOnce, kept: &Kept, place: Place) -> Drawn {
-        let mut drawn = Drawn::default();
+    fn draw_at_once<const CLIPS: bool>(
+        &mut self,
+        batch: &Batch,
+        at_once: AtOnce,
+        kept: &Kept,
+        place: Place,
+    ) -> DrawStats {
+        let mut drawn = DrawStats::default();
         let mut left = kept.triangles();
         while let Some(first) = left.first() {
             let together = Chosen::in_batch(left);
@@ -239,8 +245,8 @@ impl<D: Cell> Raster<'_, D> {
         kept: &Kept,
         place: Place,
         mut spans: Spans<'_>,
-    ) -> Drawn {
-        let mut drawn = Drawn::default();
+    ) -> DrawStats {
+        let mut drawn = DrawStats::default();
         let mut left = kept.triangles();
         while let Some(first) = left.first() {
             let kind = first.kind();
@@ -250,7 +256,7 @@ impl<D: Cell> Raster<'_, D> {
                 continue;
             }
             let alike = Chosen::alike(left);
-            if kind == Kind::Tall {
+            if kind == Kind::Large {
                 (stages.tall)(batch, &left[..alike], place, &mut spans, &mut |spans| self.fill(spans, &mut drawn));
                 left = &left[alike..];
                 continue;
@@ -274,14 +280,14 @@ impl<D: Cell> Raster<'_, D> {
         drawn
     }
 
-    fn one_of<const CLIPS: bool>(&mut self, batch: &Batch, at: usize) -> Drawn {
-        let (vertices, shading) = batch.triangle(at);
-        if CLIPS { self.triangle(&vertices, shading) } else { self.triangle_inside(&vertices, shading) }
+    fn one_of<const CLIPS: bool>(&mut self, batch: &Batch, at: usize) -> DrawStats {
+        let (vertices, interpolation) = batch.triangle(at);
+        if CLIPS { self.triangle(&vertices, interpolation) } else { self.triangle_inside(&vertices, interpolation) }
     }
 
     /// Draws the spans of small triangles.
     #[inline]
-    fn fill(&mut self, spans: &Spans<'_>, drawn: &mut Drawn) {
+    fn fill(&mut self, spans: &Spans<'_>, drawn: &mut DrawStats) {
         let covered = spans.covered();
         // At most 2¹¹ spans of 64 pixels.
         drawn.spans += spans.as_slice().len() as u32;
@@ -314,10 +320,10 @@ struct Stages {
 }
 
 /// Draws small triangles into pixels, and where they are nearer than cells, if there are any.
-type Small = fn(&Batch, &[Chosen], Place, &mut [u8], Option<&mut [u32]>) -> Drawn;
+type Small = fn(&Batch, &[Chosen], Place, &mut [u8], Option<&mut [u32]>) -> DrawStats;
 
 /// Draws small, tall and clipped triangles into pixels, and where they are nearer than cells, if there are any.
-type AtOnce = fn(&Batch, &[Chosen], (Place, Rect), &mut [u8], Option<&mut [u32]>) -> Drawn;
+type AtOnce = fn(&Batch, &[Chosen], (Place, Rect), &mut [u8], Option<&mut [u32]>) -> DrawStats;
 
 impl Stages {
     fn of(kernel: Kernel) -> Self {

@@ -2,7 +2,7 @@
 
 use super::Batch;
 use crate::fixed::U8F8;
-use crate::raster::Shading;
+use crate::raster::Interpolation;
 use crate::span::Kernel;
 
 /// Where a vertex is on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping. In one number,
@@ -61,9 +61,15 @@ pub(crate) const TURNED: u32 = 1 << 31;
 
 impl Batch {
     /// Holds these triangles, at most as many as it has room for, in place of all others. None of them needs clipping.
-    pub(crate) fn refill(&mut self, from: &Numbered<'_>, numbers: &[u32], shading: Shading, kernel: Kernel) {
+    pub(crate) fn refill(
+        &mut self,
+        from: &Numbered<'_>,
+        numbers: &[u32],
+        interpolation: Interpolation,
+        kernel: Kernel,
+    ) {
         let numbers = &numbers[..numbers.len().min(Self::CAPACITY)];
-        self.shading[..numbers.len()].fill(shading);
+        self.interpolation[..numbers.len()].fill(interpolation);
         self.count = numbers.len();
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx512() && super::avx512::numbered::refill(self, from, numbers) {
@@ -101,11 +107,11 @@ mod tests {
     use super::*;
 
     /// What a batch holds.
-    fn held(batch: &Batch) -> Vec<([[i32; 4]; 3], Shading)> {
+    fn held(batch: &Batch) -> Vec<([[i32; 4]; 3], Interpolation)> {
         let corner = |at: usize, k: usize| {
             [batch.x[k][at], batch.y[k][at], i32::from(batch.shade[k][at]), batch.depth[k][at].cast_signed()]
         };
-        (0..batch.len()).map(|at| ([0, 1, 2].map(|k| corner(at, k)), batch.shading[at])).collect()
+        (0..batch.len()).map(|at| ([0, 1, 2].map(|k| corner(at, k)), batch.interpolation[at])).collect()
     }
 
     proptest! {
@@ -126,20 +132,20 @@ mod tests {
             let numbers: Vec<u32> = numbers.iter().map(number).collect();
             let most = numbers.len().min(Batch::CAPACITY);
             let mut expected = Batch::new();
-            expected.refill(&from, &numbers, Shading::Gouraud, Kernel::PORTABLE);
+            expected.refill(&from, &numbers, Interpolation::Gouraud, Kernel::PORTABLE);
             prop_assert_eq!(expected.len(), most);
-            for (number, (corners, shading)) in numbers.iter().zip(held(&expected)) {
+            for (number, (corners, interpolation)) in numbers.iter().zip(held(&expected)) {
                 let side = usize::from(number & TURNED != 0);
                 let triangle = triangles[(number & !TURNED) as usize];
                 let of = |i: u32| {
                     let (x, y, depth, shades) = vertices[i as usize];
                     [x, y, i32::from(shades[side]), depth.cast_signed()]
                 };
-                prop_assert_eq!((corners, shading), (triangle.map(of), Shading::Gouraud));
+                prop_assert_eq!((corners, interpolation), (triangle.map(of), Interpolation::Gouraud));
             }
             for kernel in Kernel::available() {
                 let mut batch = Batch::new();
-                batch.refill(&from, &numbers, Shading::Gouraud, kernel);
+                batch.refill(&from, &numbers, Interpolation::Gouraud, kernel);
                 prop_assert_eq!(held(&batch), held(&expected));
             }
         }
@@ -154,7 +160,7 @@ mod tests {
             let mut numbers = [0; 40];
             numbers[lane] = number;
             let from = Numbered { places: &places, depths, shades: &shades, triangles };
-            let put = |kernel| Batch::new().refill(&from, &numbers, Shading::Gouraud, kernel);
+            let put = |kernel| Batch::new().refill(&from, &numbers, Interpolation::Gouraud, kernel);
             let refused = |kernel| std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| put(kernel))).is_err();
             let all: Vec<bool> = Kernel::available().map(refused).collect();
             assert!(all.iter().all(|refused| *refused == all[0]), "{all:?}");

@@ -25,21 +25,21 @@ use super::depths::{Planes, Walk};
 use super::sieve::Chosen;
 use crate::fixed::HAS_F64;
 use crate::raster::depth::DepthPlane;
+use crate::raster::interpolation::Interpolation;
 use crate::raster::shade::RESEED;
-use crate::raster::shading::Shading;
 use crate::span::list::{Depths, Listed};
 
 /// The widest that a small triangle is, in pixels: a span of that many has no start but its first.
-pub(super) const MOST_COLUMNS: i32 = 64;
+pub(super) const MAX_COLUMNS: i32 = 64;
 /// The highest.
-pub(super) const MOST_ROWS: i32 = 16;
+pub(super) const MAX_ROWS: i32 = 16;
 /// The widest that a tall triangle's box is, in 1/256 pixel, and the highest.
-pub(super) const MOST_ACROSS: i32 = 1_024 * 256;
-pub(super) const MOST_DOWN: i32 = 4_096 * 256;
+pub(super) const MAX_ACROSS: i32 = 1_024 * 256;
+pub(super) const MAX_DOWN: i32 = 4_096 * 256;
 /// The most squares of four pixels a side that the box has, sides rounded up: 2³⁴ units.
-pub(super) const MOST_SQUARES: i32 = 1 << 14;
+pub(super) const MAX_AREA_4X4: i32 = 1 << 14;
 /// Pieces of a row, each of which starts anew.
-pub(super) const MOST_PIECES: usize = MOST_ACROSS as usize / 256 / RESEED as usize;
+pub(super) const MAX_PIECES: usize = MAX_ACROSS as usize / 256 / RESEED as usize;
 /// Triangles at a time, or rows of one.
 pub(super) const LANES: usize = 8;
 /// 1.5 · 2⁵².
@@ -47,33 +47,33 @@ pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
 
 /// Room for the spans of a group, and for eight rows of a tall triangle. All is cleared for every batch: more room costs
 /// more than it saves.
-const ROOM: usize = LANES * MOST_ROWS as usize + 32;
-const _: () = assert!(LANES * MOST_PIECES <= ROOM);
+const CAPACITY: usize = LANES * MAX_ROWS as usize + 32;
+const _: () = assert!(LANES * MAX_PIECES <= CAPACITY);
 
 /// Room for the depths of as many spans.
-pub(super) const DEPTHS: [Depths; ROOM + 1] = [Depths { at: 0, z: 0, dz: 0 }; ROOM + 1];
+pub(super) const DEPTHS: [Depths; CAPACITY + 1] = [Depths { at: 0, z: 0, dz: 0 }; CAPACITY + 1];
 
 /// A list of spans, and the numbers on the way there. Filled in place: a
 /// copy of a group would cost as much as its rows.
 pub(super) struct Spans<'a> {
-    spans: [Listed; ROOM + 1],
+    spans: [Listed; CAPACITY + 1],
     count: usize,
     covered: u32,
     /// Of each span, where there is a depth buffer; else there is no room for any.
     depths: &'a mut [Depths],
     pub(super) group: Group,
-    table: [Row; MOST_ROWS as usize],
+    table: [Row; MAX_ROWS as usize],
 }
 
 impl<'a> Spans<'a> {
     pub(super) fn new(depths: &'a mut [Depths]) -> Self {
         Self {
-            spans: [Listed { at: 0, length: 0, shade: 0, step: 0 }; ROOM + 1],
+            spans: [Listed { at: 0, length: 0, shade: 0, step: 0 }; CAPACITY + 1],
             count: 0,
             covered: 0,
             depths,
             group: Group::NONE,
-            table: [const { Row { at: [0; LANES], length: [0; LANES], paint: [0; LANES] } }; MOST_ROWS as usize],
+            table: [const { Row { at: [0; LANES], length: [0; LANES], paint: [0; LANES] } }; MAX_ROWS as usize],
         }
     }
 
@@ -211,7 +211,7 @@ pub(super) fn rows_by(
     let mut listed = 0;
     let mut gathered = Gathered::of(batch, kept, place);
     for group in kept.chunks(LANES) {
-        if spans.count + LANES * MOST_ROWS as usize > ROOM {
+        if spans.count + LANES * MAX_ROWS as usize > CAPACITY {
             break;
         }
         listed += group.len();
@@ -348,7 +348,7 @@ pub(super) fn set_up<const TALL: bool>(gathered: &Gathered, place: Place, group:
         (lower.n[i], lower.per_row[i], lower.inverse[i]) = edge(p1, p2);
         split[i] = (p1.1 + 255) >> 8;
 
-        // As `Ordered::gradient`, of any order of the corners: the quotients are the same.
+        // As `SortedTriangle::gradient`, of any order of the corners: the quotients are the same.
         let (dx1, dy1, dx2, dy2) = (f64::from(bx - ax), f64::from(by - ay), f64::from(cx - ax), f64::from(cy - ay));
         let s = f64::from(shade[0][i]);
         let (ds1, ds2) = (f64::from(shade[1][i] - shade[0][i]), f64::from(shade[2][i] - shade[0][i]));
@@ -464,9 +464,9 @@ const FEW_ROWS: i32 = 2;
 /// (3 to 6 % of the time of triangles of 0.6 pixels; with up to four rows less elsewhere.)
 #[inline(always)]
 fn list_rows<const ROWS: usize>(
-    table: &[Row; MOST_ROWS as usize],
+    table: &[Row; MAX_ROWS as usize],
     lanes: usize,
-    spans: &mut [Listed; ROOM + 1],
+    spans: &mut [Listed; CAPACITY + 1],
     count: &mut usize,
     covered: &mut u32,
     depths: &mut [Depths],
@@ -496,11 +496,11 @@ pub(super) struct Lines {
     pub(super) at: Ints,
     pub(super) length: Ints,
     /// Of each piece of the rows.
-    pub(super) paint: [Ints; MOST_PIECES],
+    pub(super) paint: [Ints; MAX_PIECES],
 }
 
 impl Lines {
-    pub(super) const NONE: Self = Self { at: [0; LANES], length: [0; LANES], paint: [[0; LANES]; MOST_PIECES] };
+    pub(super) const NONE: Self = Self { at: [0; LANES], length: [0; LANES], paint: [[0; LANES]; MAX_PIECES] };
 }
 
 /// Draws the spans that are listed.
@@ -532,13 +532,13 @@ pub(super) fn tall_by(
             // Of a triangle without area, which has no spans, there is none.
             let mut plane = None;
             // A row that does not start anew is one piece, however long.
-            let longest = match batch.shading[number] {
-                Shading::GouraudReseeded => RESEED as u32,
-                _ => MOST_ACROSS as u32,
+            let longest = match batch.interpolation[number] {
+                Interpolation::GouraudReseeded => RESEED as u32,
+                _ => MAX_ACROSS as u32,
             };
             let pieces = batch.pieces(number);
             for first in (0..spans.group.rows[i]).step_by(LANES) {
-                if spans.count + LANES * pieces > ROOM {
+                if spans.count + LANES * pieces > CAPACITY {
                     draw(spans);
                     spans.clear();
                 }

@@ -1,7 +1,7 @@
 //! The sieve: which triangles of a batch may cover a pixel.
 
 use super::Batch;
-use super::rows::{Ints, LANES, MOST_ACROSS, MOST_COLUMNS, MOST_DOWN, MOST_ROWS, MOST_SQUARES};
+use super::rows::{Ints, LANES, MAX_ACROSS, MAX_AREA_4X4, MAX_COLUMNS, MAX_DOWN, MAX_ROWS};
 use crate::raster::frame::Rect;
 
 /// What becomes of a triangle that has a pixel centre in its box.
@@ -10,7 +10,7 @@ pub(super) enum Kind {
     /// It lies inside the clip rectangle and is small enough for `rows`.
     Small,
     /// It lies inside the clip rectangle and is small enough for `tall`.
-    Tall,
+    Large,
     /// It reaches over the clip rectangle's edge, and is no larger than a tall one.
     Clipped,
     Other,
@@ -32,7 +32,7 @@ impl Chosen {
     pub(super) fn kind(self) -> Kind {
         match self.0 >> 8 {
             1 => Kind::Small,
-            2 => Kind::Tall,
+            2 => Kind::Large,
             4 => Kind::Clipped,
             _ => Kind::Other,
         }
@@ -102,7 +102,7 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
 }
 
 /// The longer side of the box of a triangle whose pixels are looked at one by one.
-const MOST_LOOKED_AT: i32 = 2;
+const TINY_SIDE: i32 = 2;
 
 #[inline(always)]
 pub(super) fn sieve_by(
@@ -131,12 +131,12 @@ pub(super) fn sieve_by(
             let (row, end_row) = ((low_y + 127) >> 8, (high_y + 127) >> 8);
             let covers = (column.max(left) < end_column.min(right)) & (row.max(top) < end_row.min(bottom));
             let inside = (column >= left) & (end_column <= right) & (row >= top) & (end_row <= bottom);
-            let few = (end_column - column <= MOST_COLUMNS) & (end_row - row <= MOST_ROWS);
+            let few = (end_column - column <= MAX_COLUMNS) & (end_row - row <= MAX_ROWS);
             // Differences are at most 2²¹.
             let (across, down) = (high_x - low_x, high_y - low_y);
             let squares = ((across + 1_023) >> 10).wrapping_mul((down + 1_023) >> 10);
-            let more = (across <= MOST_ACROSS) & (down <= MOST_DOWN) & (squares <= MOST_SQUARES);
-            let tiny = (end_column - column <= MOST_LOOKED_AT) & (end_row - row <= MOST_LOOKED_AT);
+            let more = (across <= MAX_ACROSS) & (down <= MAX_DOWN) & (squares <= MAX_AREA_4X4);
+            let tiny = (end_column - column <= TINY_SIDE) & (end_row - row <= TINY_SIDE);
             let number = first + i as i32; // below 128
             let kind = 3 - i32::from(inside & more) - i32::from(inside & few) + i32::from(!inside & more);
             chosen[i] = if covers & (number < most) { kind << 8 | number } else { 0 };

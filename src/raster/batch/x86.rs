@@ -6,7 +6,7 @@ mod eight_rows;
 mod listed;
 
 use super::Batch;
-use super::avx512::{self, listed as listed_512, tall::Tall};
+use super::avx512::{self, listed as listed_512, tall::Large};
 use super::depths::Planes;
 use super::rows::{
     Draw, Edges, Floats, Gathered, Group, Ints, LANES, MAGIC, Place, Row, Spans, rows_by, set_up, tall_by,
@@ -14,7 +14,7 @@ use super::rows::{
 use super::sieve::{Chosen, Kept, Kind, pack, sieve_by};
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
-use crate::raster::triangle::Drawn;
+use crate::raster::triangle::DrawStats;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
@@ -68,7 +68,7 @@ pub(super) fn small(
     place: Place,
     pixels: &mut [u8],
     cells: Option<&mut [u32]>,
-) -> Drawn {
+) -> DrawStats {
     // SAFETY: such a kernel is given out only where AVX2 and FMA were found.
     unsafe {
         match cells {
@@ -98,7 +98,7 @@ pub(super) fn at_once(
     place: (Place, Rect),
     pixels: &mut [u8],
     cells: Option<&mut [u32]>,
-) -> Drawn {
+) -> DrawStats {
     #[target_feature(enable = "avx2")]
     fn with_depths(
         batch: &Batch,
@@ -106,7 +106,7 @@ pub(super) fn at_once(
         (place, clip): (Place, Rect),
         pixels: &mut [u8],
         cells: &mut [u32],
-    ) -> Drawn {
+    ) -> DrawStats {
         let mut listed = listed_512::Spans::new(place);
         let (mut group, mut planes) = (Group::NONE, Planes::NONE);
         let mut gathered = Gathered::of(batch, kept, place);
@@ -146,11 +146,11 @@ pub(super) fn at_once(
         // SAFETY: as above; the same pixels and cells.
         unsafe { listed.draw(true, pixels, cells) };
         let (spans, covered, nearer) = listed.counts();
-        Drawn { spans, covered, pixels: nearer, tested: covered, ..Drawn::default() }
+        DrawStats { spans, covered, pixels: nearer, tested: covered, ..DrawStats::default() }
     }
     #[target_feature(enable = "avx2")]
-    fn without(batch: &Batch, kept: &[Chosen], (place, clip): (Place, Rect), pixels: &mut [u8]) -> Drawn {
-        let (mut tall, mut listed) = (Tall::new(), listed_512::Spans::new(place));
+    fn without(batch: &Batch, kept: &[Chosen], (place, clip): (Place, Rect), pixels: &mut [u8]) -> DrawStats {
+        let (mut tall, mut listed) = (Large::new(), listed_512::Spans::new(place));
         let mut group = Group::NONE;
         let mut gathered = Gathered::of(batch, kept, place);
         for (number, eight) in kept.chunks(LANES).enumerate() {
@@ -164,12 +164,12 @@ pub(super) fn at_once(
             }
             for (i, triangle) in eight.iter().enumerate() {
                 match triangle.kind() {
-                    Kind::Tall => {
-                        let shading = batch.shading[triangle.number()];
+                    Kind::Large => {
+                        let interpolation = batch.interpolation[triangle.number()];
                         // SAFETY: as above; always the same pixels.
                         unsafe {
                             listed.draw(false, pixels, &mut []);
-                            tall.draw(&group, i, shading, place, pixels);
+                            tall.draw(&group, i, interpolation, place, pixels);
                         }
                     }
                     Kind::Clipped => {
@@ -186,7 +186,7 @@ pub(super) fn at_once(
         unsafe { listed.draw(false, pixels, &mut []) };
         let ((spans, covered, _), (more_spans, more)) = (listed.counts(), tall.drawn());
         let covered = covered + more;
-        Drawn { spans: spans + more_spans, covered, pixels: covered, ..Drawn::default() }
+        DrawStats { spans: spans + more_spans, covered, pixels: covered, ..DrawStats::default() }
     }
     // SAFETY: such a kernel is given out only where AVX-512 was found, and with it AVX2.
     unsafe {

@@ -17,7 +17,7 @@
 
 use super::{Attributes, Limits};
 use crate::fixed::U8F8;
-use crate::raster::cover::Ordered;
+use crate::raster::cover::SortedTriangle;
 use crate::raster::weights::Weights;
 use crate::span::Kernel;
 
@@ -74,7 +74,12 @@ pub(super) struct CurvePlane {
 }
 
 impl CurvePlane {
-    pub(super) fn new(triangle: &Ordered, corners: [&Attributes; 3], limits: [Limits; 3], channels: usize) -> Self {
+    pub(super) fn new(
+        triangle: &SortedTriangle,
+        corners: [&Attributes; 3],
+        limits: [Limits; 3],
+        channels: usize,
+    ) -> Self {
         let weights = Weights::new(triangle);
         // At most 2⁴².
         let share = 1.0 / triangle.area() as f64;

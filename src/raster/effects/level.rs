@@ -17,7 +17,7 @@
 //! so one numerator is the same all along a row, and the other linear. The depth D / A is taken in whole sixteenths,
 //! rounded down. All else is exact.
 
-use crate::raster::cover::Ordered;
+use crate::raster::cover::SortedTriangle;
 use crate::raster::hyperbolic::Linear;
 use crate::span::hyperbolic::floor_quotient;
 
@@ -60,7 +60,7 @@ pub(super) struct LevelPlane {
 
 impl LevelPlane {
     /// Of a triangle that is not degenerate, with these coordinates and depths at its corners.
-    pub(super) fn new(triangle: &Ordered, coordinates: [[i32; 2]; 3], depths: [i128; 3]) -> Self {
+    pub(super) fn new(triangle: &SortedTriangle, coordinates: [[i32; 2]; 3], depths: [i128; 3]) -> Self {
         let (mut sums, mut times_y, mut times_x) = ([0; 2], [0; 2], [0; 2]);
         for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let corner = &triangle.vertices[k];

@@ -8,32 +8,34 @@
 //! write      all of it, or where nearer
 //! ```
 //!
-//! A stage that a [`Look`] does not have is not entered. Pieces begin at the row's first covered pixel
+//! A stage that a [`PixelPipeline`] does not have is not entered. Pieces begin at the row's first covered pixel
 //! inside the frame and every 64 pixels from there, where every value is exact; so a pixel's byte
 //! depends on no clip rectangle. Without any effect [`Raster::triangle`] gives the same bytes sooner.
 //!
-//! Shades and channels are what the [`Shading`] makes of them; fog and the table's normals are linear, started anew
+//! Shades and channels are what the [`Interpolation`] makes of them; fog and the table's normals are linear, started anew
 //! with every piece, whatever the shading, and keep the guarantees of [`shade`](super::shade): no sum leaves the
 //! range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a byte
 //! lies in [min >> 8, ⌈max⌉].
 
 mod curve;
 mod level;
-mod look;
+mod pipeline;
 mod planes;
 mod small;
 
 use core::ops::Range;
 
 use self::curve::CurvePlane;
-pub use self::look::{Apart, Attributes, Lighting, Limits, Look, Mix, Source, TextureLook, TextureMapping};
+pub use self::pipeline::{
+    Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
+};
 use self::planes::{KNOTS, Knots, LitPlane, TexturePlane};
-use super::cover::{Ordered, Row};
+use super::cover::{Row, SortedTriangle};
 use super::depth::{Cell, DepthPlane};
-use super::paint::{Paint, to_bytes};
+use super::interpolation::Interpolation;
+use super::paint::{RowShader, to_bytes};
 use super::shade::{RESEED, ShadePlane};
-use super::shading::Shading;
-use super::triangle::{Drawn, Raster};
+use super::triangle::{DrawStats, Raster};
 use super::vertex::Vertex;
 use crate::fixed::U8F8;
 use crate::span::channels::{mix_cube, mix_nearest};
@@ -53,8 +55,8 @@ const HALVES: [[u8; 8]; 8] = [[128; 8]; 8];
 /// The values of one triangle that its look uses.
 #[derive(Clone, Copy, Debug)]
 enum Planes {
-    Shade(Paint),
-    Channels([Paint; 3]),
+    Shade(RowShader),
+    Channels([RowShader; 3]),
     Slope([ShadePlane; 2]),
     Lit(LitPlane),
     Curved(CurvePlane),
@@ -63,7 +65,7 @@ enum Planes {
 /// A triangle and its look, ready to be painted row by row.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EffectPaint<'a> {
-    look: &'a Look<'a>,
+    look: &'a PixelPipeline<'a>,
     planes: Planes,
     texture: Option<TexturePlane>,
     fog: Option<ShadePlane>,
@@ -96,7 +98,11 @@ macro_rules! by_stages {
 type Piece = [u8; PIECE];
 
 /// The attributes of a triangle's corners from top to bottom, of one that is not degenerate.
-fn corners<'a>(triangle: &Ordered, vertices: &[Vertex; 3], attributes: &'a [Attributes; 3]) -> [&'a Attributes; 3] {
+fn corners<'a>(
+    triangle: &SortedTriangle,
+    vertices: &[Vertex; 3],
+    attributes: &'a [Attributes; 3],
+) -> [&'a Attributes; 3] {
     // No two corners of a triangle that has area are in one place.
     triangle.vertices.each_ref().map(|corner| {
         let same = |v: &Vertex| v.x() == corner.x() && v.y() == corner.y();
@@ -108,26 +114,28 @@ impl<'a> EffectPaint<'a> {
     /// Of a triangle that is not degenerate. `attributes` are in the order of `vertices`, from which
     /// `triangle` was made.
     pub(super) fn new(
-        triangle: &Ordered,
+        triangle: &SortedTriangle,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
-        look: &'a Look<'a>,
+        look: &'a PixelPipeline<'a>,
     ) -> Self {
         let corners = corners(triangle, vertices, attributes);
         let values = |value: &dyn Fn(&Attributes) -> U8F8| corners.map(|corner| i64::from(value(corner).to_bits()));
         let plane = |value: fn(&Attributes) -> U8F8| ShadePlane::of_values(triangle, values(&value));
-        let channels = |shading| {
-            Planes::Channels([0, 1, 2].map(|i| Paint::of_values(triangle, values(&|c| c.channels[i]), shading)))
+        let channels = |interpolation| {
+            Planes::Channels(
+                [0, 1, 2].map(|i| RowShader::of_values(triangle, values(&|c| c.channels[i]), interpolation)),
+            )
         };
         let planes = match (look.source, look.channels()) {
-            (Source::Lit(_) | Source::LitEvery(..), _) => Planes::Lit(LitPlane::new(triangle, corners)),
-            (Source::Curved(limits), channels) => {
+            (ShadeSource::Lit(_) | ShadeSource::LitEvery(..), _) => Planes::Lit(LitPlane::new(triangle, corners)),
+            (ShadeSource::Curved(limits), channels) => {
                 Planes::Curved(CurvePlane::new(triangle, corners, limits, if channels.is_some() { 3 } else { 1 }))
             }
-            (Source::Shaded(shading), None) => Planes::Shade(Paint::new(triangle, shading)),
-            (Source::Shaded(shading), Some(_)) => channels(shading),
-            (Source::NormalTable(_), Some(_)) => channels(Shading::default()),
-            (Source::NormalTable(_), None) => Planes::Slope([plane(|c| c.slope[0]), plane(|c| c.slope[1])]),
+            (ShadeSource::Shaded(interpolation), None) => Planes::Shade(RowShader::new(triangle, interpolation)),
+            (ShadeSource::Shaded(interpolation), Some(_)) => channels(interpolation),
+            (ShadeSource::NormalTable(_), Some(_)) => channels(Interpolation::default()),
+            (ShadeSource::NormalTable(_), None) => Planes::Slope([plane(|c| c.slope[0]), plane(|c| c.slope[1])]),
         };
         let texture =
             look.texture().map(|texture| TexturePlane::new(triangle, corners, texture.mapping, look.levels()));
@@ -142,7 +150,7 @@ impl<'a> EffectPaint<'a> {
         pixels: &mut [u8],
         depths: Option<(&mut [D], &DepthPlane)>,
         kernel: Kernel,
-        drawn: &mut Drawn,
+        drawn: &mut DrawStats,
     ) {
         by_stages!(self.look, |PLAIN, FOG, BLENDS| {
             self.pieces::<D, PLAIN, FOG, BLENDS>(row, pixels, depths, kernel, drawn)
@@ -157,7 +165,7 @@ impl<'a> EffectPaint<'a> {
         pixels: &mut [u8],
         mut depths: Option<(&mut [D], &DepthPlane)>,
         kernel: Kernel,
-        drawn: &mut Drawn,
+        drawn: &mut DrawStats,
     ) {
         let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
         let mut x = row.x0;
@@ -197,7 +205,7 @@ impl<'a> EffectPaint<'a> {
     }
 
     /// Counts what was done to so many pixels, whatever the depth test said of them.
-    fn count(&self, pixels: u32, drawn: &mut Drawn) {
+    fn count(&self, pixels: u32, drawn: &mut DrawStats) {
         let add = |on: bool, count: &mut u32| *count += if on { pixels } else { 0 };
         add(self.look.texture().is_some(), &mut drawn.textured);
         add(self.look.levels().is_some(), &mut drawn.mipmapped);
@@ -206,7 +214,7 @@ impl<'a> EffectPaint<'a> {
         add(self.look.blend().is_some(), &mut drawn.blended);
         add(self.look.channels().is_some(), &mut drawn.mixed);
         let by_table = matches!(self.planes, Planes::Slope(_));
-        add(by_table || matches!(self.look.source, Source::Lit(_)), &mut drawn.lit);
+        add(by_table || matches!(self.look.source, ShadeSource::Lit(_)), &mut drawn.lit);
     }
 
     /// The bytes from pixel `seed` on: shades, with their texture, or mixed.
@@ -223,7 +231,7 @@ impl<'a> EffectPaint<'a> {
                 let mut rows: Piece = [0; PIECE];
                 kernel.fill(piece, across.start(seed, row.y), across.step());
                 kernel.fill(&mut rows[..length], down.start(seed, row.y), down.step());
-                if let Source::NormalTable(table) = self.look.source {
+                if let ShadeSource::NormalTable(table) = self.look.source {
                     lookup(piece, &rows[..length], table);
                 }
             }
@@ -240,11 +248,11 @@ impl<'a> EffectPaint<'a> {
                     return self.mix(row, seed, channels, thresholds, piece);
                 }
                 match self.look.source {
-                    Source::Lit(lighting) => plane.points((seed, row.y), length, kernel, |pixels, points| {
+                    ShadeSource::Lit(lighting) => plane.points((seed, row.y), length, kernel, |pixels, points| {
                         let column = column + pixels.start;
                         to_bytes(&lighting.shades(points), thresholds, column, &mut piece[pixels]);
                     }),
-                    Source::LitEvery(apart, lighting) => {
+                    ShadeSource::LitEvery(apart, lighting) => {
                         let (knots, mut lit) = (Knots::new(row, seed, length, apart), [0; KNOTS]);
                         knots.light(plane, (seed, row.y), kernel, |first, points| {
                             lit[first..first + LANES].copy_from_slice(&lighting.shades(points));
@@ -281,12 +289,12 @@ impl<'a> EffectPaint<'a> {
     fn lit_channels(&self, plane: &LitPlane, (row, seed): (&Row, i32), length: usize, kernel: Kernel) -> [Piece; 3] {
         let mut channels = [[0; PIECE]; 3];
         match self.look.source {
-            Source::Lit(lighting) => plane.points((seed, row.y), length, kernel, |pixels, points| {
+            ShadeSource::Lit(lighting) => plane.points((seed, row.y), length, kernel, |pixels, points| {
                 for (shades, channel) in lighting.channels(points).iter().zip(&mut channels) {
                     to_bytes(shades, &HALVES[0], 0, &mut channel[pixels.clone()]);
                 }
             }),
-            Source::LitEvery(apart, lighting) => {
+            ShadeSource::LitEvery(apart, lighting) => {
                 let (knots, mut lit) = (Knots::new(row, seed, length, apart), [[0; KNOTS]; 3]);
                 knots.light(plane, (seed, row.y), kernel, |first, points| {
                     for (lit, shades) in lit.iter_mut().zip(lighting.channels(points)) {
@@ -342,7 +350,7 @@ fn write<D: Cell>(
     y: i32,
     depths: &mut Option<(&mut [D], &DepthPlane)>,
     keeps_depth: bool,
-    drawn: &mut Drawn,
+    drawn: &mut DrawStats,
 ) {
     let Some((depths, plane)) = depths else {
         pixels.copy_from_slice(piece);
@@ -366,13 +374,13 @@ fn write<D: Cell>(
 pub(crate) fn paint_row(
     vertices: &[Vertex; 3],
     attributes: &[Attributes; 3],
-    look: &Look<'_>,
+    look: &PixelPipeline<'_>,
     row: &Row,
     pixels: &mut [u8],
     kernel: Kernel,
-    drawn: &mut Drawn,
+    drawn: &mut DrawStats,
 ) {
-    let triangle = Ordered::new(vertices);
+    let triangle = SortedTriangle::new(vertices);
     let paint = EffectPaint::new(&triangle, vertices, attributes, look);
     paint.row::<u32>(row, pixels, None, kernel, drawn);
     paint.count((row.x1 - row.x0) as u32, drawn);
@@ -385,8 +393,8 @@ impl<D: Cell> Raster<'_, D> {
         &mut self,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
-        look: &Look<'_>,
-    ) -> Drawn {
+        look: &PixelPipeline<'_>,
+    ) -> DrawStats {
         self.draw_effects::<true>(vertices, attributes, look)
     }
 
@@ -396,8 +404,8 @@ impl<D: Cell> Raster<'_, D> {
         &mut self,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
-        look: &Look<'_>,
-    ) -> Drawn {
+        look: &PixelPipeline<'_>,
+    ) -> DrawStats {
         self.draw_effects::<false>(vertices, attributes, look)
     }
 
@@ -405,8 +413,8 @@ impl<D: Cell> Raster<'_, D> {
         &mut self,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
-        look: &Look<'_>,
-    ) -> Drawn {
+        look: &PixelPipeline<'_>,
+    ) -> DrawStats {
         by_stages!(look, |PLAIN, FOG, BLENDS| {
             self.draw_stages::<CLIPS, PLAIN, FOG, BLENDS>(vertices, attributes, look)
         })
@@ -417,9 +425,9 @@ impl<D: Cell> Raster<'_, D> {
         &mut self,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
-        look: &Look<'_>,
-    ) -> Drawn {
-        let triangle = Ordered::new(vertices);
+        look: &PixelPipeline<'_>,
+    ) -> DrawStats {
+        let triangle = SortedTriangle::new(vertices);
         if !PLAIN
             && !FOG
             && !BLENDS
@@ -428,7 +436,7 @@ impl<D: Cell> Raster<'_, D> {
         {
             return self.draw_small_lit::<CLIPS>(&triangle, (vertices, attributes), (look, lighting));
         }
-        let mut drawn = Drawn::default();
+        let mut drawn = DrawStats::default();
         let (mut paint, mut plane) = (None, None);
         let (width, clip) = (self.frame.width(), self.clip);
         let draw = |row: Row| {

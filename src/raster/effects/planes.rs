@@ -4,8 +4,8 @@
 use core::ops::Range;
 
 use super::level::{self, LevelPlane};
-use super::{Apart, Attributes, EVERY, PIECE, TextureLook, TextureMapping};
-use crate::raster::cover::{Ordered, Row};
+use super::{Attributes, EVERY, PIECE, SampleSpacing, TextureMapping, TextureStage};
+use crate::raster::cover::{Row, SortedTriangle};
 use crate::raster::hyperbolic::Linear;
 use crate::raster::paint::to_bytes;
 use crate::raster::weights::Weights;
@@ -14,8 +14,8 @@ use crate::span::hyperbolic::floor_quotient;
 use crate::span::lit::{LANES, Lanes, Points};
 use crate::span::texture::{Levels, Texels, fill_affine, fill_perspective};
 
-/// The most places in a piece that are lit for [`Source::LitEvery`], its end being one, and as many as are lit at once.
-pub(super) const KNOTS: usize = (PIECE / Apart::Four.pixels() + 1).next_multiple_of(LANES);
+/// The most places in a piece that are lit for [`ShadeSource::LitEvery`], its end being one, and as many as are lit at once.
+pub(super) const KNOTS: usize = (PIECE / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
 
 /// Texture coordinates over a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ enum Level {
 
 impl TexturePlane {
     pub(super) fn new(
-        triangle: &Ordered,
+        triangle: &SortedTriangle,
         corners: [&Attributes; 3],
         mapping: TextureMapping,
         levels: Option<Levels<'_>>,
@@ -65,7 +65,7 @@ impl TexturePlane {
     /// The texels from pixel `seed` on.
     pub(super) fn fill(
         &self,
-        look: &TextureLook<'_>,
+        look: &TextureStage<'_>,
         levels: Option<Levels<'_>>,
         row: &Row,
         seed: i32,
@@ -89,7 +89,7 @@ impl TexturePlane {
     fn fill_by_levels(
         &self,
         (plane, levels): (&LevelPlane, Levels<'_>),
-        look: &TextureLook<'_>,
+        look: &TextureStage<'_>,
         row: &Row,
         seed: i32,
         texels: &mut [u8],
@@ -184,7 +184,7 @@ pub(super) struct LitPlane {
 }
 
 impl LitPlane {
-    pub(super) fn new(triangle: &Ordered, corners: [&Attributes; 3]) -> Self {
+    pub(super) fn new(triangle: &SortedTriangle, corners: [&Attributes; 3]) -> Self {
         let values = [0, 1, 2].map(|k| {
             let depth = f64::from(triangle.vertices[k].depth().max(1));
             let [a, b, c, d, e, f] = corners[k].lit.map(|value| f64::from(value) * depth);
@@ -251,7 +251,7 @@ pub(super) struct Knots {
 impl Knots {
     /// Of so many pixels from `seed` on. Where the row ends inside of the piece, its last pixel is one, whatever the clip
     /// rectangle.
-    pub(super) fn new(row: &Row, seed: i32, pixels: usize, apart: Apart) -> Self {
+    pub(super) fn new(row: &Row, seed: i32, pixels: usize, apart: SampleSpacing) -> Self {
         let apart = apart.pixels();
         let mut places = [0; KNOTS];
         for (place, number) in places.iter_mut().zip(0..) {

@@ -1,13 +1,13 @@
 //! Small triangles that are lit at every pixel, and nothing else: a face of four pixels in three rows takes light once, not
 //! three times. The bytes are those of its rows, one by one: each pixel's point is made from its own row's first.
 
-use super::look::{Lighting, Look, Source};
+use super::pipeline::{Lighting, PixelPipeline, ShadeSource};
 use super::planes::LitPlane;
 use super::{Attributes, HALVES, write};
-use crate::raster::cover::{Ordered, Row};
+use crate::raster::cover::{Row, SortedTriangle};
 use crate::raster::depth::{Cell, DepthPlane};
 use crate::raster::paint::to_bytes;
-use crate::raster::triangle::{Drawn, Raster};
+use crate::raster::triangle::{DrawStats, Raster};
 use crate::raster::vertex::Vertex;
 use crate::span::Kernel;
 use crate::span::lit::{LANES, Lanes};
@@ -83,11 +83,11 @@ impl Waiting {
     }
 }
 
-impl Look<'_> {
+impl PixelPipeline<'_> {
     /// What lights its pixels, if nothing else is done to them but dithering.
     pub(super) fn lit_alone(&self) -> Option<&dyn Lighting> {
         match self.source {
-            Source::Lit(lighting) if self.channels().is_none() && self.texture().is_none() => Some(lighting),
+            ShadeSource::Lit(lighting) if self.channels().is_none() && self.texture().is_none() => Some(lighting),
             _ => None,
         }
     }
@@ -98,11 +98,11 @@ impl<D: Cell> Raster<'_, D> {
     #[inline(never)]
     pub(super) fn draw_small_lit<const CLIPS: bool>(
         &mut self,
-        triangle: &Ordered,
+        triangle: &SortedTriangle,
         (vertices, attributes): (&[Vertex; 3], &[Attributes; 3]),
-        (look, lighting): (&Look<'_>, &dyn Lighting),
-    ) -> Drawn {
-        let mut drawn = Drawn::default();
+        (look, lighting): (&PixelPipeline<'_>, &dyn Lighting),
+    ) -> DrawStats {
+        let mut drawn = DrawStats::default();
         let (width, clip, kernel) = (self.frame.width(), self.clip, self.kernel);
         let mut prepared = None;
         let prepare = || {
@@ -135,8 +135,8 @@ impl<D: Cell> Raster<'_, D> {
         &mut self,
         (lit, plane): (&LitPlane, &DepthPlane),
         waiting: &mut Waiting,
-        (look, lighting): (&Look<'_>, &dyn Lighting),
-        drawn: &mut Drawn,
+        (look, lighting): (&PixelPipeline<'_>, &dyn Lighting),
+        drawn: &mut DrawStats,
     ) {
         if !waiting.pixels.is_multiple_of(LANES) {
             waiting.light(lit, lighting, self.kernel);

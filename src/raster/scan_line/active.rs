@@ -1,20 +1,20 @@
 //! The active list: the faces that the row at hand crosses, each with its two edges.
 
 use super::Key;
-use crate::raster::cover::{Ordered, point};
+use crate::raster::cover::{SortedTriangle, point};
 use crate::raster::depth::DepthPlane;
 use crate::raster::edge::Edge;
 use crate::raster::frame::Rect;
-use crate::raster::paint::Paint;
-use crate::raster::shading::Shading;
+use crate::raster::interpolation::Interpolation;
+use crate::raster::paint::RowShader;
 use crate::raster::vertex::Vertex;
 
 /// A face on its way down the rows: the two edges that the row at hand crosses. Opaque; the caller
 /// lends a slice of them ([`Scratch`](super::Scratch)).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EdgePair {
-    triangle: Ordered,
-    pub(super) shading: Shading,
+    triangle: SortedTriangle,
+    pub(super) interpolation: Interpolation,
     /// Its place among the faces: of equal depths the first has the pixel.
     pub(super) order: usize,
     /// From the top to the bottom.
@@ -35,26 +35,26 @@ pub struct EdgePair {
     pub(super) last: i32,
     /// Whether it hides the background wherever it is: the depths of its vertices are above 0.
     pub(super) hides_background: bool,
-    paint: Option<Paint>,
+    paint: Option<RowShader>,
     depth: Option<DepthPlane>,
     /// Of a place that no face has: the next one.
     next_free: usize,
 }
 
 impl EdgePair {
-    fn new(order: usize, vertices: &[Vertex; 3], shading: Shading, y: i32, clip: Rect) -> Self {
-        let triangle = Ordered::new(vertices);
+    fn new(order: usize, vertices: &[Vertex; 3], interpolation: Interpolation, y: i32, clip: Rect) -> Self {
+        let triangle = SortedTriangle::new(vertices);
         let [top, middle, bottom] = triangle.vertices.each_ref().map(point);
         let split = triangle.vertices[1].y().first_centre();
         let short = if y < split { (top, middle) } else { (middle, bottom) };
         Self {
             triangle,
-            shading,
+            interpolation,
             order,
             long: Edge::at_row(top, bottom, y),
             short: Edge::at_row(short.0, short.1, y),
             split,
-            // As in `Ordered::extent`.
+            // As in `SortedTriangle::extent`.
             end: triangle.vertices[2].y().first_centre().min(clip.y1 as i32),
             hides_background: vertices.iter().all(|v| v.depth() > 0),
             ..Self::default()
@@ -91,8 +91,8 @@ impl EdgePair {
 
     /// Its shades, worked out when it first has a pixel.
     #[inline]
-    pub(super) fn paint(&mut self) -> &Paint {
-        self.paint.get_or_insert_with(|| Paint::new(&self.triangle, self.shading))
+    pub(super) fn paint(&mut self) -> &RowShader {
+        self.paint.get_or_insert_with(|| RowShader::new(&self.triangle, self.interpolation))
     }
 
     /// Its depths, worked out when it first meets another face.
@@ -145,11 +145,11 @@ impl<'a> List<'a> {
     }
 
     /// Takes in the faces that begin at row `y`. `coming` holds their keys, and is used up.
-    pub(super) fn enter(&mut self, y: i32, coming: &mut [u64], faces: &[([Vertex; 3], Shading)]) {
+    pub(super) fn enter(&mut self, y: i32, coming: &mut [u64], faces: &[([Vertex; 3], Interpolation)]) {
         self.y = y;
         for key in &mut *coming {
             let order = Key(*key).number();
-            let (vertices, shading) = &faces[order];
+            let (vertices, interpolation) = &faces[order];
             let slot = self.free;
             if slot == self.used {
                 self.used += 1;
@@ -158,7 +158,7 @@ impl<'a> List<'a> {
                 self.free = self.pairs[slot].next_free;
             }
             let pair = &mut self.pairs[slot];
-            *pair = EdgePair::new(order, vertices, *shading, y, self.clip);
+            *pair = EdgePair::new(order, vertices, *interpolation, y, self.clip);
             pair.cross(self.clip, self.frame_width);
             *key = Key::new(pair.x0, slot).0;
         }

@@ -15,7 +15,7 @@
 //! the start that the triangle alone would have. It needs no depth for every pixel and paints no
 //! pixel that another face hides; a face that no other overlaps needs no depth at all.
 //!
-//! [`GouraudPeriod`](Shading::GouraudPeriod), whose triangles have edges of their own, gets exact cover here like all
+//! [`GouraudVintage`](Interpolation::GouraudPeriod), whose triangles have edges of their own, gets exact cover here like all
 //! others, and its own [shades](super::period) on it; so it alone gives other frames than the depth buffer.
 //!
 //! | file | what |
@@ -36,10 +36,10 @@ mod nearest;
 use core::fmt;
 
 pub use self::active::EdgePair;
-use super::cover::{Ordered, Row};
+use super::cover::{Row, SortedTriangle};
 use super::depth::Cell;
-use super::shading::Shading;
-use super::triangle::{Drawn, Raster};
+use super::interpolation::Interpolation;
+use super::triangle::{DrawStats, Raster};
 use super::vertex::Vertex;
 use crate::span::Kernel;
 
@@ -144,12 +144,12 @@ impl<D: Cell> Raster<'_, D> {
     ///
     /// ```
     /// use mode13h::fixed::{I24F8, U8F8};
-    /// use mode13h::raster::{Frame, Raster, Shading, Vertex, scan_line};
+    /// use mode13h::raster::{Frame, Raster, Interpolation, Vertex, scan_line};
     ///
     /// let at = |x, y, depth| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::default(), depth);
     /// let faces = [
-    ///     ([at(0, 0, 500)?, at(4, 0, 500)?, at(0, 4, 500)?], Shading::Flat(1)),
-    ///     ([at(4, 0, 900)?, at(4, 4, 900)?, at(0, 0, 100)?], Shading::Flat(2)), // through the first
+    ///     ([at(0, 0, 500)?, at(4, 0, 500)?, at(0, 4, 500)?], Interpolation::Flat(1)),
+    ///     ([at(4, 0, 900)?, at(4, 4, 900)?, at(0, 0, 100)?], Interpolation::Flat(2)), // through the first
     /// ];
     /// let mut bytes = [0; 4 * 4];
     /// let mut list = [0; 2 * scan_line::Scratch::LIST_EACH];
@@ -163,7 +163,11 @@ impl<D: Cell> Raster<'_, D> {
     ///
     /// # Errors
     /// `scratch` is too small for so many faces. Nothing is drawn then.
-    pub fn scan_line(&mut self, faces: &[([Vertex; 3], Shading)], scratch: Scratch<'_>) -> Result<Drawn, ScratchError> {
+    pub fn scan_line(
+        &mut self,
+        faces: &[([Vertex; 3], Interpolation)],
+        scratch: Scratch<'_>,
+    ) -> Result<DrawStats, ScratchError> {
         self.scan_line_with(faces, scratch, |_, _, _, _, _| false)
     }
 
@@ -175,10 +179,10 @@ impl<D: Cell> Raster<'_, D> {
     /// As [`scan_line`](Self::scan_line).
     pub fn scan_line_with(
         &mut self,
-        faces: &[([Vertex; 3], Shading)],
+        faces: &[([Vertex; 3], Interpolation)],
         scratch: Scratch<'_>,
-        mut paint: impl FnMut(usize, &Row, &mut [u8], Kernel, &mut Drawn) -> bool,
-    ) -> Result<Drawn, ScratchError> {
+        mut paint: impl FnMut(usize, &Row, &mut [u8], Kernel, &mut DrawStats) -> bool,
+    ) -> Result<DrawStats, ScratchError> {
         let count = faces.len();
         let Scratch { list, pairs } = scratch;
         let room = pairs.len().min(list.len() / Scratch::LIST_EACH);
@@ -189,14 +193,14 @@ impl<D: Cell> Raster<'_, D> {
         let (active, open) = rest.split_at_mut(count);
         let mut begun = 0;
         for (number, (vertices, _)) in faces.iter().enumerate() {
-            if let Some(rows) = Ordered::new(vertices).extent(self.clip) {
+            if let Some(rows) = SortedTriangle::new(vertices).extent(self.clip) {
                 coming[begun] = Key::new(rows.start, number).0;
                 begun += 1;
             }
         }
         let coming = &mut coming[..begun];
         coming.sort_unstable();
-        let mut sweep = Sweep { drawn: Drawn::default(), run: None };
+        let mut sweep = Sweep { drawn: DrawStats::default(), run: None };
         let mut list = active::List::new(active, pairs, self.clip, self.frame.width());
         let mut next = 0;
         while let Some(y) = list.row().or_else(|| coming.get(next).map(|key| Key(*key).place())) {
@@ -211,9 +215,9 @@ impl<D: Cell> Raster<'_, D> {
 }
 
 /// Paints a face's row otherwise than its shading says, or returns `false`.
-trait Painter: FnMut(usize, &Row, &mut [u8], Kernel, &mut Drawn) -> bool {}
+trait Painter: FnMut(usize, &Row, &mut [u8], Kernel, &mut DrawStats) -> bool {}
 
-impl<F: FnMut(usize, &Row, &mut [u8], Kernel, &mut Drawn) -> bool> Painter for F {}
+impl<F: FnMut(usize, &Row, &mut [u8], Kernel, &mut DrawStats) -> bool> Painter for F {}
 
 /// The pixels from `x0` to `x1` of a row that one face has.
 #[derive(Clone, Copy)]
@@ -225,7 +229,7 @@ struct Run {
 
 /// What goes along a row from left to right.
 struct Sweep {
-    drawn: Drawn,
+    drawn: DrawStats,
     /// Not yet painted, because the next segment may be the same face's.
     run: Option<Run>,
 }

@@ -40,7 +40,7 @@ impl AutomaticPalette {
     /// or one with the same objects; objects with other numbers of materials stay as they are. Its wish for such a palette
     /// is met.
     pub fn apply(&self, scene: &mut Scene) {
-        scene.wishes.auto_palette = false;
+        scene.preferences.auto_palette = false;
         if let Some(color) = scene.background_color {
             scene.background = self.palette.nearest(color);
         }

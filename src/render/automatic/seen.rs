@@ -13,7 +13,7 @@ use super::{POSES, full_light};
 use crate::light::{Blend, Material, RampChoice};
 use crate::palette::Ramp;
 use crate::render::{RenderError, Renderer};
-use crate::scene::{Scene, Wishes};
+use crate::scene::{Preferences, Scene};
 use crate::vga::Vga;
 
 /// What is seen of a material over a round.
@@ -74,7 +74,7 @@ impl Picture {
         scene.fog = None;
         scene.background = 0;
         scene.background_color = None;
-        scene.wishes = Wishes { dither: false, ..scene.wishes };
+        scene.preferences = Preferences { dither: false, ..scene.preferences };
         let materials = scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials);
         for (number, material) in materials.enumerate() {
             (material.color, material.highlight) = ([1.0; 3], [1.0; 3]);
@@ -154,10 +154,11 @@ impl Numbers {
                 material.ramp = RampChoice::Entries(Ramp::single(byte));
                 become_plain(material, through);
             });
-            // In the dark, by the cheapest rung.
+            // In the dark, by the cheapest shading.
             let scene = picture.scene_mut();
             scene.lights_mut().iter_mut().for_each(|light| *light = light.with_intensity(0.0));
-            scene.wishes = Wishes { hidden_surfaces: scene.wishes.hidden_surfaces, ..Wishes::default() };
+            scene.preferences =
+                Preferences { hidden_surfaces: scene.preferences.hidden_surfaces, ..Preferences::default() };
             picture
         };
         Self { bytes: places.map(picture).collect(), found: vec![None; Vga::SHOWN] }

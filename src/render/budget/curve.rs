@@ -1,5 +1,5 @@
 //! Faces on which light is near enough to a quadratic function of the screen, through the light at six points: the corners
-//! and the middles of the edges (see `raster::effects::Source::Curved`).
+//! and the middles of the edges (see `raster::effects::ShadeSource::Curved`).
 //!
 //! Whether it is, light at a grid of points says, which divides each edge on the screen in n. With f the light, q the
 //! quadratic function, and off the greatest |f − q| at these points, they differ in any of the n² parts by no more than
@@ -31,11 +31,11 @@ use glam::Vec3;
 use super::light::OneLight;
 use super::{Budget, EXACT, Question};
 use crate::fixed::U8F8;
-use crate::light::Answer;
+use crate::light::Reflectance;
 use crate::raster::Vertex;
 use crate::raster::effects::{Attributes, Limits};
 use crate::render::face::Faces;
-use crate::render::paint::Paint;
+use crate::render::paint::SurfaceMaterial;
 use crate::span::Kernel;
 use crate::span::lit::{LANES, Lanes, Points};
 
@@ -44,7 +44,7 @@ use crate::span::lit::{LANES, Lanes, Points};
 const WORTH_CURVE: f32 = 16.0;
 
 /// Pixels for each point of the finer grids, at least, for it to be worth it. (The spheres of `phong` within 2 shades: at 10
-/// 1.04 of the time of the rung, at 5 0.99, at 3 0.95; a grid that is lit in vain is dearer the finer it is.)
+/// 1.04 of the time of the shading, at 5 0.99, at 3 0.95; a grid that is lit in vain is dearer the finer it is.)
 const PIXELS_A_POINT: f32 = 4.0;
 
 /// What may be said of the light between the points of a grid for it to be worth lighting, of what is allowed. (With 0.5 the
@@ -103,7 +103,7 @@ struct OnScreen<'a> {
     normals: [Vec3; 3],
     positions: [Vec3; 3],
     depths: [f32; 3],
-    answer: &'a Answer,
+    answer: &'a Reflectance,
     /// Whether its light goes on below the horizon.
     below: bool,
     kernel: Kernel,
@@ -320,10 +320,10 @@ impl Faces<'_> {
 }
 
 /// Between which shades quadratic ones are held: that without light, as no light takes any away, and the last.
-pub(in crate::render) fn limits(paint: &Paint, channels: bool) -> [Limits; 3] {
+pub(in crate::render) fn limits(paint: &SurfaceMaterial, channels: bool) -> [Limits; 3] {
     if channels {
-        let Answer { ambient, color, .. } = paint.answer;
-        let least = Paint::channels(color.map(|channel| ambient * channel));
+        let Reflectance { ambient, color, .. } = paint.answer;
+        let least = SurfaceMaterial::channels(color.map(|channel| ambient * channel));
         return least.map(|least| Limits { least, most: U8F8::MAX_VERTEX });
     }
     // A ramp ends at entry 255 at most.

@@ -4,10 +4,10 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use crate::raster::effects::Apart;
-use crate::render::face::LitAt;
+use crate::raster::effects::SampleSpacing;
+use crate::render::face::LightSampling;
 use crate::render::sift;
-use crate::scene::Rung;
+use crate::scene::Shading;
 
 /// What is decided for a triangle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -21,17 +21,17 @@ pub(in crate::render) enum Choice {
     /// Quadratic on the screen, through light at six points.
     Curved,
     /// Light at pixels of a row that lie apart, linear between.
-    PhongEvery(Apart),
+    PhongEvery(SampleSpacing),
     Phong,
 }
 
 impl Choice {
-    pub(in crate::render) const fn rung(self) -> Rung {
+    pub(in crate::render) const fn shading(self) -> Shading {
         match self {
-            Self::Flat => Rung::Flat,
-            Self::Float => Rung::Float,
-            Self::Phong | Self::PhongEvery(_) | Self::Curved => Rung::Phong,
-            Self::Linear | Self::Unknown => Rung::Gouraud88Reseeded,
+            Self::Flat => Shading::Flat,
+            Self::Float => Shading::Float,
+            Self::Phong | Self::PhongEvery(_) | Self::Curved => Shading::Phong,
+            Self::Linear | Self::Unknown => Shading::Gouraud88Reseeded,
         }
     }
 }
@@ -43,11 +43,11 @@ impl Choice {
     }
 
     /// Where it takes light.
-    pub(in crate::render) fn lit_at(self) -> LitAt {
+    pub(in crate::render) fn sampling(self) -> LightSampling {
         match self {
-            Self::PhongEvery(apart) => LitAt::Every(apart),
-            Self::Curved => LitAt::SixPoints,
-            _ => LitAt::Pixels,
+            Self::PhongEvery(apart) => LightSampling::Every(apart),
+            Self::Curved => LightSampling::SixPoints,
+            _ => LightSampling::Pixels,
         }
     }
 }
@@ -152,24 +152,24 @@ impl Decided {
     }
 }
 
-/// How many triangles went to which rung, and why.
+/// How many triangles went to which shading, and why.
 pub(in crate::render) fn shares(decided: &Decided) -> String {
     let kinds = [
         (Choice::Flat, "one shade at their corners, or near enough"),
         (Choice::Linear, "light is linear enough on them"),
         (Choice::Float, "so it is, but not on the screen"),
         (Choice::Curved, "it is quadratic on the screen"),
-        (Choice::PhongEvery(Apart::Sixteen), "at every 16th pixel of a row, and so it is between"),
-        (Choice::PhongEvery(Apart::Eight), "at every 8th"),
-        (Choice::PhongEvery(Apart::Four), "at every 4th"),
+        (Choice::PhongEvery(SampleSpacing::Sixteen), "at every 16th pixel of a row, and so it is between"),
+        (Choice::PhongEvery(SampleSpacing::Eight), "at every 8th"),
+        (Choice::PhongEvery(SampleSpacing::Four), "at every 4th"),
         (Choice::Phong, "it is not known to be"),
     ];
     let (mut text, mut unseen) = (String::new(), decided.triangles());
-    for (choice, why) in kinds {
+    for (choice, reason) in kinds {
         let count = decided.count(choice);
         unseen -= count;
         if count > 0 {
-            text += &format!("{count} {} ({why}), ", choice.rung());
+            text += &format!("{count} {} ({reason}), ", choice.shading());
         }
     }
     text + &format!("{unseen} not drawn")

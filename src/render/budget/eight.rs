@@ -19,7 +19,7 @@ use super::corners::ways;
 use super::decided::Bodies;
 use super::light::{APART, FROM_ONE, clamp_error, narrow};
 use super::{Budget, CURVATURE, EXACT, LINEAR, brightest, highlight, parts};
-use crate::light::{Answer, Lights};
+use crate::light::{Lights, Reflectance};
 use crate::render::face::Faces;
 use crate::span::Kernel;
 use crate::span::lit::{LANES, Lanes};
@@ -36,7 +36,7 @@ pub(super) type Vectors = [Lanes<f32>; 3];
 
 pub(super) const NOUGHT: Lanes<f32> = [0.0; LANES];
 
-/// Eight faces, on the side that is seen. What there is fewer of is nought.
+/// Eight faces, on the side that is seen. What there is fewer of is zero.
 pub(super) struct Eight {
     /// Of each corner.
     normals: [Vectors; 3],
@@ -58,7 +58,7 @@ pub(in crate::render) struct Looked {
 /// The light on a surface.
 pub(super) struct Falling<'a> {
     lights: Lights<'a>,
-    answer: &'a Answer,
+    answer: &'a Reflectance,
     channels: bool,
     /// In shades.
     kd: f32,
@@ -558,7 +558,7 @@ mod tests {
             let (position, intensity, channels, inverse_square) = lamp;
             let lamps = [LampBeam { position, intensity, channels, inverse_square }];
             let (color, highlight) = ([0.2, 0.5, 1.0], [1.0; 3]);
-            let answer = Answer {
+            let answer = Reflectance {
                 ambient: 0.1, diffuse: 0.6, specular, shininess: f64::from(shininess), color, highlight,
             };
             let k = 1.0 - 2.0 / shininess;

@@ -1,6 +1,6 @@
-//! The error budget: for each triangle the cheapest rung that is known to keep within it.
+//! The error budget: for each triangle the cheapest shading that is known to keep within it.
 //!
-//! What the light at a point of a triangle should be, and what a rung makes of it, differ for three reasons, each of
+//! What the light at a point of a triangle should be, and what a shading makes of it, differ for three reasons, each of
 //! which is bounded here from normals, lights and vertices:
 //!
 //! - **The model.** A linear shade is that of the sum N = Σ λᵢnᵢ of the vertices' normals; light at the point takes N
@@ -66,10 +66,10 @@ use self::light::{Towards, narrow};
 pub(super) use self::question::Question;
 pub(super) use self::settle::Vain;
 use super::lit::LitVertices;
-use super::paint::Paint;
+use super::paint::SurfaceMaterial;
 use super::sift;
-use super::vertex::{Extra, Geometry};
-use crate::light::{Answer, Beam, LampBeam, Lights};
+use super::vertex::{Geometry, VertexAttributes};
+use crate::light::{Beam, LampBeam, Lights, Reflectance};
 use crate::mesh::Mesh;
 use crate::scene::Shared;
 use crate::span::Kernel;
@@ -100,7 +100,7 @@ pub(super) struct Lit<'a> {
     /// How near it comes, along the view.
     pub(super) nearest: f64,
     pub(super) lights: &'a Lights<'a>,
-    pub(super) paints: &'a [Paint],
+    pub(super) paints: &'a [SurfaceMaterial],
     pub(super) channels: bool,
     pub(super) kernel: Kernel,
 }
@@ -144,7 +144,7 @@ pub(super) struct Budget {
     /// What lights it, and what it answers: what bodies' errors are known for.
     suns: Vec<Beam>,
     known_lamps: Vec<LampBeam>,
-    answers: Vec<Answer>,
+    answers: Vec<Reflectance>,
     in_color: bool,
     /// Whether no light and no material takes light away.
     adds: bool,
@@ -316,7 +316,7 @@ impl Budget {
     /// Marks the object's vertices with the lights that they see, and whether their shades are clamped on either side: what
     /// clusters ask of them. Of three channels, `extras` has the shades.
     #[inline(never)]
-    pub(super) fn mark(&self, object: &Lit<'_>, lit: &mut LitVertices, extras: &[Extra]) {
+    pub(super) fn mark(&self, object: &Lit<'_>, lit: &mut LitVertices, extras: &[VertexAttributes]) {
         let Lit { geometry, .. } = *object;
         if self.is_linear_throughout() || self.by_cones {
             return;
@@ -420,7 +420,7 @@ impl Budget {
             + self.strengths.capacity() * size_of::<Strength>()
             + self.suns.capacity() * size_of::<Beam>()
             + self.known_lamps.capacity() * size_of::<LampBeam>()
-            + self.answers.capacity() * size_of::<Answer>()
+            + self.answers.capacity() * size_of::<Reflectance>()
     }
 }
 
@@ -439,11 +439,11 @@ fn faint_from(strength: f32, shininess: f32, limit: f32) -> f32 {
 }
 
 /// Whether none takes light away.
-fn adds(lights: &Lights<'_>, paints: &[Paint]) -> bool {
+fn adds(lights: &Lights<'_>, paints: &[SurfaceMaterial]) -> bool {
     let is_light = |intensity: f32, channels: [f32; 3]| intensity >= 0.0 && channels.iter().all(|c| *c >= 0.0);
     lights.suns.iter().all(|sun| is_light(sun.intensity, sun.channels))
         && lights.lamps.iter().all(|lamp| is_light(lamp.intensity, lamp.channels))
-        && paints.iter().all(|Paint { answer: of, .. }| {
+        && paints.iter().all(|SurfaceMaterial { answer: of, .. }| {
             let shares = [of.diffuse, of.specular].into_iter().chain(of.color).chain(of.highlight);
             shares.into_iter().all(|share| share >= 0.0)
         })
@@ -455,7 +455,7 @@ fn brightest(intensity: f32, channels: [f32; 3], in_color: bool) -> f32 {
 }
 
 /// A light's intensity on each channel, as much of it as a body gives back; of one channel the first.
-fn parts(answer: &Answer, intensity: f32, channels: [f32; 3], in_color: bool) -> [f32; 3] {
+fn parts(answer: &Reflectance, intensity: f32, channels: [f32; 3], in_color: bool) -> [f32; 3] {
     if !in_color {
         return [intensity.abs(), 0.0, 0.0];
     }
@@ -467,7 +467,7 @@ fn parts(answer: &Answer, intensity: f32, channels: [f32; 3], in_color: bool) ->
 }
 
 /// The highlight's strength in shades, and its exponent.
-fn highlight(paint: &Paint, in_color: bool) -> (f32, f32) {
+fn highlight(paint: &SurfaceMaterial, in_color: bool) -> (f32, f32) {
     let color = if in_color { paint.answer.highlight.into_iter().fold(0.0, f64::max) } else { 1.0 };
     ((paint.answer.specular * color).abs() as f32 * 255.0, paint.answer.shininess as f32)
 }

@@ -7,7 +7,7 @@ use super::light::{OneLight, Towards, narrow};
 use super::{Budget, EXACT, LINEAR, brightest, highlight, parts};
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
-use crate::raster::effects::Apart;
+use crate::raster::effects::SampleSpacing;
 use crate::render::face::Faces;
 use crate::render::lit::LitVertices;
 use crate::render::within::WORTH_SAMPLES;
@@ -58,7 +58,7 @@ pub(in crate::render) struct Question<'a> {
 }
 
 impl Budget {
-    /// The cheapest rung of a face that suns light, all that it sees from each of its corners, and whose shades are
+    /// The cheapest shading of a face that suns light, all that it sees from each of its corners, and whose shades are
     /// not clamped, where that is known at once. The corners are given on the side that is seen.
     #[inline(always)]
     pub(in crate::render) fn decide_at_once(
@@ -132,7 +132,7 @@ impl Question<'_> {
 }
 
 impl Faces<'_> {
-    /// The cheapest rung that keeps within the budget.
+    /// The cheapest shading that keeps within the budget.
     pub(in crate::render) fn cheapest_within(
         &self,
         budget: &Budget,
@@ -206,14 +206,14 @@ impl Faces<'_> {
         } else if self.is_quadratic(budget, question) {
             Choice::Curved
         } else {
-            let linear = |apart: &Apart| self.is_linear_between(budget, question, clamped, *apart);
-            Apart::ALL.into_iter().rev().find(linear).map_or(Choice::Phong, Choice::PhongEvery)
+            let linear = |apart: &SampleSpacing| self.is_linear_between(budget, question, clamped, *apart);
+            SampleSpacing::ALL.into_iter().rev().find(linear).map_or(Choice::Phong, Choice::PhongEvery)
         }
     }
 
     /// Whether light is linear enough between two pixels of a row that are so far apart.
     #[inline(never)]
-    fn is_linear_between(&self, budget: &Budget, question: &Question<'_>, clamped: bool, apart: Apart) -> bool {
+    fn is_linear_between(&self, budget: &Budget, question: &Question<'_>, clamped: bool, apart: SampleSpacing) -> bool {
         // At most 16.
         let ((far, near), width, apart) = (question.depths(), question.width(), apart.pixels() as f32);
         if far == 0 || width < WORTH_KNOTS.max(1.5 * apart) {

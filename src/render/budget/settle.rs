@@ -203,7 +203,7 @@ impl Faces<'_> {
         all
     }
 
-    /// The shades of a face's corners, of each channel, or the one; the others are nought.
+    /// The shades of a face's corners, of each channel, or the one; the others are zero.
     #[inline]
     pub(in crate::render) fn corner_shades(&self, indices: [u32; 3], turned: bool) -> [[u16; 3]; 3] {
         if self.channels {

@@ -4,7 +4,7 @@ use core::arch::asm;
 use core::mem::offset_of;
 
 use super::listed::{BEYOND, Listed};
-use super::{MOST, MOST_LOOKED_AT, Sifted};
+use super::{MOST, Sifted, TINY_SIDE};
 use crate::raster::batch::numbered::{Place, TURNED};
 
 /// Faces at a time.
@@ -41,7 +41,7 @@ static CONSTANTS: Constants = {
         beyond: Place::BEYOND,
         before_centre: 127,
         half: 128,
-        looked_at: MOST_LOOKED_AT,
+        looked_at: TINY_SIDE,
         most: i16::MAX as i32,
         minus_one: -1,
         right: 0x0100_0000,
@@ -260,7 +260,7 @@ unsafe fn sift_sixteen(
             "vpmaddwd   zmm20, zmm17, zmm25",
             "vpmaddwd   zmm21, zmm18, zmm30",
             "vpmaddwd   zmm22, zmm19, zmm31",
-            "vpbroadcastd zmm16, dword ptr [{c} + {MOST_RIGHT}]",
+            "vpbroadcastd zmm16, dword ptr [{c} + {MAX_RIGHT}]",
             "vpbroadcastd zmm23, dword ptr [{c} + {MINUS_ONE}]",
             // Up, or level and to the right.
             "vpcmpd     k6, zmm17, zmm16, 2",
@@ -323,7 +323,7 @@ unsafe fn sift_sixteen(
             BEFORE_CENTRE = const offset_of!(Constants, before_centre),
             HALF = const offset_of!(Constants, half),
             LOOKED_AT = const offset_of!(Constants, looked_at),
-            MOST_RIGHT = const offset_of!(Constants, most),
+            MAX_RIGHT = const offset_of!(Constants, most),
             MINUS_ONE = const offset_of!(Constants, minus_one),
             RIGHT = const offset_of!(Constants, right),
             DOWN = const offset_of!(Constants, down),

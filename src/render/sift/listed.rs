@@ -8,17 +8,17 @@ use crate::span::Kernel;
 /// Faces that are written beyond the last, and are none.
 pub(super) const BEYOND: usize = 16;
 /// Less than a batch, and those of one more time.
-const ROOM: usize = Batch::CAPACITY + MOST + BEYOND;
+const CAPACITY: usize = Batch::CAPACITY + MOST + BEYOND;
 
 /// Numbers of faces, with [`TURNED`] of those whose back is seen.
 pub(crate) struct Listed {
-    pub(super) numbers: [u32; ROOM],
+    pub(super) numbers: [u32; CAPACITY],
     pub(super) count: usize,
 }
 
 impl Listed {
     pub(crate) const fn new() -> Self {
-        Self { numbers: [0; ROOM], count: 0 }
+        Self { numbers: [0; CAPACITY], count: 0 }
     }
 
     /// Puts those of 64 faces behind the others whose bits are set, from number `first` on. Only if there is no whole batch.

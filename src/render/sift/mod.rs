@@ -89,7 +89,7 @@ impl Sifted {
         let centres = |a: i32, b: i32, c: i32| ((a.min(b).min(c) + 127) >> 8, (a.max(b).max(c) + 127) >> 8);
         let ((column, end_column), (row, end_row)) = (centres(a.0, b.0, c.0), centres(a.1, b.1, c.1));
         let mut covers = (column.max(left) < end_column.min(right)) & (row.max(top) < end_row.min(bottom));
-        if (end_column - column <= MOST_LOOKED_AT) & (end_row - row <= MOST_LOOKED_AT) {
+        if (end_column - column <= TINY_SIDE) & (end_row - row <= TINY_SIDE) {
             let from_first = |(x, y): (i32, i32)| (x - column * 256 - 128, y - row * 256 - 128);
             covers &= covers_one_of_four(from_first(a), from_first(b), from_first(c));
         }
@@ -98,7 +98,7 @@ impl Sifted {
 }
 
 /// The longer side, in pixels, of the box of a face whose pixels are looked at one by one.
-const MOST_LOOKED_AT: i32 = 2;
+const TINY_SIDE: i32 = 2;
 
 /// Whether a triangle has one of four pixels: that at the origin, the next, and the two below. Of corners less than
 /// 1,024 units away.
@@ -125,16 +125,16 @@ mod tests {
     use super::*;
     use crate::fixed::{I24F8, U8F8};
     use crate::raster::clip::doubled_area;
-    use crate::raster::{Frame, Raster, Shading, Vertex};
+    use crate::raster::{Frame, Interpolation, Raster, Vertex};
     use proptest::prelude::*;
 
-    const MOST_UNITS: i32 = Vertex::GUARD_BAND;
+    const MAX_UNITS: i32 = Vertex::GUARD_BAND;
 
     fn place() -> impl Strategy<Value = Place> {
         let near = (-300_i32..9_000, -300_i32..9_000);
         let on_centres = (-2_i32..34, -2_i32..34).prop_map(|(x, y)| (x * 256 + 128, y * 256 + 128));
-        let far = (-MOST_UNITS..=MOST_UNITS, -MOST_UNITS..=MOST_UNITS);
-        let end = prop::sample::select(vec![-MOST_UNITS, MOST_UNITS, 0]);
+        let far = (-MAX_UNITS..=MAX_UNITS, -MAX_UNITS..=MAX_UNITS);
+        let end = prop::sample::select(vec![-MAX_UNITS, MAX_UNITS, 0]);
         let ends = (end.clone(), end);
         let tiny = (2_000_i32..2_800, 2_000_i32..2_800);
         let on_halves = (15_i32..23, 15_i32..23).prop_map(|(x, y)| (x * 128, y * 128));
@@ -185,7 +185,7 @@ mod tests {
                 });
                 let area = doubled_area(&vertices);
                 prop_assert_eq!((is(front), is(back)), (area < 0, area > 0));
-                let drawn = raster.triangle(&vertices, Shading::Flat(1));
+                let drawn = raster.triangle(&vertices, Interpolation::Flat(1));
                 if culls && area >= 0 {
                     prop_assert!(!is(covers));
                     continue;
@@ -197,7 +197,7 @@ mod tests {
                     let centres = vertices.each_ref().map(|v| units(v).first_centre());
                     centres.iter().max().zip(centres.iter().min()).map(|(max, min)| max - min)
                 };
-                let is_tiny = centres(Vertex::x) <= Some(MOST_LOOKED_AT) && centres(Vertex::y) <= Some(MOST_LOOKED_AT);
+                let is_tiny = centres(Vertex::x) <= Some(TINY_SIDE) && centres(Vertex::y) <= Some(TINY_SIDE);
                 if is_tiny && clip == (Rect { x0: 0, y0: 0, x1: 32, y1: 32 }) {
                     prop_assert_eq!(is(covers), drawn.covered > 0, "{:?}", vertices);
                     prop_assert!(!is(covers) || area != 0);

@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::{MOST, MOST_LOOKED_AT, Sifted};
+use super::{MOST, Sifted, TINY_SIDE};
 use crate::render::lit::Place;
 
 /// Only with a kernel for which `Kernel::has_avx2` is true.
@@ -89,7 +89,7 @@ unsafe fn sift_eight(places: &[Place], triangles: &[[u32; 3]; 8], sides: [i32; 4
     let in_columns = overlap(column, end_column, left, right);
     let in_rows = overlap(row, end_row, top, bottom);
     let mut covers = mask(_mm256_and_si256(in_columns, in_rows)) & seen;
-    let three = _mm256_set1_epi32(MOST_LOOKED_AT + 1);
+    let three = _mm256_set1_epi32(TINY_SIDE + 1);
     let few_columns = _mm256_cmpgt_epi32(three, _mm256_sub_epi32(end_column, column));
     let few_rows = _mm256_cmpgt_epi32(three, _mm256_sub_epi32(end_row, row));
     let tiny = mask(_mm256_and_si256(few_columns, few_rows)) & covers;

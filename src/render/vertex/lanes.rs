@@ -6,7 +6,7 @@ use super::Geometry;
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides, both_sides_of_eight};
 use crate::render::lit::{LitVertices, Place};
-use crate::render::paint::Paint;
+use crate::render::paint::SurfaceMaterial;
 use crate::view::ObjectView;
 use crate::view::lanes::{LANES, Narrow};
 
@@ -78,10 +78,10 @@ pub(super) fn one_by_one<const TESTED: bool>(
 #[inline(always)]
 pub(super) fn light_suns<const BOTH: bool>(
     geometry: &Geometry<'_>,
-    paints: &[Paint],
+    paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     lit: &mut LitVertices,
-    eight: impl Fn(&Paint, &Lights<'_>, &[Vec3; LANES], &mut [[U8F8; 2]; LANES]),
+    eight: impl Fn(&SurfaceMaterial, &Lights<'_>, &[Vec3; LANES], &mut [[U8F8; 2]; LANES]),
 ) {
     let (eights, rest) = geometry.normals.as_chunks::<LANES>();
     let (shades, rest_shades) = lit.shades.as_chunks_mut::<LANES>();
@@ -101,7 +101,7 @@ pub(super) fn light_suns<const BOTH: bool>(
 fn light_one_by_one<const BOTH: bool>(
     normals: &[Vec3],
     surfaces: &[u16],
-    paints: &[Paint],
+    paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     shades: &mut [[U8F8; 2]],
 ) {
@@ -115,7 +115,7 @@ fn light_one_by_one<const BOTH: bool>(
 /// Eight vertices of one surface.
 #[inline(always)]
 pub(super) fn light_eight<const BOTH: bool>(
-    paint: &Paint,
+    paint: &SurfaceMaterial,
     lights: &Lights<'_>,
     normals: &[Vec3; LANES],
     shades: &mut [[U8F8; 2]; LANES],
@@ -132,7 +132,7 @@ pub(super) fn light_eight<const BOTH: bool>(
 /// As `project_eight_apart`.
 #[inline(never)]
 pub(super) fn light_eight_apart<const BOTH: bool>(
-    paint: &Paint,
+    paint: &SurfaceMaterial,
     lights: &Lights<'_>,
     normals: &[Vec3; LANES],
     shades: &mut [[U8F8; 2]; LANES],
@@ -149,7 +149,7 @@ mod tests {
     use super::super::{light_suns, project_inside, project_tested};
     use super::*;
     use crate::fixed::U8F8;
-    use crate::light::{Answer, Beam, Blend};
+    use crate::light::{Beam, Blend, Reflectance};
     use crate::mesh::Mesh;
     use crate::palette::Ramp;
     use crate::scene::{Camera, Object};
@@ -187,10 +187,17 @@ mod tests {
         )
     }
 
-    fn paint() -> impl Strategy<Value = Paint> {
+    fn paint() -> impl Strategy<Value = SurfaceMaterial> {
         let ramp = (0_u8..=255).prop_flat_map(|first| (Just(first), 1..=256 - u16::from(first)));
-        (-0.5_f64..1.5, -1.0_f64..3.0, ramp).prop_map(|(ambient, diffuse, (first, entries))| Paint {
-            answer: Answer { ambient, diffuse, specular: 0.0, shininess: 0.0, color: [0.0; 3], highlight: [0.0; 3] },
+        (-0.5_f64..1.5, -1.0_f64..3.0, ramp).prop_map(|(ambient, diffuse, (first, entries))| SurfaceMaterial {
+            answer: Reflectance {
+                ambient,
+                diffuse,
+                specular: 0.0,
+                shininess: 0.0,
+                color: [0.0; 3],
+                highlight: [0.0; 3],
+            },
             ramp: Ramp::new(first, entries).expect("a legal ramp"),
             texture_size: None,
             environment_size: None,

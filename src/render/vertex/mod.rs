@@ -6,7 +6,7 @@ use core::ops::Range;
 use glam::{Vec2, Vec3};
 
 use super::lit::{LitVertices, Place};
-use super::paint::Paint;
+use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
 use crate::light::Lights;
 use crate::palette::Ramp;
@@ -34,12 +34,12 @@ pub(super) struct Geometry<'a> {
 
 /// What effects need of a vertex, for its front; and the channels of its back.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Extra {
+pub(super) struct VertexAttributes {
     pub(super) front: Attributes,
     pub(super) back_channels: [U8F8; 3],
 }
 
-impl Extra {
+impl VertexAttributes {
     /// The attributes of one side: the back sees the normal from behind.
     pub(super) fn side(&self, turned: bool) -> Attributes {
         if !turned {
@@ -94,7 +94,7 @@ pub(super) fn round_further(bits: u32, lit: &mut LitVertices) {
 
 /// No light: each surface has one shade.
 #[inline(never)]
-pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[Paint], lit: &mut LitVertices) {
+pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], lit: &mut LitVertices) {
     for (shades, &surface) in lit.shades.iter_mut().zip(geometry.vertex_surfaces) {
         *shades = [paints[usize::from(surface)].constant(); 2];
     }
@@ -104,7 +104,7 @@ pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[Paint], lit: &mut Li
 #[inline(never)]
 pub(super) fn light_suns(
     geometry: &Geometry<'_>,
-    paints: &[Paint],
+    paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
     lit: &mut LitVertices,
@@ -127,7 +127,7 @@ pub(super) fn light_suns(
 #[inline(never)]
 pub(super) fn light_all(
     geometry: &Geometry<'_>,
-    paints: &[Paint],
+    paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
     lit: &mut LitVertices,
@@ -152,22 +152,22 @@ pub(super) fn light_all(
 #[inline(never)]
 pub(super) fn light_channels(
     geometry: &Geometry<'_>,
-    paints: &[Paint],
+    paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
-    extras: &mut [Extra],
+    extras: &mut [VertexAttributes],
 ) {
     each_eight(geometry, |vertices, surface, points| {
         let paint = &paints[surface];
         let extras = &mut extras[vertices];
         let fronts = lights.unit_front_of_three_channels(&paint.answer, points, kernel);
-        let fronts = fronts.each_ref().map(Paint::channel_of_eight);
+        let fronts = fronts.each_ref().map(SurfaceMaterial::channel_of_eight);
         for (lane, extra) in extras.iter_mut().enumerate() {
             extra.front.channels = fronts.each_ref().map(|channel| channel[lane]);
         }
         if both {
             let backs = lights.unit_front_of_three_channels(&paint.answer, &from_behind(points), kernel);
-            let backs = backs.each_ref().map(Paint::channel_of_eight);
+            let backs = backs.each_ref().map(SurfaceMaterial::channel_of_eight);
             for (lane, extra) in extras.iter_mut().enumerate() {
                 extra.back_channels = backs.each_ref().map(|channel| channel[lane]);
             }
@@ -203,7 +203,11 @@ fn from_behind(points: &Points) -> Points {
 
 /// Texture coordinates in texels, for surfaces that have an image.
 #[inline(never)]
-pub(super) fn texture_coordinates(geometry: &Geometry<'_>, paints: &[Paint], extras: &mut [Extra]) {
+pub(super) fn texture_coordinates(
+    geometry: &Geometry<'_>,
+    paints: &[SurfaceMaterial],
+    extras: &mut [VertexAttributes],
+) {
     let Some(texcoords) = geometry.texcoords else { return };
     for ((extra, uv), &surface) in extras.iter_mut().zip(texcoords).zip(geometry.vertex_surfaces) {
         if let Some([width, height]) = paints[usize::from(surface)].texture_size {
@@ -228,8 +232,8 @@ fn texels(part: f32, size: u32) -> i32 {
 pub(super) fn environment_coordinates(
     geometry: &Geometry<'_>,
     view: &ObjectView,
-    paints: &[Paint],
-    extras: &mut [Extra],
+    paints: &[SurfaceMaterial],
+    extras: &mut [VertexAttributes],
 ) {
     let to_eye = view.directions_to_eye();
     for ((extra, &normal), &surface) in extras.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
@@ -244,7 +248,7 @@ pub(super) fn environment_coordinates(
 
 /// How thick the fog is before every vertex.
 #[inline(never)]
-pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, extras: &mut [Extra]) {
+pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, extras: &mut [VertexAttributes]) {
     for (extra, &position) in extras.iter_mut().zip(geometry.positions) {
         extra.front.fog = fog_level(fog, view.homogeneous(position).w);
     }
@@ -257,7 +261,7 @@ pub(super) fn fog_level(fog: &Fog, distance: f64) -> U8F8 {
 
 /// The normals' x and y as the eye sees them, for a table.
 #[inline(never)]
-pub(super) fn slopes(geometry: &Geometry<'_>, view: &ObjectView, extras: &mut [Extra]) {
+pub(super) fn slopes(geometry: &Geometry<'_>, view: &ObjectView, extras: &mut [VertexAttributes]) {
     let to_eye = view.directions_to_eye();
     for (extra, &normal) in extras.iter_mut().zip(geometry.normals) {
         let seen = to_eye * normal;
@@ -268,7 +272,7 @@ pub(super) fn slopes(geometry: &Geometry<'_>, view: &ObjectView, extras: &mut [E
 
 /// Normals and positions, for light at every pixel.
 #[inline(never)]
-pub(super) fn lit_points(geometry: &Geometry<'_>, extras: &mut [Extra]) {
+pub(super) fn lit_points(geometry: &Geometry<'_>, extras: &mut [VertexAttributes]) {
     for ((extra, n), p) in extras.iter_mut().zip(geometry.normals).zip(geometry.positions) {
         extra.front.lit = [n.x, n.y, n.z, p.x, p.y, p.z];
     }

@@ -9,7 +9,7 @@ use super::{Geometry, lanes};
 use crate::fixed::U8F8;
 use crate::light::Lights;
 use crate::render::lit::{LitVertices, Place};
-use crate::render::paint::Paint;
+use crate::render::paint::SurfaceMaterial;
 use crate::view::ObjectView;
 use crate::view::lanes::{LANES, Narrow};
 
@@ -33,12 +33,17 @@ pub(super) fn project<const TESTED: bool>(
 /// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn light_suns<const BOTH: bool>(
     geometry: &Geometry<'_>,
-    paints: &[Paint],
+    paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     lit: &mut LitVertices,
 ) {
     #[target_feature(enable = "avx2")]
-    fn avx2<const BOTH: bool>(geometry: &Geometry<'_>, paints: &[Paint], lights: &Lights<'_>, lit: &mut LitVertices) {
+    fn avx2<const BOTH: bool>(
+        geometry: &Geometry<'_>,
+        paints: &[SurfaceMaterial],
+        lights: &Lights<'_>,
+        lit: &mut LitVertices,
+    ) {
         lanes::light_suns::<BOTH>(geometry, paints, lights, lit, |paint, lights, normals, shades| {
             light_eight::<BOTH>(paint, lights, normals, shades);
         });
@@ -139,7 +144,7 @@ fn units(pixels: __m256) -> __m256i {
 #[inline]
 #[target_feature(enable = "avx2")]
 fn light_eight<const BOTH: bool>(
-    paint: &Paint,
+    paint: &SurfaceMaterial,
     lights: &Lights<'_>,
     normals: &[Vec3; LANES],
     shades: &mut [[U8F8; 2]; LANES],
@@ -151,7 +156,7 @@ fn light_eight<const BOTH: bool>(
         let [x, y, z] = sun.towards.to_array().map(|c| _mm256_set1_ps(c));
         let sum = _mm256_add_ps(_mm256_mul_ps(nx, x), _mm256_mul_ps(ny, y));
         let cosine = _mm256_add_ps(sum, _mm256_mul_ps(nz, z));
-        // What is left out adds nought; of no number nothing is more or less.
+        // What is left out adds zero; of no number nothing is more or less.
         let (front_of, back_of) =
             (_mm256_max_ps(cosine, _mm256_setzero_ps()), _mm256_min_ps(cosine, _mm256_setzero_ps()));
         let intensity = _mm256_set1_pd(sun.intensity.into());
@@ -178,10 +183,10 @@ fn add<const LESS: bool>(sums: [__m256d; 2], cosine: __m256, intensity: __m256d)
     }
 }
 
-/// `Paint::shade_of_eight` of these sums of light.
+/// `SurfaceMaterial::shade_of_eight` of these sums of light.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn shade(paint: &Paint, light: [__m256d; 2]) -> __m256i {
+fn shade(paint: &SurfaceMaterial, light: [__m256d; 2]) -> __m256i {
     let (ambient, diffuse) = (_mm256_set1_pd(paint.answer.ambient), _mm256_set1_pd(paint.answer.diffuse));
     let [low, high] = light.map(|light| _mm256_cvtpd_ps(_mm256_add_pd(ambient, _mm256_mul_pd(diffuse, light))));
     // Of what is no number the second of both: 0.

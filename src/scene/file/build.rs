@@ -17,7 +17,7 @@ use super::{SceneErrorKind, motion};
 use crate::light::Light;
 use crate::palette::Palette;
 use crate::scene::framing::{Swept, Turning};
-use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Wishes};
+use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Preferences, Scene};
 
 /// Makes one scene.
 pub(super) struct Builder<'a> {
@@ -48,7 +48,7 @@ impl<'a> Builder<'a> {
             self.scene.ambient = ambient.0;
         }
         if let Some(render) = &layout.render {
-            self.scene.wishes = wishes(render);
+            self.scene.preferences = preferences(render);
         }
         if let Some(name) = &layout.palette {
             self.palette(name)?;
@@ -68,7 +68,7 @@ impl<'a> Builder<'a> {
 
     fn palette(&mut self, name: &Spanned<FileName>) -> Result<(), Fault> {
         if name.get_ref().0 == "auto" {
-            self.scene.wishes.auto_palette = true;
+            self.scene.preferences.auto_palette = true;
         } else {
             self.scene.palette = Some(self.named.palette(name)?);
         }
@@ -205,9 +205,9 @@ impl<'a> Builder<'a> {
     }
 }
 
-fn wishes(layout: &RenderLayout) -> Wishes {
-    Wishes {
-        rung: layout.shading.as_ref().map(|name| name.0),
+fn preferences(layout: &RenderLayout) -> Preferences {
+    Preferences {
+        shading: layout.shading.as_ref().map(|name| name.0),
         hidden_surfaces: layout.hidden_surfaces.as_ref().map(|name| name.0),
         mapping: layout.mapping.as_ref().map(|name| name.0),
         mipmaps: layout.mipmaps,

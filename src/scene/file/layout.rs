@@ -17,7 +17,7 @@ use super::value::{
     OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
 };
 use crate::light::Blend;
-use crate::scene::{HiddenSurfaces, Mapping, Rung, UpAxis};
+use crate::scene::{HiddenSurfaces, Mapping, Shading, UpAxis};
 
 /// The whole file.
 #[derive(Deserialize)]
@@ -146,7 +146,7 @@ pub(super) struct AnimationLayout {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
 pub(super) struct RenderLayout {
-    pub(super) shading: Option<Name<Rung>>,
+    pub(super) shading: Option<Name<Shading>>,
     pub(super) hidden_surfaces: Option<Name<HiddenSurfaces>>,
     pub(super) mapping: Option<Name<Mapping>>,
     pub(super) mipmaps: Option<bool>,

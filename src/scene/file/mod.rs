@@ -18,7 +18,7 @@
 //! # Ok::<(), mode13h::scene::file::SceneError>(())
 //! ```
 //!
-//! Reading is bounded: a file of at most [`LONGEST`] bytes, shapes of at most [`MOST_TRIANGLES`] together. A scene
+//! Reading is bounded: a file of at most [`LONGEST`] bytes, shapes of at most [`MAX_TRIANGLES`] together. A scene
 //! names models, textures and palettes; never another scene.
 //!
 //! | file | what |
@@ -67,7 +67,7 @@ pub const LONGEST: usize = 1 << 20;
 
 /// The most triangles that the shapes of a scene have together: one for every pixel of mode 13h, and some. Models may have
 /// more.
-pub const MOST_TRIANGLES: u64 = 1 << 16;
+pub const MAX_TRIANGLES: u64 = 1 << 16;
 
 /// A scene and what was found wanting while it was read.
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@ use super::error::Fault;
 use super::layout::ObjectLayout;
 use super::named::Named;
 use super::value::{List, OneOrThree};
-use super::{MOST_TRIANGLES, material};
+use super::{MAX_TRIANGLES, material};
 use crate::mesh::Mesh;
 use crate::scene::{Object, Shared};
 
@@ -141,9 +141,9 @@ impl Objects {
         };
         // Neither has more than 2²⁶.
         self.triangles = self.triangles.saturating_add(shape.triangles(&subdivisions).saturating_mul(count as u64));
-        if self.triangles > MOST_TRIANGLES {
+        if self.triangles > MAX_TRIANGLES {
             let span = layout.subdivisions.as_ref().map_or(span.clone(), Spanned::span);
-            return Err(Fault::value(span, format!("more than {MOST_TRIANGLES} triangles in the shapes of a scene")));
+            return Err(Fault::value(span, format!("more than {MAX_TRIANGLES} triangles in the shapes of a scene")));
         }
         let key = (shape.name, subdivisions, change.bits());
         if let Some(known) = self.shapes.get(&key) {

@@ -1,10 +1,10 @@
 //! Batches against the oracle, at every kernel level: bytes, depths and counts.
 
-use mode13h::raster::{Batch, DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::raster::{Batch, DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::depth::Cell;
 
-use super::shading;
+use super::interpolation;
 use super::shapes::{CLASSES, shape};
 use crate::support::oracle;
 use crate::support::random::Random;
@@ -41,7 +41,7 @@ struct Picture {
     pixels: u32,
 }
 
-type Triangle = ([Vertex; 3], Shading);
+type Triangle = ([Vertex; 3], Interpolation);
 
 impl Place {
     fn random(random: &mut Random) -> Self {
@@ -71,9 +71,9 @@ impl Place {
     }
 
     /// Draws one more triangle by the oracle, and says how many pixels it covers.
-    fn draw_by_oracle(&self, (vertices, shading): &Triangle, picture: &mut Picture) -> u32 {
+    fn draw_by_oracle(&self, (vertices, interpolation): &Triangle, picture: &mut Picture) -> u32 {
         let before = picture.covered;
-        let pixels = oracle::pixels(vertices, *shading, self.width as i32, self.height as i32);
+        let pixels = oracle::pixels(vertices, *interpolation, self.width as i32, self.height as i32);
         let depths = (!pixels.is_empty()).then(|| oracle::Depths::of_vertices(vertices));
         for (pixel, depths) in pixels.into_iter().filter_map(|pixel| depths.as_ref().map(|depths| (pixel, depths))) {
             let (x, y) = (pixel.x as u32, pixel.y as u32);
@@ -113,7 +113,7 @@ impl Place {
     /// By the raster.
     fn drawn(&self, triangles: &[Triangle], kernel: Kernel) -> Picture {
         let mut batch = Batch::new();
-        assert!(triangles.iter().all(|(vertices, shading)| batch.push(vertices, *shading)));
+        assert!(triangles.iter().all(|(vertices, interpolation)| batch.push(vertices, *interpolation)));
         let mut bytes = vec![self.background; self.pitch * self.height as usize];
         let frame = Frame::new(&mut bytes, self.width, self.height, self.pitch).expect("legal");
         let (depths, drawn) = match self.cells {
@@ -121,7 +121,7 @@ impl Place {
             Cells::Wide => self.drawn_with_depth::<u32>(frame, &batch, kernel),
             Cells::Narrow => self.drawn_with_depth::<u16>(frame, &batch, kernel),
         };
-        let Drawn { covered, tested, pixels, .. } = drawn;
+        let DrawStats { covered, tested, pixels, .. } = drawn;
         Picture { bytes, depths, covered, tested, pixels }
     }
 
@@ -130,7 +130,7 @@ impl Place {
         frame: Frame<'_>,
         batch: &Batch,
         kernel: Kernel,
-    ) -> (Vec<u32>, Drawn) {
+    ) -> (Vec<u32>, DrawStats) {
         let mut depths = vec![D::default(); self.width as usize * self.height as usize];
         let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
         let drawn = Raster::new(frame).with_depth(depth).with_kernel(kernel).with_clip(self.clip).batch(batch);
@@ -171,7 +171,7 @@ pub(crate) fn batches_against_the_oracle(mut tried: Tried) {
             let class = if is_mixed { least(&of_class) } else { first };
             for vertices in shape(&mut random, CLASSES[class], (place.width.into(), place.height.into())) {
                 if triangles.len() < Batch::CAPACITY {
-                    let triangle = (vertices, shading(&mut random));
+                    let triangle = (vertices, interpolation(&mut random));
                     covering[class] += u64::from(place.draw_by_oracle(&triangle, &mut expected) > 0);
                     of_class[class] += 1;
                     triangles.push(triangle);
@@ -209,13 +209,13 @@ pub(crate) fn orders_and_windings(mut tried: Tried) {
         while triangles.len() < Batch::CAPACITY / 2 {
             let class = random.one_of(&CLASSES);
             let shapes = shape(&mut random, class, size);
-            triangles.extend(shapes.into_iter().map(|vertices| (vertices, shading(&mut random))));
+            triangles.extend(shapes.into_iter().map(|vertices| (vertices, interpolation(&mut random))));
         }
         triangles.truncate(random.within(1, Batch::CAPACITY as i64) as usize);
         let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
         let turned: Vec<Triangle> = triangles
             .iter()
-            .map(|(vertices, shading)| (random.one_of(&orders).map(|corner| vertices[corner]), *shading))
+            .map(|(vertices, interpolation)| (random.one_of(&orders).map(|corner| vertices[corner]), *interpolation))
             .collect();
         for kernel in Kernel::available() {
             let (drawn, expected) = (place.drawn(&turned, kernel), place.drawn(&triangles, kernel));

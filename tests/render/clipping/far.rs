@@ -2,7 +2,7 @@
 
 use mode13h::glam::Vec3;
 use mode13h::mesh::Mesh;
-use mode13h::render::{Renderer, Rung, Screen};
+use mode13h::render::{Renderer, Screen, Shading};
 
 use super::scene;
 use crate::support::judged::judged;
@@ -23,7 +23,13 @@ fn coordinate(random: &mut Random) -> f32 {
 /// Faces anywhere: bytes are those of the clipped triangles, no part of a face covers what another does, shades are in range.
 pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
     let mut random = Random::named("r7 greatest");
-    let rungs = [Rung::Gouraud88, Rung::Gouraud88Reseeded, Rung::Gouraud1616, Rung::GouraudHyperbolic, Rung::Float];
+    let shadings = [
+        Shading::Gouraud88,
+        Shading::Gouraud88Reseeded,
+        Shading::Gouraud1616,
+        Shading::GouraudHyperbolic,
+        Shading::Float,
+    ];
     let (mut seen, mut clipped, mut covered) = (0_u64, 0_u64, 0_u64);
     while tried.more() {
         let corners = [0; 3].map(|_| {
@@ -36,7 +42,7 @@ pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
             panic!("{corners:?}")
         };
         let mut renderer = Renderer::new();
-        renderer.set_rung(random.one_of(&rungs));
+        renderer.set_shading(random.one_of(&shadings));
         let judged = judged(&mut renderer, &lit(scene(mesh)), SCREEN);
         assert!(judged.counts.iter().all(|&times| times <= 1), "parts of {corners:?} overlap");
         let shades = judged.triangles.iter().flat_map(|(vertices, _)| vertices.map(|v| f64::from(v.shade().to_bits())));

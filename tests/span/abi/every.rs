@@ -6,8 +6,8 @@
 
 use mode13h::glam::Vec3;
 use mode13h::mesh::Mesh;
-use mode13h::raster::{Batch, DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex};
-use mode13h::render::{HiddenSurfaces, Renderer, Rung};
+use mode13h::raster::{Batch, DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h::render::{HiddenSurfaces, Renderer, Shading};
 use mode13h::scene::{Object, Scene};
 use mode13h::span::depth::Cell;
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
@@ -121,13 +121,14 @@ fn s7_rows_keep_the_rules() {
 }
 
 /// Triangles of a batch: some in or near a frame, of one size or of many, and what `support` has.
-fn triangles(random: &mut Random, (width, height): (i64, i64)) -> Vec<([Vertex; 3], Shading)> {
+fn triangles(random: &mut Random, (width, height): (i64, i64)) -> Vec<([Vertex; 3], Interpolation)> {
     let some = random.within(1, Batch::CAPACITY as i64);
     let reach = random.one_of(&[None, Some(200), Some(500), Some(1_500), Some(8_000)]);
     (0..some)
         .map(|_| {
-            let shading = random.one_of(&[Shading::Flat(7), Shading::Gouraud, Shading::GouraudReseeded]);
-            let Some(reach) = reach else { return (triangle(random, width, height), shading) };
+            let interpolation =
+                random.one_of(&[Interpolation::Flat(7), Interpolation::Gouraud, Interpolation::GouraudReseeded]);
+            let Some(reach) = reach else { return (triangle(random, width, height), interpolation) };
             // The frame's corners more often than elsewhere.
             let end = random.one_of(&[0, 1]);
             let any = (random.within(0, width * 256), random.within(0, height * 256));
@@ -136,12 +137,12 @@ fn triangles(random: &mut Random, (width, height): (i64, i64)) -> Vec<([Vertex; 
                 let (dx, dy) = (random.within(-reach, reach), random.within(-reach, reach));
                 vertex(x + dx, y + dy, random.within(0, 0xFF00), random.log_uniform(30) as i64)
             };
-            ([0; 3].map(corner), shading)
+            ([0; 3].map(corner), interpolation)
         })
         .collect()
 }
 
-fn deep<'a, D: Cell>(raster: Raster<'a>, batch: &Batch, (cells, like): (&'a mut [D], &Frame<'_>)) -> Drawn {
+fn deep<'a, D: Cell>(raster: Raster<'a>, batch: &Batch, (cells, like): (&'a mut [D], &Frame<'_>)) -> DrawStats {
     raster.with_depth(DepthBuffer::new(cells, like).expect("long enough")).batch(batch)
 }
 
@@ -160,7 +161,7 @@ fn s7_batches_keep_the_rules() {
         let frame = || own(&vec![3; pitch * (height as usize - 1) + width as usize]);
         let batch = || {
             let mut batch = Box::new(Batch::new());
-            assert!(triangles.iter().all(|(vertices, shading)| batch.push(vertices, *shading)));
+            assert!(triangles.iter().all(|(vertices, interpolation)| batch.push(vertices, *interpolation)));
             batch
         };
         for cells in 0..3 {
@@ -212,17 +213,17 @@ fn s7_frames_keep_the_rules() {
                 *object = Object::new(soup(&mut random));
             }
         }
-        let rung = (case % 3 > 0).then(|| random.one_of(&Rung::ALL));
+        let shading = (case % 3 > 0).then(|| random.one_of(&Shading::ALL));
         let way = random.one_of(&[None, Some(HiddenSurfaces::DepthBuffer), Some(HiddenSurfaces::PainterOrder)]);
         let (width, height) = random.one_of(&[(64_u32, 40_u32), (33, 77), (100, 30)]);
-        try_kernels(&format!("case {case}, {rung:?}"), &mut random, &mut tried, |kernel| {
+        try_kernels(&format!("case {case}, {shading:?}"), &mut random, &mut tried, |kernel| {
             let mut renderer = Renderer::new();
             renderer.set_kernel(kernel);
             renderer.set_hidden_surfaces(way);
             if is_budget {
                 renderer.set_max_error(Some(2.0));
-            } else if let Some(rung) = rung {
-                renderer.set_rung(rung);
+            } else if let Some(shading) = shading {
+                renderer.set_shading(shading);
             }
             // Of its own, so that the mesh and all that belongs to it is guarded as well.
             let scene = own_scene(&scene);

@@ -5,27 +5,43 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 use mode13h::plan::Effect;
-use mode13h::render::{HiddenSurfaces, Mapping, Rung, VertexPath};
+use mode13h::render::{HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::scene::shipped;
 use mode13h::span::Kernel;
 
 use crate::support::tried::Tried;
 
 /// The documents that a user reads.
-const DOCUMENTS: [(&str, &str); 3] = [
+const DOCUMENTS: [(&str, &str); 6] = [
     ("README.md", include_str!("../../../../README.md")),
-    ("scenes/README.md", include_str!("../../../../scenes/README.md")),
+    ("docs/program.md", PROGRAM),
+    ("docs/budget.md", include_str!("../../../../docs/budget.md")),
+    ("docs/measurements.md", include_str!("../../../../docs/measurements.md")),
+    ("scenes/README.md", SCENES),
     ("CHANGELOG.md", include_str!("../../../../CHANGELOG.md")),
 ];
 
-const README: &str = DOCUMENTS[0].1;
-const SCENES: &str = DOCUMENTS[1].1;
+/// The documents for those who change the engine: their files are checked, their words are not.
+const MORE_DOCUMENTS: [(&str, &str); 7] = [
+    ("ARCHITECTURE.md", include_str!("../../../../ARCHITECTURE.md")),
+    ("CONTRIBUTING.md", include_str!("../../../../CONTRIBUTING.md")),
+    ("docs/decisions.md", include_str!("../../../../docs/decisions.md")),
+    ("docs/sources.md", include_str!("../../../../docs/sources.md")),
+    ("docs/testing.md", include_str!("../../../../docs/testing.md")),
+    ("lab/README.md", include_str!("../../../../lab/README.md")),
+    ("cli/README.md", include_str!("../../../README.md")),
+];
+
+/// It has the table of shadings and the keys of the window.
+const PROGRAM: &str = include_str!("../../../../docs/program.md");
+const SCENES: &str = include_str!("../../../../scenes/README.md");
 
 /// Options of other programs than this one: of cargo, of the scripts in `.ci`, of the bench against peers.
-const OTHERS: [&str; 9] = [
+const OTHERS: [&str; 10] = [
     "--bench",
     "--ignored",
     "--no-fail-fast",
+    "--path",
     "--profile",
     "--rabbit",
     "--release",
@@ -66,6 +82,13 @@ fn commands() -> Vec<(String, BTreeSet<String>)> {
         .collect()
 }
 
+/// A document without its section of old names.
+fn without_old_names(text: &str) -> String {
+    let Some((before, renamed)) = text.split_once("\n### Renamed\n") else { return text.to_string() };
+    let after = renamed.split_once("\n## ").map_or("", |(_, after)| after);
+    format!("{before}\n{after}")
+}
+
 /// What stands between two backticks, in all paragraphs that are no block of code.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.starts_with("    ")).flat_map(|line| line.split('`').skip(1).step_by(2))
@@ -78,7 +101,7 @@ fn documents_name_options_that_the_program_has() {
     assert!(commands.len() >= 9, "{commands:?}");
     let every: BTreeSet<&str> = commands.iter().flat_map(|(_, options)| options).map(String::as_str).collect();
     for (document, text) in DOCUMENTS {
-        for option in options(text) {
+        for option in options(&without_old_names(text)) {
             let known = every.contains(option) || OTHERS.contains(&option);
             assert!(known, "{document}: {option} is no option of the program");
             tried.add(1);
@@ -106,7 +129,7 @@ fn documents_name_options_that_the_program_has() {
 fn documents_give_options_values_that_they_take() {
     let mut tried = Tried::new("documents_give_options_values_that_they_take", 15);
     for (document, text) in DOCUMENTS {
-        for quote in quoted(text) {
+        for quote in quoted(&without_old_names(text)) {
             let words: Vec<&str> = quote.split(' ').collect();
             for pair in words.windows(2) {
                 // A placeholder, or more than one word.
@@ -115,7 +138,7 @@ fn documents_give_options_values_that_they_take() {
                     continue;
                 }
                 let known = match pair[0] {
-                    "--shading" => value.parse::<Rung>().is_ok(),
+                    "--shading" => value.parse::<Shading>().is_ok(),
                     "--hidden-surfaces" => value.parse::<HiddenSurfaces>().is_ok(),
                     "--mapping" => value.parse::<Mapping>().is_ok(),
                     "--arithmetic" => value.parse::<VertexPath>().is_ok(),
@@ -139,12 +162,13 @@ fn values_of(key: &str) -> Vec<&'static str> {
 #[test]
 fn documents_list_every_shading_and_every_way() {
     let mut tried = Tried::new("documents_list_every_shading_and_every_way", 4);
-    assert_eq!(values_of("shading"), Rung::ALL.map(Rung::name));
+    assert_eq!(values_of("shading"), Shading::ALL.map(Shading::name));
     assert_eq!(values_of("hidden-surfaces"), HiddenSurfaces::ALL.map(HiddenSurfaces::name));
     assert_eq!(values_of("mapping"), Mapping::ALL.map(Mapping::name));
-    let table = README.split("| rung | what |").nth(1).expect("the table of rungs").split("\n\n").next().expect("rows");
+    let table =
+        PROGRAM.split("| shading | what |").nth(1).expect("the table of shadings").split("\n\n").next().expect("rows");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
-    assert_eq!(rows.collect::<Vec<_>>(), Rung::ALL.map(Rung::name));
+    assert_eq!(rows.collect::<Vec<_>>(), Shading::ALL.map(Shading::name));
     tried.add(4);
 }
 
@@ -153,12 +177,13 @@ fn documents_list_every_shading_and_every_way() {
 #[test]
 fn documents_name_what_there_is() {
     let mut tried = Tried::new("documents_name_what_there_is", 30);
-    let mut known: BTreeSet<&str> = Rung::ALL.map(Rung::name).into();
+    let mut known: BTreeSet<&str> = Shading::ALL.map(Shading::name).into();
     known.extend(Effect::ALL.map(Effect::name));
     known.extend(HiddenSurfaces::ALL.map(HiddenSurfaces::name));
     known.extend(Mapping::ALL.map(Mapping::name));
     known.extend(mode13h::palette::builtin::ALL.iter().map(|palette| palette.name));
     known.extend(shipped::ALL.iter().map(|scene| scene.name));
+    known.extend(["mode13h-lab", "mode13h-cli"]);
     // The error lists those that this machine lacks, too.
     known.extend(["asm-unrolled", "simd-arrays", "simd-sse2", "simd-avx2", "simd-avx512"]);
     assert!(Kernel::available().all(|kernel| known.contains(kernel.name()) || !kernel.name().contains('-')));
@@ -173,7 +198,7 @@ fn documents_name_what_there_is() {
         word.contains('-') && word.starts_with(|c: char| c.is_ascii_lowercase()) && word.chars().all(legal)
     };
     for (document, text) in DOCUMENTS {
-        for word in quoted(text).map(|word| word.trim_matches('"')).filter(is_name) {
+        for word in quoted(&without_old_names(text)).map(|word| word.trim_matches('"')).filter(is_name) {
             assert!(known.contains(word), "{document}: `{word}` is the name of nothing");
             tried.add(1);
         }
@@ -192,11 +217,11 @@ fn keys_of(text: &str) -> BTreeSet<&str> {
 #[test]
 fn documents_name_the_keys_of_the_window() {
     let mut tried = Tried::new("documents_name_the_keys_of_the_window", 18);
-    let paragraph = README.split("\nIn the window: ").nth(1).expect("keys").split("\n\n").next().expect("a paragraph");
-    let readme = keys_of(paragraph);
+    let paragraph = PROGRAM.split("\nIn the window: ").nth(1).expect("keys").split("\n\n").next().expect("a paragraph");
+    let documented = keys_of(paragraph);
     let help = help(&[]);
     let help = help.split("Keys in the window:\n").nth(1).expect("keys");
-    assert_eq!(readme, keys_of(help), "README.md and --help");
+    assert_eq!(documented, keys_of(help), "docs/program.md and --help");
     // What the program asks for.
     let sources = crate::support::workspace::root().join("cli/src");
     let mut asked = BTreeSet::new();
@@ -220,9 +245,19 @@ fn documents_name_the_keys_of_the_window() {
         }
     }
     let letters: BTreeSet<String> =
-        readme.iter().filter(|key| key.chars().all(|c| c.is_ascii_uppercase())).map(ToString::to_string).collect();
-    assert_eq!(letters, asked, "README.md and the program");
-    tried.add(readme.len() as u64);
+        documented.iter().filter(|key| key.chars().all(|c| c.is_ascii_uppercase())).map(ToString::to_string).collect();
+    assert_eq!(letters, asked, "docs/program.md and the program");
+    tried.add(documented.len() as u64);
+}
+
+/// Whether a text has a heading with this anchor: its words in lower case with hyphens between, without other signs.
+fn has_heading(text: &str, anchor: &str) -> bool {
+    let anchor_of = |heading: &str| -> String {
+        let words = heading.trim_start_matches('#').trim().to_lowercase();
+        let kept = words.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+    };
+    text.lines().filter(|line| line.starts_with('#')).any(|line| anchor_of(line) == anchor)
 }
 
 /// Files that a document names, and variables of the environment.
@@ -230,12 +265,17 @@ fn documents_name_the_keys_of_the_window() {
 fn documents_name_files_that_are_there() {
     let mut tried = Tried::new("documents_name_files_that_are_there", 30);
     let root = crate::support::workspace::root();
-    for (document, text) in DOCUMENTS {
+    for (document, text) in DOCUMENTS.into_iter().chain(MORE_DOCUMENTS) {
         let folder = root.join(document).parent().expect("a folder").to_path_buf();
         let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
         let pictures = text.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next());
         for link in links.chain(pictures).filter(|link| !link.contains("://") && !link.starts_with('#')) {
-            assert!(folder.join(link).exists(), "{document}: there is no {link}");
+            let (file, heading) = link.split_once('#').unwrap_or((link, ""));
+            assert!(folder.join(file).exists(), "{document}: there is no {file}");
+            if !heading.is_empty() {
+                let text = std::fs::read_to_string(folder.join(file)).expect("text");
+                assert!(has_heading(&text, heading), "{document}: {file} has no heading {heading}");
+            }
             tried.add(1);
         }
         let folders =
@@ -256,4 +296,7 @@ fn options_and_keys_are_found_in_a_text() {
     assert_eq!(options(text), BTreeSet::from(["--at", "--max-error", "--shading"]));
     let keys = "A key: Esc quits, `[` `]` step; B makes it smaller and Shift-B greater. H, A4 and `+` `-`; 1 to 9";
     assert_eq!(keys_of(keys), BTreeSet::from(["+", "1", "9", "B", "Esc", "H", "[", "]"]));
+    assert!(has_heading("# One\n\n## The study's own clock\n", "the-studys-own-clock"));
+    assert!(!has_heading("The study's own clock\n", "the-studys-own-clock"));
+    assert_eq!(without_old_names("new\n\n### Renamed\n\nold\n\n## 0.0.1\n\nmore"), "new\n\n0.0.1\n\nmore");
 }

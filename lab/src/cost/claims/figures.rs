@@ -18,7 +18,7 @@ pub(super) struct Sphere {
     pub(super) whole: Errors,
     /// Of each of the two the share of pixels that show the wrong face.
     pub(super) wrong_faces: [f64; 2],
-    /// With a highlight, against `lit`: the default rung, and Phong.
+    /// With a highlight, against `lit`: the default shading, and Phong.
     pub(super) linear: Errors,
     pub(super) phong: Errors,
     /// For a frame, in nanoseconds.
@@ -39,7 +39,7 @@ pub(super) struct Figures {
     pub(super) fixed: [Errors; 3],
     /// Against `gouraud-perspective`.
     pub(super) float: Errors,
-    /// Ratios of times to the default rung's: 8.8, 16.16 and float.
+    /// Ratios of times to the default shading's: 8.8, 16.16 and float.
     pub(super) of_default: [f64; 3],
     /// How far linear and perspective-correct shades are from each other, both exact.
     pub(super) linear_on_torus: Errors,

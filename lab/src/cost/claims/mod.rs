@@ -17,26 +17,26 @@ use alloc::vec::Vec;
 
 use self::figures::{Figures, Sphere};
 use self::scenes::SLICES;
-use super::contest::{Outcome, Spent, contest};
-use super::judge::{against, between};
-use super::statistics::{Chance, Ratio, quartiles};
-use super::way::Way;
+use super::accuracy::{against, between};
+use super::configuration::Configuration;
+use super::interleaved::{Outcome, Spent, contest};
+use super::statistics::{Ratio, Rng, quartiles};
 use super::{Claim, CostError};
 use crate::truth::Standard;
-use mode13h::render::{Renderer, Rung};
+use mode13h::render::{Renderer, Shading};
 use mode13h::scene::Scene;
 
 /// What is drawn by what.
 struct Entrants {
     scenes: Vec<Vec<Scene>>,
     /// A way, and the number of a scene.
-    list: Vec<(Rung, usize)>,
+    list: Vec<(Shading, usize)>,
 }
 
 impl Entrants {
-    /// Every scene by the rungs that a claim about it needs.
+    /// Every scene by the shadings that a claim about it needs.
     fn new() -> Self {
-        use Rung::{Flat, Float, Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Phong, PhongTable};
+        use Shading::{Flat, Float, Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Phong, PhongTable};
         let mut entrants = Self { scenes: Vec::new(), list: Vec::new() };
         let all = [Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Flat, Float, Phong, PhongTable];
         entrants.add(scenes::torus(), &all);
@@ -46,8 +46,8 @@ impl Entrants {
         entrants
     }
 
-    fn add(&mut self, frames: Vec<Scene>, rungs: &[Rung]) {
-        self.list.extend(rungs.iter().map(|rung| (*rung, self.scenes.len())));
+    fn add(&mut self, frames: Vec<Scene>, shadings: &[Shading]) {
+        self.list.extend(shadings.iter().map(|shading| (*shading, self.scenes.len())));
         self.scenes.push(frames);
     }
 }
@@ -57,25 +57,25 @@ const TORUS: usize = 0;
 
 /// Times of all entrants.
 struct Times {
-    list: Vec<(Rung, usize)>,
+    list: Vec<(Shading, usize)>,
     /// For a frame, round by round.
     times: Vec<Vec<f64>>,
     seed: u64,
 }
 
 impl Times {
-    fn place(&self, rung: Rung, scene: usize) -> usize {
+    fn place(&self, shading: Shading, scene: usize) -> usize {
         // Whoever asks has had it drawn.
-        self.list.iter().position(|entrant| *entrant == (rung, scene)).unwrap_or(0)
+        self.list.iter().position(|entrant| *entrant == (shading, scene)).unwrap_or(0)
     }
 
-    fn ratio(&self, rung: Rung, to: Rung, scene: usize) -> f64 {
-        let (one, other) = (self.place(rung, scene), self.place(to, scene));
-        Ratio::new(&self.times[one], &self.times[other], &mut Chance::new(self.seed)).median
+    fn ratio(&self, shading: Shading, to: Shading, scene: usize) -> f64 {
+        let (one, other) = (self.place(shading, scene), self.place(to, scene));
+        Ratio::new(&self.times[one], &self.times[other], &mut Rng::new(self.seed)).median
     }
 
-    fn median(&self, rung: Rung, scene: usize) -> f64 {
-        quartiles(&self.times[self.place(rung, scene)]).median
+    fn median(&self, shading: Shading, scene: usize) -> f64 {
+        quartiles(&self.times[self.place(shading, scene)]).median
     }
 }
 
@@ -86,8 +86,8 @@ pub(super) fn claims(
     progress: &dyn Fn(f64),
 ) -> Result<Vec<Claim>, CostError> {
     let Entrants { scenes, list } = Entrants::new();
-    let ways: Vec<Way<'_>> = list.iter().map(|(rung, _)| Way::rung(*rung)).collect();
-    let entrants: Vec<(&Way<'_>, &[Scene])> =
+    let ways: Vec<Configuration<'_>> = list.iter().map(|(shading, _)| Configuration::shading(*shading)).collect();
+    let entrants: Vec<(&Configuration<'_>, &[Scene])> =
         ways.iter().zip(&list).map(|(way, (_, scene))| (way, scenes[*scene].as_slice())).collect();
     let Outcome { samples, .. } = contest(&entrants, base, spent, &|share| progress(share / 2.0))?;
     let times = Times { times: (0..list.len()).map(|way| samples.of(way)).collect(), list, seed: spent.seed };
@@ -98,8 +98,12 @@ pub(super) fn claims(
         spheres.push(sphere(slices, TORUS + 1 + number, &scenes, &times, base)?);
     }
     let floor = scenes::floor();
-    let (torus, default) = (&scenes[TORUS], Way::rung(Rung::Gouraud88Reseeded));
-    let (shortest, wide, float) = (Way::rung(Rung::Gouraud88), Way::rung(Rung::Gouraud1616), Way::rung(Rung::Float));
+    let (torus, default) = (&scenes[TORUS], Configuration::shading(Shading::Gouraud88Reseeded));
+    let (shortest, wide, float) = (
+        Configuration::shading(Shading::Gouraud88),
+        Configuration::shading(Shading::Gouraud1616),
+        Configuration::shading(Shading::Float),
+    );
     let everywhere: Vec<Scene> = torus.iter().chain(&floor).cloned().collect();
     let fixed = against(Standard::Gouraud, &everywhere, &[&shortest, &default, &wide], base)?;
     let float = against(Standard::GouraudPerspective, &everywhere, &[&float], base)?;
@@ -108,11 +112,11 @@ pub(super) fn claims(
         spheres,
         fixed: [0, 1, 2].map(|i| fixed[i].errors()),
         float: float[0].errors(),
-        of_default: [Rung::Gouraud88, Rung::Gouraud1616, Rung::Float]
-            .map(|rung| times.ratio(rung, Rung::Gouraud88Reseeded, TORUS)),
+        of_default: [Shading::Gouraud88, Shading::Gouraud1616, Shading::Float]
+            .map(|shading| times.ratio(shading, Shading::Gouraud88Reseeded, TORUS)),
         linear_on_torus: between(linear, torus)?,
         linear_on_floor: between(linear, &floor)?,
-        hyperbolic_to_linear: times.ratio(Rung::GouraudHyperbolic, Rung::Gouraud88Reseeded, TORUS),
+        hyperbolic_to_linear: times.ratio(Shading::GouraudHyperbolic, Shading::Gouraud88Reseeded, TORUS),
     };
     Ok(figures.claims())
 }
@@ -126,8 +130,8 @@ fn sphere(
     base: &dyn Fn() -> Renderer,
 ) -> Result<Sphere, CostError> {
     let (matt, shiny) = (scenes::sphere(slices, false), &scenes[scene]);
-    let (linear, phong) = (Way::rung(Rung::Gouraud88Reseeded), Way::rung(Rung::Phong));
-    let rounded = Way::rung(Rung::Gouraud88Reseeded).with_vertex_bits(0);
+    let (linear, phong) = (Configuration::shading(Shading::Gouraud88Reseeded), Configuration::shading(Shading::Phong));
+    let rounded = Configuration::shading(Shading::Gouraud88Reseeded).with_vertex_bits(0);
     let off = against(Standard::GouraudUnrounded, &matt, &[&linear, &rounded], base)?;
     let model = against(Standard::Lit, shiny, &[&linear, &phong], base)?;
     let triangles = matt[0].objects()[0].mesh().triangles().len();
@@ -142,10 +146,10 @@ fn sphere(
         wrong_faces: [share(0), share(1)],
         linear: model[0].errors(),
         phong: model[1].errors(),
-        linear_time: times.median(Rung::Gouraud88Reseeded, scene),
-        phong_time: times.median(Rung::Phong, scene),
-        to_flat: times.ratio(Rung::Gouraud88, Rung::Flat, scene),
-        phong_to_linear: times.ratio(Rung::Phong, Rung::Gouraud88, scene),
-        table_to_linear: times.ratio(Rung::PhongTable, Rung::Gouraud88, scene),
+        linear_time: times.median(Shading::Gouraud88Reseeded, scene),
+        phong_time: times.median(Shading::Phong, scene),
+        to_flat: times.ratio(Shading::Gouraud88, Shading::Flat, scene),
+        phong_to_linear: times.ratio(Shading::Phong, Shading::Gouraud88, scene),
+        table_to_linear: times.ratio(Shading::PhongTable, Shading::Gouraud88, scene),
     })
 }

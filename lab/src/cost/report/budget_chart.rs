@@ -3,13 +3,13 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::chart::{Area, BUDGETS, FAINT, INK, IntoPair, LETTERS, RUNGS, along, name, range, svg, ticks};
+use super::chart::{Area, BUDGETS, FAINT, INK, IntoPair, LETTERS, SHADINGS, along, name, range, svg, ticks};
 use super::figures::time_tick;
 use super::labels::{Rectangle, places};
 use crate::cost::Study;
 
 /// The time for a frame against the accepted error, both logarithmic, as an SVG file of 860 × 400 pixels on white: the
-/// budget, and beside it the cheapest single rung that keeps the same promise, where one does.
+/// budget, and beside it the cheapest single shading that keeps the same promise, where one does.
 #[must_use]
 pub fn budget_svg(study: &Study) -> String {
     svg((860, 400), |root| draw(study, root))
@@ -22,7 +22,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>
     let budgets: Vec<(f64, f64)> = budgets.filter(is_shown).collect();
     let single = |row: &crate::cost::BudgetRow| {
         let at = (row.max_error, row.best_single?.median);
-        is_shown(&at).then_some((at, row.best_single_rung?.to_string()))
+        is_shown(&at).then_some((at, row.best_single_shading?.to_string()))
     };
     let singles: Vec<((f64, f64), String)> = study.budget.iter().filter_map(single).collect();
     let across = range(budgets.iter().map(|at| at.0));
@@ -48,7 +48,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>
         .y_desc("time for a frame (logarithmic)")
         .draw()?;
     chart.draw_series(LineSeries::new(budgets.iter().copied(), BUDGETS.stroke_width(2)))?;
-    chart.draw_series(singles.iter().map(|(at, _)| Circle::new(*at, 5, RUNGS.filled())))?;
+    chart.draw_series(singles.iter().map(|(at, _)| Circle::new(*at, 5, SHADINGS.filled())))?;
     chart.draw_series(budgets.iter().map(|at| TriangleMarker::new(*at, 6, BUDGETS.filled())))?;
 
     let area = chart.plotting_area();
@@ -62,12 +62,12 @@ fn draw(study: &Study, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>
     for (((_, text), &(at, _)), place) in
         singles.iter().zip(&named).zip(places(&named, &marks, &along(&line), LETTERS, inner))
     {
-        name(root, text, at, place, RUNGS)?;
+        name(root, text, at, place, SHADINGS)?;
     }
 
     let style = ("sans-serif", LETTERS).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
     root.draw(&TriangleMarker::new((98, 18), 6, BUDGETS.filled()))?;
     root.draw(&Text::new("budget, face by face", (112, 18), style.clone()))?;
-    root.draw(&Circle::new((280, 18), 5, RUNGS.filled()))?;
-    Ok(root.draw(&Text::new("cheapest single rung that keeps the same promise", (294, 18), style))?)
+    root.draw(&Circle::new((280, 18), 5, SHADINGS.filled()))?;
+    Ok(root.draw(&Text::new("cheapest single shading that keeps the same promise", (294, 18), style))?)
 }

@@ -8,7 +8,7 @@ use crate::cost::{BudgetRow, Study};
 /// The share of covered pixels that must be within the budget.
 const PROMISE: f64 = 0.999;
 
-/// How much longer than the best single rung a budget may take.
+/// How much longer than the best single shading a budget may take.
 const LIMIT: f64 = 1.05;
 
 /// The table and its chart.
@@ -17,19 +17,19 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
         @if !study.budget.is_empty() { section {
             h2 { "The budget" }
             p {
-                "Given how many shades of error are accepted, each face is drawn by the cheapest rung that keeps to it, by a bound from normals, lights and vertices; "
+                "Given how many shades of error are accepted, each face is drawn by the cheapest shading that keeps to it, by a bound from normals, lights and vertices; "
                 "the time to decide is in the time. The promise: 99.9 % of the covered pixels within the budget of lit, and at most 5 % slower than the cheapest "
-                "single rung with exact cover that keeps the same promise."
+                "single shading with exact cover that keeps the same promise."
             }
             (chart())
             div.wide { table {
                 thead { tr {
                     th { "budget, shades" } th { "within it" } th { "largest error" } th { "r.m.s." } th { "largest patch beyond, pixels" } th { "a frame" } th { "quartiles" }
-                    th.text { "best single rung" } th { "its time" } th { "ratio" } th { "95 % interval" } th.text { "verdict" }
+                    th.text { "best single shading" } th { "its time" } th { "ratio" } th { "95 % interval" } th.text { "verdict" }
                 } }
                 tbody { @for row in &study.budget { (line(row)) } }
             } }
-            h3 { "Which rung drew how many triangles" }
+            h3 { "Which shading drew how many triangles" }
             div.wide { table {
                 thead { tr { th { "budget, shades" } th.text { "triangles of all frames" } } }
                 tbody { @for row in &study.budget { tr {
@@ -47,9 +47,9 @@ fn line(row: &BudgetRow) -> Markup {
         td { (percent(row.within)) } td { (shades(row.largest)) } td { (shades(row.rms)) } td { (count(row.patch)) }
         td { (time(row.per_frame.median)) }
         td.soft { (time(row.per_frame.lower_quartile)) " – " (time(row.per_frame.upper_quartile)) }
-        @match (row.best_single_rung, row.best_single) {
-            (Some(rung), Some(best)) => { td.text { (rung) } td { (time(best.median)) } },
-            (Some(rung), None) => { td.text { (rung) } td { "–" } },
+        @match (row.best_single_shading, row.best_single) {
+            (Some(shading), Some(best)) => { td.text { (shading) } td { (time(best.median)) } },
+            (Some(shading), None) => { td.text { (shading) } td { "–" } },
             (None, _) => { td.text { "none keeps it" } td { "–" } },
         }
         @match row.ratio {
@@ -63,8 +63,8 @@ fn line(row: &BudgetRow) -> Markup {
 /// Whether the promise of accuracy and the limit of time are kept.
 pub(super) fn verdict(row: &BudgetRow) -> String {
     let accuracy = if row.within >= PROMISE { "accuracy kept" } else { "accuracy not kept" };
-    let time = match (row.best_single_rung, row.ratio) {
-        (None, _) => "no single rung keeps it, so the time limit is void",
+    let time = match (row.best_single_shading, row.ratio) {
+        (None, _) => "no single shading keeps it, so the time limit is void",
         (Some(_), Some((times, _))) if times <= LIMIT => "time limit kept",
         (Some(_), Some((times, (low, _)))) if times > LIMIT && low <= LIMIT => {
             "time limit not kept, by no more than chance may do"
@@ -78,8 +78,8 @@ pub(super) fn verdict(row: &BudgetRow) -> String {
 fn shared_out(row: &BudgetRow) -> String {
     // Below 2⁵³.
     let sum = row.triangles.iter().map(|(_, triangles)| *triangles as f64).sum::<f64>();
-    let part = |(rung, triangles): &(mode13h::render::Rung, u64)| {
-        format!("{rung} {} ({})", count(triangles), percent(*triangles as f64 / sum))
+    let part = |(shading, triangles): &(mode13h::render::Shading, u64)| {
+        format!("{shading} {} ({})", count(triangles), percent(*triangles as f64 / sum))
     };
     if row.triangles.is_empty() {
         "–".to_string()

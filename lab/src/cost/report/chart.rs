@@ -6,14 +6,14 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::figures::{asked, time_tick};
 use super::labels::{Rectangle, places};
-use crate::cost::{RungRow, Study};
+use crate::cost::{ShadingRow, Study};
 
 /// Errors below are drawn here: a logarithmic axis has no 0.
 const FLOOR: f64 = 0.01;
 
 pub(super) const INK: RGBColor = RGBColor(0x22, 0x26, 0x2b);
 pub(super) const FAINT: RGBColor = RGBColor(0xdd, 0xe0, 0xe4);
-pub(super) const RUNGS: RGBColor = RGBColor(0x1f, 0x5f, 0xa8);
+pub(super) const SHADINGS: RGBColor = RGBColor(0x1f, 0x5f, 0xa8);
 pub(super) const BUDGETS: RGBColor = RGBColor(0xc4, 0x4e, 0x12);
 const BEATEN: RGBColor = RGBColor(0x8a, 0x90, 0x99);
 
@@ -22,7 +22,7 @@ pub(super) const LETTERS: i32 = 13;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// Error against time, both logarithmic, as an SVG file of 860 × 520 pixels on white: for each rung the root mean square
+/// Error against time, both logarithmic, as an SVG file of 860 × 520 pixels on white: for each shading the root mean square
 /// error against `lit` and the time for a frame, the efficient ones filled and joined; for each budget the same.
 #[must_use]
 pub fn chart_svg(study: &Study) -> String {
@@ -80,14 +80,14 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
 
     let mut efficient: Vec<(f64, f64)> = points.iter().filter(|p| p.efficient).map(|p| p.at).collect();
     efficient.sort_by(|a, b| a.0.total_cmp(&b.0));
-    chart.draw_series(LineSeries::new(efficient.iter().copied(), RUNGS.stroke_width(2)))?;
-    // Rungs over budgets that lie at the same place.
+    chart.draw_series(LineSeries::new(efficient.iter().copied(), SHADINGS.stroke_width(2)))?;
+    // Shadings over budgets that lie at the same place.
     for point in points.iter().filter(|p| p.budget).chain(points.iter().filter(|p| !p.budget)) {
         let (at, size) = (point.at, 5);
         let shape = if point.budget {
             TriangleMarker::new(at, size + 4, BUDGETS.filled()).into_dyn()
         } else if point.efficient {
-            Circle::new(at, size, RUNGS.filled()).into_dyn()
+            Circle::new(at, size, SHADINGS.filled()).into_dyn()
         } else {
             Circle::new(at, size - 1, BEATEN.stroke_width(2)).into_dyn()
         };
@@ -109,7 +109,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
         let color = if point.budget {
             BUDGETS
         } else if point.efficient {
-            RUNGS
+            SHADINGS
         } else {
             INK
         };
@@ -119,9 +119,9 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
 }
 
 fn points(study: &Study) -> Vec<Point> {
-    let rung = |row: &RungRow| Point {
+    let shading = |row: &ShadingRow| Point {
         at: (row.per_frame.median, row.error_lit.rms.max(FLOOR)),
-        name: row.rung.to_string(),
+        name: row.shading.to_string(),
         budget: false,
         efficient: row.efficient,
     };
@@ -132,7 +132,7 @@ fn points(study: &Study) -> Vec<Point> {
         efficient: false,
     });
     // Efficient ones first: their names get the best places.
-    let mut points: Vec<Point> = study.rungs.iter().map(rung).chain(budgets).collect();
+    let mut points: Vec<Point> = study.shadings.iter().map(shading).chain(budgets).collect();
     points.retain(|p| p.at.0.is_finite() && p.at.1.is_finite() && p.at.0 > 0.0);
     points.sort_by_key(|p| (!p.efficient, p.budget));
     points
@@ -209,11 +209,11 @@ pub(super) fn name(root: &Area<'_>, text: &str, at: (i32, i32), place: Rectangle
 fn key(root: &Area<'_>, no_budget: bool) -> Outcome {
     let style = ("sans-serif", LETTERS).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
     let y = 18;
-    root.draw(&PathElement::new([(80, y), (104, y)], RUNGS.stroke_width(2)))?;
-    root.draw(&Circle::new((92, y), 5, RUNGS.filled()))?;
-    root.draw(&Text::new("efficient rungs: none is as near and surely faster", (112, y), style.clone()))?;
+    root.draw(&PathElement::new([(80, y), (104, y)], SHADINGS.stroke_width(2)))?;
+    root.draw(&Circle::new((92, y), 5, SHADINGS.filled()))?;
+    root.draw(&Text::new("efficient shadings: none is as near and surely faster", (112, y), style.clone()))?;
     root.draw(&Circle::new((440, y), 4, BEATEN.stroke_width(2)))?;
-    root.draw(&Text::new("other rungs", (452, y), style.clone()))?;
+    root.draw(&Text::new("other shadings", (452, y), style.clone()))?;
     if !no_budget {
         root.draw(&TriangleMarker::new((560, y), 6, BUDGETS.filled()))?;
         root.draw(&Text::new("budgets: errors up to so many shades accepted", (572, y), style))?;

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use mode13h::render::Rung;
+use mode13h::render::Shading;
 
 const DASH: &str = "–";
 
@@ -112,12 +112,12 @@ pub(super) fn count(number: impl Display) -> String {
 }
 
 /// Names in a row: "a", "a and b", "a, b and c".
-pub(super) fn list(rungs: &[Rung]) -> String {
-    match rungs {
+pub(super) fn list(shadings: &[Shading]) -> String {
+    match shadings {
         [] => String::new(),
         [one] => one.to_string(),
         [most @ .., last] => {
-            let most: Vec<String> = most.iter().map(Rung::to_string).collect();
+            let most: Vec<String> = most.iter().map(Shading::to_string).collect();
             format!("{} and {last}", most.join(", "))
         }
     }

@@ -7,7 +7,7 @@
 //! | `chart`, `budget_chart`, `labels` | error against time, time against budget |
 //! | `pictures` | frames and error maps as PNG inside the file |
 //! | `page` | the file, section by section |
-//! | `rungs`, `budgets`, `choices`, `method` | the sections |
+//! | `shadings`, `budgets`, `choices`, `method` | the sections |
 
 mod budget_chart;
 mod budgets;
@@ -18,7 +18,7 @@ mod labels;
 mod method;
 mod page;
 mod pictures;
-mod rungs;
+mod shadings;
 mod summary;
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
-use super::{budget_svg, budgets, chart_svg, choices, method, rungs, summary};
+use super::{budget_svg, budgets, chart_svg, choices, method, shadings, summary};
 use crate::cost::Study;
 
 const STYLE: &str = include_str!("style.css");
@@ -37,10 +37,10 @@ pub fn html(study: &Study) -> String {
                     }
                     section {
                         h2 { "Error against time" }
-                        (chart(&chart_svg(study), "Error against lit and time for a frame of every rung and budget, both logarithmic; the table below has the figures"))
+                        (chart(&chart_svg(study), "Error against lit and time for a frame of every shading and budget, both logarithmic; the table below has the figures"))
                     }
-                    (rungs::tables(study))
-                    (rungs::pictures(study))
+                    (shadings::tables(study))
+                    (shadings::pictures(study))
                     (budgets::section(study, || chart(&budget_svg(study), "Time for a frame against the accepted error, both logarithmic; the table has the figures")))
                     (choices::options(study))
                     (choices::claims(study))

@@ -1,26 +1,26 @@
 //! A study in two sentences.
 
 use super::figures::{at_most, counted_shades, ratio, time};
-use crate::cost::{RungRow, Study};
-use mode13h::render::Rung;
+use crate::cost::{ShadingRow, Study};
+use mode13h::render::Shading;
 
 /// Below this many shades a difference between two largest errors is none that anyone sees.
 const NOTHING: f64 = 0.05;
 
 /// What a study comes to, in two sentences, whatever it found: what 8.8 arithmetic costs and what it is off by, and
-/// what light at every pixel removes of the rest. Of other rungs the fastest and the nearest, if there is no 8.8.
+/// what light at every pixel removes of the rest. Of other shadings the fastest and the nearest, if there is no 8.8.
 /// Bounds are rounded up.
 #[must_use]
 pub fn summary(study: &Study) -> [String; 2] {
-    let find = |rung: Rung| study.rungs.iter().find(|row| row.rung == rung);
-    let Some(linear) = find(Rung::Gouraud88).or_else(|| find(Rung::Gouraud88Reseeded)) else {
+    let find = |shading: Shading| study.shadings.iter().find(|row| row.shading == shading);
+    let Some(linear) = find(Shading::Gouraud88).or_else(|| find(Shading::Gouraud88Reseeded)) else {
         return of_others(study);
     };
-    [arithmetic(&study.input, linear, find(Rung::GouraudPeriod)), model(linear, find(Rung::Phong))]
+    [arithmetic(&study.input, linear, find(Shading::GouraudVintage)), model(linear, find(Shading::Phong))]
 }
 
 /// The numeric error of linear shades, and their price against the loop of the period.
-fn arithmetic(input: &str, linear: &RungRow, period: Option<&RungRow>) -> String {
+fn arithmetic(input: &str, linear: &ShadingRow, period: Option<&ShadingRow>) -> String {
     let error = match linear.error_gouraud.max {
         error if !error.is_finite() => "has an error that is not known".to_string(),
         0.0 => "is exact".to_string(),
@@ -31,12 +31,12 @@ fn arithmetic(input: &str, linear: &RungRow, period: Option<&RungRow>) -> String
         None if linear.per_frame.median.is_finite() => format!("takes {} a frame", time(linear.per_frame.median)),
         None => "takes a time that is not known".to_string(),
     };
-    let name = if linear.rung == Rung::Gouraud88 { "8.8" } else { "8.8, reseeded," };
+    let name = if linear.shading == Shading::Gouraud88 { "8.8" } else { "8.8, reseeded," };
     format!("On {input} {name} {error} and {price}.")
 }
 
 /// The error of the model, and what removing it costs.
-fn model(linear: &RungRow, phong: Option<&RungRow>) -> String {
+fn model(linear: &ShadingRow, phong: Option<&ShadingRow>) -> String {
     let left = linear.error_lit.max;
     let Some(phong) = phong else {
         return match left {
@@ -67,25 +67,26 @@ fn model(linear: &RungRow, phong: Option<&RungRow>) -> String {
 
 /// Without 8.8: the fastest and the nearest.
 fn of_others(study: &Study) -> [String; 2] {
-    let known = || study.rungs.iter().filter(|row| row.per_frame.median.is_finite() && row.error_lit.max.is_finite());
+    let known =
+        || study.shadings.iter().filter(|row| row.per_frame.median.is_finite() && row.error_lit.max.is_finite());
     let fastest = known().min_by(|a, b| a.per_frame.median.total_cmp(&b.per_frame.median));
     let nearest = known().min_by(|a, b| a.error_lit.max.total_cmp(&b.error_lit.max));
     let (Some(fastest), Some(nearest)) = (fastest, nearest) else {
-        return [format!("On {} no rung was measured.", study.input), "So there is nothing to compare.".to_string()];
+        return [format!("On {} no shading was measured.", study.input), "So there is nothing to compare.".to_string()];
     };
     let first = format!(
-        "On {} the fastest rung measured is {}: off from light at every pixel by at most {}, in {} a frame.",
+        "On {} the fastest shading measured is {}: off from light at every pixel by at most {}, in {} a frame.",
         study.input,
-        fastest.rung,
+        fastest.shading,
         of_shades(fastest.error_lit.max),
         time(fastest.per_frame.median)
     );
-    let second = if nearest.rung == fastest.rung {
-        "No other rung measured is nearer.".to_string()
+    let second = if nearest.shading == fastest.shading {
+        "No other shading measured is nearer.".to_string()
     } else {
         format!(
             "The nearest is {}: off by at most {}; it {}.",
-            nearest.rung,
+            nearest.shading,
             of_shades(nearest.error_lit.max),
             takes(nearest, fastest, "that")
         )
@@ -94,9 +95,9 @@ fn of_others(study: &Study) -> [String; 2] {
 }
 
 /// What `row` takes of the time of `other`, called `name`.
-fn takes(row: &RungRow, other: &RungRow, name: &str) -> String {
+fn takes(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
     let times = row.ratio / other.ratio;
-    if row.as_fast_as.contains(&other.rung) || other.as_fast_as.contains(&row.rung) {
+    if row.as_fast_as.contains(&other.shading) || other.as_fast_as.contains(&row.shading) {
         format!("takes as long as {name}, as far as can be told")
     } else if !times.is_finite() || times <= 0.0 {
         "takes a time that is not known".to_string()

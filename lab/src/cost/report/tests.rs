@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use super::{budget_svg, budgets::verdict, chart_svg, html, summary};
-use crate::cost::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, RungRow, Split, Study, Verdict};
-use mode13h::render::Rung;
+use crate::cost::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, Verdict};
+use mode13h::render::Shading;
 
 fn time(median: f64) -> Nanoseconds {
     Nanoseconds { median, lower_quartile: 0.98 * median, upper_quartile: 1.05 * median }
@@ -14,10 +14,10 @@ fn errors(max: f64) -> Errors {
     Errors { max, mean: max / 8.0, rms: max / 5.0, off_by_one: 0.25, rms_of_blocks: max / 9.0 }
 }
 
-/// A rung whose time is a ratio to 100 µs, and its largest errors.
-fn rung(rung: Rung, ratio: f64, gouraud: f64, lit: f64) -> RungRow {
-    RungRow {
-        rung,
+/// A shading whose time is a ratio to 100 µs, and its largest errors.
+fn shading(shading: Shading, ratio: f64, gouraud: f64, lit: f64) -> ShadingRow {
+    ShadingRow {
+        shading,
         per_frame: time(1e5 * ratio),
         per_pixel: 5.0 * ratio,
         per_triangle: 90.0 * ratio,
@@ -37,7 +37,7 @@ fn rung(rung: Rung, ratio: f64, gouraud: f64, lit: f64) -> RungRow {
     }
 }
 
-fn budget(max_error: f64, within: f64, best: Option<(Rung, f64)>) -> BudgetRow {
+fn budget(max_error: f64, within: f64, best: Option<(Shading, f64)>) -> BudgetRow {
     BudgetRow {
         max_error,
         within,
@@ -45,21 +45,21 @@ fn budget(max_error: f64, within: f64, best: Option<(Rung, f64)>) -> BudgetRow {
         rms: 0.2 * max_error,
         patch: 12,
         per_frame: time(1.2e5),
-        best_single_rung: best.map(|(rung, _)| rung),
+        best_single_shading: best.map(|(shading, _)| shading),
         best_single: best.map(|(_, ratio)| time(1.2e5 / ratio)),
         ratio: best.map(|(_, ratio)| (ratio, (0.98 * ratio, 1.02 * ratio))),
-        triangles: vec![(Rung::Flat, 120), (Rung::Phong, 1_380)],
+        triangles: vec![(Shading::Flat, 120), (Shading::Phong, 1_380)],
     }
 }
 
-fn study(rungs: Vec<RungRow>) -> Study {
+fn study(shadings: Vec<ShadingRow>) -> Study {
     Study {
         input: "torus".to_string(),
         host: Host { processor: "a processor".to_string(), ..Host::default() },
         kernel: "portable".to_string(),
         frames: 8,
         rounds: 101,
-        rungs,
+        shadings,
         budget: Vec::new(),
         options: Vec::new(),
         claims: Vec::new(),
@@ -68,12 +68,13 @@ fn study(rungs: Vec<RungRow>) -> Study {
 
 /// Everything that a study may hold.
 fn whole() -> Study {
-    let rungs = Rung::ALL.into_iter().zip(1_u8..).map(|(of, i)| rung(of, f64::from(i), 0.7, 20.0 / f64::from(i)));
-    let mut study = study(rungs.collect());
+    let shadings =
+        Shading::ALL.into_iter().zip(1_u8..).map(|(of, i)| shading(of, f64::from(i), 0.7, 20.0 / f64::from(i)));
+    let mut study = study(shadings.collect());
     study.input = "<torus & \"cone\">'s".to_string();
-    study.rungs[2].as_fast_as = vec![Rung::Flat, Rung::Float];
-    study.rungs[3].efficient = false;
-    study.budget = vec![budget(8.0, 1.0, Some((Rung::Phong, 0.5))), budget(1.0, 0.93, None)];
+    study.shadings[2].as_fast_as = vec![Shading::Flat, Shading::Float];
+    study.shadings[3].efficient = false;
+    study.budget = vec![budget(8.0, 1.0, Some((Shading::Phong, 0.5))), budget(1.0, 0.93, None)];
     let option = |aspect, name: &str| OptionRow {
         aspect,
         name: name.to_string(),
@@ -121,10 +122,10 @@ fn a_report_is_well_formed_and_says_everything() {
     let rows: HashSet<&str> =
         document.descendants().filter(|n| n.has_tag_name("th")).filter_map(|n| n.text()).collect();
     let alternatives: Vec<&str> = document.descendants().filter_map(|n| n.attribute("alt")).collect();
-    for rung in Rung::ALL {
-        assert!(rows.contains(rung.name()), "{rung}");
-        assert!(alternatives.contains(&format!("frame of {rung}").as_str()), "{rung}");
-        assert!(alternatives.contains(&format!("error map of {rung}").as_str()), "{rung}");
+    for shading in Shading::ALL {
+        assert!(rows.contains(shading.name()), "{shading}");
+        assert!(alternatives.contains(&format!("frame of {shading}").as_str()), "{shading}");
+        assert!(alternatives.contains(&format!("error map of {shading}").as_str()), "{shading}");
     }
     let title = document.descendants().find(|n| n.has_tag_name("h1")).and_then(|n| n.text());
     assert_eq!(title, Some("What accuracy costs: <torus & \"cone\">'s"));
@@ -164,25 +165,25 @@ fn charts_name_every_point() {
         text.filter_map(|n| n.text()).map(|text| text.trim().to_string()).collect()
     };
     let names = texts(&chart);
-    for row in &study.rungs {
-        assert!(names.contains(&row.rung.to_string()), "{} in {names:?}", row.rung);
+    for row in &study.shadings {
+        assert!(names.contains(&row.shading.to_string()), "{} in {names:?}", row.shading);
     }
     assert!(names.contains(&"≤ 8".to_string()) && names.contains(&"≤ 1".to_string()), "{names:?}");
     assert!(!names.iter().any(|name| name.contains("drawn at")), "no error is below the floor");
     assert!(texts(&budget_svg(&study)).contains(&"phong".to_string()));
     // An error of 0 has a place, and the axis says so.
-    let exact = self::study(vec![rung(Rung::Phong, 1.0, 0.0, 0.0)]);
+    let exact = self::study(vec![shading(Shading::Phong, 1.0, 0.0, 0.0)]);
     assert!(texts(&chart_svg(&exact)).iter().any(|name| name.contains("below 0.01 drawn at 0.01")));
 }
 
 #[test]
 fn nothing_and_no_number_are_reported_too() {
     let empty = study(Vec::new());
-    let mut nan = rung(Rung::Gouraud88, f64::NAN, f64::NAN, f64::NAN);
+    let mut nan = shading(Shading::Gouraud88, f64::NAN, f64::NAN, f64::NAN);
     (nan.picture, nan.error_map) = (Vec::new(), vec![f32::NAN; 3]);
     nan.split = Split { plan: f64::NAN, ..Split::default() };
-    let mut strange = study(vec![nan, rung(Rung::Phong, 0.0, f64::INFINITY, -1.0)]);
-    strange.budget = vec![budget(f64::NAN, f64::NAN, Some((Rung::Flat, f64::NAN))), budget(0.0, 0.0, None)];
+    let mut strange = study(vec![nan, shading(Shading::Phong, 0.0, f64::INFINITY, -1.0)]);
+    strange.budget = vec![budget(f64::NAN, f64::NAN, Some((Shading::Flat, f64::NAN))), budget(0.0, 0.0, None)];
     strange.budget[1].triangles.clear();
     for study in [empty, strange] {
         let page = html(&study);
@@ -195,74 +196,74 @@ fn nothing_and_no_number_are_reported_too() {
 
 #[test]
 fn a_summary_is_true_of_any_figures() {
-    use Rung::{Flat, Gouraud88, Gouraud88Reseeded, GouraudPeriod, Phong};
-    let tied = |mut row: RungRow, with: Rung| {
+    use Shading::{Flat, Gouraud88, Gouraud88Reseeded, GouraudVintage, Phong};
+    let tied = |mut row: ShadingRow, with: Shading| {
         row.as_fast_as = vec![with];
         row
     };
-    let linear = || rung(Gouraud88, 1.0, 0.7, 11.5);
-    let cases: Vec<(Vec<RungRow>, &str)> = vec![
+    let linear = || shading(Gouraud88, 1.0, 0.7, 11.5);
+    let cases: Vec<(Vec<ShadingRow>, &str)> = vec![
         (
-            vec![rung(GouraudPeriod, 1.0 / 1.02, 9.0, 12.0), linear(), rung(Phong, 4.3, 0.0, 0.52)],
+            vec![shading(GouraudVintage, 1.0 / 1.02, 9.0, 12.0), linear(), shading(Phong, 4.3, 0.0, 0.52)],
             "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes 1.02 times as long as the \
              loop of the period. Phong removes the remaining 11.5 shades but for 0.52 and takes 4.30 times as long as 8.8.",
         ),
         (
-            vec![rung(GouraudPeriod, 1.25, 9.0, 12.0), linear(), rung(Phong, 0.9, 0.0, 0.0)],
+            vec![shading(GouraudVintage, 1.25, 9.0, 12.0), linear(), shading(Phong, 0.9, 0.0, 0.0)],
             "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes 0.80 times as long as the \
              loop of the period. Phong removes the remaining 11.5 shades and takes 0.90 times as long as 8.8.",
         ),
         (
-            vec![tied(rung(GouraudPeriod, 1.01, 9.0, 12.0), Gouraud88), linear()],
+            vec![tied(shading(GouraudVintage, 1.01, 9.0, 12.0), Gouraud88), linear()],
             "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes as long as the loop of the \
              period, as far as can be told. From light at every pixel it is off by up to 11.5 shades.",
         ),
         (
-            vec![rung(Gouraud88, 1.0, 0.0, 0.0), rung(Phong, 5.0, 0.0, 0.0)],
+            vec![shading(Gouraud88, 1.0, 0.0, 0.0), shading(Phong, 5.0, 0.0, 0.0)],
             "On torus 8.8 is exact and takes 100 µs a frame. No error remains that Phong could remove; it takes 5.00 \
              times as long as 8.8.",
         ),
         (
-            vec![rung(Gouraud88Reseeded, 1.1, 0.991, 0.5), rung(Phong, 5.5, 0.0, 0.51)],
+            vec![shading(Gouraud88Reseeded, 1.1, 0.991, 0.5), shading(Phong, 5.5, 0.0, 0.51)],
             "On torus 8.8, reseeded, is off from exact Gouraud shading by at most 1 shade and takes 110 µs a frame. \
              Phong removes nothing of the remaining 0.5 shades and takes 5.00 times as long as 8.8.",
         ),
         (
-            vec![linear(), rung(Phong, 2.0, 0.0, 14.03)],
+            vec![linear(), shading(Phong, 2.0, 0.0, 14.03)],
             "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes 100 µs a frame. Phong is no \
              nearer to light at every pixel, off by up to 14.1 shades against 11.5, and takes 2.00 times as long as 8.8.",
         ),
         (
-            vec![rung(Gouraud88, f64::NAN, f64::NAN, f64::NAN), rung(Phong, 2.0, 0.0, 1.0)],
+            vec![shading(Gouraud88, f64::NAN, f64::NAN, f64::NAN), shading(Phong, 2.0, 0.0, 1.0)],
             "On torus 8.8 has an error that is not known and takes a time that is not known. How far either is from \
              light at every pixel is not known; Phong takes a time that is not known.",
         ),
         (
-            vec![rung(Flat, 1.0, 9.0, 28.0), rung(Phong, 5.0, 0.0, 0.5)],
-            "On torus the fastest rung measured is flat: off from light at every pixel by at most 28 shades, in 100 µs \
+            vec![shading(Flat, 1.0, 9.0, 28.0), shading(Phong, 5.0, 0.0, 0.5)],
+            "On torus the fastest shading measured is flat: off from light at every pixel by at most 28 shades, in 100 µs \
              a frame. The nearest is phong: off by at most 0.5 shades; it takes 5.00 times as long as that.",
         ),
         (
-            vec![rung(Flat, 1.0, 9.0, 28.0)],
-            "On torus the fastest rung measured is flat: off from light at every pixel by at most 28 shades, in 100 µs \
-             a frame. No other rung measured is nearer.",
+            vec![shading(Flat, 1.0, 9.0, 28.0)],
+            "On torus the fastest shading measured is flat: off from light at every pixel by at most 28 shades, in 100 µs \
+             a frame. No other shading measured is nearer.",
         ),
-        (Vec::new(), "On torus no rung was measured. So there is nothing to compare."),
+        (Vec::new(), "On torus no shading was measured. So there is nothing to compare."),
     ];
-    for (rungs, text) in cases {
-        assert_eq!(summary(&study(rungs)).join(" "), text);
+    for (shadings, text) in cases {
+        assert_eq!(summary(&study(shadings)).join(" "), text);
     }
 }
 
 #[test]
 fn a_verdict_speaks_of_accuracy_and_of_time() {
-    let phong = |ratio| Some((Rung::Phong, ratio));
+    let phong = |ratio| Some((Shading::Phong, ratio));
     for (within, best, text) in [
         (1.0, phong(0.7), "accuracy kept; time limit kept"),
         (0.998_9, phong(1.05), "accuracy not kept; time limit kept"),
         (0.999, phong(1.06), "accuracy kept; time limit not kept, by no more than chance may do"),
         (1.0, phong(1.2), "accuracy kept; time limit not kept"),
-        (1.0, None, "accuracy kept; no single rung keeps it, so the time limit is void"),
+        (1.0, None, "accuracy kept; no single shading keeps it, so the time limit is void"),
         (f64::NAN, phong(f64::NAN), "accuracy not kept; time limit not measured"),
     ] {
         assert_eq!(verdict(&budget(4.0, within, best)), text);

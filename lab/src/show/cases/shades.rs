@@ -7,7 +7,7 @@ use crate::show::face::{Corner, Face, at, gouraud};
 use crate::show::fault::{paint, shade};
 use crate::show::panel::{Measure, Panel};
 use mode13h::palette::builtin;
-use mode13h::raster::Shading;
+use mode13h::raster::Interpolation;
 
 /// A byte may be a shade off: the engine's own rounding.
 const ROUNDED: Measure = Measure { shades: 1, ..EXACT };
@@ -49,7 +49,8 @@ pub(super) fn c5() -> Comparison {
         at(x, y, 125.0 + 110.0 * across).deep(1.0 / w).rounded()
     };
     let [a, b, c, d] = [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, 6.0), corner(-1.0, 6.0)];
-    let faces = [[a, b, c], [a, c, d]].map(|corners| Face { shading: Shading::GouraudHyperbolic, ..gouraud(corners) });
+    let faces = [[a, b, c], [a, c, d]]
+        .map(|corners| Face { interpolation: Interpolation::GouraudHyperbolic, ..gouraud(corners) });
     let mut comparison = against_engine((30, 26), &faces, Measure { shades: 4, ..EXACT }, |panel| paint(panel, &faces));
     // Lines of one shade.
     comparison.outline.extend([-0.6, -0.2, 0.2, 0.6].map(|across| [on_floor(across, 1.0), on_floor(across, 6.0)]));

@@ -11,7 +11,7 @@ pub(super) mod shade;
 
 use super::face::{Corner, Face};
 use super::panel::Panel;
-use mode13h::raster::Shading;
+use mode13h::raster::Interpolation;
 
 /// Twice the area of a → b → (x, y); positive if the point lies to the right of a → b on a screen
 /// whose y runs down.
@@ -46,8 +46,8 @@ impl Sample {
 
     /// The byte of its face there: the face's one, or linear over the screen.
     fn byte(&self, face: &Face) -> u8 {
-        match face.shading {
-            Shading::Flat(byte) => byte,
+        match face.interpolation {
+            Interpolation::Flat(byte) => byte,
             _ => wrapped(self.of(face.corners.map(|corner| corner.shade))),
         }
     }

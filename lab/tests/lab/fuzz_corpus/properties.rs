@@ -13,9 +13,9 @@ use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::file::{self, FORMATS, Format, PaletteError, Place};
 use mode13h::palette::{Palette, Rgb, builtin};
-use mode13h::render::{Renderer, Rung};
+use mode13h::render::{Renderer, Shading};
 use mode13h::scene::Scene;
-use mode13h::scene::file::{MOST_TRIANGLES, SceneErrorKind};
+use mode13h::scene::file::{MAX_TRIANGLES, SceneErrorKind};
 use mode13h::span::Kernel;
 use mode13h::texture::{self, Texture};
 use mode13h::vga::Vga;
@@ -344,12 +344,12 @@ pub fn scene(bytes: &[u8]) {
 fn check_scene(mut scene: Scene) {
     assert!(!scene.objects().is_empty() && scene.duration > 0.0 && scene.duration <= 3600.0);
     let triangles: usize = scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
-    assert!(triangles as u64 <= MOST_TRIANGLES + 2 * scene.objects().len() as u64);
+    assert!(triangles as u64 <= MAX_TRIANGLES + 2 * scene.objects().len() as u64);
     for seconds in [0.0, 0.3 * scene.duration, 1e9, -1.0] {
         scene.set_time(seconds);
         // What is still too large for f32, a camera that comes to its target, or a sun to zero, is refused when it is
         // drawn. Great scenes take long.
-        if triangles < 500 && scene.objects().len() < 20 && scene.wishes.tessellation.is_none() {
+        if triangles < 500 && scene.objects().len() < 20 && scene.preferences.tessellation.is_none() {
             let _ = Renderer::new().draw(&scene, &mut Vga::new());
         }
     }
@@ -367,8 +367,8 @@ pub fn words(bytes: &[u8]) {
         }
         Err(error) => assert_one_line(&error.to_string()),
     }
-    match Rung::from_str(&words) {
-        Ok(rung) => assert_eq!(rung.name(), words),
+    match Shading::from_str(&words) {
+        Ok(shading) => assert_eq!(shading.name(), words),
         Err(error) => assert_one_line(&error.to_string()),
     }
     match Kernel::by_name(&words) {
@@ -401,7 +401,7 @@ pub fn record(bytes: &[u8]) {
                 let replay = verify::replay(&record);
                 assert!(!replay.comparisons.is_empty());
                 // Where triangles have no exact cover, methods that agree on others may differ.
-                let exact = record.triangles.iter().all(|(_, shading)| shading.has_exact_cover());
+                let exact = record.triangles.iter().all(|(_, interpolation)| interpolation.has_exact_cover());
                 assert!(!exact || replay.failures.is_empty(), "{:?}", replay.failures);
             }
         }

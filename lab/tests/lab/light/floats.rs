@@ -127,8 +127,8 @@ const FLOATS: &[Row] = &[
     ("Surface.diffuse", 3, |s, bad, i| surface(s, |surface| surface.diffuse[i] = bad), "object 0"),
     ("Surface.specular", 3, |s, bad, i| surface(s, |surface| surface.specular[i] = bad), "object 0"),
     ("Surface.shininess", 1, |s, bad, _| surface(s, |surface| surface.shininess = bad), "object 0"),
-    ("Wishes.max_error", 1, |s, bad, _| s.wishes.max_error = Some(bad), "wishes"),
-    ("Wishes.tessellation", 1, |s, bad, _| s.wishes.tessellation = Some(bad), "wishes"),
+    ("Wishes.max_error", 1, |s, bad, _| s.preferences.max_error = Some(bad), "wishes"),
+    ("Wishes.tessellation", 1, |s, bad, _| s.preferences.tessellation = Some(bad), "wishes"),
 ];
 
 /// Those that no frame is made from, and where they are tried.

@@ -9,8 +9,8 @@ use mode13h::light::{Blend, Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
-use mode13h::raster::{Frame, Shading, Vertex};
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Rung, Screen, VertexPath};
+use mode13h::raster::{Frame, Interpolation, Vertex};
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
 use mode13h::span::Kernel;
 use mode13h::texture::Texture;
@@ -22,7 +22,7 @@ use crate::support::random::Random;
 /// How a renderer is set: what a fresh one is given, so that it draws the same frame.
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
-    rung: Option<Rung>,
+    shading: Option<Shading>,
     max_error: Option<f32>,
     mapping: Option<Mapping>,
     mipmaps: Option<bool>,
@@ -36,7 +36,7 @@ pub(super) struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            rung: None,
+            shading: None,
             max_error: None,
             mapping: None,
             mipmaps: None,
@@ -51,10 +51,10 @@ impl Default for Settings {
 impl Settings {
     /// A fresh renderer that is set so.
     pub(super) fn renderer(&self) -> Renderer {
-        let Self { rung, max_error, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
+        let Self { shading, max_error, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
         let mut renderer = Renderer::new();
-        if let Some(rung) = rung {
-            renderer.set_rung(*rung);
+        if let Some(shading) = shading {
+            renderer.set_shading(*shading);
         }
         if max_error.is_some() {
             renderer.set_max_error(*max_error);
@@ -114,7 +114,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene.palette", |w, r| w.scene.palette = sometimes(r, palette)),
     seen("Scene.palette_animation", |w, r| w.scene.palette_animation = sometimes(r, |r| fade(r, palette))),
     seen("Scene.fog", |w, r| w.scene.fog = sometimes(r, fog)),
-    seen("Scene.wishes", |w, _| w.scene.wishes = Default::default()),
+    seen("Scene.wishes", |w, _| w.scene.preferences = Default::default()),
     unseen("Scene.motions", |w, r| w.scene.motions.truncate(r.within(0, 1) as usize)),
     // When a picture is taken of it, which the program asks for.
     unseen("Scene.picture", |w, r| w.scene.picture = r.unit()),
@@ -173,24 +173,24 @@ pub(super) const CHANGES: &[Change] = &[
     seen("PaletteAnimation::Cycle.period", |w, r| {
         animate(w, r, |r| PaletteAnimation::Cycle { range: 1..=255, period: 0.5 + r.unit() });
     }),
-    // Wishes
-    seen("Wishes.rung", |w, r| w.scene.wishes.rung = sometimes(r, |r| r.one_of(&Rung::ALL))),
+    // Preferences
+    seen("Wishes.shading", |w, r| w.scene.preferences.shading = sometimes(r, |r| r.one_of(&Shading::ALL))),
     seen("Wishes.hidden_surfaces", |w, r| {
-        w.scene.wishes.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
+        w.scene.preferences.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
     }),
     seen("Wishes.mapping", |w, r| {
         textured(w, r);
-        w.scene.wishes.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
+        w.scene.preferences.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
     }),
     seen("Wishes.mipmaps", |w, r| {
         textured(w, r);
-        w.scene.wishes.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
+        w.scene.preferences.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
     }),
-    seen("Wishes.tessellation", |w, r| w.scene.wishes.tessellation = sometimes(r, |r| between(r, 0.5, 4.0))),
-    seen("Wishes.dither", |w, r| w.scene.wishes.dither = r.within(0, 1) == 1),
-    seen("Wishes.max_error", |w, r| w.scene.wishes.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
+    seen("Wishes.tessellation", |w, r| w.scene.preferences.tessellation = sometimes(r, |r| between(r, 0.5, 4.0))),
+    seen("Wishes.dither", |w, r| w.scene.preferences.dither = r.within(0, 1) == 1),
+    seen("Wishes.max_error", |w, r| w.scene.preferences.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
     // The program makes it, no renderer.
-    unseen("Wishes.auto_palette", |w, r| w.scene.wishes.auto_palette = r.within(0, 1) == 1),
+    unseen("Wishes.auto_palette", |w, r| w.scene.preferences.auto_palette = r.within(0, 1) == 1),
     // Motions
     seen("Motion::Spin.object", |w, r| spin(w, r, [0.0, 0.3, 0.0], [0.0, 0.2, 0.0])),
     seen("Motion::Spin.start", |w, r| {
@@ -299,15 +299,15 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Light::Lamp.color", |w, r| lamp(w, r, |r, _, _, _, color| *color = channels(r))),
     // The renderer
     seen("Renderer::set_rung", |w, r| {
-        let rung = r.one_of(&Rung::ALL);
-        (w.settings.rung, w.settings.max_error) = (Some(rung), None);
-        w.kept.set_rung(rung);
+        let shading = r.one_of(&Shading::ALL);
+        (w.settings.shading, w.settings.max_error) = (Some(shading), None);
+        w.kept.set_shading(shading);
     }),
     seen("Renderer::set_max_error", |w, r| {
         let shades = sometimes(r, |r| between(r, 0.5, 16.0));
         w.settings.max_error = shades;
         if shades.is_some() {
-            w.settings.rung = None;
+            w.settings.shading = None;
         }
         w.kept.set_max_error(shades);
     }),
@@ -367,8 +367,9 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     unseen("Renderer::for_each_triangle", |w, _| {
         let [kept, fresh] = [&mut w.kept, &mut w.settings.renderer()].map(|renderer| {
-            let mut all: Vec<([Vertex; 3], Shading)> = Vec::new();
-            let drawn = renderer.for_each_triangle(&w.scene, Screen::MODE_13H, |v, shading| all.push((*v, shading)));
+            let mut all: Vec<([Vertex; 3], Interpolation)> = Vec::new();
+            let drawn = renderer
+                .for_each_triangle(&w.scene, Screen::MODE_13H, |v, interpolation| all.push((*v, interpolation)));
             (drawn.map(drop), all)
         });
         assert!(kept == fresh, "the triangles");
@@ -444,7 +445,7 @@ pub(super) const CHANGES: &[Change] = &[
             1 => w.scene.ambient = f32::INFINITY,
             2 => one_object(w, r).position.y = f32::NAN,
             3 => one_material(w, r).shininess = f32::NAN,
-            4 => w.scene.wishes.max_error = Some(-1.0),
+            4 => w.scene.preferences.max_error = Some(-1.0),
             _ => w.scene.fog = Some(Fog { color: Rgb::BLACK, start: 2.0, end: 1.0 }),
         }
         let fresh = w.settings.renderer().draw(&w.scene, &mut w.machines[0].clone());
@@ -729,7 +730,7 @@ fn fewer_objects(world: &mut World) {
     let old = std::mem::take(&mut world.scene);
     let mut scene = Scene::new();
     (scene.camera, scene.ambient, scene.background) = (old.camera, old.ambient, old.background);
-    (scene.palette, scene.fog, scene.wishes) = (old.palette.clone(), old.fog, old.wishes);
+    (scene.palette, scene.fog, scene.preferences) = (old.palette.clone(), old.fog, old.preferences);
     *scene.lights_mut() = old.lights().to_vec();
     for object in objects.into_iter().rev().take(3) {
         scene.add(object);

@@ -98,7 +98,7 @@ fn said(panic: &dyn std::any::Any) -> String {
 }
 
 /// The fewest changes of a run that still fail, and how: pieces are left out as long as it fails without them.
-fn shrunk(mut run: Run, mut why: String) -> (Run, String) {
+fn shrunk(mut run: Run, mut reason: String) -> (Run, String) {
     let mut piece = run.steps.len();
     while piece > 0 {
         let mut at = 0;
@@ -106,13 +106,13 @@ fn shrunk(mut run: Run, mut why: String) -> (Run, String) {
             let mut less = run.clone();
             less.steps.drain(at..(at + piece).min(run.steps.len()));
             match play(&less, |_, _| {}) {
-                Err(still) => (run, why) = (less, still),
+                Err(still) => (run, reason) = (less, still),
                 Ok(()) => at += piece,
             }
         }
         piece /= 2;
     }
-    (run, why)
+    (run, reason)
 }
 
 /// Tries runs until as many frames as stated were compared. Changes are dealt as cards are, so that each comes as often as
@@ -138,10 +138,10 @@ fn run_all(tried: &mut Tried) -> BTreeMap<&'static str, (u64, u64)> {
             let count = counts.entry(CHANGES[change].name).or_default();
             *count = (count.0 + 1, count.1 + u64::from(differs));
         });
-        if let Err(why) = outcome {
-            let (run, why) = shrunk(run, why);
+        if let Err(reason) = outcome {
+            let (run, reason) = shrunk(run, reason);
             let names: Vec<&str> = run.steps.iter().map(|step| CHANGES[step.change].name).collect();
-            panic!("{why}\nthe changes: {names:#?}\n{run:?}");
+            panic!("{reason}\nthe changes: {names:#?}\n{run:?}");
         }
         tried.add(STEPS as u64);
     }

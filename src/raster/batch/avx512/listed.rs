@@ -12,12 +12,12 @@ use core::mem::{MaybeUninit, offset_of};
 
 use self::few::Order;
 use super::super::depths::Planes;
-use super::super::rows::{Edges, Group, LANES, MAGIC, MOST_ACROSS, Place};
+use super::super::rows::{Edges, Group, LANES, MAGIC, MAX_ACROSS, Place};
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
 
 /// Spans at most.
-const ROOM: usize = 128;
+const CAPACITY: usize = 128;
 const SIXTEEN: usize = 2 * LANES;
 /// Groups of at most so many rows are listed together.
 pub(in super::super) const FEW_ROWS: i32 = 4;
@@ -26,14 +26,14 @@ pub(in super::super) const FEW_ROWS: i32 = 4;
 #[repr(C, align(64))]
 pub(in super::super) struct Spans {
     // Of each span; up to sixteen are written at a time, and those that are none are written over.
-    at: MaybeUninit<[u32; ROOM + SIXTEEN]>,
-    cell: MaybeUninit<[u32; ROOM + SIXTEEN]>,
-    length: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    at: MaybeUninit<[u32; CAPACITY + SIXTEEN]>,
+    cell: MaybeUninit<[u32; CAPACITY + SIXTEEN]>,
+    length: MaybeUninit<[u32; CAPACITY + SIXTEEN]>,
     /// Shade, and above it the step.
-    paint: MaybeUninit<[u32; ROOM + SIXTEEN]>,
+    paint: MaybeUninit<[u32; CAPACITY + SIXTEEN]>,
     /// Depths, the whole parts in the upper halves.
-    z: MaybeUninit<[i64; ROOM + SIXTEEN]>,
-    dz: MaybeUninit<[i64; ROOM + SIXTEEN]>,
+    z: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
+    dz: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
     /// Of each row of eight triangles, up to four: the first pixel, pixels, paint, and the column of the box.
     row_at: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
     row_length: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
@@ -172,7 +172,7 @@ impl Spans {
         self.of(pixels, cells);
         // A column and a row are below 4,096.
         let cell = (group.row[i] - self.first_row as i32) * self.width as i32 + group.column[i];
-        self.longest = if pieces > 1 { RESEED.into() } else { f64::from(MOST_ACROSS / 256) };
+        self.longest = if pieces > 1 { RESEED.into() } else { f64::from(MAX_ACROSS / 256) };
         let (mut first, mut end) = (0, group.rows[i]);
         self.origin = MAGIC - f64::from(group.column[i]);
         self.clips = clip.is_some().into();
@@ -186,7 +186,7 @@ impl Spans {
         }
         while first < end {
             for piece in 0..pieces {
-                if self.count + LANES > ROOM {
+                if self.count + LANES > CAPACITY {
                     // SAFETY: by the caller's promise.
                     unsafe { self.draw(planes.is_some(), pixels, cells) };
                 }
@@ -221,7 +221,7 @@ impl Spans {
     ) {
         self.of(pixels, cells);
         let (rows, orders) = if most_rows <= 2 { (2, &OF_TWO[..]) } else { (4, &OF_FOUR[..]) };
-        if self.count + SIXTEEN * orders.len() > ROOM {
+        if self.count + SIXTEEN * orders.len() > CAPACITY {
             // SAFETY: by the caller's promise.
             unsafe { self.draw(planes.is_some(), pixels, cells) };
         }
@@ -250,7 +250,7 @@ impl Spans {
         (pixels, cells): (&mut [u8], &mut [u32]),
     ) {
         self.of(pixels, cells);
-        if self.count + LANES * LANES > ROOM {
+        if self.count + LANES * LANES > CAPACITY {
             // SAFETY: by the caller's promise.
             unsafe { self.draw(true, pixels, cells) };
         }
@@ -262,7 +262,7 @@ impl Spans {
         }
         for i in 0..triangles {
             for first in (0..group.rows[i]).step_by(LANES) {
-                if self.count + LANES > ROOM {
+                if self.count + LANES > CAPACITY {
                     // SAFETY: by the caller's promise.
                     unsafe { self.draw(true, pixels, cells) };
                 }
@@ -292,7 +292,7 @@ impl Spans {
         let planes = planes.map_or(core::ptr::null(), |planes| (&raw const *planes).cast::<u8>());
         // SAFETY: the caller has AVX-512 F, DQ and VL and POPCNT found. Read are `group`, `planes` and `CONSTANTS` at the
         // offsets of their fields, of those that hold eight numbers number `i`, which is below 8. Written are eight numbers
-        // from number `count` on, and so below `ROOM + LANES`. Without `planes` nothing is read of them. The stack is not
+        // from number `count` on, and so below `CAPACITY + LANES`. Without `planes` nothing is read of them. The stack is not
         // used; flags and all registers written are given up.
         unsafe {
             asm!(
@@ -444,7 +444,7 @@ impl Spans {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::rows::{Gathered, MOST_PIECES};
+    use super::super::super::rows::{Gathered, MAX_PIECES};
     use super::super::set_up;
     use super::*;
     use crate::span::Kernel;
@@ -478,7 +478,7 @@ mod tests {
             let with_depths = random(2) > 0;
             let each = few && round % 4 > 0;
             let clip = (random(1) == 0).then_some(Rect { x0: random(99) as u32, y0: 0, x1: 200, y1: 90 });
-            let pieces = random(MOST_PIECES as u64) as usize;
+            let pieces = random(MAX_PIECES as u64) as usize;
             // SAFETY: the kernel above is there.
             unsafe {
                 set_up(&gathered, place, &mut group);

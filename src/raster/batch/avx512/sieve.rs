@@ -3,7 +3,7 @@
 use core::arch::asm;
 
 use super::super::Batch;
-use super::super::rows::{MOST_ACROSS, MOST_COLUMNS, MOST_DOWN, MOST_ROWS, MOST_SQUARES};
+use super::super::rows::{MAX_ACROSS, MAX_AREA_4X4, MAX_COLUMNS, MAX_DOWN, MAX_ROWS};
 use super::super::sieve::{Chosen, Kept};
 use crate::raster::frame::Rect;
 
@@ -142,7 +142,7 @@ struct Constants {
 
 static CONSTANTS: Constants = {
     let mut constants = Constants { numbers: [0; LANES], others: [0; LANES] };
-    let numbers = [127, MOST_COLUMNS, MOST_ROWS, 1_023, MOST_ACROSS, MOST_DOWN, MOST_SQUARES, 1 << 8];
+    let numbers = [127, MAX_COLUMNS, MAX_ROWS, 1_023, MAX_ACROSS, MAX_DOWN, MAX_AREA_4X4, 1 << 8];
     let mut i = 0;
     while i < LANES {
         if i < numbers.len() {
@@ -163,7 +163,7 @@ mod tests {
     use super::super::super::sieve;
     use super::*;
     use crate::fixed::{I24F8, U8F8};
-    use crate::raster::{Shading, Vertex};
+    use crate::raster::{Interpolation, Vertex};
     use crate::span::Kernel;
 
     fn corner() -> impl Strategy<Value = (i32, i32)> {
@@ -196,7 +196,7 @@ mod tests {
                     let [x, y] = [x, y].map(|c| I24F8::from_bits(c.clamp(-Vertex::GUARD_BAND, Vertex::GUARD_BAND)));
                     Vertex::new(x, y, U8F8::default(), 1).expect("legal")
                 });
-                prop_assert!(batch.push(&corners, Shading::Gouraud));
+                prop_assert!(batch.push(&corners, Interpolation::Gouraud));
             }
             let clip = Rect { x0: clip.0, y0: clip.1, x1: clip.2, y1: clip.3 };
             let (mut kept, mut expected) = (Kept::new(), Kept::new());

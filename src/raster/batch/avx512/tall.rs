@@ -7,12 +7,12 @@ use core::arch::asm;
 use core::mem::offset_of;
 
 use super::super::rows::{Edges, Group, LANES, MAGIC, Place};
+use crate::raster::interpolation::Interpolation;
 use crate::raster::shade::RESEED;
-use crate::raster::shading::Shading;
 
 /// What the assembly reads and writes: of one triangle, and of eight of its rows.
 #[repr(C, align(64))]
-pub(in super::super) struct Tall {
+pub(in super::super) struct Large {
     /// Of eight rows: the address of the first pixel, ...
     at: [u64; LANES],
     /// ... the pixels, ...
@@ -110,7 +110,7 @@ static CONSTANTS: Constants = Constants {
     eight: 8,
 };
 
-impl Tall {
+impl Large {
     pub(in super::super) const fn new() -> Self {
         Self {
             at: [0; LANES],
@@ -155,7 +155,7 @@ impl Tall {
         &mut self,
         group: &Group,
         i: usize,
-        shading: Shading,
+        interpolation: Interpolation,
         place: Place,
         pixels: &mut [u8],
     ) {
@@ -176,7 +176,7 @@ impl Tall {
         self.per_eight = LANES as u64 * u64::from(place.pitch);
         (self.rows, self.split) = (rows, i64::from(group.split[i]) as u64);
         // Of at most 1,024 pixels a row.
-        let reseeds = shading == Shading::GouraudReseeded;
+        let reseeds = interpolation == Interpolation::GouraudReseeded;
         (self.round, self.shift) = if reseeds { (RESEED as u64 - 1, RESEED.ilog2().into()) } else { (1_023, 10) };
         self.reseeds = reseeds.into();
         // Its upper half is the step.
@@ -382,13 +382,14 @@ mod tests {
             let place = Place { first_row: random(20) as u32, pitch: random(300) as u32, depth_width: None };
             let (before, length) = (random(300) as usize, random(20_000) as usize);
             let mut bytes = vec![7_u8; before + length + 300];
-            let mut tall = Tall::new();
+            let mut tall = Large::new();
             // SAFETY: the kernel above is there.
             unsafe {
                 set_up(&gathered, place, &mut spans.group);
                 let pixels = &mut bytes[before..before + length];
-                let shading = if random(1) == 0 { Shading::Gouraud } else { Shading::GouraudReseeded };
-                tall.draw(&spans.group, 3, shading, place, pixels);
+                let interpolation =
+                    if random(1) == 0 { Interpolation::Gouraud } else { Interpolation::GouraudReseeded };
+                tall.draw(&spans.group, 3, interpolation, place, pixels);
             }
             assert!(bytes[..before].iter().chain(&bytes[before + length..]).all(|&byte| byte == 7));
             let inside = bytes.iter().filter(|&&byte| byte != 7).count();

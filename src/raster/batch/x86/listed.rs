@@ -14,12 +14,12 @@ use super::super::rows::{Gathered, Group, LANES, Place, set_up};
 use super::super::sieve::Chosen;
 use super::eight_rows::{Columns, Rows, lines};
 use super::planes;
-use crate::raster::triangle::Drawn;
+use crate::raster::triangle::DrawStats;
 use crate::span::avx2::span;
 use crate::span::nearer::{self, Tested};
 
 /// Spans at most, ...
-const ROOM: usize = 192;
+const CAPACITY: usize = 192;
 /// ... and rows that are put in at a time. What is behind those that are spans is written over.
 const FOUR: usize = 4;
 /// The most rows of a group.
@@ -34,7 +34,7 @@ pub(super) fn draw<const DEPTHS: bool>(
     place: Place,
     pixels: &mut [u8],
     cells: &mut [u32],
-) -> Drawn {
+) -> DrawStats {
     let mut spans = Spans::new();
     let mut group = Group::NONE;
     let mut planes_of_eight = Planes::NONE;
@@ -122,15 +122,15 @@ struct Spans {
     nearer: u32,
 }
 
-type Numbers = [MaybeUninit<u32>; ROOM + FOUR];
-type Depths = [MaybeUninit<i64>; ROOM + FOUR];
+type Numbers = [MaybeUninit<u32>; CAPACITY + FOUR];
+type Depths = [MaybeUninit<i64>; CAPACITY + FOUR];
 
 impl Spans {
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     fn new() -> Self {
-        const NUMBERS: Numbers = [MaybeUninit::uninit(); ROOM + FOUR];
-        const DEPTHS: Depths = [MaybeUninit::uninit(); ROOM + FOUR];
+        const NUMBERS: Numbers = [MaybeUninit::uninit(); CAPACITY + FOUR];
+        const DEPTHS: Depths = [MaybeUninit::uninit(); CAPACITY + FOUR];
         Self {
             at: NUMBERS,
             cell: NUMBERS,
@@ -147,12 +147,12 @@ impl Spans {
 
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    fn drawn(&self, depths: bool) -> Drawn {
+    fn drawn(&self, depths: bool) -> DrawStats {
         let two = _mm_add_epi32(self.covered, _mm_srli_si128(self.covered, 8));
         // Small triangles of a batch have below 2¹⁷ pixels.
         let covered = _mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4))).cast_unsigned();
         let (tested, pixels) = if depths { (covered, self.nearer) } else { (0, covered) };
-        Drawn { spans: self.spans, covered, pixels, tested, ..Drawn::default() }
+        DrawStats { spans: self.spans, covered, pixels, tested, ..DrawStats::default() }
     }
 
     /// Lists all rows of a group's triangles, and draws first if there might be no room for them.
@@ -165,7 +165,7 @@ impl Spans {
         place: Place,
         (pixels, cells): (&mut [u8], &mut [u32]),
     ) {
-        if self.count + MOST > ROOM {
+        if self.count + MOST > CAPACITY {
             self.draw::<DEPTHS>(pixels, cells);
         }
         // A column and a row are below 4,096.
@@ -185,7 +185,7 @@ impl Spans {
             let cell = (group.row[i] - place.first_row as i32) * width + group.column[i];
             let mut first = 0;
             while first < rows {
-                if self.count + LANES > ROOM {
+                if self.count + LANES > CAPACITY {
                     self.draw::<DEPTHS>(pixels, cells);
                 }
                 let rows = lines::<DEPTHS>(group, i, first, cell, planes, (pitch, width));
@@ -284,7 +284,7 @@ impl Spans {
         let kept = _mm_movemask_ps(_mm_castsi128_ps(are_rows)) as usize % 16;
         // SAFETY: sixteen bytes; the load asks for no alignment.
         let narrow = unsafe { _mm_loadu_si128(NARROW[kept].as_ptr().cast()) };
-        let count = self.count.min(ROOM);
+        let count = self.count.min(CAPACITY);
         store_four(&mut self.at, count, _mm_shuffle_epi8(four.at, narrow));
         store_four(&mut self.length, count, _mm_shuffle_epi8(four.length, narrow));
         store_four(&mut self.paint, count, _mm_shuffle_epi8(four.paint, narrow));
@@ -302,7 +302,7 @@ impl Spans {
     /// Draws what is listed, and empties the list.
     #[target_feature(enable = "avx2,fma")]
     fn draw<const DEPTHS: bool>(&mut self, pixels: &mut [u8], cells: &mut [u32]) {
-        let count = self.count.min(ROOM);
+        let count = self.count.min(CAPACITY);
         // SAFETY: of each array `put` has written the first `count` numbers.
         let (at, length, paint) =
             unsafe { (written(&self.at, count), written(&self.length, count), written(&self.paint, count)) };
@@ -343,7 +343,7 @@ fn turned<const ROWS: usize>(a: __m256i, b: __m256i, c: __m256i, d: __m256i) -> 
 ///
 /// # Safety
 /// So many have been written.
-unsafe fn written<T>(numbers: &[MaybeUninit<T>; ROOM + FOUR], count: usize) -> &[T] {
+unsafe fn written<T>(numbers: &[MaybeUninit<T>; CAPACITY + FOUR], count: usize) -> &[T] {
     let first = &numbers[..count];
     // SAFETY: by the caller's promise; `MaybeUninit<T>` has the layout of `T`.
     unsafe { &*(&raw const *first as *const [T]) }
@@ -352,8 +352,8 @@ unsafe fn written<T>(numbers: &[MaybeUninit<T>; ROOM + FOUR], count: usize) -> &
 #[inline]
 #[target_feature(enable = "avx2,fma")]
 fn store_four(to: &mut Numbers, at: usize, four: __m128i) {
-    debug_assert!(at <= ROOM);
-    // SAFETY: `put`, which alone calls this, has `at` no greater than `ROOM`, so that there are four; the store asks for no
+    debug_assert!(at <= CAPACITY);
+    // SAFETY: `put`, which alone calls this, has `at` no greater than `CAPACITY`, so that there are four; the store asks for no
     // alignment.
     unsafe { _mm_storeu_si128(to.as_mut_ptr().add(at).cast(), four) }
 }
@@ -361,7 +361,7 @@ fn store_four(to: &mut Numbers, at: usize, four: __m128i) {
 #[inline]
 #[target_feature(enable = "avx2,fma")]
 fn store_wide(to: &mut Depths, at: usize, four: __m256i) {
-    debug_assert!(at <= ROOM);
+    debug_assert!(at <= CAPACITY);
     // SAFETY: as above.
     unsafe { _mm256_storeu_si256(to.as_mut_ptr().add(at).cast(), four) }
 }

@@ -24,7 +24,7 @@ impl Spans {
                 self.draw_all(pixels.as_mut_ptr());
             }
         }
-        // At most 2⁷ at a time; the sum is meant modulo 2³², as `Drawn`.
+        // At most 2⁷ at a time; the sum is meant modulo 2³², as `DrawStats`.
         self.drawn = self.drawn.wrapping_add(self.count as u32);
         self.count = 0;
     }

@@ -51,7 +51,7 @@ impl Spans {
         debug_assert!(begin < LANES && end <= LANES);
         // SAFETY: the caller has AVX-512 F, DQ and VL and POPCNT found. Read are `CONSTANTS`, and `group`, `planes` and `self` at
         // the offsets of their fields, of those that hold eight numbers those from `begin` to `end`, or that at `begin`. Written are, for each triangle,
-        // eight numbers from number `count` on, which is at most eight more with each, and so below `ROOM + LANES`. The stack is
+        // eight numbers from number `count` on, which is at most eight more with each, and so below `CAPACITY + LANES`. The stack is
         // not used; flags and all registers written are given up.
         unsafe {
             asm!(
@@ -264,7 +264,7 @@ impl Spans {
     pub(super) unsafe fn list_sixteen(&mut self, order: &Order, planes: Option<&Planes>) {
         let planes = planes.map_or(core::ptr::null(), |planes| &raw const *planes);
         // SAFETY: the caller has AVX-512 F, BW, DQ and VL and POPCNT found. Read are `order`, `planes` and `self` at the offsets
-        // of their fields; written are sixteen numbers from number `count` on, and so below `ROOM + SIXTEEN`, of z and dz
+        // of their fields; written are sixteen numbers from number `count` on, and so below `CAPACITY + SIXTEEN`, of z and dz
         // eight and eight more from where the first end. Without `planes` nothing is read of them. The stack is not used;
         // flags and all registers written are given up.
         unsafe {

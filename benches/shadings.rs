@@ -1,17 +1,17 @@
-//! What each rung of the ladder takes for a frame, vertices and all, and for a pixel that it writes.
+//! What each shading of the ladder takes for a frame, vertices and all, and for a pixel that it writes.
 //!
 //! ```text
-//! cargo bench --bench rungs
-//! MODE13H_SCENES=torus,phong cargo bench --bench rungs
+//! cargo bench --bench shadings
+//! MODE13H_SCENES=torus,phong cargo bench --bench shadings
 //! ```
 //!
 //! Eight moments of a scene's round are drawn one after the other, so that every frame is a new one. Each round times
-//! every rung once, in a new order, and the figure is the median over the rounds.
+//! every shading once, in a new order, and the figure is the median over the rounds.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use mode13h::render::{Renderer, Rung};
+use mode13h::render::{Renderer, Shading};
 use mode13h::scene::{Scene, shipped};
 use mode13h::vga::Vga;
 
@@ -29,7 +29,7 @@ fn main() {
     let rounds = if is_bench { 41 } else { 1 };
     let names = std::env::var("MODE13H_SCENES").unwrap_or_else(|_| SCENES.to_string());
     println!("median of {rounds} rounds of {MOMENTS} frames");
-    println!("{:>10} {:>24} {:>12} {:>10} {:>10}", "scene", "rung", "ns/frame", "pixels", "ns/pixel");
+    println!("{:>10} {:>24} {:>12} {:>10} {:>10}", "scene", "shading", "ns/frame", "pixels", "ns/pixel");
     let mut vga = Vga::new();
     for name in names.split(',') {
         let scene = shipped::by_name(name).expect("a shipped scene").load().expect("it loads").scene;
@@ -40,11 +40,11 @@ fn main() {
                 scene
             })
             .collect();
-        let mut renderers: Vec<Renderer> = Rung::ALL
+        let mut renderers: Vec<Renderer> = Shading::ALL
             .iter()
-            .map(|&rung| {
+            .map(|&shading| {
                 let mut renderer = Renderer::new();
-                renderer.set_rung(rung);
+                renderer.set_shading(shading);
                 renderer
             })
             .collect();
@@ -52,19 +52,19 @@ fn main() {
         let mut times = vec![Vec::new(); renderers.len()];
         for round in 0..rounds {
             for i in 0..renderers.len() {
-                // 7 and the number of rungs have no common factor.
+                // 7 and the number of shadings have no common factor.
                 let which = (i * 7 + round) % renderers.len();
                 let started = Instant::now();
                 black_box(draw(&mut renderers[which], &frames, &mut vga));
                 times[which].push(started.elapsed().as_secs_f64() * 1e9);
             }
         }
-        for ((rung, times), pixels) in Rung::ALL.iter().zip(&mut times).zip(pixels) {
+        for ((shading, times), pixels) in Shading::ALL.iter().zip(&mut times).zip(pixels) {
             times.sort_by(f64::total_cmp);
             let time = times[times.len() / 2];
             println!(
                 "{name:>10} {:>24} {:>12.0} {:>10} {:>10.3}",
-                rung.name(),
+                shading.name(),
                 time / MOMENTS as f64,
                 pixels / MOMENTS as u64,
                 time / pixels as f64

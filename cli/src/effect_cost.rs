@@ -14,7 +14,7 @@ use crate::failure::Failure;
 const ROUNDS: (usize, usize) = (15, 1_001);
 
 /// Times frames of a scene that moves: the two come in turn, each after the other.
-pub(crate) struct Meter<'a, Make: Fn() -> Renderer> {
+pub(crate) struct EffectCost<'a, Make: Fn() -> Renderer> {
     /// What draws as the user asked for.
     pub(crate) renderer: Make,
     /// 1/35 s apart.
@@ -43,7 +43,7 @@ impl Artist {
     }
 }
 
-impl<Make: Fn() -> Renderer> Meter<'_, Make> {
+impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
     /// What a frame takes, in nanoseconds: the median of many.
     pub(crate) fn frame(&self) -> Result<f64, Failure> {
         let mut artist = Artist::new((self.renderer)());

@@ -17,10 +17,10 @@ use core::mem::size_of;
 use std::time::Instant;
 
 use super::clock::Clock;
-use super::statistics::{Chance, Ratio};
-use super::way::{Kind, Way};
+use super::configuration::{Configuration, Kind};
+use super::statistics::{Ratio, Rng};
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, Rung, Shares};
+use mode13h::render::{RenderError, Renderer, Shading, Shares};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
@@ -93,19 +93,19 @@ fn cell(text: &str) -> Cow<'_, str> {
 pub(super) struct Work {
     pub(super) triangles: u64,
     pub(super) pixels: u64,
-    pub(super) shares: [u64; Rung::ALL.len()],
+    pub(super) shares: [u64; Shading::ALL.len()],
 }
 
 impl Work {
     fn add_shares(&mut self, shares: &Shares) {
-        for (count, rung) in self.shares.iter_mut().zip(Rung::ALL) {
-            *count += shares.of(rung);
+        for (count, shading) in self.shares.iter_mut().zip(Shading::ALL) {
+            *count += shares.of(shading);
         }
     }
 }
 
 /// One way, ready to draw.
-struct Contender<'a> {
+struct Candidate<'a> {
     renderer: Renderer,
     scenes: &'a [Scene],
     work: Work,
@@ -113,7 +113,7 @@ struct Contender<'a> {
     every: usize,
 }
 
-impl Contender<'_> {
+impl Candidate<'_> {
     /// Draws all frames; the time in nanoseconds.
     fn draw(&mut self, vga: &mut Vga, clock: Clock) -> Result<f64, RenderError> {
         let (time, result) = clock.time(|| {
@@ -165,21 +165,21 @@ pub(super) struct Outcome {
 }
 
 /// Times all ways on their frames (all of one number), about as long as `spent` says: longer where fewer than 25 rounds would
-/// fit in, up to four times as long, and twice as long as long as a rung's or a budget's ratio to the first way is not
+/// fit in, up to four times as long, and twice as long as long as a shading's or a budget's ratio to the first way is not
 /// known to 2 %. Where `spent` says at most, as long as it says, or for seven rounds. `progress` is told the share of the time that is over.
 pub(super) fn contest(
-    ways: &[(&Way<'_>, &[Scene])],
+    ways: &[(&Configuration<'_>, &[Scene])],
     base: &dyn Fn() -> Renderer,
     spent: &Spent,
     progress: &dyn Fn(f64),
 ) -> Result<Outcome, RenderError> {
-    let mut chance = Chance::new(spent.seed);
+    let mut chance = Rng::new(spent.seed);
     let seconds = spent.seconds;
     // One machine for all, so that none has its memory in a better place.
     let mut vga = Vga::new();
-    let mut contenders: Vec<Contender<'_>> = ways
+    let mut contenders: Vec<Candidate<'_>> = ways
         .iter()
-        .map(|(way, scenes)| Contender {
+        .map(|(way, scenes)| Candidate {
             renderer: always_drawing(way.apply(base())),
             scenes,
             work: Work::default(),
@@ -232,8 +232,8 @@ pub(super) fn contest(
 }
 
 /// Whether all ratios that are asked for are known well enough.
-fn is_narrow(ways: &[(&Way<'_>, &[Scene])], samples: &Samples, seed: u64) -> bool {
-    let mut chance = Chance::new(seed);
+fn is_narrow(ways: &[(&Configuration<'_>, &[Scene])], samples: &Samples, seed: u64) -> bool {
+    let mut chance = Rng::new(seed);
     let first = samples.of(0);
     ways.iter().enumerate().all(|(i, (way, _))| {
         matches!(way.kind, Kind::Choice(_)) || Ratio::new(&samples.of(i), &first, &mut chance).spread() <= NARROW
@@ -251,9 +251,9 @@ mod tests {
     #[test]
     fn a_name_with_a_comma_is_one_cell() {
         let sample = Sample { round: 3, order: 1, way: 0, nanoseconds: 70.4 };
-        let ways = vec![(Aspect::PortableRung.name(), String::from("flat"))];
+        let ways = vec![(Aspect::PortableShading.name(), String::from("flat"))];
         let samples = Samples { ways, frames: 2, list: vec![sample] };
-        assert_eq!(samples.to_csv().lines().nth(1), Some("3,1,\"rung, portable kernel\",flat,2,70"));
+        assert_eq!(samples.to_csv().lines().nth(1), Some("3,1,\"shading, portable kernel\",flat,2,70"));
     }
 
     /// Of a scene in which nothing moves every frame takes the vertices and, by a budget, the decisions.
@@ -265,19 +265,23 @@ mod tests {
         let mut decided = |mut renderer: Renderer| {
             [(); 3].map(|()| renderer.draw(&scene, &mut vga).map(|stats| (stats.redrawn, stats.decided)))
         };
-        let timed = decided(always_drawing(Way::budget(4.0).apply(Renderer::new())));
+        let timed = decided(always_drawing(Configuration::budget(4.0).apply(Renderer::new())));
         assert_eq!(timed, [(); 3].map(|()| Ok((true, 2))));
-        let kept = decided(Way::budget(4.0).apply(Renderer::new()));
+        let kept = decided(Configuration::budget(4.0).apply(Renderer::new()));
         assert_eq!(kept, [Ok((true, 2)), Ok((false, 0)), Ok((false, 0))]);
-        let without = decided(always_drawing(Way::rung(Rung::Phong).apply(Renderer::new())));
+        let without = decided(always_drawing(Configuration::shading(Shading::Phong).apply(Renderer::new())));
         assert_eq!(without, [(); 3].map(|()| Ok((true, 0))));
     }
 
     #[test]
     fn every_way_draws_every_frame_in_every_round() {
         let frames = [Scene::showing(shapes::torus(12, 6)), Scene::showing(shapes::torus(12, 6))];
-        let ways = [Way::rung(Rung::Gouraud88), Way::rung(Rung::Phong), Way::budget(4.0)];
-        let ways: Vec<(&Way<'_>, &[Scene])> = ways.iter().map(|way| (way, &frames[..])).collect();
+        let ways = [
+            Configuration::shading(Shading::Gouraud88),
+            Configuration::shading(Shading::Phong),
+            Configuration::budget(4.0),
+        ];
+        let ways: Vec<(&Configuration<'_>, &[Scene])> = ways.iter().map(|way| (way, &frames[..])).collect();
         let Ok(Outcome { samples, work }) = contest(
             &ways,
             &Renderer::new,
@@ -302,6 +306,6 @@ mod tests {
         assert!(work.iter().all(|work| work.triangles > 0 && work.shares.iter().sum::<u64>() == work.triangles));
         let csv = samples.to_csv();
         assert_eq!(csv.lines().count(), 1 + samples.list.len());
-        assert!(csv.lines().any(|line| line.contains(",rung,gouraud-8.8,2,")), "{csv}");
+        assert!(csv.lines().any(|line| line.contains(",shading,gouraud-8.8,2,")), "{csv}");
     }
 }

@@ -1,7 +1,7 @@
 //! What is done to the pixels of a triangle: where shades come from, and the stages that they pass.
 
 use crate::fixed::U8F8;
-use crate::raster::shading::Shading;
+use crate::raster::interpolation::Interpolation;
 use crate::span::lit::{Lanes, Points};
 use crate::span::texture::{Levels, Texels};
 
@@ -15,9 +15,9 @@ pub struct Attributes {
     pub fog: U8F8,
     /// Red, green and blue, each 0 to 0xFF00.
     pub channels: [U8F8; 3],
-    /// The column and the row in the table of [`Source::NormalTable`], each 0 to 0xFF00.
+    /// The column and the row in the table of [`ShadeSource::NormalTable`], each 0 to 0xFF00.
     pub slope: [U8F8; 2],
-    /// What [`Lighting`] is handed: a normal and a position. Of [`Source::Curved`] the shade at the corner, or its three
+    /// What [`Lighting`] is handed: a normal and a position. Of [`ShadeSource::Curved`] the shade at the corner, or its three
     /// channels, and then those at the middle (on the screen) of the edge opposite to it; in 8.8, and beyond what can be
     /// shown, too, where the limits cut them off.
     pub lit: [f32; 6],
@@ -36,18 +36,18 @@ pub trait Lighting: core::fmt::Debug {
 /// Where a pixel's shade comes from.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
-pub enum Source<'a> {
+pub enum ShadeSource<'a> {
     /// The corners' shades, or their channels, each for itself, as this shading has them. Of
-    /// [`GouraudPeriod`](Shading::GouraudPeriod) the shades alone: which pixels is decided by exact cover,
+    /// [`GouraudVintage`](Interpolation::GouraudPeriod) the shades alone: which pixels is decided by exact cover,
     /// where the values of all stages are in range.
-    Shaded(Shading),
+    Shaded(Interpolation),
     /// [`Attributes::slope`], linear on the screen, looked up: row and column give the shade.
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`], linear on the face, lit.
     Lit(&'a dyn Lighting),
     /// The same lit at the row's first pixel inside the frame, at some from there and at its last; shades are linear
     /// between.
-    LitEvery(Apart, &'a dyn Lighting),
+    LitEvery(SampleSpacing, &'a dyn Lighting),
     /// Quadratic on the screen, through the six shades of [`Attributes::lit`]: those at the corners and at the middles of
     /// the edges. Held within these limits, one for each channel; of one shade the first counts.
     Curved([Limits; 3]),
@@ -64,7 +64,7 @@ pub struct Limits {
 
 /// How far two pixels of a row that are lit lie apart.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Apart {
+pub enum SampleSpacing {
     /// 4 pixels.
     Four,
     /// 8 pixels.
@@ -73,7 +73,7 @@ pub enum Apart {
     Sixteen,
 }
 
-impl Apart {
+impl SampleSpacing {
     /// All of them, the nearest first.
     pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
 
@@ -117,7 +117,7 @@ pub enum Mix<'a> {
 
 /// An image on a triangle.
 #[derive(Clone, Copy, Debug)]
-pub struct TextureLook<'a> {
+pub struct TextureStage<'a> {
     /// The image.
     pub texels: Texels<'a>,
     /// Its smaller copies, from which one is taken where more than √2 texels go to a pixel; `None` for the image alone.
@@ -130,15 +130,15 @@ pub struct TextureLook<'a> {
 
 /// What is done to the pixels of a triangle.
 #[derive(Clone, Copy, Debug)]
-pub struct Look<'a> {
+pub struct PixelPipeline<'a> {
     /// Where shades come from.
-    pub source: Source<'a>,
+    pub source: ShadeSource<'a>,
     /// Red, green and blue instead of one shade, and what they are mixed to.
     pub channels: Option<Mix<'a>>,
     /// Thresholds of 8 × 8 pixels instead of the half that is else added to a shade.
     pub dither: Option<&'a [[u8; 8]; 8]>,
     /// An image.
-    pub texture: Option<TextureLook<'a>>,
+    pub texture: Option<TextureStage<'a>>,
     /// The index for a level (row) and an index (column).
     pub fog: Option<&'a [u8; 65_536]>,
     /// The index for the triangle's own (row) and the frame's (column).
@@ -148,11 +148,11 @@ pub struct Look<'a> {
 }
 
 /// The stages. One that a build leaves out (`plan::Effect::is_left_out`) is not there, and the compiler knows.
-impl<'a> Look<'a> {
+impl<'a> PixelPipeline<'a> {
     /// Whether its shades are linear and nothing is made of them but what fog and blending do.
     #[inline]
     pub(super) fn is_plain(&self) -> bool {
-        matches!(self.source, Source::Shaded(_))
+        matches!(self.source, ShadeSource::Shaded(_))
             && self.channels().is_none()
             && self.dither().is_none()
             && self.texture().is_none()
@@ -169,7 +169,7 @@ impl<'a> Look<'a> {
     }
 
     #[inline]
-    pub(super) fn texture(&self) -> Option<&TextureLook<'a>> {
+    pub(super) fn texture(&self) -> Option<&TextureStage<'a>> {
         self.texture
             .as_ref()
             .filter(|_| !cfg!(all(mode13h_leave_out = "texture", mode13h_leave_out = "environment-map")))
@@ -192,10 +192,10 @@ impl<'a> Look<'a> {
     }
 }
 
-impl Look<'_> {
+impl PixelPipeline<'_> {
     /// Linear shades and nothing else.
     pub const PLAIN: Self = Self {
-        source: Source::Shaded(Shading::GouraudReseeded),
+        source: ShadeSource::Shaded(Interpolation::GouraudReseeded),
         channels: None,
         dither: None,
         texture: None,

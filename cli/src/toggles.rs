@@ -8,7 +8,7 @@ use mode13h::render::{RenderError, Renderer};
 use mode13h::scene::{Fog, Object, Scene};
 use mode13h::window::Key;
 
-use crate::stage::Stage;
+use crate::turntable::Turntable;
 
 /// What a key switches.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -54,7 +54,7 @@ impl Switch {
 
     /// Switches off what was on in the frame before: images by taking them away, the rest by force. Else leaves it to
     /// the plan, which has it on if the scene calls for it, and sees to it that the scene does.
-    pub(crate) fn turn(self, stage: &mut Stage, renderer: &mut Renderer) -> Result<(), RenderError> {
+    pub(crate) fn turn(self, stage: &mut Turntable, renderer: &mut Renderer) -> Result<(), RenderError> {
         let was_on = self.is_on(renderer);
         if self == Switch::Texture {
             return stage.set_images(!was_on);
@@ -65,7 +65,7 @@ impl Switch {
         match self {
             Switch::Lights if !was_on => light(&mut stage.scene),
             Switch::Fog if !was_on => fog(&mut stage.scene),
-            Switch::Dither => stage.scene.wishes.dither = !was_on,
+            Switch::Dither => stage.scene.preferences.dither = !was_on,
             _ => {}
         }
         Ok(())
@@ -108,7 +108,7 @@ fn depths(scene: &Scene, object: &Object) -> (f32, f32) {
 mod tests {
     use super::*;
     use crate::input::Colors;
-    use crate::stage::Pose;
+    use crate::turntable::Pose;
     use mode13h::mesh::shapes;
     use mode13h::palette::builtin;
     use mode13h::scene::{UpAxis, shipped};
@@ -130,7 +130,7 @@ mod tests {
         let mut failures = Vec::new();
         for (name, scene) in all_scenes() {
             for (_, switch) in Switch::KEYS {
-                let mut stage = Stage::of_scene(scene.clone());
+                let mut stage = Turntable::of_scene(scene.clone());
                 // The flash's lamp comes by.
                 stage.show(0.3 * scene.duration, Pose::FIRST);
                 let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
@@ -168,25 +168,25 @@ mod tests {
         let texture = Texture::by_name("crate").map(mode13h::scene::Shared::new);
         let cube = builtin::by_name("cube").expect("built in").palette.clone();
         for colors in [Colors::Auto, cube.into()] {
-            let mut stage = Stage::of_model(shapes::cube(), UpAxis::Y, std::slice::from_ref(&texture));
+            let mut stage = Turntable::of_model(shapes::cube(), UpAxis::Y, std::slice::from_ref(&texture));
             stage.set_colors(&colors).expect("a legal scene");
-            stage.scene.wishes.dither = false;
+            stage.scene.preferences.dither = false;
             let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-            let mut draw = |stage: &Stage, renderer: &mut Renderer| {
+            let mut draw = |stage: &Turntable, renderer: &mut Renderer| {
                 renderer.draw(&stage.scene, &mut vga).expect("a legal scene");
                 let palette = vga.palette();
                 vga.pixels().iter().map(|&pixel| palette.color(pixel)).collect::<Vec<Rgb>>()
             };
             let with = draw(&stage, &mut renderer);
             Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");
-            stage.scene.wishes.dither = false;
+            stage.scene.preferences.dither = false;
             let without = draw(&stage, &mut renderer);
             // White in white light: greys, or what is nearest to them.
             let is_grey = |color: Rgb| color.r.abs_diff(color.g).max(color.g.abs_diff(color.b)) < 24;
             assert!(without.iter().all(|color| is_grey(*color)), "{colors:?}");
             assert!(without != with && without.iter().any(|color| color.brightness() > 100_000), "{colors:?}");
             Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");
-            stage.scene.wishes.dither = false;
+            stage.scene.preferences.dither = false;
             assert!(draw(&stage, &mut renderer) == with, "{colors:?}: the image comes back");
         }
     }

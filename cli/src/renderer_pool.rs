@@ -3,12 +3,12 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Artists, and how another is made when all are at work.
-pub(crate) struct Artists<Artist, Make> {
+pub(crate) struct RendererPool<Artist, Make> {
     make: Make,
     idle: Mutex<Vec<Artist>>,
 }
 
-impl<Artist, Make: Fn() -> Artist> Artists<Artist, Make> {
+impl<Artist, Make: Fn() -> Artist> RendererPool<Artist, Make> {
     pub(crate) fn new(make: Make) -> Self {
         Self { make, idle: Mutex::default() }
     }

@@ -8,9 +8,9 @@ use crate::scene::{Object, Scene};
 /// Why an effect is on or off for an object.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
-pub enum Why {
+pub enum Reason {
     /// It was switched by hand.
-    Forced,
+    Overrides,
     /// The first frame.
     FirstFrame,
     /// The object, the camera or what lights it changed since the last frame.
@@ -158,7 +158,7 @@ pub enum Why {
     NotInIntegers,
 }
 
-impl Why {
+impl Reason {
     /// In words, for `object` of `scene`.
     #[must_use]
     pub fn words(&self, scene: &Scene, object: usize) -> String {
@@ -171,7 +171,7 @@ impl Why {
             _ => "no material has it".to_string(),
         };
         match *self {
-            Self::Forced => "switched by hand".to_string(),
+            Self::Overrides => "switched by hand".to_string(),
             Self::FirstFrame => "the first frame".to_string(),
             Self::Changed => "it, the camera or its light changed since the last frame".to_string(),
             Self::Unchanged => "nothing it depends on changed since the last frame".to_string(),

@@ -1,10 +1,10 @@
-//! The rungs: times, errors, pictures.
+//! The shadings: times, errors, pictures.
 
 use maud::{Markup, html};
 
 use super::figures::{at_most, count, interval, list, percent, ratio, shades, three_digits, time};
 use super::pictures::{self, COLORS, NONE};
-use crate::cost::{Errors, RungRow, Split, Study};
+use crate::cost::{Errors, ShadingRow, Split, Study};
 
 /// A part of a frame's time: its name, its class in the style, and which it is.
 type Part = (&'static str, &'static str, fn(&Split) -> f64);
@@ -17,12 +17,12 @@ const PARTS: [Part; 5] = [
     ("scan-out", "s4", |split| split.scan_out),
 ];
 
-/// Times and errors of every rung.
+/// Times and errors of every shading.
 pub(super) fn tables(study: &Study) -> Markup {
     html! {
         section {
-            h2 { "The rungs" }
-            @if study.rungs.is_empty() { p { "No rung was measured." } } @else {
+            h2 { "The shadings" }
+            @if study.shadings.is_empty() { p { "No shading was measured." } } @else {
                 (times(study))
                 (ties(study))
                 (errors(study))
@@ -32,18 +32,18 @@ pub(super) fn tables(study: &Study) -> Markup {
 }
 
 fn times(study: &Study) -> Markup {
-    let counted = study.rungs.iter().any(|row| row.instructions.is_some());
+    let counted = study.shadings.iter().any(|row| row.instructions.is_some());
     html! {
         h3 { "Time" }
         div.wide { table {
             thead { tr {
-                th { "rung" } th { "a frame" } th { "quartiles" } th { "a pixel" } th { "a triangle" }
+                th { "shading" } th { "a frame" } th { "quartiles" } th { "a pixel" } th { "a triangle" }
                 th { "ratio to gouraud-8.8" } th { "95 % interval" }
                 @if counted { th { "instructions a frame" } }
                 th { "where it goes" }
             } }
-            tbody { @for row in &study.rungs { tr {
-                th scope="row" { (row.rung) @if row.efficient { " " span.mark title="no rung is both as near to lit and told to be faster" { "★" } } }
+            tbody { @for row in &study.shadings { tr {
+                th scope="row" { (row.shading) @if row.efficient { " " span.mark title="no shading is both as near to lit and told to be faster" { "★" } } }
                 td { (time(row.per_frame.median)) }
                 td.soft { (time(row.per_frame.lower_quartile)) " – " (time(row.per_frame.upper_quartile)) }
                 td { (three_digits(row.per_pixel)) " ns" }
@@ -55,7 +55,7 @@ fn times(study: &Study) -> Markup {
             } } }
         } }
         p.key {
-            span { span.mark { "★" } " efficient: no rung is as near to lit (root mean square) and faster, as far as times can be told apart" }
+            span { span.mark { "★" } " efficient: no shading is as near to lit (root mean square) and faster, as far as times can be told apart" }
             @for (name, class, _) in PARTS { span { i.swatch.(class) {} " " (name) } }
             span { "A frame’s time leaves scan-out to the screen’s colours out; the bars show it." }
         }
@@ -79,17 +79,17 @@ fn bar(split: &Split) -> Markup {
     }
 }
 
-/// Rungs that cannot be told apart.
+/// Shadings that cannot be told apart.
 fn ties(study: &Study) -> Markup {
-    let tied = || study.rungs.iter().filter(|row| !row.as_fast_as.is_empty());
+    let tied = || study.shadings.iter().filter(|row| !row.as_fast_as.is_empty());
     html! {
         @if tied().next().is_some() {
             div.warning {
                 p { strong { "Cannot be told apart by their times" } ", as the intervals of their ratios contain 1; their order means nothing:" }
-                ul { @for row in tied() { li { (row.rung) " and " (list(&row.as_fast_as)) } } }
+                ul { @for row in tied() { li { (row.shading) " and " (list(&row.as_fast_as)) } } }
             }
-        } @else if study.rungs.len() > 1 {
-            p { "The times of all rungs can be told apart." }
+        } @else if study.shadings.len() > 1 {
+            p { "The times of all shadings can be told apart." }
         }
     }
 }
@@ -100,15 +100,15 @@ fn errors(study: &Study) -> Markup {
         div.wide { table {
             thead {
                 tr {
-                    th rowspan="2" { "rung" }
+                    th rowspan="2" { "shading" }
                     th.group colspan="5" { "against gouraud: the arithmetic" }
                     th.group colspan="5" { "against lit: the technique" }
                     th rowspan="2" { "palette adds" } th rowspan="2" { "swim" } th rowspan="2" { "cover errors, pixels" }
                 }
                 tr { @for _ in 0..2 { th.group { "largest" } th { "mean" } th { "r.m.s." } th { "r.m.s. of 4 × 4" } th { "off by ≥ 1" } } }
             }
-            tbody { @for row in &study.rungs { tr {
-                th scope="row" { (row.rung) }
+            tbody { @for row in &study.shadings { tr {
+                th scope="row" { (row.shading) }
                 (figures(&row.error_gouraud))
                 (figures(&row.error_lit))
                 td { (shades(row.error_palette)) } td { (shades(row.swim)) } td { (count(row.cover_errors)) }
@@ -131,10 +131,10 @@ fn figures(errors: &Errors) -> Markup {
     }
 }
 
-/// Every rung's frame, and its error map under it.
+/// Every shading's frame, and its error map under it.
 pub(super) fn pictures(study: &Study) -> Markup {
     html! {
-        @if !study.rungs.is_empty() { section {
+        @if !study.shadings.is_empty() { section {
             h2 { "Frames and their errors" }
             p { "The first frame, in 256 greys, left of the slider; its error against lit, right of it." }
             p.key {
@@ -142,7 +142,7 @@ pub(super) fn pictures(study: &Study) -> Markup {
                 span { "shades" }
                 span { (swatch(NONE)) " none taken: background, or another face than there should be" }
             }
-            div.gallery { @for row in &study.rungs { (pair(row)) } }
+            div.gallery { @for row in &study.shadings { (pair(row)) } }
         } }
     }
 }
@@ -151,23 +151,23 @@ fn swatch(color: u32) -> Markup {
     html! { i.swatch style=(format!("background:#{color:06x}")) {} }
 }
 
-fn pair(row: &RungRow) -> Markup {
+fn pair(row: &ShadingRow) -> Markup {
     let (frame, map) = (pictures::frame(&row.picture), pictures::error_map(&row.error_map));
     html! {
         figure {
             @match (frame, map) {
                 (Some(frame), Some(map)) => {
                     div.pair {
-                        img src=(map) width="320" height="240" alt=(format!("error map of {}", row.rung));
-                        img.over src=(frame) width="320" height="240" alt=(format!("frame of {}", row.rung));
+                        img src=(map) width="320" height="240" alt=(format!("error map of {}", row.shading));
+                        img.over src=(frame) width="320" height="240" alt=(format!("frame of {}", row.shading));
                     }
-                    input.slide type="range" min="0" max="100" value="50" aria-label=(format!("{}: how much of the frame, how much of its error map", row.rung))
+                    input.slide type="range" min="0" max="100" value="50" aria-label=(format!("{}: how much of the frame, how much of its error map", row.shading))
                         oninput="this.previousElementSibling.style.setProperty('--at',this.value+'%')";
                 },
                 _ => p.none { "no picture" },
             }
             figcaption {
-                strong { (row.rung) }
+                strong { (row.shading) }
                 " off by " (at_most(row.error_lit.max)) " at most over all frames, " (shades(row.error_lit.rms)) " r.m.s.; "
                 (time(row.per_frame.median))
             }

@@ -1,17 +1,17 @@
-//! What a scene asks for beyond what it holds. What is not asked for the plan chooses.
+//! Rendering preferences of a scene. The plan chooses those that are `None`.
 
 use super::names::named;
-use crate::raster::Shading;
+use crate::raster::Interpolation;
 
 named! {
-    /// A technique of shading: a rung of the ladder from cheap to exact.
+    /// How a face is shaded, from cheap to exact.
     #[derive(Default)]
-    pub enum Rung, "rung" {
+    pub enum Shading, "shading" {
         /// One shade for each face.
         Flat = "flat",
         /// What the sources print: vertices on whole pixels, a step for every span by a division that cuts.
-        /// Without exact cover ([`raster::period`](crate::raster::period)).
-        GouraudPeriod = "gouraud-vintage",
+        /// Without exact cover ([`raster::vintage`](crate::raster::vintage)).
+        GouraudVintage = "gouraud-vintage",
         /// Linear between the vertices in 8.8, each row of a triangle one span.
         Gouraud88 = "gouraud-8.8",
         /// The same, started anew every 64 pixels: the default.
@@ -31,8 +31,8 @@ named! {
         /// of today does.
         Float = "float",
     }
-    /// There is no rung of that name. Its text lists those there are.
-    pub struct UnknownRung;
+    /// There is no shading of that name. Its text lists those there are.
+    pub struct UnknownShading;
 }
 
 named! {
@@ -70,7 +70,7 @@ named! {
     pub struct UnknownMapping;
 }
 
-impl Rung {
+impl Shading {
     /// Whether light is worked out at every pixel, and not at the vertices or for a face.
     #[must_use]
     pub const fn lights_pixels(self) -> bool {
@@ -79,15 +79,15 @@ impl Rung {
 
     /// How the raster shades faces whose vertices are lit, where their shades differ.
     #[must_use]
-    pub const fn shading(self) -> Shading {
+    pub const fn interpolation(self) -> Interpolation {
         match self {
-            Self::GouraudPeriod => Shading::GouraudPeriod,
-            Self::Gouraud88 => Shading::Gouraud,
-            Self::Gouraud1616 => Shading::Gouraud1616,
-            Self::GouraudHyperbolic => Shading::GouraudHyperbolic,
-            Self::Float => Shading::Float,
+            Self::GouraudVintage => Interpolation::GouraudVintage,
+            Self::Gouraud88 => Interpolation::Gouraud,
+            Self::Gouraud1616 => Interpolation::Gouraud1616,
+            Self::GouraudHyperbolic => Interpolation::GouraudHyperbolic,
+            Self::Float => Interpolation::Float,
             Self::Flat | Self::Gouraud88Reseeded | Self::GouraudTessellated | Self::PhongTable | Self::Phong => {
-                Shading::GouraudReseeded
+                Interpolation::GouraudReseeded
             }
         }
     }
@@ -95,7 +95,7 @@ impl Rung {
     /// Whether its faces cover the pixels whose centres are in them, and no others.
     #[must_use]
     pub const fn has_exact_cover(self) -> bool {
-        self.shading().has_exact_cover()
+        self.interpolation().has_exact_cover()
     }
 
     /// What the 16.16 vertex path draws for it: the same, or of what it lacks the default.
@@ -103,7 +103,7 @@ impl Rung {
     pub const fn in_integers(self) -> Self {
         match self {
             Self::GouraudTessellated | Self::PhongTable | Self::Phong | Self::Float => Self::Gouraud88Reseeded,
-            rung => rung,
+            shading => shading,
         }
     }
 }
@@ -111,9 +111,9 @@ impl Rung {
 /// What a scene asks for. The default asks for nothing: the plan then chooses the cheapest that is
 /// right.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Wishes {
+pub struct Preferences {
     /// The technique of shading.
-    pub rung: Option<Rung>,
+    pub shading: Option<Shading>,
     /// How hidden surfaces are left out, right or wrong.
     pub hidden_surfaces: Option<HiddenSurfaces>,
     /// How textures are mapped.
@@ -121,18 +121,18 @@ pub struct Wishes {
     /// Whether textures have mipmaps.
     pub mipmaps: Option<bool>,
     /// Faces are split until the shades on their edges are linear to so many shades of 1/255 of
-    /// full intensity; above 0. [`Rung::GouraudTessellated`] asks for one shade.
+    /// full intensity; above 0. [`Shading::GouraudTessellated`] asks for one shade.
     pub tessellation: Option<f32>,
     /// Shades between two entries of a ramp are shown as a pattern of both.
     pub dither: bool,
     /// How many shades of error are accepted, of 1/255 of full intensity; above 0. Each triangle then gets the
-    /// cheapest rung that is known to keep within, whatever `rung` says.
+    /// cheapest shading that is known to keep within, whatever `shading` says.
     pub max_error: Option<f32>,
     /// The palette is to be made from the scene's materials.
     pub auto_palette: bool,
 }
 
-impl Wishes {
+impl Preferences {
     /// What is wrong with them, if anything.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         let legal = |number: Option<f32>| number.is_none_or(|n| n > 0.0 && n.is_finite());

@@ -5,14 +5,14 @@
 
 use alloc::vec::Vec;
 
-use super::cover::{Ordered, Row};
+use super::cover::{Row, SortedTriangle};
 use super::float::FloatPlane;
 use super::frame::Rect;
 use super::hyperbolic::HyperbolicPlane;
-use super::period::PeriodTriangle;
+use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
-use super::shading::Shading;
-use super::wide::WideShadePlane;
+use super::vintage::PeriodTriangle;
+use super::wide::ShadePlane16;
 use crate::span::float::{fill_float, quotient};
 
 /// An exact number: a fraction.
@@ -34,12 +34,12 @@ impl Ratio {
 
 /// How a value runs along the row to a pixel.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Way {
+pub enum Progression {
     /// One byte for the whole triangle.
     Flat(u8),
     /// A start, and additions of one step from there on.
-    Sums(Sums),
-    /// An exact quotient for every pixel: the shade is [`Account::exact`] itself.
+    Accumulator(Accumulator),
+    /// An exact quotient for every pixel: the shade is [`ShadeTrace::exact`] itself.
     Quotient,
     /// A quotient in f32: (n + k·dn) / (d + k·dd).
     Float {
@@ -56,8 +56,8 @@ pub enum Way {
 
 /// A start, and additions of one step.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Sums {
-    /// The row's first covered pixel in the frame; of [`GouraudPeriod`](Shading::GouraudPeriod) Ax, which may lie left
+pub struct Accumulator {
+    /// The row's first covered pixel in the frame; of [`GouraudVintage`](Interpolation::GouraudPeriod) Ax, which may lie left
     /// of it.
     pub first: i32,
     /// The pixel where the sum is a start: `first`, or so many times 64 pixels after it.
@@ -74,7 +74,7 @@ pub struct Sums {
     pub half: u32,
 }
 
-impl Sums {
+impl Accumulator {
     /// The sum after so many steps: what AX holds, or EAX.
     #[must_use]
     pub fn after(&self, steps: i32) -> u32 {
@@ -93,9 +93,9 @@ impl Sums {
 /// How a value of a triangle's corners comes to be at one of its pixels.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
-pub struct Account {
+pub struct ShadeTrace {
     /// How it runs there.
-    pub way: Way,
+    pub way: Progression,
     /// The exact value at the pixel's centre, in 1/256 shade: linear on the screen or, where the shading is, on the face.
     /// `None` of a flat triangle.
     pub exact: Option<Ratio>,
@@ -103,19 +103,19 @@ pub struct Account {
     pub byte: u8,
 }
 
-impl Account {
+impl ShadeTrace {
     /// Of three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order of its
     /// vertices, at a pixel of `row`.
-    pub fn new(triangle: &Ordered, values: [i64; 3], shading: Shading, row: &Row, x: i32) -> Self {
+    pub fn new(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation, row: &Row, x: i32) -> Self {
         let y = row.y;
         let plane = ShadePlane::of_values(triangle, values);
         let linear = Ratio { numerator: plane.numerator(x, y).into(), denominator: i128::from(plane.area().get()) };
-        match shading {
-            Shading::Flat(byte) => Self { way: Way::Flat(byte), exact: None, byte },
-            Shading::Gouraud | Shading::GouraudReseeded => {
-                let reseed = if shading == Shading::Gouraud { i32::MAX } else { RESEED };
+        match interpolation {
+            Interpolation::Flat(byte) => Self { way: Progression::Flat(byte), exact: None, byte },
+            Interpolation::Gouraud | Interpolation::GouraudReseeded => {
+                let reseed = if interpolation == Interpolation::Gouraud { i32::MAX } else { RESEED };
                 let start_at = row.origin + (x - row.origin) / reseed * reseed;
-                let sums = Sums {
+                let sums = Accumulator {
                     first: row.origin,
                     start_at,
                     start: plane.start(start_at, y).into(),
@@ -126,9 +126,9 @@ impl Account {
                 };
                 Self::of_sums(sums, linear)
             }
-            Shading::Gouraud1616 => {
-                let wide = WideShadePlane::of_values(triangle, values);
-                let sums = Sums {
+            Interpolation::Gouraud1616 => {
+                let wide = ShadePlane16::of_values(triangle, values);
+                let sums = Accumulator {
                     first: row.origin,
                     start_at: row.origin,
                     start: wide.start(row.origin, y),
@@ -140,38 +140,38 @@ impl Account {
                 };
                 Self::of_sums(sums, linear)
             }
-            Shading::GouraudPeriod => {
+            Interpolation::GouraudVintage => {
                 let ramp = PeriodTriangle::new(triangle, values).ramp(y);
                 // Beyond the row's own pixels the nearest of them counts.
                 let steps = x.min(ramp.x1 - 1).max(ramp.x0) - ramp.x0;
                 let step = i64::from(ramp.step as i16);
                 let (first, start) = (ramp.x0, ramp.shade.into());
-                let sums = Sums { first, start_at: first, start, step, steps, fraction_bits: 8, half: 0 };
+                let sums = Accumulator { first, start_at: first, start, step, steps, fraction_bits: 8, half: 0 };
                 Self::of_sums(sums, linear)
             }
-            Shading::GouraudHyperbolic => {
+            Interpolation::GouraudHyperbolic => {
                 let plane = HyperbolicPlane::of_values(triangle, values);
                 let (numerator, denominator) = plane.quotient(x, y);
                 // The nearest shade, of 0 to 0xFF00.
                 let byte = numerator.div_euclid(denominator) as u8;
-                Self { way: Way::Quotient, exact: Some(on_face(&plane, x, y)), byte }
+                Self { way: Progression::Quotient, exact: Some(on_face(&plane, x, y)), byte }
             }
-            Shading::Float => {
+            Interpolation::Float => {
                 let exact = on_face(&HyperbolicPlane::of_values(triangle, values), x, y);
                 let float = FloatPlane::of_values(triangle, values).row(row);
                 let mut byte = [0];
                 fill_float(&mut byte, x - float.start, float.n, float.d, float.range);
                 let shade = quotient(x - float.start, float.n, float.d, float.range);
-                let way = Way::Float { start: float.start, n: float.n, d: float.d, shade };
+                let way = Progression::Float { start: float.start, n: float.n, d: float.d, shade };
                 Self { way, exact: Some(exact), byte: byte[0] }
             }
         }
     }
 
-    fn of_sums(sums: Sums, exact: Ratio) -> Self {
+    fn of_sums(sums: Accumulator, exact: Ratio) -> Self {
         // Of `fraction_bits` + 8 bits the upper 8.
         let byte = (sums.sum() >> sums.fraction_bits) as u8;
-        Self { way: Way::Sums(sums), exact: Some(exact), byte }
+        Self { way: Progression::Accumulator(sums), exact: Some(exact), byte }
     }
 }
 
@@ -180,22 +180,34 @@ fn on_face(plane: &HyperbolicPlane, x: i32, y: i32) -> Ratio {
     Ratio { numerator, denominator }
 }
 
-/// The row of a pixel that a triangle draws in a frame of so many columns: by exact cover, or as `shading` covers.
-pub fn row_of(triangle: &Ordered, shading: Option<Shading>, width: u32, x: u32, y: u32) -> Option<Row> {
+/// The row of a pixel that a triangle draws in a frame of so many columns: by exact cover, or as `interpolation` covers.
+pub fn row_of(
+    triangle: &SortedTriangle,
+    interpolation: Option<Interpolation>,
+    width: u32,
+    x: u32,
+    y: u32,
+) -> Option<Row> {
     let mut found = None;
-    each_row(triangle, shading, width, Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 }, |row| found = Some(row));
+    each_row(triangle, interpolation, width, Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 }, |row| found = Some(row));
     found
 }
 
 /// All rows that it draws in a frame of so many columns and rows.
-pub fn rows_of(triangle: &Ordered, shading: Option<Shading>, width: u32, height: u32) -> Vec<Row> {
+pub fn rows_of(triangle: &SortedTriangle, interpolation: Option<Interpolation>, width: u32, height: u32) -> Vec<Row> {
     let mut rows = Vec::new();
-    each_row(triangle, shading, width, Rect { x0: 0, y0: 0, x1: width, y1: height }, |row| rows.push(row));
+    each_row(triangle, interpolation, width, Rect { x0: 0, y0: 0, x1: width, y1: height }, |row| rows.push(row));
     rows
 }
 
-fn each_row(triangle: &Ordered, shading: Option<Shading>, width: u32, clip: Rect, mut each: impl FnMut(Row)) {
-    if shading == Some(Shading::GouraudPeriod) {
+fn each_row(
+    triangle: &SortedTriangle,
+    interpolation: Option<Interpolation>,
+    width: u32,
+    clip: Rect,
+    mut each: impl FnMut(Row),
+) {
+    if interpolation == Some(Interpolation::GouraudVintage) {
         PeriodTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, _| each(row));
     } else {
         triangle.rows(width, clip, each);
@@ -210,21 +222,23 @@ mod tests {
 
     /// A triangle 8 pixels wide and 4 high with its right angle at the upper left; shades 40 at the left and 200 at the
     /// right, 20 from pixel to pixel. In row 0 the exact shade of pixel x is 50 + 20·x.
-    fn account(shading: Shading, shades: [u8; 3], x: i32) -> Account {
+    fn shade_trace(interpolation: Interpolation, shades: [u8; 3], x: i32) -> ShadeTrace {
         let at = |x, y, shade, depth| {
             let (x, y) = (I24F8::from_pixels(x), I24F8::from_pixels(y));
             Vertex::new(x, y, U8F8::from_shade(shade), depth).expect("a legal vertex")
         };
         let [a, b, c] = shades;
-        let triangle = Ordered::new(&[at(0, 0, a, 100), at(8, 0, b, 100), at(0, 4, c, 100)]);
-        let row = row_of(&triangle, Some(shading), 320, u32::try_from(x).expect("a column"), 0).expect("a row");
-        Account::new(&triangle, triangle.shades(), shading, &row, x)
+        let triangle = SortedTriangle::new(&[at(0, 0, a, 100), at(8, 0, b, 100), at(0, 4, c, 100)]);
+        let row = row_of(&triangle, Some(interpolation), 320, u32::try_from(x).expect("a column"), 0).expect("a row");
+        ShadeTrace::new(&triangle, triangle.shades(), interpolation, &row, x)
     }
 
     #[test]
     fn a_rising_row_by_hand() {
         // 50.0 and a half: 0x3280; 20.0 = 0x1400 a pixel; after three 110.5 = 0x6e80.
-        let Account { way: Way::Sums(sums), exact, byte } = account(Shading::GouraudReseeded, [40, 200, 40], 3) else {
+        let ShadeTrace { way: Progression::Accumulator(sums), exact, byte } =
+            shade_trace(Interpolation::GouraudReseeded, [40, 200, 40], 3)
+        else {
             panic!("sums")
         };
         assert_eq!((sums.first, sums.start_at, sums.start, sums.step, sums.steps), (0, 0, 0x3280, 0x1400, 3));
@@ -233,32 +247,43 @@ mod tests {
         let exact = exact.expect("a plane");
         assert_eq!(exact.numerator, 110 * 256 * exact.denominator);
 
-        let Account { way: Way::Sums(wide), byte, .. } = account(Shading::Gouraud1616, [40, 200, 40], 3) else {
+        let ShadeTrace { way: Progression::Accumulator(wide), byte, .. } =
+            shade_trace(Interpolation::Gouraud1616, [40, 200, 40], 3)
+        else {
             panic!("sums")
         };
         assert_eq!((wide.start, wide.step, wide.sum(), byte), (0x32_8000, 0x14_0000, 0x6E_8000, 110));
         // The sources: from the corner's own 40, and no half.
-        let Account { way: Way::Sums(period), byte, .. } = account(Shading::GouraudPeriod, [40, 200, 40], 3) else {
+        let ShadeTrace { way: Progression::Accumulator(vintage), byte, .. } =
+            shade_trace(Interpolation::GouraudVintage, [40, 200, 40], 3)
+        else {
             panic!("sums")
         };
-        assert_eq!((period.start, period.step, period.sum(), byte), (0x2800, 0x1400, 0x6400, 100));
+        assert_eq!((vintage.start, vintage.step, vintage.sum(), byte), (0x2800, 0x1400, 0x6400, 100));
         // Depths are alike, so the perspective changes nothing.
-        for shading in [Shading::GouraudHyperbolic, Shading::Float] {
-            assert_eq!(account(shading, [40, 200, 40], 3).byte, 110);
+        for interpolation in [Interpolation::GouraudHyperbolic, Interpolation::Float] {
+            assert_eq!(shade_trace(interpolation, [40, 200, 40], 3).byte, 110);
         }
-        assert_eq!(account(Shading::Flat(7), [40, 200, 40], 3), Account { way: Way::Flat(7), exact: None, byte: 7 });
+        assert_eq!(
+            shade_trace(Interpolation::Flat(7), [40, 200, 40], 3),
+            ShadeTrace { way: Progression::Flat(7), exact: None, byte: 7 }
+        );
     }
 
     #[test]
     fn a_falling_row_by_hand() {
         // From 1 to 0 over 8 pixels: −32/256 a pixel, which 8.8 has; at the first centre 1 − 1/16 = 240/256. With half a
         // shade 0x0170; after five 0x00d0.
-        let Account { way: Way::Sums(sums), byte, .. } = account(Shading::Gouraud, [1, 0, 1], 5) else {
+        let ShadeTrace { way: Progression::Accumulator(sums), byte, .. } =
+            shade_trace(Interpolation::Gouraud, [1, 0, 1], 5)
+        else {
             panic!("sums")
         };
         assert_eq!((sums.start, sums.step, sums.sum(), byte), (0x0170, -0x20, 0x00D0, 0));
         // 10 to 9 from top to bottom makes the first row's shade 10 − 1/8 everywhere: no step.
-        let Account { way: Way::Sums(sums), byte, .. } = account(Shading::Gouraud, [10, 10, 9], 5) else {
+        let ShadeTrace { way: Progression::Accumulator(sums), byte, .. } =
+            shade_trace(Interpolation::Gouraud, [10, 10, 9], 5)
+        else {
             panic!("sums")
         };
         assert_eq!((sums.start, sums.step, sums.sum(), byte), (0x0A60, 0, 0x0A60, 10));

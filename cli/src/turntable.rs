@@ -37,7 +37,7 @@ pub(crate) enum Background {
 
 /// A scene, and what moves in it.
 #[derive(Clone)]
-pub(crate) struct Stage {
+pub(crate) struct Turntable {
     pub(crate) scene: Scene,
     shown: Shown,
     /// Where it stands by itself.
@@ -50,7 +50,7 @@ pub(crate) struct Stage {
     has_images: bool,
     /// The palette whose ramps they name.
     palette: Option<Palette>,
-    /// Whether the scene wishes for dither, whatever the palette.
+    /// Whether the scene preferences for dither, whatever the palette.
     dithers: bool,
     /// Whether there is dither, whatever the scene and the palette, if that was asked for.
     dither: Option<bool>,
@@ -68,9 +68,9 @@ enum Shown {
     Scene,
 }
 
-impl Stage {
+impl Turntable {
     /// A model as [`Scene::showing`] shows it, in greys. `textures` are those of its surfaces.
-    pub(crate) fn of_model(mesh: Mesh, up: UpAxis, textures: &[Option<Shared<Texture>>]) -> Stage {
+    pub(crate) fn of_model(mesh: Mesh, up: UpAxis, textures: &[Option<Shared<Texture>>]) -> Turntable {
         let mut object = Object::new(mesh);
         object.up_axis = up;
         for (i, texture) in textures.iter().enumerate() {
@@ -79,17 +79,17 @@ impl Stage {
                 object.materials[i] = object.materials[i].clone().with_map(&object.mesh().surfaces()[i], texture);
             }
         }
-        Stage::new(Scene::showing(object), Shown::Model)
+        Turntable::new(Scene::showing(object), Shown::Model)
     }
 
-    pub(crate) fn of_scene(scene: Scene) -> Stage {
-        Stage::new(scene, Shown::Scene)
+    pub(crate) fn of_scene(scene: Scene) -> Turntable {
+        Turntable::new(scene, Shown::Scene)
     }
 
-    fn new(scene: Scene, shown: Shown) -> Stage {
+    fn new(scene: Scene, shown: Shown) -> Turntable {
         let materials = scene.objects().iter().map(|object| object.materials.clone()).collect();
-        let (camera, palette, dithers) = (scene.camera, scene.palette.clone(), scene.wishes.dither);
-        Stage {
+        let (camera, palette, dithers) = (scene.camera, scene.palette.clone(), scene.preferences.dither);
+        Turntable {
             scene,
             shown,
             camera,
@@ -212,7 +212,7 @@ impl Stage {
     }
 
     /// Other colours. What the frame is cleared to stays the colour it was chosen for. Where a palette has no ramps,
-    /// objects that have colours of their own are drawn in them; of a model, which wishes for nothing itself, with dither,
+    /// objects that have colours of their own are drawn in them; of a model, which preferences for nothing itself, with dither,
     /// as no palette for everything has many shades of one colour.
     pub(crate) fn set_colors(&mut self, colors: &Colors) -> Result<(), RenderError> {
         let mut dithers = self.dithers;
@@ -225,8 +225,8 @@ impl Stage {
                 dithers |= matches!(self.shown, Shown::Model);
             }
         }
-        self.scene.wishes.dither = self.dither.unwrap_or(dithers);
-        self.scene.wishes.auto_palette = false;
+        self.scene.preferences.dither = self.dither.unwrap_or(dithers);
+        self.scene.preferences.auto_palette = false;
         match colors {
             Colors::Palette(palette) => {
                 if let Some(color) = self.scene.background_color {
@@ -337,11 +337,11 @@ mod tests {
     #[test]
     fn the_scene_of_the_torus_is_the_model_on_its_stage() {
         let mesh = mode13h::mesh::shapes::by_name("torus").expect("a shape");
-        let mut model = Stage::of_model(mesh, UpAxis::Y, &[]);
+        let mut model = Turntable::of_model(mesh, UpAxis::Y, &[]);
         let scene = shipped::by_name("torus").expect("a scene").load().expect("a scene that loads").scene;
-        let mut scene = Stage::of_scene(scene);
+        let mut scene = Turntable::of_scene(scene);
         let mut renderer = mode13h::render::Renderer::new();
-        let mut frame = |stage: &Stage| {
+        let mut frame = |stage: &Turntable| {
             let mut vga = mode13h::vga::Vga::new();
             renderer.draw(&stage.scene, &mut vga).expect("a legal scene");
             (vga.pixels().to_vec(), vga.palette())
@@ -358,10 +358,10 @@ mod tests {
     #[test]
     fn a_scene_that_moves_goes_on_and_another_is_gone_round() {
         let torus = shipped::by_name("torus").expect("a scene").load().expect("a scene that loads").scene;
-        assert_eq!(Stage::of_scene(torus.clone()).turned(1.0, 90.0), (2.0, Pose::FIRST));
+        assert_eq!(Turntable::of_scene(torus.clone()).turned(1.0, 90.0), (2.0, Pose::FIRST));
         let mut still = torus;
         still.motions.clear();
-        let stage = Stage::of_scene(still);
+        let stage = Turntable::of_scene(still);
         assert_eq!(stage.turned(1.0, 90.0), (1.0, Pose { turn: TAU / 4.0, ..Pose::FIRST }));
     }
 }

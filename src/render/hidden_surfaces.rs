@@ -2,13 +2,13 @@
 
 use core::mem;
 
-use super::look::Looks;
 use super::object::ObjectState;
+use super::pipelines::Pipelines;
 use super::sift::Sieve;
-use super::sinks::{Bare, Batched, Direct, Gathered, Kept, depth_of};
+use super::sinks::{Batched, DeferredFace, DeferredSink, ForEachSink, ImmediateSink, depth_of};
 use super::{HiddenSurfaces, Renderer, Stats, VertexPath};
 use crate::plan::{Effect, ObjectPlan, far_to_near};
-use crate::raster::{Batch, Drawn, Frame, Raster, Shading, Vertex};
+use crate::raster::{Batch, DrawStats, Frame, Interpolation, Raster, Vertex};
 use crate::scene::Scene;
 
 impl Renderer {
@@ -38,7 +38,7 @@ impl Renderer {
         }
         self.depths = depths;
         // Those of the 16.16 path are not counted one by one.
-        stats.shares.complete(stats.rung, stats.drawn);
+        stats.shares.complete(stats.shading, stats.drawn);
     }
 
     /// Draws each face as it comes, then those that shine through.
@@ -50,26 +50,26 @@ impl Renderer {
         let mut batch = Batch::of_sifted();
         for &object in &self.plan.order {
             let plan = &self.plan.objects[object];
-            let mut drawn = Drawn::default();
+            let mut drawn = DrawStats::default();
             let mut decided = self.states[object].take_decided();
             let looks =
-                Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+                Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
             if self.vertex_path == VertexPath::Integer {
                 let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
-                let mut plain = |vertices: &[Vertex; 3], shading| batched.triangle(vertices, shading);
-                integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
+                let mut plain = |vertices: &[Vertex; 3], interpolation| batched.triangle(vertices, interpolation);
+                integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
                 batched.draw();
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], plan) {
                 let (raster, batch, drawn) = (&mut raster, &mut batch, &mut drawn);
                 let (looks, transparent) = (&looks, &mut transparent);
                 if plan.is_on(Effect::ScreenClipping) {
                     let batched = Batched::<true> { raster, batch, drawn };
-                    let mut sink = Direct { batched, looks, object, transparent };
+                    let mut sink = ImmediateSink { batched, looks, object, transparent };
                     faces.draw(&mut decided, stats, &mut sink);
                     sink.batched.draw();
                 } else {
                     let batched = Batched::<false> { raster, batch, drawn };
-                    let mut sink = Direct { batched, looks, object, transparent };
+                    let mut sink = ImmediateSink { batched, looks, object, transparent };
                     faces.draw(&mut decided, stats, &mut sink);
                     sink.batched.draw();
                 }
@@ -91,8 +91,9 @@ impl Renderer {
         }
         self.far_to_near.clear();
         self.far_to_near.reserve(self.transparent.capacity());
-        far_to_near(self.transparent.iter().map(Kept::depth), &mut self.far_to_near);
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        far_to_near(self.transparent.iter().map(DeferredFace::depth), &mut self.far_to_near);
+        let looks =
+            Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         for &(_, place) in &self.far_to_near {
             let face = &self.transparent[place];
             stats.raster += looks.with((face.object, face.surface, face.manner), |look| {
@@ -107,12 +108,12 @@ impl Renderer {
         &mut self,
         scene: &Scene,
         stats: &mut Stats,
-        sink: &mut Bare<impl FnMut(&[Vertex; 3], Shading)>,
+        sink: &mut ForEachSink<impl FnMut(&[Vertex; 3], Interpolation)>,
     ) {
         for &object in &self.plan.order {
             let mut decided = self.states[object].take_decided();
             if self.vertex_path == VertexPath::Integer {
-                self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut sink.0);
+                self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut sink.0);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
                 faces.draw(&mut decided, stats, sink);
@@ -137,16 +138,21 @@ impl Renderer {
         for &object in &self.plan.order {
             let mut decided = self.states[object].take_decided();
             if self.vertex_path == VertexPath::Integer {
-                let mut plain = |vertices: &[Vertex; 3], shading| {
-                    triangles.push((*vertices, shading));
+                let mut plain = |vertices: &[Vertex; 3], interpolation| {
+                    triangles.push((*vertices, interpolation));
                     places.push(None);
                 };
-                self.integer.triangles(stats.rung, (object, &scene.objects()[object]), stats, &mut plain);
+                self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                let looks =
-                    Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
-                let mut sink = Gathered {
+                let looks = Pipelines {
+                    scene,
+                    plan: &self.plan,
+                    states: &self.states,
+                    tables: &self.tables,
+                    kernel: self.kernel,
+                };
+                let mut sink = DeferredSink {
                     triangles: &mut triangles,
                     places: &mut places,
                     kept: &mut kept,
@@ -172,16 +178,17 @@ impl Renderer {
 
     /// Far to near, each over what is there.
     fn painter(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        let looks =
+            Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         self.far_to_near.clear();
         self.far_to_near.reserve(self.triangles.capacity());
         far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
         let mut batch = Batch::of_sifted();
         let mut batched = Batched::<true> { raster, batch: &mut batch, drawn: &mut stats.raster };
         for &(_, i) in &self.far_to_near {
-            let (vertices, shading) = &self.triangles[i];
+            let (vertices, interpolation) = &self.triangles[i];
             let Some(place) = self.kept_places[i] else {
-                batched.triangle(vertices, *shading);
+                batched.triangle(vertices, *interpolation);
                 continue;
             };
             batched.draw();
@@ -195,7 +202,8 @@ impl Renderer {
 
     /// All at once, each pixel once.
     fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let looks = Looks { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        let looks =
+            Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         self.lists.reserve(self.triangles.capacity());
         let scratch = self.lists.scratch(self.triangles.len());
         let (places, kept) = (&self.kept_places, &self.kept);
@@ -213,7 +221,7 @@ impl Renderer {
                         kernel,
                         drawn,
                     );
-                    Drawn::default()
+                    DrawStats::default()
                 });
                 true
             })

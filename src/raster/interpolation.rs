@@ -4,7 +4,7 @@
 ///
 /// | shading | off from exact by less than | in |
 /// |---|---|---|
-/// | `GouraudPeriod` | – (from other vertices) | [`period`](super::period) |
+/// | `GouraudVintage` | – (from other vertices) | [`vintage`](super::period) |
 /// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | [`shade`](super::shade) |
 /// | `GouraudReseeded` | ½ + ¼ | [`shade`](super::shade) |
 /// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | [`wide`](super::wide) |
@@ -14,12 +14,12 @@
 /// Exact is linear on the screen, and for the last two linear on the face.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
-pub enum Shading {
+pub enum Interpolation {
     /// One byte for the whole triangle; the shades of the vertices are not looked at.
     Flat(u8),
     /// As the sources print it: vertices on whole pixels, slopes and steps cut, no half added.
     /// Without exact cover; where another method says which pixels, the shades alone.
-    GouraudPeriod,
+    GouraudVintage,
     /// Linear between the vertices, each row of the triangle one span: the start exact, one
     /// addition a pixel from there on.
     Gouraud,
@@ -37,10 +37,10 @@ pub enum Shading {
     Float,
 }
 
-impl Shading {
+impl Interpolation {
     /// All that interpolate between the vertices.
     pub const INTERPOLATED: &[Self] = &[
-        Self::GouraudPeriod,
+        Self::GouraudVintage,
         Self::Gouraud,
         Self::GouraudReseeded,
         Self::Gouraud1616,
@@ -54,7 +54,7 @@ impl Shading {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Flat(_) => "flat",
-            Self::GouraudPeriod => "gouraud-period",
+            Self::GouraudVintage => "gouraud-vintage",
             Self::Gouraud => "gouraud",
             Self::GouraudReseeded => "gouraud-reseeded",
             Self::Gouraud1616 => "gouraud-16.16",
@@ -68,7 +68,7 @@ impl Shading {
     /// `[(min + 128) >> 8, (max + 128) >> 8]` of the vertices' shades.
     #[must_use]
     pub const fn has_exact_cover(self) -> bool {
-        !matches!(self, Self::GouraudPeriod)
+        !matches!(self, Self::GouraudVintage)
     }
 
     /// Whether shades are linear on the face in space, and not on the screen.
@@ -86,7 +86,7 @@ impl Shading {
     #[must_use]
     pub const fn rounding(self) -> u8 {
         match self {
-            Self::GouraudPeriod => 0,
+            Self::GouraudVintage => 0,
             _ => 128,
         }
     }

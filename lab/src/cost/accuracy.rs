@@ -8,8 +8,8 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 use std::thread;
 
-use super::entries::Entries;
-use super::way::{BUDGETS, Kind, Way};
+use super::configuration::{BUDGETS, Configuration, Kind};
+use super::quantization::Entries;
 use super::{CostError, Errors, Probe};
 use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth};
 use mode13h::render::{Renderer, Screen};
@@ -63,7 +63,7 @@ pub(super) struct Kept {
 
 /// What is found of one way over many frames.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Findings {
+pub(super) struct Results {
     gouraud: Against,
     unrounded: Against,
     lit: Against,
@@ -76,7 +76,7 @@ pub(super) struct Findings {
     pub(super) error_map: Vec<f32>,
 }
 
-impl Findings {
+impl Results {
     pub(super) fn gouraud(&self) -> Errors {
         self.gouraud.errors()
     }
@@ -131,11 +131,11 @@ impl Findings {
 }
 
 /// What is found of all ways on one frame.
-type Judged = Result<Vec<Findings>, CostError>;
+type Judged = Result<Vec<Results>, CostError>;
 
 /// What is judged.
-pub(super) struct Court<'a> {
-    pub(super) ways: &'a [Way<'a>],
+pub(super) struct Referee<'a> {
+    pub(super) ways: &'a [Configuration<'a>],
     pub(super) base: &'a (dyn Fn() -> Renderer + Sync),
     /// Frames all over the round.
     pub(super) frames: &'a [Scene],
@@ -143,9 +143,9 @@ pub(super) struct Court<'a> {
     pub(super) steps: &'a [Scene],
 }
 
-impl Court<'_> {
+impl Referee<'_> {
     /// Judges all ways; `progress` is told the share that is done.
-    pub(super) fn judge(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Findings>, CostError> {
+    pub(super) fn judge(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Results>, CostError> {
         // A frame each, and each pair of steps.
         let items = self.frames.len() + self.steps.len().saturating_sub(1);
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
@@ -179,7 +179,7 @@ impl Court<'_> {
         let mut found = found.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
         // Sums of floats depend on their order.
         found.sort_by_key(|(item, _)| *item);
-        let mut all: Vec<Findings> = self.ways.iter().map(|_| Findings::default()).collect();
+        let mut all: Vec<Results> = self.ways.iter().map(|_| Results::default()).collect();
         for (_, findings) in found {
             for (all, findings) in all.iter_mut().zip(findings?) {
                 all.add(findings);
@@ -188,21 +188,21 @@ impl Court<'_> {
         Ok(all)
     }
 
-    fn look(&self, way: &Way<'_>, scene: &Scene, probe: &mut Probe) -> Result<Shown, CostError> {
+    fn look(&self, way: &Configuration<'_>, scene: &Scene, probe: &mut Probe) -> Result<Shown, CostError> {
         *probe.renderer() = way.apply((self.base)());
         probe.dither(way.dither);
         Ok(probe.look(scene, Screen::MODE_13H)?)
     }
 
-    fn frame(&self, index: usize, probe: &mut Probe) -> Result<Vec<Findings>, CostError> {
+    fn frame(&self, index: usize, probe: &mut Probe) -> Result<Vec<Results>, CostError> {
         let scene = &self.frames[index];
         let truth = Truth::new(scene, Screen::MODE_13H)?;
         let (gouraud, lit) = (truth.draw(Standard::Gouraud), truth.draw(Standard::Lit));
         let choices = self.ways.iter().any(|way| matches!(way.kind, Kind::Choice(_)));
         let unrounded = choices.then(|| truth.draw(Standard::GouraudUnrounded));
-        let judged = |way: &Way<'_>| {
+        let judged = |way: &Configuration<'_>| {
             let shown = self.look(way, scene, probe)?;
-            let mut findings = Findings::default();
+            let mut findings = Results::default();
             if let Kind::Choice(_) = way.kind {
                 if let Some(map) = unrounded.as_ref().and_then(|truth| ErrorMap::new(truth, &shown)) {
                     findings.unrounded.count(&map);
@@ -230,7 +230,7 @@ impl Court<'_> {
     }
 
     /// From one step to the next.
-    fn step(&self, index: usize, probe: &mut Probe) -> Result<Vec<Findings>, CostError> {
+    fn step(&self, index: usize, probe: &mut Probe) -> Result<Vec<Results>, CostError> {
         let scenes = &self.steps[index..index + 2];
         let mut truths = Vec::new();
         for scene in scenes {
@@ -238,8 +238,8 @@ impl Court<'_> {
         }
         let mut all = Vec::new();
         for way in self.ways {
-            let mut findings = Findings::default();
-            if let Kind::Rung(_) = way.kind {
+            let mut findings = Results::default();
+            if let Kind::Shading(_) = way.kind {
                 let mut maps = Vec::new();
                 for (scene, truth) in scenes.iter().zip(&truths) {
                     maps.extend(ErrorMap::new(truth, &self.look(way, scene, probe)?));
@@ -258,7 +258,7 @@ impl Court<'_> {
 pub(super) fn against(
     standard: Standard,
     frames: &[Scene],
-    ways: &[&Way<'_>],
+    ways: &[&Configuration<'_>],
     base: &dyn Fn() -> Renderer,
 ) -> Result<Vec<Against>, CostError> {
     let mut all = alloc::vec![Against::default(); ways.len()];

@@ -5,11 +5,11 @@ use crate::support::random::Random;
 use crate::support::triangles::{draw, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
-use mode13h::raster::{DepthBuffer, Drawn, Frame, Raster, Rect, Shading, Vertex};
+use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::depth::Cell;
 
-const PERIOD: Shading = Shading::GouraudPeriod;
+const PERIOD: Interpolation = Interpolation::GouraudVintage;
 
 /// A row at a time, by hand.
 #[test]
@@ -43,7 +43,7 @@ fn rows_without_a_pixel_are_not_drawn() {
         let corners = [corner(), corner(), corner()];
         let mut bytes = vec![3; 96 * 24];
         let drawn = Raster::new(Frame::new(&mut bytes, 96, 24, 96).expect("legal")).triangle(&corners, PERIOD);
-        assert_eq!(drawn, Drawn::default(), "{corners:?}");
+        assert_eq!(drawn, DrawStats::default(), "{corners:?}");
         assert!(bytes.iter().all(|byte| *byte == 3), "{corners:?}");
     }
 }
@@ -146,7 +146,7 @@ impl Case {
 
     fn without_depth(&self) -> u64 {
         let (width, height) = self.size;
-        let mut drawn = Drawn::default();
+        let mut drawn = DrawStats::default();
         let bytes = self.draw(|mut raster, _| drawn += raster.triangle(&self.corners, PERIOD));
         let mut expected = vec![EMPTY; (width * height) as usize];
         let shades = self.corners.map(|v| v.shade().to_bits() >> 8);
@@ -199,7 +199,7 @@ fn by_scan_line_its_shades_are_on_exact_cover() {
         raster.scan_line(&[(corners, PERIOD)], lists.scratch(1)).expect("room enough");
         let mut expected = vec![EMPTY; (width * height) as usize];
         let shades = oracle::Shades::of_vertices(&corners, PERIOD);
-        for covered in oracle::pixels(&corners, Shading::Flat(0), width as i32, height as i32) {
+        for covered in oracle::pixels(&corners, Interpolation::Flat(0), width as i32, height as i32) {
             let place = (covered.y as u32 * width + covered.x as u32) as usize;
             expected[place] = shades.byte((0, 0), covered.x, covered.y, None);
             pixels += 1;

@@ -14,20 +14,20 @@ const LONGEST: usize = 200;
 /// edges, why it is shaded as it is, and the effects. And the triangle that is seen there, if one is.
 pub(super) fn lines(renderer: &mut Renderer, scene: &Scene, pixel: Pixel) -> (Vec<String>, Option<Traced>) {
     let (x, y) = (u32::from(pixel.x), u32::from(pixel.y));
-    let account = match explain::pixel(renderer, scene, Screen::MODE_13H, x, y) {
-        Ok(account) => account,
+    let shade_trace = match explain::pixel(renderer, scene, Screen::MODE_13H, x, y) {
+        Ok(shade_trace) => shade_trace,
         Err(error) => return (vec![error.to_string()], None),
     };
-    let mut lines = account.lines(LONGEST);
-    if let Some((face, seen)) = account.front() {
+    let mut lines = shade_trace.lines(LONGEST);
+    if let Some((face, seen)) = shade_trace.front() {
         if seen.exact_cover {
             lines.push(edges(face, x, y));
         }
         lines.extend(exact(seen));
-        lines.push(format!("rung: {}", account.rung_why));
+        lines.push(format!("shading: {}", shade_trace.shading_why));
         lines.push(format!("on: {}", effects(seen)));
     }
-    (lines, Traced::of(&account))
+    (lines, Traced::of(&shade_trace))
 }
 
 /// The three edges: what kind each is, and how far inside of it the centre lies.
@@ -42,9 +42,9 @@ fn edges(face: &FaceHere, x: u32, y: u32) -> String {
 
 /// What linear shades, or exact quotients, would be without any rounding.
 fn exact(seen: &Seen) -> Option<String> {
-    let account = seen.accounts.first()?;
-    let shade = account.exact?.to_f64() / 256.0;
-    Some(format!("exact {shade:.4}: the byte is off by {:+.4}", f64::from(account.byte) - shade))
+    let shade_trace = seen.accounts.first()?;
+    let shade = shade_trace.exact?.to_f64() / 256.0;
+    Some(format!("exact {shade:.4}: the byte is off by {:+.4}", f64::from(shade_trace.byte) - shade))
 }
 
 fn effects(seen: &Seen) -> String {
@@ -56,14 +56,14 @@ fn effects(seen: &Seen) -> String {
 mod tests {
     use super::*;
     use mode13h::mesh::shapes;
-    use mode13h::render::Rung;
+    use mode13h::render::Shading;
 
     #[test]
     fn an_account_begins_with_the_pixel() {
         let scene = Scene::showing(shapes::torus(24, 12));
-        for rung in Rung::ALL {
+        for shading in Shading::ALL {
             let mut renderer = Renderer::new();
-            renderer.set_rung(rung);
+            renderer.set_shading(shading);
             let mut vga = mode13h::vga::Vga::new();
             renderer.draw(&scene, &mut vga).expect("a legal scene");
             for (x, y) in [(0, 0), (160, 60), (100, 100), (319, 199)] {

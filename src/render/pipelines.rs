@@ -1,17 +1,17 @@
 //! What is done to the pixels of a surface: the plan, the material and the tables, put together.
 
 use super::budget::limits;
-use super::face::{LitAt, Manner};
+use super::face::{LightSampling, ShadeMode};
 use super::object::ObjectState;
-use super::paint::Paint;
+use super::paint::SurfaceMaterial;
 use super::pixel_light::PixelLight;
 use super::tables::{Image, Tables};
 use crate::light::{Blend, Material};
 use crate::palette::Palette;
-use crate::plan::{Effect, ObjectPlan, Plan, Why};
-use crate::raster::Drawn;
-use crate::raster::effects::{Look, Source, TextureLook, TextureMapping};
-use crate::scene::{Mapping, Rung, Scene};
+use crate::plan::{Effect, ObjectPlan, Plan, Reason};
+use crate::raster::DrawStats;
+use crate::raster::effects::{PixelPipeline, ShadeSource, TextureMapping, TextureStage};
+use crate::scene::{Mapping, Scene, Shading};
 use crate::span::Kernel;
 use crate::span::dither::BAYER;
 use crate::span::texture::Texels;
@@ -26,11 +26,11 @@ const NO_AMPLITUDE: [[u8; 8]; 8] = [[128; 8]; 8];
 const NO_THRESHOLD: [[u8; 8]; 8] = [[0; 8]; 8];
 
 fn is_forced(plan: &ObjectPlan, effect: Effect) -> bool {
-    plan.is_on(effect) && plan.decision(effect).why == Why::Forced
+    plan.is_on(effect) && plan.decision(effect).reason == Reason::Overrides
 }
 
 /// The image of a surface, if one is on: its own, or what it mirrors.
-fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &Paint) -> Option<Image<'a>> {
+fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &SurfaceMaterial) -> Option<Image<'a>> {
     let (texture, has_levels) = if paint.texture_size.is_some() {
         (&material.texture, plan.is_on(Effect::Mipmaps))
     } else if paint.environment_size.is_some() {
@@ -82,7 +82,7 @@ pub(super) fn need(tables: &mut Tables, scene: &Scene, palette: &Palette, plan: 
 
 /// The looks of a frame's surfaces.
 #[derive(Clone, Copy)]
-pub(super) struct Looks<'a> {
+pub(super) struct Pipelines<'a> {
     pub(super) scene: &'a Scene,
     pub(super) plan: &'a Plan,
     pub(super) states: &'a [ObjectState],
@@ -90,8 +90,8 @@ pub(super) struct Looks<'a> {
     pub(super) kernel: Kernel,
 }
 
-impl Looks<'_> {
-    fn paint(&self, object: usize, surface: u16) -> Option<&Paint> {
+impl Pipelines<'_> {
+    fn paint(&self, object: usize, surface: u16) -> Option<&SurfaceMaterial> {
         self.states.get(object)?.paints().get(usize::from(surface))
     }
 
@@ -101,20 +101,20 @@ impl Looks<'_> {
             && self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
     }
 
-    /// Hands the look of a surface of an object, shaded by a rung, to `draw`. Of one that is not there, nothing is drawn.
+    /// Hands the look of a surface of an object, shaded by a shading, to `draw`. Of one that is not there, nothing is drawn.
     pub(super) fn with(
         &self,
-        (object, surface, manner): (usize, u16, Manner),
-        draw: impl FnOnce(&Look<'_>) -> Drawn,
-    ) -> Drawn {
+        (object, surface, manner): (usize, u16, ShadeMode),
+        draw: impl FnOnce(&PixelPipeline<'_>) -> DrawStats,
+    ) -> DrawStats {
         let (Some(plan), Some(state), Some(paint)) =
             (self.plan.objects().get(object), self.states.get(object), self.paint(object, surface))
         else {
-            return Drawn::default();
+            return DrawStats::default();
         };
         let Some(material) = self.scene.objects().get(object).and_then(|o| o.materials.get(usize::from(surface)))
         else {
-            return Drawn::default();
+            return DrawStats::default();
         };
         let light = PixelLight { lights: state.lights(plan), paint, kernel: self.kernel };
         let dither = plan.is_on(Effect::Dither);
@@ -128,12 +128,12 @@ impl Looks<'_> {
                     if channels.is_some() { self.tables.channels(image) } else { self.tables.shades(Some(image)) };
                 texels.zip(tables).map(|(texels, tables)| {
                     let mapping = if paint.texture_size.is_some() { mapping(plan) } else { TextureMapping::Affine };
-                    TextureLook { texels, levels: self.tables.levels(image), mapping, tables }
+                    TextureStage { texels, levels: self.tables.levels(image), mapping, tables }
                 })
             }
             None if neutral_image(plan) && channels.is_none() => {
                 let texels = Texels::new(&ONE_TEXEL, 0, 0).ok();
-                texels.zip(self.tables.shades(None)).map(|(texels, tables)| TextureLook {
+                texels.zip(self.tables.shades(None)).map(|(texels, tables)| TextureStage {
                     texels,
                     levels: None,
                     mapping: TextureMapping::Affine,
@@ -143,12 +143,12 @@ impl Looks<'_> {
             None => None,
         };
         let blends = paint.blend != Blend::Opaque || is_forced(plan, Effect::Transparency);
-        let look = Look {
+        let look = PixelPipeline {
             source: source(plan, manner, channels.is_some(), state.normal_table(surface), &light),
             channels,
             dither: match dither {
-                true if is_forced(plan, Effect::Dither) && !self.scene.wishes.dither => {
-                    let cut = manner.rung.shading().rounding() == 0 && channels.is_none();
+                true if is_forced(plan, Effect::Dither) && !self.scene.preferences.dither => {
+                    let cut = manner.shading.interpolation().rounding() == 0 && channels.is_none();
                     Some(if cut { &NO_THRESHOLD } else { &NO_AMPLITUDE })
                 }
                 true => Some(&BAYER),
@@ -165,22 +165,22 @@ impl Looks<'_> {
 
 fn source<'a>(
     plan: &ObjectPlan,
-    Manner { rung, lit_at }: Manner,
+    ShadeMode { shading, sampling }: ShadeMode,
     channels: bool,
     table: Option<&'a [u8; 65_536]>,
     light: &'a PixelLight<'a>,
-) -> Source<'a> {
-    if plan.is_on(Effect::Phong) && rung.lights_pixels() {
+) -> ShadeSource<'a> {
+    if plan.is_on(Effect::Phong) && shading.lights_pixels() {
         return match table {
-            Some(table) if rung == Rung::PhongTable && !channels => Source::NormalTable(table),
-            _ => match lit_at {
-                LitAt::Pixels => Source::Lit(light),
-                LitAt::Every(apart) => Source::LitEvery(apart, light),
-                LitAt::SixPoints => Source::Curved(limits(light.paint, channels)),
+            Some(table) if shading == Shading::PhongTable && !channels => ShadeSource::NormalTable(table),
+            _ => match sampling {
+                LightSampling::Pixels => ShadeSource::Lit(light),
+                LightSampling::Every(apart) => ShadeSource::LitEvery(apart, light),
+                LightSampling::SixPoints => ShadeSource::Curved(limits(light.paint, channels)),
             },
         };
     }
-    Source::Shaded(rung.shading())
+    ShadeSource::Shaded(shading.interpolation())
 }
 
 fn mapping(plan: &ObjectPlan) -> TextureMapping {

@@ -35,7 +35,7 @@
 
 use core::ops::Range;
 
-use super::cover::{Ordered, Row};
+use super::cover::{Row, SortedTriangle};
 use super::frame::Rect;
 
 /// A corner on a whole pixel; its shade in 8.8.
@@ -104,7 +104,7 @@ impl PeriodTriangle {
     /// With these shades, 0 to 0xFF00, at its vertices. The order of the vertices stays: what is above in
     /// 1/256 pixel is not below in pixels.
     #[inline]
-    pub(super) fn new(triangle: &Ordered, shades: [i64; 3]) -> Self {
+    pub(super) fn new(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let corner = |i: usize| {
             // floor(x + ½) of at most 2²⁰ units of 1/256.
             let whole = |units: i32| (units + 128) >> 8;
