@@ -58,11 +58,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 /// Writes the page of the program and one for each command.
 fn write_pages(directory: &Path) -> Result<(), Failure> {
     fs::create_dir_all(directory).map_err(|error| Failure::file(format!("{}: {error}", directory.display())))?;
-    let all = built();
-    for command in all.get_subcommands().chain([&all]) {
+    let mut commands = vec![built()];
+    while let Some(command) = commands.pop() {
         let name = command.get_display_name().unwrap_or(command.get_name());
         let path = directory.join(format!("{name}.1"));
-        let bytes = page(command.clone())?;
+        commands.extend(command.get_subcommands().cloned());
+        let bytes = page(command)?;
         output::file(|| export::write_atomically(&path, |file| file.write_all(&bytes)))?;
     }
     Ok(())

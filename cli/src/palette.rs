@@ -45,7 +45,7 @@ pub(crate) struct Options {
     /// Write the palette to a file, in the format of its extension
     ///
     /// A name ending in .png is a chart of the colours.
-    #[arg(short, long, value_name = "OUT", requires = "what", conflicts_with = "json")]
+    #[arg(short, long, value_name = "OUT", conflicts_with = "json")]
     out: Option<PathBuf>,
     /// Print as JSON
     #[arg(long)]
@@ -67,6 +67,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             let (name, palette) = input::palette(words)?;
             out.as_deref().map_or(Ok(()), read_files::spare)?;
             (name, palette, Vec::new())
+        }
+        (None, None) if out.is_some() => {
+            return Err(Failure::words("-o writes one palette: FILE|NAME or --from MODEL says which"));
         }
         (None, None) if *json => return output::print_json(&list_json()),
         (None, None) => return output::print(&list()),

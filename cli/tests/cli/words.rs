@@ -66,9 +66,9 @@ fn help(command: &str, option: &str, columns: &str) -> String {
 /// The options that a help text lists, such as `--shading`.
 fn options(help: &str) -> BTreeSet<String> {
     let starts = help.lines().map(str::trim_start).filter(|line| line.starts_with('-'));
-    let words =
-        starts.flat_map(|line| line.split_whitespace().take(2).map(|word| word.trim_end_matches(',').to_string()));
-    words.filter(|word| word.starts_with("--")).collect()
+    let words = starts.flat_map(|line| line.split_whitespace().take(2).map(|word| word.trim_end_matches(',')));
+    let is_option = |word: &&str| word.starts_with("--") && word.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+    words.filter(is_option).map(String::from).collect()
 }
 
 #[test]
