@@ -33,14 +33,14 @@ pub(crate) struct Options {
     #[arg(long, value_name = "MODEL")]
     from: Option<OsString>,
     /// The axis of that model that points up [default: y]
-    #[arg(long, value_name = "AXIS", value_enum, requires = "from")]
+    #[arg(long, value_name = "AXIS", value_enum, requires = "from", conflicts_with = "palette")]
     up: Option<Up>,
     /// The angle beyond which two faces of that model meet at an edge
     ///
     /// It is for models without normals.
     ///
     /// [default: the model's smoothing groups, otherwise 40; scans are smooth]
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, requires = "from")]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, requires = "from", conflicts_with = "palette")]
     crease: Option<f32>,
     /// Write the palette to a file, in the format of its extension
     ///

@@ -1113,12 +1113,12 @@ fn names_need_not_be_text() {
     assert!(directory.path().join(name).is_file());
     let missing = OsStr::from_bytes(b"line\nend\x1B[2J\xFF.obj");
     let output = run(&directory, &[OsStr::new("render"), missing, OsStr::new("-o"), OsStr::new("x.png")]);
-    assert_fails(&output, 1, "line end [2J");
+    assert_fails(&output, 3, "line end [2J");
 }
 
 #[test]
-fn f3_broken_scenes_are_one_line_and_status_1() {
-    let mut tried = Tried::new("f3_broken_scenes_are_one_line_and_status_1", 12);
+fn f3_broken_scenes_are_one_line_with_their_place() {
+    let mut tried = Tried::new("f3_broken_scenes_are_one_line_with_their_place", 12);
     let directory = directory();
     let put = |name: &str, text: &[u8]| fs::write(directory.path().join(name), text).expect("written");
     put("key.toml", b"[[objects]]\nshape = 'cube'\nmaterial = { shyness = 3 }\n");
