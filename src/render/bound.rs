@@ -184,3 +184,16 @@ pub(super) fn linear_error(
     }
     greatest * 255.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point twice as far as the edge is long is seen at most 30° off; one as near as that, from any side.
+    #[test]
+    fn directions_turn_by_the_arcsine() {
+        assert!((turn(1.0, 2.0) - PI / 6.0).abs() < 1e-15);
+        assert!(turn(1.0, 1e9) < 1.1e-9);
+        assert_eq!([turn(2.0, 1.0), turn(0.5, 0.0)], [PI; 2]);
+    }
+}

@@ -510,7 +510,7 @@ fn films_are_the_same_whatever_the_number_of_threads() {
 
 /// One film long enough that each thread draws many frames.
 #[test]
-fn a_long_film_is_the_same_whatever_the_number_of_threads() {
+fn a_film_of_many_frames_is_the_same_whatever_the_number_of_threads() {
     let directory = directory();
     let films = ["1", "7"].map(|threads| {
         let words = ["fade", "-o", "x.gif", "--frames", "61", "--scale", "1", "--threads", threads];
@@ -565,8 +565,9 @@ fn films_of(tried: &mut Tried, frames: u32) {
     tried.worst("MiB for the short film", short as f64 / 1024.0);
     tried.worst("MiB for the long film", long as f64 / 1024.0);
     assert!(short > MIB, "{short} KiB were read");
-    // The allocator keeps some of what was given back.
-    assert!(long <= short + 4 * MIB, "{short} KiB for 200 frames, {long} KiB for {frames}");
+    // How full the two lists of 64 frames are at once, and what the allocator keeps of what was given back, is chance: both
+    // lists are 8 MiB. A film of 2,000 frames that is kept whole takes 122.
+    assert!(long <= short + 8 * MIB, "{short} KiB for 200 frames, {long} KiB for {frames}");
     tried.add(frames.into());
 }
 

@@ -179,14 +179,35 @@ pub(super) const CHANGES: &[Change] = &[
         w.scene.preferences.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
     }),
     seen("Wishes.mapping", |w, r| {
+        w.settings.mapping = None;
+        w.kept.set_mapping(None);
+        let (before, after) = two_mappings(r);
+        w.scene.preferences.mapping = before;
         textured(w, r);
-        w.scene.preferences.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
+        w.scene.preferences.mapping = after;
     }),
     seen("Wishes.mipmaps", |w, r| {
         textured(w, r);
         w.scene.preferences.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
     }),
-    seen("Wishes.tessellation", |w, r| w.scene.preferences.tessellation = sometimes(r, |r| between(r, 0.5, 4.0))),
+    seen("Wishes.tessellation", |w, r| {
+        // By a lamp near a large face, which is split otherwise then.
+        if r.within(0, 1) == 1 {
+            let mut wall = Object::new(shapes::wall(1, 1));
+            wall.set_angles([0.0, 0.2, 0.0]);
+            w.scene.objects_mut()[0] = wall;
+            w.scene.lights_mut().truncate(3);
+            w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
+            w.scene.preferences.max_error = None;
+            w.settings.max_error = None;
+            w.kept.set_max_error(None);
+            w.scene.preferences.tessellation = Some(4.0);
+            drawn(w);
+            w.scene.preferences.tessellation = Some(between(r, 0.5, 1.0));
+        } else {
+            w.scene.preferences.tessellation = sometimes(r, |r| between(r, 0.5, 4.0));
+        }
+    }),
     seen("Wishes.dither", |w, r| w.scene.preferences.dither = r.within(0, 1) == 1),
     seen("Wishes.max_error", |w, r| w.scene.preferences.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
     // The program makes it, no renderer.
@@ -275,15 +296,25 @@ pub(super) const CHANGES: &[Change] = &[
         one_material(w, r).ramp = RampChoice::Entries(Ramp::new(r.within(0, 128) as u8, 64).expect("within 256"));
     }),
     seen("RampChoice::Nearest", |w, r| one_material(w, r).ramp = RampChoice::Nearest),
-    seen("Material.color", |w, r| one_material(w, r).color = channels(r)),
+    seen("Material.color", |w, r| {
+        let (before, after) = (channels(r), channels(r));
+        let last = w.scene.objects().len() as i64 - 1;
+        let which = r.within(0, last) as usize;
+        // Its colour is mixed from channels before, too.
+        let material = &mut w.scene.objects_mut()[which].materials[0];
+        (material.ramp, material.color) = (RampChoice::Nearest, before);
+        drawn(w);
+        w.scene.objects_mut()[which].materials[0].color = after;
+    }),
     seen("Material.highlight", |w, r| {
         let color = channels(r);
         shiny(w, r, |material| material.highlight = color);
     }),
-    seen("Material.texture", |w, r| one_material(w, r).texture = sometimes(r, texture)),
+    seen("Material.texture", |w, r| {
+        two_images(w, r, |material, image| (material.texture, material.environment) = (image, None));
+    }),
     seen("Material.environment", |w, r| {
-        let material = one_material(w, r);
-        (material.texture, material.environment) = (None, sometimes(r, texture));
+        two_images(w, r, |material, image| (material.texture, material.environment) = (None, image));
     }),
     seen("Material.blend", |w, r| one_material(w, r).blend = Blend::Mix(r.one_of(&[60, 190]))),
     seen("Blend::Opaque", |w, r| one_material(w, r).blend = Blend::Opaque),
@@ -299,7 +330,13 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Light::Lamp.color", |w, r| lamp(w, r, |r, _, _, _, color| *color = channels(r))),
     // The renderer
     seen("Renderer::set_rung", |w, r| {
-        let shading = r.one_of(&Shading::ALL);
+        // Half the time two that take the same vertices and stages.
+        let linear = [Shading::GouraudVintage, Shading::Gouraud88, Shading::Gouraud1616];
+        if r.within(0, 1) == 1 {
+            w.kept.set_shading(r.one_of(&linear));
+            drawn(w);
+        }
+        let shading = if r.within(0, 1) == 1 { r.one_of(&linear) } else { r.one_of(&Shading::ALL) };
         (w.settings.shading, w.settings.max_error) = (Some(shading), None);
         w.kept.set_shading(shading);
     }),
@@ -312,9 +349,12 @@ pub(super) const CHANGES: &[Change] = &[
         w.kept.set_max_error(shades);
     }),
     seen("Renderer::set_mapping", |w, r| {
+        // The plan's decision is the same for two of them, and the object's vertices are.
+        let (before, after) = two_mappings(r);
+        w.kept.set_mapping(before);
         textured(w, r);
-        w.settings.mapping = sometimes(r, |r| r.one_of(&Mapping::ALL));
-        w.kept.set_mapping(w.settings.mapping);
+        w.settings.mapping = after;
+        w.kept.set_mapping(after);
     }),
     seen("Renderer::set_mipmaps", |w, r| {
         textured(w, r);
@@ -330,6 +370,16 @@ pub(super) const CHANGES: &[Change] = &[
         w.kept.set_kernel(w.settings.kernel);
     }),
     seen("Renderer::set_hidden_surfaces", |w, r| {
+        // Two bodies that pass through each other, so that each way shows them otherwise.
+        if r.within(0, 1) == 1 {
+            let mut through = Object::new(shapes::torus(9, 6));
+            through.set_angles(angles(r));
+            w.scene.objects_mut()[0] = Object::new(shapes::cube());
+            w.scene.add(through);
+            fewer_objects(w);
+            w.kept.set_hidden_surfaces(Some(HiddenSurfaces::PainterOrder));
+            drawn(w);
+        }
         w.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
         w.kept.set_hidden_surfaces(w.settings.hidden_surfaces);
     }),
@@ -420,12 +470,16 @@ pub(super) const CHANGES: &[Change] = &[
         Renderer::new().draw(&start(r), &mut w.machines[0]).map(drop).unwrap_or_default();
     }),
     unseen("one set alike draws the same", |w, _| {
+        w.kept.force(Effect::Lighting, Some(false));
+        w.settings.forced.push((None, Effect::Lighting, Some(false)));
         let [alike, fresh] = [w.kept.set_alike(), w.settings.renderer()].map(|mut renderer| {
             let mut vga = w.machines[0].clone();
             vga.pixels_mut().fill(3);
             (renderer.draw(&w.scene, &mut vga).map(drop), vga.pixels().to_vec())
         });
         assert!(alike == fresh, "one set alike");
+        w.kept.force(Effect::Lighting, None);
+        w.settings.forced.push((None, Effect::Lighting, None));
     }),
     unseen("nothing", |_, _| {}),
     unseen("a line within a rectangle of the frame", |w, r| {
@@ -659,6 +713,30 @@ fn shiny(world: &mut World, random: &mut Random, change: impl Fn(&mut Material))
 /// Draws a frame, so that the next one differs from it by nothing but what is changed now.
 fn drawn(world: &mut World) {
     world.kept.draw(&world.scene, &mut world.machines[0]).map(drop).unwrap_or_default();
+}
+
+/// Gives a material one image, draws, and gives it another one, or none.
+fn two_images(world: &mut World, random: &mut Random, change: impl Fn(&mut Material, Option<Shared<Texture>>)) {
+    let last = world.scene.objects().len() as i64 - 1;
+    let which = random.within(0, last) as usize;
+    let object = &mut world.scene.objects_mut()[which];
+    if object.mesh().texcoords().is_none() {
+        replace_mesh(object, shapes::wall(1, 1));
+    }
+    change(&mut object.materials[0], Some(texture(random)));
+    drawn(world);
+    let image = sometimes(random, texture);
+    change(&mut world.scene.objects_mut()[which].materials[0], image);
+}
+
+/// A mapping and another one; half the time the two by which the plan's effects are the same.
+fn two_mappings(random: &mut Random) -> (Option<Mapping>, Option<Mapping>) {
+    let any = |random: &mut Random| sometimes(random, |random| random.one_of(&Mapping::ALL));
+    match random.within(0, 3) {
+        0 => (Some(Mapping::Every16), Some(Mapping::Perspective)),
+        1 => (Some(Mapping::Perspective), Some(Mapping::Every16)),
+        _ => (any(random), any(random)),
+    }
 }
 
 /// Sees to it that there is a texture on a face that is seen at an angle.
