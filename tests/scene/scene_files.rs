@@ -130,7 +130,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             cube("duration = 1979-05-27"),
             "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found map",
         ),
-        (cube("render = { shading = 3 }"), "2:19: key `render.shading`: expected a name in quotes, found integer `3`"),
+        (cube("render = { shading = 3 }"), "2:22: key `render.shading`: expected a name in quotes, found integer `3`"),
         (cube("render.dither = 'yes'"), "2:17: key `render.dither`: expected a boolean, found string \"yes\""),
         // Out of range.
         (cube("duration = 0"), "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found 0"),
@@ -236,7 +236,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         ),
         (
             cube("render.shading = 'best'"),
-            "2:15: key `render.shading`: \"best\": unknown shading; there are flat, gouraud-vintage, gouraud-8.8, ",
+            "2:18: key `render.shading`: \"best\": unknown shading; there are flat, gouraud-vintage, gouraud-8.8, ",
         ),
         (cube("render.mapping = 'best'"), "2:18: key `render.mapping`: \"best\": unknown mapping; there are affine, "),
         (
