@@ -79,5 +79,10 @@ fn built() -> clap::Command {
 fn page(command: clap::Command) -> Result<Vec<u8>, Failure> {
     let mut page = Vec::new();
     Man::new(command).render(&mut page)?;
-    Ok(page)
+    // What stands below the options of the help becomes sections of their own.
+    let page = String::from_utf8_lossy(&page)
+        .replace(".SH EXTRA\n", "")
+        .replace("Keys in the window:\n", ".SH KEYS IN THE WINDOW\n")
+        .replace("Exit status:\n", ".SH EXIT STATUS\n");
+    Ok(page.into_bytes())
 }

@@ -89,7 +89,7 @@ fn list() -> String {
     let widest = builtin::ALL.iter().map(|builtin| builtin.name.len()).max().unwrap_or_default();
     let line = |builtin: &Builtin| {
         let Builtin { name, provenance, .. } = builtin;
-        format!("{name:widest$}  {}. {provenance}", ramps(&builtin.palette)).trim_end().to_string() + "\n"
+        format!("{name:widest$}  {}. {provenance}", ramps(builtin.palette)).trim_end().to_string() + "\n"
     };
     builtin::ALL.iter().map(line).collect()
 }

@@ -71,8 +71,10 @@ pub(crate) fn command() -> clap::Command {
     let keys_and_status = format!("{}\n\n{EXIT_STATUS}", demo::KEYS);
     Words::command()
         .max_term_width(WIDTH)
-        .mut_subcommands(|command| command.after_long_help(EXIT_STATUS))
-        .mut_subcommand("demo", |command| command.after_long_help(keys_and_status.clone()))
+        .mut_subcommands(|command| match command.get_name() {
+            "demo" => command.after_long_help(keys_and_status.clone()),
+            _ => command.after_long_help(EXIT_STATUS),
+        })
         .after_long_help(keys_and_status)
 }
 

@@ -489,7 +489,7 @@ fn man_pages_are_written_for_each_command() {
     let directory = directory();
     let page = printed(run(&directory, "generate man"));
     assert!(
-        page.contains(".TH mode13h 1") && page.contains("Exit status") && page.contains(r"hidden\-surfaces"),
+        page.contains(".TH mode13h 1") && page.contains(".SH EXIT STATUS") && page.contains(r"hidden\-surfaces"),
         "{page}"
     );
     assert!(printed(run(&directory, "generate man -o pages")).is_empty());
