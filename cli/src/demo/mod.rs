@@ -60,7 +60,7 @@ pub(crate) const KEYS: &str = "\
 Keys in the window:
   Esc             Quit
   H               Show the keys
-  I               Show the plan, the time, the error, and how many triangles each shading has
+  I               Show the plan, times, errors and the share of each shading
   Space           Stop the time, and let it go on
   arrows, mouse   Turn
   + - and wheel   Enlarge, make smaller
@@ -68,16 +68,17 @@ Keys in the window:
   1 to 9          The first nine shadings
   0               The budget of error
   B, Shift-B      A smaller budget, a greater one: 16, 8, 4, 2, 1, 1/2 shades
-  E               Lay the error map over the picture: how far each pixel is from exact light
-  C               Divide the window at the mouse, with another shading on the right. A click fixes
-                  the divider, Shift with [ ] and digits chooses the right shading
+  E               Lay the error map over the picture
+  C               Divide the window at the mouse: another shading on the right.
+                  A click fixes the divider. Shift with [ ] and digits chooses
+                  the right shading
   X               Swap the two shadings
-  Z               Magnify what is under the mouse 16 times; the pixel there explains itself
-  . and ,         Step on and back through the pixels of its triangle, with Shift through its rows
+  Z               Magnify 16 times at the mouse; the pixel explains itself
+  . and ,         Step through the pixels of its triangle, with Shift its rows
   K, P, M         The next kernel, the next palette, the next mapping of textures
   L, O, T, D      Lights, fog, texture, dither off and on
   N, Shift-N      The next INPUT, the one before
-  S               Save the picture, without the text over it, as a PNG in this directory";
+  S               Save the picture, without the text over it, as a PNG";
 
 #[derive(Args, Clone)]
 pub(crate) struct Options {
