@@ -42,7 +42,7 @@ impl Input {
 /// What INPUT may be, for the help.
 pub(crate) const HELP: &str = "A scene (.toml), a model (.obj), or the name of a scene or a shape";
 
-/// The same at more length.
+/// What INPUT may be, for the long help.
 pub(crate) fn long_help() -> String {
     format!("{HELP}. `mode13h scenes` lists the names. Where a scene and a shape share a name, it is the scene.")
 }
