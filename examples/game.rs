@@ -1,6 +1,8 @@
-//! A whole game: steer the ring over the cube with the arrow keys. Esc quits.
+//! A whole game: turn the ship with the arrow keys, shoot the rocks with the space bar. Esc quits.
 //!
-//!     cargo run --release --example game
+//!     cargo run --release --features window,embedded-graphics --example game
+
+use std::error::Error;
 
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
 use embedded_graphics::{Drawable, geometry::Point, text::Text};
@@ -9,45 +11,46 @@ use mode13h::light::Light;
 use mode13h::mesh::shapes;
 use mode13h::raster::{Frame, Index};
 use mode13h::render::Renderer;
-use mode13h::scene::{Camera, Object, Scene};
-use mode13h::window::{self, Flow, Key, WindowError};
+use mode13h::scene::{Camera, Object, ObjectId, Scene};
+use mode13h::window::{self, Flow, Key};
 
-const SPEED: f32 = 3.0;
-const LIMIT: Vec3 = Vec3::new(4.0, 2.5, 0.0);
+fn add(scene: &mut Scene, mut object: Object, position: Vec3, scale: f32) -> ObjectId {
+    (object.position, object.scale) = (position, scale);
+    scene.add(object)
+}
 
-fn main() -> Result<(), WindowError> {
+fn main() -> Result<(), Box<dyn Error>> {
     let mut scene = Scene::new();
-    let ring = scene.add(Object::new(shapes::torus(32, 16)));
-    let cube = scene.add(Object::new(shapes::cube()));
-    scene[cube].scale = 0.5;
-    scene[cube].position = Vec3::new(2.0, 1.0, 0.0);
-    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
     scene.camera = Camera::framing(Vec3::ZERO, 4.0);
-
-    let mut renderer = Renderer::new();
-    let (mut score, mut last) = (0_u32, 0.0);
-    window::run("mode13h game", |vga, input, seconds| {
-        let step = SPEED * (seconds - last).min(0.1) as f32;
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    let ship = add(&mut scene, Object::new(shapes::cone(16, 4)), Vec3::ZERO, 0.5);
+    let angles = (0..8).map(|i| f32::from(i as u8) * 0.785);
+    let places = angles.map(|a| Vec3::new(3.2 * a.cos(), 3.2 * a.sin(), 0.0));
+    let mut rocks: Vec<ObjectId> =
+        places.map(|at| add(&mut scene, Object::new(shapes::sphere(8, 6)), at, 0.4)).collect();
+    let mut shots: Vec<(ObjectId, Vec3)> = Vec::new();
+    let (mut renderer, mut angle, mut last) = (Renderer::new(), 0.0_f64, 0.0);
+    window::run("mode13h game", |vga, input, seconds| -> Result<Flow, Box<dyn Error>> {
+        let step = (seconds - last).min(0.1);
         last = seconds;
-        let axis = |less, more| (f32::from(input.held(more)) - f32::from(input.held(less))) * step;
-        let moved = Vec3::new(axis(Key::Left, Key::Right), axis(Key::Down, Key::Up), 0.0);
-        scene[ring].position = (scene[ring].position + moved).clamp(-LIMIT, LIMIT);
-        scene[ring].set_angles([0.3, seconds, 0.0]);
-        scene[cube].set_angles([seconds, 0.7 * seconds, 0.0]);
-        if scene[ring].position.distance(scene[cube].position) < 0.4 {
-            score += 1;
-            // Far from the last place, and never the same two ways in a row.
-            let place = score as f32 * 2.4;
-            scene[cube].position = Vec3::new(3.0 * place.cos(), 1.8 * place.sin(), 0.0);
+        angle += 3.0 * step * (f64::from(input.held(Key::Left)) - f64::from(input.held(Key::Right)));
+        scene[ship].set_angles([0.0, 0.0, angle]);
+        if input.pressed(Key::Space) {
+            let towards = Vec3::new(-angle.sin() as f32, angle.cos() as f32, 0.0);
+            shots.push((add(&mut scene, Object::new(shapes::cube()), Vec3::ZERO, 0.1), towards * 6.0));
         }
-        if let Err(error) = renderer.draw(&scene, vga) {
-            eprintln!("game: {error}");
-            return Flow::Close;
-        }
-        let text = format!("score {score}   time {seconds:.0}");
-        // 255 is the lightest of the greys. A frame takes every pixel: there is no error to make.
-        let Ok(_) =
-            Text::new(&text, Point::new(8, 16), MonoTextStyle::new(&FONT_6X10, Index(255))).draw(&mut Frame::from(vga));
-        if input.pressed(Key::Escape) { Flow::Close } else { Flow::Continue }
+        shots.retain(|&(shot, speed)| {
+            scene[shot].position += speed * step as f32;
+            let at = scene[shot].position;
+            let hit = rocks.iter().position(|&rock| scene[rock].position.distance(at) < 0.5);
+            hit.into_iter().for_each(|i| drop(scene.remove(rocks.swap_remove(i))));
+            let flies = hit.is_none() && at.length() < 6.0;
+            flies || scene.remove(shot).is_none()
+        });
+        renderer.draw(&scene, vga)?;
+        let text = if rocks.is_empty() { "well done".to_string() } else { format!("rocks {}", rocks.len()) };
+        let style = MonoTextStyle::new(&FONT_6X10, Index(255));
+        let Ok(_) = Text::new(&text, Point::new(8, 16), style).draw(&mut Frame::from(vga));
+        Ok(if input.pressed(Key::Escape) { Flow::Close } else { Flow::Continue })
     })
 }

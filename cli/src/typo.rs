@@ -72,11 +72,11 @@ mod tests {
         let names = ["render", "scenes", "show", "cost", "plan"];
         for (word, name) in [
             ("rendr", Some("render")),
-            ("redner", Some("render")),
+            ("redner", Some("render")), // typo
             ("scnees", Some("scenes")),
             ("csot", Some("cost")),
             ("plann", Some("plan")),
-            ("shw", Some("show")),
+            ("shw", Some("show")), // typo
             ("render", Some("render")),
             ("house", None),
             ("x", None),

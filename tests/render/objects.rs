@@ -190,6 +190,7 @@ fn a_constant_response_is_one_shade() {
         let frame = drawn(&scene);
         let mut seen = frame.into_iter().filter(|byte| *byte != 7).peekable();
         assert!(seen.peek().is_some());
-        assert!(seen.all(|byte| palette.color(byte) == shown), "{colored}, {constant}");
+        let wrong = seen.find(|byte| palette.color(*byte) != shown);
+        assert_eq!(wrong.map(|byte| palette.color(byte)), None, "{colored}, {constant}");
     }
 }

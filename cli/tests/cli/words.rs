@@ -191,11 +191,11 @@ fn typos_are_answered_with_the_nearest_word() {
         ("rendr torus", "did you mean render?"),
         ("rendr", "did you mean render?"),
         ("scnees --copy fog", "did you mean scenes?"),
-        ("verfiy", "did you mean verify?"),
-        ("genrate man", "did you mean generate?"),
-        ("palete grey", "did you mean palette?"),
+        ("verfiy", "did you mean verify?"),        // typo
+        ("genrate man", "did you mean generate?"), // typo
+        ("palete grey", "did you mean palette?"),  // typo
         ("torsu", "torsu: neither a file nor a scene nor a shape; did you mean torus?"),
-        ("render spere", "did you mean sphere?"),
+        ("render spere", "did you mean sphere?"), // typo
         ("demo rendr", "did you mean the command render?"),
         ("scenes --copy frog", "frog: no such scene; did you mean fog?"),
         ("render torus --shadng flat", "did you mean --shading?"),

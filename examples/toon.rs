@@ -1,0 +1,25 @@
+//! A toon material: three tones, at every pixel, in `toon.png`.
+//!
+//!     cargo run --release --example toon
+
+use mode13h::export;
+use mode13h::light::LightResponse;
+use mode13h::mesh::shapes;
+use mode13h::render::Renderer;
+use mode13h::scene::{Scene, Shading};
+use mode13h::vga::Vga;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut scene = Scene::showing(shapes::teapot(8));
+    let tones = LightResponse::new(|intensity| match intensity {
+        ..0.3 => 0.25,
+        0.3..0.75 => 0.6,
+        _ => 1.0,
+    });
+    scene.objects_mut()[0].materials[0].response = Some(tones);
+    // Light is taken at every pixel; by default it is taken at the vertices, and linear between them.
+    scene.preferences.shading = Some(Shading::Phong);
+    let mut vga = Vga::new();
+    println!("toon.png: {}", Renderer::new().draw(&scene, &mut vga)?);
+    Ok(export::png(&vga, "toon.png")?)
+}
