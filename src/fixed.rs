@@ -118,6 +118,7 @@ impl I24F8 {
     /// From 16.16 pixels: `floor(256·x + ½)`, exactly. The sum is taken in 64 bits.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn round_from_i16f16(pixels: I16F16) -> Self {
         Self(((pixels.0 as i64 + 128) >> 8) as i32)
     }
@@ -125,6 +126,7 @@ impl I24F8 {
     /// The first pixel whose centre lies at or to the right of (below) this coordinate: `ceil(x − ½)`.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn first_centre(self) -> i32 {
         // ceil((u − 128) / 256) = floor((u + 127) / 256); u is at most 2²⁰ in a raster vertex.
         self.0.saturating_add(Self::HALF - 1) >> 8
@@ -236,6 +238,7 @@ impl I16F16 {
 
     /// The product, rounded toward minus infinity (`sar`), or `None` if it does not fit.
     #[must_use]
+    #[doc(hidden)]
     pub fn checked_mul_floor(self, other: Self) -> Option<Self> {
         i32::try_from((i64::from(self.0) * i64::from(other.0)) >> 16).ok().map(Self)
     }

@@ -60,10 +60,11 @@ pub fn check_light(light: &Light) -> Result<(), &'static str> {
     light.check()
 }
 
-/// What is wrong with an object, if anything.
+/// What is wrong with an object, by its index, if anything.
 ///
 /// # Errors
 /// One line that says it.
-pub fn check_object(object: &Object) -> Result<(), &'static str> {
-    object.check()
+pub fn check_object(scene: &Scene, index: usize) -> Result<(), &'static str> {
+    scene.objects().get(index).map_or(Ok(()), Object::check)?;
+    scene.check_parents(index)
 }

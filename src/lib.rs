@@ -21,6 +21,7 @@
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`auto_palette`] | a palette for a scene, from what is seen of it over a round | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
+//! | `model` | a model file as a scene: mesh, textures, palette, framing | `obj`, `png` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
 //!
 #![cfg_attr(feature = "png", doc = "```no_run")]
@@ -47,12 +48,10 @@
 //!
 //! # Features
 //!
-//! The default, `program`, brings all that the program of the same name needs. A library user
-//! writes `default-features = false, features = ["std"]` and adds what is wanted: `asm` and `simd`
-//! (faster spans; without both the crate forbids `unsafe` code), `png`, `gif`, `image`, `obj`, `window`,
-//! `embedded-graphics` (text and shapes on a frame). With no feature at all `fixed`, `palette`,
-//! `vga`, `span`, `raster` and `integer` remain, which need neither `std` nor an allocator; `alloc`
-//! adds the engine.
+//! The default features are what a game needs: `std`, `asm` and `simd` (fast spans; without both the crate forbids
+//! `unsafe` code), `png` and `obj`. `window`, `gif`, `scene-files` and `embedded-graphics` (text and shapes on a frame)
+//! are added by name. With no feature at all `fixed`, `palette`, `vga`, `span`, `raster` and `integer` remain, which need
+//! neither `std` nor an allocator; `alloc` adds the engine.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(any(feature = "asm", feature = "simd")), forbid(unsafe_code))]
@@ -95,5 +94,7 @@ mod view;
 
 #[cfg(feature = "std")]
 pub mod export;
+#[cfg(all(feature = "obj", feature = "png"))]
+pub mod model;
 #[cfg(feature = "window")]
 pub mod window;

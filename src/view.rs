@@ -16,6 +16,7 @@ use crate::fixed::{I24F8, U8F8};
 use crate::mesh::Bounds;
 use crate::raster::{Rect, Vertex};
 use crate::scene::framing::{axes, dot, unit, widen};
+use crate::scene::object::Placement;
 use crate::scene::{Camera, Object, matrix_product};
 
 pub(crate) mod lanes;
@@ -159,11 +160,16 @@ impl ObjectView {
     /// Beyond this a sum of products might overflow f32, or, below its inverse, vanish in it.
     const FAST_REACH: f64 = 1e30;
 
+    /// An object without a parent.
+    #[cfg(test)]
     pub(crate) fn new(view: &View, object: &Object) -> Self {
-        let turn = object.turn();
-        let scale = f64::from(object.scale);
+        Self::placed(view, object, &Placement::of(object))
+    }
+
+    pub(crate) fn placed(view: &View, object: &Object, placement: &Placement) -> Self {
+        let Placement { turn, scale, position } = *placement;
         let matrix = matrix_product(&view.rows, &turn).map(|row| row.map(|c| c * scale));
-        let (position, pivot) = (widen(object.position), widen(object.pivot));
+        let pivot = widen(object.pivot);
         let to_position = [position[0] - view.eye[0], position[1] - view.eye[1], position[2] - view.eye[2]];
         let mut offset = [0.0; 3];
         for (i, c) in offset.iter_mut().enumerate() {
@@ -209,6 +215,11 @@ impl ObjectView {
     /// The eye in the object's own space.
     pub(crate) fn eye(&self) -> [f64; 3] {
         self.eye
+    }
+
+    /// Where the object's pivot is in the world.
+    pub(crate) fn position(&self) -> Vec3 {
+        Vec3::from_array(self.position.map(|c| c as f32))
     }
 
     /// How many times as large as its mesh the object is.

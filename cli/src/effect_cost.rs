@@ -38,7 +38,7 @@ impl Artist {
     fn draw(&mut self, scene: &Scene) -> Result<f64, Failure> {
         black_box(self.vga.pixels_mut());
         let start = Instant::now();
-        self.renderer.draw(scene, &mut self.vga).map_err(Failure::work)?;
+        self.renderer.draw(scene, &mut self.vga).map_err(Failure::from)?;
         Ok(nanoseconds(start.elapsed()))
     }
 }
@@ -56,11 +56,11 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
         const PLANS: usize = 10;
         let mut renderer = (self.renderer)();
         // The vertices of the first are there; those of the second never.
-        renderer.draw(&self.frames[0], &mut Vga::new()).map_err(Failure::work)?;
+        renderer.draw(&self.frames[0], &mut Vga::new()).map_err(Failure::from)?;
         let times = self.rounds(|_, _| {
             let start = Instant::now();
             for i in 0..PLANS {
-                black_box(renderer.make_plan(&self.frames[i % 2], Screen::MODE_13H)).map_err(Failure::work)?;
+                black_box(renderer.make_plan(&self.frames[i % 2], Screen::MODE_13H)).map_err(Failure::from)?;
             }
             Ok(nanoseconds(start.elapsed()) / PLANS as f64)
         })?;

@@ -12,33 +12,41 @@ use mode13h_lab::truth::Standard;
 use serde_json::{Map, Value, json};
 
 use crate::failure::Failure;
-use crate::options::{Drawing, Moment};
+use crate::options::{Drawing, Moment, ShadingOptions};
 use crate::turntable::Pose;
 use crate::{chart, input, output, read_files};
 
 #[derive(Args)]
 #[command(group(ArgGroup::new("what").required(true).args(["pixel", "row"])))]
 pub(crate) struct Options {
-    #[arg(help = input::help())]
+    #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// The pixel, counted from 0 at the upper left: which triangle it shows and why, its span and its sums, the exact
-    /// value, the truth, the stages of its byte
+    /// The pixel, counted from 0 at the upper left
+    ///
+    /// It says which triangle it shows and why, its span and its sums, the exact value, the truth, and the stages of its
+    /// byte.
     #[arg(long, value_name = "X,Y", value_parser = place)]
     pixel: Option<(u32, u32)>,
-    /// The row, counted from 0 at the top: its intensity and the slope of that, drawn and true. Where the slope jumps the
-    /// eye sees a line, a Mach band
+    /// The row, counted from 0 at the top
+    ///
+    /// Its intensity and the slope of that are shown, drawn and true. Where the slope jumps the eye sees a line, a Mach
+    /// band.
     #[arg(long, value_name = "Y")]
     row: Option<u32>,
-    /// Of a row: a chart, in a file whose name ends in .svg, in place of one in characters
+    /// Write the chart of a row to a file that ends in .svg
+    ///
+    /// [default: print a chart in characters]
     #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
     out: Option<PathBuf>,
-    /// As JSON, for programs
+    /// Print as JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     moment: Moment,
     #[command(flatten)]
     drawing: Drawing,
+    #[command(flatten)]
+    shading: ShadingOptions,
 }
 
 /// Two whole numbers with a comma between them.
@@ -49,7 +57,7 @@ fn place(words: &str) -> Result<(u32, u32), String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, pixel, row, out, json, moment, drawing } = options;
+    let Options { input, pixel, row, out, json, moment, drawing, shading } = options;
     if out.is_some() && row.is_none() {
         return Err(Failure::words("--out is for the chart of a --row"));
     }
@@ -68,19 +76,21 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     out.as_deref().map_or(Ok(()), read_files::spare)?;
     let at = moment.of_picture(&stage.scene);
     stage.show(at, Pose::FIRST);
-    let mut renderer = drawing.renderer(kernel);
+    let mut renderer = shading.renderer(drawing, kernel);
     if let Some((x, y)) = *pixel {
-        let pixel = explain::pixel(&mut renderer, &stage.scene, screen, x, y).map_err(Failure::work)?;
-        let text = if *json { pretty(&pixel_json(&name, at, &pixel))? } else { format!("{name} at {at} s, {pixel}") };
-        return output::print(&text);
+        let pixel = explain::pixel(&mut renderer, &stage.scene, screen, x, y).map_err(Failure::from)?;
+        return match json {
+            true => output::print_json(&pixel_json(&name, at, &pixel)),
+            false => output::print(&format!("{name} at {at} s, {pixel}")),
+        };
     }
     let Some(y) = *row else { return Ok(()) };
     let accuracy = renderer.settings().resolve(&stage.scene.preferences).accuracy;
-    let row = explain::row(renderer, &stage.scene, screen, y).map_err(Failure::work)?;
+    let row = explain::row(renderer, &stage.scene, screen, y).map_err(Failure::from)?;
     let title = format!("{name} at {at} s, row {y}, {accuracy}");
     match out {
-        Some(out) => output::file(|| chart::svg(&title, &row, out)).map_err(Failure::work),
-        None if *json => output::print(&pretty(&row_json(&name, at, &row))?),
+        Some(out) => output::file(|| chart::svg(&title, &row, out)).map_err(Failure::from),
+        None if *json => output::print_json(&row_json(&name, at, &row)),
         None => output::print(&chart::text(&title, &row)),
     }
 }
@@ -95,14 +105,10 @@ fn outside(pixel: Option<(u32, u32)>, row: Option<u32>, screen: Screen) -> Optio
     }
 }
 
-fn pretty(json: &Value) -> Result<String, Failure> {
-    Ok(serde_json::to_string_pretty(json).map_err(Failure::work)? + "\n")
-}
-
 fn pixel_json(name: &str, at: f64, pixel: &Pixel) -> Value {
     let color = pixel.color;
     json!({
-        "schema": 1,
+        "schema": 2,
         "input": name,
         "at": at,
         "pixel": [pixel.x, pixel.y],
@@ -110,11 +116,11 @@ fn pixel_json(name: &str, at: f64, pixel: &Pixel) -> Value {
         "rgb": [color.r, color.g, color.b],
         "background": pixel.background,
         "shading": pixel.shading.name(),
-        "reason": pixel.shading_why,
+        "shading_reason": pixel.shading_why,
         "max_error": pixel.max_error,
-        "vertex_path": pixel.vertex_path.name(),
+        "arithmetic": pixel.vertex_path.name(),
         "hidden_surfaces": pixel.hidden_surfaces.name(),
-        "hidden_surfaces_why": pixel.hidden_surfaces_why,
+        "hidden_surfaces_reason": pixel.hidden_surfaces_why,
         "faces": pixel.faces.iter().map(|face| face_json(pixel, face)).collect::<Vec<_>>(),
         "seen": pixel.seen.iter().map(seen_json).collect::<Vec<_>>(),
     })
@@ -142,10 +148,10 @@ fn face_json(pixel: &Pixel, face: &FaceHere) -> Value {
     };
     json!({
         "object": pixel.objects.get(face.object),
-        "object_place": face.object,
+        "object_index": face.object,
         "triangle": face.triangle,
         "is_part": face.is_part,
-        "shading": face.interpolation.name(),
+        "interpolation": face.interpolation.name(),
         "corners": corners.collect::<Vec<_>>(),
         "edges": edges.collect::<Vec<_>>(),
         "depth": face.depth,
@@ -172,15 +178,17 @@ fn seen_json(seen: &Seen) -> Value {
     let against = seen.against.iter().map(
         |against| json!({ "standard": against.standard.name(), "shades": against.shades, "error": against.error }),
     );
-    let effects =
-        seen.effects.iter().map(|row| json!({ "effect": row.effect.name(), "choice": row.choice, "why": row.reason }));
+    let effects = seen
+        .effects
+        .iter()
+        .map(|row| json!({ "effect": row.effect.name(), "choice": row.choice, "reason": row.reason }));
     json!({
         "face": seen.face,
         "ramp": [seen.ramp.first(), seen.ramp.last()],
         "shaded_by": shaded_by,
         "exact_cover": seen.exact_cover,
         "light": light,
-        "accounts": seen.accounts.iter().map(account_json).collect::<Vec<_>>(),
+        "traces": seen.accounts.iter().map(account_json).collect::<Vec<_>>(),
         "stages": seen.stages.iter().map(stage_json).collect::<Vec<_>>(),
         "against": against.collect::<Vec<_>>(),
         "effects": effects.collect::<Vec<_>>(),
@@ -189,9 +197,9 @@ fn seen_json(seen: &Seen) -> Value {
 
 fn account_json(shade_trace: &ShadeTrace) -> Value {
     let mut json = match shade_trace.way {
-        Progression::Flat(_) => json!({ "way": "flat" }),
+        Progression::Flat(_) => json!({ "progression": "flat" }),
         Progression::Accumulator(sums) => json!({
-            "way": "sums",
+            "progression": "sums",
             "first": sums.first,
             "start_at": sums.start_at,
             "fraction_bits": sums.fraction_bits,
@@ -202,9 +210,9 @@ fn account_json(shade_trace: &ShadeTrace) -> Value {
             "sums": (0..=sums.steps).map(|k| sums.after(k)).collect::<Vec<_>>(),
         }),
         Progression::Float { start, n, d, shade } => {
-            json!({ "way": "float", "start_at": start, "n": n, "d": d, "shade": shade })
+            json!({ "progression": "float", "start_at": start, "n": n, "d": d, "shade": shade })
         }
-        _ => json!({ "way": "quotient" }),
+        _ => json!({ "progression": "quotient" }),
     };
     if let Value::Object(map) = &mut json {
         map.insert("byte".into(), shade_trace.byte.into());
@@ -274,7 +282,7 @@ fn row_json(name: &str, at: f64, row: &Row) -> Value {
         })
     });
     json!({
-        "schema": 1,
+        "schema": 2,
         "input": name,
         "at": at,
         "row": row.y,

@@ -3,25 +3,61 @@
 use std::fmt;
 use std::process::ExitCode;
 
+use mode13h::export::{ExportError, PictureError};
+use mode13h::mesh::obj::{ObjError, ObjErrorKind};
+use mode13h::render::RenderError;
+use mode13h::scene::file::{SceneError, SceneErrorKind};
+use mode13h::texture::LoadErrorKind;
+use mode13h::window::WindowError;
+use mode13h_lab::cost::CostError;
+use mode13h_lab::explain::ExplainError;
+
+/// The exit statuses, as `--help` says them.
+pub(crate) const EXIT_STATUS: &str = "\
+Exit status:
+  0    Done
+  1    A check found something: `verify` a fault, `cost` a broken budget
+  2    The words on the command line or the input are wrong
+  3    A file could not be read or written
+  130  Interrupted";
+
 /// What is said on standard error, and the exit status.
-#[derive(Debug)]
+#[derive(PartialEq, Debug)]
 pub(crate) struct Failure {
     line: String,
     status: u8,
 }
 
 impl Failure {
-    /// The work failed: status 1.
-    pub(crate) fn work(reason: impl fmt::Display) -> Failure {
-        Failure { line: on_one_line(&reason.to_string()), status: 1 }
+    /// A check found something: status 1.
+    pub(crate) fn found(reason: impl fmt::Display) -> Failure {
+        Failure::new(&reason, 1)
     }
 
-    /// The words on the command line were wrong: status 2.
+    /// The words on the command line, or what the input holds, are wrong: status 2.
     pub(crate) fn words(reason: impl fmt::Display) -> Failure {
-        Failure { line: on_one_line(&reason.to_string()), status: 2 }
+        Failure::new(&reason, 2)
     }
 
-    pub(crate) fn status(&self) -> ExitCode {
+    /// A file could not be read or written, or the system refused something else: status 3.
+    pub(crate) fn file(reason: impl fmt::Display) -> Failure {
+        Failure::new(&reason, 3)
+    }
+
+    fn new(reason: &dyn fmt::Display, status: u8) -> Failure {
+        Failure { line: on_one_line(&reason.to_string()), status }
+    }
+
+    /// Another line with this status.
+    pub(crate) fn saying(&self, reason: impl fmt::Display) -> Failure {
+        Failure::new(&reason, self.status)
+    }
+
+    pub(crate) fn status(&self) -> u8 {
+        self.status
+    }
+
+    pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.status)
     }
 }
@@ -32,8 +68,53 @@ impl fmt::Display for Failure {
     }
 }
 
-/// File names and the contents of files may hold line ends and worse; an error is one line, and no terminal is sent
-/// what a file says.
+/// Errors that are always of one kind.
+macro_rules! failures {
+    ($($Error:ty => $kind:ident),* $(,)?) => {$(
+        impl From<$Error> for Failure {
+            fn from(error: $Error) -> Failure {
+                Failure::$kind(error)
+            }
+        }
+    )*};
+}
+
+failures! {
+    RenderError => words,
+    ExplainError => words,
+    CostError => words,
+    PictureError => words,
+    ExportError => file,
+    WindowError => file,
+    std::io::Error => file,
+    rayon::ThreadPoolBuildError => file,
+    serde_json::Error => file,
+}
+
+impl From<ObjError> for Failure {
+    fn from(error: ObjError) -> Failure {
+        if is_unreadable(&error.kind) { Failure::file(error) } else { Failure::words(error) }
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Failure {
+        let is_unreadable = match &*error.kind {
+            SceneErrorKind::Read(_) | SceneErrorKind::Directory | SceneErrorKind::File { .. } => true,
+            SceneErrorKind::Model(error) => is_unreadable(&error.kind),
+            SceneErrorKind::Texture(error) => matches!(error.kind, LoadErrorKind::Read(_) | LoadErrorKind::NotAFile),
+            _ => false,
+        };
+        if is_unreadable { Failure::file(error) } else { Failure::words(error) }
+    }
+}
+
+fn is_unreadable(kind: &ObjErrorKind) -> bool {
+    matches!(kind, ObjErrorKind::Read(_) | ObjErrorKind::Directory)
+}
+
+/// A text without line ends and other control characters. File names and the contents of files may hold them; an error
+/// is one line, and no terminal is sent what a file says.
 pub(crate) fn on_one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

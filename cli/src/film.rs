@@ -11,6 +11,7 @@ use mode13h::export::{
 use mode13h::palette::Palette;
 use mode13h::vga::Vga;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use serde_json::{Value, json};
 
 use crate::failure::{Failure, on_one_line};
 use crate::output;
@@ -39,6 +40,12 @@ pub(crate) enum Kind {
     Apng,
     /// YUV4MPEG2 on standard output.
     Stream,
+}
+
+/// What a film's file came to: a line, and the same for programs.
+pub(crate) struct Figures {
+    pub(crate) line: String,
+    pub(crate) json: Value,
 }
 
 /// Where a film goes, and how it is shown.
@@ -85,8 +92,8 @@ impl Film {
         self.frames
     }
 
-    /// Draws the frames by `draw`, by as many artists at a time as there are threads in the pool it is called in, writes
-    /// them, and prints a line about the file. A frame is drawn from its number alone, so that the film is the same with
+    /// Draws the frames by `draw`, by as many renderer_pool at a time as there are threads in the pool it is called in, writes
+    /// them, and returns what was written, if it is a file. A frame is drawn from its number alone, so that the film is the same with
     /// any number of threads. `fades`: whether its palette changes.
     pub(crate) fn write<Artist: Send>(
         &self,
@@ -94,33 +101,31 @@ impl Film {
         progress: &ProgressBar,
         renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send,
-    ) -> Result<(), Failure> {
-        let figures = output::long_file(|| {
+    ) -> Result<Option<Figures>, Failure> {
+        output::long_file(|| {
             let figures = match self.kind {
-                Kind::Gif => self.write_gif(progress, renderer_pool, &draw),
-                Kind::Apng => self.write_apng(fades, progress, renderer_pool, &draw),
-                Kind::Stream => self.write_stream(progress, renderer_pool, &draw).map(|()| String::new()),
+                Kind::Gif => self.write_gif(progress, renderer_pool, &draw).map(Some),
+                Kind::Apng => self.write_apng(fades, progress, renderer_pool, &draw).map(Some),
+                Kind::Stream => self.write_stream(progress, renderer_pool, &draw).map(|()| None),
             };
             progress.finish_and_clear();
             figures
-        })?;
-        output::print(&figures)
+        })
     }
 
-    /// Returns a line about what was written.
     fn write_gif<Artist: Send>(
         &self,
         progress: &ProgressBar,
         renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
-    ) -> Result<String, Failure> {
-        let mut file = GifFile::create(&self.out, self.scale, self.rate).map_err(Failure::work)?;
+    ) -> Result<Figures, Failure> {
+        let mut file = GifFile::create(&self.out, self.scale, self.rate).map_err(Failure::from)?;
         let make = |before: Option<&Frame>, frame: &Frame, first: &Palette| match before {
             None => GifFrame::first(&frame.picture(), self.scale),
             Some(before) => GifFrame::after(&before.picture(), &frame.picture(), self.scale, first.colors()),
         };
-        self.each(progress, renderer_pool, draw, make, |frame| file.add_frame(frame).map_err(Failure::work))?;
-        file.finish().map(|film| self.figures(&film)).map_err(Failure::work)
+        self.each(progress, renderer_pool, draw, make, |frame| file.add_frame(frame).map_err(Failure::from))?;
+        file.finish().map(|film| self.figures(&film)).map_err(Failure::from)
     }
 
     /// As [`write_gif`](Self::write_gif).
@@ -130,27 +135,30 @@ impl Film {
         progress: &ProgressBar,
         renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
-    ) -> Result<String, Failure> {
+    ) -> Result<Figures, Failure> {
         let colors = |first: &Palette| match fades {
             true => FilmColors::True,
             false => FilmColors::Palette(Box::new(*first.colors())),
         };
-        let mut file = ApngFile::create(&self.out, self.rate, self.frames).map_err(Failure::work)?;
+        let mut file = ApngFile::create(&self.out, self.rate, self.frames).map_err(Failure::from)?;
         let make = |before: Option<&Frame>, frame: &Frame, first: &Palette| {
             ApngFrame::new(before.map(Frame::picture).as_ref(), &frame.picture(), self.scale, &colors(first))
         };
-        self.each(progress, renderer_pool, draw, make, |frame| file.add(&frame).map_err(Failure::work))?;
-        let bytes = file.finish().map_err(Failure::work)?;
+        self.each(progress, renderer_pool, draw, make, |frame| file.add(&frame).map_err(Failure::from))?;
+        let bytes = file.finish().map_err(Failure::from)?;
         let (width, height) = self.scale.size(320, 200);
         let (above, below) = self.rate.fraction();
-        Ok(format!(
-            "{}: {width} x {height} pixels, {} frame{}, {:.2} s, {}, {bytes} bytes\n",
+        let (frames, seconds) = (self.frames, f64::from(self.frames) * f64::from(below) / f64::from(above));
+        let line = format!(
+            "{}: {width} x {height} pixels, {frames} frame{}, {seconds:.2} s, {}, {bytes} bytes\n",
             on_one_line(&self.out.to_string_lossy()),
-            self.frames,
-            plural(self.frames.into()),
-            f64::from(self.frames) * f64::from(below) / f64::from(above),
+            plural(frames.into()),
             if fades { "true colour, as the palette changes" } else { "indexed" },
-        ))
+        );
+        let json = json!({
+            "width": width, "height": height, "frames": frames, "seconds": seconds, "indexed": !fades, "bytes": bytes,
+        });
+        Ok(Figures { line, json })
     }
 
     /// That nobody reads on ends it, and is no failure.
@@ -174,7 +182,7 @@ impl Film {
         let result = self.each(progress, renderer_pool, draw, make, |bytes: Vec<u8>| {
             out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| {
                 nobody_reads = error.kind() == ErrorKind::BrokenPipe;
-                Failure::work(format!("standard output: {error}"))
+                Failure::file(format!("standard output: {error}"))
             })
         });
         if nobody_reads { Ok(()) } else { result }
@@ -205,8 +213,7 @@ impl Film {
             let make = |(i, frame): (usize, &Frame)| {
                 go_on()?;
                 let before = i.checked_sub(1).map_or(last.as_ref(), |before| drawn.get(before));
-                make(before, frame, &colors)
-                    .map_err(|error| Failure::work(on_one_line(&format!("{}: {error}", self.out.to_string_lossy()))))
+                make(before, frame, &colors).map_err(|error| Failure::words(format!("{}: {error}", self.out.display())))
             };
             let make_all =
                 || -> Result<Vec<Made>, Failure> { drawn.par_iter().enumerate().map(make).collect::<Result<_, _>>() };
@@ -222,22 +229,27 @@ impl Film {
         Ok(())
     }
 
-    /// A line about what was written.
-    fn figures(&self, film: &export::Film) -> String {
+    /// What a GIF came to.
+    fn figures(&self, film: &export::Film) -> Figures {
         let export::Film { width, height, frames, images, delays, bytes, .. } = film;
+        let json = json!({
+            "width": width, "height": height, "frames": frames, "seconds": film.seconds(), "indexed": true,
+            "bytes": bytes, "images": images, "images_by_centiseconds": delays,
+        });
         let in_images = match images == frames {
             true => String::new(),
             false => format!(" in {images} image{}", plural(*images)),
         };
         let delays: Vec<String> =
             delays.iter().rev().map(|(delay, images)| format!("{images} x {} ms", 10 * u32::from(*delay))).collect();
-        format!(
+        let line = format!(
             "{}: {width} x {height} pixels, {frames} frame{}{in_images}, {:.2} s, delays {}, {bytes} bytes\n",
             on_one_line(&self.out.to_string_lossy()),
             plural(*frames),
             film.seconds(),
             delays.join(" + "),
-        )
+        );
+        Figures { line, json }
     }
 }
 
@@ -247,5 +259,5 @@ fn plural(count: u64) -> &'static str {
 
 /// An error if the program has been told to end. It is never seen: [`output::long_file`] does not return then.
 fn go_on() -> Result<(), Failure> {
-    if output::is_interrupted() { Err(Failure::work("interrupted")) } else { Ok(()) }
+    if output::is_interrupted() { Err(Failure::file("interrupted")) } else { Ok(()) }
 }

@@ -1,7 +1,7 @@
 //! From the words INPUT and FILE|NAME to a scene or a mesh, and to a palette.
 
-use std::collections::HashMap;
 use std::ffi::OsStr;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -9,12 +9,13 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::mesh::{Mesh, Weight, obj, shapes};
+use mode13h::model;
 use mode13h::palette::{Palette, builtin, file};
 use mode13h::scene::{self, Scene, Shared, shipped};
-use mode13h::texture::{self, Texture};
+use mode13h::texture::Texture;
 
-use crate::failure::Failure;
-use crate::read_files;
+use crate::failure::{Failure, on_one_line};
+use crate::{read_files, typo};
 
 /// A mesh, and what to call it.
 pub(crate) struct Model {
@@ -39,11 +40,16 @@ impl Input {
 }
 
 /// What INPUT may be, for the help.
-pub(crate) fn help() -> String {
-    let scenes: Vec<&str> = shipped::ALL.iter().map(|scene| scene.name).collect();
-    let shapes: Vec<&str> = shapes::NAMES.into_iter().filter(|name| !scenes.contains(name)).collect();
-    let (scenes, shapes) = (scenes.join(", "), shapes.join(", "));
-    format!("A scene (.toml), a model (.obj), the name of a shipped scene: {scenes}; or of a shape: {shapes}")
+pub(crate) const HELP: &str = "A scene (.toml), a model (.obj), or the name of a scene or a shape";
+
+/// What INPUT may be, for the long help.
+pub(crate) fn long_help() -> String {
+    format!("{HELP}. `mode13h scenes` lists the names. Where a scene and a shape share a name, it is the scene.")
+}
+
+/// What to call an INPUT, whether it can be loaded or not.
+pub(crate) fn name_of(words: &OsStr) -> String {
+    Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned()
 }
 
 /// The scene or the model of a file or of a name; of a name that both have, the scene. Warnings go to standard error, a
@@ -54,24 +60,21 @@ pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Fail
     } else if has_extension(Path::new(words), "toml") {
         scene::file::load(words)
     } else {
-        let known = || {
-            let scenes: Vec<&str> = shipped::ALL.iter().map(|scene| scene.name).collect();
-            format!(
-                "neither a file nor a scene nor a shape; scenes are {}; shapes are {}",
-                scenes.join(", "),
-                shapes::NAMES.join(", ")
-            )
-        };
+        let known = || typo::no_input(&words.to_string_lossy());
         return model_or(words, options, "models are .obj files, scenes .toml", &known)
             .map(|model| Input::Model(Box::new(model)));
     };
-    let scene::file::Loaded { scene, warnings, files } = loaded.map_err(Failure::work)?;
+    let scene::file::Loaded { scene, warnings, files } = loaded.map_err(Failure::from)?;
     read_files::add_all(&files);
     for warning in warnings {
-        eprintln!("mode13h: {}", Failure::work(warning));
+        warn(warning);
     }
-    let name = Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned();
-    Ok(Input::Scene { name, scene: Box::new(scene) })
+    Ok(Input::Scene { name: name_of(words), scene: Box::new(scene) })
+}
+
+/// Says a line on standard error.
+fn warn(warning: impl Display) {
+    eprintln!("mode13h: {}", on_one_line(&warning.to_string()));
 }
 
 /// The model of a file or the shape of a name. Warnings go to standard error, a line each.
@@ -90,20 +93,20 @@ fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn()
         }
         (words.to_string_lossy().into_owned(), mesh)
     } else if has_extension(path, "obj") {
-        let loaded = load(path, options).map_err(Failure::work)?;
+        let loaded = load(path, options).map_err(Failure::from)?;
         read_files::add_all(&loaded.files);
         for warning in loaded.warnings {
-            eprintln!("mode13h: {}", Failure::work(warning));
+            warn(warning);
         }
-        (path.file_stem().unwrap_or(words).to_string_lossy().into_owned(), loaded.mesh)
+        (name_of(words), loaded.mesh)
     } else {
-        let reason = match path.metadata() {
-            Ok(metadata) if metadata.is_dir() => "is a directory, not a model".to_string(),
-            Ok(_) => format!("nothing that can be read: {kinds}"),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => known(),
-            Err(error) => error.to_string(),
-        };
-        return Err(Failure::work(format!("{}: {reason}", path.display())));
+        let shown = path.display();
+        return Err(match path.metadata() {
+            Ok(metadata) if metadata.is_dir() => Failure::file(format!("{shown}: is a directory, not a model")),
+            Ok(_) => Failure::words(format!("{shown}: nothing that can be read: {kinds}")),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Failure::words(format!("{shown}: {}", known())),
+            Err(error) => Failure::file(format!("{shown}: {error}")),
+        });
     };
     Ok(Model { name, mesh })
 }
@@ -112,16 +115,9 @@ fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn()
 /// cannot is a warning, a line on standard error, and the surface is drawn without it. Files named by several surfaces
 /// are read once.
 pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
-    let mut read: HashMap<&str, Option<Shared<Texture>>> = HashMap::new();
-    let textures = mesh.surfaces().iter().map(|surface| {
-        let path = surface.texture.as_deref().filter(|_| mesh.texcoords().is_some())?;
-        let texture = read.entry(path).or_insert_with(|| {
-            let loaded = texture::load(path).map(Shared::new);
-            loaded.map_err(|error| eprintln!("mode13h: {}", Failure::work(format!("{error}; drawn without it")))).ok()
-        });
-        texture.clone()
-    });
-    textures.collect()
+    let (textures, errors) = model::textures(mesh);
+    errors.iter().for_each(|error| warn(format!("{error}; drawn without it")));
+    textures
 }
 
 /// Loads a model; if that takes longer than a moment and standard error is a terminal, with a bar there.
@@ -162,9 +158,8 @@ fn has_extension(path: &Path, wanted: &str) -> bool {
 }
 
 /// The names of the palettes that are compiled in.
-pub(crate) fn palette_names() -> String {
-    let names: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
-    names.join(", ")
+fn palette_names() -> Vec<&'static str> {
+    builtin::ALL.iter().map(|builtin| builtin.name).collect()
 }
 
 /// The extensions of palette files.
@@ -211,18 +206,21 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
         return Ok((builtin.name.to_string(), builtin.palette.clone()));
     }
     let path = Path::new(words);
-    let fail = |reason: &dyn std::fmt::Display| Failure::work(format!("{}: {reason}", path.display()));
+    let shown = path.display();
     let bytes = read_at_most(path, LONGEST_PALETTE).map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => {
-            fail(&format_args!("neither a file nor a built-in palette; those are {}", palette_names()))
+            let reason =
+                format!("{shown}: neither a file nor a built-in palette; those are {}", palette_names().join(", "));
+            // A word without an extension is a name that there is not.
+            if path.extension().is_some() { Failure::file(reason) } else { Failure::words(reason) }
         }
-        io::ErrorKind::IsADirectory => fail(&"is a directory, not a palette"),
-        _ => fail(&error),
+        io::ErrorKind::IsADirectory => Failure::file(format!("{shown}: is a directory, not a palette")),
+        _ => Failure::file(format!("{shown}: {error}")),
     })?;
     read_files::add(path);
-    let palette = file::parse_named(&words.to_string_lossy(), &bytes).map_err(|error| fail(&error))?;
-    let name = path.file_stem().unwrap_or(words).to_string_lossy().into_owned();
-    Ok((name, palette))
+    let palette = file::parse_named(&words.to_string_lossy(), &bytes);
+    let palette = palette.map_err(|error| Failure::words(format!("{shown}: {error}")))?;
+    Ok((name_of(words), palette))
 }
 
 /// No palette file is longer, not even one with a paragraph for each colour. What is longer is read to here, and

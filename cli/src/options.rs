@@ -1,73 +1,136 @@
 //! Options that several commands share, and what may stand behind them.
 
+mod shading;
+
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use mode13h::glam::Vec3;
 use mode13h::mesh::obj;
 use mode13h::palette::{Rgb, builtin};
-use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Settings, Shading, VertexPath};
-use mode13h::scene::{Preferences, Scene, UpAxis};
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, VertexPath};
+use mode13h::scene::{Scene, UpAxis};
 use mode13h::span::Kernel;
 
 use crate::failure::Failure;
 use crate::input::{self, Colors, Input, Model};
 use crate::turntable::{Background, Turntable};
+pub(crate) use shading::ShadingOptions;
 
 /// The environment variable that stands in for `--kernel`. The library reads none.
 const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 
-/// How a model or a scene is drawn. What is not said here the scene says, or else the library chooses.
+/// What is drawn, and how, but for the shading. The scene decides what is not said here, and the library what the scene
+/// leaves open.
 #[derive(Args, Clone)]
+#[command(next_help_heading = "What is drawn")]
 pub(crate) struct Drawing {
-    #[arg(long, value_name = "SHADING", help = help_on_shadings())]
-    shading: Option<Shading>,
-    /// Spend the least time that keeps every face within so many shades of error, of 1/255 of full intensity
-    #[arg(long, value_name = "SHADES", value_parser = shades, conflicts_with = "shading")]
-    max_error: Option<f32>,
-    #[arg(long, value_name = "FILE|NAME|auto", help = help_on_palettes())]
-    palette: Option<OsString>,
-    #[arg(long, value_name = "NAME", value_parser = Kernel::by_name, help = help_on_kernels())]
-    kernel: Option<Kernel>,
-    #[arg(long, value_name = "WAY", help = help_on_hidden_surfaces())]
-    hidden: Option<HiddenSurfaces>,
-    #[arg(long, value_name = "WAY", help = help_on_mappings())]
-    mapping: Option<Mapping>,
-    /// Smaller copies of textures where these are far away [default: as the scene calls for]
-    #[arg(long, value_name = "WHETHER", value_enum)]
-    mipmaps: Option<Switch>,
-    #[arg(long, value_name = "PATH", help = help_on_vertex_paths())]
-    vertex_path: Option<VertexPath>,
+    /// Enlarge what is seen
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
+    zoom: Option<f64>,
+    /// Look from the point EYE at the point TARGET
+    ///
+    /// Each point is X,Y,Z in units of the scene; for a model, from its middle.
+    ///
+    /// [default: the scene's camera, or one that shows all of the model; TARGET is 0,0,0]
+    #[arg(long, value_name = "EYE[:TARGET]", value_parser = camera, allow_hyphen_values = true)]
+    camera: Option<(Vec3, Vec3)>,
     /// The axis of a model that points up [default: y]
     #[arg(long, value_name = "AXIS", value_enum)]
     up: Option<Up>,
-    /// Show an edge where faces of a model without normals meet at more than this angle: 180 is smooth everywhere, 0 flat
-    /// [default: the model's smoothing groups, or else 40; scans are smooth]
+    /// The angle beyond which faces of a model meet at an edge
+    ///
+    /// It is for models without normals: 180 makes them smooth everywhere, 0 flat.
+    ///
+    /// [default: the model's smoothing groups, otherwise 40; scans are smooth]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = crease)]
     crease: Option<f32>,
-    /// Show it so many times as large
-    #[arg(long, value_name = "FACTOR", value_parser = factor)]
-    zoom: Option<f64>,
-    /// Look from the point EYE at the point TARGET, each X,Y,Z in the scene's units; of a model, from its middle
-    /// [default: as it is framed; the TARGET, 0,0,0]
-    #[arg(long, value_name = "EYE[:TARGET]", value_parser = camera, allow_hyphen_values = true)]
-    camera: Option<(Vec3, Vec3)>,
-    /// What the frame is cleared to: a colour, '#rrggbb' or rrggbb, of which the nearest entry is taken, or an entry of the
-    /// palette, 0 to 255 [default: the scene's, or 0]
+    #[arg(
+        long,
+        value_name = "FILE|NAME",
+        help = "The palette: a file, a built-in one, or auto",
+        long_help = long_help_on_palettes(),
+    )]
+    palette: Option<OsString>,
+    /// What the frame is cleared to: a colour or an entry
+    ///
+    /// A colour is written '#rrggbb' or rrggbb; the palette's nearest entry is taken. An entry is 0 to 255.
+    ///
+    /// [default: the scene's, otherwise entry 0]
     #[arg(long, value_name = "COLOUR", value_parser = background)]
     background: Option<Background>,
-    /// Show shades between two entries of the palette as a pattern of both [default: as the scene says]
-    #[arg(long, value_name = "on|off", value_parser = switch, num_args = 0..=1, require_equals = true,
-        default_missing_value = "on")]
+    #[command(flatten)]
+    pipeline: Pipeline,
+}
+
+/// How triangles become bytes.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "How it is drawn")]
+struct Pipeline {
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = one_of(HiddenSurfaces::ALL, HiddenSurfaces::name),
+        hide_possible_values = true,
+        help = "How hidden surfaces are left out",
+        long_help = long_help_on_names("How hidden surfaces are left out", &HiddenSurfaces::ALL.map(HiddenSurfaces::name)),
+    )]
+    hidden_surfaces: Option<HiddenSurfaces>,
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = one_of(Mapping::ALL, Mapping::name),
+        hide_possible_values = true,
+        help = "How textures are mapped",
+        long_help = long_help_on_names("How textures are mapped", &Mapping::ALL.map(Mapping::name)),
+    )]
+    mapping: Option<Mapping>,
+    /// Draw distant textures from smaller copies
+    ///
+    /// [default: as the scene calls for]
+    #[arg(long, value_name = "on|off", value_parser = switch, num_args = 0..=1, default_missing_value = "on")]
+    mipmaps: Option<bool>,
+    /// Split faces until linear shades are off by at most N shades
+    ///
+    /// A shade is 1/255 of full intensity.
+    ///
+    /// [default: the scene's, otherwise no face is split]
+    #[arg(long, value_name = "N", value_parser = shades)]
+    tessellation: Option<f32>,
+    /// Show shades between two entries as a pattern of both
+    ///
+    /// [default: as the scene says]
+    #[arg(long, value_name = "on|off", value_parser = switch, num_args = 0..=1, default_missing_value = "on")]
     dither: Option<bool>,
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = one_of(VertexPath::ALL, VertexPath::name),
+        hide_possible_values = true,
+        help = "The numbers that vertices are made in",
+        long_help = long_help_on_arithmetic(),
+    )]
+    arithmetic: Option<VertexPath>,
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = Kernel::by_name,
+        help = "The span kernel",
+        long_help = long_help_on_kernels(),
+    )]
+    kernel: Option<Kernel>,
 }
 
 /// Which moment of a scene is drawn.
 #[derive(Args)]
 pub(crate) struct Moment {
-    /// The time of the frame, or of the first of several: of a scene, or of a model, which turns 90 degrees a second
-    /// [default: 0; of one frame that --turn does not turn, the scene's `picture`]
+    /// The time of the frame, or of the first one
+    ///
+    /// A model turns by 90 degrees in a second.
+    ///
+    /// [default: for a single frame that is not turned, the scene's `picture`; otherwise 0]
     #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, visible_alias = "at")]
     time: Option<f64>,
 }
@@ -91,13 +154,6 @@ pub(crate) enum Up {
     Z,
 }
 
-/// Whether something is done.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Switch {
-    On,
-    Off,
-}
-
 impl From<Up> for UpAxis {
     fn from(up: Up) -> UpAxis {
         match up {
@@ -110,7 +166,7 @@ impl From<Up> for UpAxis {
 impl Drawing {
     /// The kernel that was asked for by option or else by environment, or the fastest.
     pub(crate) fn kernel(&self) -> Result<Kernel, Failure> {
-        if let Some(kernel) = self.kernel {
+        if let Some(kernel) = self.pipeline.kernel {
             return Ok(kernel);
         }
         match std::env::var_os(KERNEL_VARIABLE) {
@@ -162,15 +218,18 @@ impl Drawing {
         if let Some(background) = self.background {
             stage.set_background(background);
         }
-        if let Some(dither) = self.dither {
+        if let Some(dither) = self.pipeline.dither {
             stage.set_dither(dither);
         }
+        if let Some(shades) = self.pipeline.tessellation {
+            stage.scene.preferences.tessellation = Some(shades);
+        }
         let colors = asked.or(usual);
-        if colors == Some(Colors::Auto) && self.vertex_path == Some(VertexPath::Integer) {
+        if colors == Some(Colors::Auto) && self.pipeline.arithmetic == Some(VertexPath::Integer) {
             stage.only_what_integers_draw();
         }
         if let Some(colors) = &colors {
-            stage.set_colors(colors).map_err(Failure::work)?;
+            stage.set_colors(colors).map_err(Failure::from)?;
         }
         Ok(stage)
     }
@@ -188,37 +247,31 @@ impl Drawing {
         (!is_name).then(|| PathBuf::from(words))
     }
 
-    /// Whether a shading or a budget was asked for.
-    pub(crate) fn chooses_shading(&self) -> bool {
-        self.accuracy().is_some()
-    }
-
-    /// How exact shades are, if that was asked for.
-    fn accuracy(&self) -> Option<Accuracy> {
-        self.max_error.map(Accuracy::WithinError).or(self.shading.map(Accuracy::Shading))
-    }
-
-    /// How exact shades of a scene with these preferences are to be.
-    pub(crate) fn accuracy_for(&self, preferences: &Preferences) -> Accuracy {
-        Settings { accuracy: self.accuracy(), ..Settings::default() }.resolve(preferences).asked
-    }
-
     /// The mapping that was asked for.
     pub(crate) fn mapping(&self) -> Option<Mapping> {
-        self.mapping
+        self.pipeline.mapping
     }
 
-    /// What draws as was asked for.
+    /// A renderer that is set as the command line says, but for the shading.
     pub(crate) fn renderer(&self, kernel: Kernel) -> Renderer {
+        let Pipeline { hidden_surfaces, mapping, mipmaps, arithmetic, .. } = self.pipeline;
         let mut renderer = Renderer::new();
         renderer.set_kernel(kernel);
-        renderer.set_hidden_surfaces(self.hidden);
-        renderer.set_mapping(self.mapping);
-        renderer.set_mipmaps(self.mipmaps.map(|mipmaps| mipmaps == Switch::On));
-        renderer.set_vertex_path(self.vertex_path.unwrap_or_default());
-        renderer.set_accuracy(self.accuracy());
+        renderer.set_hidden_surfaces(hidden_surfaces);
+        renderer.set_mapping(mapping);
+        renderer.set_mipmaps(mipmaps);
+        renderer.set_vertex_path(arithmetic.unwrap_or_default());
         renderer
     }
+}
+
+/// Takes one of these names, and offers them to the shell's completions.
+pub(crate) fn one_of<Choice: Copy + Send + Sync + 'static, const N: usize>(
+    all: [Choice; N],
+    name: fn(Choice) -> &'static str,
+) -> impl TypedValueParser<Value = Choice> {
+    PossibleValuesParser::new(all.map(name))
+        .try_map(move |word| all.into_iter().find(|choice| name(*choice) == word).ok_or("unknown name"))
 }
 
 /// A number on the command line.
@@ -243,8 +296,8 @@ fn camera(words: &str) -> Result<(Vec3, Vec3), String> {
     let point = |words: &str| {
         let numbers: Option<Vec<f32>> = words.split(',').map(|word| word.trim().parse().ok()).collect();
         let point = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok()).map(Vec3::from_array);
-        let reason = || format!("{words:?} is no point: three numbers with commas between them, such as 0,1.5,4");
-        point.filter(|point| point.is_finite()).ok_or_else(reason)
+        let why = || format!("{words:?} is no point: three numbers with commas between them, such as 0,1.5,4");
+        point.filter(|point| point.is_finite()).ok_or_else(why)
     };
     let (eye, target) = match words.split_once(':') {
         Some((eye, target)) => (point(eye)?, point(target)?),
@@ -272,7 +325,7 @@ fn switch(words: &str) -> Result<bool, String> {
     match words {
         "on" => Ok(true),
         "off" => Ok(false),
-        _ => Err("neither on nor off".to_string()),
+        _ => Err("neither on nor off; an INPUT stands before this option, or behind its =on".to_string()),
     }
 }
 
@@ -292,36 +345,32 @@ pub(crate) fn shades(words: &str) -> Result<f32, String> {
     }
 }
 
-fn help_on_shadings() -> String {
-    let names = Shading::ALL.map(Shading::name).join(", ");
-    format!("How faces are shaded: {names} [default: the scene's, or {}]", Shading::default())
+fn long_help_on_names(what: &str, names: &[&str]) -> String {
+    format!("{what}: {}\n\n[default: as the scene calls for]", names.join(", "))
 }
 
-fn help_on_hidden_surfaces() -> String {
-    let names = HiddenSurfaces::ALL.map(HiddenSurfaces::name).join(", ");
-    format!("How hidden surfaces are left out: {names} [default: as the scene calls for]")
-}
-
-fn help_on_mappings() -> String {
-    let names = Mapping::ALL.map(Mapping::name).join(", ");
-    format!("How textures are mapped: {names} [default: as the scene calls for]")
-}
-
-fn help_on_vertex_paths() -> String {
+fn long_help_on_arithmetic() -> String {
     let names = VertexPath::ALL.map(VertexPath::name).join(", ");
-    format!("The numbers that vertices are made in: {names} (16.16) [default: {}]", VertexPath::default())
+    format!(
+        "The numbers that vertices are made in: {names}. Fixed numbers have 16 bits before the point and 16 behind it.\n\n\
+         [default: {}]",
+        VertexPath::default()
+    )
 }
 
-fn help_on_palettes() -> String {
-    let (names, extensions) = (input::palette_names(), input::palette_extensions());
-    let usual = "the scene's; of a model, auto if it has colours of its own, else grey";
-    format!("The palette: auto, made for what is seen; {names}; or a file ({extensions}) [default: {usual}]")
+fn long_help_on_palettes() -> String {
+    format!(
+        "The palette. `auto` makes one for what is seen. `mode13h palette` lists the built-in ones. The name of a file \
+         ends in {}.\n\n[default: the scene's; for a model, auto if it has colours of its own, otherwise grey]",
+        input::palette_extensions()
+    )
 }
 
-fn help_on_kernels() -> String {
+fn long_help_on_kernels() -> String {
     let names: Vec<&str> = Kernel::available().map(Kernel::name).collect();
     format!(
-        "The span kernel: {} [default: {KERNEL_VARIABLE} if it is set, else the fastest, {}]",
+        "The span kernel: {}. All draw the same bytes.\n\n[default: the environment variable {KERNEL_VARIABLE}, otherwise \
+         the fastest, {}]",
         names.join(", "),
         Kernel::fastest().name()
     )

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-use mode13h::export::{self, ExportError, Picture, Scale};
+use mode13h::export::{ExportError, Picture, Png, Scale};
 use mode13h::vga::Vga;
+use serde::Serialize;
 
 use crate::failure::Failure;
 
@@ -64,10 +65,8 @@ pub(crate) fn is_interrupted() -> bool {
 pub(crate) fn picture(vga: &Vga, path: &Path, rgb: bool, scale: Option<Scale>) -> Result<(), ExportError> {
     let palette = vga.palette();
     let picture = Picture::mode_13h(vga.pixels(), &palette);
-    file(|| match (rgb, scale) {
-        (true, scale) => export::picture_rgb_png(&picture, scale.unwrap_or(Scale::FiveBySix), path),
-        (false, scale) => export::picture_png(&picture, scale.unwrap_or(Scale::One), path),
-    })
+    let scale = scale.unwrap_or(if rgb { Scale::FiveBySix } else { Scale::One });
+    file(|| Png { scale, rgb }.save(&picture, path))
 }
 
 /// Writes what `vga` shows under the first name that is free of `mode13h-0001.png`, `mode13h-0002.png` and so on in
@@ -85,10 +84,28 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::work(format!("standard output: {error}")))
+            Err(Failure::file(format!("standard output: {error}")))
         }
         _ => Ok(()),
     }
+}
+
+/// Prints a value as JSON, with a line end.
+pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    print(&json(value)?)
+}
+
+/// A value as JSON, with a line end.
+pub(crate) fn json(value: &impl Serialize) -> Result<String, Failure> {
+    Ok(serde_json::to_string_pretty(value)? + "\n")
+}
+
+/// A failure if a file of this name exists. For names that the user did not give: `--force` overwrites those.
+pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure> {
+    if force || path.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    Err(Failure::file(format!("{}: exists already; --force overwrites it, and -o names another place", path.display())))
 }
 
 /// Whether a person sees what [`print`] prints, with colours.

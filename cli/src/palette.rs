@@ -3,65 +3,148 @@
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use mode13h::export::{self, Picture, PixelShape, Scale};
+use clap::{ArgGroup, Args};
+use mode13h::export::{self, Picture, PixelShape, Png, Scale};
 use mode13h::mesh::obj;
 use mode13h::palette::auto::Entries;
+use mode13h::palette::builtin::Builtin;
 use mode13h::palette::file::Format;
 use mode13h::palette::{Palette, builtin};
+use serde_json::{Value, json};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, on_one_line};
 use crate::options::{self, Up};
 use crate::turntable::Turntable;
 use crate::{input, output, read_files};
 
 #[derive(Args)]
+#[command(group(ArgGroup::new("what").args(["palette", "from"])))]
 pub(crate) struct Options {
-    #[arg(value_name = "FILE|NAME", required_unless_present = "from", help = help())]
+    #[arg(
+        value_name = "FILE|NAME",
+        help = "A palette file, or a built-in palette [default: list those]",
+        long_help = long_help(),
+    )]
     palette: Option<OsString>,
-    /// Make one for a model: black, a ramp for each of its materials by how much of it is seen over a turn, colours for
-    /// its textures, white
-    #[arg(long, value_name = "MODEL", conflicts_with = "palette")]
+    /// Make a palette for a model
+    ///
+    /// It has black, a ramp for each of the model's materials by how much of it is seen over a turn, colours for its
+    /// textures, and white.
+    #[arg(long, value_name = "MODEL")]
     from: Option<OsString>,
-    /// The axis of that model that points up
-    #[arg(long, value_name = "AXIS", value_enum, default_value = "y", conflicts_with = "palette")]
-    up: Up,
-    /// Show an edge where faces of that model without normals meet at more than this angle [default: the model's smoothing
-    /// groups, or else 40; scans are smooth]
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, conflicts_with = "palette")]
+    /// The axis of that model that points up [default: y]
+    #[arg(long, value_name = "AXIS", value_enum, requires = "from", conflicts_with = "palette")]
+    up: Option<Up>,
+    /// The angle beyond which two faces of that model meet at an edge
+    ///
+    /// It is for models without normals.
+    ///
+    /// [default: the model's smoothing groups, otherwise 40; scans are smooth]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, requires = "from", conflicts_with = "palette")]
     crease: Option<f32>,
-    /// Write it to a file, in the format of its extension; .png makes a chart of the colours
-    #[arg(short, long, value_name = "OUT")]
+    /// Write the palette to a file, in the format of its extension
+    ///
+    /// A name ending in .png is a chart of the colours.
+    #[arg(short, long, value_name = "OUT", conflicts_with = "json")]
     out: Option<PathBuf>,
+    /// Print as JSON
+    #[arg(long)]
+    json: bool,
 }
 
-fn help() -> String {
-    format!("A file ({}), or a built-in palette: {}", input::palette_extensions(), input::palette_names())
+fn long_help() -> String {
+    format!(
+        "A palette file ({}), or a built-in palette. Without either the built-in palettes are listed.",
+        input::palette_extensions()
+    )
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let (name, palette, made) = match (&options.from, &options.palette) {
-        (Some(model), _) => make(model, options.up, options.crease, options.out.as_deref())?,
-        (None, words) => {
-            let (name, palette) = input::palette(words.as_deref().unwrap_or_default())?;
-            options.out.as_deref().map_or(Ok(()), read_files::spare)?;
-            (name, palette, String::new())
+    let Options { from, palette, up, crease, out, json } = options;
+    let (name, palette, made) = match (from, palette) {
+        (Some(model), _) => make(model, up.unwrap_or(Up::Y), *crease, out.as_deref())?,
+        (None, Some(words)) => {
+            let (name, palette) = input::palette(words)?;
+            out.as_deref().map_or(Ok(()), read_files::spare)?;
+            (name, palette, Vec::new())
         }
+        (None, None) if out.is_some() => {
+            return Err(Failure::words("-o writes one palette: FILE|NAME or --from MODEL says which"));
+        }
+        (None, None) if *json => return output::print_json(&list_json()),
+        (None, None) => return output::print(&list()),
     };
-    match &options.out {
-        None => output::print(&(look(&name, &palette) + &made)),
+    match out {
         Some(out) => convert(&name, &palette, out),
+        None if *json => output::print_json(&as_json(&name, &palette, &made)),
+        None => {
+            let made: String = made.iter().map(Made::line).collect();
+            output::print(&(look(&name, &palette) + &made))
+        }
     }
 }
 
-/// A palette for a model, to be written to `out`: what to call it, the palette, and what is where in it, a line for each surface.
-fn make(model: &OsStr, up: Up, crease: Option<f32>, out: Option<&Path>) -> Result<(String, Palette, String), Failure> {
+/// A line for each built-in palette.
+fn list() -> String {
+    let widest = builtin::ALL.iter().map(|builtin| builtin.name.len()).max().unwrap_or_default();
+    let line = |builtin: &Builtin| {
+        let Builtin { name, provenance, .. } = builtin;
+        format!("{name:widest$}  {}. {provenance}", ramps(builtin.palette)).trim_end().to_string() + "\n"
+    };
+    builtin::ALL.iter().map(line).collect()
+}
+
+fn list_json() -> Value {
+    let palettes = builtin::ALL.iter().map(
+        |builtin| json!({ "name": builtin.name, "ramps": builtin.palette.ramps(), "provenance": builtin.provenance }),
+    );
+    json!({ "schema": 1, "palettes": palettes.collect::<Vec<_>>() })
+}
+
+fn as_json(name: &str, palette: &Palette, made: &[Made]) -> Value {
+    let colors = palette.colors().iter().map(|color| format!("#{:06x}", color.to_u32()));
+    let made = made.iter().map(|made| {
+        let Made { material, what, first, last } = made;
+        json!({ "material": material, "what": what, "first": first, "last": last })
+    });
+    json!({
+        "schema": 1,
+        "name": name,
+        "ramps": palette.ramps(),
+        "colors": colors.collect::<Vec<_>>(),
+        "materials": made.collect::<Vec<_>>(),
+    })
+}
+
+/// What a palette that was made for a model holds for one of its materials.
+struct Made {
+    material: String,
+    what: &'static str,
+    first: u8,
+    last: u8,
+}
+
+impl Made {
+    fn line(&self) -> String {
+        let Made { material, what, first, last } = self;
+        // A name may hold anything; no terminal is sent it.
+        on_one_line(&format!("{material}: {what}, entries {first} to {last}")) + "\n"
+    }
+}
+
+/// A palette for a model, to be written to `out`: what to call it, the palette, and what is where in it.
+fn make(
+    model: &OsStr,
+    up: Up,
+    crease: Option<f32>,
+    out: Option<&Path>,
+) -> Result<(String, Palette, Vec<Made>), Failure> {
     let input::Model { name, mesh } = input::model(model, &obj::Options { crease })?;
     out.map_or(Ok(()), read_files::spare)?;
     let textures = input::textures(&mesh);
     let mut stage = Turntable::of_model(mesh, up.into(), &textures);
-    let automatic = stage.automatic().map_err(Failure::work)?.clone();
-    let mut lines = String::new();
+    let automatic = stage.automatic().map_err(Failure::from)?.clone();
+    let mut made = Vec::new();
     let materials = stage.scene.objects().iter().flat_map(|object| &object.materials);
     for (material, entries) in materials.zip(automatic.entries.iter().flatten()) {
         let (entries, what) = match entries {
@@ -69,18 +152,16 @@ fn make(model: &OsStr, up: Up, crease: Option<f32>, out: Option<&Path>) -> Resul
             Entries::Textures { block } => (block, "colours of textures"),
             _ => continue,
         };
-        let material = if material.name.is_empty() { &name } else { &material.name };
-        let line = format!("{material}: {what}, entries {} to {}", entries.first(), entries.last());
-        // A name may hold anything; no terminal is sent it.
-        lines.extend(line.chars().map(|c| if c.is_control() { ' ' } else { c }).chain(['\n']));
+        let material = if material.name.is_empty() { name.clone() } else { material.name.clone() };
+        made.push(Made { material, what, first: entries.first(), last: entries.last() });
     }
-    Ok((name, automatic.palette, lines))
+    Ok((name, automatic.palette, made))
 }
 
 fn convert(name: &str, palette: &Palette, out: &Path) -> Result<(), Failure> {
     let extension = out.extension().unwrap_or_default().to_string_lossy();
     if extension.eq_ignore_ascii_case("png") {
-        return output::file(|| chart(palette, out)).map_err(Failure::work);
+        return output::file(|| chart(palette, out)).map_err(Failure::from);
     }
     let Some(format) = Format::by_extension(&extension) else {
         let known = input::palette_extensions();
@@ -88,7 +169,7 @@ fn convert(name: &str, palette: &Palette, out: &Path) -> Result<(), Failure> {
         return Err(Failure::words(reason));
     };
     let bytes = format.write(palette, name);
-    output::file(|| export::write_atomically(out, |file| file.write_all(&bytes))).map_err(Failure::work)
+    output::file(|| export::write_atomically(out, |file| file.write_all(&bytes))).map_err(Failure::from)
 }
 
 /// The 256 colours in 16 rows of 16, each a square of 16 pixels.
@@ -102,18 +183,21 @@ fn chart(palette: &Palette, out: &Path) -> Result<(), export::ExportError> {
         palette: palette.colors(),
         shape: PixelShape::SQUARE,
     };
-    export::picture_png(&squares, Scale::To { width: 256, height: 256 }, out)
+    Png { scale: Scale::To { width: 256, height: 256 }, rgb: false }.save(&squares, out)
+}
+
+fn ramps(palette: &Palette) -> String {
+    match palette.ramps() {
+        0 => "no ramps".to_string(),
+        1 => "1 ramp of 256".to_string(),
+        ramps => format!("{ramps} ramps of {}", 256 / ramps),
+    }
 }
 
 /// The palette as text: what it is, and its colours; painted where the terminal can.
 fn look(name: &str, palette: &Palette) -> String {
-    let ramps = match palette.ramps() {
-        0 => "no ramps".to_string(),
-        1 => "1 ramp of 256".to_string(),
-        ramps => format!("{ramps} ramps of {}", 256 / ramps),
-    };
     let provenance = builtin::by_name(name).map_or("", |builtin| builtin.provenance);
-    let mut text = format!("{name}: {ramps}. {provenance}").trim_end().to_string() + "\n";
+    let mut text = format!("{name}: {}. {provenance}", ramps(palette)).trim_end().to_string() + "\n";
     let painted = output::is_colored_terminal();
     let in_a_row = if painted { 32 } else { 8 };
     for (row, colors) in palette.colors().chunks(in_a_row).enumerate() {

@@ -1,4 +1,4 @@
-//! `mode13h plan`: what a scene calls for, object by object, and why.
+//! `mode13h plan`: what a scene calls for, object by object, and reason.
 
 use std::ffi::OsString;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::effect_cost::EffectCost;
 use crate::failure::Failure;
-use crate::options::{Drawing, finite};
+use crate::options::{Drawing, ShadingOptions, finite};
 use crate::turntable::Pose;
 use crate::{input, output};
 
@@ -26,24 +26,27 @@ const TIME_OF_ONE: (Duration, Duration) = (Duration::from_millis(5), Duration::f
 
 #[derive(Args)]
 pub(crate) struct Options {
-    #[arg(help = input::help())]
+    #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// As JSON, for programs: the same on every run, times excepted
+    /// Print the plan as JSON
+    ///
+    /// It is the same on every run, times excepted.
     #[arg(long)]
     json: bool,
-    /// Measure each effect: what a frame is shorter by without it, or, of one that is off, longer by with it
+    /// Measure what each effect costs, or would cost if it were on
     #[arg(long)]
     time: bool,
-    /// The time of the frame, in seconds. It follows one 1/35 s before it, so that one sees what is kept [default: the
-    /// scene's `picture`, or 0]
+    /// The time of the frame [default: the scene's `picture`, otherwise 0]
     #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true)]
     at: Option<f64>,
     #[command(flatten)]
     drawing: Drawing,
+    #[command(flatten)]
+    shading: ShadingOptions,
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, json, time, at, drawing } = options;
+    let Options { input, json, time, at, drawing, shading } = options;
     let kernel = drawing.kernel()?;
     let input = drawing.input(input)?;
     let name = input.name().to_string();
@@ -54,24 +57,23 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         stage.scene.clone()
     });
 
-    let (mut renderer, mut vga) = (drawing.renderer(kernel), Vga::new());
-    let mut draw = |scene: &Scene| renderer.draw(scene, &mut vga).map_err(Failure::work);
+    let (mut renderer, mut vga) = (shading.renderer(drawing, kernel), Vga::new());
+    let mut draw = |scene: &Scene| renderer.draw(scene, &mut vga).map_err(Failure::from);
     draw(&frames[0])?;
     let stats = draw(&frames[1])?;
     let rows = renderer.rows(&frames[1]);
 
     let effects = rows.len().max(1);
     let of_one = (TIME / u32::try_from(effects).unwrap_or(u32::MAX)).clamp(TIME_OF_ONE.0, TIME_OF_ONE.1);
-    let meter = EffectCost { renderer: || drawing.renderer(kernel), frames: &frames, time: of_one };
+    let meter = EffectCost { renderer: || shading.renderer(drawing, kernel), frames: &frames, time: of_one };
     let prices = if *time { Some(prices(&meter, &rows)?) } else { None };
-    output::print(&if *json {
-        as_json(&name, &rows, prices.as_deref())?
-    } else {
-        let plan = renderer.plan();
-        let head = Head { name: &name, at, plan, stats: &stats, planning: meter.plan()? };
-        let frame = if *time { Some(meter.frame()?) } else { None };
-        head.text(&rows, frame) + &tables(&rows, prices.as_deref())
-    })
+    if *json {
+        return output::print_json(&as_json(&name, &rows, prices.as_deref()));
+    }
+    let plan = renderer.plan();
+    let head = Head { name: &name, at, plan, stats: &stats, planning: meter.plan()? };
+    let frame = if *time { Some(meter.frame()?) } else { None };
+    output::print(&(head.text(&rows, frame) + &tables(&rows, prices.as_deref())))
 }
 
 /// The price of each row, in nanoseconds a frame.
@@ -120,7 +122,7 @@ struct JsonEffect<'a> {
     ns_per_frame: Option<Option<u64>>,
 }
 
-fn as_json(name: &str, rows: &[Row], prices: Option<&[Option<u64>]>) -> Result<String, Failure> {
+fn as_json<'a>(name: &'a str, rows: &'a [Row], prices: Option<&'a [Option<u64>]>) -> Json<'a> {
     let objects = rows.chunk_by(|a, b| a.place == b.place).scan(0, |first, rows| {
         let prices = prices.map(|prices| &prices[*first..][..rows.len()]);
         *first += rows.len();
@@ -133,9 +135,7 @@ fn as_json(name: &str, rows: &[Row], prices: Option<&[Option<u64>]>) -> Result<S
         });
         Some(JsonObject { object: &rows[0].object, effects: effects.collect() })
     });
-    let json = Json { schema: 1, scene: name, objects: objects.collect() };
-    let text = serde_json::to_string_pretty(&json).map_err(Failure::work)?;
-    Ok(text + "\n")
+    Json { schema: 2, scene: name, objects: objects.collect() }
 }
 
 /// What holds for all objects.
@@ -268,27 +268,16 @@ fn table(heading: &str, rows: &[(&Row, String)], widths: &Widths) -> String {
     text
 }
 
-/// Words in lines that end before `width`. They begin at `indent`: so do those after the first, which stands behind
-/// what is there.
+/// Words in lines that end before `width`. All begin at `indent`; the first stands behind what is there.
 fn wrapped(words: &str, indent: usize, width: usize) -> String {
-    let mut text = String::new();
-    let mut column = indent;
-    for word in words.split_whitespace() {
-        let length = word.chars().count();
-        if column > indent {
-            if column + 1 + length > width {
-                text += "\n";
-                text += &" ".repeat(indent);
-                column = indent;
-            } else {
-                text.push(' ');
-                column += 1;
-            }
-        }
-        text += word;
-        column += length;
-    }
-    text + "\n"
+    let indentation = " ".repeat(indent);
+    let options = textwrap::Options::new(width)
+        .initial_indent(&indentation)
+        .subsequent_indent(&indentation)
+        .word_separator(textwrap::WordSeparator::AsciiSpace)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation)
+        .break_words(false);
+    textwrap::fill(words, options).trim_start().to_string() + "\n"
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,57 +12,96 @@ use mode13h::vga::Vga;
 use mode13h_lab::record::Record;
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use serde_json::{Value, json};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, on_one_line};
 use crate::film::{self, Film, Kind};
 use crate::names::{Names, number_in};
-use crate::options::{Drawing, Moment, finite};
+use crate::options::{Drawing, Moment, ShadingOptions, finite};
 use crate::renderer_pool::RendererPool;
 use crate::turntable::{Pose, Turntable};
-use crate::{input, output, read_files};
+use crate::{input, output, read_files, stats};
 
 #[derive(Args)]
 pub(crate) struct Options {
-    #[arg(help = input::help())]
+    #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// The picture: a name ending in .png; with --frames, one that holds %04d or the like for the number. A film: a name
-    /// ending in .gif or .apng, or - for ffmpeg: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p torus.mp4`. What
-    /// is piped is Y4M, as that says size and rate itself; its colours are rounded to YCbCr, those of .apng are exact
+    /// The file: .png, .gif, .apng, or - for a stream to ffmpeg
+    ///
+    /// A name ending in .png is a picture. With --frames it holds %04d or the like for the number. A name ending in .gif or
+    /// .apng is a film.
+    ///
+    /// The name - is a film in Y4M on standard output: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p
+    /// torus.mp4`. Y4M says its size and rate itself; its colours are rounded to YCbCr, those of .apng are exact.
+    ///
+    /// [default: INPUT.png in this directory, which is not overwritten without --force]
     #[arg(short, long, value_name = "OUT")]
-    out: PathBuf,
-    /// How many frames, numbered from 0 [default: 1; a film, those of one round: four seconds, or what the scene says]
+    out: Option<PathBuf>,
+    /// Overwrite INPUT.png
+    #[arg(long)]
+    force: bool,
+    /// How many frames
+    ///
+    /// They are numbered from 0.
+    ///
+    /// [default: 1; for a film, those of one round: four seconds, or what the scene says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
-    /// One frame: turn the model by so much. N frames: spread so much over them, frame i being turned by i/N of it;
-    /// 360 makes a seamless turn [default for a film: 360]. Of a scene that moves 360 are one round; round one that
-    /// does not the camera goes
+    /// Turn what is seen: one frame by so much, or spread over all
+    ///
+    /// Of N frames, frame i is turned by i/N of it, so 360 makes a seamless turn. In a scene that moves, 360 are one round
+    /// of it. Round a scene that does not move the camera goes.
+    ///
+    /// [default for a film: 360]
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
     turn: Option<f64>,
     #[command(flatten)]
     moment: Moment,
-    /// Frames a second: of a film, up to 50; of pictures, they say how much time passes from one to the next where
-    /// --turn does not [default: 35]
+    /// Frames a second [default: 35]
+    ///
+    /// A film has up to 50. Of pictures it says how much time passes from one to the next, where --turn does not.
     #[arg(long, value_name = "N", value_parser = rate)]
     fps: Option<f64>,
-    #[command(flatten)]
-    drawing: Drawing,
-    /// Enlarge: 1, 2, 5x6 (exactly 4:3 in square pixels), or a width and height such as 640x480 [default: 1; 5x6 with
-    /// --rgb; a film, 640x480]
+    /// Enlarge: 1, 2, 5x6, or a size such as 640x480
+    ///
+    /// 5x6 is exactly 4:3 in square pixels.
+    ///
+    /// [default: 1; with --rgb 5x6; for a film 640x480]
     #[arg(long, value_name = "SCALE")]
     scale: Option<Scale>,
-    /// True colour instead of a palette; PNG only
+    /// Write true colour instead of a palette; PNG only
     #[arg(long)]
     rgb: bool,
     /// How many frames are drawn at a time [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Keep the triangles of the picture as the raster gets them, for `verify --replay`; with --frames, a name that
-    /// holds %04d or the like
+    /// Keep the triangles of the picture, for `verify --replay`
+    ///
+    /// With --frames the name holds %04d or the like.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Say on standard error what was drawn, and by which kernel, a line for each frame
+    /// Say what was drawn, a line for each frame, on standard error
     #[arg(long)]
     stats: bool,
+    /// Print what was written as JSON, with --stats what was drawn
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    drawing: Drawing,
+    #[command(flatten)]
+    shading: ShadingOptions,
+}
+
+impl Options {
+    /// The name that was given, or one made from the INPUT's.
+    fn out(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            let name = input::name_of(&self.input);
+            let number = if self.frames.is_some_and(|frames| frames > 1) { "-%04d" } else { "" };
+            // A % of its own would be taken for the place of a number.
+            format!("{}{number}.png", name.replace('%', "_")).into()
+        })
+    }
 }
 
 fn rate(words: &str) -> Result<f64, String> {
@@ -72,34 +112,48 @@ fn rate(words: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let mut out = Out::new(options)?;
+    let path = options.out();
+    let mut out = Out::new(options, &path)?;
+    if options.json && film_kind(&path) == Some(Kind::Stream) {
+        return Err(Failure::words("-: the film is on standard output, which leaves no room for --json"));
+    }
     let stage = options.drawing.stage(options.drawing.input(&options.input)?)?;
     out.lasts(stage.seconds());
     let frames = out.frames();
     let records = options.record.as_deref().map(|record| Names::new(record, frames, "records")).transpose()?;
     out.spare()?;
+    if options.out.is_none() {
+        out.files().iter().try_for_each(|file| output::refuse_overwriting(file, options.force))?;
+    }
     records.as_ref().map_or(Ok(()), |records| records.spare(frames))?;
-    if options.record.as_ref() == Some(&options.out) {
-        return Err(Failure::words(format!("{}: one name for the picture and its record", options.out.display())));
+    if options.record.as_ref() == Some(&path) {
+        return Err(Failure::words(format!("{}: one name for the picture and its record", path.display())));
     }
     let kernel = options.drawing.kernel()?;
     let progress = progress(frames);
     let motion = Motion::new(options, &out, &stage);
-    let make = || Artist { renderer: options.drawing.renderer(kernel), stage: stage.clone(), vga: Vga::new() };
+    let make = || Artist {
+        renderer: options.shading.renderer(&options.drawing, kernel),
+        stage: stage.clone(),
+        vga: Vga::new(),
+    };
     let renderer_pool = RendererPool::new(make);
+    let drawn: Mutex<Vec<(u32, Stats)>> = Mutex::default();
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
         let stats = artist.draw(&motion, number)?;
         if let Some(records) = &records {
             artist.record(&records.of(number))?;
         }
-        if options.stats {
+        if options.stats && options.json {
+            drawn.lock().unwrap_or_else(PoisonError::into_inner).push((number, stats));
+        } else if options.stats {
             progress.suspend(|| eprintln!("mode13h: frame {number}: {stats}"));
         }
         Ok(())
     };
     let picture = |names: &Names, artist: &mut Artist, number| {
         draw(artist, number)?;
-        output::picture(&artist.vga, &names.of(number), options.rgb, options.scale).map_err(Failure::work)?;
+        output::picture(&artist.vga, &names.of(number), options.rgb, options.scale).map_err(Failure::from)?;
         progress.inc(1);
         Ok(())
     };
@@ -109,12 +163,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     let pool = || {
         let threads = options.threads.map_or(0, usize::from);
-        ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::work)
+        ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::from)
     };
     let result = match &out {
-        Out::Pictures(names, 1) => renderer_pool.work(|artist| picture(names, artist, 0)),
+        Out::Pictures(names, 1) => renderer_pool.work(|artist| picture(names, artist, 0)).map(|()| None),
         Out::Pictures(names, frames) => pool()?.install(|| {
-            (0..*frames).into_par_iter().try_for_each(|n| renderer_pool.work(|artist| picture(names, artist, n)))
+            let each = |n| renderer_pool.work(|artist| picture(names, artist, n));
+            (0..*frames).into_par_iter().try_for_each(each).map(|()| None)
         }),
         Out::Film(film) => {
             let fades = stage.scene.palette_animation.is_some();
@@ -122,7 +177,36 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     progress.finish_and_clear();
-    result
+    let film = result?;
+    if options.json {
+        let drawn = drawn.into_inner().unwrap_or_else(PoisonError::into_inner);
+        return output::print_json(&as_json(options, &out, film, drawn));
+    }
+    match film {
+        Some(film) => output::print(&film.line),
+        None if options.out.is_none() => {
+            let names = out.files().into_iter().map(|file| on_one_line(&file.to_string_lossy()) + "\n");
+            output::print(&names.collect::<String>())
+        }
+        None => Ok(()),
+    }
+}
+
+/// What was written and, with --stats, what was drawn.
+fn as_json(options: &Options, out: &Out, film: Option<film::Figures>, mut drawn: Vec<(u32, Stats)>) -> Value {
+    drawn.sort_by_key(|(number, _)| *number);
+    let mut json = json!({
+        "schema": 1,
+        "input": input::name_of(&options.input),
+        "files": out.files().iter().map(|file| file.to_string_lossy()).collect::<Vec<_>>(),
+    });
+    if let Some(film) = film {
+        json["film"] = film.json;
+    }
+    if options.stats {
+        json["frames"] = drawn.iter().map(|(number, stats)| stats::json(*number, stats)).collect();
+    }
+    json
 }
 
 /// What is written.
@@ -133,8 +217,8 @@ enum Out {
 }
 
 impl Out {
-    fn new(options: &Options) -> Result<Out, Failure> {
-        let Options { out, frames, turn, fps, rgb, scale, .. } = options;
+    fn new(options: &Options, out: &Path) -> Result<Out, Failure> {
+        let Options { frames, turn, fps, rgb, scale, .. } = options;
         let wrong = |reason: &dyn std::fmt::Display| Failure::words(format!("{}: {reason}", out.display()));
         let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
         if ends_in("png") {
@@ -161,6 +245,14 @@ impl Out {
     fn lasts(&mut self, seconds: f64) {
         if let Out::Film(film) = self {
             film.lasts(seconds);
+        }
+    }
+
+    /// The files that are written, but for records.
+    fn files(&self) -> Vec<PathBuf> {
+        match self {
+            Out::Pictures(names, frames) => (0..*frames).map(|number| names.of(number)).collect(),
+            Out::Film(film) => film.file().map(Path::to_path_buf).into_iter().collect(),
         }
     }
 
@@ -236,14 +328,14 @@ impl Artist {
     fn draw(&mut self, motion: &Motion, number: u32) -> Result<Stats, Failure> {
         let (seconds, pose) = motion.of(number, &self.stage);
         self.stage.show(seconds, pose);
-        self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::work)
+        self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::from)
     }
 
     /// Keeps the triangles of the frame that was drawn last.
     fn record(&mut self, path: &Path) -> Result<(), Failure> {
         let record =
-            Record::of_scene(&mut self.renderer, &self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
-        output::file(|| record.save(path)).map_err(Failure::work)
+            Record::of_scene(&mut self.renderer, &self.stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
+        output::file(|| record.save(path)).map_err(Failure::from)
     }
 }
 

@@ -118,7 +118,7 @@ mod tests {
     fn all_scenes() -> Vec<(&'static str, Scene)> {
         let shipped = shipped::ALL.iter().map(|shipped| (shipped.name, shipped.load().expect("it is shipped").scene));
         let mut dark = Scene::showing(shapes::torus(24, 12));
-        dark.lights_mut().clear();
+        dark.clear_lights();
         let mut far_fog = Scene::showing(shapes::cube());
         far_fog.fog = Some(Fog { color: Rgb::WHITE, start: 100.0, end: 200.0 });
         shipped.chain([("dark", dark), ("far fog", far_fog)]).collect()

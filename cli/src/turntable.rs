@@ -4,6 +4,7 @@ use mode13h::auto_palette::{self, AutomaticPalette};
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Material};
 use mode13h::mesh::Mesh;
+use mode13h::model::with_textures;
 use mode13h::palette::{Palette, Rgb};
 use mode13h::render::RenderError;
 use mode13h::scene::{Camera, Motion, Moving, Object, Scene, Shared, UpAxis};
@@ -74,13 +75,7 @@ impl Turntable {
     pub(crate) fn of_model(mesh: Mesh, up: UpAxis, textures: &[Option<Shared<Texture>>]) -> Turntable {
         let mut object = Object::new(mesh);
         object.up_axis = up;
-        for (i, texture) in textures.iter().enumerate() {
-            if let Some(texture) = texture {
-                // One for each surface.
-                object.materials[i] = object.materials[i].clone().with_map(&object.mesh().surfaces()[i], texture);
-            }
-        }
-        Turntable::new(Scene::showing(object), Shown::Model)
+        Turntable::new(Scene::showing(with_textures(object, textures)), Shown::Model)
     }
 
     pub(crate) fn of_scene(scene: Scene) -> Turntable {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use mode13h::span::Kernel;
-use mode13h_lab::record::Record;
+use mode13h_lab::record::{Record, RecordErrorKind};
 use mode13h_lab::verify::{self, Frames, Group, Replay};
 use serde_json::{Value, json};
 
@@ -14,14 +14,18 @@ use crate::output;
 
 #[derive(Args)]
 pub(crate) struct Options {
-    /// As JSON, for programs
+    /// Print the result as JSON
     #[arg(long)]
     json: bool,
-    /// What the random cases are made from; the same number makes the same cases
+    /// The number that the random cases are made from
+    ///
+    /// The same number makes the same cases.
     #[arg(long, value_name = "N", default_value_t = 13)]
     seed: u64,
-    /// Instead of all that, draw a frame that `render --record` kept: by every kernel, by every way to leave out hidden
-    /// surfaces, and by the slow oracle, and compare
+    /// Check a frame that `render --record` kept, instead of the cases
+    ///
+    /// It is drawn by every kernel, with hidden surfaces left out in every way, and by the slow oracle. The frames are
+    /// compared.
     #[arg(long, value_name = "FILE", conflicts_with = "seed")]
     replay: Option<PathBuf>,
 }
@@ -47,9 +51,13 @@ fn check(options: &Options) -> Result<(), Failure> {
     } else {
         as_text(&groups, &frames, options.seed)
     })?;
+    verdict(failed, groups.len() + 1)
+}
+
+fn verdict(failed: usize, groups: usize) -> Result<(), Failure> {
     match failed {
         0 => Ok(()),
-        _ => Err(Failure::work(format!("{failed} of {} groups failed", groups.len() + 1))),
+        _ => Err(Failure::found(format!("{failed} of {groups} groups failed"))),
     }
 }
 
@@ -115,12 +123,15 @@ fn as_json(groups: &[Group], frames: &[(Kernel, Frames)], seed: u64, passed: boo
 }
 
 fn replay(path: &Path, as_json: bool) -> Result<(), Failure> {
-    let record = Record::load(path).map_err(|error| Failure::work(format!("{}: {error}", path.display())))?;
+    let record = Record::load(path).map_err(|error| {
+        let line = format!("{}: {error}", path.display());
+        if matches!(error.kind, RecordErrorKind::Read(_)) { Failure::file(line) } else { Failure::words(line) }
+    })?;
     let replay = verify::replay(&record);
     output::print(&if as_json { replay_as_json(&record, &replay) } else { replay_as_text(&record, &replay) })?;
     match replay.failures.as_slice() {
         [] => Ok(()),
-        [first, ..] => Err(Failure::work(format!("{}: {first}", path.display()))),
+        [first, ..] => Err(Failure::found(format!("{}: {first}", path.display()))),
     }
 }
 
@@ -177,4 +188,16 @@ fn replay_as_json(record: &Record, replay: &Replay) -> String {
         "smallest": replay.smallest.as_ref().map(Record::to_string),
     });
     format!("{all:#}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_group_that_failed_is_a_finding() {
+        assert_eq!(verdict(0, 9), Ok(()));
+        let failure = verdict(2, 9).expect_err("two failed");
+        assert_eq!((failure.status(), failure.to_string().as_str()), (1, "2 of 9 groups failed"));
+    }
 }

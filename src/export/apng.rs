@@ -19,6 +19,7 @@ use crate::palette::Rgb;
 
 /// The colours of a film.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[doc(hidden)]
 pub enum FilmColors {
     /// Those of a palette that does not change: a byte a pixel.
     Palette(Box<[Rgb; 256]>),
@@ -28,6 +29,7 @@ pub enum FilmColors {
 
 /// A frame of an [`ApngFile`], ready to be written. It is made from the frame and the one before it alone, so several can
 /// be made at a time, on any threads, and then be added in their order.
+#[doc(hidden)]
 pub struct ApngFrame {
     /// Of the film.
     size: (u32, u32),

@@ -48,7 +48,7 @@ pub enum ExportErrorKind {
     /// The disk, or the user's share of it, is full.
     DiskFull,
     /// The picture itself cannot be written.
-    #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+    #[cfg(any(feature = "png", feature = "gif"))]
     Picture(super::PictureError),
     /// A film without a frame.
     #[cfg(any(feature = "gif", feature = "png"))]
@@ -103,7 +103,7 @@ impl fmt::Display for ExportError {
             ExportErrorKind::IsDirectory => f.write_str("is a directory"),
             ExportErrorKind::NotPermitted => f.write_str("no right to write there"),
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),
-            #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+            #[cfg(any(feature = "png", feature = "gif"))]
             ExportErrorKind::Picture(error) => write!(f, "{error}"),
             #[cfg(feature = "png")]
             ExportErrorKind::FrameCount { promised, given } => {
@@ -119,7 +119,7 @@ impl fmt::Display for ExportError {
 impl Error for ExportError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match &self.kind {
-            #[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+            #[cfg(any(feature = "png", feature = "gif"))]
             ExportErrorKind::Picture(error) => Some(error),
             ExportErrorKind::Io(error) => Some(error),
             _ => None,
@@ -148,6 +148,7 @@ impl Error for ExportError {
 /// assert_eq!(std::fs::read(&path)?, b"320 x 200");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(hidden)]
 pub fn write_atomically(
     path: impl AsRef<Path>,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -165,6 +166,7 @@ pub fn write_atomically(
 /// # Errors
 ///
 /// [`ExportError`], as `write_atomically` would say it.
+#[doc(hidden)]
 pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ExportError> {
     AtomicFile::create(path.as_ref()).map(drop)
 }

@@ -25,6 +25,7 @@ use crate::palette::Rgb;
 /// assert_eq!(film.finish()?.1.images, 2);
 /// # Ok::<(), mode13h::export::GifError>(())
 /// ```
+#[doc(hidden)]
 pub struct GifFrame {
     /// As they were given, without gaps between the rows.
     pixels: Vec<u8>,

@@ -6,7 +6,7 @@
 #[cfg(feature = "png")]
 mod apng;
 mod atomic;
-#[cfg(any(feature = "png", feature = "image"))]
+#[cfg(feature = "png")]
 mod chunk;
 #[cfg(any(feature = "gif", feature = "png"))]
 mod color_table;
@@ -20,15 +20,13 @@ mod gif;
 mod gif_file;
 #[cfg(feature = "gif")]
 mod gif_frame;
-#[cfg(feature = "png")]
-mod indexed;
-#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+#[cfg(any(feature = "png", feature = "gif"))]
 mod picture;
-#[cfg(feature = "image")]
-mod rgb;
-#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+#[cfg(feature = "png")]
+mod png_file;
+#[cfg(any(feature = "png", feature = "gif"))]
 mod scale;
-#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+#[cfg(any(feature = "png", feature = "gif"))]
 mod y4m;
 
 #[cfg(feature = "png")]
@@ -42,13 +40,11 @@ pub use frame_rate::{FrameRate, FrameRateError};
 pub use gif_file::GifFile;
 #[cfg(feature = "gif")]
 pub use gif_frame::GifFrame;
-#[cfg(feature = "png")]
-pub use indexed::{encode_png, picture_png, png};
-#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+#[cfg(any(feature = "png", feature = "gif"))]
 pub use picture::{MAX_SIDE, Picture, PictureError, PixelShape};
-#[cfg(feature = "image")]
-pub use rgb::{encode_rgb_png, picture_rgb_png, rgb_png};
-#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+#[cfg(feature = "png")]
+pub use png_file::{Png, png};
+#[cfg(any(feature = "png", feature = "gif"))]
 pub use scale::{Scale, ScaleError};
-#[cfg(any(feature = "png", feature = "gif", feature = "image"))]
+#[cfg(any(feature = "png", feature = "gif"))]
 pub use y4m::{y4m_frame, y4m_header};

@@ -2,6 +2,7 @@
 
 use alloc::string::String;
 
+use super::LightResponse;
 use super::source::{is_colored, luminance};
 use crate::mesh::Surface;
 use crate::palette::{Palette, Ramp, Rgb};
@@ -25,6 +26,7 @@ impl RampChoice {
     /// The entries in `palette`. A palette without ramps, or none at all, counts as one ramp of 256, and so does what
     /// needs no ramp.
     #[must_use]
+    #[doc(hidden)]
     pub fn in_palette(self, palette: Option<&Palette>) -> Ramp {
         match (self, palette) {
             (Self::Entries(ramp), _) => ramp,
@@ -63,6 +65,8 @@ pub struct Material {
     pub environment: Option<Shared<Texture>>,
     /// How it lies over what is behind it.
     pub blend: Blend,
+    /// Its own answer to light, in place of the lighting model's intensity. The 16.16 path leaves it out.
+    pub response: Option<LightResponse>,
 }
 
 /// How a body lies over what is behind it, by a table of 256 × 256 colours.
@@ -106,6 +110,7 @@ impl Material {
             texture: None,
             environment: None,
             blend: Blend::Opaque,
+            response: None,
         }
     }
 
@@ -130,6 +135,7 @@ impl Material {
     /// surface that it was made from: Kd and Ks without their luminance, which the material's shares of light have. A
     /// texture has its colours itself.
     #[must_use]
+    #[doc(hidden)]
     pub fn own_colors(&self, surface: &Surface) -> ([f32; 3], [f32; 3]) {
         let or_else = |own: [f32; 3], of: [f32; 3]| if own == [1.0; 3] { hue(of) } else { own };
         let color = if self.texture.is_some() { self.color } else { or_else(self.color, surface.diffuse) };
@@ -139,6 +145,7 @@ impl Material {
     /// The same in its [own colours](Self::own_colors) where it has a ramp by number only: for a palette that has no
     /// ramps.
     #[must_use]
+    #[doc(hidden)]
     pub fn in_own_colors(&self, surface: &Surface) -> Self {
         if !matches!(self.ramp, RampChoice::Number(_)) {
             return self.clone();
@@ -156,6 +163,7 @@ impl Material {
     /// Whether it takes three channels to light it: whether it is coloured, or drawn in the nearest entries. An image
     /// alone takes but one.
     #[must_use]
+    #[doc(hidden)]
     pub fn takes_channels(&self) -> bool {
         let has_image = self.texture.is_some() || self.environment.is_some();
         self.is_colored() || (self.ramp == RampChoice::Nearest && !has_image)
@@ -163,6 +171,7 @@ impl Material {
 
     /// Whether it has a highlight.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_specular(&self) -> bool {
         self.specular != 0.0
     }

@@ -24,10 +24,12 @@ mod intensity;
 mod lanes;
 mod material;
 mod power;
+mod response;
 mod source;
 mod suns;
 
 pub(crate) use intensity::{Beam, LampBeam, Lights, Reflectance, both_sides, lamp_reaches};
 pub use material::{Blend, Material, RampChoice};
+pub use response::LightResponse;
 pub use source::Light;
 pub(crate) use suns::both_sides_of_eight;

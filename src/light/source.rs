@@ -83,6 +83,7 @@ impl Light {
 
     /// Its intensity on one channel: of a coloured light the luminance after ITU-R BT.601.
     #[must_use]
+    #[doc(hidden)]
     pub fn brightness(&self) -> f32 {
         let color = self.color();
         let share = if self.is_colored() { luminance(color) } else { color[0] };

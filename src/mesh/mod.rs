@@ -251,6 +251,7 @@ impl Mesh {
     /// rays of each axis. A region that is turned the wrong way counts if some ray is in it for more than 1/32 of the
     /// longest side of the mesh's box: thinner ones are the folds of scans.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_outward(&self) -> bool {
         self.outward
     }
@@ -267,6 +268,7 @@ impl Mesh {
     /// the box's centre and each triangle. Negative if the triangles are wound inward; of no meaning
     /// if the mesh is not closed.
     #[must_use]
+    #[doc(hidden)]
     pub fn volume(&self) -> f64 {
         let centre = wide::widen(self.bounds.centre);
         let mut six_volumes = 0.0;

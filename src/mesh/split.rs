@@ -12,6 +12,7 @@ const NONE: u32 = u32::MAX;
 impl Mesh {
     /// Whether no vertex is used by triangles of two surfaces.
     #[must_use]
+    #[doc(hidden)]
     pub fn has_one_surface_a_vertex(&self) -> bool {
         if self.surfaces.len() == 1 {
             return true;
@@ -32,6 +33,7 @@ impl Mesh {
     /// The same mesh with every vertex that lies between surfaces split, one for each. New vertices
     /// come at the end.
     #[must_use]
+    #[doc(hidden)]
     pub fn with_one_surface_a_vertex(&self) -> Self {
         let mut mesh = self.clone();
         // For each vertex the surface it belongs to, and the next vertex split off the same one.

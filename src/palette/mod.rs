@@ -19,11 +19,13 @@
 //! to 6, and the scan-out expands to 8 again. [`Palette::on_dac`] shows what comes out.
 
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub mod auto;
 mod bios;
 pub mod builtin;
 pub mod cube;
 pub mod file;
+#[doc(hidden)]
 pub mod gradient;
 #[cfg(feature = "alloc")]
 pub(crate) mod median_cut;
@@ -87,6 +89,7 @@ impl Palette {
 
     /// From 256 DAC colours, 0 to 63 a channel.
     #[must_use]
+    #[doc(hidden)]
     pub const fn from_dac(six: &[[u8; 3]; 256]) -> Self {
         let mut colors = [Rgb::BLACK; 256];
         let mut i = 0;
@@ -159,6 +162,7 @@ impl Palette {
 
     /// The colours that the card shows for these: each through 6 bits and back. The ramps stay.
     #[must_use]
+    #[doc(hidden)]
     pub const fn on_dac(&self) -> Self {
         let mut colors = self.colors;
         let mut i = 0;

@@ -17,6 +17,7 @@ use super::{Palette, Rgb, Search};
 /// assert_eq!(nearest.get(Rgb::new(255, 255, 255)), 252, "the first of four that the card shows as white");
 /// ```
 #[derive(Clone, PartialEq, Eq)]
+#[doc(hidden)]
 pub struct Nearest {
     entries: Box<[u8; Nearest::BYTES]>,
     spread: u8,

@@ -33,6 +33,7 @@ impl Ramp {
     /// The ramp of one entry: whatever the shade, that.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn single(entry: u8) -> Self {
         Self { first: entry, entries: 1 }
     }

@@ -27,6 +27,7 @@ const WIDTH: u8 = 32;
 /// assert_eq!(search.nearest(Rgb::new(1, 2, 170)), 1);
 /// ```
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Search {
     /// Of box `i` those from `starts[i]` up to `starts[i + 1]`.
     candidates: Vec<Candidate>,

@@ -60,6 +60,10 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     plan.objects.clear();
     plan.seen = Rect::NOWHERE;
     for (place, object) in inputs.scene.objects().iter().enumerate() {
+        if !inputs.scene.is_visible(place) {
+            plan.objects.push(ObjectPlan::new(inputs.shading));
+            continue;
+        }
         let rules = Rules {
             scene: inputs.scene,
             place,
@@ -68,6 +72,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             reach: inputs.views[place].reach(object.mesh().bounds()),
             change: inputs.change.get(place).copied().unwrap_or(Change::New),
             inputs,
+            shading: if inputs.max_error.is_some() && answers_itself(object) { Shading::Phong } else { inputs.shading },
             way: (way, reason),
         };
         plan.seen = plan.seen.hull(rules.reach.seen);
@@ -78,6 +83,11 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     if inputs.shading == Shading::GouraudVintage || inputs.integer {
         plan.seen = Rect::EVERYWHERE;
     }
+}
+
+/// Whether any of its materials has an own answer to light, which no bound is known for.
+pub(crate) fn answers_itself(object: &Object) -> bool {
+    object.materials.iter().any(|material| material.response.is_some())
 }
 
 /// Whether the 16.16 path knows an effect.
@@ -104,12 +114,14 @@ struct Rules<'a> {
     reach: ScreenBounds,
     change: Change,
     inputs: &'a Inputs<'a>,
+    /// That of the inputs; of an object that no bound holds for, light at every pixel in place of a budget.
+    shading: Shading,
     way: (HiddenSurfaces, Reason),
 }
 
 impl Rules<'_> {
     fn all(&self, lamps_in_range: usize) -> ObjectPlan {
-        let mut plan = ObjectPlan::new(self.inputs.shading);
+        let mut plan = ObjectPlan::new(self.shading);
         let mut overridden = [false; Effect::COUNT];
         for effect in Effect::ALL {
             let mut decision = self.decision(effect, lamps_in_range, &plan);
@@ -123,6 +135,7 @@ impl Rules<'_> {
             }
             if let Some(on) = self.inputs.forced.get_for(self.place, effect)
                 && on != decision.on
+                && !(decision.on && effect.keeps_inside())
             {
                 decision = Decision { on, reason: Reason::Overrides, choice: forced_choice(on, decision.choice) };
                 overridden[effect.index()] = true;
@@ -178,7 +191,7 @@ impl Rules<'_> {
 
     /// Leaves it to a budget how faces are shaded, where that is not known for all of them.
     fn keep_within(&self, max_error: f32, plan: &mut ObjectPlan) {
-        if !plan.is_on(Effect::Lighting) {
+        if !plan.is_on(Effect::Lighting) || answers_itself(self.object) {
             return;
         }
         if self.is_lit_by_face(plan) {
@@ -310,7 +323,7 @@ impl Rules<'_> {
                 false => Decision::on(Reason::Budget { max_error }).choosing(Choice::Budget),
             };
         }
-        match self.inputs.shading {
+        match self.shading {
             Shading::Flat => Decision::off(Reason::FlatAsked),
             shading if shading.lights_pixels() => Decision::off(Reason::Asked).choosing(Choice::Shading(shading)),
             shading => Decision::on(Reason::ShadesDiffer).choosing(Choice::Shading(shading)),
@@ -337,7 +350,7 @@ impl Rules<'_> {
                 Decision::on(Reason::Budget { max_error }).choosing(Choice::Shading(Shading::Phong))
             };
         }
-        match self.inputs.shading {
+        match self.shading {
             shading if shading.lights_pixels() => Decision::on(Reason::Asked).choosing(Choice::Shading(shading)),
             _ => Decision::off(Reason::NotAsked),
         }
@@ -427,7 +440,7 @@ impl Rules<'_> {
         if !self.inputs.dithers {
             Decision::off(Reason::NotAsked)
         } else if before.is_on(Effect::Phong)
-            && self.inputs.shading == Shading::PhongTable
+            && self.shading == Shading::PhongTable
             && !before.is_on(Effect::RgbChannels)
         {
             Decision::off(Reason::WholeShades)

@@ -60,6 +60,11 @@ pub enum Class {
 }
 
 impl Effect {
+    /// Whether it keeps triangles inside what the raster can draw: where it is called for, it cannot be switched off.
+    pub(super) const fn keeps_inside(self) -> bool {
+        matches!(self, Self::NearClipping | Self::ScreenClipping)
+    }
+
     /// How many there are.
     pub const COUNT: usize = Self::ALL.len();
 

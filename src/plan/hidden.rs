@@ -25,8 +25,8 @@ pub(super) fn choose(
 ) -> (HiddenSurfaces, Reason) {
     let objects = scene.objects();
     order.clear();
-    order.extend(0..objects.len());
-    let transparent = objects.iter().filter(|object| is_transparent(object)).count();
+    order.extend((0..objects.len()).filter(|&i| scene.is_visible(i)));
+    let transparent = order.iter().filter(|&&i| is_transparent(&objects[i])).count();
     match asked {
         Some(HiddenSurfaces::ScanLine) if transparent > 0 => {
             return (HiddenSurfaces::DepthBuffer, Reason::ScanLineShowsOneFace);
@@ -35,17 +35,17 @@ pub(super) fn choose(
         None => {}
     }
     if transparent > 0 {
-        return if transparent == objects.len() {
+        return if transparent == order.len() {
             (HiddenSurfaces::BackFaces, Reason::AllTransparent)
         } else {
             (HiddenSurfaces::DepthBuffer, Reason::TransparentLast)
         };
     }
-    let dented = objects.iter().position(|object| !object.mesh().is_convex());
-    match (objects, dented) {
-        ([], _) => (HiddenSurfaces::BackFaces, Reason::Empty),
+    let dented = order.iter().copied().find(|&i| !objects[i].mesh().is_convex());
+    match (order.len(), dented) {
+        (0, _) => (HiddenSurfaces::BackFaces, Reason::Empty),
         (_, Some(object)) => (HiddenSurfaces::DepthBuffer, Reason::NotConvex { object }),
-        ([_], None) => (HiddenSurfaces::BackFaces, Reason::OneConvex),
+        (1, None) => (HiddenSurfaces::BackFaces, Reason::OneConvex),
         _ if objects_far_to_near(objects, views, order) => (HiddenSurfaces::PainterOrder, Reason::ConvexApart),
         _ => (HiddenSurfaces::DepthBuffer, Reason::Overlap),
     }

@@ -32,7 +32,7 @@ pub use findings::{FaceCounts, Findings};
 pub use reason::Reason;
 pub use stages::Choice;
 
-pub(crate) use decide::{Change, Inputs, decide};
+pub(crate) use decide::{Change, Inputs, answers_itself, decide};
 pub(crate) use hidden::far_to_near;
 
 use self::stages::{Dither, Lamps, Lighting, LitAt, Stages, VertexStage};
@@ -74,7 +74,7 @@ pub struct ObjectPlan {
 }
 
 impl ObjectPlan {
-    /// Nothing is decided yet.
+    /// Nothing is decided yet; an object that is not drawn.
     fn new(shading: Shading) -> Self {
         let stages = Stages {
             vertices: VertexStage::MakeAnew,

@@ -39,6 +39,7 @@ pub enum Interpolation {
 
 impl Interpolation {
     /// All that interpolate between the vertices.
+    #[doc(hidden)]
     pub const INTERPOLATED: &[Self] = &[
         Self::GouraudVintage,
         Self::Gouraud,
@@ -51,6 +52,7 @@ impl Interpolation {
 
     /// Its name in a [record](crate::record).
     #[must_use]
+    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Flat(_) => "flat",
@@ -73,6 +75,7 @@ impl Interpolation {
 
     /// Whether shades are linear on the face in space, and not on the screen.
     #[must_use]
+    #[doc(hidden)]
     pub const fn is_linear_on_the_face(self) -> bool {
         match self {
             Self::GouraudHyperbolic => true,
@@ -84,6 +87,7 @@ impl Interpolation {
 
     /// What is added to a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
     #[must_use]
+    #[doc(hidden)]
     pub const fn rounding(self) -> u8 {
         match self {
             Self::GouraudVintage => 0,

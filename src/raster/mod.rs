@@ -41,31 +41,43 @@
 //! ```
 
 pub mod batch;
+#[doc(hidden)]
 pub mod clip;
+#[doc(hidden)]
 pub mod cover;
 pub mod depth;
 mod draw_stats;
 #[cfg(feature = "embedded-graphics")]
 mod draw_target;
+#[doc(hidden)]
 pub mod edge;
 #[cfg(feature = "alloc")]
 pub mod effects;
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub mod float;
 pub mod frame;
+#[doc(hidden)]
 pub mod hyperbolic;
 pub mod interpolation;
 mod paint;
+#[doc(hidden)]
 pub mod polygon;
+#[doc(hidden)]
 pub mod quotient;
+#[doc(hidden)]
 pub mod scan_line;
+#[doc(hidden)]
 pub mod shade;
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub mod shade_trace;
 pub mod triangle;
 pub mod vertex;
+#[doc(hidden)]
 pub mod vintage;
 mod weights;
+#[doc(hidden)]
 pub mod wide;
 
 pub use batch::Batch;

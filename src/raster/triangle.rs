@@ -110,6 +110,7 @@ impl<'a, D: Cell> Raster<'a, D> {
     /// The same for a triangle that lies wholly inside the frame, all of which is drawn: its rows are not
     /// compared with any edge. What lies outside all the same is not drawn, or some of it.
     #[inline]
+    #[doc(hidden)]
     pub fn triangle_inside(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
         self.draw::<false>(vertices, interpolation)
     }

@@ -43,7 +43,7 @@ impl fmt::Display for RenderError {
             Self::Ambient => f.write_str("the ambient light must be finite"),
             Self::Fog(what) => write!(f, "fog: {what}"),
             Self::PaletteAnimation(what) => write!(f, "palette animation: {what}"),
-            Self::Preferences(what) => write!(f, "wishes: {what}"),
+            Self::Preferences(what) => write!(f, "preferences: {what}"),
         }
     }
 }
@@ -60,6 +60,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), RenderError> {
     }
     for (index, object) in scene.objects().iter().enumerate() {
         object.check().map_err(|what| RenderError::Object { index, what })?;
+        scene.check_parents(index).map_err(|what| RenderError::Object { index, what })?;
     }
     if let Some(fog) = &scene.fog {
         fog.check().map_err(RenderError::Fog)?;

@@ -256,6 +256,7 @@ impl Faces<'_> {
                 let paint = &self.paints[usize::from(face.surface)];
                 let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
                 let channels = SurfaceMaterial::channels(if face.back_facing { back } else { front });
+                let channels = channels.map(|channel| paint.respond_on_channel(channel));
                 attributes.iter_mut().for_each(|corner| corner.channels = channels);
             } else {
                 let shade = self.face_shade(face);
@@ -289,7 +290,7 @@ impl Faces<'_> {
         } else {
             both_sides(paint.answer.ambient, paint.answer.diffuse, self.lights.suns, normal)
         };
-        paint.shade(if back_facing { back } else { front })
+        paint.respond(paint.shade(if back_facing { back } else { front }))
     }
 
     /// The middle of a face, and its normal.

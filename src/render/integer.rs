@@ -194,6 +194,9 @@ impl IntegerPath {
 
         self.paints.clear();
         for (index, object) in scene.objects().iter().enumerate() {
+            if object.parent.is_some_and(|parent| scene.get(parent).is_some()) {
+                return Err(RenderError::Object { index, what: "it has a parent, which 16.16 does not know" });
+            }
             let first = self.paints.len();
             for material in &object.materials {
                 let what = "a number of its materials, times the ambient light, is beyond ±32,767: too much for 16.16";

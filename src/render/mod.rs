@@ -228,7 +228,7 @@ impl Renderer {
     /// Of effects that save work, on or off gives the same bytes; that of hidden surfaces is switched by
     /// [`set_hidden_surfaces`](Self::set_hidden_surfaces). Where an effect that changes the picture is
     /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
-    /// image that changes nothing).
+    /// image that changes nothing). Clipping stays on where the plan calls for it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
         self.settings.overrides.set(effect, on);
     }
@@ -275,7 +275,8 @@ impl Renderer {
         if plan.is_on(Effect::Phong) || (plan.is_on(Effect::Lighting) && !plan.is_on(Effect::Gouraud)) {
             return None;
         }
-        let faces = self.states.get(object)?.faces(scene.objects().get(object)?, plan)?;
+        let object_in_scene = scene.objects().get(object).filter(|object| !plan::answers_itself(object))?;
+        let faces = self.states.get(object)?.faces(object_in_scene, plan)?;
         Some(bound::linear_error(&faces.geometry, &faces.lights, faces.paints, !faces.culls))
     }
 
@@ -417,6 +418,10 @@ impl Renderer {
         let mut stats = Stats::new(&settings, self.kernel, self.plan.hidden_surfaces());
         for (i, (object, state)) in scene.objects().iter().zip(&mut self.states).enumerate() {
             let plan = &self.plan.objects[i];
+            if !scene.is_visible(i) {
+                state.forget();
+                continue;
+            }
             if self.settings.vertex_path == VertexPath::Integer {
                 changed = true;
                 state.forget();
@@ -446,7 +451,8 @@ impl Renderer {
     /// Makes the plan of a scene that has been checked. Returns what it is drawn by.
     fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Resolved {
         self.views.clear();
-        self.views.extend(scene.objects().iter().map(|object| ObjectView::new(view, object)));
+        let placed = |(i, object)| ObjectView::placed(view, object, &scene.placement(i));
+        self.views.extend(scene.objects().iter().enumerate().map(placed));
         let settings = self.settings.resolve(&scene.preferences);
         self.states.resize_with(scene.objects().len(), ObjectState::default);
         self.change.clear();

@@ -3,6 +3,8 @@
 
 use alloc::vec::Vec;
 
+use glam::Vec3;
+
 use super::Stats;
 use super::budget::{Budget, Decided, Lit};
 use super::faces::Faces;
@@ -250,6 +252,9 @@ impl ObjectState {
                 vertex::light_channels(&geometry, &self.paints, &lights, (both, kernel), &mut self.extras);
             }
         }
+        if self.paints.iter().any(|paint| paint.response.is_some()) {
+            vertex::respond(&geometry, &self.paints, &mut self.lit, &mut self.extras);
+        }
         if plan.is_on(Effect::Texture) {
             vertex::texture_coordinates(&geometry, &self.paints, &mut self.extras);
         }
@@ -285,7 +290,8 @@ impl ObjectState {
         if stages.lit_at == LitAt::Pixels {
             if source.accuracy.shading() == Shading::PhongTable && !channels {
                 vertex::slopes(&geometry, &source.view, &mut self.extras);
-                self.tables_of_normals(scene, object, view);
+                let at = source.view.position();
+                self.tables_of_normals(scene, at, view);
             } else {
                 vertex::lit_points(&geometry, &mut self.extras);
             }
@@ -296,14 +302,14 @@ impl ObjectState {
     }
 
     /// The tables of shades by normal, as the eye sees them: they stay while the object turns.
-    fn tables_of_normals(&mut self, scene: &Scene, object: &Object, view: &View) {
+    fn tables_of_normals(&mut self, scene: &Scene, at: Vec3, view: &View) {
         self.beams.clear();
         self.beams.extend(scene.lights().iter().filter_map(|light| {
             // A lamp counts as a sun where the object is: a table knows no places.
             let (towards, share) = match *light {
                 Light::Sun { direction, .. } => (direction, 1.0),
                 Light::Lamp { position, range, .. } => {
-                    let away = position - object.position;
+                    let away = position - at;
                     let part = away.length_squared() / (range * range);
                     if part >= 1.0 || part.is_nan() {
                         return None;
@@ -321,13 +327,13 @@ impl ObjectState {
                 Some((of, by, _)) if *of == self.beams && by == paint => {}
                 Some((of, by, table)) => {
                     of.clone_from(&self.beams);
-                    *by = *paint;
+                    by.clone_from(paint);
                     fill_normal_table(table, &lights, paint);
                 }
                 None => {
                     let mut table = Table::from_fn(|_, _| 0);
                     fill_normal_table(&mut table, &lights, paint);
-                    self.normal_tables.push((self.beams.clone(), *paint, table));
+                    self.normal_tables.push((self.beams.clone(), paint.clone(), table));
                 }
             }
         }

@@ -1,14 +1,14 @@
 //! A material in its scene: what its shades are made with.
 
 use crate::fixed::U8F8;
-use crate::light::{Blend, Material, Reflectance};
+use crate::light::{Blend, LightResponse, Material, Reflectance};
 use crate::palette::{Palette, Ramp};
 use crate::plan::stages::LitAt;
 use crate::plan::{Effect, ObjectPlan};
 use crate::texture::Texture;
 
 /// A material in its scene.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub(super) struct SurfaceMaterial {
     pub(super) answer: Reflectance,
     /// Where one channel's shades lie: the material's entries, or, of an image or of channels, all 256.
@@ -19,6 +19,7 @@ pub(super) struct SurfaceMaterial {
     pub(super) blend: Blend,
     /// Whether its pixels pass through stages.
     pub(super) has_effects: bool,
+    pub(super) response: Option<LightResponse>,
 }
 
 impl SurfaceMaterial {
@@ -52,7 +53,20 @@ impl SurfaceMaterial {
             environment_size,
             blend,
             has_effects: everywhere || image || forced || blend != Blend::Opaque,
+            response: material.response.clone(),
         }
+    }
+
+    /// A shade as the material's own answer to light has it.
+    #[inline]
+    pub(super) fn respond(&self, shade: U8F8) -> U8F8 {
+        self.response.as_ref().map_or(shade, |response| answered(response, shade, self.ramp))
+    }
+
+    /// One channel as the material's own answer to light has it.
+    #[inline]
+    pub(super) fn respond_on_channel(&self, channel: U8F8) -> U8F8 {
+        self.response.as_ref().map_or(channel, |response| answered(response, channel, Ramp::WHOLE))
     }
 
     /// The shade of an intensity. The one clamp is here; beyond f32 an intensity becomes infinite, which
@@ -83,4 +97,13 @@ impl SurfaceMaterial {
     pub(super) fn channels(intensities: [f64; 3]) -> [U8F8; 3] {
         intensities.map(|intensity| U8F8::from_intensity(intensity as f32, 0, Ramp::WHOLE.entries()))
     }
+}
+
+/// What a response makes of a shade of a ramp.
+#[cold]
+fn answered(response: &LightResponse, shade: U8F8, ramp: Ramp) -> U8F8 {
+    // A ramp of one entry has one shade.
+    let full = f32::from(ramp.entries() - 1).max(1.0) * 256.0;
+    let intensity = (f32::from(shade.to_bits()) - f32::from(ramp.first()) * 256.0) / full;
+    U8F8::from_intensity(response.apply(intensity), ramp.first(), ramp.entries())
 }

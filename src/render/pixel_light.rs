@@ -22,13 +22,21 @@ impl Lighting for PixelLight<'_> {
     #[inline(never)]
     fn shades(&self, points: &Points) -> Lanes<u16> {
         let intensities = self.lights.front_of_one_channel(&self.paint.answer, points, self.kernel);
-        self.paint.shade_of_eight(&intensities).map(U8F8::to_bits)
+        let shades = self.paint.shade_of_eight(&intensities);
+        if self.paint.response.is_some() {
+            return shades.map(|shade| self.paint.respond(shade).to_bits());
+        }
+        shades.map(U8F8::to_bits)
     }
 
     #[inline(never)]
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
         let channels = self.lights.front_of_three_channels(&self.paint.answer, points, self.kernel);
-        channels.map(|channel| SurfaceMaterial::channel_of_eight(&channel).map(U8F8::to_bits))
+        let channels = channels.map(|channel| SurfaceMaterial::channel_of_eight(&channel));
+        if self.paint.response.is_some() {
+            return channels.map(|channel| channel.map(|shade| self.paint.respond_on_channel(shade).to_bits()));
+        }
+        channels.map(|channel| channel.map(U8F8::to_bits))
     }
 }
 
@@ -50,7 +58,7 @@ pub(super) fn fill_normal_table(table: &mut Table, lights: &Lights<'_>, paint: &
             let z = x.map(|x| libm::sqrtf((1.0 - x * x - y * y).max(0.0)));
             let points = [x, [y; LANES], z, [0.0; LANES], [0.0; LANES], [0.0; LANES]];
             let intensities = lights.front_of_one_channel(&paint.answer, &points, Kernel::PORTABLE);
-            eight = intensities.map(|intensity| paint.shade(intensity).nearest());
+            eight = intensities.map(|intensity| paint.respond(paint.shade(intensity)).nearest());
         }
         eight[lane]
     });

@@ -11,7 +11,7 @@ named! {
         Float = "float",
         /// In 16.16, by [`integer`](crate::integer). The scene's own numbers are floats, so they are
         /// converted: a mesh when it is first seen, angles to the nearest 65,536th of a turn.
-        Integer = "integer",
+        Integer = "fixed",
     }
     /// There is no vertex path of that name. Its text lists those there are.
     pub struct UnknownVertexPath;

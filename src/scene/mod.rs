@@ -51,17 +51,13 @@ pub use preferences::{
     HiddenSurfaces, Mapping, Preferences, Shading, UnknownHiddenSurfaces, UnknownMapping, UnknownShading,
 };
 
-/// Which object of a scene; what [`Scene::add`] gave for it.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub struct ObjectId(usize);
+/// An object of a scene, as [`Scene::add`] returned it. Valid until the object is removed.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct ObjectId(u32);
 
-impl ObjectId {
-    /// Its place among the scene's objects.
-    #[must_use]
-    pub const fn index(self) -> usize {
-        self.0
-    }
-}
+/// A light of a scene, as [`Scene::add_light`] returned it. Valid until the light is removed.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct LightId(u32);
 
 /// Everything that is drawn.
 #[derive(Clone, Debug)]
@@ -94,7 +90,13 @@ pub struct Scene {
     pub picture: f64,
     time: f64,
     objects: Vec<Object>,
+    /// One for each object, ascending.
+    object_ids: Vec<ObjectId>,
     lights: Vec<Light>,
+    /// One for each light, ascending.
+    light_ids: Vec<LightId>,
+    /// The id that is given next.
+    next_id: u32,
 }
 
 impl Scene {
@@ -119,7 +121,10 @@ impl Scene {
             picture: 0.0,
             time: 0.0,
             objects: Vec::new(),
+            object_ids: Vec::new(),
             lights: Vec::new(),
+            light_ids: Vec::new(),
+            next_id: 0,
         }
     }
 
@@ -151,15 +156,94 @@ impl Scene {
         scene
     }
 
-    /// Puts an object into the scene.
+    /// Adds an object behind those there are.
     pub fn add(&mut self, object: Object) -> ObjectId {
+        let id = ObjectId(self.new_id());
         self.objects.push(object);
-        ObjectId(self.objects.len() - 1)
+        self.object_ids.push(id);
+        id
     }
 
-    /// Puts a light into the scene.
-    pub fn add_light(&mut self, light: Light) {
+    /// Removes an object and returns it; `None` if it was removed before. The objects behind it move up by one index.
+    /// Motions that name it move nothing, and its children stand where their own positions put them.
+    ///
+    /// ```
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::scene::{Object, Scene};
+    /// let mut scene = Scene::new();
+    /// let shot = scene.add(Object::new(shapes::cube()));
+    /// let ship = scene.add(Object::new(shapes::torus(12, 8)).named("ship"));
+    /// assert!(scene.remove(shot).is_some() && scene.remove(shot).is_none());
+    /// assert_eq!(scene[ship].name, "ship");
+    /// ```
+    pub fn remove(&mut self, id: ObjectId) -> Option<Object> {
+        let index = self.index_of(id)?;
+        self.object_ids.remove(index);
+        Some(self.objects.remove(index))
+    }
+
+    /// The index of an object in [`objects`](Self::objects); `None` if it was removed.
+    #[must_use]
+    pub fn index_of(&self, id: ObjectId) -> Option<usize> {
+        self.object_ids.binary_search(&id).ok()
+    }
+
+    /// An object; `None` if it was removed.
+    #[must_use]
+    pub fn get(&self, id: ObjectId) -> Option<&Object> {
+        self.objects.get(self.index_of(id)?)
+    }
+
+    /// An object, to change it; `None` if it was removed.
+    pub fn get_mut(&mut self, id: ObjectId) -> Option<&mut Object> {
+        let index = self.index_of(id)?;
+        self.objects.get_mut(index)
+    }
+
+    /// The ids of [`objects`](Self::objects), one for each.
+    #[must_use]
+    pub fn object_ids(&self) -> &[ObjectId] {
+        &self.object_ids
+    }
+
+    /// The ids of [`lights`](Self::lights), one for each.
+    #[must_use]
+    pub fn light_ids(&self) -> &[LightId] {
+        &self.light_ids
+    }
+
+    /// Adds a light behind those there are.
+    pub fn add_light(&mut self, light: Light) -> LightId {
+        let id = LightId(self.new_id());
         self.lights.push(light);
+        self.light_ids.push(id);
+        id
+    }
+
+    /// Removes a light and returns it; `None` if it was removed before.
+    pub fn remove_light(&mut self, id: LightId) -> Option<Light> {
+        let index = self.light_ids.binary_search(&id).ok()?;
+        self.light_ids.remove(index);
+        Some(self.lights.remove(index))
+    }
+
+    /// Removes all lights.
+    pub fn clear_lights(&mut self) {
+        self.lights.clear();
+        self.light_ids.clear();
+    }
+
+    /// A light, to change it; `None` if it was removed.
+    pub fn light_mut(&mut self, id: LightId) -> Option<&mut Light> {
+        let index = self.light_ids.binary_search(&id).ok()?;
+        self.lights.get_mut(index)
+    }
+
+    /// Ids ascend, and none is given twice within 2³².
+    fn new_id(&mut self) -> u32 {
+        let id = self.next_id;
+        self.next_id = self.next_id.wrapping_add(1);
+        id
     }
 
     /// The objects, in the order in which they were put in.
@@ -179,8 +263,8 @@ impl Scene {
         &self.lights
     }
 
-    /// The lights, to change them or take them away.
-    pub fn lights_mut(&mut self) -> &mut Vec<Light> {
+    /// The lights, to change them.
+    pub fn lights_mut(&mut self) -> &mut [Light] {
         &mut self.lights
     }
 
@@ -188,10 +272,10 @@ impl Scene {
     /// there move nothing.
     pub fn set_time(&mut self, seconds: f64) {
         self.time = seconds;
-        for motion in &self.motions {
-            match *motion {
+        for i in 0..self.motions.len() {
+            match self.motions[i] {
                 Motion::Spin { object, start, turns } => {
-                    if let Some(object) = self.objects.get_mut(object.0) {
+                    if let Some(object) = self.get_mut(object) {
                         object.set_angles(motion::spun(start, turns, seconds));
                     }
                 }
@@ -199,11 +283,11 @@ impl Scene {
                     let at = path.at(seconds);
                     match what {
                         Moving::Object(object) => {
-                            if let Some(object) = self.objects.get_mut(object.0) {
+                            if let Some(object) = self.get_mut(object) {
                                 object.position = at;
                             }
                         }
-                        Moving::Light(index) => match self.lights.get_mut(index) {
+                        Moving::Light(light) => match self.light_mut(light) {
                             Some(Light::Sun { direction: place, .. } | Light::Lamp { position: place, .. }) => {
                                 *place = at
                             }
@@ -243,16 +327,16 @@ impl Index<ObjectId> for Scene {
     type Output = Object;
 
     /// # Panics
-    /// If `id` was given by another scene that holds more objects.
+    /// If the object was removed, or `id` is of another scene. [`get`](Scene::get) does not panic.
     fn index(&self, id: ObjectId) -> &Object {
-        &self.objects[id.0]
+        self.get(id).expect("an object that is in the scene")
     }
 }
 
 impl IndexMut<ObjectId> for Scene {
     /// # Panics
-    /// If `id` was given by another scene that holds more objects.
+    /// If the object was removed, or `id` is of another scene. [`get_mut`](Scene::get_mut) does not panic.
     fn index_mut(&mut self, id: ObjectId) -> &mut Object {
-        &mut self.objects[id.0]
+        self.get_mut(id).expect("an object that is in the scene")
     }
 }

@@ -7,7 +7,7 @@ use core::f64::consts::TAU;
 
 use glam::Vec3;
 
-use super::ObjectId;
+use super::{LightId, ObjectId};
 
 /// Something in a scene that moves.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -37,8 +37,8 @@ pub enum Motion {
 pub enum Moving {
     /// An object's position.
     Object(ObjectId),
-    /// A lamp's position, or the direction of a sun, by its place among the lights.
-    Light(usize),
+    /// A lamp's position, or the direction of a sun.
+    Light(LightId),
     /// The camera's eye.
     Eye,
     /// What the camera looks at.

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use glam::{Mat3, Vec3};
 
-use super::Shared;
+use super::{ObjectId, Scene, Shared};
 use crate::light::Material;
 use crate::mesh::Mesh;
 
@@ -29,12 +29,17 @@ pub struct Object {
     pub materials: Vec<Material>,
     /// The point of the mesh, in its own coordinates, that it turns about.
     pub pivot: Vec3,
-    /// Where the pivot is in the scene.
+    /// Where the pivot is in the scene, or in the parent's own coordinates.
     pub position: Vec3,
     /// How many times as large as the mesh it is; not negative.
     pub scale: f32,
     /// Which axis of the mesh points up.
     pub up_axis: UpAxis,
+    /// Whether it is drawn. The children of an object that is not are not drawn either.
+    pub visible: bool,
+    /// The object that it moves, turns and grows with; its position is then in that object's own coordinates, those of
+    /// its mesh. A parent that was removed counts as none.
+    pub parent: Option<ObjectId>,
     angles: [f64; 3],
 }
 
@@ -56,6 +61,8 @@ impl Object {
             position: Vec3::ZERO,
             scale: 1.0,
             up_axis: UpAxis::Y,
+            visible: true,
+            parent: None,
             angles: [0.0; 3],
         }
     }
@@ -162,6 +169,75 @@ impl Object {
             // (x, y, z) stands up as (x, z, −y).
             UpAxis::Z => turn(angles).map(|[x, y, z]| [x, -z, y]),
         }
+    }
+}
+
+/// Where an object stands in the world, its parents included: world = position + scale · turn · (point − pivot).
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Placement {
+    /// By rows.
+    pub(crate) turn: [[f64; 3]; 3],
+    pub(crate) scale: f64,
+    /// Of its pivot.
+    pub(crate) position: [f64; 3],
+}
+
+impl Placement {
+    /// An object without a parent.
+    pub(crate) fn of(object: &Object) -> Self {
+        let position = object.position.to_array().map(f64::from);
+        Self { turn: object.turn(), scale: f64::from(object.scale), position }
+    }
+
+    /// Stands in the coordinates of `parent`.
+    fn within(self, parent: &Object) -> Self {
+        let above = Self::of(parent);
+        let pivot = parent.pivot.to_array().map(f64::from);
+        let from_pivot: [f64; 3] = core::array::from_fn(|i| self.position[i] - pivot[i]);
+        let position = core::array::from_fn(|i| {
+            let turned: f64 = above.turn[i].iter().zip(from_pivot).map(|(a, b)| a * b).sum();
+            above.position[i] + above.scale * turned
+        });
+        Self { turn: matrix_product(&above.turn, &self.turn), scale: above.scale * self.scale, position }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.turn.iter().flatten().chain(&self.position).chain([&self.scale]).all(|number| number.is_finite())
+    }
+}
+
+impl Scene {
+    /// The objects that an object hangs from, the nearest first; at most as many as there are objects.
+    fn ancestors(&self, index: usize) -> impl Iterator<Item = &Object> {
+        let parent = |object: &Object| object.parent.and_then(|id| self.get(id));
+        let first = self.objects().get(index).and_then(parent);
+        core::iter::successors(first, move |object| parent(object)).take(self.objects().len())
+    }
+
+    /// Where an object stands, by its index.
+    pub(crate) fn placement(&self, index: usize) -> Placement {
+        self.ancestors(index).fold(Placement::of(&self.objects()[index]), Placement::within)
+    }
+
+    /// Whether an object is drawn, by its index: whether it and all that it hangs from are visible.
+    #[must_use]
+    pub fn is_visible(&self, index: usize) -> bool {
+        self.objects().get(index).is_some_and(|object| object.visible)
+            && self.ancestors(index).all(|above| above.visible)
+    }
+
+    /// What is wrong with an object's parents, if anything.
+    pub(crate) fn check_parents(&self, index: usize) -> Result<(), &'static str> {
+        if self.objects()[index].parent.is_none() {
+            return Ok(());
+        }
+        if self.ancestors(index).count() == self.objects().len() {
+            return Err("its parents go round in a circle");
+        }
+        if !self.placement(index).is_finite() {
+            return Err("its place among its parents must be finite");
+        }
+        Ok(())
     }
 }
 

@@ -14,6 +14,7 @@ use super::Kernel;
 /// So is a quadratic function over a triangle along a row (G. Bishop and D. Weimer, *Fast Phong shading*, 1986, who
 /// take two additions a pixel for it; from its own k every pixel is as near as the first).
 #[inline]
+#[doc(hidden)]
 pub fn curve(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
     curve_inlined(shades, parabola, least, most);
 }

@@ -31,6 +31,7 @@ pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> 
 /// The same at any eight pixels, by their numbers.
 #[inline]
 #[must_use]
+#[doc(hidden)]
 pub fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
     interpolate_inlined(places, a, da, d, dd)
 }
@@ -53,6 +54,7 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
 /// The same at eight pixels of different rows: `a` and `d` are each one's own.
 #[inline]
 #[must_use]
+#[doc(hidden)]
 pub fn interpolate_each(places: &Lanes<f64>, a: &[Lanes<f64>; 6], da: &[f64; 6], d: &Lanes<f64>, dd: f64) -> Points {
     each_inlined(places, a, da, d, dd)
 }

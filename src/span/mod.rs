@@ -44,13 +44,21 @@
 
 use core::fmt;
 
+#[doc(hidden)]
 pub mod channels;
+#[doc(hidden)]
 pub mod curve;
+#[doc(hidden)]
 pub mod depth;
+#[doc(hidden)]
 pub mod dither;
+#[doc(hidden)]
 pub mod float;
+#[doc(hidden)]
 pub mod hyperbolic;
+#[doc(hidden)]
 pub mod list;
+#[doc(hidden)]
 pub mod lit;
 mod lookup;
 mod portable;
@@ -62,12 +70,15 @@ mod portable;
 mod simd;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 pub(crate) use simd::{avx2, nearer};
+#[doc(hidden)]
 pub mod texture;
+#[doc(hidden)]
 pub mod wide;
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
 mod x86;
 
+#[doc(hidden)]
 pub use lookup::lookup;
 
 /// The bare assembly entries, for the tests that call them with rubbish in their registers and read
@@ -224,6 +235,7 @@ impl Kernel {
 
     /// What it draws with: for `simd` the level that was chosen, such as `avx2`.
     #[must_use]
+    #[doc(hidden)]
     pub const fn level(self) -> &'static str {
         self.level
     }
@@ -239,6 +251,7 @@ impl Kernel {
     /// Fills every span of a list, in order, as [`fill`](Self::fill) does. Of a span that reaches beyond
     /// `pixels` nothing is drawn.
     #[inline]
+    #[doc(hidden)]
     pub fn fill_list(self, pixels: &mut [u8], spans: &[list::Listed]) {
         (self.fill_list)(pixels, spans);
     }
@@ -246,6 +259,7 @@ impl Kernel {
     /// The same with a depth test, as [`depth::fill_nearer`] does it, with as many `depths` as spans. Returns
     /// the number of pixels written.
     #[inline]
+    #[doc(hidden)]
     pub fn fill_list_nearer<D: depth::Cell>(
         self,
         pixels: &mut [u8],

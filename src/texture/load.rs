@@ -5,12 +5,16 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Seek};
 use std::path::{Path, PathBuf};
 use std::string::{String, ToString};
+use std::vec;
 use std::vec::Vec;
 
-use image::{ImageError, ImageReader, Limits};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
 
 use super::{Texture, TextureError};
 use crate::palette::Rgb;
+
+/// What a picture may take in memory while it is read: 4,096 × 4,096 pixels of four samples of 16 bits.
+const MAX_BYTES: usize = 4_096 * 4_096 * 8;
 
 /// Why a file gave no texture.
 #[derive(Debug)]
@@ -88,16 +92,39 @@ fn read(path: &Path) -> Result<Texture, LoadErrorKind> {
 /// # Errors
 /// As [`load`].
 pub fn decode(file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
-    let mut reader = ImageReader::new(file).with_guessed_format().map_err(LoadErrorKind::Read)?;
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(Texture::MAX_PICTURE_SIDE);
-    limits.max_image_height = Some(Texture::MAX_PICTURE_SIDE);
-    reader.limits(limits);
-    let picture = reader.decode().map_err(|error| match error {
-        ImageError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => LoadErrorKind::Read(error),
+    // A row of the widest picture is 32 KiB; a chunk beside the pixels may hold no more than they do.
+    let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MAX_BYTES });
+    decoder.set_transformations(Transformations::EXPAND);
+    let mut reader = decoder.read_info().map_err(reason)?;
+    let (width, height) = (reader.info().width, reader.info().height);
+    if width.max(height) > Texture::MAX_PICTURE_SIDE {
+        return Err(LoadErrorKind::Texture(TextureError::Size { width, height }));
+    }
+    let (color, depth) = reader.output_color_type();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap_or_default()];
+    reader.next_frame(&mut bytes).map_err(reason)?;
+    // Eight bits of each sample, the nearest to sixteen.
+    let sample = |sample: &[u8]| match *sample {
+        [high, low] => ((u32::from(high) * 256 + u32::from(low) + 128) / 257) as u8,
+        _ => sample[0],
+    };
+    let each = if depth == BitDepth::Sixteen { 2 } else { 1 };
+    let pixels: Vec<Rgb> = bytes
+        .chunks_exact(color.samples() * each)
+        .map(|pixel| {
+            let of = |i: usize| sample(&pixel[i * each..][..each]);
+            match color {
+                ColorType::Grayscale | ColorType::GrayscaleAlpha => Rgb::new(of(0), of(0), of(0)),
+                _ => Rgb::new(of(0), of(1), of(2)),
+            }
+        })
+        .collect();
+    Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)
+}
+
+fn reason(error: DecodingError) -> LoadErrorKind {
+    match error {
+        DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => LoadErrorKind::Read(error),
         error => LoadErrorKind::Picture(error.to_string()),
-    })?;
-    let picture = picture.into_rgb8();
-    let pixels: Vec<Rgb> = picture.pixels().map(|pixel| Rgb::new(pixel.0[0], pixel.0[1], pixel.0[2])).collect();
-    Texture::from_rgb(picture.width(), picture.height(), &pixels).map_err(LoadErrorKind::Texture)
+    }
 }

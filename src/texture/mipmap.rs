@@ -25,6 +25,7 @@ use crate::span::texture::Levels;
 /// # Ok::<(), mode13h::texture::TextureError>(())
 /// ```
 #[derive(Clone, PartialEq, Eq, Debug)]
+#[doc(hidden)]
 pub struct Mipmap {
     /// Level after level, from 1 on.
     texels: Vec<u8>,

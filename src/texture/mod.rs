@@ -12,7 +12,7 @@
 //! palette and the texture's colours, so a texture knows nothing of any palette.
 
 mod builtin;
-#[cfg(feature = "image")]
+#[cfg(feature = "png")]
 mod load;
 mod mipmap;
 mod resample;
@@ -23,7 +23,7 @@ use core::fmt;
 
 use crate::palette::median_cut::MedianCut;
 use crate::palette::{Rgb, Search};
-#[cfg(feature = "image")]
+#[cfg(feature = "png")]
 pub use load::{LoadError, LoadErrorKind, decode, load};
 pub use mipmap::Mipmap;
 
@@ -182,18 +182,21 @@ impl Texture {
     /// Its colours on a surface of another: [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White
     /// leaves them as they are.
     #[must_use]
+    #[doc(hidden)]
     pub fn tinted(&self, tint: Rgb) -> [Rgb; 256] {
         self.colors.map(|color| color.modulate(tint))
     }
 
     /// The same texture in its [tinted](Self::tinted) colours.
     #[must_use]
+    #[doc(hidden)]
     pub fn modulated(&self, tint: Rgb) -> Self {
         self.recolored(self.tinted(tint))
     }
 
     /// The same texels in other colours.
     #[must_use]
+    #[doc(hidden)]
     pub fn recolored(&self, colors: [Rgb; 256]) -> Self {
         Self { texels: self.texels.clone(), colors, ..*self }
     }
@@ -201,6 +204,7 @@ impl Texture {
     /// The logarithm of the width: 0 to 8.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub fn width_bits(&self) -> u32 {
         self.width_bits
     }
@@ -208,6 +212,7 @@ impl Texture {
     /// The logarithm of the height: 0 to 8.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub fn height_bits(&self) -> u32 {
         self.height_bits
     }
@@ -235,6 +240,7 @@ impl Texture {
 
     /// How many texels have each of the colours.
     #[must_use]
+    #[doc(hidden)]
     pub fn histogram(&self) -> [u32; 256] {
         let mut histogram = [0; 256];
         for &texel in &self.texels {

@@ -119,6 +119,7 @@ impl Vga {
     /// atomic instructions). The value means nothing else, and differs from run to run.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn stamp(&self) -> u64 {
         self.stamp.value()
     }

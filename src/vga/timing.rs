@@ -16,23 +16,32 @@
 //! that looks at bit 3 less often than that misses it.
 
 /// Dot clocks in a scan line, shown or not.
+#[doc(hidden)]
 pub const DOTS_PER_LINE: u32 = 800;
 /// Dot clocks of a line during which pixels are shown; two to each of the 320.
+#[doc(hidden)]
 pub const DOTS_SHOWN: u32 = 640;
 /// Scan lines in a frame, shown or not.
+#[doc(hidden)]
 pub const LINES_PER_FRAME: u32 = 449;
 /// Scan lines that are shown; two to each of the 200 rows.
+#[doc(hidden)]
 pub const LINES_SHOWN: u32 = 400;
 /// The first scan line of the vertical retrace.
+#[doc(hidden)]
 pub const RETRACE_START: u32 = 412;
 /// The first scan line after the vertical retrace.
+#[doc(hidden)]
 pub const RETRACE_END: u32 = 414;
 /// The dot clock in Hz.
+#[doc(hidden)]
 pub const DOT_CLOCK: u32 = 25_175_000;
 
 /// Port 3DAh, bit 0: neither the line nor the dot is shown.
+#[doc(hidden)]
 pub const NOT_DISPLAYING: u8 = 1;
 /// Port 3DAh, bit 3: vertical retrace.
+#[doc(hidden)]
 pub const VERTICAL_RETRACE: u8 = 8;
 
 /// 25,175,000 dots in 10⁹ nanoseconds, in lowest terms: 1,007 dots in 40,000 ns. Time is counted in

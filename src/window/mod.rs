@@ -32,8 +32,6 @@ const LOOK: Duration = Duration::from_millis(25);
 const RESEND: Duration = Duration::from_millis(500);
 
 /// Whether the window stays open after a frame.
-///
-/// A frame function that returns nothing keeps it open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// The next frame follows.
@@ -42,14 +40,54 @@ pub enum Flow {
     Close,
 }
 
-impl From<()> for Flow {
-    fn from((): ()) -> Flow {
-        Flow::Continue
+/// What a frame function of [`run`] may return: nothing (the window stays open), a [`Flow`], or a `Result` with either
+/// in it, whose error ends the run and is returned by it.
+pub trait FrameResult {
+    /// What [`run`] fails with.
+    type Error: From<WindowError>;
+
+    /// Whether the window stays open.
+    ///
+    /// # Errors
+    ///
+    /// That of the frame function.
+    fn flow(self) -> Result<Flow, Self::Error>;
+}
+
+impl FrameResult for () {
+    type Error = WindowError;
+
+    fn flow(self) -> Result<Flow, WindowError> {
+        Ok(Flow::Continue)
     }
 }
 
-/// Opens a window and calls `frame` for every frame, at most 70 times a second, until it returns [`Flow::Close`] or
-/// the user closes the window.
+impl FrameResult for Flow {
+    type Error = WindowError;
+
+    fn flow(self) -> Result<Flow, WindowError> {
+        Ok(self)
+    }
+}
+
+impl<E: From<WindowError>> FrameResult for Result<(), E> {
+    type Error = E;
+
+    fn flow(self) -> Result<Flow, E> {
+        self.map(|()| Flow::Continue)
+    }
+}
+
+impl<E: From<WindowError>> FrameResult for Result<Flow, E> {
+    type Error = E;
+
+    fn flow(self) -> Result<Flow, E> {
+        self
+    }
+}
+
+/// Opens a window and calls `frame` for every frame, at most 70 times a second, until it returns [`Flow::Close`] or an
+/// error, or the user closes the window.
 ///
 /// `frame` is given the machine to draw on, what the user did since the last frame, and the seconds since the window
 /// opened. These are absolute: after a pause the next frame is drawn for the time that it is then, and none is made
@@ -57,24 +95,28 @@ impl From<()> for Flow {
 ///
 /// # Errors
 ///
-/// [`WindowError`] if there is no display, or if it goes away.
+/// [`WindowError`] if there is no display, or if it goes away; the error that `frame` returns.
 ///
 /// ```no_run
+/// use mode13h::render::Renderer;
+/// use mode13h::scene::Scene;
+/// use mode13h::mesh::shapes;
 /// use mode13h::window::{self, Flow, Key};
 ///
-/// window::run("plasma", |vga, input, seconds| {
-///     for (i, byte) in vga.pixels_mut().iter_mut().enumerate() {
-///         *byte = ((i % 320) as f64 + seconds * 70.0) as u64 as u8;
-///     }
-///     if input.pressed(Key::Escape) { Flow::Close } else { Flow::Continue }
+/// let mut scene = Scene::showing(shapes::teapot(8));
+/// let mut renderer = Renderer::new();
+/// window::run("teapot", |vga, input, seconds| -> Result<Flow, Box<dyn std::error::Error>> {
+///     scene.set_time(seconds);
+///     renderer.draw(&scene, vga)?;
+///     Ok(if input.pressed(Key::Escape) { Flow::Close } else { Flow::Continue })
 /// })?;
-/// # Ok::<(), window::WindowError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn run<F: Into<Flow>>(title: &str, mut frame: impl FnMut(&mut Vga, &Input, f64) -> F) -> Result<(), WindowError> {
+pub fn run<R: FrameResult>(title: &str, mut frame: impl FnMut(&mut Vga, &Input, f64) -> R) -> Result<(), R::Error> {
     let mut window = Window::open(title)?;
     let mut vga = Vga::new();
     loop {
-        let flow = frame(&mut vga, window.input(), window.seconds()).into();
+        let flow = frame(&mut vga, window.input(), window.seconds()).flow()?;
         let before = window.now;
         if flow == Flow::Close || window.show(&vga)? == Flow::Close {
             return Ok(());

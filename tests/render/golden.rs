@@ -55,7 +55,7 @@ fn golden_frames_of_every_scene() {
 
 /// Grass, bricks and glazed tiles, each in its own colours, from three sides; and once in the nearest entries of the
 /// cube, and in ramps that know nothing of them.
-#[cfg(all(feature = "obj", feature = "image"))]
+#[cfg(all(feature = "obj", feature = "png"))]
 #[test]
 fn golden_frames_of_a_house() {
     use mode13h::auto_palette;

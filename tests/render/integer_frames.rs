@@ -501,7 +501,9 @@ fn scenes_that_16_16_cannot_hold_are_refused_and_others_drawn() {
     check(|scene| scene.objects_mut()[0].scale = f32::MIN_POSITIVE / 8.0, |r| r.is_ok());
     check(|scene| scene.objects_mut()[0].scale = 1e5, |r| matches!(r, Err(RenderError::Camera(_))));
     check(
-        |scene| scene.add_light(Light::sun([0.0, 0.0, 1.0]).with_intensity(4e4)),
+        |scene| {
+            scene.add_light(Light::sun([0.0, 0.0, 1.0]).with_intensity(4e4));
+        },
         |r| matches!(r, Err(RenderError::Light { index: 1, .. })),
     );
     check(
@@ -509,7 +511,11 @@ fn scenes_that_16_16_cannot_hold_are_refused_and_others_drawn() {
         |r| matches!(r, Err(RenderError::Object { index: 0, .. })),
     );
     check(
-        |scene| (0..4096).for_each(|_| scene.add_light(Light::sun([0.0, f32::MIN_POSITIVE / 4.0, 0.0]))),
+        |scene| {
+            for _ in 0..4096 {
+                scene.add_light(Light::sun([0.0, f32::MIN_POSITIVE / 4.0, 0.0]));
+            }
+        },
         |r| matches!(r, Err(RenderError::Light { index: 4096, .. })),
     );
 }

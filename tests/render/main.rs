@@ -19,6 +19,8 @@ mod integer_frames;
 #[cfg(feature = "alloc")]
 mod integer_path;
 #[cfg(feature = "alloc")]
+mod objects;
+#[cfg(feature = "alloc")]
 mod plan;
 #[cfg(feature = "alloc")]
 mod tessellation;

@@ -2,6 +2,7 @@
 
 use crate::support::scenes;
 use crate::support::tried::Tried;
+use mode13h::mesh::shapes;
 use mode13h::plan::{Class, Effect};
 use mode13h::raster::Frame;
 use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Screen, Shading, Stats};
@@ -567,6 +568,35 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
         }
         for (i, mapping) in Mapping::ALL.into_iter().enumerate() {
             println!("{image}, {mapping}: error {:.1?}, sparkle {:.1?}", errors[i], sparkles[i]);
+        }
+    }
+}
+
+/// Clipping that is called for stays on: without it triangles would reach beyond what the raster can draw.
+#[test]
+fn clipping_that_is_needed_cannot_be_switched_off() {
+    let mut tried = Tried::new("clipping_that_is_needed_cannot_be_switched_off", 2 * 40);
+    for z in [1.2_f32, 0.2] {
+        let mut scene = Scene::showing(shapes::torus(24, 12));
+        scene.camera.eye.z *= z;
+        scene.objects_mut()[0].materials[0].specular = 0.4;
+        for shading in Shading::ALL {
+            for way in HiddenSurfaces::ALL {
+                let mut frames = [true, false].map(|forced| {
+                    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+                    renderer.set_shading(shading);
+                    renderer.set_hidden_surfaces(Some(way));
+                    if forced {
+                        renderer.force(Effect::NearClipping, Some(false));
+                        renderer.force(Effect::ScreenClipping, Some(false));
+                    }
+                    renderer.draw(&scene, &mut vga).expect("a legal scene");
+                    vga.pixels().to_vec()
+                });
+                let [forced, free] = &mut frames;
+                assert!(forced == free, "{shading}, {way}, {z}");
+                tried.add(1);
+            }
         }
     }
 }

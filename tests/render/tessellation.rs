@@ -144,7 +144,8 @@ fn r12_creases_are_split_alike_from_both_sides() {
 /// A wall of two triangles with a highlight in its middle.
 fn highlight() -> Scene {
     let mut scene = crate::support::scenes::framed(shapes::wall(1, 1));
-    *scene.lights_mut() = vec![Light::sun([0.0, 0.0, 1.0])];
+    scene.clear_lights();
+    scene.add_light(Light::sun([0.0, 0.0, 1.0]));
     scene.ambient = 0.0;
     let material = Material { diffuse: 0.2, specular: 0.8, shininess: 120.0, ..Material::white() };
     scene.objects_mut()[0].materials = vec![material];

@@ -6,8 +6,7 @@ use std::path::Path;
 
 use crate::support::tried::Tried;
 use mode13h::export::{
-    self, ExportErrorKind, MAX_SIDE, Picture, PictureError, PixelShape, Scale, encode_png, encode_rgb_png,
-    write_atomically,
+    self, ExportErrorKind, MAX_SIDE, Picture, PictureError, PixelShape, Png, Scale, write_atomically,
 };
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::vga::Vga;
@@ -85,7 +84,7 @@ fn a_frame_is_an_indexed_png_of_its_own_bytes_and_colors() {
 
     let palette = vga.palette();
     let picture = Picture::mode_13h(vga.pixels(), &palette);
-    assert_eq!(encode_png(&picture, Scale::One).expect("encoded"), file);
+    assert_eq!(Png { scale: Scale::One, rgb: false }.encode(&picture).expect("encoded"), file);
 }
 
 #[test]
@@ -109,14 +108,14 @@ fn enlarged_pictures_stay_indexed_and_keep_their_shape() {
             .map(|(x, y)| vga.pixels()[under(y, height, 200) * 320 + under(x, width, 320)])
             .collect();
 
-        let indexed = decode(&encode_png(&picture, scale).expect("encoded"));
+        let indexed = decode(&Png { scale: scale, rgb: false }.encode(&picture).expect("encoded"));
         assert_eq!((indexed.width, indexed.height), (width, height), "{scale}");
         assert_eq!(indexed.color, ColorType::Indexed, "{scale}");
         assert_eq!(indexed.palette, bytes_of(palette.colors()), "{scale}");
         assert!(indexed.data == expected, "{scale}");
         assert_eq!(indexed.density, Some(density), "{scale}");
 
-        let rgb = decode(&encode_rgb_png(&picture, scale).expect("encoded"));
+        let rgb = decode(&Png { scale: scale, rgb: true }.encode(&picture).expect("encoded"));
         assert_eq!((rgb.width, rgb.height), (width, height), "{scale}");
         assert_eq!(rgb.color, ColorType::Rgb, "{scale}");
         let colors: Vec<Rgb> = expected.iter().map(|&index| palette.color(index)).collect();
@@ -129,7 +128,11 @@ fn enlarged_pictures_stay_indexed_and_keep_their_shape() {
 fn five_by_six_makes_blocks() {
     let vga = patterned();
     let palette = vga.palette();
-    let decoded = decode(&encode_png(&Picture::mode_13h(vga.pixels(), &palette), Scale::FiveBySix).expect("encoded"));
+    let decoded = decode(
+        &Png { scale: Scale::FiveBySix, rgb: false }
+            .encode(&Picture::mode_13h(vga.pixels(), &palette))
+            .expect("encoded"),
+    );
     assert_eq!(decoded.data.len(), 1600 * 1200);
     for (i, &index) in decoded.data.iter().enumerate() {
         let (x, y) = (i % 1600, i / 1600);
@@ -141,7 +144,10 @@ fn five_by_six_makes_blocks() {
 fn rgb_png_looks_right_where_pixels_are_square() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("frame.png");
-    export::rgb_png(&patterned(), &path).expect("written");
+    let palette = patterned().palette();
+    let vga = patterned();
+    let picture = Picture::mode_13h(vga.pixels(), &palette);
+    Png { scale: Scale::FiveBySix, rgb: true }.save(&picture, &path).expect("written");
     let decoded = decode(&fs::read(&path).expect("read"));
     assert_eq!((decoded.width, decoded.height, decoded.color), (1600, 1200, ColorType::Rgb));
     assert_eq!(decoded.density, Some((1, 1)));
@@ -159,7 +165,7 @@ fn a_part_of_a_larger_frame_is_exported_by_its_pitch() {
         palette: palette.colors(),
         shape: PixelShape::SQUARE,
     };
-    let decoded = decode(&encode_png(&picture, Scale::One).expect("encoded"));
+    let decoded = decode(&Png { scale: Scale::One, rgb: false }.encode(&picture).expect("encoded"));
     assert_eq!(decoded.data, [17, 18, 19, 33, 34, 35]);
     assert_eq!(decoded.density, Some((1, 1)));
 }
@@ -176,7 +182,7 @@ fn pictures_whose_sizes_do_not_fit_are_refused() {
         palette: palette.colors(),
         shape: PixelShape::MODE_13H,
     };
-    assert!(encode_png(&good, Scale::One).is_ok());
+    assert!(Png { scale: Scale::One, rgb: false }.encode(&good).is_ok());
     let side = usize::from(MAX_SIDE) + 1;
     for (what, picture) in [
         ("no width", Picture { width: 0, ..good }),
@@ -186,18 +192,30 @@ fn pictures_whose_sizes_do_not_fit_are_refused() {
         ("no pixel width", Picture { shape: PixelShape { width: 0, height: 1 }, ..good }),
         ("no pixel height", Picture { shape: PixelShape { width: 1, height: 0 }, ..good }),
     ] {
-        assert!(matches!(encode_png(&picture, Scale::One), Err(PictureError::Size { .. })), "{what}");
-        assert!(matches!(encode_rgb_png(&picture, Scale::One), Err(PictureError::Size { .. })), "{what}");
+        assert!(
+            matches!(Png { scale: Scale::One, rgb: false }.encode(&picture), Err(PictureError::Size { .. })),
+            "{what}"
+        );
+        assert!(
+            matches!(Png { scale: Scale::One, rgb: true }.encode(&picture), Err(PictureError::Size { .. })),
+            "{what}"
+        );
     }
     for (what, picture) in [
         ("a byte short", Picture { pixels: &pixels[1..], ..good }),
         ("rows overlap", Picture { pitch: 9, ..good }),
         ("a pitch beyond memory", Picture { pitch: usize::MAX, ..good }),
     ] {
-        assert!(matches!(encode_png(&picture, Scale::One), Err(PictureError::Bytes { .. })), "{what}");
+        assert!(
+            matches!(Png { scale: Scale::One, rgb: false }.encode(&picture), Err(PictureError::Bytes { .. })),
+            "{what}"
+        );
     }
     let large = Picture { width: 10_000, height: 1, pitch: 10_000, pixels: &[0; 10_000], ..good };
-    assert!(matches!(encode_png(&large, Scale::Double), Err(PictureError::Size { width: 20_000, height: 2 })));
+    assert!(matches!(
+        Png { scale: Scale::Double, rgb: false }.encode(&large),
+        Err(PictureError::Size { width: 20_000, height: 2 })
+    ));
 }
 
 #[test]
@@ -327,7 +345,7 @@ fn f4_a_picture_that_cannot_be_written_names_the_file() {
     let palette = Palette::default();
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("frame.png");
-    let error = export::picture_png(&Picture::mode_13h(&[], &palette), Scale::One, &path).expect_err("no bytes");
+    let error = Png::INDEXED.save(&Picture::mode_13h(&[], &palette), &path).expect_err("no bytes");
     assert!(matches!(error.kind(), ExportErrorKind::Picture(PictureError::Bytes { .. })), "{error}");
     tried.add(1);
     assert!(names_in(folder.path()).is_empty());

@@ -3,7 +3,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-#[cfg(all(feature = "png", feature = "image"))]
+#[cfg(feature = "png")]
 mod export;
 #[cfg(feature = "gif")]
 mod gif;

@@ -513,7 +513,7 @@ fn p2_no_pixel_has_an_index_of_another_ramp() {
     }
 }
 
-#[cfg(all(feature = "obj", feature = "image"))]
+#[cfg(all(feature = "obj", feature = "png"))]
 #[test]
 fn the_house_has_two_ramps_and_bricks() {
     let folder = crate::support::workspace::root().join("tests/data");

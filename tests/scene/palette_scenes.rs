@@ -82,7 +82,7 @@ fn shown(scene: &Scene) -> (Vec<Rgb>, Vec<Option<usize>>) {
     let palette = vga.palette();
     let colors = vga.pixels().iter().map(|&index| palette.color(index)).collect();
     let mut numbered = scene.clone();
-    numbered.lights_mut().clear();
+    numbered.clear_lights();
     (numbered.fog, numbered.palette, numbered.background) = (None, None, 0);
     for (number, object) in (1..).zip(numbered.objects_mut()) {
         let ramp = RampChoice::Entries(Ramp::single(number));

@@ -86,6 +86,15 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             "2:8: key `render.hidden_surfaces`: unknown key; known are shading, hidden-",
         ),
         (cube("\"`, expected one of `a`\" = 1"), "2:1: key ``, expected one of `a``: unknown key; known are name, "),
+        // Names of before.
+        (cube("[wishes]\nrung = 'flat'"), "2:2: key `wishes`: is now called `render`"),
+        (cube("wishes.rung = 'flat'"), "2:1: key `wishes`: is now called `render`"),
+        (cube("[render]\nrung = 'flat'"), "3:1: key `render.rung`: is now called `shading`"),
+        (cube("render = { rung = 'flat' }"), "2:12: key `render.rung`: is now called `shading`"),
+        (
+            cube("render.shading = 'gouraud-period'"),
+            "2:18: key `render.shading`: \"gouraud-period\" is now called \"gouraud-vintage\"",
+        ),
         // Wrong types.
         (list("name = 7"), "1:8: key `name`: expected a string, found integer `7`"),
         (list("objects = 7"), "1:11: key `objects`: expected a sequence, found integer `7`"),
@@ -121,7 +130,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             cube("duration = 1979-05-27"),
             "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found map",
         ),
-        (cube("render = { shading = 3 }"), "2:19: key `render.shading`: expected a name in quotes, found integer `3`"),
+        (cube("render = { shading = 3 }"), "2:22: key `render.shading`: expected a name in quotes, found integer `3`"),
         (cube("render.dither = 'yes'"), "2:17: key `render.dither`: expected a boolean, found string \"yes\""),
         // Out of range.
         (cube("duration = 0"), "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found 0"),
@@ -227,7 +236,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         ),
         (
             cube("render.shading = 'best'"),
-            "2:15: key `render.shading`: \"best\": unknown shading; there are flat, gouraud-vintage, gouraud-8.8, ",
+            "2:18: key `render.shading`: \"best\": unknown shading; there are flat, gouraud-vintage, gouraud-8.8, ",
         ),
         (cube("render.mapping = 'best'"), "2:18: key `render.mapping`: \"best\": unknown mapping; there are affine, "),
         (

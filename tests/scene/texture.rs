@@ -372,7 +372,7 @@ fn levels_take_a_third_of_the_texels() {
 
 // Files
 
-#[cfg(feature = "image")]
+#[cfg(feature = "png")]
 mod files {
     use std::fs;
     use std::path::Path;

@@ -101,7 +101,7 @@ fn small() -> Vec<(&'static str, Scene)> {
         ["cube", "torus", "cone", "teapot", "wall"].map(|name| (name, showing(name))).into();
 
     let mut dark = showing("torus");
-    dark.lights_mut().clear();
+    dark.clear_lights();
     scenes.push(("dark", dark));
 
     let mut shiny = showing("sphere");
@@ -149,10 +149,9 @@ fn small() -> Vec<(&'static str, Scene)> {
     let mut colors = showing("sphere");
     colors.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
     colors.preferences.dither = true;
-    *colors.lights_mut() = vec![
-        Light::sun([1.0, 0.0, 0.5]).with_color([1.0, 0.0, 0.0]),
-        Light::sun([-1.0, 0.5, 0.5]).with_color([0.0, 1.0, 0.2]),
-    ];
+    colors.clear_lights();
+    colors.add_light(Light::sun([1.0, 0.0, 0.5]).with_color([1.0, 0.0, 0.0]));
+    colors.add_light(Light::sun([-1.0, 0.5, 0.5]).with_color([0.0, 1.0, 0.2]));
     scenes.push(("rgb", colors));
 
     let mut glass = showing("torus");

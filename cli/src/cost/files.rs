@@ -11,21 +11,23 @@ use crate::{output, read_files};
 /// Their names.
 const NAMES: [&str; 4] = ["samples.csv", "cost.json", "chart.svg", "report.html"];
 
-/// That they can be written into a directory, which need not exist yet, and that none of them was read.
-pub(super) fn check(directory: &Path) -> Result<(), Failure> {
+/// That they can be written into a directory, which need not exist yet, that none of them was read, and that none is
+/// overwritten unless that is allowed.
+pub(super) fn check(directory: &Path, overwrites: bool) -> Result<(), Failure> {
     if directory.exists() && !directory.is_dir() {
-        return Err(Failure::work(format!("{}: is no directory", directory.display())));
+        return Err(Failure::file(format!("{}: is no directory", directory.display())));
     }
     if directory.is_dir() {
         return NAMES.iter().try_for_each(|name| {
             let path = directory.join(name);
             read_files::spare(&path)?;
-            export::check_writable(&path).map_err(Failure::work)
+            output::refuse_overwriting(&path, overwrites)?;
+            export::check_writable(&path).map_err(Failure::from)
         });
     }
     // The first directory that is missing stands in one that exists.
     let missing = directory.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
-    missing.last().map_or(Ok(()), export::check_writable).map_err(Failure::work)
+    missing.last().map_or(Ok(()), export::check_writable).map_err(Failure::from)
 }
 
 /// Writes them, or where that fails, as on a disk that has become full, into a directory for temporary files. Returns where
@@ -39,7 +41,7 @@ pub(super) fn write(
     let elsewhere = env::temp_dir().join(format!("mode13h-cost-{input}-{}", process::id()));
     match write_into(&elsewhere, contents) {
         Ok(()) => {
-            let failure = Failure::work(format!("{failure}; the study is in {}", elsewhere.display()));
+            let failure = failure.saying(format!("{failure}; the study is in {}", elsewhere.display()));
             (Some(elsewhere), Err(failure))
         }
         Err(_) => (None, Err(failure)),
@@ -47,9 +49,9 @@ pub(super) fn write(
 }
 
 fn write_into(directory: &Path, contents: &[String; NAMES.len()]) -> Result<(), Failure> {
-    fs::create_dir_all(directory).map_err(|error| Failure::work(format!("{}: {error}", directory.display())))?;
+    fs::create_dir_all(directory).map_err(|error| Failure::file(format!("{}: {error}", directory.display())))?;
     NAMES.iter().zip(contents).try_for_each(|(name, text)| {
         let path = directory.join(name);
-        output::file(|| export::write_atomically(path, |out| out.write_all(text.as_bytes()))).map_err(Failure::work)
+        output::file(|| export::write_atomically(path, |out| out.write_all(text.as_bytes()))).map_err(Failure::from)
     })
 }

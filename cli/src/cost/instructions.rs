@@ -50,7 +50,7 @@ pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -
         renderer.set_shading(*shading);
         renderer.force(Effect::Transform, Some(true));
         for scene in frames {
-            renderer.draw(scene, &mut vga).map_err(Failure::work)?;
+            renderer.draw(scene, &mut vga).map_err(Failure::from)?;
         }
         draw_counted(frames, &mut renderer, &mut vga)?;
         shading_is_done(shading);
@@ -63,7 +63,7 @@ pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -
 #[inline(never)]
 fn draw_counted(frames: &[Scene], renderer: &mut Renderer, vga: &mut Vga) -> Result<(), Failure> {
     for scene in frames {
-        black_box(renderer.draw(scene, vga).map_err(Failure::work)?);
+        black_box(renderer.draw(scene, vga).map_err(Failure::from)?);
     }
     Ok(())
 }
@@ -76,7 +76,7 @@ fn shading_is_done(shading: &Shading) {
 /// Counts the instructions of every shading, this program being run again with the words that it was run with.
 pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failure> {
     let directory = Temporary::new()?;
-    let program = env::current_exe().map_err(Failure::work)?;
+    let program = env::current_exe().map_err(Failure::from)?;
     let out = Command::new("valgrind")
         .args(["--tool=callgrind", "--quiet", "--collect-atstart=no"])
         .args([format!("--toggle-collect={COUNTED}"), format!("--dump-before={DONE}")])
@@ -86,13 +86,13 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
         .arg("--counted")
         .output();
     let out = out.map_err(|error| match error.kind() {
-        ErrorKind::NotFound => Failure::work("--instructions needs valgrind, which is not there"),
-        _ => Failure::work(format!("valgrind: {error}")),
+        ErrorKind::NotFound => Failure::file("--instructions needs valgrind, which is not there"),
+        _ => Failure::file(format!("valgrind: {error}")),
     })?;
     if !out.status.success() {
         let said = String::from_utf8_lossy(&out.stderr);
         let said = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it ended without a word");
-        return Err(Failure::work(format!("valgrind: {}", said.trim_start_matches("mode13h: "))));
+        return Err(Failure::file(format!("valgrind: {}", said.trim_start_matches("mode13h: "))));
     }
     let mut of = BTreeMap::new();
     for (shading, number) in shadings.iter().zip(1..) {
@@ -100,7 +100,7 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
         let path = directory.0.join(format!("counts.{number}"));
         let all = fs::read_to_string(&path).ok().and_then(|text| sum(&text));
         let all =
-            all.ok_or_else(|| Failure::work("valgrind counted nothing: has the program been stripped of names?"))?;
+            all.ok_or_else(|| Failure::file("valgrind counted nothing: has the program been stripped of names?"))?;
         of.insert(*shading, all / frames.max(1) as u64);
     }
     Ok(Counts { kernel: String::from_utf8_lossy(&out.stdout).trim().to_string(), of })
@@ -118,7 +118,7 @@ struct Temporary(PathBuf);
 impl Temporary {
     fn new() -> Result<Temporary, Failure> {
         let path = env::temp_dir().join(format!("mode13h-{}", process::id()));
-        fs::create_dir(&path).map_err(|error| Failure::work(format!("{}: {error}", path.display())))?;
+        fs::create_dir(&path).map_err(|error| Failure::file(format!("{}: {error}", path.display())))?;
         Ok(Temporary(path))
     }
 }

@@ -5,10 +5,8 @@ use std::collections::BTreeMap;
 use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, ShadingRow, Study, Verdict};
 use serde::Serialize;
 
-use crate::failure::Failure;
-
 #[derive(Serialize)]
-struct Json<'a> {
+pub(super) struct Json<'a> {
     schema: u32,
     input: &'a str,
     host: Host<'a>,
@@ -196,11 +194,11 @@ impl<'a> From<&'a Claim> for JsonClaim<'a> {
     }
 }
 
-/// The study as JSON, with a line end.
-pub(super) fn json(study: &Study, warnings: &[String]) -> Result<String, Failure> {
+/// The study for programs.
+pub(super) fn json<'a>(study: &'a Study, warnings: &'a [String]) -> Json<'a> {
     let host = &study.host;
-    let json = Json {
-        schema: 1,
+    Json {
+        schema: 2,
         input: &study.input,
         host: Host {
             processor: &host.processor,
@@ -217,7 +215,5 @@ pub(super) fn json(study: &Study, warnings: &[String]) -> Result<String, Failure
         options: study.options.iter().map(JsonOption::from).collect(),
         claims: study.claims.iter().map(JsonClaim::from).collect(),
         warnings,
-    };
-    let text = serde_json::to_string_pretty(&json).map_err(Failure::work)?;
-    Ok(text + "\n")
+    }
 }

@@ -18,8 +18,8 @@ use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h_lab::cost::{self, Settings, Step, Subject, report};
 
-use crate::failure::Failure;
-use crate::options::{Drawing, finite};
+use crate::failure::{Failure, on_one_line};
+use crate::options::{Drawing, finite, one_of};
 use crate::turntable::Turntable;
 use crate::{input, output};
 
@@ -27,30 +27,49 @@ use crate::{input, output};
 const STEPS: u32 = 5;
 
 #[derive(Args)]
-#[command(mut_arg("shading", |arg| arg.hide(true)), mut_arg("max_error", |arg| arg.hide(true)))]
 pub(crate) struct Options {
-    #[arg(help = input::help())]
+    #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// The directory to write into: report.html, chart.svg, cost.json, and samples.csv with every time that was taken
-    /// [default: cost-INPUT; none with --json]
+    /// The directory to write the study into
+    ///
+    /// It gets report.html, chart.svg, cost.json, and samples.csv with every time that was taken; what they hold is
+    /// overwritten.
+    ///
+    /// [default: cost-INPUT in this directory, in which nothing is overwritten without --force; none with --json]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// As JSON, for programs
+    /// Overwrite a study in cost-INPUT
+    #[arg(long)]
+    force: bool,
+    /// Print the study as JSON
     #[arg(long)]
     json: bool,
-    /// The shadings to be studied, with commas between [default: all]
-    #[arg(long, value_name = "SHADING,...", value_delimiter = ',')]
+    #[arg(
+        long,
+        help = "The shadings to be studied, with commas between [default: all]",
+        long_help = long_help_on_shadings(),
+        value_name = "NAME,...",
+        value_delimiter = ',',
+        value_parser = one_of(Shading::ALL, Shading::name),
+        hide_possible_values = true,
+    )]
     shadings: Vec<Shading>,
-    /// How many frames, all over one round: a model turns once, a scene moves for as long as it says
+    /// How many frames, spread over one round
+    ///
+    /// A model turns once; a scene moves for as long as it says.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value_t = 8)]
     frames: u32,
-    /// Count instructions too, by valgrind. It knows not every vector instruction: times are then taken with the
-    /// kernel that ran there
+    /// Count instructions too, by valgrind
+    ///
+    /// Valgrind does not know every vector instruction. Times are then taken with the kernel that ran there.
     #[arg(long)]
     instructions: bool,
-    /// Take times for at most so long, though for seven rounds in any case; fewer rounds make wider intervals [default:
-    /// about 10, up to 20 where a ratio is not known to 2 %]. Before that errors are found, which takes a second or two a
-    /// frame: --frames says how many
+    /// Take times for at most so long
+    ///
+    /// There are seven rounds in any case; fewer rounds make wider intervals. The errors are found before that, which takes
+    /// a second or two for each frame.
+    ///
+    /// [default: about 10, up to 20 where a ratio is not known to 2 %]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Draw what instructions are counted of, and nothing else
@@ -58,6 +77,13 @@ pub(crate) struct Options {
     counted: bool,
     #[command(flatten)]
     drawing: Drawing,
+}
+
+fn long_help_on_shadings() -> String {
+    format!(
+        "The shadings to be studied, with commas between: {}\n\n[default: all]",
+        Shading::ALL.map(Shading::name).join(", ")
+    )
 }
 
 /// A time on the command line.
@@ -69,12 +95,7 @@ fn seconds(words: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, out, json, frames, instructions, seconds, counted, drawing, .. } = options;
-    if drawing.chooses_shading() {
-        return Err(Failure::words(
-            "cost compares shadings and budgets with each other: --shadings says which shadings",
-        ));
-    }
+    let Options { input, out, force, json, frames, instructions, seconds, counted, drawing, .. } = options;
     let shadings = if options.shadings.is_empty() { Shading::ALL.to_vec() } else { options.shadings.clone() };
     let mut kernel = drawing.kernel()?;
     let input = drawing.input(input)?;
@@ -91,10 +112,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         (None, false) => Some(PathBuf::from(format!("cost-{name}"))),
     };
     // Before much time is spent.
-    directory.as_deref().map_or(Ok(()), files::check)?;
+    let overwrites = out.is_some() || *force;
+    directory.as_deref().map_or(Ok(()), |directory| files::check(directory, overwrites))?;
     let counts = if *instructions { Some(instructions::count(&shadings, frames.len())?) } else { None };
     if let Some(counts) = &counts {
-        kernel = Kernel::by_name(&counts.kernel).map_err(Failure::work)?;
+        kernel = Kernel::by_name(&counts.kernel).map_err(Failure::words)?;
     }
 
     let renderer = || drawing.renderer(kernel);
@@ -112,15 +134,15 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
     progress.bar.finish_and_clear();
-    let (mut study, samples) = measured.map_err(Failure::work)?;
+    let (mut study, samples) = measured.map_err(Failure::from)?;
     if let Some(counts) = &counts {
         counts.write_into(&mut study);
     }
     let warnings = cost::warnings(&study);
     for warning in &warnings {
-        eprintln!("mode13h: {}", Failure::work(warning));
+        eprintln!("mode13h: {}", on_one_line(warning));
     }
-    let as_json = json::json(&study, &warnings)?;
+    let as_json = output::json(&json::json(&study, &warnings))?;
     let (written, result) = match &directory {
         None => (None, Ok(())),
         Some(directory) => {
@@ -130,7 +152,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     // Whatever became of the files, what was found out is not lost.
     output::print(&if *json { as_json } else { text::text(&study, written.as_deref()) })?;
-    result
+    result?;
+    match cost::budgets_are_kept(&study) {
+        true => Ok(()),
+        false => Err(Failure::found("a budget has not kept its promise")),
+    }
 }
 
 /// So many frames of what is shown, each turned by so many degrees more than the one before it.

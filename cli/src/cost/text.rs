@@ -15,7 +15,7 @@ pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
     text.extend(study.shadings.iter().map(shading));
     text += "\n* none is as near to lit and faster, as far as times can be told apart. Errors in shades of 1/255: largest against gouraud, largest and root\n  \
              mean square against lit\n\n";
-    text += "  budget  within E  largest   µs/frame  best single shading           µs/frame  ratio\n";
+    text += "  budget  within E  largest   µs/frame  best single shading        µs/frame  ratio\n";
     text.extend(study.budget.iter().map(budget));
     if !study.options.is_empty() {
         text += &format!(

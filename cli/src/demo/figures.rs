@@ -115,19 +115,21 @@ mod tests {
     use super::*;
     use crate::demo::loader::{self, Inputs};
     use crate::demo::shading::ShadingChoice;
-    use crate::options::Drawing;
+    use crate::options::{Drawing, ShadingOptions};
     use crate::overlay::tests::WINDOWS;
 
     #[derive(Parser)]
     struct Words {
         #[command(flatten)]
         drawing: Drawing,
+        #[command(flatten)]
+        shading: ShadingOptions,
     }
 
     /// The demo of a scene after its first frame.
     fn demo(name: &str) -> Demo {
-        let drawing = Words::parse_from(["mode13h"]).drawing;
-        let inputs = Arc::new(Inputs { drawing, words: vec![name.into()] });
+        let Words { drawing, shading } = Words::parse_from(["mode13h"]);
+        let inputs = Arc::new(Inputs { drawing, shading, words: vec![name.into()] });
         let first = loader::load(&inputs, 0, &[]);
         let mut demo = Demo::new(inputs, Kernel::fastest());
         demo.put_on(first).expect("a shipped scene");

@@ -10,9 +10,9 @@ use std::thread;
 use std::time::{Duration, SystemTime};
 
 use crate::failure::Failure;
-use crate::options::Drawing;
-use crate::read_files;
+use crate::options::{Drawing, ShadingOptions};
 use crate::turntable::Turntable;
+use crate::{input, read_files};
 
 /// How often it is looked whether a file has changed.
 const PERIOD: Duration = Duration::from_millis(250);
@@ -26,18 +26,18 @@ const LAG: Duration = Duration::from_millis(20);
 /// What is to be loaded, and how it is to be drawn.
 pub(super) struct Inputs {
     pub(super) drawing: Drawing,
+    pub(super) shading: ShadingOptions,
     pub(super) words: Vec<OsString>,
 }
 
 impl Inputs {
     /// What to call an input, whether it can be loaded or not.
     pub(super) fn name(&self, at: usize) -> String {
-        let words = &self.words[at];
-        Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned()
+        input::name_of(&self.words[at])
     }
 }
 
-/// An input that was loaded, or why it was not, and the files that it depends on.
+/// An input that was loaded, or reason it was not, and the files that it depends on.
 pub(super) struct Loading {
     /// Its place in the list of inputs.
     pub(super) at: usize,
@@ -102,7 +102,7 @@ impl Loader {
                 }
             }
         };
-        thread::Builder::new().name("loader".to_string()).spawn(work).map_err(Failure::work)?;
+        thread::Builder::new().name("loader".to_string()).spawn(work).map_err(Failure::from)?;
         Ok(Loader { wanted, loaded })
     }
 
@@ -168,11 +168,13 @@ mod tests {
     struct Words {
         #[command(flatten)]
         drawing: Drawing,
+        #[command(flatten)]
+        shading: ShadingOptions,
     }
 
     fn inputs(words: &[&Path]) -> Arc<Inputs> {
-        let drawing = Words::parse_from(["mode13h"]).drawing;
-        Arc::new(Inputs { drawing, words: words.iter().map(|path| path.as_os_str().to_os_string()).collect() })
+        let Words { drawing, shading } = Words::parse_from(["mode13h"]);
+        Arc::new(Inputs { drawing, shading, words: words.iter().map(|path| path.as_os_str().to_os_string()).collect() })
     }
 
     /// The next that the loader gives, which takes a second or so.

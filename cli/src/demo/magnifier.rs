@@ -167,7 +167,7 @@ impl Magnifier {
             Some(thread) => thread,
             none => {
                 let work = |question, desk: &Desk<Question, Answer>| desk.give(answer(question));
-                none.insert(Background::start("magnifier", work).map_err(Failure::work)?)
+                none.insert(Background::start("magnifier", work).map_err(Failure::from)?)
             }
         };
         if self.asked != Some((number, pixel)) {

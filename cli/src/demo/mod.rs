@@ -6,7 +6,7 @@
 //! | `motion` | what the clock and the user move |
 //! | `error_map` | how far each pixel is from the truth, over the picture |
 //! | `compare` | two shadings side by side |
-//! | `magnifier`, `shade_trace` | the pixels about the mouse, and what the one under it says of itself |
+//! | `magnifier`, `account` | the pixels about the mouse, and what the one under it says of itself |
 //! | `step` | a triangle pixel by pixel, and the registers of the loop |
 //! | `figures`, `timing` | what I and H show |
 //! | `background` | a thread that the picture does not wait for |
@@ -41,7 +41,7 @@ use mode13h::window::{Flow, Input, Key, Window, WindowError};
 
 use crate::failure::Failure;
 use crate::input::Colors;
-use crate::options::Drawing;
+use crate::options::{Drawing, ShadingOptions};
 use crate::overlay::{self, Sheet, Side};
 use crate::toggles::Switch;
 use crate::turntable::Turntable;
@@ -57,27 +57,39 @@ use shading::ShadingChoice;
 use step::Stepper;
 use timing::Timing;
 
-/// What the help says below the options.
+/// The keys, as the long help lists them.
 pub(crate) const KEYS: &str = "\
-Keys in the window: Esc quits, H shows the keys, I the plan, time, error and which shadings shade how many triangles; Space
-stops and goes on, arrows and mouse turn, wheel and + - zoom; [ and ] step through the shadings, 1 to 9 are the first nine, 0
-is the budget of error, B makes it smaller and Shift-B greater (16, 8, 4, 2, 1, 1/2 shades); E lays the error map over the
-picture: how far each pixel is from light worked out at every pixel, in shades; C divides the window at the mouse,
-with another shading on the right, the time and the error of each above it: a click fixes the divider, Shift with [ ] and
-digits chooses the right one's shading, X swaps the two; Z magnifies what is under the mouse 16 times, and the pixel there
-explains itself: . and , step on and back through its triangle's pixels, with the registers of the loop, with Shift through
-its rows; K next kernel, P next palette, M next mapping of textures; L lights, O fog, T
-texture and D dither off and on; N shows the next INPUT and Shift-N the one before; S saves the picture, without the text
-over it, as a PNG in the current directory.
-An INPUT is loaded again when one of its files changes; what is wrong with it is said in the window.
-With no display one frame of each INPUT is saved as a PNG.";
+Keys in the window:
+  Esc             Quit
+  H               Show the keys
+  I               Show the plan, times, errors and the share of each shading
+  Space           Stop the time, and let it go on
+  arrows, mouse   Turn
+  + - and wheel   Enlarge, make smaller
+  [ and ]         Step through the shadings
+  1 to 9          The first nine shadings
+  0               The budget of error
+  B, Shift-B      A smaller budget, a greater one: 16, 8, 4, 2, 1, 1/2 shades
+  E               Lay the error map over the picture
+  C               Divide the window at the mouse: another shading on the right.
+                  A click fixes the divider. Shift with [ ] and digits chooses
+                  the right shading
+  X               Swap the two shadings
+  Z               Magnify 16 times at the mouse; the pixel explains itself
+  . and ,         Step through the pixels of its triangle, with Shift its rows
+  K, P, M         The next kernel, the next palette, the next mapping of textures
+  L, O, T, D      Lights, fog, texture, dither off and on
+  N, Shift-N      The next INPUT, the one before
+  S               Save the picture, without the text over it, as a PNG";
 
 #[derive(Args, Clone)]
 pub(crate) struct Options {
-    #[arg(default_value = "torus", value_name = "INPUT", help = help_on_inputs())]
+    #[arg(default_value = "torus", value_name = "INPUT", help = input::HELP, long_help = long_help_on_inputs())]
     inputs: Vec<OsString>,
     #[command(flatten)]
     drawing: Drawing,
+    #[command(flatten)]
+    shading: ShadingOptions,
 }
 
 impl Options {
@@ -101,13 +113,13 @@ const STILL: Duration = Duration::from_millis(500);
 const STILL_REST: Duration = Duration::from_millis(100);
 const SHORT_REST: Duration = Duration::from_millis(14);
 
-fn help_on_inputs() -> String {
-    format!("{}. Of several the first is shown, and N goes to the next", input::help())
+fn long_help_on_inputs() -> String {
+    format!("{}\n\nOf several the first is shown, and the key N goes to the next.", input::long_help())
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { inputs, drawing } = options.clone();
-    let inputs = Arc::new(Inputs { drawing, words: inputs });
+    let Options { inputs, drawing, shading } = options.clone();
+    let inputs = Arc::new(Inputs { drawing, shading, words: inputs });
     let kernel = inputs.drawing.kernel()?;
     let first = loader::load(&inputs, 0, &[]);
     let loader = Loader::start(Arc::clone(&inputs), &first)?;
@@ -146,7 +158,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             (shown, changed) = (look, window.seconds());
             window.show_over(demo.on_screen(), |canvas| shown.sheet.draw(canvas))
         };
-        if flow.map_err(Failure::work)? == Flow::Close {
+        if flow.map_err(Failure::from)? == Flow::Close {
             return Ok(());
         }
     }
@@ -186,7 +198,7 @@ struct Demo {
     /// What is shown; without objects until something could be loaded.
     stage: Turntable,
     /// Why what is shown is not what the files say.
-    wrong: Option<String>,
+    wrong: Option<Failure>,
     renderer: Renderer,
     shading: ShadingChoice,
     /// Whether a key chose it.
@@ -234,15 +246,15 @@ struct Demo {
 impl Demo {
     /// With nothing to show yet.
     fn new(inputs: Arc<Inputs>, kernel: Kernel) -> Demo {
-        let drawing = &inputs.drawing;
+        let Inputs { drawing, shading, .. } = &*inputs;
         let stage = Turntable::of_scene(Scene::new());
         Demo {
             at: 0,
             name: inputs.name(0),
             triangles: 0,
             wrong: None,
-            renderer: drawing.renderer(kernel),
-            shading: ShadingChoice::of(drawing.accuracy_for(&Preferences::default())),
+            renderer: shading.renderer(drawing, kernel),
+            shading: ShadingChoice::of(shading.accuracy_for(&Preferences::default())),
             chose_shading: false,
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
             palettes: palettes(&stage, drawing),
@@ -285,7 +297,7 @@ impl Demo {
         // A renderer of its own finds out whether the scene can be drawn; this one's plan is for what is shown.
         let checked = result.and_then(|stage| {
             let mut renderer = self.renderer.set_alike();
-            renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+            renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
             Ok(*stage)
         });
         let keeps = is_again && !self.stage.scene.objects().is_empty();
@@ -301,12 +313,11 @@ impl Demo {
             }
             Err(failure) if self.inputs.words.len() == 1 && !is_again => return Err(failure),
             Err(failure) => {
-                let wrong = failure.to_string();
-                if self.wrong.as_ref() != Some(&wrong) {
-                    eprintln!("mode13h: {wrong}");
+                if self.wrong.as_ref() != Some(&failure) {
+                    eprintln!("mode13h: {failure}");
                 }
                 self.notice = None;
-                self.wrong = Some(wrong);
+                self.wrong = Some(failure);
                 if is_again {
                     return Ok(());
                 }
@@ -318,27 +329,27 @@ impl Demo {
 
     /// Shows another stage, as what is shown has been changed by keys if it `keeps` that.
     fn set(&mut self, stage: Turntable, keeps: bool) -> Result<(), Failure> {
-        let drawing = &self.inputs.drawing;
+        let Inputs { drawing, shading, .. } = &*self.inputs;
         self.name = self.inputs.name(self.at);
         self.triangles = stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
         self.stage = stage;
         if !self.chose_shading {
             let preferences = &self.stage.scene.preferences;
-            self.shading = ShadingChoice::of(drawing.accuracy_for(preferences));
+            self.shading = ShadingChoice::of(shading.accuracy_for(preferences));
         }
         let before = std::mem::replace(&mut self.palettes, palettes(&self.stage, drawing));
         if keeps && self.chose_palette && self.palettes.choose(|(name, _)| *name == before.chosen().0) {
-            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::work)?;
+            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::from)?;
         }
         if keeps {
             for &(switch, wanted) in &self.switches {
-                self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+                self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
                 if switch.is_on(&self.renderer) != wanted {
-                    switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::work)?;
+                    switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::from)?;
                 }
             }
         } else {
-            self.renderer = drawing.renderer(*self.kernels.chosen());
+            self.renderer = shading.renderer(drawing, *self.kernels.chosen());
             self.switches.clear();
             self.chose_palette = false;
             self.motion.begin_anew();
@@ -365,26 +376,27 @@ impl Demo {
     /// Without a display: saves a picture of each input that can be loaded. The others are failures.
     fn save_each(mut self, no_display: &WindowError) -> Result<(), Failure> {
         let count = self.inputs.words.len();
-        let mut failed = 0;
+        let (mut failed, mut worst): (usize, Option<Failure>) = (0, None);
         for at in 0..count {
             if at > 0 {
                 self.at = at;
                 self.put_on(loader::load(&self.inputs, at, &[]))?;
             }
-            if self.wrong.take().is_some() {
+            if let Some(wrong) = self.wrong.take() {
                 failed += 1;
+                worst = worst.filter(|worst| worst.status() >= wrong.status()).or(Some(wrong));
                 continue;
             }
             self.motion.go_to(self.stage.scene.picture);
             self.draw()?;
-            let path = output::numbered_picture(self.on_screen()).map_err(Failure::work)?;
+            let path = output::numbered_picture(self.on_screen()).map_err(Failure::from)?;
             let of = if count == 1 { String::new() } else { format!(" of {}", self.name) };
             eprintln!("mode13h: {no_display}; one frame{of} is in {}", path.display());
         }
-        if failed > 0 {
-            return Err(Failure::work(format!("{failed} of {count} inputs could not be drawn")));
+        match worst {
+            Some(worst) => Err(worst.saying(format!("{failed} of {count} inputs could not be drawn"))),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// Does what the user asks for in the frame that shows the time `seconds`.
@@ -407,7 +419,7 @@ impl Demo {
         if input.pressed(Key::P) {
             self.palettes.go_round();
             self.chose_palette = true;
-            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::work)?;
+            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::from)?;
             self.say(format!("palette {}", self.palettes.chosen().0));
         }
         if input.pressed(Key::M) {
@@ -419,7 +431,7 @@ impl Demo {
             if input.pressed(key) {
                 self.switched = Some((switch, switch.is_on(&self.renderer)));
                 self.forget_times();
-                switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::work)?;
+                switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::from)?;
                 self.compare.renew(&self.renderer);
             }
         }
@@ -547,7 +559,7 @@ impl Demo {
             sheet.message(overlay::TEXT, notice);
         }
         if let Some(wrong) = &self.wrong {
-            sheet.message(overlay::WRONG, wrong);
+            sheet.message(overlay::WRONG, &wrong.to_string());
         }
         self.lay_over(&mut sheet);
         let is_alone = !(self.help.is_open && self.figures.is_open);
@@ -569,11 +581,11 @@ impl Demo {
         // Of a picture that stands still the time for its plan stays, too.
         if self.figures.is_open && (self.is_redrawn || self.planning.frame == 0.0) {
             let start = Instant::now();
-            self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::work)?;
+            self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
             self.planning.add(Some(start.elapsed().as_secs_f64()), self.seconds);
         }
         let start = Instant::now();
-        let stats = self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::work)?;
+        let stats = self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::from)?;
         let taken = start.elapsed().as_secs_f64();
         self.is_redrawn = stats.redrawn;
         self.timing.add(stats.redrawn.then_some(taken), self.seconds);
@@ -585,7 +597,7 @@ impl Demo {
         if self.compare.is_on {
             self.compare.right.renderer.set_kernel(*self.kernels.chosen());
             self.compare.right.renderer.set_mapping(*self.mappings.chosen());
-            let is_new = self.compare.draw(&self.stage.scene, self.seconds).map_err(Failure::work)?;
+            let is_new = self.compare.draw(&self.stage.scene, self.seconds).map_err(Failure::from)?;
             self.number += u64::from(is_new);
         }
         Ok(())

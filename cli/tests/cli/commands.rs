@@ -72,7 +72,7 @@ fn png_header(bytes: &[u8]) -> ((u32, u32), png::ColorType, Option<(u32, u32)>) 
 
 #[test]
 fn f1_broken_input_is_one_line_with_file_and_place() {
-    let mut tried = Tried::new("f1_broken_input_is_one_line_with_file_and_place", 23);
+    let mut tried = Tried::new("f1_broken_input_is_one_line_with_file_and_place", 22);
     let directory = directory();
     let put = |name: &str, text: &[u8]| fs::write(directory.path().join(name), text).expect("written");
     put("empty.obj", b"");
@@ -90,33 +90,32 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
 
     let model = |input| vec!["render", input, "-o", "x.png"];
     let palette = |palette| vec!["render", "cube", "-o", "x.png", "--palette", palette];
-    for (words, says) in [
-        (model("none.obj"), "none.obj: No such file"),
-        (model("directory.obj"), "directory.obj: is a directory"),
-        (model("."), ".: is a directory"),
-        (model("empty.obj"), "empty.obj: no faces"),
-        (model("vertices.obj"), "vertices.obj: no faces"),
-        (model("nan.obj"), "nan.obj:2: `NaN`"),
-        (model("index.obj"), "index.obj:5: there is no vertex 4"),
-        (model("zero.obj"), "zero.obj:4: index 0"),
-        (model("binary.obj"), "binary.obj"),
-        (model("model.stl"), "model.stl: nothing that can be read: models are .obj files, scenes .toml"),
-        (model("toroid"), "toroid: neither a file nor a scene nor a shape; scenes are torus, cube, "),
-        (model("toroid"), "; shapes are cube, sphere, torus"),
-        (model(""), ": neither a file nor a scene nor a shape"),
-        (palette("broken.pal"), "broken.pal: line 5"),
-        (palette("short.vga"), "short.vga: "),
-        (palette("empty.gpl"), "empty.gpl: "),
-        (palette("none.pal"), "none.pal: neither a file nor a built-in palette; those are grey"),
-        (palette("."), ".: is a directory"),
-        (vec!["palette", "broken.pal"], "broken.pal: line 5"),
-        (vec!["palette", "mauve"], "mauve: neither a file nor a built-in palette"),
-        (vec!["demo", "nan.obj"], "nan.obj:2: "),
-        (vec!["nan.obj"], "nan.obj:2: "),
-        (vec!["none.obj"], "none.obj: No such file"),
-        (vec!["plan", "nan.obj"], "nan.obj:2: "),
+    for (words, status, says) in [
+        (model("none.obj"), 3, "none.obj: No such file"),
+        (model("directory.obj"), 3, "directory.obj: is a directory"),
+        (model("."), 3, ".: is a directory"),
+        (model("empty.obj"), 2, "empty.obj: no faces"),
+        (model("vertices.obj"), 2, "vertices.obj: no faces"),
+        (model("nan.obj"), 2, "nan.obj:2: `NaN`"),
+        (model("index.obj"), 2, "index.obj:5: there is no vertex 4"),
+        (model("zero.obj"), 2, "zero.obj:4: index 0"),
+        (model("binary.obj"), 2, "binary.obj"),
+        (model("model.stl"), 2, "model.stl: nothing that can be read: models are .obj files, scenes .toml"),
+        (model("toroid"), 2, "toroid: neither a file nor a scene nor a shape (mode13h scenes lists the names)"),
+        (model(""), 2, ": neither a file nor a scene nor a shape"),
+        (palette("broken.pal"), 2, "broken.pal: line 5"),
+        (palette("short.vga"), 2, "short.vga: "),
+        (palette("empty.gpl"), 2, "empty.gpl: "),
+        (palette("none.pal"), 3, "none.pal: neither a file nor a built-in palette; those are grey"),
+        (palette("."), 3, ".: is a directory"),
+        (vec!["palette", "broken.pal"], 2, "broken.pal: line 5"),
+        (vec!["palette", "mauve"], 2, "mauve: neither a file nor a built-in palette"),
+        (vec!["demo", "nan.obj"], 2, "nan.obj:2: "),
+        (vec!["nan.obj"], 2, "nan.obj:2: "),
+        (vec!["none.obj"], 3, "none.obj: No such file"),
+        (vec!["plan", "nan.obj"], 2, "nan.obj:2: "),
     ] {
-        assert_fails(&run(&directory, &words), 1, says);
+        assert_fails(&run(&directory, &words), status, says);
         tried.add(1);
     }
     assert_eq!(names_in(directory.path()), before);
@@ -127,13 +126,12 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
 fn wrong_words_end_with_2() {
     let directory = directory();
     for (words, says) in [
-        (vec!["render"], "--out <OUT>"),
-        (vec!["render", "torus"], "--out <OUT>"),
+        (vec!["render"], "<INPUT>"),
         (vec!["render", "torus", "-o", "x.png", "--kernel", "mmx"], "no such kernel; this machine has portable"),
         (vec!["--kernel", "mmx"], "no such kernel; this machine has portable"),
         (
             vec!["render", "torus", "-o", "x.png", "--shading", "mirror"],
-            "there are flat, gouraud-vintage, gouraud-8.8, ",
+            "[possible values: flat, gouraud-vintage, gouraud-8.8, ",
         ),
         (vec!["render", "torus", "-o", "x.tif"], "x.tif: no kind of picture"),
         (vec!["render", "torus", "-o", "x"], "x: "),
@@ -183,9 +181,12 @@ fn wrong_words_end_with_2() {
         (vec!["plan", "sphere", "--crease", "181"], "--crease"),
         (vec!["cost", "sphere", "--crease", "NaN"], "--crease"),
         (vec!["explain", "sphere", "--row", "9", "--crease", "-1"], "--crease"),
-        (vec!["render", "torus", "-o", "x.png", "--mapping", "best"], "there are affine, every-16, perspective"),
-        (vec!["render", "torus", "-o", "x.png", "--vertex-path", "best"], "there are float, integer"),
-        (vec!["demo", "torus", "--hidden", "best"], "there are back-faces, painter"),
+        (
+            vec!["render", "torus", "-o", "x.png", "--mapping", "best"],
+            "[possible values: affine, every-16, perspective]",
+        ),
+        (vec!["render", "torus", "-o", "x.png", "--arithmetic", "best"], "[possible values: float, fixed]"),
+        (vec!["demo", "torus", "--hidden-surfaces", "best"], "[possible values: back-faces, painter, "),
         (vec!["scenes", "-o", "x.toml"], "--copy"),
         (vec!["verify", "--xml"], "(mode13h verify --help shows"),
         (vec!["render", "--xml"], "(mode13h render --help shows"),
@@ -194,7 +195,7 @@ fn wrong_words_end_with_2() {
         (vec!["torus", "verify"], "verify is a command, and stands before its INPUT"),
         (vec!["plan"], "<INPUT>"),
         (vec!["plan", "torus", "--at", "inf"], "--at"),
-        (vec!["plan", "torus", "--shading", "mirror"], "there are flat, gouraud-vintage, gouraud-8.8, "),
+        (vec!["plan", "torus", "--shading", "mirror"], "[possible values: flat, gouraud-vintage, gouraud-8.8, "),
     ] {
         assert_fails(&run(&directory, &words), 2, says);
     }
@@ -217,22 +218,22 @@ fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
         ("none/%04d.png", "none/0000.png: the directory none does not exist"),
         ("x.png", "x.png: is a directory"),
     ] {
-        assert_fails(&run(&directory, &["render", "torus", "-o", out]), 1, says);
+        assert_fails(&run(&directory, &["render", "torus", "-o", out]), 3, says);
         tried.add(1);
     }
     assert_fails(
         &run(&directory, &["render", "torus", "-o", "none/%d.png", "--frames", "9"]),
-        1,
+        3,
         "none does not exist",
     );
     tried.add(1);
     assert_fails(
         &run(&directory, &["render", "torus", "-o", "none/x.gif"]),
-        1,
+        3,
         "none/x.gif: the directory none does not",
     );
     tried.add(1);
-    assert_fails(&run(&directory, &["palette", "grey", "-o", "none/x.pal"]), 1, "none does not exist");
+    assert_fails(&run(&directory, &["palette", "grey", "-o", "none/x.pal"]), 3, "none does not exist");
     tried.add(1);
     assert_eq!(names_in(directory.path()), ["x.png"]);
     tried.add(1);
@@ -252,7 +253,7 @@ fn f4_a_picture_that_no_longer_fits_leaves_the_old_one_whole() {
         .current_dir(&directory)
         .output()
         .expect("started");
-    assert_fails(&output, 1, "x.png: ");
+    assert_fails(&output, 3, "x.png: ");
     tried.add(1);
     assert_eq!(read(&directory, "x.png"), b"what stood there");
     tried.add(1);
@@ -778,7 +779,7 @@ fn f4_a_film_that_no_longer_fits_leaves_the_old_one_whole() {
         .current_dir(&directory)
         .output()
         .expect("started");
-    assert_fails(&output, 1, "x.gif: ");
+    assert_fails(&output, 3, "x.gif: ");
     tried.add(1);
     assert_eq!(read(&directory, "x.gif"), b"what stood there");
     tried.add(1);
@@ -839,7 +840,7 @@ fn a_plan_for_programs_is_that_of_the_second_of_two_frames_and_the_same_on_every
             }
             let mut rows = renderer.rows(&scene).into_iter();
             let json: Value = serde_json::from_str(&text).expect("JSON");
-            assert_eq!((&json["schema"], &json["scene"]), (&Value::from(1), &Value::from(shipped.name)));
+            assert_eq!((&json["schema"], &json["scene"]), (&Value::from(2), &Value::from(shipped.name)));
             let objects = json["objects"].as_array().expect("a list");
             assert_eq!(objects.len(), scene.objects().len());
             for object in objects {
@@ -871,7 +872,7 @@ fn a_plan_with_times_has_a_price_for_each_effect() {
     assert!(effects.iter().all(|effect| effect["ns_per_frame"].is_u64()), "{effects:#?}");
 
     // The integer path has no fog: it has no price.
-    let words = ["plan", "torus", "--json", "--time", "--vertex-path", "integer"];
+    let words = ["plan", "torus", "--json", "--time", "--arithmetic", "fixed"];
     let json: Value = serde_json::from_str(&printed(&directory, &words)).expect("JSON");
     let effects = json["objects"][0]["effects"].as_array().expect("a list");
     let fog = effects.iter().find(|effect| effect["effect"] == "fog").expect("listed");
@@ -973,12 +974,12 @@ fn palettes_are_made_for_models() {
     assert!(warnings.contains("chest planks.ppm: no PNG that can be read: "), "{warnings}");
     assert!(String::from_utf8(output.stdout).expect("text").contains("wood: a ramp, entries 1 to "));
 
-    assert_fails(&run(&directory, &["palette"]), 2, "<FILE|NAME>");
+    assert_fails(&run(&directory, &["palette", "-o", "x.pal"]), 2, "--from MODEL says which");
     assert_fails(&run(&directory, &["palette", "grey", "--from", "torus"]), 2, "--from");
     assert_fails(&run(&directory, &["palette", "grey", "--up", "z"]), 2, "--up");
     assert_fails(&run(&directory, &["palette", "grey", "--crease", "9"]), 2, "--crease");
     assert_fails(&run(&directory, &["palette", "--from", "sphere", "--crease", "999"]), 2, "--crease");
-    assert_fails(&run(&directory, &["palette", "--from", "none.obj"]), 1, "none.obj: No such file");
+    assert_fails(&run(&directory, &["palette", "--from", "none.obj"]), 3, "none.obj: No such file");
     assert_fails(&run(&directory, &["palette", "--from", "torus", "-o", "x.txt"]), 2, "x.txt: ");
 }
 
@@ -1030,8 +1031,8 @@ fn a_model_with_colours_is_shown_in_them() {
     assert!(ramps[0] && ramps[2], "grass in the first ramp, tiles in the third");
     assert_eq!(green(&read(&directory, "ramps.png")), 0.0);
     // The 16.16 path has no textures: there the walls have a ramp of their own.
-    succeed(&directory, &["render", &house, "-o", "integer.png", "--vertex-path", "integer"]);
-    assert!(green(&read(&directory, "integer.png")) > 0.05);
+    succeed(&directory, &["render", &house, "-o", "fixed.png", "--arithmetic", "fixed"]);
+    assert!(green(&read(&directory, "fixed.png")) > 0.05);
     // In the window, too: with no display, what it shows first.
     let output = run(&directory, &[&house]);
     assert!(output.status.success(), "{output:?}");
@@ -1113,12 +1114,12 @@ fn names_need_not_be_text() {
     assert!(directory.path().join(name).is_file());
     let missing = OsStr::from_bytes(b"line\nend\x1B[2J\xFF.obj");
     let output = run(&directory, &[OsStr::new("render"), missing, OsStr::new("-o"), OsStr::new("x.png")]);
-    assert_fails(&output, 1, "line end [2J");
+    assert_fails(&output, 3, "line end [2J");
 }
 
 #[test]
-fn f3_broken_scenes_are_one_line_and_status_1() {
-    let mut tried = Tried::new("f3_broken_scenes_are_one_line_and_status_1", 12);
+fn f3_broken_scenes_are_one_line_with_their_place() {
+    let mut tried = Tried::new("f3_broken_scenes_are_one_line_with_their_place", 12);
     let directory = directory();
     let put = |name: &str, text: &[u8]| fs::write(directory.path().join(name), text).expect("written");
     put("key.toml", b"[[objects]]\nshape = 'cube'\nmaterial = { shyness = 3 }\n");
@@ -1132,25 +1133,26 @@ fn f3_broken_scenes_are_one_line_and_status_1() {
     put("control.toml", b"objects = [{ shape = \"\x5cu001b[2J\" }]\n");
     fs::create_dir(directory.path().join("directory.toml")).expect("made");
     let before = names_in(directory.path());
-    for (input, says) in [
-        ("key.toml", "key.toml:3:14: key `objects[0].material.shyness`: unknown key; known are ambient, "),
+    for (input, status, says) in [
+        ("key.toml", 2, "key.toml:3:14: key `objects[0].material.shyness`: unknown key; known are ambient, "),
         (
             "type.toml",
+            2,
             "type.toml:1:38: key `objects[0].scale`: expected a number above 0, or three in a list, found string",
         ),
-        ("missing.toml", "missing.toml:3:20: key `objects[0].material.texture`: none.png: No such file"),
-        ("model.toml", "model.toml:2:9: key `objects[0].model`: nan.obj:2: `NaN`"),
-        ("no.toml", "no.toml: no object: a scene needs at least one"),
-        ("syntax.toml", "syntax.toml:1:8: not TOML: "),
-        ("binary.toml", "binary.toml:1:1: not text in UTF-8"),
-        ("control.toml", "control.toml:1:22: key `objects[0].shape`: "),
-        ("directory.toml", "directory.toml: is a directory"),
-        ("none.toml", "none.toml: No such file"),
+        ("missing.toml", 3, "missing.toml:3:20: key `objects[0].material.texture`: none.png: No such file"),
+        ("model.toml", 2, "model.toml:2:9: key `objects[0].model`: nan.obj:2: `NaN`"),
+        ("no.toml", 2, "no.toml: no object: a scene needs at least one"),
+        ("syntax.toml", 2, "syntax.toml:1:8: not TOML: "),
+        ("binary.toml", 2, "binary.toml:1:1: not text in UTF-8"),
+        ("control.toml", 2, "control.toml:1:22: key `objects[0].shape`: "),
+        ("directory.toml", 3, "directory.toml: is a directory"),
+        ("none.toml", 3, "none.toml: No such file"),
     ] {
-        assert_fails(&run(&directory, &["render", input, "-o", "x.png"]), 1, says);
+        assert_fails(&run(&directory, &["render", input, "-o", "x.png"]), status, says);
         tried.add(1);
     }
-    assert_fails(&run(&directory, &["key.toml"]), 1, "key.toml:3:14: ");
+    assert_fails(&run(&directory, &["key.toml"]), 2, "key.toml:3:14: ");
     tried.add(1);
     assert_eq!(names_in(directory.path()), before);
     tried.add(1);
@@ -1162,7 +1164,8 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
     let output = run(&directory, &["scenes"]);
     assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
     let list = String::from_utf8(output.stdout).expect("text");
-    assert_eq!(list.lines().count(), shipped::ALL.len());
+    let shapes = list.lines().skip(shipped::ALL.len()).collect::<Vec<_>>().join(" ");
+    assert_eq!(shapes, format!(" shapes: {}", mode13h::mesh::shapes::NAMES.join(", ")));
     for (line, scene) in list.lines().zip(&shipped::ALL) {
         let (name, shows) = line.split_once(' ').expect("two columns");
         assert_eq!((name, shows.trim_start()), (scene.name, scene.shows()));
@@ -1173,10 +1176,10 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
     let text = shipped::by_name("fog").expect("a scene").text;
     assert!(read(&directory, "fog.toml") == text.as_bytes() && read(&directory, "other.toml") == text.as_bytes());
     fs::write(directory.path().join("fog.toml"), "what stood there").expect("written");
-    assert_fails(&run(&directory, &["scenes", "--copy", "fog"]), 1, "fog.toml: is there already");
+    assert_fails(&run(&directory, &["scenes", "--copy", "fog"]), 3, "fog.toml: exists already; --force");
     assert_eq!(read(&directory, "fog.toml"), b"what stood there");
-    assert_fails(&run(&directory, &["scenes", "--copy", "frog"]), 1, "frog: no such scene; there are torus, cube, ");
-    assert_fails(&run(&directory, &["scenes", "--copy", "fog", "-o", "none/x.toml"]), 1, "none does not exist");
+    assert_fails(&run(&directory, &["scenes", "--copy", "frog"]), 2, "frog: no such scene; did you mean fog?");
+    assert_fails(&run(&directory, &["scenes", "--copy", "fog", "-o", "none/x.toml"]), 3, "none does not exist");
     // A copy is the scene.
     succeed(&directory, &["render", "other.toml", "-o", "copy.png", "--at", "1"]);
     succeed(&directory, &["render", "fog", "-o", "fog.png", "--at", "1"]);
@@ -1209,8 +1212,8 @@ fn words_have_the_last_word_over_a_scene() {
     };
     let (said, own) = stats(&["phong"]);
     assert!(said.contains(": phong, float vertices,"), "{said}");
-    let (said, _) = stats(&["phong", "--shading", "flat", "--hidden", "scan-line", "--vertex-path", "integer"]);
-    assert!(said.contains(": flat, integer vertices,") && said.contains(" scan-line: "), "{said}");
+    let (said, _) = stats(&["phong", "--shading", "flat", "--hidden-surfaces", "scan-line", "--arithmetic", "fixed"]);
+    assert!(said.contains(": flat, fixed vertices,") && said.contains(" scan-line: "), "{said}");
     // Within an error the shadings that faces got are counted, and no other is named.
     let (said, _) = stats(&["phong", "--max-error", "4"]);
     assert!(said.contains(": within 4 shades (") && said.contains(" gouraud-8.8-reseeded"), "{said}");
@@ -1314,12 +1317,12 @@ fn explain_says_why_a_pixel_has_its_byte() {
         assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
         let output = run(&directory, &["explain", "cone", "--pixel", &place, "--json"]);
         let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-        assert_eq!((&json["schema"], &json["byte"]), (&Value::from(1), &Value::from(byte)));
+        assert_eq!((&json["schema"], &json["byte"]), (&Value::from(2), &Value::from(byte)));
         let Some(seen) = json["seen"].get(0) else {
             assert_eq!((json["byte"].clone(), text.contains("the background")), (Value::from(0), true));
             continue;
         };
-        let shade_trace = &seen["accounts"][0];
+        let shade_trace = &seen["traces"][0];
         let sums = shade_trace["sums"].as_array().expect("sums");
         let last = sums.last().and_then(Value::as_u64).expect("a sum");
         assert_eq!((last >> 8, sums.len() as u64 - 1), (byte.into(), shade_trace["steps"].as_u64().expect("steps")));
@@ -1346,7 +1349,7 @@ fn explain_draws_a_row() {
 
     let output = run(&directory, &["explain", "cone", "--row", "120", "--json"]);
     let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!((&json["schema"], &json["row"]), (&Value::from(1), &Value::from(120)));
+    assert_eq!((&json["schema"], &json["row"]), (&Value::from(2), &Value::from(120)));
     let columns = json["columns"].as_array().expect("columns");
     assert_eq!((columns.len(), json["slope"]["lit"].as_array().map(Vec::len)), (320, Some(320)));
     let faces = columns.iter().filter(|column| !column["face"].is_null()).count();
@@ -1372,8 +1375,8 @@ fn explain_refuses_what_is_not_there() {
         (vec!["explain", "cone", "--pixel", "1,2", "-o", "x.svg"], 2, "--out is for the chart of a --row"),
         (vec!["explain", "cone", "--row", "200"], 2, "no row 200 in a frame of 200 rows"),
         (vec!["explain", "cone", "--row", "2", "-o", "x.png"], 2, "x.png: a chart's name must end in .svg"),
-        (vec!["explain", "none.obj", "--pixel", "1,2"], 1, "none.obj: No such file"),
-        (vec!["explain", "cone", "--row", "2", "-o", "none/x.svg"], 1, "none"),
+        (vec!["explain", "none.obj", "--pixel", "1,2"], 3, "none.obj: No such file"),
+        (vec!["explain", "cone", "--row", "2", "-o", "none/x.svg"], 3, "none"),
     ] {
         assert_fails(&run(&directory, &words), status, says);
     }

@@ -39,11 +39,11 @@ fn program(folder: &Path) -> Command {
     command
 }
 
-/// That the program failed with status 1 and said one line.
+/// That the program failed with this status and said one line.
 #[track_caller]
-fn assert_failed(output: &Output) -> String {
+fn assert_failed(output: &Output, status: i32) -> String {
     let said = String::from_utf8(output.stderr.clone()).expect("text");
-    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert_eq!(output.status.code(), Some(status), "{output:?}");
     assert!(said.starts_with("mode13h: ") && said.lines().count() == 1 && output.stdout.is_empty(), "{output:?}");
     said
 }
@@ -502,7 +502,7 @@ fn f4_no_room_at_any_block() {
                 .expect("started");
             let stands = fs::read(&path).expect("something stands there");
             if limit < blocks {
-                assert!(assert_failed(&output).contains(name));
+                assert!(assert_failed(&output, 3).contains(name));
                 assert!(stands == OLD, "{words:?}, {limit} of {blocks} blocks");
             } else {
                 assert!(output.status.success() && stands == new, "{words:?}, {limit} of {blocks} blocks: {output:?}");
@@ -522,7 +522,7 @@ fn f4_a_full_device() {
         let folder = folder();
         let path = folder.path().join(name);
         std::os::unix::fs::symlink("/dev/full", &path).expect("linked");
-        let said = assert_failed(&program(folder.path()).args(words).output().expect("started"));
+        let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 3);
         assert!(said.ends_with(&format!("{name}: the disk is full\n")), "{said}");
         assert_eq!(fs::read_link(&path).expect("a link still"), Path::new("/dev/full"));
         tried.add(1);
@@ -561,7 +561,7 @@ fn f4_no_right_to_write() {
             if fs::metadata("/proc/self").expect("Linux has it").uid() == 0 {
                 command.uid(65_534).gid(65_534);
             }
-            let said = assert_failed(&command.output().expect("started"));
+            let said = assert_failed(&command.output().expect("started"), 3);
             assert!(said.ends_with(&format!("{name}: no right to write there\n")), "{said}");
             // So that it can be removed.
             set(&place, 0o755);
@@ -586,7 +586,7 @@ fn f4_a_folder_that_is_not_there() {
         for (directory, says) in [("none", "the directory none does not exist"), ("file", "file is no directory")] {
             let path = format!("{directory}/{name}");
             let words: Vec<&str> = words.iter().map(|word| if word == &name { path.as_str() } else { word }).collect();
-            let said = assert_failed(&program(folder.path()).args(words).output().expect("started"));
+            let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 3);
             assert!(said.ends_with(&format!("{path}: {says}\n")), "{said}");
             assert_eq!(names_in(folder.path()), ["file"]);
             assert_eq!(fs::read(folder.path().join("file")).expect("read"), OLD);
@@ -640,7 +640,7 @@ fn f4_a_row_of_pictures_that_cannot_be_written() {
         // The fifth name is taken by a folder.
         fs::create_dir(folder.path().join("x4.png")).expect("made");
         let words = ["render", "torus", "-o", "x%d.png", "--frames", "9", "--threads", threads];
-        let said = assert_failed(&program(folder.path()).args(words).output().expect("started"));
+        let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 3);
         assert!(said.ends_with("x4.png: is a directory\n"), "{said}");
         for name in names_in(folder.path()).into_iter().filter(|name| name != "x4.png") {
             let bytes = fs::read(folder.path().join(&name)).expect("read");
@@ -691,7 +691,7 @@ fn p5_broken_palettes_change_nothing() {
             for words in
                 [["render", "cube", "-o", "x.png", "--palette", &name].as_slice(), &["palette", &name, "-o", "x.png"]]
             {
-                let said = assert_failed(&program(folder.path()).args(words).output().expect("started"));
+                let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 2);
                 let place = said.contains(&format!("{name}: line ")) || said.contains(&format!("{name}: offset "));
                 assert!(place, "{said}");
                 assert_eq!(fs::read(&picture).expect("read"), OLD);

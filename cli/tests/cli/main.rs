@@ -8,3 +8,4 @@ mod files;
 mod record;
 mod show;
 mod verify;
+mod words;

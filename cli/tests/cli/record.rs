@@ -27,7 +27,7 @@ fn assert_fails(output: &Output, status: i32, says: &str) {
 #[test]
 fn a_frame_is_recorded_and_replayed() {
     let directory = tempfile::tempdir().expect("a directory");
-    let output = run(directory.path(), "render torus -o x.png --record x.rec --turn 20 --hidden scan-line");
+    let output = run(directory.path(), "render torus -o x.png --record x.rec --turn 20 --hidden-surfaces scan-line");
     assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty(), "{output:?}");
     let record = Record::load(directory.path().join("x.rec")).expect("a record");
     assert_eq!(record.hidden_surfaces, HiddenSurfaces::ScanLine);
@@ -71,11 +71,11 @@ fn f4_what_cannot_be_recorded_or_replayed_is_one_line() {
     let directory = tempfile::tempdir().expect("a directory");
     std::fs::write(directory.path().join("broken.rec"), SMALL.replace("end", "flat 1")).expect("written");
     for (words, status, says) in [
-        ("verify --replay none.rec", 1, "none.rec: No such file"),
-        ("verify --replay broken.rec", 1, "broken.rec: line 8: expected an x in 1/256 pixel, found \"\""),
-        ("verify --replay .", 1, ".: "),
+        ("verify --replay none.rec", 3, "none.rec: No such file"),
+        ("verify --replay broken.rec", 2, "broken.rec: line 8: expected an x in 1/256 pixel, found \"\""),
+        ("verify --replay .", 3, ".: "),
         ("verify --replay broken.rec --seed 1", 2, "--seed"),
-        ("render cube -o x.png --record none/x.rec", 1, "none/x.rec: the directory none does not exist"),
+        ("render cube -o x.png --record none/x.rec", 3, "none/x.rec: the directory none does not exist"),
         ("render cube -o x.png --record x.png", 2, "x.png: one name for the picture and its record"),
     ] {
         assert_fails(&run(directory.path(), words), status, says);

@@ -41,16 +41,22 @@ fn show_writes_where_it_is_told_in_silence() {
 }
 
 #[test]
-fn show_without_a_name_says_where_and_overwrites_nothing() {
+fn show_without_a_name_says_where_and_overwrites_by_force_alone() {
     let directory = tempfile::tempdir().expect("a directory");
-    std::fs::write(directory.path().join("R5.png"), "mine").expect("written");
-    for name in ["R5-0002.png", "R5-0003.png"] {
-        let output = run(&directory, &["show", "r5"]);
+    let read = || std::fs::read(directory.path().join("R5.png")).expect("there");
+    let says_where = |output: &Output| {
         assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
-        assert!(String::from_utf8_lossy(&output.stdout).starts_with(&format!("{name}: ")), "{output:?}");
-    }
-    assert_eq!(names_in(&directory), ["R5-0002.png", "R5-0003.png", "R5.png"]);
-    assert_eq!(std::fs::read(directory.path().join("R5.png")).expect("there"), b"mine");
+        assert!(String::from_utf8_lossy(&output.stdout).starts_with("R5.png: "), "{output:?}");
+    };
+    says_where(&run(&directory, &["show", "r5"]));
+    let picture = read();
+    std::fs::write(directory.path().join("R5.png"), "mine").expect("written");
+    let output = run(&directory, &["show", "r5"]);
+    let line = String::from_utf8_lossy(&output.stderr);
+    assert_eq!((output.status.code(), read()), (Some(3), b"mine".to_vec()), "{line}");
+    assert!(line.starts_with("mode13h: R5.png: exists already; --force ") && line.lines().count() == 1, "{line}");
+    says_where(&run(&directory, &["show", "r5", "--force"]));
+    assert_eq!((read(), names_in(&directory)), (picture, vec!["R5.png".to_string()]));
 }
 
 #[test]
@@ -61,7 +67,7 @@ fn show_of_wrong_words_is_one_line_and_status_2() {
         (&["show", "S4"], 2, "no picture of 'S4'"),
         (&["show", "R5", "-o", "r5.gif"], 2, "r5.gif"),
         (&["show", "-o", "r5.png"], 2, "<ID>"),
-        (&["show", "R5", "-o", "no/such/place.png"], 1, "place.png"),
+        (&["show", "R5", "-o", "no/such/place.png"], 3, "place.png"),
     ];
     for (words, status, says) in cases {
         let output = run(&directory, words);

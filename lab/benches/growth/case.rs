@@ -218,8 +218,10 @@ pub(crate) fn lights(light: fn(u32) -> Light) -> Vec<Case> {
     let of = |count: u32| {
         let (mut renderer, mut vga) = (renderer(), Vga::new());
         let mut scene = showing(&sphere.mesh);
-        scene.lights_mut().clear();
-        (0..count).for_each(|i| scene.add_light(light(i)));
+        scene.clear_lights();
+        for i in 0..count {
+            scene.add_light(light(i));
+        }
         Case::new(count.into(), 1.0, move || draw(&mut renderer, &mut scene, &mut vga))
     };
     [1, 2, 4, 8, 16, 32, 64].into_iter().map(of).collect()

@@ -337,6 +337,11 @@ pub fn warnings(study: &Study) -> Vec<String> {
     tied.chain(broken).collect()
 }
 
+/// Whether each budget keeps the share of pixels within its error that it promises.
+pub fn budgets_are_kept(study: &Study) -> bool {
+    study.budget.iter().all(|row| row.within >= PROMISE)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -457,6 +462,7 @@ mod tests {
             claims: Vec::new(),
         };
         assert_eq!(warnings(&study), ["the budget of 0.5 keeps 99.56 % of the pixels within 0.5 shades, not 99.9 %"]);
+        assert!(!budgets_are_kept(&study));
     }
 
     #[test]

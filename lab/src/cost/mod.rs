@@ -30,6 +30,6 @@ pub use clock::Clock;
 pub use configuration::BUDGETS;
 pub use error::CostError;
 pub use interleaved::Samples;
-pub use measure::{Settings, Step, Subject, measure, warnings};
+pub use measure::{Settings, Step, Subject, budgets_are_kept, measure, warnings};
 pub use probe::{Probe, ProbeError};
 pub use study::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, Verdict};

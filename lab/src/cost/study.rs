@@ -174,7 +174,7 @@ impl Aspect {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::VertexPath => "vertex path",
+            Self::VertexPath => "arithmetic",
             Self::VertexRounding => "vertex rounding",
             Self::Kernel => "kernel",
             Self::Dither => "dither",

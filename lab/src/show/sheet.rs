@@ -12,7 +12,7 @@ use super::enlarged::Enlarged;
 use super::face::Segment;
 use super::panel::{Mark, Panel};
 use super::{Case, Comparison};
-use mode13h::export::{Picture, PictureError, PixelShape, Scale, encode_png};
+use mode13h::export::{Picture, PictureError, PixelShape, Png};
 use mode13h::palette::Rgb;
 use mode13h::raster::{Frame, Index};
 
@@ -159,7 +159,7 @@ pub(super) fn png(case: &Case, comparison: &Comparison) -> Result<Vec<u8>, Pictu
         words(&mut frame, MARGIN, height - MARGIN - 15, legend, Ink::Words, &FONT_9X15);
     }
     let shape = PixelShape::SQUARE;
-    encode_png(&Picture { pixels: &pixels, width: w, height: h, pitch: w, palette: &inks.colors, shape }, Scale::One)
+    Png::INDEXED.encode(&Picture { pixels: &pixels, width: w, height: h, pitch: w, palette: &inks.colors, shape })
 }
 
 fn pixels_in_words(count: usize) -> String {

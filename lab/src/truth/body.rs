@@ -30,20 +30,28 @@ pub(super) struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    pub(super) fn new(scene: &Scene, object: &'a Object, eye: &Eye) -> Self {
-        let turn = Turn::new(object);
-        let (pivot, position) = (wide(object.pivot), wide(object.position));
+    /// An object by its index. One that is not visible has no corners.
+    pub(super) fn new(scene: &'a Scene, index: usize, eye: &Eye) -> Self {
+        let object = &scene.objects()[index];
+        // The object, and what it hangs from, the nearest first.
+        let above = |below: &&'a Object| below.parent.and_then(|id| scene.get(id));
+        let chain: Vec<(&Object, Turn)> =
+            core::iter::successors(Some(object), above).map(|object| (object, Turn::new(object))).collect();
+        let is_visible = chain.iter().all(|(object, _)| object.visible);
         let mesh = object.mesh();
         let corner = |(&point, &normal)| {
-            let from_pivot = times(sub(wide(point), pivot), f64::from(object.scale));
-            let world = add(position, turn.apply(from_pivot));
-            let normal = turn.apply(wide(normal));
+            let (mut world, mut normal) = (wide(point), wide(normal));
+            for (object, turn) in &chain {
+                let from_pivot = times(sub(world, wide(object.pivot)), f64::from(object.scale));
+                world = add(wide(object.position), turn.apply(from_pivot));
+                normal = turn.apply(normal);
+            }
             Corner { world, normal: unit(normal).unwrap_or(normal), seen: eye.see(world) }
         };
         let shines_in_color = |light: &Light| light.is_colored() && light.intensity() != 0.0;
         Self {
             object,
-            corners: mesh.positions().iter().zip(mesh.normals()).map(corner).collect(),
+            corners: mesh.positions().iter().zip(mesh.normals()).filter(|_| is_visible).map(corner).collect(),
             two_sided: !mesh.is_outward(),
             in_color: scene.lights().iter().any(shines_in_color) || object.materials.iter().any(Material::is_colored),
         }

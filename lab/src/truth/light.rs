@@ -46,7 +46,10 @@ pub(super) fn intensity(
     }
     // Each has its own colour.
     let (own, of_highlight) = if in_color { (material.color, material.highlight) } else { ([1.0; 3], [1.0; 3]) };
-    [0, 1, 2].map(|i| (body[i] * f64::from(own[i]) + mirrored[i] * f64::from(of_highlight[i])).clamp(0.0, 1.0))
+    [0, 1, 2].map(|i| {
+        let intensity = (body[i] * f64::from(own[i]) + mirrored[i] * f64::from(of_highlight[i])).clamp(0.0, 1.0);
+        material.response.as_ref().map_or(intensity, |response| f64::from(response.apply(intensity as f32)))
+    })
 }
 
 /// The direction to a light, and how much of it is left at a point; `None` if nothing is. A lamp at the

@@ -241,11 +241,11 @@ impl<'a> Truth<'a> {
         for (index, light) in scene.lights().iter().enumerate() {
             hooks::check_light(light).map_err(|what| TruthError::Light { index, what })?;
         }
-        for (index, object) in scene.objects().iter().enumerate() {
-            hooks::check_object(object).map_err(|what| TruthError::Object { index, what })?;
+        for index in 0..scene.objects().len() {
+            hooks::check_object(scene, index).map_err(|what| TruthError::Object { index, what })?;
         }
         let eye = Eye::new(&scene.camera, screen).map_err(TruthError::Camera)?;
-        let bodies = scene.objects().iter().map(|object| Body::new(scene, object, &eye)).collect();
+        let bodies = (0..scene.objects().len()).map(|index| Body::new(scene, index, &eye)).collect();
         Ok(Self { scene, screen, eye, bodies })
     }
 

@@ -133,7 +133,7 @@ fn facing(random: &mut Random) -> Option<(Scene, Ramp)> {
     let corners = vec![Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
     let normals = (0..3).map(|_| Vec3::from_array([0; 3].map(|_| random.around_zero(1.0) as f32 + 1e-6))).collect();
     let mut scene = super::framed(Mesh::with_normals(corners, normals, vec![[0, 1, 2]]).ok()?);
-    scene.lights_mut().clear();
+    scene.clear_lights();
     scene.camera = mode13h::scene::Camera::default();
     let first = random.below(256) as u8;
     let ramp = Ramp::new(first, 1 + random.below(256 - u32::from(first)) as u16)?;

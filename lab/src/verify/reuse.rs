@@ -83,7 +83,9 @@ fn change(random: &mut Random, scene: &mut Scene, meshes: &[Shared<Mesh>], palet
             "the palette"
         }
         (_, 3) => {
-            scene.lights_mut().truncate(1);
+            while let Some(&id) = scene.light_ids().get(1) {
+                scene.remove_light(id);
+            }
             let towards = [random.around_zero(1.0) as f32, 0.5, 1.0];
             scene.add_light(Light::sun(towards).with_intensity(random.unit() as f32));
             "the light"

@@ -303,7 +303,7 @@ fn faces_with_the_same_corners_keep_their_own_numbers() {
 fn every_pixel_of_a_long_row_and_of_equal_depths() {
     let mut scene = square([8.0, 312.0], [40.0, 160.0]);
     scene.add_light(Light::lamp([-60.0, 30.0, 40.0], 200.0));
-    *scene.lights_mut() = scene.lights()[1..].to_vec();
+    scene.remove_light(scene.light_ids()[0]);
     let mut twins = scene.clone();
     let mut twin = twins.objects()[0].clone().named("twin");
     twin.materials[0].diffuse *= 0.5;

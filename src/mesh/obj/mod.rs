@@ -89,6 +89,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, ObjError> {
 ///
 /// # Errors
 /// As [`load`].
+#[doc(hidden)]
 pub fn load_with(
     path: impl AsRef<Path>,
     options: &Options,
@@ -156,6 +157,7 @@ pub fn parse(
 ///
 /// # Errors
 /// As [`load`].
+#[doc(hidden)]
 pub fn parse_with(
     reader: impl BufRead,
     path: impl AsRef<Path>,

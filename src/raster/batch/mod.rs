@@ -81,6 +81,7 @@ impl Batch {
     /// Whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn takes(interpolation: Interpolation) -> bool {
         matches!(interpolation, Interpolation::Flat(_) | Interpolation::Gouraud | Interpolation::GouraudReseeded)
     }
@@ -125,6 +126,7 @@ impl Batch {
     /// Whether there is no room left.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn is_full(&self) -> bool {
         self.count == Self::CAPACITY
     }
@@ -178,6 +180,7 @@ impl<D: Cell> Raster<'_, D> {
 
     /// The same for triangles that all lie wholly inside the frame, as
     /// [`triangle_inside`](Self::triangle_inside).
+    #[doc(hidden)]
     pub fn batch_inside(&mut self, batch: &Batch) -> DrawStats {
         self.draw_batch::<false>(batch)
     }

@@ -395,6 +395,7 @@ impl<D: Cell> Raster<'_, D> {
 
     /// The same for a triangle that lies wholly inside the frame, as
     /// [`triangle_inside`](Self::triangle_inside).
+    #[doc(hidden)]
     pub fn triangle_with_effects_inside(
         &mut self,
         vertices: &[Vertex; 3],

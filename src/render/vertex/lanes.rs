@@ -203,6 +203,7 @@ mod tests {
             environment_size: None,
             blend: Blend::Opaque,
             has_effects: false,
+            response: None,
         })
     }
 

@@ -56,6 +56,25 @@ impl VertexAttributes {
     }
 }
 
+/// Gives each vertex the shade that its material's own answer to light makes of what it has.
+#[inline(never)]
+pub(super) fn respond(
+    geometry: &Geometry<'_>,
+    paints: &[SurfaceMaterial],
+    lit: &mut LitVertices,
+    extras: &mut [VertexAttributes],
+) {
+    for (i, &surface) in geometry.vertex_surfaces.iter().enumerate() {
+        let paint = &paints[usize::from(surface)];
+        lit.shades[i] = lit.shades[i].map(|shade| paint.respond(shade));
+        if let Some(extra) = extras.get_mut(i) {
+            let answered = |channels: [U8F8; 3]| channels.map(|channel| paint.respond_on_channel(channel));
+            extra.front.channels = answered(extra.front.channels);
+            extra.back_channels = answered(extra.back_channels);
+        }
+    }
+}
+
 /// Every vertex on the screen, none of which can need clipping.
 #[inline(never)]
 pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut LitVertices) {

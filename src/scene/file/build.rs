@@ -180,9 +180,9 @@ impl<'a> Builder<'a> {
             _ => return Err(Fault::value(layout.span(), "a light is either a `sun` or a `lamp`")),
         };
         let light = light.with_intensity(intensity.map_or(1.0, |intensity| intensity.0));
-        self.scene.add_light(light.with_color(color.map_or([1.0; 3], |color| color.0)));
+        let light = self.scene.add_light(light.with_color(color.map_or([1.0; 3], |color| color.0)));
         if let Some(path) = path {
-            let what = Moving::Light(self.scene.lights().len() - 1);
+            let what = Moving::Light(light);
             self.scene.motions.push(Motion::Path { what, path });
         }
         Ok(())

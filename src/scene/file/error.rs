@@ -10,6 +10,7 @@ use std::vec::Vec;
 use std::{error, fmt, io};
 
 use super::place::{Place, key_at};
+use super::renamed;
 use crate::mesh::obj::ObjError;
 use crate::palette::file::PaletteError;
 use crate::texture::LoadError;
@@ -48,6 +49,11 @@ pub enum SceneErrorKind {
     UnknownKey {
         /// Those there are.
         known: String,
+    },
+    /// The key had this name before.
+    Renamed {
+        /// What it is called now.
+        new: &'static str,
     },
     /// A key is needed that is not there.
     MissingKey,
@@ -103,7 +109,10 @@ impl Fault {
                     key = Some(key.map_or(String::new(), |table| table + ".") + field);
                     kind = SceneErrorKind::MissingKey;
                 } else if message.starts_with("unknown field `") {
-                    kind = SceneErrorKind::UnknownKey { known: known_keys(message) };
+                    kind = match key.as_deref().and_then(renamed::key) {
+                        Some(new) => SceneErrorKind::Renamed { new },
+                        None => SceneErrorKind::UnknownKey { known: known_keys(message) },
+                    };
                 } else if let Some(turned) = expected_first(message) {
                     *message = turned;
                 }
@@ -189,6 +198,7 @@ impl fmt::Display for SceneErrorKind {
             Self::NotText => write!(f, "not text in UTF-8"),
             Self::NotToml(what) => write!(f, "not TOML: {what}"),
             Self::UnknownKey { known } => write!(f, "unknown key; known are {known}"),
+            Self::Renamed { new } => write!(f, "is now called `{new}`"),
             Self::MissingKey => write!(f, "missing"),
             Self::Value(what) => f.write_str(what),
             Self::File { path, error } => write!(f, "{}: {error}", path.display()),

@@ -29,6 +29,7 @@
 //! | `build` | from the layout to a [`Scene`] |
 //! | `object`, `material`, `motion`, `camera` | the parts of it |
 //! | `named` | the files that a scene names |
+//! | `renamed` | keys and values that had other names before |
 //! | `error`, `place` | what is wrong, in which line and column, of which key |
 
 mod build;
@@ -41,6 +42,7 @@ mod motion;
 mod named;
 mod object;
 mod place;
+mod renamed;
 mod shape;
 mod value;
 

@@ -9,6 +9,7 @@ use std::string::String;
 use glam::Vec3;
 use serde::de::{Deserialize, Deserializer, Error, Expected, SeqAccess, Unexpected, Visitor};
 
+use super::renamed;
 use crate::palette::Rgb;
 
 /// A kind of number.
@@ -284,7 +285,12 @@ impl<'de, T: FromStr<Err: fmt::Display>> Deserialize<'de> for Name<T> {
             }
 
             fn visit_str<E: Error>(self, name: &str) -> Result<Name<T>, E> {
-                name.parse().map(Name).map_err(|error| E::custom(format_args!("\"{name}\": {error}")))
+                name.parse().map(Name).map_err(|error| match renamed::value(name) {
+                    Some(new) if new.parse::<T>().is_ok() => {
+                        E::custom(format_args!("\"{name}\" is now called \"{new}\""))
+                    }
+                    _ => E::custom(format_args!("\"{name}\": {error}")),
+                })
             }
         }
 

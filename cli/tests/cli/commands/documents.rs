@@ -139,9 +139,9 @@ fn documents_give_options_values_that_they_take() {
                 }
                 let known = match pair[0] {
                     "--shading" => value.parse::<Shading>().is_ok(),
-                    "--hidden" => value.parse::<HiddenSurfaces>().is_ok(),
+                    "--hidden-surfaces" => value.parse::<HiddenSurfaces>().is_ok(),
                     "--mapping" => value.parse::<Mapping>().is_ok(),
-                    "--vertex-path" => value.parse::<VertexPath>().is_ok(),
+                    "--arithmetic" => value.parse::<VertexPath>().is_ok(),
                     "--palette" => value == "auto" || mode13h::palette::builtin::by_name(value).is_some(),
                     _ => continue,
                 };
@@ -220,7 +220,7 @@ fn documents_name_the_keys_of_the_window() {
     let paragraph = PROGRAM.split("\nIn the window: ").nth(1).expect("keys").split("\n\n").next().expect("a paragraph");
     let documented = keys_of(paragraph);
     let help = help(&[]);
-    let help = help.split("Keys in the window: ").nth(1).expect("keys");
+    let help = help.split("Keys in the window:\n").nth(1).expect("keys");
     assert_eq!(documented, keys_of(help), "docs/program.md and --help");
     // What the program asks for.
     let sources = crate::support::workspace::root().join("cli/src");

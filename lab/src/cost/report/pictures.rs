@@ -3,7 +3,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use mode13h::export::{Picture, Scale, encode_png};
+use mode13h::export::{Picture, Png};
 use mode13h::palette::Palette;
 use mode13h::palette::Rgb;
 
@@ -49,7 +49,7 @@ fn color_of(error: f32) -> u8 {
 
 fn uri(pixels: &[u8], colors: [Rgb; 256]) -> Option<String> {
     let palette = Palette::from_colors(colors);
-    let file = encode_png(&Picture::mode_13h(pixels, &palette), Scale::One).ok()?;
+    let file = Png::INDEXED.encode(&Picture::mode_13h(pixels, &palette)).ok()?;
     Some(format!("data:image/png;base64,{}", STANDARD.encode(file)))
 }
 

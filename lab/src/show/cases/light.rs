@@ -45,7 +45,9 @@ struct Lit {
 fn compare(distance: f64, lit: Lit) -> Comparison {
     let view = View { size: SIZE, eye: [0.0, 0.0, distance], field_of_view: 2.0 * libm::atan(1.08 / distance) };
     let mut scene = scene(lit.mesh, view);
-    lit.suns.into_iter().for_each(|sun| scene.add_light(sun));
+    for sun in lit.suns {
+        scene.add_light(sun);
+    }
     let drawn = engine::draw_scene(SIZE, &scene);
     let measure = Measure { counts_writes: false, ..LIT };
     of_scene(drawn, measure, |panel| {

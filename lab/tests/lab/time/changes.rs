@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::LazyLock;
 
 use mode13h::glam::Vec3;
-use mode13h::light::{Blend, Light, Material, RampChoice};
+use mode13h::light::{Blend, Light, LightResponse, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
@@ -127,11 +127,28 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene::objects_mut", |w, r| *one_object(w, r) = object(r)),
     seen("Scene::lights_mut", |w, r| {
         let lights = w.scene.lights_mut();
-        match r.within(0, 2) {
-            0 => lights.clear(),
-            1 => lights.truncate(1),
-            // The order of their sum.
-            _ => lights.reverse(),
+        // The order of their sum.
+        if r.within(0, 1) == 0 { lights.reverse() } else { lights.iter_mut().for_each(|at| *at = light(r)) }
+    }),
+    seen("Scene::clear_lights", |w, _| w.scene.clear_lights()),
+    seen("Scene::remove_light", |w, r| {
+        if let Some(&id) = one_of_few(w.scene.light_ids(), r) {
+            w.scene.remove_light(id);
+        }
+    }),
+    seen("Scene::light_mut", |w, r| {
+        if let Some(&id) = one_of_few(w.scene.light_ids(), r) {
+            *w.scene.light_mut(id).expect("there") = light(r);
+        }
+    }),
+    seen("Scene::remove", |w, r| {
+        if let (true, Some(&id)) = (w.scene.objects().len() > 1, one_of_few(w.scene.object_ids(), r)) {
+            w.scene.remove(id);
+        }
+    }),
+    seen("Scene::get_mut", |w, r| {
+        if let Some(&id) = one_of_few(w.scene.object_ids(), r) {
+            *w.scene.get_mut(id).expect("there") = object(r);
         }
     }),
     seen("Scene::set_time", |w, r| {
@@ -189,7 +206,9 @@ pub(super) const CHANGES: &[Change] = &[
             let mut wall = Object::new(shapes::wall(1, 1));
             wall.set_angles([0.0, 0.2, 0.0]);
             w.scene.objects_mut()[0] = wall;
-            w.scene.lights_mut().truncate(3);
+            while let Some(&id) = w.scene.light_ids().get(3) {
+                w.scene.remove_light(id);
+            }
             w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
             w.scene.preferences.max_error = None;
             w.settings.accuracy = None;
@@ -230,7 +249,8 @@ pub(super) const CHANGES: &[Change] = &[
         fewer_objects(w);
     }),
     seen("Moving::Light", |w, r| {
-        with_motion(w, r, |r| Motion::Path { what: Moving::Light(0), path: circle(r) });
+        let Some(&id) = w.scene.light_ids().first() else { return };
+        with_motion(w, r, |r| Motion::Path { what: Moving::Light(id), path: circle(r) });
         w.scene.set_time(0.6);
     }),
     seen("Moving::Eye", |w, r| {
@@ -264,6 +284,14 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("UpAxis::Y", |w, r| one_object(w, r).up_axis = UpAxis::Y),
     seen("UpAxis::Z", |w, r| one_object(w, r).up_axis = UpAxis::Z),
+    seen("Object.visible", |w, r| one_object(w, r).visible ^= true),
+    seen("Object.parent", |w, r| {
+        // Only what stands before it in the scene, so that there is no circle.
+        let ids = w.scene.object_ids().to_vec();
+        let below = r.within(0, ids.len() as i64 - 1) as usize;
+        let parent = one_of_few(&ids[..below], r).copied();
+        w.scene.objects_mut()[below].parent = parent;
+    }),
     seen("Object::rotate_x", |w, r| one_object(w, r).rotate_x(r.unit())),
     seen("Object::rotate_y", |w, r| one_object(w, r).rotate_y(r.unit())),
     seen("Object::rotate_z", |w, r| one_object(w, r).rotate_z(r.unit())),
@@ -278,6 +306,11 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Material.shininess", |w, r| {
         let shininess = between(r, 1.0, 30.0).round();
         shiny(w, r, |material| material.shininess = shininess);
+    }),
+    seen("Material.response", |w, r| {
+        let tones = r.within(2, 5) as f32;
+        let toon = LightResponse::new(move |intensity| (intensity * tones).floor() / tones);
+        one_material(w, r).response = sometimes(r, |_| toon);
     }),
     seen("Material.ramp", |w, r| one_material(w, r).ramp = RampChoice::Number(r.within(0, 7) as u16)),
     seen("RampChoice::Number", |w, r| {
@@ -685,6 +718,12 @@ fn forced(random: &mut Random) -> (Effect, Option<bool>) {
 
 // Where things are
 
+/// One of a list, if it has any.
+fn one_of_few<'a, T>(list: &'a [T], random: &mut Random) -> Option<&'a T> {
+    let last = list.len().checked_sub(1)?;
+    list.get(random.within(0, last as i64) as usize)
+}
+
 fn one_object<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Object {
     let objects = world.scene.objects_mut();
     let last = objects.len() as i64 - 1;
@@ -804,8 +843,12 @@ fn fewer_objects(world: &mut World) {
     let mut scene = Scene::new();
     (scene.camera, scene.ambient, scene.background) = (old.camera, old.ambient, old.background);
     (scene.palette, scene.fog, scene.preferences) = (old.palette.clone(), old.fog, old.preferences);
-    *scene.lights_mut() = old.lights().to_vec();
-    for object in objects.into_iter().rev().take(3) {
+    for &light in old.lights() {
+        scene.add_light(light);
+    }
+    for mut object in objects.into_iter().rev().take(3) {
+        // Ids are another scene's.
+        object.parent = None;
         scene.add(object);
     }
     world.scene = scene;

@@ -1,0 +1,45 @@
+//! What drawing a frame came to, for programs.
+
+use mode13h::raster::DrawStats;
+use mode13h::render::Stats;
+use serde_json::{Map, Value, json};
+
+/// The figures of a frame.
+pub(crate) fn json(number: u32, stats: &Stats) -> Value {
+    let shares: Map<String, Value> =
+        stats.shares.iter().map(|(shading, triangles)| (shading.name().to_string(), triangles.into())).collect();
+    let DrawStats { spans, covered, pixels, tested, textured, mipmapped, dithered, fogged, blended, mixed, lit } =
+        stats.raster;
+    json!({
+        "frame": number,
+        "shading": stats.shading.name(),
+        "max_error": stats.max_error,
+        "arithmetic": stats.vertex_path.name(),
+        "kernel": stats.kernel,
+        "hidden_surfaces": stats.hidden_surfaces.name(),
+        "redrawn": stats.redrawn,
+        "kept_objects": stats.kept,
+        "decided_objects": stats.decided,
+        "allocated_bytes": stats.allocated,
+        "vertices": stats.vertices,
+        "lit": stats.lit,
+        "faces": stats.faces,
+        "clipped": stats.clipped,
+        "culled": stats.culled,
+        "triangles": stats.drawn,
+        "triangles_by_shading": shares,
+        "raster": {
+            "spans": spans,
+            "covered": covered,
+            "pixels": pixels,
+            "tested": tested,
+            "textured": textured,
+            "mipmapped": mipmapped,
+            "dithered": dithered,
+            "fogged": fogged,
+            "blended": blended,
+            "mixed": mixed,
+            "lit": lit,
+        },
+    })
+}

@@ -1,0 +1,100 @@
+//! Words that are nearly right: the nearest name, and the new names of what was called otherwise before.
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use mode13h::mesh::shapes;
+use mode13h::scene::shipped;
+
+/// The names of the commands.
+pub(crate) const COMMANDS: [&str; 10] =
+    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "verify", "generate"];
+
+/// Options that were renamed, and what each is now.
+const OPTIONS: [(&str, &str); 4] = [
+    ("--rung", "--shading"),
+    ("--rungs", "--shadings"),
+    ("--hidden", "--hidden-surfaces"),
+    ("--vertex-path", "--arithmetic, with the values float and fixed"),
+];
+
+/// Values of options that were renamed, and what each is now.
+const VALUES: [(&str, &str); 2] = [("gouraud-period", "gouraud-vintage"), ("integer", "fixed")];
+
+/// The new name of an option.
+pub(crate) fn renamed_option(old: &str) -> Option<&'static str> {
+    let old = old.split(['=', ' ']).next()?;
+    OPTIONS.into_iter().find_map(|(name, new)| (name == old).then_some(new))
+}
+
+/// The new name of an option's value.
+pub(crate) fn renamed_value(old: &str) -> Option<&'static str> {
+    VALUES.into_iter().find_map(|(name, new)| (name == old).then_some(new))
+}
+
+/// The nearest of some names, if one is near: at most a third of the letters are wrong, missing, too many or swapped.
+pub(crate) fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let far = |name: &str| strsim::damerau_levenshtein(word, name);
+    let near = names.into_iter().filter(|name| far(name) * 3 <= name.chars().count().max(word.chars().count()));
+    near.min_by_key(|name| far(name))
+}
+
+/// The nearest command, if `word` is neither a command nor an INPUT, and no scene or shape is nearer.
+pub(crate) fn mistyped_command(word: &OsStr) -> Option<&'static str> {
+    let path = Path::new(word);
+    let word = word.to_str().filter(|word| !word.starts_with('-'))?;
+    if path.symlink_metadata().is_ok() || path.extension().is_some() {
+        return None;
+    }
+    let nearest = nearest(word, COMMANDS.into_iter().chain(inputs())).filter(|nearest| *nearest != word)?;
+    COMMANDS.into_iter().find(|name| *name == nearest)
+}
+
+/// What INPUT should be, where it is neither a file nor a name: with the nearest name, if one is near.
+pub(crate) fn no_input(word: &str) -> String {
+    let near = match nearest(word, inputs().chain(COMMANDS)) {
+        Some(name) if COMMANDS.contains(&name) => format!("; did you mean the command {name}?"),
+        Some(name) => format!("; did you mean {name}?"),
+        None => String::new(),
+    };
+    format!("neither a file nor a scene nor a shape{near} (mode13h scenes lists the names)")
+}
+
+/// The names of scenes and shapes.
+fn inputs() -> impl Iterator<Item = &'static str> {
+    shipped::ALL.iter().map(|scene| scene.name).chain(shapes::NAMES)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_near() {
+        let names = ["render", "scenes", "show", "cost", "plan"];
+        for (word, name) in [
+            ("rendr", Some("render")),
+            ("redner", Some("render")),
+            ("scnees", Some("scenes")),
+            ("csot", Some("cost")),
+            ("plann", Some("plan")),
+            ("shw", Some("show")),
+            ("render", Some("render")),
+            ("house", None),
+            ("x", None),
+            ("", None),
+        ] {
+            assert_eq!(nearest(word, names), name, "{word}");
+        }
+    }
+
+    #[test]
+    fn a_name_that_there_is_was_not_mistyped() {
+        for name in inputs().chain(COMMANDS) {
+            assert_eq!(mistyped_command(OsStr::new(name)), None, "{name}");
+        }
+        assert_eq!(mistyped_command(OsStr::new("rendr")), Some("render"));
+        assert_eq!(mistyped_command(OsStr::new("rendr.toml")), None);
+        assert_eq!(mistyped_command(OsStr::new("--rendr")), None);
+    }
+}

@@ -1,0 +1,179 @@
+//! The words of the command line: the commands there are, and what is said where they are wrong.
+
+use std::ffi::OsString;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+
+use crate::failure::{EXIT_STATUS, Failure};
+use crate::typo::COMMANDS;
+use crate::{cost, demo, explain, generate, output, palette, plan, render, scenes, show, typo, verify};
+
+/// Columns of help, at most.
+const WIDTH: usize = 100;
+
+/// Draw scenes and models as a 386 with a VGA card did
+///
+/// A frame has 320 x 200 bytes, each an entry of a palette of 256 colours. Without a command the INPUT is shown in a
+/// window, as by `mode13h demo`.
+#[derive(Parser)]
+#[command(name = "mode13h", version, args_conflicts_with_subcommands = true)]
+pub(crate) struct Words {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    demo: demo::Options,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Show a scene or a model in a window
+    ///
+    /// So do `mode13h` and `mode13h INPUT`. An INPUT is loaded again when one of its files changes; the window says what
+    /// is wrong with it. Without a display one frame of each INPUT is saved as a PNG, under the first free name of
+    /// mode13h-0001.png, mode13h-0002.png and so on.
+    Demo(demo::Options),
+    /// Write a picture, a row of pictures, or a film
+    ///
+    /// Without -o the picture is INPUT.png in this directory, and the pictures of a row are INPUT-0000.png and so on. The
+    /// names are printed.
+    Render(render::Options),
+    /// List the scenes and shapes that have a name, or copy a scene
+    Scenes(scenes::Options),
+    /// Say what a scene calls for, object by object, and why
+    ///
+    /// The frame follows another that is 1/35 s earlier, so that it shows what is kept from frame to frame.
+    Plan(plan::Options),
+    /// Say why a pixel has its byte, or draw a row's intensity
+    Explain(explain::Options),
+    /// Measure what accuracy costs in time
+    ///
+    /// Each shading and each budget of error is timed, and compared with the truth. The report, a chart, the study as JSON
+    /// and every time that was taken are written into a directory.
+    Cost(cost::Options),
+    /// List palettes, look at one, convert it, or make one for a model
+    Palette(palette::Options),
+    /// Draw a hard case, the right way beside the fault
+    ///
+    /// Both are enlarged 16 times. Without an ID the cases are listed.
+    Show(show::Options),
+    /// Check the span kernels and the hard cases on this machine
+    Verify(verify::Options),
+    /// Print completions for a shell, or man pages
+    Generate(generate::Options),
+}
+
+/// All commands and options: what is parsed, and what help, completions and man pages are made from.
+pub(crate) fn command() -> clap::Command {
+    let keys_and_status = format!("{}\n\n{EXIT_STATUS}", demo::KEYS);
+    Words::command()
+        .max_term_width(WIDTH)
+        .mut_subcommands(|command| match command.get_name() {
+            "demo" => command.after_long_help(keys_and_status.clone()),
+            _ => command.after_long_help(EXIT_STATUS),
+        })
+        .after_long_help(keys_and_status)
+}
+
+/// What was typed; or, where that is help or a failure, what has become of it.
+pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
+    let typed = command().try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
+    typed.map_err(|error| match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => output::print(&error.render().to_string()),
+        _ => Err(Failure::words(sentence(&error))),
+    })
+}
+
+pub(crate) fn run(words: &Words) -> Result<(), Failure> {
+    match &words.command {
+        None => {
+            if let Some(command) = words.demo.more_inputs().iter().find_map(|word| named(word)) {
+                return Err(Failure::words(format!("{command} is a command, and stands before its INPUT")));
+            }
+            mistyped_command().map_or(Ok(()), |sentence| Err(Failure::words(sentence)))?;
+            demo::run(&words.demo)
+        }
+        Some(Command::Demo(options)) => demo::run(options),
+        Some(Command::Render(options)) => render::run(options),
+        Some(Command::Scenes(options)) => scenes::run(options),
+        Some(Command::Plan(options)) => plan::run(options),
+        Some(Command::Explain(options)) => explain::run(options),
+        Some(Command::Cost(options)) => cost::run(options),
+        Some(Command::Palette(options)) => palette::run(options),
+        Some(Command::Show(options)) => show::run(options),
+        Some(Command::Verify(options)) => verify::run(options),
+        Some(Command::Generate(options)) => generate::run(options, command()),
+    }
+}
+
+/// What is wrong with the words, as one sentence.
+fn sentence(error: &clap::Error) -> String {
+    if let Some(sentence) = mistyped_command() {
+        return sentence;
+    }
+    let context = |kind| match error.get(kind) {
+        Some(ContextValue::String(word)) => Some(word.as_str()),
+        Some(ContextValue::Strings(words)) => words.first().map(String::as_str),
+        _ => None,
+    };
+    let help = help();
+    if let Some(old) = context(ContextKind::InvalidArg)
+        && let Some(new) = typo::renamed_option(old)
+        && error.kind() == ErrorKind::UnknownArgument
+    {
+        return format!("{old} is now called {new} ({help} shows the options)");
+    }
+    if let Some(old) = context(ContextKind::InvalidValue)
+        && let Some(new) = typo::renamed_value(old)
+        && error.kind() == ErrorKind::InvalidValue
+    {
+        return format!("{old} is now called {new} ({help} shows the options)");
+    }
+    let message = error.render().to_string();
+    let message = message.strip_prefix("error: ").unwrap_or(&message);
+    let paragraph: Vec<&str> = message.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+    let suggestions = [ContextKind::SuggestedArg, ContextKind::SuggestedValue, ContextKind::SuggestedSubcommand];
+    let near = suggestions.into_iter().find_map(context);
+    let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+    format!("{}{near} ({help} shows the options)", paragraph.join(" "))
+}
+
+/// Where the first word is nearly a command's name, and nothing else: that.
+fn mistyped_command() -> Option<String> {
+    let word = first_word()?;
+    let command = typo::mistyped_command(&word)?;
+    Some(format!(
+        "{}: neither a command nor a file nor a scene nor a shape; did you mean {command}? (mode13h --help lists the \
+         commands)",
+        word.display()
+    ))
+}
+
+/// The words that show the help of the command that was typed.
+fn help() -> String {
+    match first_word().as_ref().and_then(named) {
+        Some(command) => format!("mode13h {command} --help"),
+        None => "mode13h --help".to_string(),
+    }
+}
+
+fn first_word() -> Option<OsString> {
+    std::env::args_os().nth(1)
+}
+
+/// The command of this name.
+fn named(word: &OsString) -> Option<&'static str> {
+    COMMANDS.into_iter().find(|name| word == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_commands_are_listed() {
+        let command = command();
+        assert!(command.get_subcommands().map(clap::Command::get_name).eq(COMMANDS));
+        command.debug_assert();
+    }
+}

@@ -1,0 +1,507 @@
+//! The words of the command line: help, completions, typos, old names, exit statuses, JSON, and what is overwritten.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::process::{Command, Output};
+
+use crate::support::tried::{Tried, is_here};
+use mode13h::scene::shipped;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const COMMANDS: [&str; 10] =
+    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "verify", "generate"];
+
+/// The commands that draw a scene.
+const DRAWING: [&str; 5] = ["demo", "render", "plan", "explain", "cost"];
+
+fn directory() -> TempDir {
+    tempfile::tempdir().expect("a directory")
+}
+
+fn program(directory: &TempDir) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
+    command.current_dir(directory).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("MODE13H_KERNEL");
+    command
+}
+
+/// Runs the program with words that have spaces between them.
+fn run(directory: &TempDir, words: &str) -> Output {
+    program(directory).args(words.split_whitespace()).output().expect("started")
+}
+
+#[track_caller]
+fn printed(output: Output) -> String {
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// That it failed with this status and one line, which is returned.
+#[track_caller]
+fn failed(output: &Output, status: i32, words: &str) -> String {
+    let line = String::from_utf8(output.stderr.clone()).expect("text");
+    assert_eq!(output.status.code(), Some(status), "{words}: {line}");
+    assert!(line.starts_with("mode13h: ") && line.ends_with('\n') && line.lines().count() == 1, "{words}: {line}");
+    line
+}
+
+fn names_in(directory: &TempDir) -> BTreeSet<String> {
+    let entries = fs::read_dir(directory).expect("a directory");
+    entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
+}
+
+/// The help of a command, or of the program where `command` is empty.
+fn help(command: &str, option: &str, columns: &str) -> String {
+    let directory = directory();
+    printed(
+        program(&directory)
+            .args(command.split_whitespace())
+            .arg(option)
+            .env("COLUMNS", columns)
+            .output()
+            .expect("started"),
+    )
+}
+
+/// The options that a help text lists, such as `--shading`.
+fn options(help: &str) -> BTreeSet<String> {
+    let starts = help.lines().map(str::trim_start).filter(|line| line.starts_with('-'));
+    let words = starts.flat_map(|line| line.split_whitespace().take(2).map(|word| word.trim_end_matches(',')));
+    let is_option = |word: &&str| word.starts_with("--") && word.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+    words.filter(is_option).map(String::from).collect()
+}
+
+#[test]
+fn help_is_short_or_long_and_no_wider_than_the_terminal() {
+    let mut tried = Tried::new("help_is_short_or_long_and_no_wider_than_the_terminal", 70);
+    let nested = ["", "generate completions", "generate man"];
+    for command in COMMANDS.into_iter().chain(nested) {
+        for (columns, widest) in [("80", 80), ("100", 100), ("300", 100)] {
+            let [short, long] = ["-h", "--help"].map(|option| help(command, option, columns));
+            for line in short.lines().chain(long.lines()) {
+                assert!(line.chars().count() <= widest, "{command}: {line}");
+            }
+            assert!(short.lines().count() < long.lines().count(), "{command}");
+            assert_eq!(options(&short), options(&long), "{command}");
+            tried.add(2);
+        }
+        // The names of scenes are in `scenes` alone.
+        let long = help(command, "--help", "100");
+        for scene in ["two-lights", "flash-tessellated", "interlock", "glenz"] {
+            assert!(shipped::by_name(scene).is_some() && !long.contains(scene), "{command}: {long}");
+        }
+    }
+    // One terminal wider than the other: lines are wrapped, not only short.
+    assert_ne!(help("render", "--help", "80"), help("render", "--help", "100"));
+}
+
+#[test]
+fn whatever_draws_has_the_words_of_a_scene_file() {
+    let keys: Vec<&str> = include_str!("../../../scenes/README.md")
+        .split("\n### render\n")
+        .nth(1)
+        .expect("the table of [render]")
+        .split("\n#")
+        .next()
+        .expect("the section")
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `")?.split('`').next())
+        .collect();
+    assert!(keys.len() >= 7, "{keys:?}");
+    for command in DRAWING {
+        let known = options(&help(command, "-h", "100"));
+        for key in keys.iter().chain(&["palette", "background", "arithmetic", "kernel", "zoom", "camera"]) {
+            // It compares shadings and budgets, and takes several of the one.
+            let is_compared = command == "cost" && ["shading", "max-error"].contains(key);
+            assert_eq!(known.contains(&format!("--{key}")), !is_compared, "{command} --{key}");
+        }
+        let long = help(command, "--help", "100");
+        for heading in ["\nWhat is drawn:\n", "\nHow it is drawn:\n"] {
+            assert!(long.contains(heading), "{command}: no {heading}");
+        }
+    }
+}
+
+/// What is asked for by option is what the same key of a scene file asks for.
+#[test]
+fn an_option_does_what_its_key_does() {
+    let mut tried = Tried::new("an_option_does_what_its_key_does", 9);
+    let directory = directory();
+    let picture = |words: &str| {
+        assert!(printed(run(&directory, &format!("render {words} -o x.png"))).is_empty());
+        fs::read(directory.path().join("x.png")).expect("a picture")
+    };
+    let lit = "objects = [{ shape = 'wall', subdivisions = [2, 2], material.texture = 'crate', angles = [60, 20, 0] }]\n\
+               lights = [{ lamp = [0, 0, 1], range = 3 }]\nambient = 0.2\npalette = 'cube'\n";
+    fs::write(directory.path().join("plain.toml"), lit).expect("written");
+    for (key, value) in [
+        ("shading", "phong"),
+        ("shading", "gouraud-vintage"),
+        ("max-error", "2"),
+        ("hidden-surfaces", "painter"),
+        ("mapping", "affine"),
+        ("mipmaps", "on"),
+        ("mipmaps", "off"),
+        ("tessellation", "0.5"),
+        ("dither", "on"),
+    ] {
+        let in_file = match value {
+            "on" => "true".to_string(),
+            "off" => "false".to_string(),
+            _ if value.parse::<f64>().is_ok() => value.to_string(),
+            _ => format!("'{value}'"),
+        };
+        fs::write(directory.path().join("asks.toml"), format!("{lit}render.{key} = {in_file}\n")).expect("written");
+        let by_option = picture(&format!("plain.toml --{key} {value}"));
+        assert!(by_option == picture("asks.toml"), "--{key} {value}");
+        if ["phong", "affine", "0.5", "on"].contains(&value) && key != "mipmaps" {
+            assert!(by_option != picture("plain.toml"), "--{key} {value} changes nothing");
+        }
+        tried.add(1);
+    }
+}
+
+#[test]
+fn old_names_are_answered_with_the_new_ones() {
+    let directory = directory();
+    for (words, says) in [
+        ("render torus -o x.png --rung flat", "--rung is now called --shading "),
+        ("torus --rung=flat", "--rung is now called --shading "),
+        ("plan torus --hidden painter", "--hidden is now called --hidden-surfaces "),
+        ("explain torus --row 3 --vertex-path integer", "--vertex-path is now called --arithmetic, "),
+        ("cost torus --rungs flat", "--rungs is now called --shadings "),
+        ("render torus --arithmetic integer", "integer is now called fixed "),
+        ("render torus --shading gouraud-period", "gouraud-period is now called gouraud-vintage "),
+        ("cost torus --shadings flat,gouraud-period", "gouraud-period is now called gouraud-vintage "),
+    ] {
+        assert!(failed(&run(&directory, words), 2, words).contains(says), "{words}");
+    }
+    fs::write(directory.path().join("old.toml"), "objects = [{ shape = 'cube' }]\n[wishes]\nrung = 'flat'\n")
+        .expect("written");
+    let line = failed(&run(&directory, "render old.toml -o x.png"), 2, "old.toml");
+    assert_eq!(line, "mode13h: old.toml:2:2: key `wishes`: is now called `render`\n");
+    assert_eq!(names_in(&directory), BTreeSet::from(["old.toml".to_string()]));
+}
+
+#[test]
+fn typos_are_answered_with_the_nearest_word() {
+    let directory = directory();
+    for (words, says) in [
+        ("rendr torus -o x.png", "rendr: neither a command nor a file nor a scene nor a shape; did you mean render?"),
+        ("rendr torus", "did you mean render?"),
+        ("rendr", "did you mean render?"),
+        ("scnees --copy fog", "did you mean scenes?"),
+        ("verfiy", "did you mean verify?"),
+        ("genrate man", "did you mean generate?"),
+        ("palete grey", "did you mean palette?"),
+        ("torsu", "torsu: neither a file nor a scene nor a shape; did you mean torus?"),
+        ("render spere", "did you mean sphere?"),
+        ("demo rendr", "did you mean the command render?"),
+        ("scenes --copy frog", "frog: no such scene; did you mean fog?"),
+        ("render torus --shadng flat", "did you mean --shading?"),
+        ("render torus --shading phongs", "did you mean phong?"),
+        ("generate completion bash", "did you mean completions?"),
+    ] {
+        assert!(failed(&run(&directory, words), 2, words).contains(says), "{words}: {:?}", run(&directory, words));
+    }
+    // What is near to nothing is compared with nothing.
+    let line = failed(&run(&directory, "xyzzyx"), 2, "xyzzyx");
+    assert!(!line.contains("did you mean"), "{line}");
+    assert!(names_in(&directory).is_empty());
+    // A file of that name is an INPUT, whatever is near to it.
+    fs::write(directory.path().join("rendr"), "no model").expect("written");
+    let line = failed(&run(&directory, "rendr"), 2, "rendr");
+    assert!(line.contains("rendr: nothing that can be read"), "{line}");
+}
+
+/// Each command's end by each status that it can have.
+#[test]
+fn every_command_ends_with_the_status_that_help_names() {
+    let mut tried = Tried::new("every_command_ends_with_the_status_that_help_names", 40);
+    let directory = directory();
+    let put = |name: &str, text: &str| fs::write(directory.path().join(name), text).expect("written");
+    put("broken.obj", "v 0 0 0\nf 1 2 3\n");
+    put("broken.toml", "objects = 3\n");
+    put("missing.toml", "objects = [{ model = 'none.obj' }]\n");
+    put("broken.pal", "JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n");
+    put("broken.rec", "no record\n");
+    let cases: [(&str, &[(&str, i32)]); 10] = [
+        (
+            "demo",
+            &[
+                ("demo cube", 0),
+                ("demo --xml", 2),
+                ("demo broken.toml", 2),
+                ("demo none.toml", 3),
+                ("demo cube none.toml", 3),
+                ("demo cube broken.obj", 2),
+            ],
+        ),
+        (
+            "render",
+            &[
+                ("render cube -o x.png", 0),
+                ("render cube -o x.tif", 2),
+                ("render broken.obj -o x.png", 2),
+                ("render missing.toml -o x.png", 3),
+                ("render cube -o none/x.png", 3),
+                ("render cube -o none/x.gif", 3),
+                ("render cube -o x.png --palette broken.pal", 2),
+                ("render cube -o x.png --palette none.pal", 3),
+            ],
+        ),
+        (
+            "scenes",
+            &[
+                ("scenes", 0),
+                ("scenes --copy fog -o y.toml", 0),
+                ("scenes --copy bogus", 2),
+                ("scenes --force", 2),
+                ("scenes --copy fog -o none/y.toml", 3),
+            ],
+        ),
+        ("plan", &[("plan cube", 0), ("plan", 2), ("plan broken.toml", 2), ("plan none.obj", 3)]),
+        (
+            "explain",
+            &[
+                ("explain cube --row 9", 0),
+                ("explain cube --row 900", 2),
+                ("explain none.toml --row 9", 3),
+                ("explain cube --row 9 -o none/x.svg", 3),
+            ],
+        ),
+        (
+            "cost",
+            &[
+                // Its integers know no budget, so that a budget of half a shade is not kept.
+                ("cost torus --frames 1 --seconds 0 --shadings flat --json --arithmetic fixed", 1),
+                ("cost cube --frames 1 --seconds 0 --shadings flat --json", 0),
+                ("cost cube --frames 0", 2),
+                ("cost broken.obj", 2),
+                ("cost none.toml", 3),
+                ("cost cube -o x.png", 3),
+            ],
+        ),
+        (
+            "palette",
+            &[
+                ("palette", 0),
+                ("palette grey", 0),
+                ("palette bogus", 2),
+                ("palette broken.pal", 2),
+                ("palette none.pal", 3),
+                ("palette grey -o none/x.pal", 3),
+            ],
+        ),
+        ("show", &[("show", 0), ("show R5 -o x.png", 0), ("show BOGUS", 2), ("show R5 -o none/x.png", 3)]),
+        // That a check which fails ends with 1 has a test beside the code: here none may.
+        (
+            "verify",
+            &[
+                ("verify", 0),
+                ("verify --seed x", 2),
+                ("verify --replay broken.rec", 2),
+                ("verify --replay none.rec", 3),
+            ],
+        ),
+        (
+            "generate",
+            &[
+                ("generate man", 0),
+                ("generate completions zsh", 0),
+                ("generate completions bogus", 2),
+                ("generate man -o x.png", 3),
+            ],
+        ),
+    ];
+    assert_eq!(cases.map(|(command, _)| command), COMMANDS);
+    for (command, runs) in cases {
+        let said = help(command, "--help", "100");
+        let said = said.split("\nExit status:\n").nth(1).unwrap_or_else(|| panic!("{command}: {said}"));
+        let known: Vec<i32> = said.lines().filter_map(|line| line.split_whitespace().next()?.parse().ok()).collect();
+        assert_eq!(known, [0, 1, 2, 3, 130], "{command}: {said}");
+        for (words, status) in runs {
+            let output = run(&directory, words);
+            assert_eq!(output.status.code(), Some(*status), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+            tried.add(1);
+        }
+    }
+}
+
+/// Lists and figures for programs: each is one JSON document and nothing else.
+#[test]
+fn lists_and_figures_are_json_for_programs() {
+    let directory = directory();
+    let json = |words: &str| -> Value {
+        let output = run(&directory, words);
+        assert!(output.status.success(), "{words}: {output:?}");
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{words}: {error}: {output:?}"))
+    };
+    let length = |value: &Value| value.as_array().expect("a list").len();
+
+    let scenes = json("scenes --json");
+    assert_eq!((length(&scenes["scenes"]), &scenes["schema"]), (shipped::ALL.len(), &1.into()));
+    assert_eq!(scenes["scenes"][0]["name"], "torus");
+    assert!(scenes["shapes"].as_array().expect("a list").contains(&"cylinder".into()));
+
+    let palettes = json("palette --json");
+    assert_eq!((length(&palettes["palettes"]), &palettes["palettes"][0]["name"]), (9, &"grey".into()));
+    let copper = json("palette copper --json");
+    assert_eq!(
+        (length(&copper["colors"]), &copper["ramps"], &copper["colors"][0]),
+        (256, &1.into(), &"#050102".into())
+    );
+    let made = json("palette --from torus --json");
+    assert_eq!((length(&made["materials"]), &made["materials"][0]["what"]), (1, &"a ramp".into()));
+
+    let cases = json("show --json");
+    assert!(length(&cases["cases"]) >= 20 && cases["cases"][0]["id"] == "R1", "{cases}");
+    assert_eq!(json("show R5 --json -o r.png")["file"], "r.png");
+
+    let pictures = json("render torus -o x%d.png --frames 3 --stats --json");
+    assert_eq!(pictures["files"], serde_json::json!(["x0.png", "x1.png", "x2.png"]));
+    for (number, frame) in pictures["frames"].as_array().expect("a list").iter().enumerate() {
+        assert_eq!((&frame["frame"], &frame["shading"]), (&number.into(), &"gouraud-8.8-reseeded".into()));
+        let triangles = frame["triangles"].as_u64().expect("a count");
+        assert_eq!(frame["triangles_by_shading"], serde_json::json!({ "gouraud-8.8-reseeded": triangles }));
+        assert!(frame["raster"]["pixels"].as_u64() > Some(1_000), "{frame}");
+    }
+    let budget = json("render torus -o x.png --stats --json --max-error 4 --arithmetic float");
+    assert_eq!((&budget["frames"][0]["max_error"], &budget["frames"][0]["arithmetic"]), (&4.0.into(), &"float".into()));
+    let film = json("render cube -o x.gif --frames 2 --json");
+    assert_eq!(
+        (&film["film"]["frames"], &film["film"]["width"], &film["frames"]),
+        (&2.into(), &640.into(), &Value::Null)
+    );
+    assert_eq!(json("render cube -o x.apng --frames 2 --scale 1 --json")["film"]["width"], 320);
+    let words = "render cube -o - --json";
+    assert!(failed(&run(&directory, words), 2, words).contains("standard output"));
+
+    assert_eq!(json("plan torus --json")["schema"], 2);
+    let pixel = json("explain torus --pixel 160,60 --json --shading phong");
+    assert_eq!((&pixel["shading"], &pixel["arithmetic"]), (&"phong".into(), &"float".into()));
+    assert!(pixel["shading_reason"].is_string() && pixel["faces"][0]["interpolation"].is_string(), "{pixel}");
+    assert_eq!(length(&json("explain torus --row 60 --json")["columns"]), 320);
+    assert_eq!(json("verify --json")["passed"], true);
+    let cost = json("cost cube --frames 1 --seconds 0 --shadings flat --json");
+    assert_eq!((&cost["schema"], &cost["shadings"][0]["shading"]), (&2.into(), &"flat".into()));
+    for text in [pixel, cost] {
+        let text = text.to_string();
+        for old in ["rung", "why", "vertex_path", "gouraud-period", "integer"] {
+            assert!(!text.contains(&format!("\"{old}")), "{old}: {text}");
+        }
+    }
+}
+
+/// Files whose names the user did not give are overwritten by `--force` alone; those behind `-o` always.
+#[test]
+fn only_files_that_were_named_are_overwritten() {
+    let mut tried = Tried::new("only_files_that_were_named_are_overwritten", 5);
+    let directory = directory();
+    let path = |name: &str| directory.path().join(name);
+    let cost = "cost cube --frames 1 --seconds 0 --shadings flat";
+    for (words, out, files) in [
+        ("render cube", "-o cube.png", &["cube.png"][..]),
+        ("render cube --frames 2 --turn 90", "-o cube-%04d.png", &["cube-0000.png", "cube-0001.png"]),
+        ("scenes --copy fog", "-o fog.toml", &["fog.toml"]),
+        ("show R5", "-o R5.png", &["R5.png"]),
+        (
+            cost,
+            "-o cost-cube",
+            &["cost-cube/chart.svg", "cost-cube/cost.json", "cost-cube/report.html", "cost-cube/samples.csv"],
+        ),
+    ] {
+        let output = run(&directory, words);
+        assert!(output.status.success(), "{words}: {output:?}");
+        let first = &files[..1];
+        for file in &files[1..] {
+            fs::remove_file(path(file)).expect("removed");
+        }
+        // One that is there already is enough.
+        for file in first {
+            fs::write(path(file), "mine").expect("written");
+            let line = failed(&run(&directory, words), 3, words);
+            assert!(line.contains(&format!("{file}: exists already; --force overwrites it")), "{line}");
+            assert_eq!(fs::read(path(file)).expect("there"), b"mine", "{words}");
+            for more in ["--force", out] {
+                fs::write(path(file), "mine").expect("written");
+                let output = run(&directory, &format!("{words} {more}"));
+                assert!(output.status.success(), "{words} {more}: {output:?}");
+                assert_ne!(fs::read(path(file)).expect("there"), b"mine", "{words} {more}");
+            }
+        }
+        for file in files {
+            fs::remove_file(path(file)).expect("removed");
+        }
+        tried.add(1);
+    }
+    // The names are said where they were not given.
+    assert_eq!(printed(run(&directory, "render cube")), "cube.png\n");
+    assert_eq!(printed(run(&directory, "render cube --frames 2")), "cube-0000.png\ncube-0001.png\n");
+    assert_eq!(printed(run(&directory, "render cube -o cube.png")), "");
+}
+
+#[test]
+fn completions_know_the_commands_and_the_options() {
+    let directory = directory();
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        let script = printed(run(&directory, &format!("generate completions {shell}")));
+        for command in COMMANDS {
+            assert!(script.contains(command), "{shell}: {command}");
+        }
+        // Fish names options without their dashes.
+        for word in ["hidden-surfaces", "tessellation", "arithmetic"] {
+            assert!(script.contains(word), "{shell}: {word}");
+        }
+        for value in ["gouraud-vintage", "depth-buffer", "every-16"] {
+            // The generator for PowerShell has no values.
+            assert!(script.contains(value) || shell == "powershell", "{shell}: {value}");
+        }
+        assert!(!script.contains("vertex-path") && !script.contains("rung"), "{shell}");
+    }
+    if !is_here("bash", Command::new("bash").arg("--version").output().is_ok()) {
+        return;
+    }
+    // What bash offers for the last word.
+    let script = printed(run(&directory, "generate completions bash"));
+    fs::write(directory.path().join("mode13h.bash"), script).expect("written");
+    for (line, offered) in [
+        ("mode13h ren", "render"),
+        ("mode13h render --tess", "--tessellation"),
+        ("mode13h render --shading gouraud-v", "gouraud-vintage"),
+        ("mode13h cost --shadings phong-", "phong-table"),
+        ("mode13h generate completions fi", "fish"),
+    ] {
+        let words: Vec<&str> = line.split(' ').collect();
+        let complete = format!(
+            "source mode13h.bash; COMP_WORDS=({line}); COMP_CWORD={}; _mode13h mode13h {} {}; echo ${{COMPREPLY[@]}}",
+            words.len() - 1,
+            words[words.len() - 1],
+            words[words.len() - 2],
+        );
+        let output = Command::new("bash").args(["-c", &complete]).current_dir(&directory).output().expect("started");
+        assert_eq!(printed(output).trim_end(), offered, "{line}");
+    }
+}
+
+#[test]
+fn man_pages_are_written_for_each_command() {
+    let directory = directory();
+    let page = printed(run(&directory, "generate man"));
+    assert!(
+        page.contains(".TH mode13h 1") && page.contains(".SH EXIT STATUS") && page.contains(r"hidden\-surfaces"),
+        "{page}"
+    );
+    assert!(printed(run(&directory, "generate man -o pages")).is_empty());
+    let pages = |name: &str| fs::read_to_string(directory.path().join("pages").join(name)).expect(name);
+    assert_eq!(pages("mode13h.1"), page);
+    for command in COMMANDS {
+        let page = pages(&format!("mode13h-{command}.1"));
+        assert!(page.contains(&format!(".TH mode13h-{command} 1")), "{page}");
+        for option in options(&help(command, "--help", "100")) {
+            assert!(page.contains(&option.replace('-', r"\-")), "{command}: {option}: {page}");
+        }
+    }
+    let nested = ["mode13h-generate-completions.1", "mode13h-generate-man.1"];
+    assert!(nested.iter().all(|name| pages(name).contains(".TH ")));
+}

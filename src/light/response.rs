@@ -1,0 +1,51 @@
+//! A material's own answer to light.
+
+use core::fmt;
+
+use crate::shared::Shared;
+
+/// A material's own answer to light: a function from the intensity that the lighting model gives, 0 to 1, to the one that
+/// is shown. It is asked wherever light is taken: at each vertex, face or pixel, on one channel or on each of three.
+///
+/// ```
+/// use mode13h::light::LightResponse;
+/// use mode13h::mesh::shapes;
+/// use mode13h::scene::{Scene, Shading};
+///
+/// // A toon shader: three tones.
+/// let toon = LightResponse::new(|intensity| (intensity * 3.0).floor().min(2.0) / 2.0);
+/// let mut scene = Scene::showing(shapes::teapot(8));
+/// scene.objects_mut()[0].materials[0].response = Some(toon);
+/// // At every pixel; without this at the vertices, and linear between them.
+/// scene.preferences.shading = Some(Shading::Phong);
+/// ```
+#[derive(Clone)]
+pub struct LightResponse(Shared<dyn Fn(f32) -> f32 + Send + Sync>);
+
+impl LightResponse {
+    /// Any function. What it returns is clamped to 0 to 1; what is not a number is 0.
+    #[must_use]
+    pub fn new(respond: impl Fn(f32) -> f32 + Send + Sync + 'static) -> Self {
+        Self(Shared::new(respond))
+    }
+
+    /// The intensity that is shown, 0 to 1, for one that the lighting model gives, which is clamped to 0 to 1.
+    #[must_use]
+    pub fn apply(&self, intensity: f32) -> f32 {
+        let shown = (self.0)(intensity.clamp(0.0, 1.0));
+        if shown > 0.0 { shown.min(1.0) } else { 0.0 }
+    }
+}
+
+/// Two are equal if one is a clone of the other.
+impl PartialEq for LightResponse {
+    fn eq(&self, other: &Self) -> bool {
+        Shared::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl fmt::Debug for LightResponse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("LightResponse(…)")
+    }
+}

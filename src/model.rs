@@ -1,0 +1,143 @@
+//! A model file as a scene: mesh, textures, palette and framing by one call.
+
+use core::error::Error;
+use core::fmt;
+use std::collections::HashMap;
+use std::path::Path;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use crate::auto_palette;
+use crate::mesh::Mesh;
+use crate::mesh::obj::{self, ObjError};
+use crate::render::RenderError;
+use crate::scene::{Object, Scene, Shared};
+use crate::texture::{self, LoadError, Texture};
+
+/// Why a model file gave no scene.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// The file cannot be read, or holds no model.
+    Obj(ObjError),
+    /// The model cannot be drawn.
+    Scene(RenderError),
+}
+
+impl fmt::Display for ModelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Obj(error) => error.fmt(f),
+            Self::Scene(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for ModelError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Obj(error) => Some(error),
+            Self::Scene(error) => Some(error),
+        }
+    }
+}
+
+/// A model as it was read.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Model {
+    /// The mesh with its materials and textures, under the file's name.
+    pub object: Object,
+    /// What was left out or mended, one line each; a texture that cannot be read is left out.
+    pub warnings: Vec<String>,
+}
+
+/// Reads an OBJ file, its MTL files and its PNG textures.
+///
+/// # Errors
+///
+/// [`ObjError`] with the file and the line.
+pub fn load(path: impl AsRef<Path>, options: &obj::Options) -> Result<Model, ObjError> {
+    let path = path.as_ref();
+    let loaded = obj::load_with(path, options, |_, _| {})?;
+    let (textures, errors) = textures(&loaded.mesh);
+    let mut warnings = loaded.warnings;
+    warnings.extend(errors.iter().map(|error| std::format!("{error}; drawn without it")));
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let object = with_textures(Object::new(loaded.mesh).named(name.to_string()), &textures);
+    Ok(Model { object, warnings })
+}
+
+/// The texture of each surface of a mesh, if the surface names one that can be read and the mesh has texture coordinates;
+/// an error for each file that cannot be read. A file that several surfaces name is read once.
+#[must_use]
+pub fn textures(mesh: &Mesh) -> (Vec<Option<Shared<Texture>>>, Vec<LoadError>) {
+    let mut read: HashMap<&str, Option<Shared<Texture>>> = HashMap::new();
+    let mut errors = Vec::new();
+    let textures = mesh.surfaces().iter().map(|surface| {
+        let path = surface.texture.as_deref().filter(|_| mesh.texcoords().is_some())?;
+        let texture = read.entry(path).or_insert_with(|| match texture::load(path) {
+            Ok(texture) => Some(Shared::new(texture)),
+            Err(error) => {
+                errors.push(error);
+                None
+            }
+        });
+        texture.clone()
+    });
+    (textures.collect(), errors)
+}
+
+/// An object whose surfaces show these textures, one for each surface.
+#[must_use]
+pub fn with_textures(mut object: Object, textures: &[Option<Shared<Texture>>]) -> Object {
+    for (i, texture) in textures.iter().enumerate() {
+        if let (Some(texture), Some(surface)) = (texture, object.mesh().surfaces().get(i)) {
+            object.materials[i] = object.materials[i].clone().with_map(surface, texture);
+        }
+    }
+    object
+}
+
+impl Object {
+    /// Whether any of its surfaces has a colour of its own: a texture, or a diffuse colour that is not grey.
+    #[must_use]
+    pub fn has_colors(&self) -> bool {
+        let is_colored = |[red, green, blue]: [f32; 3]| red != green || green != blue;
+        self.mesh().surfaces().iter().any(|surface| is_colored(surface.diffuse))
+            || self.materials.iter().any(|material| material.texture.is_some())
+    }
+}
+
+impl Scene {
+    /// A model file to look at: with its materials and textures, in the middle of the picture, turning once in a
+    /// [round](Self::duration) as [`showing`](Self::showing) says. A model with colours gets a palette made for them;
+    /// a grey one is drawn in greys.
+    ///
+    /// [`load`] returns the warnings, which this leaves out.
+    ///
+    /// ```no_run
+    /// use mode13h::export;
+    /// use mode13h::render::Renderer;
+    /// use mode13h::scene::Scene;
+    /// use mode13h::vga::Vga;
+    ///
+    /// let mut vga = Vga::new();
+    /// Renderer::new().draw(&Scene::from_model("crate.obj")?, &mut vga)?;
+    /// export::png(&vga, "crate.png")?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`ModelError`] with the file and the line, or with what cannot be drawn.
+    pub fn from_model(path: impl AsRef<Path>) -> Result<Self, ModelError> {
+        let object = load(path, &obj::Options::default()).map_err(ModelError::Obj)?.object;
+        let has_colors = object.has_colors();
+        let mut scene = Self::showing(object);
+        if has_colors {
+            auto_palette::of_scene(&scene).map_err(ModelError::Scene)?.apply(&mut scene);
+        }
+        Ok(scene)
+    }
+}

@@ -1,0 +1,195 @@
+//! Objects that are hidden, removed, or move with others.
+
+use mode13h::glam::Vec3;
+use mode13h::light::{Light, LightResponse};
+use mode13h::mesh::shapes;
+use mode13h::palette::Rgb;
+use mode13h::plan::Effect;
+use mode13h::render::{RenderError, Renderer, Shading, VertexPath};
+use mode13h::scene::{Motion, Preferences};
+use mode13h::scene::{Moving, Object, ObjectId, Path, Scene};
+use mode13h::vga::Vga;
+
+use crate::support::tried::Tried;
+
+fn drawn(scene: &Scene) -> Vec<u8> {
+    let mut vga = Vga::new();
+    Renderer::new().draw(scene, &mut vga).expect("a legal scene");
+    vga.pixels().to_vec()
+}
+
+/// A torus, a cube that stands before it, and a cone beside them.
+fn three() -> (Scene, [ObjectId; 3]) {
+    let mut scene = Scene::new();
+    scene.camera.eye.z *= 2.0;
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    let at = [(shapes::torus(24, 12), Vec3::ZERO), (shapes::cube(), Vec3::Z), (shapes::cone(12, 4), Vec3::X)];
+    let ids = at.map(|(mesh, position)| {
+        let id = scene.add(Object::new(mesh));
+        scene[id].position = position;
+        scene[id].set_angles([0.3, 0.4, 0.0]);
+        id
+    });
+    (scene, ids)
+}
+
+#[test]
+fn a_hidden_object_is_as_one_that_was_removed() {
+    let mut tried = Tried::new("a_hidden_object_is_as_one_that_was_removed", 3 * 4);
+    for way in [None].into_iter().chain(mode13h::scene::HiddenSurfaces::ALL.into_iter().skip(1).map(Some)) {
+        for i in 0..3 {
+            let (mut hidden, ids) = three();
+            hidden.preferences = Preferences { hidden_surfaces: way, ..Preferences::default() };
+            let all = drawn(&hidden);
+            let mut removed = hidden.clone();
+            hidden[ids[i]].visible = false;
+            removed.remove(ids[i]).expect("there");
+            assert_eq!((hidden.is_visible(i), removed.objects().len()), (false, 2));
+            let frame = drawn(&hidden);
+            assert!(frame == drawn(&removed) && frame != all, "{way:?}, object {i}");
+            tried.add(1);
+        }
+    }
+}
+
+/// On one renderer, shown again and hidden again.
+#[test]
+fn a_kept_renderer_hides_and_shows() {
+    let (mut scene, [torus, ..]) = three();
+    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+    for turn in 0..6 {
+        scene[torus].visible = turn % 2 == 0;
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        assert!(vga.pixels() == drawn(&scene), "{turn}");
+        assert_eq!(renderer.plan().is_on(0, Effect::Gouraud), turn % 2 == 0);
+    }
+}
+
+/// Numbers that f32 and f64 hold exactly, so that the frame is that of the object placed by hand.
+#[test]
+fn a_child_stands_where_its_parent_puts_it() {
+    let (mut scene, [torus, cube, cone]) = three();
+    (scene[torus].position, scene[torus].scale) = (Vec3::new(1.0, 0.0, -2.0), 2.0);
+    scene[torus].pivot = Vec3::new(0.5, 0.0, 0.0);
+    scene[torus].set_angles([0.0; 3]);
+    let mut by_hand = scene.clone();
+    // (0.75, 0.25, 1) is (0.25, 0.25, 1) from the pivot, twice that from (1, 0, −2).
+    (by_hand[cube].position, by_hand[cube].scale) = (Vec3::new(1.5, 0.5, 0.0), 0.5);
+    (by_hand[cone].position, by_hand[cone].scale) = (Vec3::new(2.0, 0.5, 0.0), 0.25);
+    (scene[cube].position, scene[cube].scale, scene[cube].parent) = (Vec3::new(0.75, 0.25, 1.0), 0.25, Some(torus));
+    // And one that hangs from that: its turn is the cube's, which the cone by hand has not.
+    scene[cube].set_angles([0.0; 3]);
+    by_hand[cube].set_angles([0.0; 3]);
+    (scene[cone].position, scene[cone].scale, scene[cone].parent) = (Vec3::new(1.0, 0.0, 0.0), 0.5, Some(cube));
+    let frame = drawn(&scene);
+    assert!(frame == drawn(&by_hand));
+
+    // What hangs from a hidden object is hidden.
+    scene[cube].visible = false;
+    by_hand[cube].visible = false;
+    by_hand[cone].visible = false;
+    assert!(drawn(&scene) == drawn(&by_hand) && drawn(&scene) != frame);
+
+    // Without its parent a child stands by itself.
+    scene.remove(torus);
+    by_hand.remove(torus);
+    (by_hand[cube], by_hand[cone]) = (scene[cube].clone(), scene[cone].clone());
+    by_hand[cube].parent = None;
+    assert!(drawn(&scene) == drawn(&by_hand));
+}
+
+#[test]
+fn parents_in_a_circle_and_on_the_integer_path_are_refused() {
+    let (mut scene, [torus, cube, cone]) = three();
+    scene[cube].parent = Some(torus);
+    let mut vga = Vga::new();
+    let mut integer = Renderer::new();
+    integer.set_vertex_path(VertexPath::Integer);
+    let refused = |result| matches!(result, Err(RenderError::Object { .. }));
+    assert!(refused(integer.draw(&scene, &mut vga)));
+    scene[torus].parent = Some(cone);
+    assert!(Renderer::new().draw(&scene, &mut vga).is_ok());
+    scene[cone].parent = Some(cube);
+    assert!(refused(Renderer::new().draw(&scene, &mut vga)));
+    scene[cone].parent = Some(cone);
+    assert!(refused(Renderer::new().draw(&scene, &mut vga)));
+    scene[cone].parent = None;
+    scene[cone].scale = f32::MAX;
+    scene[torus].scale = f32::MAX;
+    // 10⁷⁷ is no number of f32, but f64 holds it.
+    assert!(Renderer::new().draw(&scene, &mut vga).is_ok());
+}
+
+#[test]
+fn ids_outlive_removals_and_name_nothing_afterwards() {
+    let (mut scene, [torus, cube, cone]) = three();
+    let lamp = scene.add_light(Light::lamp([0.0; 3], 4.0));
+    let path = Path::Line { from: Vec3::X, to: Vec3::Y, period: 1.0, back: false };
+    for what in [Moving::Object(cube), Moving::Object(cone), Moving::Light(lamp)] {
+        scene.motions.push(Motion::Path { what, path });
+    }
+    assert_eq!(scene.remove(cube).map(|object| object.mesh().triangles().len()), Some(12));
+    assert_eq!((scene.index_of(torus), scene.index_of(cube), scene.index_of(cone)), (Some(0), None, Some(1)));
+    assert!(scene.get(cube).is_none() && scene.remove(cube).is_none() && scene.get_mut(cube).is_none());
+    assert!(scene.remove_light(lamp).is_some() && scene.remove_light(lamp).is_none());
+    scene.set_time(0.5);
+    assert_eq!((scene[cone].position, scene[torus].position), (Vec3::new(0.5, 0.5, 0.0), Vec3::ZERO));
+    let again = scene.add(Object::new(shapes::cube()));
+    assert!(again != cube && scene.object_ids() == [torus, cone, again]);
+    scene.clear_lights();
+    assert!(scene.lights().is_empty() && scene.light_ids().is_empty());
+}
+
+/// A step at half the light: what is darker than 127 is then black, what is lighter than 128 white. A byte is the nearest
+/// to its shade, so nothing is said of the two between.
+#[test]
+fn a_response_to_light_is_asked_at_vertices_faces_and_pixels() {
+    let step = LightResponse::new(|intensity| if intensity < 0.5 { 0.0 } else { 1.0 });
+    let mut tried = Tried::new("a_response_to_light_is_asked_at_vertices_faces_and_pixels", 40_000);
+    for (shading, budget) in
+        [(Shading::Flat, None), (Shading::Phong, None), (Shading::PhongTable, None), (Shading::default(), Some(4.0))]
+    {
+        let mut scene = Scene::showing(shapes::sphere(48, 24));
+        scene.background = 77;
+        // A budget lights such an object at every pixel: no bound is known for it.
+        scene.preferences.shading = Some(if budget.is_some() { Shading::Phong } else { shading });
+        let plain = drawn(&scene);
+        scene.preferences = Preferences { shading: Some(shading), max_error: budget, ..Preferences::default() };
+        scene.objects_mut()[0].materials[0].response = Some(step.clone());
+        let stepped = drawn(&scene);
+        let (mut black, mut white) = (0, 0);
+        for (&plain, &stepped) in plain.iter().zip(&stepped).filter(|(plain, stepped)| **plain != 77 || **stepped != 77)
+        {
+            black += u32::from(stepped == 0);
+            white += u32::from(stepped == 255);
+            match plain {
+                77 => assert_eq!(stepped, 0, "{shading}"),
+                127 | 128 => assert!(stepped == 0 || stepped == 255, "{shading}"),
+                _ => assert_eq!(stepped, if plain > 128 { 255 } else { 0 }, "{shading}: {plain}"),
+            }
+            tried.add(1);
+        }
+        assert!(black > 3_000 && white > 3_000, "{shading}: {black}, {white}");
+    }
+}
+
+/// At the vertices, and linear between: a response that is constant leaves one shade, on one channel and on three.
+#[test]
+fn a_constant_response_is_one_shade() {
+    for (colored, constant, shown) in
+        [(false, 1.0, Rgb::WHITE), (true, 1.0, Rgb::WHITE), (false, f32::NAN, Rgb::BLACK), (true, f32::NAN, Rgb::BLACK)]
+    {
+        let mut scene = Scene::showing(shapes::torus(24, 12));
+        scene.background = 7;
+        let material = &mut scene.objects_mut()[0].materials[0];
+        material.response = Some(LightResponse::new(move |_| constant));
+        if colored {
+            material.color = [1.0, 1.0, 0.999];
+        }
+        let palette = scene.palette.clone().expect("greys");
+        let frame = drawn(&scene);
+        let mut seen = frame.into_iter().filter(|byte| *byte != 7).peekable();
+        assert!(seen.peek().is_some());
+        assert!(seen.all(|byte| palette.color(byte) == shown), "{colored}, {constant}");
+    }
+}
