@@ -9,7 +9,7 @@ use clap_mangen::Man;
 use mode13h::export;
 
 use crate::failure::Failure;
-use crate::{output, words};
+use crate::output;
 
 #[derive(Args)]
 pub(crate) struct Options {
@@ -43,22 +43,23 @@ enum What {
     },
 }
 
-pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+/// Prints or writes what was asked for of the whole program's command line.
+pub(crate) fn run(options: &Options, mut all: clap::Command) -> Result<(), Failure> {
     match &options.what {
         What::Completions { shell } => {
             let mut script = Vec::new();
-            clap_complete::generate(*shell, &mut words::command(), "mode13h", &mut script);
+            clap_complete::generate(*shell, &mut all, "mode13h", &mut script);
             output::print(&String::from_utf8_lossy(&script))
         }
-        What::Man { out: None } => output::print(&String::from_utf8_lossy(&page(built())?)),
-        What::Man { out: Some(directory) } => write_pages(directory),
+        What::Man { out: None } => output::print(&String::from_utf8_lossy(&page(built(all))?)),
+        What::Man { out: Some(directory) } => write_pages(built(all), directory),
     }
 }
 
 /// Writes the page of the program and one for each command.
-fn write_pages(directory: &Path) -> Result<(), Failure> {
+fn write_pages(all: clap::Command, directory: &Path) -> Result<(), Failure> {
     fs::create_dir_all(directory).map_err(|error| Failure::file(format!("{}: {error}", directory.display())))?;
-    let mut commands = vec![built()];
+    let mut commands = vec![all];
     while let Some(command) = commands.pop() {
         let name = command.get_display_name().unwrap_or(command.get_name());
         let path = directory.join(format!("{name}.1"));
@@ -70,8 +71,8 @@ fn write_pages(directory: &Path) -> Result<(), Failure> {
 }
 
 /// All commands, each of which knows its whole name: mode13h-render.
-fn built() -> clap::Command {
-    let mut all = words::command().disable_help_subcommand(true);
+fn built(all: clap::Command) -> clap::Command {
+    let mut all = all.disable_help_subcommand(true);
     all.build();
     all
 }

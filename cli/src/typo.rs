@@ -6,7 +6,9 @@ use std::path::Path;
 use mode13h::mesh::shapes;
 use mode13h::scene::shipped;
 
-use crate::words;
+/// The names of the commands.
+pub(crate) const COMMANDS: [&str; 10] =
+    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "verify", "generate"];
 
 /// Options that were renamed, and what each is now.
 const OPTIONS: [(&str, &str); 4] = [
@@ -44,14 +46,14 @@ pub(crate) fn mistyped_command(word: &OsStr) -> Option<&'static str> {
     if path.symlink_metadata().is_ok() || path.extension().is_some() {
         return None;
     }
-    let nearest = nearest(word, words::COMMANDS.into_iter().chain(inputs())).filter(|nearest| *nearest != word)?;
-    words::COMMANDS.into_iter().find(|name| *name == nearest)
+    let nearest = nearest(word, COMMANDS.into_iter().chain(inputs())).filter(|nearest| *nearest != word)?;
+    COMMANDS.into_iter().find(|name| *name == nearest)
 }
 
 /// What INPUT should be, where it is neither a file nor a name: with the nearest name, if one is near.
 pub(crate) fn no_input(word: &str) -> String {
-    let near = match nearest(word, inputs().chain(words::COMMANDS)) {
-        Some(name) if words::COMMANDS.contains(&name) => format!("; did you mean the command {name}?"),
+    let near = match nearest(word, inputs().chain(COMMANDS)) {
+        Some(name) if COMMANDS.contains(&name) => format!("; did you mean the command {name}?"),
         Some(name) => format!("; did you mean {name}?"),
         None => String::new(),
     };
@@ -88,7 +90,7 @@ mod tests {
 
     #[test]
     fn a_name_that_there_is_was_not_mistyped() {
-        for name in inputs().chain(words::COMMANDS) {
+        for name in inputs().chain(COMMANDS) {
             assert_eq!(mistyped_command(OsStr::new(name)), None, "{name}");
         }
         assert_eq!(mistyped_command(OsStr::new("rendr")), Some("render"));

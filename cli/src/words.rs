@@ -6,14 +6,11 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::failure::{EXIT_STATUS, Failure};
+use crate::typo::COMMANDS;
 use crate::{cost, demo, explain, generate, output, palette, plan, render, scenes, show, typo, verify};
 
 /// Columns of help, at most.
 const WIDTH: usize = 100;
-
-/// The names of the commands.
-pub(crate) const COMMANDS: [&str; 10] =
-    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "verify", "generate"];
 
 /// Draw scenes and models as a 386 with a VGA card did
 ///
@@ -105,7 +102,7 @@ pub(crate) fn run(words: &Words) -> Result<(), Failure> {
         Some(Command::Palette(options)) => palette::run(options),
         Some(Command::Show(options)) => show::run(options),
         Some(Command::Verify(options)) => verify::run(options),
-        Some(Command::Generate(options)) => generate::run(options),
+        Some(Command::Generate(options)) => generate::run(options, command()),
     }
 }
 

@@ -4,7 +4,7 @@
 ///
 /// | shading | off from exact by less than | in |
 /// |---|---|---|
-/// | `GouraudVintage` | – (from other vertices) | [`vintage`](super::period) |
+/// | `GouraudVintage` | – (from other vertices) | [`vintage`](super::vintage) |
 /// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | [`shade`](super::shade) |
 /// | `GouraudReseeded` | ½ + ¼ | [`shade`](super::shade) |
 /// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | [`wide`](super::wide) |

@@ -57,7 +57,7 @@ pub enum Progression {
 /// A start, and additions of one step.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Accumulator {
-    /// The row's first covered pixel in the frame; of [`GouraudVintage`](Interpolation::GouraudPeriod) Ax, which may lie left
+    /// The row's first covered pixel in the frame; of [`GouraudVintage`](Interpolation::GouraudVintage) Ax, which may lie left
     /// of it.
     pub first: i32,
     /// The pixel where the sum is a start: `first`, or so many times 64 pixels after it.

@@ -43,10 +43,8 @@ impl Renderer {
 
     /// Draws each face as it comes, then those that shine through.
     fn one_by_one(&mut self, scene: &Scene, stats: &mut Stats, mut raster: Raster<'_>) {
-        let mut transparent = mem::take(&mut self.transparent);
-        transparent.clear();
-        transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
-        let mut integer = mem::take(&mut self.integer);
+        self.transparent.clear();
+        self.transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
         let mut batch = Batch::of_sifted();
         for &object in &self.plan.order {
             let plan = &self.plan.objects[object];
@@ -57,11 +55,11 @@ impl Renderer {
             if self.settings.vertex_path == VertexPath::Integer {
                 let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
                 let mut plain = |vertices: &[Vertex; 3], interpolation| batched.triangle(vertices, interpolation);
-                integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
+                self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
                 batched.draw();
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], plan) {
                 let (raster, batch, drawn) = (&mut raster, &mut batch, &mut drawn);
-                let (looks, transparent) = (&looks, &mut transparent);
+                let (looks, transparent) = (&looks, &mut self.transparent);
                 if plan.is_on(Effect::ScreenClipping) {
                     let batched = Batched::<true> { raster, batch, drawn };
                     let mut sink = ImmediateSink { batched, looks, object, transparent };
@@ -77,8 +75,6 @@ impl Renderer {
             self.states[object].put_decided(decided);
             stats.raster += drawn;
         }
-        self.integer = integer;
-        self.transparent = transparent;
         if self.plan.is_on_anywhere(Effect::Transparency) {
             self.draw_transparent(scene, stats, &mut raster);
         }
@@ -124,23 +120,20 @@ impl Renderer {
 
     /// Keeps every face for when all are known.
     fn gather(&mut self, scene: &Scene, stats: &mut Stats, sieve: Sieve) {
-        let mut triangles = mem::take(&mut self.triangles);
-        let (mut places, mut kept) = (mem::take(&mut self.kept_places), mem::take(&mut self.kept));
-        let mut transparent = mem::take(&mut self.transparent);
-        triangles.clear();
-        places.clear();
-        kept.clear();
-        transparent.clear();
-        triangles.reserve(self.most_faces(scene, |_, _| true));
-        places.reserve(triangles.capacity());
-        kept.reserve(self.most_faces(scene, |_, state| state.may_have_effects()));
-        transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
+        self.triangles.clear();
+        self.kept_places.clear();
+        self.kept.clear();
+        self.transparent.clear();
+        self.triangles.reserve(self.most_faces(scene, |_, _| true));
+        self.kept_places.reserve(self.triangles.capacity());
+        self.kept.reserve(self.most_faces(scene, |_, state| state.may_have_effects()));
+        self.transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
         for &object in &self.plan.order {
             let mut decided = self.states[object].take_decided();
             if self.settings.vertex_path == VertexPath::Integer {
                 let mut plain = |vertices: &[Vertex; 3], interpolation| {
-                    triangles.push((*vertices, interpolation));
-                    places.push(None);
+                    self.triangles.push((*vertices, interpolation));
+                    self.kept_places.push(None);
                 };
                 self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
@@ -153,10 +146,10 @@ impl Renderer {
                     kernel: self.kernel,
                 };
                 let mut sink = DeferredSink {
-                    triangles: &mut triangles,
-                    places: &mut places,
-                    kept: &mut kept,
-                    transparent: &mut transparent,
+                    triangles: &mut self.triangles,
+                    places: &mut self.kept_places,
+                    kept: &mut self.kept,
+                    transparent: &mut self.transparent,
                     looks: &looks,
                     object,
                     sieve,
@@ -165,7 +158,6 @@ impl Renderer {
             }
             self.states[object].put_decided(decided);
         }
-        (self.triangles, self.kept_places, self.kept, self.transparent) = (triangles, places, kept, transparent);
     }
 
     /// Faces of the objects of which `counts` holds, whether they are seen in this frame or in one to come: room for

@@ -188,7 +188,6 @@ impl Renderer {
 
     /// Rounds projected vertices once more, to so many bits after the point: 8, as they are, or fewer, so to whole pixels
     /// with 0. Points that clipping makes stay as they are. For those who measure what rounding costs.
-    #[cfg(feature = "std")]
     pub(crate) fn set_vertex_bits(&mut self, bits: u32) {
         self.vertex_bits = bits.min(VERTEX_BITS);
         // Vertices that are kept are rounded otherwise.
@@ -378,7 +377,6 @@ impl Renderer {
     }
 
     /// Makes the plan and the vertices of a frame, and draws nothing. For those who measure what that takes.
-    #[cfg(feature = "std")]
     pub(crate) fn make_vertices(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.prepare(scene, screen, None, true)?;
         self.last = None;

@@ -61,6 +61,12 @@ impl ShadeSource {
         changed |= replace(&mut self.accuracy, settings.accuracy);
         changed | replace(&mut self.tolerance, settings.tolerance)
     }
+
+    /// The light that falls on it, as its plan has it: of the lamps those that are given.
+    fn lights<'a>(&'a self, lamps: &'a [LampBeam], plan: &ObjectPlan) -> Lights<'a> {
+        let suns = if plan.is_on(Effect::Lighting) { self.suns.as_slice() } else { &[] };
+        Lights { suns, lamps, eye: self.view.eye() }
+    }
 }
 
 fn replace<T: PartialEq>(place: &mut T, new: T) -> bool {
@@ -105,6 +111,15 @@ pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
         channels: color.map(|c| c * intensity),
         inverse_square: part * part,
     })
+}
+
+/// What an object's vertices are made of and by.
+struct Made<'a> {
+    scene: &'a Scene,
+    object: &'a Object,
+    view: &'a View,
+    plan: &'a ObjectPlan,
+    kernel: Kernel,
 }
 
 /// One object of a renderer's scene.
@@ -193,35 +208,52 @@ impl ObjectState {
         // object that moves: force is there to do, and to measure, all the work.
         let changed = self.stale || self.made_by != Some(on) || stages.vertices == VertexStage::MakeAnew;
         (self.made_by, self.stale) = (Some(on), false);
-        let Some(source) = &self.source else { return false };
+        if self.source.is_none() {
+            return false;
+        }
+        let made = Made { scene, object, view, plan, kernel };
+        self.take_materials_and_lamps(&made);
+        self.split_faces(&made);
+        self.project(&made, stats);
+        self.light_vertices(&made, stats);
+        self.add_attributes(&made);
+        self.bound_errors(&made, changed, stats);
+        self.prepare_pixels(&made);
+        true
+    }
+
+    /// The materials as they are in the scene, and the lamps that fall on the object.
+    fn take_materials_and_lamps(&mut self, &Made { scene, object, plan, .. }: &Made<'_>) {
+        let Some(source) = &self.source else { return };
         self.paints.clear();
         let palette = scene.palette.as_ref();
         self.paints.extend(object.materials.iter().map(|m| SurfaceMaterial::new(m, scene.ambient, palette, plan)));
         self.lamps.clear();
         let bounds = object.mesh().bounds();
-        let falls_on_it = |lamp: &&LampBeam| match stages.lamps {
+        let falls_on_it = |lamp: &&LampBeam| match plan.stages().lamps {
             Lamps::None => false,
             Lamps::InRange => crate::light::lamp_reaches(lamp, bounds),
             Lamps::All => true,
         };
         self.lamps.extend(source.lamps.iter().filter(falls_on_it).copied());
-        let suns = if plan.is_on(Effect::Lighting) { source.suns.as_slice() } else { &[] };
-        let lights = Lights { suns, lamps: &self.lamps, eye: source.view.eye() };
+    }
 
-        let geometry = mesh_geometry(object);
-        let geometry = if plan.is_on(Effect::Tessellation) {
-            let points = match &mut self.points {
-                Some((mesh, points)) if Shared::ptr_eq(mesh, object.shared_mesh()) => &*points,
-                other => &other.insert((Shared::clone(object.shared_mesh()), object.mesh().points())).1,
-            };
-            let twins = object.mesh().twins();
-            self.tessellated.split(&geometry, (points, twins), &lights, &self.paints, source.tolerance);
-            self.tessellated.geometry()
-        } else {
-            geometry
-        };
+    /// The faces, split where that is on.
+    fn split_faces(&mut self, &Made { object, plan, .. }: &Made<'_>) {
         self.is_tessellated = plan.is_on(Effect::Tessellation);
+        let Some(source) = self.source.as_ref().filter(|_| self.is_tessellated) else { return };
+        let points = match &mut self.points {
+            Some((mesh, points)) if Shared::ptr_eq(mesh, object.shared_mesh()) => &*points,
+            other => &other.insert((Shared::clone(object.shared_mesh()), object.mesh().points())).1,
+        };
+        let (twins, lights) = (object.mesh().twins(), source.lights(&self.lamps, plan));
+        self.tessellated.split(&mesh_geometry(object), (points, twins), &lights, &self.paints, source.tolerance);
+    }
 
+    /// Where the vertices are on the screen.
+    fn project(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>, stats: &mut Stats) {
+        let Some(source) = &self.source else { return };
+        let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
         let count = geometry.positions.len();
         stats.vertices += count as u64;
         self.lit.begin(count);
@@ -234,11 +266,17 @@ impl ObjectState {
         if self.paints.iter().any(|paint| paint.has_effects) {
             self.extras.resize(count, VertexAttributes::default());
         }
-        let channels = stages.lighting == Lighting::Channels;
+    }
+
+    /// The vertices' shades, or their channels, where it is vertices that are lit.
+    fn light_vertices(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>, stats: &mut Stats) {
+        let Some(source) = &self.source else { return };
+        let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
+        let (lights, stages) = (source.lights(&self.lamps, plan), plan.stages());
         // Of a closed body nobody sees the back.
         let both = !plan.is_on(Effect::BackFaceCulling);
         if stages.lighting != Lighting::None && stages.lit_at == LitAt::Vertices {
-            stats.lit += count as u64;
+            stats.lit += geometry.positions.len() as u64;
         }
         match (stages.lighting, stages.lit_at) {
             (Lighting::None, _) => vertex::light_none(&geometry, &self.paints, &mut self.lit),
@@ -255,6 +293,12 @@ impl ObjectState {
         if self.paints.iter().any(|paint| paint.response.is_some()) {
             vertex::respond(&geometry, &self.paints, &mut self.lit, &mut self.extras);
         }
+    }
+
+    /// What the vertices carry for images and fog.
+    fn add_attributes(&mut self, &Made { scene, object, plan, .. }: &Made<'_>) {
+        let Some(source) = &self.source else { return };
+        let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
         if plan.is_on(Effect::Texture) {
             vertex::texture_coordinates(&geometry, &self.paints, &mut self.extras);
         }
@@ -266,39 +310,47 @@ impl ObjectState {
         {
             vertex::fog_levels(&geometry, &source.view, fog, &mut self.extras);
         }
+    }
+
+    /// What a budget decides on faces by, if there is one.
+    fn bound_errors(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>, changed: bool, stats: &mut Stats) {
+        let Some(source) = &self.source else { return };
         self.has_budget = plan.max_error().is_some();
-        if let Some(max_error) = plan.max_error() {
-            let whole = (!plan.is_on(Effect::Tessellation)).then(|| object.shared_mesh());
-            let lit = Lit {
-                geometry: &geometry,
-                whole,
-                view: &source.view,
-                nearest: stages.nearest,
-                lights: &lights,
-                paints: &self.paints,
-                channels,
-                kernel,
-            };
-            if changed {
-                stats.decided += 1;
-                self.budget.renew(max_error, &lit, &mut self.decided);
-            }
-            self.budget.mark(&lit, &mut self.lit, &self.extras);
-        } else {
-            self.decided.clear();
+        let Some(max_error) = plan.max_error() else { return self.decided.clear() };
+        let (geometry, lights) =
+            (drawn_geometry(self.is_tessellated, &self.tessellated, object), source.lights(&self.lamps, plan));
+        let lit = Lit {
+            geometry: &geometry,
+            whole: (!self.is_tessellated).then(|| object.shared_mesh()),
+            view: &source.view,
+            nearest: plan.stages().nearest,
+            lights: &lights,
+            paints: &self.paints,
+            channels: plan.stages().lighting == Lighting::Channels,
+            kernel,
+        };
+        if changed {
+            stats.decided += 1;
+            self.budget.renew(max_error, &lit, &mut self.decided);
         }
-        if stages.lit_at == LitAt::Pixels {
-            if source.accuracy.shading() == Shading::PhongTable && !channels {
-                vertex::slopes(&geometry, &source.view, &mut self.extras);
-                let at = source.view.position();
-                self.tables_of_normals(scene, at, view);
-            } else {
-                vertex::lit_points(&geometry, &mut self.extras);
-            }
-        } else {
+        self.budget.mark(&lit, &mut self.lit, &self.extras);
+    }
+
+    /// What pixels are lit by, where all are.
+    fn prepare_pixels(&mut self, &Made { scene, object, view, plan, .. }: &Made<'_>) {
+        let Some(source) = &self.source else { return };
+        if plan.stages().lit_at != LitAt::Pixels {
             self.normal_tables = Vec::new();
+            return;
         }
-        true
+        let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
+        if source.accuracy.shading() == Shading::PhongTable && plan.stages().lighting != Lighting::Channels {
+            vertex::slopes(&geometry, &source.view, &mut self.extras);
+            let at = source.view.position();
+            self.tables_of_normals(scene, at, view);
+        } else {
+            vertex::lit_points(&geometry, &mut self.extras);
+        }
     }
 
     /// The tables of shades by normal, as the eye sees them: they stay while the object turns.
@@ -355,8 +407,8 @@ impl ObjectState {
 
     /// The light that falls on it, as its plan has it.
     pub(super) fn lights(&self, plan: &ObjectPlan) -> Lights<'_> {
-        let (suns, eye) = self.source.as_ref().map_or((&[][..], [0.0; 3]), |s| (s.suns.as_slice(), s.view.eye()));
-        Lights { suns: if plan.is_on(Effect::Lighting) { suns } else { &[] }, lamps: &self.lamps, eye }
+        let none = Lights { suns: &[], lamps: &self.lamps, eye: [0.0; 3] };
+        self.source.as_ref().map_or(none, |source| source.lights(&self.lamps, plan))
     }
 
     /// Its faces, ready to be drawn.
@@ -367,7 +419,7 @@ impl ObjectState {
         let source = self.source.as_ref()?;
         Some(Faces {
             shading: plan.shading(),
-            geometry: if self.is_tessellated { self.tessellated.geometry() } else { mesh_geometry(object) },
+            geometry: drawn_geometry(self.is_tessellated, &self.tessellated, object),
             view: &source.view,
             lights: self.lights(plan),
             paints: &self.paints,
@@ -392,8 +444,7 @@ impl ObjectState {
 
     /// Its faces, seen or not.
     pub(super) fn most_faces(&self, object: &Object) -> usize {
-        let geometry = if self.is_tessellated { self.tessellated.geometry() } else { mesh_geometry(object) };
-        geometry.triangles.len()
+        drawn_geometry(self.is_tessellated, &self.tessellated, object).triangles.len()
     }
 
     /// Whether pixels of its faces may pass through stages. A budget lights some where it must.
@@ -433,6 +484,11 @@ impl ObjectState {
             + self.budget.bytes()
             + self.decided.bytes()
     }
+}
+
+/// What is drawn of an object: its mesh, or what splitting made of it.
+fn drawn_geometry<'a>(is_tessellated: bool, tessellated: &'a Tessellated, object: &'a Object) -> Geometry<'a> {
+    if is_tessellated { tessellated.geometry() } else { mesh_geometry(object) }
 }
 
 fn mesh_geometry(object: &Object) -> Geometry<'_> {

@@ -1,4 +1,4 @@
-//! How a renderer is set, and what a scene is drawn by: the only place that knows which of two wishes counts.
+//! How a renderer is set, and what a scene is drawn by: the only place that knows whose choice counts.
 
 use core::fmt;
 

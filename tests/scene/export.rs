@@ -108,14 +108,14 @@ fn enlarged_pictures_stay_indexed_and_keep_their_shape() {
             .map(|(x, y)| vga.pixels()[under(y, height, 200) * 320 + under(x, width, 320)])
             .collect();
 
-        let indexed = decode(&Png { scale: scale, rgb: false }.encode(&picture).expect("encoded"));
+        let indexed = decode(&Png { scale, rgb: false }.encode(&picture).expect("encoded"));
         assert_eq!((indexed.width, indexed.height), (width, height), "{scale}");
         assert_eq!(indexed.color, ColorType::Indexed, "{scale}");
         assert_eq!(indexed.palette, bytes_of(palette.colors()), "{scale}");
         assert!(indexed.data == expected, "{scale}");
         assert_eq!(indexed.density, Some(density), "{scale}");
 
-        let rgb = decode(&Png { scale: scale, rgb: true }.encode(&picture).expect("encoded"));
+        let rgb = decode(&Png { scale, rgb: true }.encode(&picture).expect("encoded"));
         assert_eq!((rgb.width, rgb.height), (width, height), "{scale}");
         assert_eq!(rgb.color, ColorType::Rgb, "{scale}");
         let colors: Vec<Rgb> = expected.iter().map(|&index| palette.color(index)).collect();

@@ -19,7 +19,7 @@ use mode13h::scene::Shading;
 /// | `float` | `gouraud-perspective` | ½ + 1/512 + 1/256 + 1/8,192 | and f32 |
 ///
 /// A vertex's shade is rounded to 1/256, so by 1/512; what is made from it is a mean of three, and no farther off. The
-/// rest is what the raster adds ([`Interpolation`](mode13h::raster::Shading)). A depth is rounded to half of 2⁻³⁰·near/w's unit: of
+/// rest is what the raster adds ([`Interpolation`](mode13h::raster::Interpolation)). A depth is rounded to half of 2⁻³⁰·near/w's unit: of
 /// w up to 4,096 times the near distance that is 2⁻¹⁹ of it, either way, and a quotient of sums that are off by so
 /// much is off by 2⁻¹⁸ of 255 shades: 1/1,000, and less than 1/256 up to 10,000 times.
 ///

@@ -38,7 +38,7 @@ pub trait Lighting: core::fmt::Debug {
 #[non_exhaustive]
 pub enum ShadeSource<'a> {
     /// The corners' shades, or their channels, each for itself, as this shading has them. Of
-    /// [`GouraudVintage`](Interpolation::GouraudPeriod) the shades alone: which pixels is decided by exact cover,
+    /// [`GouraudVintage`](Interpolation::GouraudVintage) the shades alone: which pixels is decided by exact cover,
     /// where the values of all stages are in range.
     Shaded(Interpolation),
     /// [`Attributes::slope`], linear on the screen, looked up: row and column give the shade.

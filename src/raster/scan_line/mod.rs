@@ -15,8 +15,8 @@
 //! the start that the triangle alone would have. It needs no depth for every pixel and paints no
 //! pixel that another face hides; a face that no other overlaps needs no depth at all.
 //!
-//! [`GouraudVintage`](Interpolation::GouraudPeriod), whose triangles have edges of their own, gets exact cover here like all
-//! others, and its own [shades](super::period) on it; so it alone gives other frames than the depth buffer.
+//! [`GouraudVintage`](Interpolation::GouraudVintage), whose triangles have edges of their own, gets exact cover here like all
+//! others, and its own [shades](super::vintage) on it; so it alone gives other frames than the depth buffer.
 //!
 //! | file | what |
 //! |---|---|
