@@ -97,9 +97,9 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
 
 /// For each surface, the max change of texture coordinates over a unit of its faces. Faces without area do not count.
 ///
-/// On a face with the edges e and f, a change g of a coordinate along e and h along f, and g' and h' of another, ∇·∇' =
-/// (gg'·f·f − (gh' + g'h)·e·f + hh'·e·e) / (e·e f·f − (e·f)²). A step of one unit changes both coordinates together by
-/// no more than the root of the greater eigenvalue of these products.
+/// On a face with the edges e and f, a change g of a coordinate along e and h along f, and g' and h' of another,
+/// ∇·∇' = (gg'·f·f − (gh' + g'h)·e·f + hh'·e·e) / (e·e f·f − (e·f)²). A step of one unit changes both coordinates
+/// together by no more than the root of the greater eigenvalue of these products.
 fn steepest_texcoords(mesh: &Mesh) -> Vec<f64> {
     let mut steepest = vec![0.0_f64; mesh.surfaces.len()];
     let Some(texcoords) = &mesh.texcoords else { return steepest };
