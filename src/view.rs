@@ -112,7 +112,7 @@ impl View {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ObjectView {
     exact: (Matrix, Row),
-    /// The same in f32, unless the object reaches so far that f32 could overflow.
+    /// The way of `exact` in f32; `None` if the object reaches so far that f32 could overflow.
     fast: Option<(Mat3, Vec3)>,
     centre: (f32, f32),
     near: f32,

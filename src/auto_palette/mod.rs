@@ -130,7 +130,7 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     Ok(automatic)
 }
 
-/// Of each object whether its plan calls for mipmaps at any moment.
+/// Whether each object's plan calls for mipmaps at any moment.
 fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
     let mut any = vec![false; scene.objects().len()];
     if scene.objects().iter().flat_map(|object| &object.materials).any(|material| material.texture.is_some()) {
@@ -146,7 +146,7 @@ fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
 
 /// What a material of an object is to look like.
 struct Body {
-    /// Of 1, what it gives back in full light: its ambient and diffuse shares.
+    /// What it gives back in full light, of 1: its ambient and diffuse shares.
     full: f32,
     /// On three channels.
     own: OwnColors,

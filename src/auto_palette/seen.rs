@@ -67,8 +67,8 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// Of `scene` on one channel, without what does something to its pixels, in materials that `change` changes; it is
-    /// given their numbers from 0.
+    /// A picture of `scene` on one channel, without what does something to its pixels. `change` changes the materials;
+    /// it is given their numbers from 0.
     pub(super) fn new(scene: &Scene, mut change: impl FnMut(usize, &mut Material)) -> Self {
         let mut scene = scene.clone();
         scene.palette = None;

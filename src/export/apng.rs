@@ -31,7 +31,7 @@ pub enum FilmColors {
 /// be made at a time, on any threads, and then be added in their order.
 #[doc(hidden)]
 pub struct ApngFrame {
-    /// Of the film.
+    /// The film's size in pixels: width and height.
     size: (u32, u32),
     density: (u32, u32),
     colors: FilmColors,
@@ -193,10 +193,10 @@ impl ApngFile {
 struct Writer<W> {
     out: W,
     rate: FrameRate,
-    /// As promised in the file's head.
+    /// The number of frames that the file's head promises.
     frames: u32,
     given: u32,
-    /// Of the next chunk of a frame.
+    /// The sequence number of the next chunk of a frame.
     sequence: u32,
     /// The first frame's size and colours.
     first: Option<((u32, u32), FilmColors)>,

@@ -56,9 +56,9 @@ pub enum ExportErrorKind {
     /// A film of more or fewer frames than were promised.
     #[cfg(feature = "png")]
     FrameCount {
-        /// As many as the film's head says.
+        /// The number of frames that the film's head promises.
         promised: u32,
-        /// As many as were added.
+        /// The number of frames that were added.
         given: u32,
     },
     /// Any other failure that the system reports.
@@ -174,7 +174,7 @@ pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ExportError> {
 /// A file in the making, as [`write_atomically`] has it: there under its name once it is committed, and removed if it is
 /// dropped before.
 pub(super) struct AtomicFile {
-    /// As the caller named it, for errors.
+    /// The path as the caller named it, for errors.
     path: PathBuf,
     /// Where it is to stand.
     target: PathBuf,

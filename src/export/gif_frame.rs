@@ -27,12 +27,12 @@ use crate::palette::Rgb;
 /// ```
 #[doc(hidden)]
 pub struct GifFrame {
-    /// As they were given, without gaps between the rows.
+    /// The pixels that were given, without gaps between the rows.
     pixels: Vec<u8>,
     width: usize,
     height: usize,
     palette: Box<[Rgb; 256]>,
-    /// Of the film.
+    /// The film's size in pixels: width and height.
     size: (u16, u16),
     /// Nothing where it changes nothing.
     image: Option<Image>,
@@ -104,7 +104,7 @@ impl GifFrame {
         &self.palette
     }
 
-    /// Of the film, in pixels.
+    /// The film's size in pixels: width and height.
     pub(super) fn size(&self) -> (u16, u16) {
         self.size
     }

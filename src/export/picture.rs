@@ -18,7 +18,7 @@ pub struct PixelShape {
 }
 
 impl PixelShape {
-    /// As wide as high.
+    /// A pixel as wide as it is high.
     pub const SQUARE: PixelShape = PixelShape { width: 1, height: 1 };
 
     /// 5:6, which makes 320 × 200 pixels a 4:3 screen.
@@ -93,7 +93,7 @@ pub enum PictureError {
     OtherSize {
         /// Pixels in a row, and rows, of the first frame.
         first: (usize, usize),
-        /// Of this one.
+        /// Pixels in a row, and rows, of this frame.
         now: (usize, usize),
     },
     /// The picture does not fit in memory.

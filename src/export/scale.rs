@@ -13,7 +13,7 @@ use super::{MAX_SIDE, Picture, PixelShape};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Scale {
-    /// As it is: a 320 × 200 frame gives 320 × 200.
+    /// Every pixel once: a 320 × 200 frame gives 320 × 200.
     #[default]
     One,
     /// Every pixel 2 × 2, as the VGA scans every row twice: 640 × 400.
@@ -91,8 +91,9 @@ impl Error for ScaleError {}
 /// A picture and the size that it is exported at: for each pixel of the result, where in the frame it comes from.
 pub(super) struct Scaled<'a> {
     picture: Picture<'a>,
-    /// Of the result, in pixels.
+    /// The width of the result, in pixels.
     pub(super) width: u32,
+    /// The height of the result, in pixels.
     pub(super) height: u32,
     /// The frame's column of each column of the result.
     columns: Vec<usize>,

@@ -119,7 +119,7 @@ impl Lights<'_> {
         (front, back)
     }
 
-    /// The same on three channels: red, green, blue.
+    /// Sums all light on three channels: red, green, blue. Otherwise like [`one_channel`](Self::one_channel).
     #[inline(never)]
     pub(crate) fn three_channels(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (Wide, Wide) {
         let of_sun = |sun: &Beam| sun.channels.map(f64::from);

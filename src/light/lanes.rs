@@ -86,7 +86,8 @@ impl Lights<'_> {
         self.one_channel_apart::<false>(answer, points)
     }
 
-    /// The same for normals that are unit already, which are taken as they are.
+    /// Sums all light on one channel for unit normals, which are taken as they are. Otherwise like
+    /// [`front_of_one_channel`](Self::front_of_one_channel).
     pub(crate) fn unit_front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
@@ -96,7 +97,8 @@ impl Lights<'_> {
         self.one_channel_apart::<true>(answer, points)
     }
 
-    /// The same as [`front_of_one_channel`](Self::front_of_one_channel) on three channels: red, green, blue.
+    /// Sums all light on three channels: red, green, blue. Otherwise like
+    /// [`front_of_one_channel`](Self::front_of_one_channel).
     pub(crate) fn front_of_three_channels(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> [Wides; 3] {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if kernel.has_avx2() {
@@ -106,7 +108,8 @@ impl Lights<'_> {
         self.three_channels_apart::<false>(answer, points)
     }
 
-    /// The same for normals that are unit already, which are taken as they are.
+    /// Sums all light on three channels for unit normals, which are taken as they are. Otherwise like
+    /// [`front_of_three_channels`](Self::front_of_three_channels).
     pub(crate) fn unit_front_of_three_channels(
         &self,
         answer: &Reflectance,

@@ -83,7 +83,7 @@ pub enum Blend {
 }
 
 impl Material {
-    /// Of white light, how much a white surface gives back as ambient light; the rest is diffuse.
+    /// The share of white light that a white surface gives back as ambient light; the rest is diffuse.
     const AMBIENT_SHARE: f32 = 0.15;
 
     /// A material that gives back all light, matt, in the palette's first ramp.
@@ -114,8 +114,8 @@ impl Material {
         }
     }
 
-    /// The same with the picture that an MTL file's `map_Kd` names. As Kd tints it, a coloured Kd goes into a copy of
-    /// the picture; a grey one leaves it as it is, to be shared.
+    /// Puts the picture that an MTL file's `map_Kd` names on the material. Kd tints the picture: a coloured Kd goes
+    /// into a copy of it, a grey one leaves it as it is, to be shared.
     #[must_use]
     pub fn with_map(self, surface: &Surface, map: &Shared<Texture>) -> Self {
         let most = surface.diffuse.iter().copied().fold(0.0, f32::max);
@@ -142,8 +142,8 @@ impl Material {
         (color, or_else(self.highlight, surface.specular))
     }
 
-    /// The same in its [own colours](Self::own_colors) where it has a ramp by number only: for a palette that has no
-    /// ramps.
+    /// A copy of the material in its [own colours](Self::own_colors) if it has a ramp by number only; otherwise a plain
+    /// copy. It is for a palette that has no ramps.
     #[must_use]
     #[doc(hidden)]
     pub fn in_own_colors(&self, surface: &Surface) -> Self {

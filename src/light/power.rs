@@ -22,7 +22,7 @@ pub(crate) enum Shininess {
 }
 
 impl Shininess {
-    /// Of a number of at least 0; what is less, and what is no number, counts as 0.
+    /// The shininess with this exponent, at least 0. A negative number and NaN count as 0.
     pub(crate) fn new(exponent: f64) -> Self {
         let exponent = exponent.max(0.0);
         // 0 to 1,024.
@@ -36,7 +36,7 @@ impl Shininess {
         if base > 0.0 { self.raise([base])[0] } else { 0.0 }
     }
 
-    /// The same of several.
+    /// base ^ exponent of each base above 0; 0 of any other.
     #[inline(always)]
     pub(crate) fn of_lanes(self, bases: &Lanes<f64>) -> Lanes<f64> {
         let mut positive = [0.0; LANES];

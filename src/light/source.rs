@@ -47,7 +47,7 @@ impl Light {
         Self::Lamp { position: Vec3::from_array(position), intensity: 1.0, range, color: WHITE }
     }
 
-    /// The same light with this intensity.
+    /// Sets the light's intensity.
     #[must_use]
     pub fn with_intensity(mut self, new: f32) -> Self {
         match &mut self {
@@ -56,7 +56,7 @@ impl Light {
         self
     }
 
-    /// The same light in this colour: red, green, blue, as a rule 0 to 1.
+    /// Sets the light's colour: red, green, blue, as a rule 0 to 1.
     #[must_use]
     pub fn with_color(mut self, new: [f32; 3]) -> Self {
         match &mut self {

@@ -44,7 +44,7 @@ pub enum MeshError {
     Factors,
     /// Two lists that belong together are of different lengths.
     Count {
-        /// Of the list that was given.
+        /// What the list that was given holds.
         what: &'static str,
         /// Its length.
         given: usize,

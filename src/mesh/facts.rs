@@ -9,7 +9,7 @@ use super::normals::face_normal;
 /// What is found out about a mesh.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Facts {
-    /// Of each vertex, its surface.
+    /// The index of each vertex's surface.
     vertex_surfaces: Vec<u16>,
     /// In space and in texture coordinates.
     longest_edges: (f32, f32),
@@ -53,7 +53,7 @@ impl Mesh {
         self.facts.longest_edges
     }
 
-    /// Of each surface by how much its texture coordinates change at most over a unit of the mesh.
+    /// For each surface, the max change of its texture coordinates over a unit of the mesh.
     pub(crate) fn steepest_texcoords(&self) -> &[f64] {
         &self.facts.steepest_texcoords
     }
@@ -64,7 +64,7 @@ impl Mesh {
     }
 }
 
-/// Of each vertex, its surface.
+/// For each vertex, the index of its surface.
 fn vertex_surfaces(mesh: &Mesh) -> Vec<u16> {
     let mut surface_of = vec![0; mesh.positions.len()];
     if mesh.surfaces.len() == 1 {
@@ -95,7 +95,7 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
     (libm::sqrtf(edge), libm::sqrtf(texture_edge))
 }
 
-/// Of each surface by how much texture coordinates change at most over a unit of its faces, those without area aside.
+/// For each surface, the max change of texture coordinates over a unit of its faces. Faces without area do not count.
 ///
 /// On a face with the edges e and f, a change g of a coordinate along e and h along f, and g' and h' of another,
 /// ∇·∇' = (gg'·f·f − (gh' + g'h)·e·f + hh'·e·e) / (e·e f·f − (e·f)²). A step of one unit changes both coordinates

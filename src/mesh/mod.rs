@@ -115,10 +115,10 @@ impl Mesh {
         Ok(Self::assemble(positions, normals, triangles))
     }
 
-    /// The same mesh with texture coordinates, one pair for each vertex.
+    /// Gives the mesh texture coordinates, one pair for each vertex.
     ///
     /// # Errors
-    /// As many pairs as vertices, each finite.
+    /// A number of pairs other than that of the vertices; a pair that is not finite.
     pub fn with_texcoords(mut self, texcoords: Vec<Vec2>) -> Result<Self, MeshError> {
         let (given, needed) = (texcoords.len(), self.positions.len());
         if given != needed {
@@ -131,10 +131,10 @@ impl Mesh {
         Ok(self.with_facts())
     }
 
-    /// The same mesh with these surfaces, and for each triangle the number of its own.
+    /// Gives the mesh these surfaces, and each triangle the index of its own.
     ///
     /// # Errors
-    /// As many numbers as triangles, each below the number of surfaces.
+    /// A number of indices other than that of the triangles; an index that is not below the number of surfaces.
     pub fn with_surfaces(mut self, surfaces: Vec<Surface>, triangle_surfaces: Vec<u16>) -> Result<Self, MeshError> {
         let (given, needed) = (triangle_surfaces.len(), self.triangles.len());
         if given != needed {

@@ -108,7 +108,7 @@ pub(super) struct Together<'a> {
     /// For each triangle the number of its smoothing group, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Empty
     /// if none has one.
     groups: &'a [u32],
-    /// Of a mesh that may be a scan.
+    /// The edges of a mesh that may be a scan; otherwise `None`.
     edges: Option<topology::Edges>,
 }
 
@@ -125,7 +125,8 @@ impl<'a> Together<'a> {
         Self { least, groups, edges: None }
     }
 
-    /// The same rule, but smooth everywhere on a scan: on a mesh of these edges whose sharp ones are [scattered].
+    /// Makes a scan smooth everywhere: a mesh of these edges whose sharp ones are [scattered]. Otherwise the rule
+    /// stays.
     ///
     /// [scattered]: Self::is_scattered
     #[cfg(feature = "obj")]

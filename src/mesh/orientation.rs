@@ -190,7 +190,7 @@ mod tests {
             }
         }
 
-        /// Of any size, denormals and f32::MAX among them.
+        /// Points of any size, denormals and f32::MAX among them.
         #[test]
         fn anywhere(p in prop::array::uniform4(prop::array::uniform3(finite()))) {
             let points = p.map(Vec3::from_array);

@@ -30,8 +30,8 @@ impl Mesh {
         })
     }
 
-    /// The same mesh with every vertex that lies between surfaces split, one for each. New vertices
-    /// come at the end.
+    /// A copy of the mesh with every vertex that lies between surfaces split, one for each. New vertices come at the
+    /// end.
     #[must_use]
     #[doc(hidden)]
     pub fn with_one_surface_a_vertex(&self) -> Self {

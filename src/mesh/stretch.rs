@@ -6,12 +6,12 @@ use super::wide::{narrow, widen};
 use super::{Mesh, MeshError, normals};
 
 impl Mesh {
-    /// The same mesh with every x, y and z multiplied with its factor, each finite and above 0. Normals are divided by
-    /// them and made unit again, so that they stay upright on their faces. It is exact, and what was
-    /// [convex](Self::is_convex) stays so, where the factors are powers of two.
+    /// A copy of the mesh with every x, y and z multiplied with its factor, each finite and above 0. Normals are
+    /// divided by the factors and made unit again, so that they stay upright on their faces. If the factors are powers
+    /// of two, the copy is exact, and what was [convex](Self::is_convex) stays so.
     ///
     /// # Errors
-    /// A factor that may not be; a position that is then beyond the range of f32.
+    /// A factor that is not finite or not above 0; a position that is then beyond the range of f32.
     pub fn stretched(&self, factors: Vec3) -> Result<Self, MeshError> {
         if !(factors.is_finite() && factors.min_element() > 0.0) {
             return Err(MeshError::Factors);

@@ -44,7 +44,7 @@ use crate::scene::{HiddenSurfaces, Mapping, Scene, Shading};
 pub struct Decision {
     /// Whether the effect is on.
     pub on: bool,
-    /// Of several ways to do it, which.
+    /// The way in which the effect is done, of several.
     pub choice: Choice,
     /// Why.
     pub reason: Reason,
@@ -260,7 +260,7 @@ pub struct Row {
     pub effect: Effect,
     /// Whether it is on.
     pub on: bool,
-    /// Of several ways to do it, which; empty where there is but one.
+    /// The way in which the effect is done, of several; empty if there is but one.
     pub choice: &'static str,
     /// Why.
     pub reason: String,

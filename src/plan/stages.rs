@@ -2,7 +2,7 @@
 
 use crate::scene::{HiddenSurfaces, Mapping, Shading};
 
-/// Of several ways to have an effect, which.
+/// The way in which an effect is done, of several.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub enum Choice {
@@ -62,7 +62,7 @@ pub(crate) enum Lighting {
     Suns,
     /// Suns, lamps and highlights.
     All,
-    /// The same on each of three channels.
+    /// Suns, lamps and highlights, on each of three channels.
     Channels,
 }
 

@@ -11,7 +11,7 @@ const FREE: (u32, u32) = (u32::MAX, u32::MAX);
 /// From an edge, two different numbers, to a number.
 #[derive(Debug, Default)]
 pub(super) struct EdgeMap {
-    /// As many as a power of two, or none.
+    /// Edges and their numbers, at indices by hash. The length is a power of two, or zero.
     places: Vec<((u32, u32), u32)>,
     count: usize,
 }

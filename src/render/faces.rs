@@ -17,7 +17,7 @@ pub(super) struct Faces<'a> {
     /// One for each surface of the mesh.
     pub(super) paints: &'a [SurfaceMaterial],
     pub(super) lit: &'a LitVertices,
-    /// As many, if there are effects.
+    /// The attributes of each vertex, if there are effects.
     pub(super) extras: &'a [VertexAttributes],
     /// Whether faces that are turned away are left out.
     pub(super) culls: bool,

@@ -31,7 +31,8 @@ pub(super) struct LitVertices {
 }
 
 impl LitVertices {
-    /// As many vertices, of which nothing is known yet: they are to be put, and lit or left without light.
+    /// Makes room for `count` vertices of which nothing is known yet. They are to be put on the screen, and lit or left
+    /// without light.
     pub(super) fn begin(&mut self, count: usize) {
         self.places.resize(count, Place::NEEDS_CLIPPING);
         self.depths.resize(count, 0);

@@ -78,7 +78,7 @@ struct Drawing {
     hidden_surfaces: HiddenSurfaces,
     settings: Resolved,
     order: Vec<usize>,
-    /// As tables are made from it, and ramps lie in it.
+    /// The palette: tables are made from it, and ramps lie in it.
     palette: Option<Palette>,
 }
 
@@ -100,9 +100,9 @@ pub struct Renderer {
     plan: Plan,
     integer: IntegerPath,
     depths: Vec<u32>,
-    /// Of a frame that must be known whole before it is drawn; beside each face its place in `kept`,
-    /// if it has effects.
+    /// The faces of a frame that must be known whole before it is drawn.
     triangles: Vec<([Vertex; 3], Interpolation)>,
+    /// For each of `triangles` its index in `kept`, if it has effects.
     kept_places: Vec<Option<u32>>,
     kept: Vec<DeferredFace>,
     /// Faces that shine through.
@@ -233,8 +233,8 @@ impl Renderer {
         self.settings.overrides.set(effect, on);
     }
 
-    /// The same for one object, by its place in the scene, whatever holds for every object; `None` takes that back.
-    /// Palette animation is on as soon as it is for one.
+    /// Switches an effect on or off for one object, by its index in the scene, whatever holds for every object. `None`
+    /// takes that back. Palette animation is on as soon as it is for one. Otherwise like [`force`](Self::force).
     pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
         self.settings.overrides.set_for(object, effect, on);
     }

@@ -32,7 +32,7 @@ struct ShadeSource {
     lamps: Vec<LampBeam>,
     materials: Vec<Material>,
     ambient: f32,
-    /// As the materials' ramps depend on it.
+    /// The number of the palette's ramps, on which the materials' ramps depend.
     ramps: usize,
     fog: Option<Fog>,
     accuracy: Accuracy,
@@ -131,14 +131,14 @@ pub(super) struct ObjectState {
     /// The plan that the vertices were made by, its reasons aside.
     made_by: Option<[bool; Effect::COUNT]>,
     paints: Vec<SurfaceMaterial>,
-    /// Of the source's lamps, those in range.
+    /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
     lit: LitVertices,
     extras: Vec<VertexAttributes>,
     tessellated: Tessellated,
     /// Whether that is what is drawn. What is not stays for when it is again.
     is_tessellated: bool,
-    /// Of the mesh, for tessellation.
+    /// The mesh and the number of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
     /// One for each surface, and what they were made from.
     normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Table)>,
@@ -462,7 +462,7 @@ impl ObjectState {
         self.has_budget.then(|| self.decided.counts())
     }
 
-    /// The same, as they are.
+    /// The budget's decisions, as they are.
     pub(super) fn decided(&self) -> &Decided {
         &self.decided
     }

@@ -76,7 +76,7 @@ impl SurfaceMaterial {
         U8F8::from_intensity(intensity as f32, self.ramp.first(), self.ramp.entries())
     }
 
-    /// The same of eight.
+    /// The shades of eight intensities.
     #[inline(always)]
     pub(super) fn shade_of_eight(&self, intensities: &[f64; 8]) -> [U8F8; 8] {
         U8F8::from_eight_intensities(&intensities.map(|i| i as f32), self.ramp.first(), self.ramp.entries())

@@ -23,7 +23,7 @@ const ONE_TEXEL: [u8; 1] = [0];
 /// Thresholds that are all a half: dither without amplitude.
 const NO_AMPLITUDE: [[u8; 8]; 8] = [[128; 8]; 8];
 
-/// The same for shades that have no half added to them.
+/// Thresholds that are all zero: dither without amplitude, for shades that have no half added to them.
 const NO_THRESHOLD: [[u8; 8]; 8] = [[0; 8]; 8];
 
 /// The image of a surface, if one is on: its own, or what it mirrors.

@@ -9,7 +9,7 @@ use crate::scene::{HiddenSurfaces, Mapping, Preferences, Shading};
 /// How exact shades are: one choice, so that a shading and a budget cannot both be set.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Accuracy {
-    /// As exact as this shading makes them, on every face.
+    /// Every face gets this shading, and shades are as exact as it makes them.
     Shading(Shading),
     /// Within so many shades of error, 1/255 of full intensity each: every face gets the cheapest shading that is known to
     /// keep within. A number that is not above 0 and finite is an error when a scene is drawn.

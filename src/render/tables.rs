@@ -138,7 +138,8 @@ impl Tables {
         table.map(|table| [table.as_array(); 3])
     }
 
-    /// Of channels: row a channel's shade, column a texel, entry the channel of the lit texel.
+    /// Sees to it that an image has its tables of channels: row a channel's shade, column a texel, entry the channel of
+    /// the lit texel.
     pub(super) fn need_channels(&mut self, image: Image<'_>) {
         if find(&self.channels, image).is_none() {
             let colors = self.colors(image);

@@ -39,13 +39,13 @@ pub(super) struct Tessellated {
     vertex_surfaces: Vec<u16>,
     triangles: Vec<[u32; 3]>,
     triangle_surfaces: Vec<u16>,
-    /// Of each vertex, the number of its point: vertices in one place have the same.
+    /// The number of each vertex's point: vertices in one place have the same.
     points: Vec<u32>,
     /// A bit for each triangle whose mesh's triangle lies back to back with another; empty if there is none.
     twins: Vec<u64>,
-    /// Of each triangle, whether its edges have been looked at, and none of them bent.
+    /// Whether each triangle's edges have been looked at, and none of them bent.
     settled: Vec<bool>,
-    /// Of each vertex, its light, and how far what it mirrors is from each light.
+    /// The light of each vertex, and how far what it mirrors is from each light.
     known: Known,
     /// The edges that are split, by their points, and the number of the new point.
     halved: EdgeMap,
@@ -270,7 +270,7 @@ fn two(a: u32, b: u32, c: u32, ab: u32, bc: u32) -> [Option<[u32; 3]>; 3] {
 struct Bend<'a> {
     lights: &'a Lights<'a>,
     paints: &'a [SurfaceMaterial],
-    /// Of full intensity.
+    /// The greatest error that is allowed, as a share of full intensity.
     tolerance: f64,
     /// Whether any surface has one.
     has_highlights: bool,

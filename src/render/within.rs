@@ -20,8 +20,8 @@ const LINEAR_SHADING: Shading = Shading::Gouraud88Reseeded;
 const SMALL: u64 = 64;
 
 impl Faces<'_> {
-    /// The same, with effects or without, each by the shading that is decided for it. (Every shading that there is a choice of
-    /// has exact cover.) On what covers no pixel centre nothing is decided.
+    /// Hands on every face, with effects or without, by the shading that is decided for it. Every shading that there is
+    /// a choice of has exact cover. Nothing is decided on a face that covers no pixel centre.
     #[inline(never)]
     pub(super) fn each_within<const CULLS: bool, const EFFECTS: bool>(
         &self,
@@ -134,7 +134,8 @@ impl Faces<'_> {
         }
     }
 
-    /// As [`clipped`](Self::clipped), for a face that is shaded by choice.
+    /// A face that reaches beyond the near plane or the guard band, shaded by choice. Otherwise like
+    /// [`clipped`](Self::clipped).
     #[cold]
     #[inline(never)]
     fn clipped_within<const CULLS: bool, const EFFECTS: bool>(

@@ -22,7 +22,7 @@ impl Camera {
     /// 40°, in radians: about that of a 4:3 screen at the length of an arm and a half.
     pub const FIELD_OF_VIEW: f32 = 40.0 * core::f32::consts::PI / 180.0;
 
-    /// Of the picture's height, how much a framed sphere fills.
+    /// The share of the picture's height that a framed sphere fills.
     const FILL: f32 = 15.0 / 16.0;
 
     /// Looks along −z at a sphere, from where it fills fifteen sixteenths of the picture's height.
@@ -31,7 +31,8 @@ impl Camera {
         Self::framing_from(centre, radius, Vec3::Z, Self::FIELD_OF_VIEW)
     }
 
-    /// The same from the side that `direction`, of any length but zero, points to, with this field of view in radians.
+    /// Looks at a sphere from the side that `direction` points to, from where it fills fifteen sixteenths of the
+    /// picture's height. `direction` has any length but zero; the field of view is in radians.
     #[must_use]
     pub fn framing_from(centre: Vec3, radius: f32, direction: Vec3, field_of_view: f32) -> Self {
         // Half the angle under which the sphere is seen, and the distance at which its sine is that.

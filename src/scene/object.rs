@@ -67,14 +67,14 @@ impl Object {
         }
     }
 
-    /// The same object under a name for people.
+    /// Gives the object a name for people.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
     }
 
-    /// The same object turning about the middle of its mesh, which lies at `position`.
+    /// Makes the object turn about the middle of its mesh, which then lies at `position`.
     #[must_use]
     pub fn centred(mut self) -> Self {
         self.pivot = self.mesh.bounds().centre;
@@ -92,7 +92,7 @@ impl Object {
         &self.mesh
     }
 
-    /// Of each vertex of the mesh, the number of its surface.
+    /// For each vertex of the mesh, the index of its surface.
     #[must_use]
     pub fn vertex_surfaces(&self) -> &[u16] {
         self.mesh.vertex_surfaces()
@@ -157,7 +157,7 @@ impl Object {
         Mat3::from_cols_array_2d(&self.turn().map(|row| row.map(|c| c as f32))).transpose()
     }
 
-    /// The same in f64, by rows.
+    /// The matrix of [`rotation`](Self::rotation) in f64, by rows.
     pub(crate) fn turn(&self) -> [[f64; 3]; 3] {
         self.turned_by(self.angles)
     }
@@ -178,7 +178,7 @@ pub(crate) struct Placement {
     /// By rows.
     pub(crate) turn: [[f64; 3]; 3],
     pub(crate) scale: f64,
-    /// Of its pivot.
+    /// The position of its pivot.
     pub(crate) position: [f64; 3],
 }
 

@@ -14,7 +14,8 @@ named! {
         GouraudVintage = "gouraud-vintage",
         /// Linear between the vertices in 8.8, each row of a triangle one span.
         Gouraud88 = "gouraud-8.8",
-        /// The same, started anew every 64 pixels: the default.
+        /// Linear between the vertices in 8.8, started anew every 64 pixels, each row of a triangle one span: the
+        /// default.
         #[default]
         Gouraud88Reseeded = "gouraud-8.8-reseeded",
         /// Linear between the vertices in 16.16, each row of a triangle one span.

@@ -11,7 +11,7 @@ use crate::vga::Vga;
 pub(super) struct Picture {
     size: (usize, usize),
     place: Area,
-    /// Of each column of the picture, the frame's column.
+    /// For each column of the picture, the frame's column.
     columns: Vec<usize>,
     frame: Vec<u32>,
     stretched: Vec<u32>,

@@ -26,7 +26,7 @@ pub struct Buttons {
 #[derive(Clone, Debug, Default)]
 pub struct Input {
     pressed: Vec<Key>,
-    /// Of these the ones that went down while Shift was.
+    /// The keys of `pressed` that went down while Shift was down.
     shifted: Vec<Key>,
     held: Vec<Key>,
     typed: String,

@@ -39,7 +39,7 @@ pub enum ObjErrorKind {
     IndexOutOfRange {
         /// "vertex", "texture coordinate" or "normal".
         what: &'static str,
-        /// As it stands in the file.
+        /// The index as it stands in the file.
         index: i64,
         /// How many there are: in the file, or for a negative index up to this line.
         count: usize,

@@ -12,7 +12,7 @@ use super::ObjErrorKind;
 pub(super) struct Lines<R> {
     reader: R,
     buffer: Vec<u8>,
-    /// Of the line that was read last (of joined ones the first), from 1.
+    /// The number of the line that was read last, from 1. Joined lines have the number of the first.
     number: u64,
     /// Lines read so far.
     read: u64,
@@ -110,7 +110,7 @@ pub(super) fn number<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<O
     }
 }
 
-/// As many numbers as the statement needs.
+/// Reads the `N` numbers that the statement needs.
 pub(super) fn numbers<'a, const N: usize>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     what: &'static str,

@@ -29,7 +29,7 @@ pub(super) struct Model {
     pub(super) positions: Vec<Vec3>,
     pub(super) texcoords: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
-    /// Of all faces in turn.
+    /// The corners of all faces in turn.
     pub(super) corners: Vec<Corner>,
     /// How many of them each face has, three or more.
     pub(super) sizes: Vec<u32>,
@@ -39,7 +39,7 @@ pub(super) struct Model {
     pub(super) runs: Vec<(usize, usize)>,
     /// From which face on which smoothing group: its number, or 0 for none. Before the first none is known.
     pub(super) smoothing: Vec<(usize, u32)>,
-    /// Of `usemtl`, each once, in order. The first is that of faces before any `usemtl`: empty.
+    /// The names of `usemtl`, each once, in order. The first is empty: that of faces before any `usemtl`.
     pub(super) names: Vec<String>,
     /// Line and text of each `mtllib`.
     pub(super) libraries: Vec<(u64, String)>,

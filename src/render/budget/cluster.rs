@@ -71,7 +71,7 @@ const FOUR: usize = 4;
 const EVERY: usize = LANES / FOUR;
 
 impl Cones {
-    /// Of the faces with these corners.
+    /// Makes the cones of the faces with these corners.
     pub(super) fn new(triangles: &[[u32; 3]], normals: &[Vec3]) -> Self {
         let mut cones = [EightCones { axes: [NOUGHT; 3], unmixed_from: [f32::INFINITY; LANES] }; EVERY];
         for (i, four) in triangles.chunks(FOUR).enumerate().take(EVERY * LANES) {
@@ -144,7 +144,7 @@ pub(in crate::render) struct Where {
 }
 
 impl Cluster {
-    /// Of the faces with these facets, corners and surfaces; there is one at least.
+    /// Makes the cluster of the faces with these facets, corners and surfaces; there is at least one face.
     pub(super) fn new(
         facets: &[Facet],
         triangles: &[[u32; 3]],
@@ -288,10 +288,12 @@ impl Cluster {
         }))
     }
 
-    /// As `OneLight::body_of_lamp`, whichever face it is.
+    /// What linear shades of any of these faces are off by in one light: `OneLight::body_of_lamp`, whichever face it
+    /// is.
     ///
-    /// Of a face that lies partly in the dark the cosines at the corners, P of the light and S of the dark, differ by no
-    /// more than d, what normals and light turn by: P ≤ d, and what is off at the clamp, PS / (P + S), is no more than d/4.
+    /// On a face that lies partly in the dark, the cosines at the corners, P of the light and S of the dark, differ by
+    /// no more than d, which is what normals and light turn by. So P ≤ d, and what is off at the clamp, PS / (P + S),
+    /// is no more than d/4.
     fn in_light(&self, light: &Falling) -> Share {
         let Falling { brightness, first, second, turn, most, unmixed } = *light;
         let differ = self.spread + turn;

@@ -14,7 +14,7 @@ use crate::span::Kernel;
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86;
 
-/// Of each vertex of a mesh.
+/// The normal and the position of each vertex of a mesh.
 #[derive(Clone, Copy)]
 struct Corners<'a> {
     normals: &'a [Vec3],
@@ -154,7 +154,7 @@ pub(super) fn ways(to: Vec3, places: &Vectors) -> Vectors {
     ways
 }
 
-/// The same made unit.
+/// Unit directions from places to `to`. Each lane of `nearest` becomes the min of itself and the distance.
 #[inline(always)]
 fn towards(to: Vec3, places: &Vectors, nearest: &mut Lanes<f32>) -> Vectors {
     let mut ways = ways(to, places);

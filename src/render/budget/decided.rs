@@ -100,7 +100,7 @@ impl Decided {
         self.nothing_of(0);
     }
 
-    /// Of how many.
+    /// The number of triangles.
     pub(in crate::render) fn triangles(&self) -> usize {
         self.triangles
     }
@@ -118,7 +118,7 @@ impl Decided {
         self.chunks[chunk].has_choices.then(|| &self.choices[first..self.triangles.min(first + sift::MOST)])
     }
 
-    /// The same, to be added to, and what bodies are off by.
+    /// A chunk's choices of triangles that are not known to be linear, to be added to, and what bodies are off by.
     #[inline]
     pub(in crate::render) fn of_chunk(&mut self, chunk: usize) -> (&mut [Choice], &mut [Bodies]) {
         let first = chunk * sift::MOST;

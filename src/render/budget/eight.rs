@@ -38,8 +38,9 @@ pub(super) const NOUGHT: Lanes<f32> = [0.0; LANES];
 
 /// Eight faces, on the side that is seen. What there is fewer of is zero.
 pub(super) struct Eight {
-    /// Of each corner.
+    /// The normals at each corner.
     normals: [Vectors; 3],
+    /// The position of each corner.
     positions: [Vectors; 3],
     shortening: Lanes<f32>,
     spread: Lanes<f32>,
@@ -155,7 +156,7 @@ impl Falling<'_> {
         }
     }
 
-    /// As `OneLight::highlight`.
+    /// How far linear highlights are off on each of eight faces: `OneLight::highlight` in lanes.
     #[inline(always)]
     fn highlight(
         &self,
@@ -216,7 +217,7 @@ struct HalfWay {
 }
 
 impl HalfWay {
-    /// As `OneLight::along`.
+    /// The greatest r·v of any point of the face in one lane: `OneLight::along` in lanes.
     #[inline(always)]
     fn along(&self, lane: usize, turn: f32) -> f32 {
         let (long, nearest) = (self.long[lane], self.nearest[lane]);
@@ -398,7 +399,8 @@ impl Faces<'_> {
         all
     }
 
-    /// The same, of faces that are far enough from the highlights, where what their bodies are off by is known.
+    /// Finds linear faces, a bit for each, among those far enough from the highlights, where what their bodies are off
+    /// by is known.
     pub(in crate::render) fn linear_as_known(
         &self,
         budget: &Budget,

@@ -61,7 +61,7 @@ struct Lamplight {
 pub(super) struct OneLight<'a> {
     pub(super) facet: &'a Facet,
     pub(super) normals: [Vec3; 3],
-    /// Of a matt one anything.
+    /// Direction and distance from each corner to the eye; on a matt triangle anything.
     pub(super) to_eye: [Towards; 3],
     /// In shades.
     pub(super) kd: f32,

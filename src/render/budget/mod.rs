@@ -85,7 +85,7 @@ const LINEAR: f32 = 0.75;
 /// What rounding adds to a shade that is exact before it: a half, and what f32 may be off.
 const EXACT: f32 = 0.51;
 
-/// Of what is allowed, the shares that highlights may take where they are faint.
+/// The shares of what is allowed, in quarters, that highlights may take where they are faint.
 const QUARTERS: [f32; 3] = [1.0, 2.0, 3.0];
 
 /// Lights that a vertex has a bit for. The one above says whether a shade of it is clamped.
@@ -117,13 +117,13 @@ pub(super) struct Budget {
     facets: Vec<Facet>,
     /// One for as many faces as are sifted at a time.
     clusters: Vec<Cluster>,
-    /// As many.
+    /// The cones of each cluster's faces.
     cones: Vec<Cones>,
-    /// As many.
+    /// Which faces of each cluster are known to be linear; empty if `linear_unless_mixed`.
     linear: Vec<Linear>,
     /// One for each surface.
     strengths: Vec<Strength>,
-    /// Of the frame that is drawn.
+    /// The kernel of the frame that is drawn.
     kernel: Option<Kernel>,
     allowed: f32,
     longest_edge: f32,
@@ -138,12 +138,13 @@ pub(super) struct Budget {
     simple: bool,
     /// Then, whether linear shades keep within wherever all corners see the same suns and none is clamped.
     linear_unless_mixed: bool,
-    /// And where they are clamped, too; and, of one sun, so that vertices need no marks.
+    /// Whether linear shades, as in `linear_unless_mixed`, keep within where they are clamped, too.
     linear_unless_mixed_or_clamped: bool,
+    /// Whether that is so and there are but one sun and one surface: vertices then need no marks.
     by_cones: bool,
-    /// What is left for that.
+    /// What is left of what is allowed, for the clamp.
     left_for_clamp: f32,
-    /// And everywhere, of faces whose normals are no farther apart; below 0 of none.
+    /// The max spread of normals up to which a face's linear shades keep within everywhere; below 0 if there is none.
     harmless_spread: f32,
     /// What lights it, and what it answers: what bodies' errors are known for.
     suns: Vec<Beam>,

@@ -277,7 +277,8 @@ impl Faces<'_> {
         self.model_error_in(budget, question, &self.one_light(budget, question, part), limit, body)
     }
 
-    /// The same in this light.
+    /// How far linear shades are from the model in this light, in shades; where that is more than `limit`, anything
+    /// beyond it. `body` is what they are off by without highlights, if that is known.
     #[inline]
     pub(super) fn model_error_in(
         &self,
@@ -309,7 +310,8 @@ impl Faces<'_> {
         sum
     }
 
-    /// The same without highlights: where the eye is makes no difference.
+    /// How far linear shades are from the model without highlights, in shades; where that is more than `limit`,
+    /// anything beyond it. Where the eye is makes no difference.
     #[inline(never)]
     fn body_error(&self, budget: &Budget, question: &Question<'_>, light: &OneLight<'_>, limit: f32) -> f32 {
         let answer = &self.paints[usize::from(question.surface)].answer;
@@ -340,8 +342,9 @@ impl Faces<'_> {
         most
     }
 
-    /// The same, found at points between the corners, which divide each edge in four: between them the function is no farther
-    /// from linear than a part of a fourth of the size may be. Or, where that is enough, in two, at half as many.
+    /// How far linear shades are from the model, in shades, found at points between the corners. The points divide each
+    /// edge in four: between them the function is no farther from linear than a part of a fourth of the size may be.
+    /// Where that is enough they divide it in two, and are half as many.
     #[inline(never)]
     fn error_between_samples(&self, budget: &Budget, question: &Question<'_>, limit: f32) -> f32 {
         let between = self.model_error(budget, question, 0.25, limit, None);

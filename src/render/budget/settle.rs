@@ -48,7 +48,7 @@ impl Vain {
         true
     }
 
-    /// Of the last faces that were bounded by eights; those of long ago count less and less.
+    /// Counts the last faces that were bounded by eights, and those settled so. Those of long ago count less and less.
     fn by_eights(&mut self, bounded: u32, settled: u32) {
         (self.bounded, self.settled) = (self.bounded / 2 + bounded, self.settled / 2 + settled);
         if settled != 0 {

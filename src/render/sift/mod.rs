@@ -150,8 +150,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
-        /// Of every face, and by every kernel: the sign of the raster's area, and no face is left out that the raster
-        /// draws a pixel of.
+        /// Every kernel finds the sign of the raster's area of every face, and leaves out no face that the raster draws
+        /// a pixel of.
         #[test]
         fn what_is_left_out_covers_nothing(
             culls: bool,

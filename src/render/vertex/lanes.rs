@@ -49,8 +49,8 @@ pub(super) fn project_eight(
     }
 }
 
-/// As a function of its own: from loops over eights the compiler makes vectors of the same lane of eight eights, which takes
-/// twice as long.
+/// Calls `project_eight` and is never inlined: from loops over eights the compiler makes vectors of the same lane of
+/// eight eights, which takes twice as long.
 #[inline(never)]
 pub(super) fn project_eight_apart(
     narrow: &Narrow,
@@ -129,7 +129,7 @@ pub(super) fn light_eight<const BOTH: bool>(
     }
 }
 
-/// As `project_eight_apart`.
+/// Calls `light_eight` and is never inlined, for the reason that `project_eight_apart` gives.
 #[inline(never)]
 pub(super) fn light_eight_apart<const BOTH: bool>(
     paint: &SurfaceMaterial,
@@ -237,7 +237,7 @@ mod tests {
             }
         }
 
-        /// And so are its shades, of one surface or of several.
+        /// Every vertex has the shades that it has alone, of one surface or of several.
         #[test]
         fn eight_vertices_are_lit_as_each_is_alone(
             normals in prop::collection::vec(vector(), 0..40),

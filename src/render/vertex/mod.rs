@@ -167,7 +167,7 @@ pub(super) fn light_all(
     });
 }
 
-/// The same on three channels.
+/// Suns, lamps and highlights on three channels; on the side that the normals point away from, or on `both`.
 #[inline(never)]
 pub(super) fn light_channels(
     geometry: &Geometry<'_>,
@@ -214,7 +214,7 @@ fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize
     }
 }
 
-/// The same points with their normals turned round.
+/// Points with their normals turned round.
 fn from_behind(points: &Points) -> Points {
     let [x, y, z, ..] = points.map(|values| values.map(|value| -value));
     [x, y, z, points[3], points[4], points[5]]

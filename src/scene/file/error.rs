@@ -222,7 +222,7 @@ impl error::Error for SceneError {
     }
 }
 
-/// Of a message, which may quote what stands in a file, this many characters are shown.
+/// The max number of characters that are shown of a message, which may quote what stands in a file.
 const LONGEST_MESSAGE: usize = 2500;
 
 /// Keeps what is written through it on one line, printable, and not too long to be read.

@@ -121,10 +121,10 @@ impl Scene {
         read(text, path, open).map_err(|fault| fault.locate(path, text))
     }
 
-    /// The same of the bytes of a file.
+    /// Makes a scene of the bytes of a file. Otherwise like [`from_toml`](Self::from_toml).
     ///
     /// # Errors
-    /// The same, and bytes that are no text.
+    /// Those of [`from_toml`](Self::from_toml), and bytes that are no text.
     pub fn from_toml_bytes(
         bytes: &[u8],
         path: impl AsRef<Path>,

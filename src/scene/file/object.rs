@@ -43,7 +43,7 @@ type ShapeKey = (&'static str, Vec<u32>, [u32; 5]);
 #[derive(Default)]
 pub(super) struct Objects {
     shapes: BTreeMap<ShapeKey, Shared<Mesh>>,
-    /// Of all shapes so far.
+    /// The number of triangles in all shapes so far.
     triangles: u64,
 }
 

@@ -17,7 +17,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Of a byte; of one that is not there, the end of the text.
+    /// The place of a byte; the end of the text if there is no such byte.
     pub(super) fn of(text: &str, byte: usize) -> Self {
         let mut byte = byte.min(text.len());
         while !text.is_char_boundary(byte) {
@@ -35,7 +35,7 @@ pub(super) fn key_at(text: &str, span: &Range<usize>) -> Option<String> {
     in_table(DeTable::parse(text).ok()?.get_ref(), span, "")
 }
 
-/// Of a longer key only the beginning is shown: none that is known is as long.
+/// The max number of characters that are shown of a key. No key that is known is as long.
 const LONGEST_KEY: usize = 60;
 
 // A table and a list have the bytes of the header that opened them, and so may several, one in the other: the

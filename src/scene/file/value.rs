@@ -85,7 +85,7 @@ numbers! {
     Shininess(f32): "a number above 0, at most 1000", |x| x > 0.0 && x <= 1000.0;
     /// How often in a scene's duration.
     Rounds(f64): "a number other than 0, from -1000 to 1000", |x| x != 0.0 && x.abs() <= 1000.0;
-    /// The same for what knows no way back.
+    /// How often in a scene's duration, for what knows no way back.
     Times(f64): "a number above 0, at most 1000", |x| x > 0.0 && x <= 1000.0;
     /// A time.
     Seconds(f64): "a number of seconds above 0, at most 3600", |x| x > 0.0 && x <= 3600.0;
