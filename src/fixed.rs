@@ -108,7 +108,8 @@ impl I24F8 {
         Some(Self(whole))
     }
 
-    /// As [`round_from_f64`](Self::round_from_f64); an f32 is an f64.
+    /// `floor(256·pixels + ½)`, exactly, from an f32: every f32 is an f64. See
+    /// [`round_from_f64`](Self::round_from_f64).
     #[must_use]
     #[inline]
     pub fn round_from_f32(pixels: f32) -> Option<Self> {
@@ -185,7 +186,8 @@ impl U8F8 {
         Self(if shade > 0xFF00 { 0xFF00 } else { shade as u16 })
     }
 
-    /// The same of eight, in a form that the compiler makes vectors of.
+    /// The shades of eight intensities on a ramp, each as by [`from_intensity`](Self::from_intensity).
+    /// The compiler makes vectors of this form.
     #[cfg(feature = "alloc")]
     #[inline(always)]
     pub(crate) fn from_eight_intensities(intensities: &[f32; 8], first: u8, entries: u16) -> [Self; 8] {

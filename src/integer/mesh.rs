@@ -38,7 +38,7 @@ impl Index for u32 {
 pub enum FixedMeshError {
     /// There are not as many of these as there must be.
     Count {
-        /// Of what.
+        /// The name of what was counted.
         what: &'static str,
         /// How many there are.
         given: usize,
@@ -141,16 +141,19 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         })
     }
 
-    /// The same mesh 2^`exponent` times as large: its coordinates count 2^`exponent` units of the
-    /// scene. So a mesh may use all of its 32 bits whatever its size.
+    /// Makes the mesh 2^`exponent` times as large.
+    ///
+    /// Its coordinates then count 2^`exponent` units of the scene. So a mesh may use all of its 32 bits whatever its
+    /// size.
     #[must_use]
     pub fn with_exponent(mut self, exponent: i8) -> Self {
         self.exponent = i32::from(exponent);
         self
     }
 
-    /// The same mesh with the number of its surface for each vertex and for each triangle. A
-    /// surface's number is the place of its [`Paint`](super::Paint).
+    /// Gives each vertex and each triangle the number of its surface.
+    ///
+    /// A surface's number is the index of its [`Paint`](super::Paint).
     ///
     /// # Errors
     /// Not as many numbers as vertices, or as triangles.

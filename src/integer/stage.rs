@@ -16,11 +16,11 @@ use crate::raster::{Interpolation, Vertex};
 pub enum Technique {
     /// One shade for each face.
     Flat,
-    /// As the sources print it, vertices on whole pixels.
+    /// Gouraud's shading as the sources print it, vertices on whole pixels.
     GouraudVintage,
     /// Linear between the vertices, each row of a triangle one span.
     Gouraud,
-    /// The same, started anew every 64 pixels.
+    /// Linear between the vertices, each row of a triangle started anew every 64 pixels.
     #[default]
     GouraudReseeded,
     /// Linear between the vertices, shades in 16.16.

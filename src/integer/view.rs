@@ -60,7 +60,7 @@ impl Lens {
         Self::checked(width, height, [fx, i128::from(fy)])
     }
 
-    /// The same from the focal lengths fx and fy in pixels.
+    /// A picture of `width` × `height` pixels, from the focal lengths fx and fy in pixels.
     ///
     /// # Errors
     /// A side that is 0 or above 4,096; a focal length that is not above 0, or above 16,384 pixels.

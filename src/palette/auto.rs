@@ -205,8 +205,8 @@ fn best(ramps: &[Wanted], gain: impl Fn(&Wanted) -> f64) -> Option<usize> {
     (0..ramps.len()).reduce(|best, next| if gain(&ramps[next]) > gain(&ramps[best]) { next } else { best })
 }
 
-/// As many colours as there are boxes, none twice and none of `beside`, as far as there are such: for
-/// each that is left out a box is cut.
+/// Finds one colour for each box, as far as there are enough colours.
+/// None comes twice, and none is one of `beside`. For each that is left out another box is cut.
 fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
     let wanted = textures.len();
     let mut found = Vec::new();

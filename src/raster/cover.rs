@@ -97,8 +97,9 @@ impl SortedTriangle {
         self.each_row::<true>(rows, frame_width, clip, row);
     }
 
-    /// The same of a triangle that lies wholly inside the frame, with nothing compared with its edges. Of
-    /// one that does not, some rows or other.
+    /// Calls `row` for the covered rows of a triangle that lies wholly inside the frame.
+    ///
+    /// Nothing is compared with the frame's edges. A triangle that does not lie inside gets some rows or other.
     #[inline]
     pub fn rows_inside(&self, row: impl FnMut(Row)) {
         let [top, _, bottom] = &self.vertices;

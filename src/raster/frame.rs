@@ -22,7 +22,7 @@ impl Rect {
     /// Without a pixel; its hull with another is the other.
     #[cfg(feature = "alloc")]
     pub(crate) const NOWHERE: Self = Self { x0: u32::MAX, y0: u32::MAX, x1: 0, y1: 0 };
-    /// Of any frame all.
+    /// A rectangle that holds all of any frame.
     #[cfg(feature = "alloc")]
     pub(crate) const EVERYWHERE: Self = Self { x0: 0, y0: 0, x1: u32::MAX, y1: u32::MAX };
 
@@ -217,7 +217,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The same frame, borrowed for a shorter time.
+    /// Borrows the frame for a shorter time.
     pub fn reborrow(&mut self) -> Frame<'_> {
         Frame {
             pixels: self.pixels,

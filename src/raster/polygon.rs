@@ -138,9 +138,9 @@ struct Walk {
 }
 
 impl Walk {
-    /// Of a value that is `a` at the upper end of an edge `height` units high and `b` at its lower end,
-    /// `below` units under the upper one: the floor of it with `bias / height` added. All within 2²²,
-    /// `below` and `bias` less than `height`.
+    /// A walk along a value that is `a` at the upper end of an edge `height` units high and `b` at its lower end.
+    /// It starts `below` units under the upper end. Each step gives the floor of the value with `bias / height` added.
+    /// All are within 2²²; `below` and `bias` are less than `height`.
     fn new(a: i32, b: i32, below: i64, height: &Divisor, bias: i64) -> Self {
         let change = i64::from(b) - i64::from(a);
         let (value, rest) = height.floor_and_rest(i64::from(a) * height.get() + change * below + bias);

@@ -49,9 +49,9 @@ pub struct ShadePlane {
     area: Divisor,
     /// N at column 0's centre of row 0.
     origin: i64,
-    /// Of N, from one pixel to the next.
+    /// What N changes by from one pixel to the next.
     per_column: i64,
-    /// Of N, from one row to the next.
+    /// What N changes by from one row to the next.
     per_row: i64,
     step: u16,
 }

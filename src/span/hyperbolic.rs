@@ -23,7 +23,7 @@ pub fn fill_quotients(row: &mut [u8], n: i128, dn: i128, d: i128, dd: i128) {
     }
 }
 
-/// The same where quotients in f64 are sure to decide nearly always.
+/// Fills `row` by quotients in f64, where these are sure to decide nearly always.
 ///
 /// (n + k·dn) / (d + k·dd) is 65,536 times the byte's quotient, 0 to 2²⁴, off by less than ½ as it is computed: a
 /// product and a sum above and below, and a quotient. Rounded to a whole number it is less than 1 off, so unless its

@@ -153,9 +153,9 @@ impl<'a> Levels<'a> {
 pub enum TexelsError {
     /// Wider or higher than 256 texels.
     Bits {
-        /// Of the width, as given.
+        /// The logarithm of the width, as given.
         ubits: u32,
-        /// Of the height, as given.
+        /// The logarithm of the height, as given.
         vbits: u32,
     },
     /// The bytes are too few or too many.
@@ -252,7 +252,7 @@ pub fn fill_perspective_portable(
     }
 }
 
-/// The same from quotients in f64, which the compiler vectorises; exact where they cannot decide.
+/// [`fill_perspective`] by quotients in f64, which the compiler vectorises; exact where they cannot decide.
 ///
 /// Only the whole texel counts. Let q be a quotient, |q| ≤ 2³², and t the whole number nearest to its
 /// estimate. If |t − q| < 1 and t begins no texel (t mod 2¹⁶ ≠ 0), then q lies in the same texel as t:

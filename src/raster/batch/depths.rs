@@ -40,7 +40,7 @@ impl Planes {
         self.per_row[i] = plane.fixed_at(column, row + 1).wrapping_sub(self.at[i]);
     }
 
-    /// Of the small triangles of a group that is set up.
+    /// The planes of the small triangles of a group that is set up.
     #[inline(always)]
     pub(super) fn of(gathered: &Gathered, group: &Group) -> Self {
         let Gathered { x, y, depth, .. } = gathered;

@@ -59,7 +59,7 @@ pub(super) struct Spans<'a> {
     spans: [Listed; CAPACITY + 1],
     count: usize,
     covered: u32,
-    /// Of each span, where there is a depth buffer; else there is no room for any.
+    /// The depths of the spans, if there is a depth buffer; otherwise it has no room for any.
     depths: &'a mut [Depths],
     pub(super) group: Group,
     table: [Row; MAX_ROWS as usize],
@@ -81,7 +81,7 @@ impl<'a> Spans<'a> {
         &self.spans[..self.count]
     }
 
-    /// As many as spans, where there is a depth buffer.
+    /// The depths of the spans, one for each if there is a depth buffer, otherwise none.
     pub(super) fn depths(&self) -> &[Depths] {
         self.depths.get(..self.count).unwrap_or_default()
     }
@@ -492,10 +492,10 @@ fn list_rows<const ROWS: usize>(
 
 /// Eight rows of one triangle.
 pub(super) struct Lines {
-    /// As in `Row`.
+    /// The offset of the first pixel, see `Row`.
     pub(super) at: Ints,
     pub(super) length: Ints,
-    /// Of each piece of the rows.
+    /// The shade of each piece of the rows, and above it the step.
     pub(super) paint: [Ints; MAX_PIECES],
 }
 

@@ -52,14 +52,14 @@ pub(super) fn of_face(coordinates: &[Linear; 2], area: i64, last: u32) -> u32 {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LevelPlane {
     area: i64,
-    /// Of u and of v, Σ dᵢdⱼ(uᵢ − uⱼ), and the same with each term times yₖ and times xₖ.
+    /// The sums Σ dᵢdⱼ(uᵢ − uⱼ) for u and for v. Below: each term times yₖ, and each times xₖ.
     sums: [i128; 2],
     times_y: [i128; 2],
     times_x: [i128; 2],
 }
 
 impl LevelPlane {
-    /// Of a triangle that is not degenerate, with these coordinates and depths at its corners.
+    /// The plane of a triangle that is not degenerate, with these coordinates and depths at its corners.
     pub(super) fn new(triangle: &SortedTriangle, coordinates: [[i32; 2]; 3], depths: [i128; 3]) -> Self {
         let (mut sums, mut times_y, mut times_x) = ([0; 2], [0; 2], [0; 2]);
         for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {

@@ -29,7 +29,7 @@ pub trait Lighting: core::fmt::Debug {
     /// 8.8, 0 to 0xFF00. Points beyond the end of a row may be anything, and what is made of them is not used.
     fn shades(&self, points: &Points) -> Lanes<u16>;
 
-    /// The same for red, green and blue.
+    /// Red, green and blue at each point, on the terms of [`shades`](Self::shades).
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3];
 }
 
@@ -45,8 +45,9 @@ pub enum ShadeSource<'a> {
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`], linear on the face, lit.
     Lit(&'a dyn Lighting),
-    /// The same lit at the row's first pixel inside the frame, at some from there and at its last; shades are linear
-    /// between.
+    /// [`Attributes::lit`], linear on the face, lit at some pixels of a row; shades are linear between.
+    ///
+    /// These pixels are the row's first inside the frame, some from there on, and its last.
     LitEvery(SampleSpacing, &'a dyn Lighting),
     /// Quadratic on the screen, through the six shades of [`Attributes::lit`]: those at the corners and at the middles of
     /// the edges. Held within these limits, one for each channel; of one shade the first counts.

@@ -37,7 +37,7 @@ pub struct EdgePair {
     pub(super) hides_background: bool,
     paint: Option<RowShader>,
     depth: Option<DepthPlane>,
-    /// Of a place that no face has: the next one.
+    /// The next free index, where no face has this one.
     next_free: usize,
 }
 

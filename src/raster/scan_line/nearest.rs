@@ -22,8 +22,8 @@ const UNIT: i64 = 1 << 24;
 /// The greatest z that is cut to depth 0.
 const BACKGROUND: i64 = UNIT - 1;
 
-/// Of the faces `open`, all of which cover row `y` from `x` to `end` (at least one pixel): the one
-/// that has pixel `x`, `None` if that is background, and the pixel up to which it has all.
+/// Finds the face that has pixel `x`, `None` if that is background, and the pixel up to which it has all.
+/// All of the faces `open` cover row `y` from `x` to `end`, at least one pixel.
 pub(super) fn lead(open: &[u64], list: &mut List<'_>, x: i32, end: i32, y: i32) -> (Option<usize>, i32) {
     if let [only] = open
         && list.pair(*only as usize).hides_background

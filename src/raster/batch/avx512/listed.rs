@@ -34,7 +34,8 @@ pub(in super::super) struct Spans {
     /// Depths, the whole parts in the upper halves.
     z: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
     dz: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
-    /// Of each row of eight triangles, up to four: the first pixel, pixels, paint, and the column of the box.
+    /// The first pixels of the rows of eight triangles, up to four rows each. Below: pixels, paint, and the column of
+    /// the box.
     row_at: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
     row_length: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
     row_paint: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
@@ -59,7 +60,7 @@ pub(in super::super) struct Spans {
     longest: f64,
     /// The frame's left side, from the box's first pixel on, as a sum with `MAGIC`: there starts what begins left of it.
     origin: f64,
-    /// The same of the clip rectangle's left and right sides, ...
+    /// The clip rectangle's left and right sides, from the box's first pixel on, as sums with `MAGIC`, ...
     left: f64,
     right: f64,
     /// ... and top and bottom, from the box's first row on.
@@ -205,8 +206,9 @@ impl Spans {
         (self.pixels, self.cells) = (most(pixels.len()), most(cells.len()));
     }
 
-    /// As [`add`](Self::add), for all the small triangles of a group, which are so many, and have at most [`FEW_ROWS`] rows:
-    /// eight triangles at a time, and then put into their order.
+    /// Lists all small triangles of a group that have at most [`FEW_ROWS`] rows, eight at a time, like
+    /// [`add`](Self::add).
+    /// There are `triangles` of them. Their rows are put into the triangles' order afterwards.
     ///
     /// # Safety
     /// As for `add`.
@@ -236,7 +238,8 @@ impl Spans {
         }
     }
 
-    /// As [`add`](Self::add), for all the small triangles of a group, which are so many.
+    /// Lists all small triangles of a group, one after the other, like [`add`](Self::add). There are `triangles` of
+    /// them.
     ///
     /// # Safety
     /// As for `add`.

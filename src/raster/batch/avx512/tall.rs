@@ -13,7 +13,7 @@ use crate::raster::shade::RESEED;
 /// What the assembly reads and writes: of one triangle, and of eight of its rows.
 #[repr(C, align(64))]
 pub(in super::super) struct Large {
-    /// Of eight rows: the address of the first pixel, ...
+    /// The addresses of the first pixels of eight rows, ...
     at: [u64; LANES],
     /// ... the pixels, ...
     length: [u64; LANES],
@@ -28,9 +28,9 @@ pub(in super::super) struct Large {
     upper: Edge,
     lower: Edge,
     shade: Edge,
-    /// Of the shade's numerator.
+    /// What the shade's numerator changes by from one pixel to the next.
     per_column: f64,
-    /// The same for 64 columns.
+    /// What the shade's numerator changes by over 64 columns.
     per_piece: f64,
     /// The address of the first pixel of all, and the one after the last.
     begin: u64,
@@ -58,7 +58,7 @@ pub(in super::super) struct Large {
 #[repr(C)]
 struct Edge {
     n: f64,
-    /// Of eight rows.
+    /// What `n` changes by over eight rows.
     per_eight: f64,
     inverse: f64,
 }
