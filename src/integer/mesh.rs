@@ -176,7 +176,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         self.positions.len()
     }
 
-    /// Whether a triangle is left out where it is turned away: of a closed mesh, and of two that lie back to back.
+    /// Whether a triangle is left out where it is turned away: in a closed mesh, and in a pair that lies back to back.
     #[inline]
     pub(super) fn hides_back(&self, triangle: usize) -> bool {
         self.closed || self.twins.get(triangle / 64).is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
@@ -223,7 +223,7 @@ pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
 /// that a corner is the darker the rounder it is (S4's slip). Its length is within 2⁻¹⁶ of 1.
 ///
 /// Where the faces' normals cancel the vertex gets that of its first face; where it has no face with
-/// an area, +z. Of more than 32,767 faces around one vertex those beyond may no longer count.
+/// an area, +z. Faces beyond the 32,767th around one vertex may no longer count.
 ///
 /// # Errors
 /// Not as much room for normals as there are positions; an index out of range.

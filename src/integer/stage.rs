@@ -43,8 +43,8 @@ pub struct Object<'a, I: Index = u16> {
 /// Room for a vertex, lit and projected.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LitVertex {
-    /// Its shade is that of the front: the side that the normal points away from. Of a vertex that
-    /// needs clipping only the shade counts.
+    /// Its shade is that of the front: the side that the normal points away from. Only the
+    /// shade counts in a vertex that needs clipping.
     vertex: Vertex,
     back: U8F8,
     needs_clipping: bool,

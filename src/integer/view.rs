@@ -131,8 +131,8 @@ impl View {
     }
 }
 
-/// The unit vector to the right of `forward`. As in the f32 path, the axis that is farthest from the
-/// view serves where `up` lies within 10⁻⁶ of it.
+/// The unit vector to the right of `forward`. Where `up` lies within 10⁻⁶ of the view, the axis that is
+/// farthest from the view serves, as in the f32 path.
 fn right_of(forward: Wide, up: Vector) -> Option<Wide> {
     let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
     let mut axis = [0; 3];

@@ -59,7 +59,7 @@ impl SortedTriangle {
     /// gy = (v2 − v0)·(x1 − x0) − (v1 − v0)·(x2 − x0)       the signs both turned if the area is negative
     /// ```
     ///
-    /// Of values that lie within 2ⁿ of each other each is within 2ⁿ⁺²²; n is at most 32.
+    /// Each is within 2ⁿ⁺²² if the values lie within 2ⁿ of each other; n is at most 32.
     #[must_use]
     #[inline]
     pub fn gradient(&self, values: [i64; 3]) -> (i64, i64) {

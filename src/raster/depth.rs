@@ -199,7 +199,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
     #[must_use]
     #[inline]
     pub fn row_mut(&mut self, y: u32) -> Option<&mut [D]> {
-        // Of a row far beyond the last, the place may be more than a 32-bit processor counts.
+        // The index of a row far beyond the last may be more than a 32-bit processor counts.
         let width = self.width as usize;
         let start = (y.checked_sub(self.first_row)? as usize).checked_mul(width)?;
         self.values.get_mut(start..start.checked_add(width)?)

@@ -37,7 +37,7 @@ impl Rect {
         }
     }
 
-    /// The least rectangle that holds both. Of an empty one the corners count, too.
+    /// The least rectangle that holds both. The corners of an empty one count, too.
     #[cfg(feature = "alloc")]
     pub(crate) fn hull(self, other: Self) -> Self {
         Self {
@@ -136,7 +136,7 @@ impl<'a> Frame<'a> {
     /// 5 KiB to spare draws 320 × 200 as thirteen bands.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and a band that is empty or reaches beyond the frame.
+    /// Those of [`new`](Self::new), and a band that is empty or reaches beyond the frame.
     pub fn band(
         pixels: &'a mut [u8],
         width: u32,

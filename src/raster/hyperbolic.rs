@@ -129,8 +129,8 @@ impl HyperbolicPlane {
     ///    the step is off by 3ε of the sum of its terms' sizes, and k of them by 3ε·(N(0) + N(last)), 6εN.
     /// 3. Their product with k has εN more, the sum another: the numerator is off by less than 12εN, and the divisor by
     ///    12εD likewise.
-    /// 4. As N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹. Rounded to a whole number
-    ///    it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two multiples.
+    /// 4. Since N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹. Rounded to a whole
+    ///    number it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two multiples.
     fn fill_estimated(&self, x: i32, y: i32, pixels: &mut [u8]) -> bool {
         const MAX_RATIO: f64 = 32_768.0;
 

@@ -1,8 +1,8 @@
 //! Shades over a triangle: exact at the start of a span, in range all along it.
 //!
 //! Gouraud's interpolation is linear in x and y (all five sources print it edge by edge; the
-//! garbled fractions of S0 are the quotients of S2). As a plane through the first vertex, over the
-//! doubled area A as common denominator:
+//! garbled fractions of S0 are the quotients of S2). It is a plane through the first vertex,
+//! over the doubled area A as common denominator:
 //!
 //! ```text
 //! I(x, y) = N(x, y) / A,   N(x, y) = I0·A + gx·(x − x0) + gy·(y − y0)

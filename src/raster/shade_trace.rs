@@ -170,7 +170,7 @@ impl ShadeTrace {
     }
 
     fn of_sums(sums: Accumulator, exact: Ratio) -> Self {
-        // Of `fraction_bits` + 8 bits the upper 8.
+        // The upper 8 of `fraction_bits` + 8 bits.
         let byte = (sums.sum() >> sums.fraction_bits) as u8;
         Self { way: Progression::Accumulator(sums), exact: Some(exact), byte }
     }

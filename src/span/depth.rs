@@ -5,7 +5,7 @@
 //!               if d > depth[k] { depth[k] = d; row[k] = ((shade + k·step) mod 65,536) >> 8 }
 //! ```
 //!
-//! Of equal depths the first that was drawn stays. A cell of the buffer may be narrower than a depth:
+//! The first that was drawn of equal depths stays. A cell of the buffer may be narrower than a depth:
 //! then `d` is narrowed first ([`Cell`]).
 
 mod sealed {

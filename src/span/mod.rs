@@ -248,8 +248,8 @@ impl Kernel {
         (self.fill)(row, shade, step);
     }
 
-    /// Fills every span of a list, in order, as [`fill`](Self::fill) does. Of a span that reaches beyond
-    /// `pixels` nothing is drawn.
+    /// Fills every span of a list, in order, as [`fill`](Self::fill) does. Nothing is drawn of a span that
+    /// reaches beyond `pixels`.
     #[inline]
     #[doc(hidden)]
     pub fn fill_list(self, pixels: &mut [u8], spans: &[list::Listed]) {

@@ -134,7 +134,7 @@ impl<'a> Levels<'a> {
         Self::deepest(self.ubits, self.vbits)
     }
 
-    /// The texels of a level from 1 to the last; of a higher number those of the last. `None` of level 0.
+    /// The texels of a level from 1 to the last. A higher number gives those of the last, level 0 `None`.
     #[must_use]
     pub fn get(self, level: u32) -> Option<Texels<'a>> {
         let level = level.min(self.last());
@@ -264,7 +264,7 @@ pub fn fill_perspective_portable(
 ///    |k·dn| ≤ 2N.
 /// 2. The numerator n + k·dn in f64: n is rounded (εN), dn is (2εN for k of them), their product is (2εN), the
 ///    sum is (εN). So it is off by 6εN, and the divisor likewise by 6εD.
-/// 3. As N ≤ 2³²·D, the quotient is off by 2³²·6εR for the numerator, the same for the divisor, and 2ε of
+/// 3. Since N ≤ 2³²·D, the quotient is off by 2³²·6εR for the numerator, the same for the divisor, and 2ε of
 ///    itself for the reciprocal and the product: less than 2³²·ε·(12R + 3) altogether.
 /// 4. For R ≤ 2¹⁵ that is 0.19. Where R is larger the exact loop draws the piece.
 fn fill_perspective_estimated(

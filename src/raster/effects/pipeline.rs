@@ -17,9 +17,11 @@ pub struct Attributes {
     pub channels: [U8F8; 3],
     /// The column and the row in the table of [`ShadeSource::NormalTable`], each 0 to 0xFF00.
     pub slope: [U8F8; 2],
-    /// What [`Lighting`] is handed: a normal and a position. Of [`ShadeSource::Curved`] the shade at the corner, or its three
-    /// channels, and then those at the middle (on the screen) of the edge opposite to it; in 8.8, and beyond what can be
-    /// shown, too, where the limits cut them off.
+    /// What [`Lighting`] is handed: a normal and a position.
+    ///
+    /// For [`ShadeSource::Curved`] it is the shade at the corner, or its three channels, and then those at the middle
+    /// (on the screen) of the edge opposite to it. They are in 8.8, and beyond what can be shown, too, where the
+    /// limits cut them off.
     pub lit: [f32; 6],
 }
 
@@ -37,9 +39,10 @@ pub trait Lighting: core::fmt::Debug {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum ShadeSource<'a> {
-    /// The corners' shades, or their channels, each for itself, as this shading has them. Of
-    /// [`GouraudVintage`](Interpolation::GouraudVintage) the shades alone: which pixels is decided by exact cover,
-    /// where the values of all stages are in range.
+    /// The corners' shades, or their channels, each for itself, as this shading has them.
+    ///
+    /// [`GouraudVintage`](Interpolation::GouraudVintage) gives the shades alone: exact cover decides which pixels,
+    /// for there the values of all stages are in range.
     Shaded(Interpolation),
     /// [`Attributes::slope`], linear on the screen, looked up: row and column give the shade.
     NormalTable(&'a [u8; 65_536]),
@@ -50,7 +53,7 @@ pub enum ShadeSource<'a> {
     /// These pixels are the row's first inside the frame, some from there on, and its last.
     LitEvery(SampleSpacing, &'a dyn Lighting),
     /// Quadratic on the screen, through the six shades of [`Attributes::lit`]: those at the corners and at the middles of
-    /// the edges. Held within these limits, one for each channel; of one shade the first counts.
+    /// the edges. Held within these limits, one for each channel; the first counts for one shade.
     Curved([Limits; 3]),
 }
 

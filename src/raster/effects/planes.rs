@@ -39,7 +39,7 @@ pub(super) struct TexturePlane {
 /// The level of a mipmap that is shown.
 #[derive(Clone, Copy, Debug)]
 enum Level {
-    /// One all over the face; 0 of an image without levels.
+    /// One all over the face; 0 for an image without levels.
     OfFace(u32),
     /// One for every 16 pixels.
     OfPixels(LevelPlane),
@@ -63,8 +63,8 @@ impl TexturePlane {
             Some(_) => Level::OfPixels(LevelPlane::new(triangle, corners.map(|corner| corner.texture), depths)),
         };
         let size = if let Level::OfFace(level) = level { 1 << level } else { 1 };
-        // The wrap is meant: of two pixels or more in a row the step is that of two coordinates; of one it
-        // is never used.
+        // The wrap is meant: in a row of two pixels or more the step is that of two coordinates; in a row of one
+        // it is never used.
         let steps = numerators.map(|n| (n.per_column() / (i128::from(area) * size)) as u32);
         Self { numerators, denominator: Linear::new(triangle, depths.map(|depth| depth * size)), steps, level }
     }

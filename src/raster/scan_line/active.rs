@@ -15,7 +15,7 @@ use crate::raster::vertex::Vertex;
 pub struct EdgePair {
     triangle: SortedTriangle,
     pub(super) interpolation: Interpolation,
-    /// Its place among the faces: of equal depths the first has the pixel.
+    /// Its index among the faces: the first of equal depths has the pixel.
     pub(super) order: usize,
     /// From the top to the bottom.
     long: Edge,
