@@ -200,7 +200,7 @@ fn give(ramps: &mut [Wanted], textures: &mut MedianCut) {
     }
 }
 
-/// The ramp that gains most, the first of several.
+/// The ramp that gains most, the first if several do.
 fn best(ramps: &[Wanted], gain: impl Fn(&Wanted) -> f64) -> Option<usize> {
     (0..ramps.len()).reduce(|best, next| if gain(&ramps[next]) > gain(&ramps[best]) { next } else { best })
 }

@@ -130,7 +130,8 @@ impl HyperbolicPlane {
     /// 3. Their product with k has εN more, the sum another: the numerator is off by less than 12εN, and the divisor by
     ///    12εD likewise.
     /// 4. Since N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹. Rounded to a whole
-    ///    number it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two multiples.
+    ///    number it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two
+    ///    multiples.
     fn fill_estimated(&self, x: i32, y: i32, pixels: &mut [u8]) -> bool {
         const MAX_RATIO: f64 = 32_768.0;
 

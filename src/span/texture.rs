@@ -252,7 +252,8 @@ pub fn fill_perspective_portable(
     }
 }
 
-/// [`fill_perspective`] by quotients in f64, which the compiler vectorises; exact where they cannot decide.
+/// Fills `row` like [`fill_perspective`], by quotients in f64, exact where they cannot decide.
+/// The compiler vectorises these quotients.
 ///
 /// Only the whole texel counts. Let q be a quotient, |q| ≤ 2³², and t the whole number nearest to its
 /// estimate. If |t − q| < 1 and t begins no texel (t mod 2¹⁶ ≠ 0), then q lies in the same texel as t:

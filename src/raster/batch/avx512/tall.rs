@@ -183,9 +183,9 @@ impl Large {
         let step = (group.step[i] as u32) >> 16;
         self.step = step * 0x1_0001;
         self.step_64 = ((step * 64) & 0xFFFF) * 0x1_0001;
-        // Pixels of each row are written by masks and whole vectors: `length` bytes from `at` on. The length is 0 unless
-        // `length ≤ size`, `at ≥ begin` and `at ≤ end − length`, all without sign. Rows of length 0 have the address
-        // `begin`, where a mask leaves all bytes.
+        // Pixels of each row are written by masks and whole vectors: `length` bytes from `at` on. The length is 0
+        // unless `length ≤ size`, `at ≥ begin` and `at ≤ end − length`, all without sign. Rows of length 0 have the
+        // address `begin`, where a mask leaves all bytes.
         // SAFETY: the caller has AVX-512 F, BW, DQ, VL and BMI2 found. Read and written are `self` and `CONSTANTS` at the
         // offsets of their fields, and pixels as said above. The stack is not used; flags and all registers written are given
         // up.
