@@ -108,8 +108,9 @@ impl I24F8 {
         Some(Self(whole))
     }
 
-    /// `floor(256·pixels + ½)`, exactly, from an f32: every f32 is an f64. See
-    /// [`round_from_f64`](Self::round_from_f64).
+    /// `floor(256·pixels + ½)` of an f32, exactly, like [`round_from_f64`](Self::round_from_f64).
+    ///
+    /// Every f32 is an f64.
     #[must_use]
     #[inline]
     pub fn round_from_f32(pixels: f32) -> Option<Self> {

@@ -24,8 +24,9 @@ pub enum Interpolation {
     /// Linear between the vertices, each row of the triangle one span: the start exact, one
     /// addition a pixel from there on.
     Gouraud,
-    /// Linear between the vertices, each row of the triangle started anew every 64 pixels: one addition a pixel
-    /// between.
+    /// Linear between the vertices, each row of the triangle started anew every 64 pixels.
+    ///
+    /// Each start is exact, with one addition a pixel from there on.
     #[default]
     GouraudReseeded,
     /// Linear between the vertices in 16.16, each row of the triangle one span.

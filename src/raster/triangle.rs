@@ -41,7 +41,7 @@ impl<'a> Raster<'a> {
     }
 
     /// Draws with a depth buffer of its own in `values`, which is made as long as needed and cleared in `within` alone.
-    /// Nothing is drawn outside of `within`: `values` stay there as they are.
+    /// This is for where nothing is drawn but in `within`: elsewhere `values` stay as they are.
     #[cfg(feature = "alloc")]
     #[must_use]
     pub(crate) fn with_depth_cleared_within(self, values: &'a mut alloc::vec::Vec<u32>, within: Rect) -> Raster<'a> {

@@ -34,8 +34,8 @@ pub(in super::super) struct Spans {
     /// Depths, the whole parts in the upper halves.
     z: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
     dz: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
-    /// The first pixels of the rows of eight triangles, up to four rows each. Below: pixels, paint, and the column of
-    /// the box.
+    /// The first pixels of the rows of eight triangles, up to four rows each.
+    /// Below: pixels, paint, and the column of the box.
     row_at: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
     row_length: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
     row_paint: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
@@ -206,9 +206,8 @@ impl Spans {
         (self.pixels, self.cells) = (most(pixels.len()), most(cells.len()));
     }
 
-    /// Lists all small triangles of a group that have at most [`FEW_ROWS`] rows, eight at a time, like
-    /// [`add`](Self::add).
-    /// There are `triangles` of them. Their rows are put into the triangles' order afterwards.
+    /// Lists all small triangles of a group of few rows, eight at a time, like [`add`](Self::add).
+    /// There are `triangles` of them, of at most [`FEW_ROWS`] rows. They are put into their order afterwards.
     ///
     /// # Safety
     /// See `add`.
@@ -238,8 +237,8 @@ impl Spans {
         }
     }
 
-    /// Lists all small triangles of a group, one after the other, like [`add`](Self::add). There are `triangles` of
-    /// them.
+    /// Lists all small triangles of a group, one after the other, like [`add`](Self::add).
+    /// There are `triangles` of them.
     ///
     /// # Safety
     /// See `add`.
