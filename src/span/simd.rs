@@ -271,7 +271,7 @@ pub(crate) mod avx2 {
     }
 
     /// Fills a span at `at`, up to sixteen pixels at once. `paint` has its shade, and above it the step.
-    /// What lies behind the sixteen, of whichever row, is written as it was read. Nothing is drawn of a span that
+    /// What lies behind the span, of whichever row, is written as it was read. Nothing is drawn of a span that
     /// reaches beyond `pixels`.
     #[inline]
     #[target_feature(enable = "avx2")]
