@@ -80,7 +80,7 @@ impl I24F8 {
     /// Adding the half in f64 first would be wrong: `0.49999999999999994 + 0.5` is 1. So the
     /// fraction is compared with a half instead. 256·x is exact (a power of two; where a denormal
     /// loses nothing either), and so is `scaled − floor(scaled)` for every value for which it
-    /// matters: of a negative number nearer to 0 than 2⁻⁵³ it is rounded to 1, which is still no
+    /// matters: for a negative number nearer to 0 than 2⁻⁵³ it is rounded to 1, which is still no
     /// less than ½.
     ///
     /// ```
@@ -108,7 +108,9 @@ impl I24F8 {
         Some(Self(whole))
     }
 
-    /// As [`round_from_f64`](Self::round_from_f64); an f32 is an f64.
+    /// `floor(256·pixels + ½)` of an f32, exactly, like [`round_from_f64`](Self::round_from_f64).
+    ///
+    /// Every f32 is an f64.
     #[must_use]
     #[inline]
     pub fn round_from_f32(pixels: f32) -> Option<Self> {
@@ -176,7 +178,7 @@ impl U8F8 {
     #[inline]
     pub fn from_intensity(intensity: f32, first: u8, entries: u16) -> Self {
         let units = f64::from(entries.saturating_sub(1)) * 256.0;
-        // Of NaN `max` gives the other operand, and `clamp` would not. The product of 24 and 16 bits is exact in
+        // `max` gives the other operand for NaN, and `clamp` would not. The product of 24 and 16 bits is exact in
         // f64, and so is the sum with a half unless the product is below 2⁻¹³, where the whole part
         // is 0 either way. `as` truncates.
         #[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
@@ -185,7 +187,8 @@ impl U8F8 {
         Self(if shade > 0xFF00 { 0xFF00 } else { shade as u16 })
     }
 
-    /// The same of eight, in a form that the compiler makes vectors of.
+    /// The shades of eight intensities on a ramp, each as by [`from_intensity`](Self::from_intensity).
+    /// The compiler makes vectors of this form.
     #[cfg(feature = "alloc")]
     #[inline(always)]
     pub(crate) fn from_eight_intensities(intensities: &[f32; 8], first: u8, entries: u16) -> [Self; 8] {

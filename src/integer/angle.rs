@@ -92,7 +92,7 @@ impl Angle {
     /// The nearest to so many whole degrees, any number of turns in either direction.
     #[must_use]
     pub const fn from_degrees(degrees: i32) -> Self {
-        // At most 359 · 65,536 + 180; of the result, 0 to 65,536, a full turn wraps to 0.
+        // At most 359 · 65,536 + 180. The result is 0 to 65,536, and a full turn wraps to 0.
         Self(((degrees.rem_euclid(360) * 65_536 + 180) / 360) as u16)
     }
 

@@ -44,7 +44,7 @@ impl Corner {
         let [fx, fy] = view.lens.focal.map(i128::from);
         let w = self.w;
         let near = i128::from(view.near) << EXTRA;
-        // As for a vertex, see `view`, at most 2³⁰ · 2⁴⁴.
+        // At most 2³⁰ · 2⁴⁴, as for a vertex: see `view`.
         let x = i128::from(view.lens.width) * 128 + (fx * self.x + 128 * w).div_euclid(256 * w);
         let y = i128::from(view.lens.height) * 128 + (fy * self.y + 128 * w).div_euclid(256 * w);
         // w is no less than near, so at most 2³⁰.
@@ -55,8 +55,8 @@ impl Corner {
     }
 }
 
-/// The distance of a corner from a plane, 0 or more inside; of the guard band twice that times focal
-/// lengths, in 1/65,536.
+/// The distance of a corner from a plane, 0 or more inside; for the guard band twice that times
+/// focal lengths, in 1/65,536.
 fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> i128 {
     let Corner { x, y, w, .. } = *corner;
     let limit = 2 * i128::from(ObjectView::LIMIT);

@@ -58,7 +58,7 @@ impl Paint {
         // With 32 bits behind the point.
         let (mut front, mut back) = (0_i64, 0_i64);
         for beam in beams {
-            // Of two vectors of length 1 within 2⁻¹⁴: below 2³³. Rounded to 16 bits below 2¹⁷, times
+            // Below 2³³ for two vectors of length 1 within 2⁻¹⁴. Rounded to 16 bits below 2¹⁷, times
             // 2³¹ and at most 4,096 of them, below 2⁶⁰.
             let cosine = (dot(normal, widen(beam.towards)) + (1 << 15)) >> 16;
             let light = i64::from(beam.intensity.to_bits()) * cosine;

@@ -38,7 +38,7 @@ impl Index for u32 {
 pub enum FixedMeshError {
     /// There are not as many of these as there must be.
     Count {
-        /// Of what.
+        /// The name of what was counted.
         what: &'static str,
         /// How many there are.
         given: usize,
@@ -141,16 +141,19 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         })
     }
 
-    /// The same mesh 2^`exponent` times as large: its coordinates count 2^`exponent` units of the
-    /// scene. So a mesh may use all of its 32 bits whatever its size.
+    /// Makes the mesh 2^`exponent` times as large.
+    ///
+    /// Its coordinates then count 2^`exponent` units of the scene. So a mesh may use all of its 32 bits whatever its
+    /// size.
     #[must_use]
     pub fn with_exponent(mut self, exponent: i8) -> Self {
         self.exponent = i32::from(exponent);
         self
     }
 
-    /// The same mesh with the number of its surface for each vertex and for each triangle. A
-    /// surface's number is the place of its [`Paint`](super::Paint).
+    /// Gives each vertex and each triangle the number of its surface.
+    ///
+    /// A surface's number is the index of its [`Paint`](super::Paint).
     ///
     /// # Errors
     /// Not as many numbers as vertices, or as triangles.
@@ -173,7 +176,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         self.positions.len()
     }
 
-    /// Whether a triangle is left out where it is turned away: of a closed mesh, and of two that lie back to back.
+    /// Whether a triangle is left out where it is turned away: in a closed mesh, and in a pair that lies back to back.
     #[inline]
     pub(super) fn hides_back(&self, triangle: usize) -> bool {
         self.closed || self.twins.get(triangle / 64).is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
@@ -220,7 +223,7 @@ pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
 /// that a corner is the darker the rounder it is (S4's slip). Its length is within 2⁻¹⁶ of 1.
 ///
 /// Where the faces' normals cancel the vertex gets that of its first face; where it has no face with
-/// an area, +z. Of more than 32,767 faces around one vertex those beyond may no longer count.
+/// an area, +z. Faces beyond the 32,767th around one vertex may no longer count.
 ///
 /// # Errors
 /// Not as much room for normals as there are positions; an index out of range.

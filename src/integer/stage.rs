@@ -16,11 +16,11 @@ use crate::raster::{Interpolation, Vertex};
 pub enum Technique {
     /// One shade for each face.
     Flat,
-    /// As the sources print it, vertices on whole pixels.
+    /// Gouraud's shading as the sources print it, vertices on whole pixels.
     GouraudVintage,
     /// Linear between the vertices, each row of a triangle one span.
     Gouraud,
-    /// The same, started anew every 64 pixels.
+    /// Linear between the vertices, each row of a triangle started anew every 64 pixels.
     #[default]
     GouraudReseeded,
     /// Linear between the vertices, shades in 16.16.
@@ -43,8 +43,8 @@ pub struct Object<'a, I: Index = u16> {
 /// Room for a vertex, lit and projected.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LitVertex {
-    /// Its shade is that of the front: the side that the normal points away from. Of a vertex that
-    /// needs clipping only the shade counts.
+    /// Its shade is that of the front: the side that the normal points away from. Only the
+    /// shade counts in a vertex that needs clipping.
     vertex: Vertex,
     back: U8F8,
     needs_clipping: bool,

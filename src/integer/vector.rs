@@ -76,7 +76,7 @@ pub fn unit_vector(v: Vector) -> Option<Vector> {
     narrow_unit(widen(v).map(i128::from))
 }
 
-/// As [`unit_vector`], of wide components below 2¹²⁶.
+/// The unit vector, length 65,536, of wide components below 2¹²⁶; see [`unit_vector`].
 pub(super) fn narrow_unit(v: [i128; 3]) -> Option<Vector> {
     // At most 65,536 either way.
     unit(v, 16).map(|v| v.map(|c| I16F16::from_bits(c as i32)))
@@ -94,7 +94,7 @@ pub fn turn(angles: [Angle; 3]) -> [Vector; 3] {
     wide_turn(angles).map(|row| row.map(|c| I16F16::from_bits(round_shift(c, SINE_BITS - 16) as i32)))
 }
 
-/// The same with [`SINE_BITS`] behind the point, within 8 units.
+/// The matrix of [`turn`] with [`SINE_BITS`] behind the point, within 8 units.
 pub(super) fn wide_turn(angles: [Angle; 3]) -> Matrix {
     let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(Angle::sin_cos);
     let narrow = |n: i64| round_shift(n, SINE_BITS);

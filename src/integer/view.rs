@@ -60,7 +60,7 @@ impl Lens {
         Self::checked(width, height, [fx, i128::from(fy)])
     }
 
-    /// The same from the focal lengths fx and fy in pixels.
+    /// A picture of `width` × `height` pixels, from the focal lengths fx and fy in pixels.
     ///
     /// # Errors
     /// A side that is 0 or above 4,096; a focal length that is not above 0, or above 16,384 pixels.
@@ -131,8 +131,8 @@ impl View {
     }
 }
 
-/// The unit vector to the right of `forward`. As in the f32 path, the axis that is farthest from the
-/// view serves where `up` lies within 10⁻⁶ of it.
+/// The unit vector to the right of `forward`. Where `up` lies within 10⁻⁶ of the view, the axis that is
+/// farthest from the view serves, as in the f32 path.
 fn right_of(forward: Wide, up: Vector) -> Option<Wide> {
     let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
     let mut axis = [0; 3];

@@ -14,8 +14,8 @@
 //! - Colours that are mixed on the screen and lie on no ramp (in fog, behind glass, under coloured light) are points of
 //!   the same cloud, as they are.
 //!
-//! As the gain of a ramp's next entry shrinks with each, giving one entry at a time to who gains most
-//! is best for the ramps. A ramp never gets more than there are colours on it that the card can show.
+//! The gain of a ramp's next entry shrinks with each. So it is best for the ramps to give one entry at a
+//! time to who gains most. A ramp never gets more than there are colours on it that the card can show.
 //!
 //! **Ramps.** Entry i of n is the colour at intensity i/(n − 1): black at 0, the material's own colour
 //! at full light, on a straight line. They begin at black, not at the darkest shade seen: a shade is an
@@ -200,13 +200,13 @@ fn give(ramps: &mut [Wanted], textures: &mut MedianCut) {
     }
 }
 
-/// The ramp that gains most; of equals the first.
+/// The ramp that gains most, the first if several do.
 fn best(ramps: &[Wanted], gain: impl Fn(&Wanted) -> f64) -> Option<usize> {
     (0..ramps.len()).reduce(|best, next| if gain(&ramps[next]) > gain(&ramps[best]) { next } else { best })
 }
 
-/// As many colours as there are boxes, none twice and none of `beside`, as far as there are such: for
-/// each that is left out a box is cut.
+/// Finds one colour for each box, as far as there are enough colours.
+/// None comes twice, and none is one of `beside`. For each that is left out another box is cut.
 fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
     let wanted = textures.len();
     let mut found = Vec::new();
@@ -215,7 +215,7 @@ fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
         colors.sort_unstable_by_key(|color| (color.brightness(), *color));
         colors.dedup();
         colors.retain(|color| !beside.contains(color));
-        // Of a box that was left out both parts may stay, which is one more than wanted.
+        // Both parts of a box that was left out may stay, which is one more than wanted.
         if colors.len() > wanted {
             return found;
         }
@@ -255,7 +255,7 @@ impl Wanted {
             None => {
                 let (color, highlight) = of.shown();
                 let (up, on) = (distance(Rgb::BLACK, color), distance(color, highlight));
-                // 0 to 255; of a black that stays black NaN becomes 0.
+                // 0 to 255; NaN, from a black that stays black, becomes 0.
                 let full_light = if on == 0.0 { 255 } else { (up / (up + on) * 255.0 + 0.5) as u8 };
                 let keys = [(0, Rgb::BLACK), (full_light, color), (255, highlight)];
                 (keys.map(|(at, color)| Key { at, color }).to_vec(), full_light)
@@ -317,8 +317,8 @@ impl Use<'_> {
         self.along.filter(|along| (2..=256).contains(&along.len()))
     }
 
-    /// The colours in full light and of the highlight as the card can show them; of a ramp that is not straight those in
-    /// the middle and at the end.
+    /// The colours in full light and of the highlight as the card can show them.
+    /// In a ramp that is not straight they are those in the middle and at the end.
     fn shown(&self) -> (Rgb, Rgb) {
         if let Some(along) = self.bent() {
             return (along[along.len() / 2].nearest_on_dac(), along[along.len() - 1].nearest_on_dac());

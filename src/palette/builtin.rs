@@ -151,7 +151,7 @@ const fn highlight(v: u8) -> u8 {
     (v as u16 + (255 - v as u16) * 9 / 10) as u8
 }
 
-/// As many equal ramps as there are lists of keys: 1, 2, 4 … 256.
+/// A palette of equal ramps, one for each list of keys: 1, 2, 4 … 256.
 const fn of_ramps(ramps: &[&[Key]]) -> Palette {
     assert!(ramps.len().is_power_of_two() && ramps.len() <= 256, "a const's author counts the ramps");
     let mut colors = [Rgb::BLACK; 256];

@@ -57,10 +57,10 @@ const fn colors() -> [Rgb; 256] {
     colors
 }
 
-/// The nearest of the six levels to each channel value; of two equally near, the lower.
+/// The nearest of the six levels to each channel value, the lower of two equally near.
 const LEVEL_OF: [u8; 256] = nearest_table(&LEVELS);
 
-/// The nearest of the forty greys to each value; of two equally near, the lower.
+/// The nearest of the forty greys to each value, the lower of two equally near.
 const GREY_OF: [u8; 256] = nearest_table(&GREYS);
 
 const fn nearest_table<const N: usize>(rising: &[u8; N]) -> [u8; 256] {

@@ -101,7 +101,7 @@ impl MedianCut {
 
 impl ColorBox {
     fn new(colors: &[(Rgb, u32)], range: Range<usize>) -> Self {
-        // Of each channel, for each of its values.
+        // The moments at each value of each channel.
         let mut by_value = vec![[Moments::default(); 256]; 3];
         let mut moments = Moments::default();
         for &(color, weight) in &colors[range.clone()] {

@@ -100,7 +100,7 @@ impl Palette {
         Self::from_colors(colors)
     }
 
-    /// The same colours, said to hold `ramps` equal ramps: 0 for none, or 1, 2, 4 … 256.
+    /// Declares that the colours hold `ramps` equal ramps: 0 for none, or 1, 2, 4 … 256.
     ///
     /// Returns `None` for any other number.
     #[must_use]

@@ -145,15 +145,16 @@ impl Rgb {
         Self::new(r, g, b)
     }
 
-    /// As `0x00RRGGBB`.
+    /// Packs the colour as `0x00RRGGBB`.
     #[must_use]
     #[inline]
     pub const fn to_u32(self) -> u32 {
         u32::from_be_bytes([0, self.r, self.g, self.b])
     }
 
-    /// As 5 bits of red, 6 of green, 5 of blue, red on top: the form of most small displays. Each
-    /// channel is rounded down.
+    /// Packs the colour into 16 bits: 5 of red, 6 of green, 5 of blue, red on top.
+    ///
+    /// Most small displays take this form. Each channel is rounded down.
     #[must_use]
     #[inline]
     #[doc(hidden)]

@@ -29,7 +29,7 @@ const WIDTH: u8 = 32;
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Search {
-    /// Of box `i` those from `starts[i]` up to `starts[i + 1]`.
+    /// The candidates of all boxes: those of box `i` run from `starts[i]` up to `starts[i + 1]`.
     candidates: Vec<Candidate>,
     starts: Vec<usize>,
 }

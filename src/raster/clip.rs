@@ -119,7 +119,7 @@ impl Clipped {
         self.part_corners().map(|corners| self.triangle(corners))
     }
 
-    /// The same by the places of their corners.
+    /// The triangles of [`parts`](Self::parts), by the indices of their corners.
     pub fn part_corners(&self) -> impl Iterator<Item = [usize; 3]> {
         let sign = self.doubled_area().signum();
         let turns = move |part: &[usize; 3]| doubled_area(&self.triangle(*part)).signum() * sign;

@@ -59,7 +59,7 @@ impl SortedTriangle {
     /// gy = (v2 − v0)·(x1 − x0) − (v1 − v0)·(x2 − x0)       the signs both turned if the area is negative
     /// ```
     ///
-    /// Of values that lie within 2ⁿ of each other each is within 2ⁿ⁺²²; n is at most 32.
+    /// Each is within 2ⁿ⁺²² if the values lie within 2ⁿ of each other; n is at most 32.
     #[must_use]
     #[inline]
     pub fn gradient(&self, values: [i64; 3]) -> (i64, i64) {
@@ -97,8 +97,9 @@ impl SortedTriangle {
         self.each_row::<true>(rows, frame_width, clip, row);
     }
 
-    /// The same of a triangle that lies wholly inside the frame, with nothing compared with its edges. Of
-    /// one that does not, some rows or other.
+    /// Calls `row` for the covered rows of a triangle that lies wholly inside the frame.
+    ///
+    /// Nothing is compared with the frame's edges. A triangle that does not lie inside gets some rows or other.
     #[inline]
     pub fn rows_inside(&self, row: impl FnMut(Row)) {
         let [top, _, bottom] = &self.vertices;

@@ -54,7 +54,7 @@ impl DepthPlane {
         Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
     }
 
-    /// The same of three corners (x, y, depth) in any order, without branches that the order decides.
+    /// The plane of three corners (x, y, depth) in any order, without branches that the order decides.
     #[inline]
     pub(super) fn of_corners(corners: [(i32, i32, u32); 3]) -> Self {
         let [(x0, y0, d0), (x1, y1, d1), (x2, y2, d2)] =
@@ -90,7 +90,7 @@ impl DepthPlane {
         (self.fixed_at(x, y) >> 24) as u32
     }
 
-    /// The same with 24 fraction bits, the half included, modulo 2⁶⁴: where a depth span starts.
+    /// The depth with 24 fraction bits, the half included, modulo 2⁶⁴: where a depth span starts.
     #[must_use]
     #[inline]
     pub fn fixed_at(&self, x: i32, y: i32) -> i64 {
@@ -168,7 +168,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
         self.values.fill(D::default());
     }
 
-    /// The same of a rectangle that it holds.
+    /// Makes everything as far away as can be in a rectangle that the buffer holds.
     #[cfg(feature = "alloc")]
     pub(super) fn clear_within(&mut self, Rect { x0, y0, x1, y1 }: Rect) {
         // Whole rows are one piece.
@@ -199,7 +199,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
     #[must_use]
     #[inline]
     pub fn row_mut(&mut self, y: u32) -> Option<&mut [D]> {
-        // Of a row far beyond the last, the place may be more than a 32-bit processor counts.
+        // The index of a row far beyond the last may be more than a 32-bit processor counts.
         let width = self.width as usize;
         let start = (y.checked_sub(self.first_row)? as usize).checked_mul(width)?;
         self.values.get_mut(start..start.checked_add(width)?)

@@ -43,7 +43,7 @@ use super::weights::Weights;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FloatPlane {
     weights: Weights,
-    /// Of each vertex its depth times its shade, and its depth.
+    /// The depth of each vertex times its shade, then its depth.
     values: [[f64; 2]; 3],
     /// What both sums change by from one pixel to the next.
     steps: [f32; 2],
@@ -62,8 +62,8 @@ pub(super) struct FloatRow {
 }
 
 impl FloatPlane {
-    /// Of any three shades of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order
-    /// of its vertices. A depth of 0 counts as 1.
+    /// The plane of any three shades of 0 to 0xFF00 at the corners of a triangle that is not degenerate.
+    /// The shades are in the order of its vertices. A depth of 0 counts as 1.
     pub(super) fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1)));
         let weights = Weights::new(triangle);

@@ -22,7 +22,7 @@ impl Rect {
     /// Without a pixel; its hull with another is the other.
     #[cfg(feature = "alloc")]
     pub(crate) const NOWHERE: Self = Self { x0: u32::MAX, y0: u32::MAX, x1: 0, y1: 0 };
-    /// Of any frame all.
+    /// A rectangle that holds all of any frame.
     #[cfg(feature = "alloc")]
     pub(crate) const EVERYWHERE: Self = Self { x0: 0, y0: 0, x1: u32::MAX, y1: u32::MAX };
 
@@ -37,7 +37,7 @@ impl Rect {
         }
     }
 
-    /// The least rectangle that holds both. Of an empty one the corners count, too.
+    /// The least rectangle that holds both. The corners of an empty one count, too.
     #[cfg(feature = "alloc")]
     pub(crate) fn hull(self, other: Self) -> Self {
         Self {
@@ -136,7 +136,7 @@ impl<'a> Frame<'a> {
     /// 5 KiB to spare draws 320 × 200 as thirteen bands.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and a band that is empty or reaches beyond the frame.
+    /// Those of [`new`](Self::new), and a band that is empty or reaches beyond the frame.
     pub fn band(
         pixels: &'a mut [u8],
         width: u32,
@@ -217,7 +217,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The same frame, borrowed for a shorter time.
+    /// Borrows the frame for a shorter time.
     pub fn reborrow(&mut self) -> Frame<'_> {
         Frame {
             pixels: self.pixels,

@@ -30,7 +30,7 @@ pub(super) struct Linear {
 
 #[cfg(feature = "alloc")]
 impl Linear {
-    /// Of a triangle that is not degenerate, with these values at its vertices; each below 2⁶⁴.
+    /// The function with these values, each below 2⁶⁴, at the vertices of a triangle that is not degenerate.
     pub(super) fn new(triangle: &SortedTriangle, [v0, v1, v2]: [i128; 3]) -> Self {
         let [(x0, y0), (x1, y1), (x2, y2)] =
             triangle.vertices.each_ref().map(|v| (i128::from(v.x().to_bits()), i128::from(v.y().to_bits())));
@@ -69,8 +69,9 @@ pub struct HyperbolicPlane {
 }
 
 impl HyperbolicPlane {
-    /// Of any three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order of
-    /// its vertices. A depth of 0 counts as 1.
+    /// The plane of any three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate.
+    ///
+    /// The values are in the order of its vertices. A depth of 0 counts as 1.
     #[must_use]
     pub fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1)));
@@ -116,7 +117,7 @@ impl HyperbolicPlane {
         fill_quotients(pixels, n, dn, d, dd);
     }
 
-    /// The same from quotients in f64, exact where these cannot decide. Returns whether it was done.
+    /// Fills a row by quotients in f64, exact where these cannot decide. Returns whether it was done.
     ///
     /// What is estimated is t = 2¹⁶·I/256 with the half added: below T = 2²⁴. With ε = 2⁻⁵³, N(k) and D(k) the exact
     /// sums at pixel k, their largest values N and D at the two ends, and R = D over the least D(k), which lies at an end
@@ -128,8 +129,9 @@ impl HyperbolicPlane {
     ///    the step is off by 3ε of the sum of its terms' sizes, and k of them by 3ε·(N(0) + N(last)), 6εN.
     /// 3. Their product with k has εN more, the sum another: the numerator is off by less than 12εN, and the divisor by
     ///    12εD likewise.
-    /// 4. As N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹. Rounded to a whole number
-    ///    it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two multiples.
+    /// 4. Since N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹. Rounded to a whole
+    ///    number it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two
+    ///    multiples.
     fn fill_estimated(&self, x: i32, y: i32, pixels: &mut [u8]) -> bool {
         const MAX_RATIO: f64 = 32_768.0;
 

@@ -17,13 +17,16 @@
 pub enum Interpolation {
     /// One byte for the whole triangle; the shades of the vertices are not looked at.
     Flat(u8),
-    /// As the sources print it: vertices on whole pixels, slopes and steps cut, no half added.
-    /// Without exact cover; where another method says which pixels, the shades alone.
+    /// Gouraud's shading as the sources print it: vertices on whole pixels, slopes and steps cut, no half added.
+    ///
+    /// It has no exact cover. Where another method says which pixels, it gives the shades alone.
     GouraudVintage,
     /// Linear between the vertices, each row of the triangle one span: the start exact, one
     /// addition a pixel from there on.
     Gouraud,
-    /// The same, started anew every 64 pixels.
+    /// Linear between the vertices, each row of the triangle started anew every 64 pixels.
+    ///
+    /// Each start is exact, with one addition a pixel from there on.
     #[default]
     GouraudReseeded,
     /// Linear between the vertices in 16.16, each row of the triangle one span.
@@ -31,8 +34,9 @@ pub enum Interpolation {
     /// Linear on the face in space, so perspective-correct: a quotient for every pixel, the nearest
     /// shade to exact. It takes the depths of the vertices for 1/w.
     GouraudHyperbolic,
-    /// The same in f32: shade/w and 1/w linear, a division a pixel. Only where there is an
-    /// allocator, so that the raster of a chip without floating point holds no routine for it.
+    /// Linear on the face in space in f32: shade/w and 1/w linear, a division a pixel.
+    ///
+    /// It is there only with an allocator, so that the raster of a chip without floating point holds no routine for it.
     #[cfg(feature = "alloc")]
     Float,
 }

@@ -32,7 +32,7 @@ pub(super) enum RowShader {
         reseeded: bool,
     },
     Period(PeriodTriangle),
-    /// Of one row.
+    /// The vintage shades of one row.
     Ramp(Ramp),
     Wide(ShadePlane16),
     Hyperbolic(HyperbolicPlane),
@@ -41,14 +41,14 @@ pub(super) enum RowShader {
 }
 
 impl RowShader {
-    /// Of a triangle that is not degenerate.
+    /// The shader of a triangle that is not degenerate.
     #[inline]
     pub(super) fn new(triangle: &SortedTriangle, interpolation: Interpolation) -> Self {
         Self::of_values(triangle, triangle.shades(), interpolation)
     }
 
-    /// Of three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order of its
-    /// vertices.
+    /// The shader of three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate.
+    /// The values are in the order of its vertices.
     #[inline]
     pub(super) fn of_values(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation) -> Self {
         match interpolation {

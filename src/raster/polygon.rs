@@ -12,8 +12,8 @@
 //! right of the left crossing to the last before the right one. So polygons and triangles that share
 //! edges draw each pixel once.
 //!
-//! Shades are S4's: linear along the edges, then linear between the two crossings of a row. Of a
-//! triangle that is the plane through its vertices. Of more vertices it is not: turned on the screen,
+//! Shades are S4's: linear along the edges, then linear between the two crossings of a row. In a
+//! triangle that is the plane through its vertices. With more vertices it is not: turned on the screen,
 //! the same quad pairs other edges in a row and gets other shades. That is why faces are split into
 //! triangles elsewhere; this is the way to scan them as it was done.
 //!
@@ -138,9 +138,9 @@ struct Walk {
 }
 
 impl Walk {
-    /// Of a value that is `a` at the upper end of an edge `height` units high and `b` at its lower end,
-    /// `below` units under the upper one: the floor of it with `bias / height` added. All within 2²²,
-    /// `below` and `bias` less than `height`.
+    /// A walk along a value that is `a` at the upper end of an edge `height` units high and `b` at its lower end.
+    /// It starts `below` units under the upper end. Each step gives the floor of the value with `bias / height` added.
+    /// All are within 2²²; `below` and `bias` are less than `height`.
     fn new(a: i32, b: i32, below: i64, height: &Divisor, bias: i64) -> Self {
         let change = i64::from(b) - i64::from(a);
         let (value, rest) = height.floor_and_rest(i64::from(a) * height.get() + change * below + bias);
@@ -302,7 +302,7 @@ impl RowShade {
         let left_x = i64::from(edges.left_x.to_bits());
         // 1 at least, and below 2²²: see the module's head.
         let width = Divisor::new(i64::from(edges.right_x.to_bits()) - left_x);
-        // Of one pixel the step may be any size, and is not used.
+        // The step of a row of one pixel may be any size, and is not used.
         let step = width.truncate(change * 256) as u16;
         Self { left_x, left_shade, change, width, step }
     }

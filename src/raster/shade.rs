@@ -1,8 +1,8 @@
 //! Shades over a triangle: exact at the start of a span, in range all along it.
 //!
 //! Gouraud's interpolation is linear in x and y (all five sources print it edge by edge; the
-//! garbled fractions of S0 are the quotients of S2). As a plane through the first vertex, over the
-//! doubled area A as common denominator:
+//! garbled fractions of S0 are the quotients of S2). It is a plane through the first vertex,
+//! over the doubled area A as common denominator:
 //!
 //! ```text
 //! I(x, y) = N(x, y) / A,   N(x, y) = I0·A + gx·(x − x0) + gy·(y − y0)
@@ -49,9 +49,9 @@ pub struct ShadePlane {
     area: Divisor,
     /// N at column 0's centre of row 0.
     origin: i64,
-    /// Of N, from one pixel to the next.
+    /// What N changes by from one pixel to the next.
     per_column: i64,
-    /// Of N, from one row to the next.
+    /// What N changes by from one row to the next.
     per_row: i64,
     step: u16,
 }

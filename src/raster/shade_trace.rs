@@ -104,8 +104,9 @@ pub struct ShadeTrace {
 }
 
 impl ShadeTrace {
-    /// Of three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate, in the order of its
-    /// vertices, at a pixel of `row`.
+    /// Traces a pixel of `row` for three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate.
+    ///
+    /// The values are in the order of its vertices.
     pub fn new(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation, row: &Row, x: i32) -> Self {
         let y = row.y;
         let plane = ShadePlane::of_values(triangle, values);
@@ -169,7 +170,7 @@ impl ShadeTrace {
     }
 
     fn of_sums(sums: Accumulator, exact: Ratio) -> Self {
-        // Of `fraction_bits` + 8 bits the upper 8.
+        // The upper 8 of `fraction_bits` + 8 bits.
         let byte = (sums.sum() >> sums.fraction_bits) as u8;
         Self { way: Progression::Accumulator(sums), exact: Some(exact), byte }
     }

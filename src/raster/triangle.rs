@@ -40,7 +40,8 @@ impl<'a> Raster<'a> {
         Raster { frame, clip, depth, kernel }
     }
 
-    /// The same where nothing is drawn but in `within`: elsewhere `values` stay as they are.
+    /// Draws with a depth buffer of its own in `values`, which is made as long as needed and cleared in `within` alone.
+    /// This is for where nothing is drawn but in `within`: elsewhere `values` stay as they are.
     #[cfg(feature = "alloc")]
     #[must_use]
     pub(crate) fn with_depth_cleared_within(self, values: &'a mut alloc::vec::Vec<u32>, within: Rect) -> Raster<'a> {
@@ -107,8 +108,9 @@ impl<'a, D: Cell> Raster<'a, D> {
         self.draw::<true>(vertices, interpolation)
     }
 
-    /// The same for a triangle that lies wholly inside the frame, all of which is drawn: its rows are not
-    /// compared with any edge. What lies outside all the same is not drawn, or some of it.
+    /// Draws a triangle that lies wholly inside the frame, without comparing its rows with any edge.
+    ///
+    /// All of it is drawn. What lies outside all the same is not drawn, or some of it.
     #[inline]
     #[doc(hidden)]
     pub fn triangle_inside(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
@@ -147,8 +149,8 @@ impl<'a, D: Cell> Raster<'a, D> {
         drawn
     }
 
-    /// The same with rows, and shades in each, as the sources have them. Depths are those of the triangle's
-    /// plane, beyond its edges too, where they may wrap.
+    /// Draws a triangle with rows, and shades in each, as the sources have them.
+    /// Depths are those of the triangle's plane, beyond its edges too, where they may wrap.
     #[inline(never)]
     fn draw_vintage(&mut self, triangle: &SortedTriangle) -> DrawStats {
         let mut drawn = DrawStats::default();

@@ -82,7 +82,7 @@ impl Vertex {
         Self { x: x.to_bits(), y: y.to_bits(), shade: shade.to_bits(), depth }
     }
 
-    /// The same vertex with another shade; what is above 255.0 counts as that.
+    /// Gives the vertex another shade; one above 255.0 counts as 255.0.
     #[must_use]
     #[inline]
     pub const fn with_shade(self, shade: U8F8) -> Self {

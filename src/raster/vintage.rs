@@ -30,8 +30,8 @@
 //! # Where others say which pixels
 //!
 //! The scan-line method and the stages of `effects` work by exact cover. There a pixel gets the shade that
-//! this triangle's nearest row has at its nearest pixel; of a triangle without area on whole pixels, that of its
-//! top vertex.
+//! this triangle's nearest row has at its nearest pixel. A triangle without area on whole pixels gives the shade
+//! of its top vertex.
 
 use core::ops::Range;
 
@@ -59,7 +59,7 @@ struct Edge {
 }
 
 impl Edge {
-    /// The edge from `a` down to `b`, at the row of `a`. Of one without rows the steps are not used.
+    /// The edge from `a` down to `b`, at the row of `a`. The steps of one without rows are not used.
     #[inline]
     fn new(a: Corner, b: Corner) -> Self {
         let rows = (b.y - a.y).max(1);
@@ -68,7 +68,7 @@ impl Edge {
         Self { y: a.y, x, step_x: dx / rows, shade: a.shade, step_shade: (b.shade - a.shade) / rows }
     }
 
-    /// The same at row `y` of its rows: what as many additions come to.
+    /// The edge at row `y` of its rows: what as many additions come to.
     #[inline]
     fn at(&self, y: i32) -> Self {
         // A cut quotient times no more than its divisor is no more than the dividend.

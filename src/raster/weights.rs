@@ -17,7 +17,7 @@ pub(super) struct WholeWeights {
 }
 
 impl WholeWeights {
-    /// Of a triangle that is not degenerate; the corners in the order of its vertices.
+    /// The weights in a triangle that is not degenerate; the corners are in the order of its vertices.
     pub(super) fn new(triangle: &SortedTriangle) -> Self {
         let first = &triangle.vertices[0];
         let (x0, y0) = (i64::from(first.x().to_bits()), i64::from(first.y().to_bits()));
@@ -47,7 +47,7 @@ impl WholeWeights {
     }
 }
 
-/// The same in f64, as exact.
+/// The weights of the three corners in f64, exact like [`WholeWeights`].
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weights {
@@ -59,7 +59,7 @@ pub(super) struct Weights {
 
 #[cfg(feature = "alloc")]
 impl Weights {
-    /// Of a triangle that is not degenerate; the corners in the order of its vertices.
+    /// The weights in a triangle that is not degenerate; the corners are in the order of its vertices.
     pub(super) fn new(triangle: &SortedTriangle) -> Self {
         let whole = WholeWeights::new(triangle);
         let exact = |weights: [i64; 3]| weights.map(|weight| weight as f64);

@@ -4,7 +4,7 @@
 //!
 //! # Why no byte leaves the range of the vertices
 //!
-//! As there: the step is dI/dx rounded toward zero to 1/65,536 shade, the start the exact value at its
+//! The reasons are the same: the step is dI/dx rounded toward zero to 1/65,536 shade, the start the exact value at its
 //! pixel's centre, rounded back toward where shades come from. So every sum lies between the start and
 //! the exact value, and both lie between min and max, which are whole multiples of the unit. Half a shade is added to
 //! the start; with max at most 255.0 the sum is below 256 and fits in 24 bits.

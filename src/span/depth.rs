@@ -5,12 +5,12 @@
 //!               if d > depth[k] { depth[k] = d; row[k] = ((shade + k·step) mod 65,536) >> 8 }
 //! ```
 //!
-//! Of equal depths the first that was drawn stays. A cell of the buffer may be narrower than a depth:
+//! The first that was drawn of equal depths stays. A cell of the buffer may be narrower than a depth:
 //! then `d` is narrowed first ([`Cell`]).
 
 mod sealed {
     pub trait Sealed: Sized {
-        /// The same cells, if they are of 32 bits: those have kernels of their own.
+        /// The cells as `u32`, if they are of 32 bits: those have kernels of their own.
         fn as_u32(cells: &mut [Self]) -> Option<&mut [u32]>;
     }
     impl Sealed for u32 {
@@ -78,7 +78,7 @@ pub fn fill_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], shade: u16, step: u
     written
 }
 
-/// The same for a row of bytes that is there already: copies `bytes` where the depth is greater.
+/// Copies `bytes` to `row` where the depth at a pixel is greater than in `depth`, and keeps the greater depth.
 #[inline]
 pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i64, dz: i64) -> u32 {
     copy_where(row, depth, bytes, z, dz, |nearest, d: D| {
@@ -90,8 +90,9 @@ pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i6
     })
 }
 
-/// The same, but the buffer keeps what it holds: for faces that one sees through, of which many may lie
-/// before one another.
+/// Copies `bytes` to `row` where the depth at a pixel is greater than in `depth`, which keeps what it holds.
+///
+/// This is for faces that one sees through, of which many may lie before one another.
 #[inline]
 pub fn copy_before<D: Cell>(row: &mut [u8], depth: &[D], bytes: &[u8], z: i64, dz: i64) -> u32 {
     copy_where(row, depth, bytes, z, dz, |nearest, d: D| d > *nearest)

@@ -25,7 +25,7 @@ const fn bayer() -> [[u8; 8]; 8] {
     let mut place = 0;
     while place < 64 {
         let (x, y) = (place % 8, place / 8);
-        // Of 2 × 2 pixels the ranks are 0 2 / 3 1: two bits, x ≠ y and y. Each halving of the square makes
+        // The ranks of 2 × 2 pixels are 0 2 / 3 1: two bits, x ≠ y and y. Each halving of the square makes
         // two bits more, the finest the highest.
         let (mut rank, mut bit) = (0, 0);
         while bit < 3 {

@@ -23,11 +23,11 @@ pub fn fill_quotients(row: &mut [u8], n: i128, dn: i128, d: i128, dd: i128) {
     }
 }
 
-/// The same where quotients in f64 are sure to decide nearly always.
+/// Fills `row` by quotients in f64, where these are sure to decide nearly always.
 ///
 /// (n + k·dn) / (d + k·dd) is 65,536 times the byte's quotient, 0 to 2²⁴, off by less than ½ as it is computed: a
-/// product and a sum above and below, and a quotient. Rounded to a whole number it is less than 1 off, so unless its
-/// lower 16 bits are 0 the upper 8 are the byte; of the pixels where they are, `exact` gives it.
+/// product and a sum above and below, and a quotient. Rounded to a whole number it is less than 1 off, so the
+/// upper 8 of its bits are the byte unless the lower 16 are 0; there `exact` gives it.
 #[inline]
 pub(crate) fn fill_estimated_quotients(
     row: &mut [u8],

@@ -28,7 +28,7 @@ pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> 
     interpolate_at(&places, a, da, d, dd)
 }
 
-/// The same at any eight pixels, by their numbers.
+/// Six numbers at each of any eight pixels of a row, given by their numbers; see [`interpolate`].
 #[inline]
 #[must_use]
 #[doc(hidden)]
@@ -51,7 +51,7 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
     points
 }
 
-/// The same at eight pixels of different rows: `a` and `d` are each one's own.
+/// Six numbers at each of eight pixels of different rows: `a` and `d` are each one's own. See [`interpolate`].
 #[inline]
 #[must_use]
 #[doc(hidden)]

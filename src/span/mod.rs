@@ -91,7 +91,7 @@ pub mod entry {
 
 /// What every kernel is: `row` (any length), `shade` and `step` in 8.8.
 type Fill = fn(row: &mut [u8], shade: u16, step: u16);
-/// The same for a list of spans.
+/// What every kernel for a list of spans is.
 type FillList = fn(pixels: &mut [u8], spans: &[list::Listed]);
 
 /// A way to fill a span that this machine has.
@@ -248,16 +248,17 @@ impl Kernel {
         (self.fill)(row, shade, step);
     }
 
-    /// Fills every span of a list, in order, as [`fill`](Self::fill) does. Of a span that reaches beyond
-    /// `pixels` nothing is drawn.
+    /// Fills every span of a list, in order, as [`fill`](Self::fill) does. Nothing is drawn of a span that
+    /// reaches beyond `pixels`.
     #[inline]
     #[doc(hidden)]
     pub fn fill_list(self, pixels: &mut [u8], spans: &[list::Listed]) {
         (self.fill_list)(pixels, spans);
     }
 
-    /// The same with a depth test, as [`depth::fill_nearer`] does it, with as many `depths` as spans. Returns
-    /// the number of pixels written.
+    /// Fills every span of a list, in order, with the depth test of [`depth::fill_nearer`].
+    ///
+    /// There are as many `depths` as spans. Returns the number of pixels written.
     #[inline]
     #[doc(hidden)]
     pub fn fill_list_nearer<D: depth::Cell>(
@@ -282,7 +283,7 @@ impl Kernel {
         matches!(self.level, "avx2" | "avx512")
     }
 
-    /// The same of the parts of AVX-512 that `simd::avx512::found` names.
+    /// Whether the processor has the parts of AVX-512 that `simd::avx512::found` names, and this kernel may use them.
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     pub(crate) fn has_avx512(self) -> bool {
         self.level == "avx512"

@@ -13,7 +13,7 @@ pub(super) fn fill(row: &mut [u8], shade: u16, step: u16) {
     }
 }
 
-/// The same for every span of a list.
+/// Fills every span of a list by [`fill`].
 pub(super) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
     each(pixels, spans, fill);
 }

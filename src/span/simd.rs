@@ -270,8 +270,9 @@ pub(crate) mod avx2 {
         unsafe { list(pixels, spans) }
     }
 
-    /// Fills a span at `at`, of which `paint` has the shade and above it the step: with up to sixteen pixels at once, so that
-    /// what lies behind them, of whichever row, is written as it was read. Of one that reaches beyond `pixels` nothing is drawn.
+    /// Fills a span at `at`, up to sixteen pixels at once. `paint` has its shade, and above it the step.
+    /// What lies behind the span, of whichever row, is written as it was read. Nothing is drawn of a span that
+    /// reaches beyond `pixels`.
     #[inline]
     #[target_feature(enable = "avx2")]
     pub(crate) fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {

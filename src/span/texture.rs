@@ -134,7 +134,7 @@ impl<'a> Levels<'a> {
         Self::deepest(self.ubits, self.vbits)
     }
 
-    /// The texels of a level from 1 to the last; of a higher number those of the last. `None` of level 0.
+    /// The texels of a level from 1 to the last. A higher number gives those of the last, level 0 `None`.
     #[must_use]
     pub fn get(self, level: u32) -> Option<Texels<'a>> {
         let level = level.min(self.last());
@@ -153,9 +153,9 @@ impl<'a> Levels<'a> {
 pub enum TexelsError {
     /// Wider or higher than 256 texels.
     Bits {
-        /// Of the width, as given.
+        /// The logarithm of the width, as given.
         ubits: u32,
-        /// Of the height, as given.
+        /// The logarithm of the height, as given.
         vbits: u32,
     },
     /// The bytes are too few or too many.
@@ -252,7 +252,8 @@ pub fn fill_perspective_portable(
     }
 }
 
-/// The same from quotients in f64, which the compiler vectorises; exact where they cannot decide.
+/// Fills `row` like [`fill_perspective`], by quotients in f64, exact where they cannot decide.
+/// The compiler vectorises these quotients.
 ///
 /// Only the whole texel counts. Let q be a quotient, |q| ≤ 2³², and t the whole number nearest to its
 /// estimate. If |t − q| < 1 and t begins no texel (t mod 2¹⁶ ≠ 0), then q lies in the same texel as t:
@@ -264,7 +265,7 @@ pub fn fill_perspective_portable(
 ///    |k·dn| ≤ 2N.
 /// 2. The numerator n + k·dn in f64: n is rounded (εN), dn is (2εN for k of them), their product is (2εN), the
 ///    sum is (εN). So it is off by 6εN, and the divisor likewise by 6εD.
-/// 3. As N ≤ 2³²·D, the quotient is off by 2³²·6εR for the numerator, the same for the divisor, and 2ε of
+/// 3. Since N ≤ 2³²·D, the quotient is off by 2³²·6εR for the numerator, the same for the divisor, and 2ε of
 ///    itself for the reciprocal and the product: less than 2³²·ε·(12R + 3) altogether.
 /// 4. For R ≤ 2¹⁵ that is 0.19. Where R is larger the exact loop draws the piece.
 fn fill_perspective_estimated(

@@ -63,7 +63,7 @@ mod x86_64 {
     unsafe extern "sysv64" {
         /// The loop of five instructions.
         pub fn mode13h_span_x86_64(row: *mut u8, count: u32, shade: u16, step: u16);
-        /// The same, eight pixels a turn.
+        /// The unrolled loop, eight pixels a turn.
         pub fn mode13h_span_unrolled_x86_64(row: *mut u8, count: u32, shade: u16, step: u16);
     }
 

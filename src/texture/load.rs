@@ -87,10 +87,10 @@ fn read(path: &Path) -> Result<Texture, LoadErrorKind> {
     decode(BufReader::new(file))
 }
 
-/// As [`load`], of a file that is in memory or comes from elsewhere.
+/// Reads a PNG that is in memory or comes from elsewhere, and makes a texture of it like [`load`].
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 pub fn decode(file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
     // A row of the widest picture is 32 KiB; a chunk beside the pixels may hold no more than they do.
     let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MAX_BYTES });

@@ -77,7 +77,7 @@ impl Mipmap {
         }
     }
 
-    /// The colours of all levels and how much they count: of each level together half as much as of the one before.
+    /// The colours of all levels and how much they count: each level's together half as much as the one before's.
     /// `texture` is the one that it was made from.
     pub(crate) fn weights(&self, texture: &Texture) -> Vec<(Rgb, u32)> {
         // In 256ths of a texel of level 0.

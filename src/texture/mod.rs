@@ -157,7 +157,7 @@ impl Texture {
         Ok(Self { texels, colors, width_bits, height_bits })
     }
 
-    /// The same texture in at most `most` colours, 1 to 256, by median cut.
+    /// Reduces the texture to at most `most` colours, 1 to 256, by median cut.
     #[must_use]
     pub fn with_colors(&self, most: u16) -> Self {
         let pixels: Vec<Rgb> = self.texels.iter().map(|&texel| self.colors[usize::from(texel)]).collect();
@@ -187,14 +187,14 @@ impl Texture {
         self.colors.map(|color| color.modulate(tint))
     }
 
-    /// The same texture in its [tinted](Self::tinted) colours.
+    /// The texture in its [tinted](Self::tinted) colours.
     #[must_use]
     #[doc(hidden)]
     pub fn modulated(&self, tint: Rgb) -> Self {
         self.recolored(self.tinted(tint))
     }
 
-    /// The same texels in other colours.
+    /// The texture with its texels in other colours.
     #[must_use]
     #[doc(hidden)]
     pub fn recolored(&self, colors: [Rgb; 256]) -> Self {

@@ -6,8 +6,8 @@ use alloc::vec::Vec;
 use super::Texture;
 use crate::palette::Rgb;
 
-/// The logarithm of the power of two up to 256 whose ratio to `side` is nearest to 1; of two equally
-/// near, which no whole number has, the larger.
+/// The logarithm of the power of two up to 256 whose ratio to `side` is nearest to 1; the larger of
+/// two equally near, which no whole number has.
 pub(super) fn nearest_power_of_two(side: u32) -> u32 {
     let lower = side.ilog2();
     // 2ˡ and 2ˡ⁺¹ are equally near at their geometric mean, whose square is 2²ˡ⁺¹. At most 2²⁴.

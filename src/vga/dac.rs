@@ -7,8 +7,8 @@
 //! | 3C8h | index to write to | the index that the next third write would change |
 //! | 3C9h | red, green, blue in turn | red, green, blue in turn |
 //!
-//! As in the chip that IBM took (Inmos IMS G171) there is one address register and one count of
-//! three for both directions; setting a read index leaves the address one further, so that 3C8h
+//! There is one address register and one count of three for both directions, as in the chip that IBM
+//! took (Inmos IMS G171); setting a read index leaves the address one further, so that 3C8h
 //! then reads one more. Sources: IBM PS/2 technical reference, video subsystem; FreeVGA; DOSBox
 //! `vga_dac.cpp`, which does the same.
 
@@ -142,7 +142,7 @@ impl Dac {
         if let Some(entries) = self.shown.get_mut(first..end)
             && !entries.is_empty()
         {
-            // Of at most 256 entries, so the remainder is 0 to 255.
+            // There are at most 256 entries, so the remainder is 0 to 255.
             entries.rotate_right(steps.rem_euclid(entries.len() as i32) as usize);
         }
     }

@@ -42,7 +42,7 @@ pub struct Vga {
     memory: [u8; Self::MEMORY],
     stamp: Stamp,
     dac: Dac,
-    /// Of the palette that was set last.
+    /// The ramps of the palette that was set last.
     ramps: u16,
     beam: Beam,
 }

@@ -6,8 +6,8 @@ impl Vga {
     /// The frame as 64,000 pixels `0x00RRGGBB`, row-major: each byte ANDed with the pixel mask,
     /// looked up, its 6 bits a channel expanded to 8.
     ///
-    /// Fills as much of `out` as there is, from the start: of a shorter buffer all, of a longer one
-    /// the first 64,000 pixels; the rest is left alone.
+    /// Fills as much of `out` as there is, from the start: all of a shorter buffer, the first
+    /// 64,000 pixels of a longer one; the rest is left alone.
     ///
     /// ```
     /// use mode13h::vga::Vga;

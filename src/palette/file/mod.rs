@@ -197,7 +197,7 @@ pub fn parse(bytes: &[u8]) -> Result<Palette, PaletteError> {
 /// a raw file.
 ///
 /// # Errors
-/// As [`Format::read`]. The name is not part of the message: the caller has it.
+/// Those of [`Format::read`]. The name is not part of the message: the caller has it.
 #[doc(hidden)]
 pub fn parse_named(name: &str, bytes: &[u8]) -> Result<Palette, PaletteError> {
     match Format::of_file_name(name) {

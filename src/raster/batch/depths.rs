@@ -12,7 +12,7 @@
 //! q = nearest(n / A), or beside it        r = n − q·A        g = 2²⁴·q + nearest(2²⁴·r / A), halves upward
 //! ```
 //!
-//! (Of an odd A there are no halves, and the half of it that is dropped changes no floor.) A small triangle's box is less
+//! (An odd A has no halves, and the half of it that is dropped changes no floor.) A small triangle's box is less
 //! than 65 × 17 pixels, so A is below 2²⁶·¹² and |n| below 2⁴⁸: n, q·A and r are exact, and |r| is at most 0.52·A. The last
 //! quotient is taken of 2²⁴·r + ¼, which is exact, too, so that what is rounded lies at least 1/(4A), more than 2⁻²⁸·¹², from
 //! the middle between two whole numbers. It is below 2²³·¹, and off by at most 2⁻⁵² of that: less than 2⁻²⁸·⁹.
@@ -40,7 +40,7 @@ impl Planes {
         self.per_row[i] = plane.fixed_at(column, row + 1).wrapping_sub(self.at[i]);
     }
 
-    /// Of the small triangles of a group that is set up.
+    /// The planes of the small triangles of a group that is set up.
     #[inline(always)]
     pub(super) fn of(gathered: &Gathered, group: &Group) -> Self {
         let Gathered { x, y, depth, .. } = gathered;
@@ -133,7 +133,7 @@ impl Walk {
     }
 }
 
-/// Gradients from numerators, areas and the inverses of these; of a triangle without area any number.
+/// Gradients from numerators, areas and the inverses of these; any number for a triangle without area.
 #[inline(always)]
 fn gradients(numerators: &Floats, areas: &Floats, inverses: &Floats, gradients: &mut [i64; LANES]) {
     for i in 0..LANES {

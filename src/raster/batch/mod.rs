@@ -46,7 +46,7 @@ pub struct Batch {
     count: usize,
     /// Whether triangles of no pixel have mostly been left out already: to look for more does not pay.
     is_sifted: bool,
-    /// Of each corner, of all triangles: x and y in 1/256 pixel, shade in 1/256.
+    /// The corners of all triangles: x and y in 1/256 pixel, shade in 1/256.
     x: [[i32; Self::CAPACITY]; 3],
     y: [[i32; Self::CAPACITY]; 3],
     shade: [[u16; Self::CAPACITY]; 3],
@@ -178,8 +178,9 @@ impl<D: Cell> Raster<'_, D> {
         self.draw_batch::<true>(batch)
     }
 
-    /// The same for triangles that all lie wholly inside the frame, as
-    /// [`triangle_inside`](Self::triangle_inside).
+    /// Draws the triangles of a batch that all lie wholly inside the frame, one after the other.
+    ///
+    /// The bytes, depths and counts are those of [`triangle_inside`](Self::triangle_inside) called for each.
     #[doc(hidden)]
     pub fn batch_inside(&mut self, batch: &Batch) -> DrawStats {
         self.draw_batch::<false>(batch)

@@ -59,7 +59,7 @@ pub(super) struct Spans<'a> {
     spans: [Listed; CAPACITY + 1],
     count: usize,
     covered: u32,
-    /// Of each span, where there is a depth buffer; else there is no room for any.
+    /// The depths of the spans, if there is a depth buffer; otherwise it has no room for any.
     depths: &'a mut [Depths],
     pub(super) group: Group,
     table: [Row; MAX_ROWS as usize],
@@ -81,7 +81,7 @@ impl<'a> Spans<'a> {
         &self.spans[..self.count]
     }
 
-    /// As many as spans, where there is a depth buffer.
+    /// The depths of the spans, one for each if there is a depth buffer, otherwise none.
     pub(super) fn depths(&self) -> &[Depths] {
         self.depths.get(..self.count).unwrap_or_default()
     }
@@ -348,7 +348,7 @@ pub(super) fn set_up<const TALL: bool>(gathered: &Gathered, place: Place, group:
         (lower.n[i], lower.per_row[i], lower.inverse[i]) = edge(p1, p2);
         split[i] = (p1.1 + 255) >> 8;
 
-        // As `SortedTriangle::gradient`, of any order of the corners: the quotients are the same.
+        // `SortedTriangle::gradient` with the corners in any order: the quotients are the same.
         let (dx1, dy1, dx2, dy2) = (f64::from(bx - ax), f64::from(by - ay), f64::from(cx - ax), f64::from(cy - ay));
         let s = f64::from(shade[0][i]);
         let (ds1, ds2) = (f64::from(shade[1][i] - shade[0][i]), f64::from(shade[2][i] - shade[0][i]));
@@ -358,7 +358,7 @@ pub(super) fn set_up<const TALL: bool>(gathered: &Gathered, place: Place, group:
         let (gx, gy) = ((ds1 * dy2 - ds2 * dy1) * sign, (ds2 * dx1 - ds1 * dx2) * sign);
         let falls = gx < 0.0;
         inverse[i] = 1.0 / area;
-        // As `ShadePlane::start`: the floor, or of falling shades the ceiling, and half a shade.
+        // `ShadePlane::start`: the floor, or the ceiling of falling shades, and half a shade.
         let half = area * 0.5 - 0.5;
         n[i] = s * area - gx * f64::from(ax) - gy * f64::from(ay) + area * 128.0 + if falls { half } else { -half };
         per_row[i] = gy * 256.0;
@@ -444,7 +444,7 @@ fn list(
                     step: (paint >> 16) as u16,
                 };
                 if let Some(walk) = &mut walk {
-                    // Of a row without length anything, which is written over.
+                    // A row without length may have any depths, which are written over.
                     depths[*count] = walk.at(row.at[i]);
                     walk.down();
                 }
@@ -492,10 +492,10 @@ fn list_rows<const ROWS: usize>(
 
 /// Eight rows of one triangle.
 pub(super) struct Lines {
-    /// As in `Row`.
+    /// The offset of the first pixel, see `Row`.
     pub(super) at: Ints,
     pub(super) length: Ints,
-    /// Of each piece of the rows.
+    /// The shade of each piece of the rows, and above it the step.
     pub(super) paint: [Ints; MAX_PIECES],
 }
 
@@ -529,7 +529,7 @@ pub(super) fn tall_by(
         set_up::<true>(&Gathered::of(batch, eight, place), place, &mut spans.group);
         for (i, triangle) in eight.iter().enumerate() {
             let number = triangle.number();
-            // Of a triangle without area, which has no spans, there is none.
+            // A triangle without area has no spans and no plane.
             let mut plane = None;
             // A row that does not start anew is one piece, however long.
             let longest = match batch.interpolation[number] {

@@ -7,8 +7,8 @@
 //! q = Σ fᵢLᵢ − 2 Σ Dᵢⱼ LᵢLⱼ          Dᵢⱼ = fᵢ − 2mᵢⱼ + fⱼ
 //! ```
 //!
-//! The same as Σ fᵢLᵢ(2Lᵢ − 1) + Σ 4mᵢⱼLᵢLⱼ. Along an edge it is the parabola through that edge's three points, whatever lies
-//! on either side of it.
+//! This equals Σ fᵢLᵢ(2Lᵢ − 1) + Σ 4mᵢⱼLᵢLⱼ. Along an edge it is the parabola through that edge's three points,
+//! whatever lies on either side of it.
 //!
 //! The weights at a pixel are exact, and none is negative where it is covered; so terms are no greater than the six
 //! shades, and f64 is right to some parts in 2⁵⁰ however thin the triangle. Along a row of n pixels q = a + kb + k²c, and

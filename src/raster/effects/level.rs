@@ -3,8 +3,8 @@
 //! A step of one pixel goes (∂u/∂x, ∂v/∂x) texels along a row of the screen, (∂u/∂y, ∂v/∂y) down a column. The longer of
 //! the two steps, ρ, is the texels to a pixel (L. Williams, *Pyramidal Parametrics*, SIGGRAPH 1983), and the level is the
 //! one whose texels are nearest to ρ by ratio: the least n with ρ ≤ √2 · 2ⁿ, and the last level where there is none.
-//! Of √2 181/128 is taken, and of a step's length the longer side and half the shorter one, which is up to 12 % too long
-//! and never too short.
+//! √2 is taken as 181/128, and a step's length as the longer side and half the shorter one, which is up to 12 % too
+//! long and never too short.
 //!
 //! Coordinates that are linear on the screen have one ρ, and a face has one level. For those that follow the
 //! perspective, with λ the areas opposite to the corners, A their sum, d the corners' depths and D = Σ λᵢdᵢ,
@@ -52,14 +52,14 @@ pub(super) fn of_face(coordinates: &[Linear; 2], area: i64, last: u32) -> u32 {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LevelPlane {
     area: i64,
-    /// Of u and of v, Σ dᵢdⱼ(uᵢ − uⱼ), and the same with each term times yₖ and times xₖ.
+    /// The sums Σ dᵢdⱼ(uᵢ − uⱼ) for u and for v. Below: each term times yₖ, and each times xₖ.
     sums: [i128; 2],
     times_y: [i128; 2],
     times_x: [i128; 2],
 }
 
 impl LevelPlane {
-    /// Of a triangle that is not degenerate, with these coordinates and depths at its corners.
+    /// The plane of a triangle that is not degenerate, with these coordinates and depths at its corners.
     pub(super) fn new(triangle: &SortedTriangle, coordinates: [[i32; 2]; 3], depths: [i128; 3]) -> Self {
         let (mut sums, mut times_y, mut times_x) = ([0; 2], [0; 2], [0; 2]);
         for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
@@ -88,7 +88,7 @@ impl LevelPlane {
 
     /// The level at a pixel of column `x` whose centre lies in the triangle, where D is `denominator`.
     pub(super) fn at(&self, across: u128, x: i32, denominator: i128, last: u32) -> u32 {
-        // Of depths from 1 to 2³².
+        // A mean of depths from 1 to 2³², in sixteenths.
         let depth = floor_quotient(16 * denominator, i128::from(self.area)).unsigned_abs();
         // In texels a step is 256 · A · S / D² / 2¹⁶ = S / (A · (16 D / A)²), S being the sum.
         let unit = u128::from(self.area.unsigned_abs()) * u128::from(depth) * u128::from(depth);

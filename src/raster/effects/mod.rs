@@ -106,8 +106,8 @@ fn corners<'a>(
 }
 
 impl<'a> EffectPaint<'a> {
-    /// Of a triangle that is not degenerate. `attributes` are in the order of `vertices`, from which
-    /// `triangle` was made.
+    /// The paint of a triangle that is not degenerate.
+    /// `attributes` are in the order of `vertices`, from which `triangle` was made.
     pub(super) fn new(
         triangle: &SortedTriangle,
         vertices: &[Vertex; 3],
@@ -393,8 +393,9 @@ impl<D: Cell> Raster<'_, D> {
         self.draw_effects::<true>(vertices, attributes, look)
     }
 
-    /// The same for a triangle that lies wholly inside the frame, as
-    /// [`triangle_inside`](Self::triangle_inside).
+    /// Draws a triangle that lies wholly inside the frame, with effects.
+    ///
+    /// What lies outside is treated as by [`triangle_inside`](Self::triangle_inside).
     #[doc(hidden)]
     pub fn triangle_with_effects_inside(
         &mut self,

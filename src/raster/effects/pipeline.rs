@@ -17,9 +17,11 @@ pub struct Attributes {
     pub channels: [U8F8; 3],
     /// The column and the row in the table of [`ShadeSource::NormalTable`], each 0 to 0xFF00.
     pub slope: [U8F8; 2],
-    /// What [`Lighting`] is handed: a normal and a position. Of [`ShadeSource::Curved`] the shade at the corner, or its three
-    /// channels, and then those at the middle (on the screen) of the edge opposite to it; in 8.8, and beyond what can be
-    /// shown, too, where the limits cut them off.
+    /// What [`Lighting`] is handed: a normal and a position.
+    ///
+    /// For [`ShadeSource::Curved`] it is the shade at the corner, or its three channels, and then those at the middle
+    /// (on the screen) of the edge opposite to it. They are in 8.8, and beyond what can be shown, too, where the
+    /// limits cut them off.
     pub lit: [f32; 6],
 }
 
@@ -29,7 +31,7 @@ pub trait Lighting: core::fmt::Debug {
     /// 8.8, 0 to 0xFF00. Points beyond the end of a row may be anything, and what is made of them is not used.
     fn shades(&self, points: &Points) -> Lanes<u16>;
 
-    /// The same for red, green and blue.
+    /// Red, green and blue at each point, on the terms of [`shades`](Self::shades).
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3];
 }
 
@@ -37,19 +39,21 @@ pub trait Lighting: core::fmt::Debug {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum ShadeSource<'a> {
-    /// The corners' shades, or their channels, each for itself, as this shading has them. Of
-    /// [`GouraudVintage`](Interpolation::GouraudVintage) the shades alone: which pixels is decided by exact cover,
-    /// where the values of all stages are in range.
+    /// The corners' shades, or their channels, each for itself, as this shading has them.
+    ///
+    /// [`GouraudVintage`](Interpolation::GouraudVintage) gives the shades alone: exact cover decides which pixels,
+    /// for there the values of all stages are in range.
     Shaded(Interpolation),
     /// [`Attributes::slope`], linear on the screen, looked up: row and column give the shade.
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`], linear on the face, lit.
     Lit(&'a dyn Lighting),
-    /// The same lit at the row's first pixel inside the frame, at some from there and at its last; shades are linear
-    /// between.
+    /// [`Attributes::lit`], linear on the face, lit at some pixels of a row; shades are linear between.
+    ///
+    /// These pixels are the row's first inside the frame, some from there on, and its last.
     LitEvery(SampleSpacing, &'a dyn Lighting),
     /// Quadratic on the screen, through the six shades of [`Attributes::lit`]: those at the corners and at the middles of
-    /// the edges. Held within these limits, one for each channel; of one shade the first counts.
+    /// the edges. Held within these limits, one for each channel; the first counts for one shade.
     Curved([Limits; 3]),
 }
 

@@ -28,9 +28,9 @@ pub(super) const KNOTS: usize = (PIECE / SampleSpacing::Four.pixels() + 1).next_
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TexturePlane {
     numerators: [Linear; 2],
-    /// Of affine mapping the area times 2ⁿ for level n: the same everywhere, so coordinates are those of the level.
+    /// The divisor. For affine mapping it is the area times 2ⁿ for level n, constant, so coordinates are the level's.
     denominator: Linear,
-    /// Of affine mapping, from one pixel to the next, rounded toward zero.
+    /// What affine coordinates change by from one pixel to the next, rounded toward zero.
     steps: [u32; 2],
     /// Which level's texels are shown, if the image has several.
     level: Level,
@@ -39,7 +39,7 @@ pub(super) struct TexturePlane {
 /// The level of a mipmap that is shown.
 #[derive(Clone, Copy, Debug)]
 enum Level {
-    /// One all over the face; 0 of an image without levels.
+    /// One all over the face; 0 for an image without levels.
     OfFace(u32),
     /// One for every 16 pixels.
     OfPixels(LevelPlane),
@@ -63,8 +63,8 @@ impl TexturePlane {
             Some(_) => Level::OfPixels(LevelPlane::new(triangle, corners.map(|corner| corner.texture), depths)),
         };
         let size = if let Level::OfFace(level) = level { 1 << level } else { 1 };
-        // The wrap is meant: of two pixels or more in a row the step is that of two coordinates; of one it
-        // is never used.
+        // The wrap is meant: in a row of two pixels or more the step is that of two coordinates; in a row of one
+        // it is never used.
         let steps = numerators.map(|n| (n.per_column() / (i128::from(area) * size)) as u32);
         Self { numerators, denominator: Linear::new(triangle, depths.map(|depth| depth * size)), steps, level }
     }
@@ -90,8 +90,9 @@ impl TexturePlane {
         }
     }
 
-    /// The same from the level that is chosen for every 16 pixels: at the middle one, or at the row's last inside the frame
-    /// if that comes before, whatever the clip rectangle.
+    /// Fills `texels` from levels, one of which is chosen for every 16 pixels.
+    /// The middle one of these decides, or the row's last inside the frame if that comes before, whatever the clip
+    /// rectangle.
     #[inline(never)]
     fn fill_by_levels(
         &self,
@@ -169,8 +170,8 @@ impl TexturePlane {
         self.numerators.each_ref().map(|n| floor_quotient(n.at(x, y), d) as i32)
     }
 
-    /// The same, rounded back toward where the coordinates come from, as shades are: so no sum leaves
-    /// the range of the corners.
+    /// The coordinates at a pixel, rounded back toward where they come from, as shades are; 16.16.
+    /// So no sum leaves the range of the corners.
     fn start(&self, x: i32, y: i32) -> [u32; 2] {
         let d = self.denominator.at(x, y);
         self.numerators.each_ref().map(|n| {
@@ -184,7 +185,7 @@ impl TexturePlane {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LitPlane {
     weights: Weights,
-    /// Of each corner, its values times its depth, then its depth.
+    /// The values of each corner times its depth, then its depth.
     values: [[f64; 7]; 3],
     /// What their sum changes by from one pixel to the next.
     step: ([f64; 6], f64),
@@ -256,8 +257,8 @@ pub(super) struct Knots {
 }
 
 impl Knots {
-    /// Of so many pixels from `seed` on. Where the row ends inside of the piece, its last pixel is one, whatever the clip
-    /// rectangle.
+    /// The lit pixels of a piece of `pixels` pixels from `seed` on.
+    /// Where the row ends inside of the piece, its last pixel is lit, whatever the clip rectangle.
     pub(super) fn new(row: &Row, seed: i32, pixels: usize, apart: SampleSpacing) -> Self {
         let apart = apart.pixels();
         let mut places = [0; KNOTS];

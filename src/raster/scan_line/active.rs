@@ -15,7 +15,7 @@ use crate::raster::vertex::Vertex;
 pub struct EdgePair {
     triangle: SortedTriangle,
     pub(super) interpolation: Interpolation,
-    /// Its place among the faces: of equal depths the first has the pixel.
+    /// Its index among the faces: the first of equal depths has the pixel.
     pub(super) order: usize,
     /// From the top to the bottom.
     long: Edge,
@@ -37,7 +37,7 @@ pub struct EdgePair {
     pub(super) hides_background: bool,
     paint: Option<RowShader>,
     depth: Option<DepthPlane>,
-    /// Of a place that no face has: the next one.
+    /// The next free index, where no face has this one.
     next_free: usize,
 }
 

@@ -63,7 +63,7 @@ impl<'a> Scratch<'a> {
     }
 }
 
-/// The same, made as long as needed.
+/// Memory of the scan-line method that is made as long as needed.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Debug, Default)]
 pub struct Lists {
@@ -172,12 +172,13 @@ impl<D: Cell> Raster<'_, D> {
         self.scan_line_with(faces, scratch, |_, _, _, _, _| false)
     }
 
-    /// The same, where faces may be painted otherwise: `paint` is handed a face's place among `faces`, a
-    /// row of it, the frame's whole row, the kernel and the counts, and returns whether it painted; if
-    /// not, the face is painted as its shading says.
+    /// Draws faces like [`scan_line`](Self::scan_line), but lets `paint` paint them otherwise.
+    ///
+    /// `paint` is handed a face's index in `faces`, a row of it, the frame's whole row, the kernel and the counts. It
+    /// returns whether it painted; if not, the face is painted as its shading says.
     ///
     /// # Errors
-    /// As [`scan_line`](Self::scan_line).
+    /// Those of [`scan_line`](Self::scan_line).
     pub fn scan_line_with(
         &mut self,
         faces: &[([Vertex; 3], Interpolation)],

@@ -1,7 +1,7 @@
 //! Which of several faces is in front, along a piece of a row.
 //!
-//! Depths are linear along a row before they are cut to whole units: z, with 24 fraction bits. What
-//! decides is the cut one, d = z >> 24, and of equal depths the order of submission. So face i leads
+//! Depths are linear along a row before they are cut to whole units: z, with 24 fraction bits. The
+//! cut one decides, d = z >> 24, and the order of submission among equal depths. So face i leads
 //! face j at a pixel for certain where
 //!
 //! ```text
@@ -22,8 +22,8 @@ const UNIT: i64 = 1 << 24;
 /// The greatest z that is cut to depth 0.
 const BACKGROUND: i64 = UNIT - 1;
 
-/// Of the faces `open`, all of which cover row `y` from `x` to `end` (at least one pixel): the one
-/// that has pixel `x`, `None` if that is background, and the pixel up to which it has all.
+/// Finds the face that has pixel `x`, `None` if that is background, and the pixel up to which it has all.
+/// All of the faces `open` cover row `y` from `x` to `end`, at least one pixel.
 pub(super) fn lead(open: &[u64], list: &mut List<'_>, x: i32, end: i32, y: i32) -> (Option<usize>, i32) {
     if let [only] = open
         && list.pair(*only as usize).hides_background
@@ -54,8 +54,8 @@ pub(super) fn lead(open: &[u64], list: &mut List<'_>, x: i32, end: i32, y: i32) 
         Some(Leader { plane, z, .. }) => (*z, plane.fixed_at(last, y), plane.step()),
         None => (BACKGROUND, BACKGROUND, 0),
     };
-    // `least` is the lead that it takes. All z are below 2⁵⁶ here, and of two pixels or more so is the
-    // step, modulo 2⁶⁴.
+    // `least` is the lead that it takes. All z are below 2⁵⁶ here, and so is the step over two
+    // pixels or more, modulo 2⁶⁴.
     let mut against = |rival: i64, rival_last: i64, rival_step: i64, least: i64| {
         let (lead, lead_last) = (z - rival - least, z_last - rival_last - least);
         if lead < 0 {

@@ -41,8 +41,9 @@ pub(crate) struct Tested {
     pub(crate) dz: i64,
 }
 
-/// Fills spans, one after the other. Of one that does not lie inside the pixels and cells nothing is drawn. Returns the number of
-/// pixels written. (One function for a list: as one for a span, which is too large to be part of the loop, a quarter slower.)
+/// Fills spans, one after the other. Returns the number of pixels written.
+/// Nothing is drawn of a span that does not lie inside the pixels and cells. (One function for a list: as one for a
+/// span, which is too large to be part of the loop, a quarter slower.)
 #[target_feature(enable = "avx2")]
 pub(crate) fn fill(pixels: &mut [u8], cells: &mut [u32], spans: impl Iterator<Item = Tested>) -> u32 {
     // Pixels of all turns, and of each lane those that were not written, as a number below 0. Sums are meant modulo 2³².

@@ -1,8 +1,8 @@
 //! The rows of triangles as a list in arrays, eight rows at a time, and the list to pixels.
 //!
-//! What `rows::list` does row by row is done here for eight rows of a triangle at once, and what is no row is squeezed
-//! out of the vectors: no branch asks how many rows there are but one for every eight. The loop over the list draws sixteen
-//! pixels a turn and reads nothing but the list.
+//! `rows::list` goes row by row, this by eight rows of a triangle at once. Empty lanes are removed by compression, so
+//! the only branch on the number of rows is the loop over groups of eight. The loop over the list draws sixteen pixels
+//! a turn and reads nothing but the list.
 
 mod draw;
 mod few;
@@ -25,7 +25,7 @@ pub(in super::super) const FEW_ROWS: i32 = 4;
 /// What the assembly reads and writes.
 #[repr(C, align(64))]
 pub(in super::super) struct Spans {
-    // Of each span; up to sixteen are written at a time, and those that are none are written over.
+    // One entry for each span. Up to sixteen are written at a time; those that are no spans are written over.
     at: MaybeUninit<[u32; CAPACITY + SIXTEEN]>,
     cell: MaybeUninit<[u32; CAPACITY + SIXTEEN]>,
     length: MaybeUninit<[u32; CAPACITY + SIXTEEN]>,
@@ -34,7 +34,8 @@ pub(in super::super) struct Spans {
     /// Depths, the whole parts in the upper halves.
     z: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
     dz: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
-    /// Of each row of eight triangles, up to four: the first pixel, pixels, paint, and the column of the box.
+    /// The first pixels of the rows of eight triangles, up to four rows each.
+    /// Below: pixels, paint, and the column of the box.
     row_at: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
     row_length: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
     row_paint: MaybeUninit<[u32; LANES * FEW_ROWS as usize]>,
@@ -59,7 +60,7 @@ pub(in super::super) struct Spans {
     longest: f64,
     /// The frame's left side, from the box's first pixel on, as a sum with `MAGIC`: there starts what begins left of it.
     origin: f64,
-    /// The same of the clip rectangle's left and right sides, ...
+    /// The clip rectangle's left and right sides, from the box's first pixel on, as sums with `MAGIC`, ...
     left: f64,
     right: f64,
     /// ... and top and bottom, from the box's first row on.
@@ -205,11 +206,11 @@ impl Spans {
         (self.pixels, self.cells) = (most(pixels.len()), most(cells.len()));
     }
 
-    /// As [`add`](Self::add), for all the small triangles of a group, which are so many, and have at most [`FEW_ROWS`] rows:
-    /// eight triangles at a time, and then put into their order.
+    /// Lists all small triangles of a group of few rows, eight at a time, like [`add`](Self::add).
+    /// There are `triangles` of them, of at most [`FEW_ROWS`] rows. They are put into their order afterwards.
     ///
     /// # Safety
-    /// As for `add`.
+    /// See `add`.
     #[inline(always)]
     pub(in super::super) unsafe fn add_all(
         &mut self,
@@ -236,10 +237,11 @@ impl Spans {
         }
     }
 
-    /// As [`add`](Self::add), for all the small triangles of a group, which are so many.
+    /// Lists all small triangles of a group, one after the other, like [`add`](Self::add).
+    /// There are `triangles` of them.
     ///
     /// # Safety
-    /// As for `add`.
+    /// See `add`.
     #[inline(always)]
     pub(in super::super) unsafe fn add_each(
         &mut self,
@@ -272,7 +274,7 @@ impl Spans {
         }
     }
 
-    /// The cells of the boxes' first pixels. Of a triangle that is none anything may come out.
+    /// The cells of the boxes' first pixels. A lane without a triangle may get any value.
     #[inline(always)]
     fn put_first_cells(&mut self, group: &Group) {
         for i in 0..LANES {
@@ -288,7 +290,7 @@ impl Spans {
     /// Only for a processor for which `span::simd::avx512::found` is true; `i` is below 8, and there is room for eight.
     #[inline(always)]
     unsafe fn list(&mut self, group: &Group, i: usize, first: i32, cell: i32, planes: Option<&Planes>) {
-        // As for a pointer that is not read.
+        // Null for a pointer that is not read.
         let planes = planes.map_or(core::ptr::null(), |planes| (&raw const *planes).cast::<u8>());
         // SAFETY: the caller has AVX-512 F, DQ and VL and POPCNT found. Read are `group`, `planes` and `CONSTANTS` at the
         // offsets of their fields, of those that hold eight numbers number `i`, which is below 8. Written are eight numbers

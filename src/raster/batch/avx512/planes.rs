@@ -25,7 +25,7 @@ static CONSTANTS: Constants =
 impl Planes {
     pub(in super::super) const NONE: Self = Self { at: [0; LANES], per_column: [0; LANES], per_row: [0; LANES] };
 
-    /// As [`of`](Self::of), in place.
+    /// Computes in place what [`of`](Self::of) returns.
     ///
     /// # Safety
     /// Only for a processor for which `span::simd::avx512::found` is true.

@@ -33,7 +33,7 @@ pub(in super::super) unsafe fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept)
 /// they are.
 ///
 /// # Safety
-/// As for `sieve`; `first` and 16 are together no more than the capacity.
+/// See `sieve`; `first` and 16 are together no more than the capacity.
 #[inline(always)]
 unsafe fn sieve_sixteen(
     batch: &Batch,

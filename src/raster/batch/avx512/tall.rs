@@ -13,7 +13,7 @@ use crate::raster::shade::RESEED;
 /// What the assembly reads and writes: of one triangle, and of eight of its rows.
 #[repr(C, align(64))]
 pub(in super::super) struct Large {
-    /// Of eight rows: the address of the first pixel, ...
+    /// The addresses of the first pixels of eight rows, ...
     at: [u64; LANES],
     /// ... the pixels, ...
     length: [u64; LANES],
@@ -28,9 +28,9 @@ pub(in super::super) struct Large {
     upper: Edge,
     lower: Edge,
     shade: Edge,
-    /// Of the shade's numerator.
+    /// What the shade's numerator changes by from one pixel to the next.
     per_column: f64,
-    /// The same for 64 columns.
+    /// What the shade's numerator changes by over 64 columns.
     per_piece: f64,
     /// The address of the first pixel of all, and the one after the last.
     begin: u64,
@@ -58,7 +58,7 @@ pub(in super::super) struct Large {
 #[repr(C)]
 struct Edge {
     n: f64,
-    /// Of eight rows.
+    /// What `n` changes by over eight rows.
     per_eight: f64,
     inverse: f64,
 }
@@ -142,7 +142,7 @@ impl Large {
 
     /// Spans, pieces of reseeded ones counted each, and pixels of all triangles that it has drawn.
     pub(in super::super) fn drawn(&self) -> (u32, u32) {
-        // Of at most 128 triangles of 2¹⁸ pixels.
+        // At most 128 triangles of 2¹⁸ pixels.
         (self.spans.iter().sum::<u64>() as u32, self.covered.iter().sum::<u64>() as u32)
     }
 
@@ -175,7 +175,7 @@ impl Large {
         self.offset = self.begin.wrapping_add(i64::from(group.at[i]) as u64).wrapping_sub(MAGIC.to_bits());
         self.per_eight = LANES as u64 * u64::from(place.pitch);
         (self.rows, self.split) = (rows, i64::from(group.split[i]) as u64);
-        // Of at most 1,024 pixels a row.
+        // A row has at most 1,024 pixels.
         let reseeds = interpolation == Interpolation::GouraudReseeded;
         (self.round, self.shift) = if reseeds { (RESEED as u64 - 1, RESEED.ilog2().into()) } else { (1_023, 10) };
         self.reseeds = reseeds.into();
@@ -183,9 +183,9 @@ impl Large {
         let step = (group.step[i] as u32) >> 16;
         self.step = step * 0x1_0001;
         self.step_64 = ((step * 64) & 0xFFFF) * 0x1_0001;
-        // Of each row pixels are written by masks and whole vectors, `length` bytes from `at` on, where the length is 0 unless
-        // `length ≤ size`, `at ≥ begin` and `at ≤ end − length`, all without sign. Rows of length 0 have the address `begin`,
-        // where a mask leaves all bytes.
+        // Pixels of each row are written by masks and whole vectors: `length` bytes from `at` on. The length is 0
+        // unless `length ≤ size`, `at ≥ begin` and `at ≤ end − length`, all without sign. Rows of length 0 have the
+        // address `begin`, where a mask leaves all bytes.
         // SAFETY: the caller has AVX-512 F, BW, DQ, VL and BMI2 found. Read and written are `self` and `CONSTANTS` at the
         // offsets of their fields, and pixels as said above. The stack is not used; flags and all registers written are given
         // up.

@@ -303,7 +303,7 @@ impl Spans {
     #[target_feature(enable = "avx2,fma")]
     fn draw<const DEPTHS: bool>(&mut self, pixels: &mut [u8], cells: &mut [u32]) {
         let count = self.count.min(CAPACITY);
-        // SAFETY: of each array `put` has written the first `count` numbers.
+        // SAFETY: `put` has written the first `count` numbers of each array.
         let (at, length, paint) =
             unsafe { (written(&self.at, count), written(&self.length, count), written(&self.paint, count)) };
         self.spans += count as u32;

@@ -9,7 +9,7 @@ impl Spans {
     /// Draws what is listed, and empties the list.
     ///
     /// # Safety
-    /// As for `add`; `pixels` and `cells` are those of which it was told.
+    /// See `add`; `pixels` and `cells` are those of which it was told.
     #[inline(always)]
     pub(in crate::raster::batch) unsafe fn draw(&mut self, with_depths: bool, pixels: &mut [u8], cells: &mut [u32]) {
         debug_assert!(self.pixels as usize <= pixels.len() && self.cells as usize <= cells.len());
@@ -30,7 +30,7 @@ impl Spans {
     }
 
     /// # Safety
-    /// As for `draw`; there is a span.
+    /// See `draw`; there is a span.
     #[inline(always)]
     unsafe fn draw_all(&self, pixels: *mut u8) {
         // SAFETY: the caller has AVX-512 F, BW, DQ, VL and BMI2 found. Read are the first `count` numbers of the list, which
@@ -109,7 +109,7 @@ impl Spans {
     }
 
     /// # Safety
-    /// As for `draw`; there is a span.
+    /// See `draw`; there is a span.
     #[inline(always)]
     unsafe fn draw_nearer(&mut self, pixels: *mut u8, cells: *mut u32) {
         let nearer: u64;

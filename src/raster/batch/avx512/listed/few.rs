@@ -19,7 +19,7 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Of so many rows of each triangle, from triangle `first` on.
+    /// The order of `rows` rows of each triangle, from triangle `first` on.
     pub(super) const fn of(rows: u32, first: u32) -> Self {
         let mut order = Self { from: [0; SIXTEEN], triangle: [0; SIXTEEN], row: [0; SIXTEEN] };
         let mut i = 0;
