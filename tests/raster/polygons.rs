@@ -399,8 +399,8 @@ fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     println!("n8: as a table a quad's shade changes with the turn by up to {greatest} shades");
 }
 
-/// The Russian article says that the intensity has jumps at face borders (slip 5). With shared vertices it has not: along
-/// the common edge the planes of both faces are within the rounding of a shade.
+/// The Russian article says that the intensity has jumps at face borders (slip 5). With shared vertices it has not:
+/// along the common edge the planes of both faces are within the rounding of a shade.
 #[test]
 fn n9_slip_5_two_faces_agree_along_their_edge() {
     let mut tried = Tried::new("n9_slip_5_two_faces_agree_along_their_edge", 3000);

@@ -55,8 +55,8 @@ const _: () = assert!(size_of::<Sample>() <= 32, "a long study keeps some 100,00
 impl Samples {
     /// Writes the samples as comma-separated values with a line of headings.
     ///
-    /// The columns are the number of the round, the place in the round, what was drawn by (kind and name), the number of
-    /// frames, and the time for all of them in nanoseconds.
+    /// The columns are the number of the round, the place in the round, what was drawn by (kind and name), the number
+    /// of frames, and the time for all of them in nanoseconds.
     #[must_use]
     pub fn to_csv(&self) -> String {
         let mut text = String::from("round,order,kind,name,frames,ns\n");
