@@ -6,7 +6,7 @@
 //! | [`U8F8`] | a shade | 8 whole, 8 fraction | 1/256 shade |
 //! | [`I16F16`] | a coordinate or factor of the integer vertex path | 16 whole and sign, 16 fraction | 1/65,536 |
 //!
-//! S4 warns that a right shift of a negative number needs `sar`, not `shr`. More is true: `sar`
+//! The Hungarian tutorial warns that a right shift of a negative number needs `sar`, not `shr`. More is true: `sar`
 //! rounds toward minus infinity and a division rounds toward zero, so a value that is narrowed must
 //! say which. Here each narrowing conversion has its rounding in its name.
 
@@ -205,7 +205,7 @@ impl U8F8 {
     }
 }
 
-/// A 16.16 number: the integer vertex path of S4, whose unit vectors have length 65,536.
+/// A 16.16 number: the integer vertex path of the Hungarian tutorial, whose unit vectors have length 65,536.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub struct I16F16(i32);
 

@@ -146,8 +146,8 @@ fn runs(values: &[Option<f64>], columns: &Range<usize>) -> Vec<Vec<(f64, f64)>> 
 const ACROSS: usize = 90;
 const LINES: [usize; 2] = [15, 9];
 
-/// The same in characters: `#` drawn, `o` lit where that is elsewhere; below, the slope of the exact gouraud `=`, and
-/// of lit `o`.
+/// Draws a row's chart in characters. Above, `#` is drawn, and `o` is lit where that is elsewhere; below are slopes,
+/// `=` of the exact gouraud and `o` of lit.
 pub(crate) fn text(title: &str, row: &Row) -> String {
     let mut text = format!("{title}\n");
     let columns = shown(row);

@@ -128,7 +128,7 @@ impl Film {
         file.finish().map(|film| self.figures(&film)).map_err(Failure::from)
     }
 
-    /// As [`write_gif`](Self::write_gif).
+    /// Writes the film as an animated PNG. [`write_gif`](Self::write_gif) writes it as a GIF.
     fn write_apng<Artist: Send>(
         &self,
         fades: bool,

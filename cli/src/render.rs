@@ -288,7 +288,7 @@ struct Motion {
     frames: u32,
     /// Over all frames, in degrees.
     turn: Option<f64>,
-    /// Of the first frame, in seconds.
+    /// The moment of the first frame, in seconds.
     at: f64,
     /// Frames a second, where there is no `turn`.
     rate: f64,

@@ -24,7 +24,7 @@ pub(crate) struct Pose {
 }
 
 impl Pose {
-    /// As every picture begins.
+    /// The pose with which every picture begins.
     pub(crate) const FIRST: Pose = Pose { turn: 0.0, tilt: 0.0, zoom: 1.0 };
 }
 

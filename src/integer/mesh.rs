@@ -219,8 +219,8 @@ pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
     narrow_unit(cross(from_a(b), from_a(c)))
 }
 
-/// Averages the unit normals of the faces around each vertex, and makes the sum unit again: without
-/// that a corner is the darker the rounder it is (S4's slip). Its length is within 2⁻¹⁶ of 1.
+/// Averages the unit normals of the faces around each vertex, and makes the sum unit again: without that a corner is
+/// the darker the rounder it is (the Hungarian tutorial's slip). Its length is within 2⁻¹⁶ of 1.
 ///
 /// Where the faces' normals cancel the vertex gets that of its first face; where it has no face with
 /// an area, +z. Faces beyond the 32,767th around one vertex may no longer count.

@@ -1,7 +1,7 @@
 //! The integer vertex path: from a mesh in 16.16 to the raster without a float.
 //!
-//! S4 keeps everything in fixed point, unit vectors of length 65,536. Here the whole way of a frame is
-//! made so: turn, projection, normals, light, clipping. It needs neither `std` nor an allocator, and
+//! The Hungarian tutorial keeps everything in fixed point, unit vectors of length 65,536. Here the whole way of a frame
+//! is made so: turn, projection, normals, light, clipping. It needs neither `std` nor an allocator, and
 //! nothing of it links a soft-float routine: meshes, paints and suns are borrowed slices, room for
 //! vertices is the caller's, triangles go to a closure. So a chip that has no floating point unit
 //! draws what the f32 path of `render` draws, by the same stages and with the same conventions.

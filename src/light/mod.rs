@@ -1,6 +1,6 @@
 //! Lights, materials, and the intensity at a vertex or a pixel.
 //!
-//! From S1, for each channel:
+//! From the Russian article, for each channel:
 //!
 //! ```text
 //! I = ka·Ia + Σ over lights of (kd·max(0, n·l) + ks·max(0, r·v)^s) · Id · fall-off
@@ -8,12 +8,12 @@
 //!
 //! n is the unit normal, l points to the light, v to the eye, r = 2·(n·l)·n − l is l mirrored at the
 //! surface. A light behind a face adds nothing, never a negative amount. The sum is clamped once, at
-//! its end: S1 clamps each component after summing, and so several lights together may fill what one
+//! its end: the Russian article clamps each component after summing, and so several lights together may fill what one
 //! alone would not. Intensities are values of the DAC, with no gamma, as they were then.
 //!
 //! | file | what |
 //! |---|---|
-//! | `source` | [`Light`]: suns, and lamps with a position and a fall-off (S0) |
+//! | `source` | [`Light`]: suns, and lamps with a position and a fall-off (the Russian textbook) |
 //! | `material` | [`Material`]: what a surface answers |
 //! | `intensity` | the sum |
 //! | `suns` | that of suns on matt surfaces at eight vertices at a time |

@@ -15,7 +15,7 @@ pub enum Light {
         /// Red, green, blue, as a rule 0 to 1.
         color: [f32; 3],
     },
-    /// At a place, falling off with the distance (S0: the flash of a shot on a wall).
+    /// At a place, falling off with the distance (the Russian textbook: the flash of a shot on a wall).
     ///
     /// At a distance d below `range` it has (1 − d²/range²)² of its intensity, beyond it nothing: all
     /// of it at the lamp itself, 9/16 at half the range, and it ends without an edge.

@@ -1,9 +1,10 @@
 //! Normals of faces and of vertices.
 //!
-//! A face's normal is n = (p1 − p2) × (p1 − p3) (S0, S4): outward for counter-clockwise corners. A
-//! vertex's is the **normalised**, weighted sum of the normals of the faces around it (S0, S1, S2).
-//! S4 divides by their number instead and leaves it at that, which darkens a vertex the more the
-//! rounder the corner is: at a cube's corner the mean of three unit normals is 0.58 long.
+//! A face's normal is n = (p1 − p2) × (p1 − p3) (the Russian textbook, the Hungarian tutorial): outward for
+//! counter-clockwise corners. A vertex's is the **normalised**, weighted sum of the normals of the faces around it
+//! (the Russian textbook, the Russian article, the Polish lecture). The Hungarian tutorial divides by their number
+//! instead and leaves it at that, which darkens a vertex the more the rounder the corner is: at a cube's corner the
+//! mean of three unit normals is 0.58 long.
 //!
 //! All is computed in f64 and rounded once, so a normal's length is 1 within 2⁻²³ for any finite
 //! positions, denormals and `f32::MAX` among them. Sums run in the order of the triangles.

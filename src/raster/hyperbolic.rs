@@ -1,4 +1,4 @@
-//! Perspective-correct shades: linear on the face, so a hyperbola along a row (S3).
+//! Perspective-correct shades: linear on the face, so a hyperbola along a row (Hill).
 //!
 //! What is linear on a face in space is, over the screen, the quotient of two linear functions:
 //! the value divided by w, and 1 / w. A vertex's depth is `2³⁰·near / w`, rounded, so with λ the

@@ -1,4 +1,4 @@
-//! Convex polygons of any number of vertices, by the table of rows of S4.
+//! Convex polygons of any number of vertices, by the Hungarian tutorial's table of rows.
 //!
 //! ```text
 //! for every edge:  for every row that it crosses:   table[row].left or .right = (x, shade)
@@ -12,15 +12,15 @@
 //! right of the left crossing to the last before the right one. So polygons and triangles that share
 //! edges draw each pixel once.
 //!
-//! Shades are S4's: linear along the edges, then linear between the two crossings of a row. In a
+//! Shades are the Hungarian tutorial's: linear along the edges, then linear between the two crossings of a row. In a
 //! triangle that is the plane through its vertices. With more vertices it is not: turned on the screen,
 //! the same quad pairs other edges in a row and gets other shades. That is why faces are split into
 //! triangles elsewhere; this is the way to scan them as it was done.
 //!
 //! # Why no byte leaves the range of the vertices, and nothing divides by zero
 //!
-//! S4 divides by the row's width in whole pixels, S0 by its exact width; both may be 0. Here x0 and x1
-//! are the crossings in 1/256 pixel, both rounded up, and a row is drawn only where a centre c has
+//! The Hungarian tutorial divides by the row's width in whole pixels, the Russian textbook by its exact width; both may
+//! be 0. Here x0 and x1 are the crossings in 1/256 pixel, both rounded up, and a row is drawn only where a centre c has
 //! x0 ≤ c and c < the right crossing ≤ x1: so x1 − x0 is 1 at least. A crossing's shade lies between
 //! the shades of its edge's ends; start and step along the row are rounded back toward where shades
 //! come from, as in [`shade`](super::shade), so every sum lies between the two crossings' shades.
@@ -307,7 +307,7 @@ impl RowShade {
         Self { left_x, left_shade, change, width, step }
     }
 
-    /// AX at pixel `x` of the row: S0's Cs = As + (xc − Ax)·gradient with the As that it leaves out,
+    /// AX at pixel `x` of the row: the Russian textbook's Cs = As + (xc − Ax)·gradient with the As that it leaves out,
     /// and half a shade.
     fn start(&self, x: i32) -> u16 {
         let along = self.change * (i64::from(x) * 256 + 128 - self.left_x);

@@ -1,8 +1,8 @@
 //! Shades over a triangle: exact at the start of a span, in range all along it.
 //!
-//! Gouraud's interpolation is linear in x and y (all five sources print it edge by edge; the
-//! garbled fractions of S0 are the quotients of S2). It is a plane through the first vertex,
-//! over the doubled area A as common denominator:
+//! Gouraud's interpolation is linear in x and y (all five texts print it edge by edge; the
+//! garbled fractions of the Russian textbook are the quotients of the Polish lecture). It is a plane through the first
+//! vertex, over the doubled area A as common denominator:
 //!
 //! ```text
 //! I(x, y) = N(x, y) / A,   N(x, y) = I0·A + gx·(x − x0) + gy·(y − y0)
@@ -10,9 +10,9 @@
 //! gy = (I2 − I0)·(x1 − x0) − (I1 − I0)·(x2 − x0)
 //! ```
 //!
-//! with A made positive. S0 prints the start of a span as `Cs = (1 − frac(Ax))·Gradient`, without
+//! with A made positive. The Russian textbook prints the start of a span as `Cs = (1 − frac(Ax))·Gradient`, without
 //! the As to which it is added, and with an offset of a whole pixel when Ax is whole. Here there is
-//! no offset from an edge at all: the plane is evaluated at the first pixel's centre. S0's gradient
+//! no offset from an edge at all: the plane is evaluated at the first pixel's centre. The textbook's gradient
 //! `(Bs − As) / (Bx − Ax)` of a single row has no bound as the row gets short, and divides by zero
 //! at width 0; here one step serves the whole triangle.
 //!

@@ -1,4 +1,4 @@
-//! Triangles as the sources print them (S0, S1, S3, S4): what all else is measured against.
+//! Triangles as all texts but the Polish lecture print them: what all else is measured against.
 //!
 //! ```text
 //! vertices:   X = floor(x + ½), Y = floor(y + ½)          on whole pixels
@@ -14,18 +14,18 @@
 //!
 //! Where the sources slip it is done right, or it would not run:
 //!
-//! - S0's count, Dx − Cx + 1, is zero or less where a row has no pixel, and its loop then writes all of the
-//!   video memory. Here the count is Bx − Ax, and no row is drawn that has none.
-//! - S0 divides by Bx − Ax, which may be 0 or next to it. Here both are whole pixels, and the quotient is
-//!   taken where there is a pixel: it is no more than 255 shades.
-//! - S4 asks for `sar`, not `shr`: a shift of a negative number rounds toward minus infinity, as the
-//!   cut of x to its pixel does here, left of the frame too; a division (`idiv`) rounds toward zero. So x
-//!   and the shade on an edge stay between its ends.
+//! - The Russian textbook's count, Dx − Cx + 1, is zero or less where a row has no pixel, and its loop then writes all
+//!   of the video memory. Here the count is Bx − Ax, and no row is drawn that has none.
+//! - The Russian textbook divides by Bx − Ax, which may be 0 or next to it. Here both are whole pixels, and the
+//!   quotient is taken where there is a pixel: it is no more than 255 shades.
+//! - The Hungarian tutorial asks for `sar`, not `shr`: a shift of a negative number rounds toward minus infinity, as
+//!   the cut of x to its pixel does here, left of the frame too; a division (`idiv`) rounds toward zero. So x and the
+//!   shade on an edge stay between its ends.
 //!
 //! No cover and no range is promised. That bytes do stay in the range from min >> 8 to max >> 8 of the vertices is
-//! because all quotients are cut toward zero; S0's own fractions of Ax and Bx would lose it. The order of
-//! the vertices, clip rectangles and bands make no difference: a byte depends on its place and
-//! the three vertices alone, and so does the pixel's being drawn.
+//! because all quotients are cut toward zero; the Russian textbook's own fractions of Ax and Bx would lose it. The
+//! order of the vertices, clip rectangles and bands make no difference: a byte depends on its place and the three
+//! vertices alone, and so does the pixel's being drawn.
 //!
 //! # Where others say which pixels
 //!

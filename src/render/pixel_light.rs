@@ -1,4 +1,4 @@
-//! Light at every pixel: S1's Phong, and the table that stood in for it in 1994.
+//! Light at every pixel: the Russian article's Phong, and the table that stood in for it in 1994.
 
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;

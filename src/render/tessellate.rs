@@ -1,7 +1,7 @@
 //! Faces split along their edges until shades that are linear between the vertices fit the light.
 //!
-//! S0: Gouraud shading cannot show a highlight inside a face, nor a lamp near the middle of a large one;
-//! many small faces can. A split is decided for each **edge**, from its two ends alone, and wherever the
+//! The Russian textbook: Gouraud shading cannot show a highlight inside a face, nor a lamp near the middle of a large
+//! one; many small faces can. A split is decided for each **edge**, from its two ends alone, and wherever the
 //! edge is part of a face, that face is split there: no corner of one face lies on an edge of another,
 //! so there is no crack. The new vertex lies half-way, is made once, and is projected and rounded once.
 //!

@@ -1,4 +1,4 @@
-//! Fog: what is far away fades into one colour (S0).
+//! Fog: what is far away fades into one colour (the Russian textbook).
 
 use crate::palette::Rgb;
 

@@ -1,4 +1,4 @@
-//! The span of perspective-correct shades: a quotient for every pixel (S3's hyperbolic interpolation).
+//! The span of perspective-correct shades: a quotient for every pixel (Hill's hyperbolic interpolation).
 //!
 //! ```text
 //! for every k:  row[k] = floor((n + k·dn) / (d + k·dd))

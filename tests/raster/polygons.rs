@@ -45,7 +45,7 @@ impl Sheet {
     }
 }
 
-/// What S4's table says of a row, in i128: the crossings, left first, as (x, shade) in 1/256.
+/// What the Hungarian tutorial's table says of a row, in i128: the crossings, left first, as (x, shade) in 1/256.
 fn crossings(vertices: &[Vertex], y: i32) -> Vec<(i128, i128)> {
     let (_, yc) = oracle::centre(0, y);
     let mut found = Vec::new();
@@ -334,8 +334,8 @@ fn turned(bytes: &[Option<u8>], side: usize) -> Vec<Option<u8>> {
     (0..side * side).map(|place| bytes[(side - 1 - place % side) * side + place / side]).collect()
 }
 
-/// N8: a quad turned on the screen. S1 and S0 say that Gouraud depends on orientation: true of four
-/// vertices, false of three (slip 6).
+/// N8: a quad turned on the screen. The Russian article and the Russian textbook say that Gouraud depends on
+/// orientation: true of four vertices, false of three (slip 6).
 #[test]
 fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     const SIDE: usize = 64;
@@ -399,8 +399,8 @@ fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     println!("n8: as a table a quad's shade changes with the turn by up to {greatest} shades");
 }
 
-/// S1 says that the intensity has jumps at face borders (slip 5). With shared vertices it has not: along
-/// the common edge the planes of both faces are within the rounding of a shade.
+/// The Russian article says that the intensity has jumps at face borders (slip 5). With shared vertices it has not:
+/// along the common edge the planes of both faces are within the rounding of a shade.
 #[test]
 fn n9_slip_5_two_faces_agree_along_their_edge() {
     let mut tried = Tried::new("n9_slip_5_two_faces_agree_along_their_edge", 3000);

@@ -26,7 +26,8 @@ fn rows_are_those_of_the_sources() {
     tried.add(1);
 }
 
-/// S0's slips 2 and 3: the count Dx − Cx + 1 and the gradient (Bs − As) / (Bx − Ax) of a row without a pixel.
+/// The Russian textbook's slips 2 and 3: the count Dx − Cx + 1 and the gradient (Bs − As) / (Bx − Ax) of a row without
+/// a pixel.
 #[test]
 fn rows_without_a_pixel_are_not_drawn() {
     let mut tried = Tried::new("rows_without_a_pixel_are_not_drawn", 4_000);

@@ -42,7 +42,7 @@ fn face_normal_points_at_who_sees_it_counter_clockwise() {
     }
 }
 
-/// Slip 7: S4 divides the sum by the count. At a cube's corner that leaves 0.58 of the light.
+/// Slip 7: the Hungarian tutorial divides the sum by the count. At a cube's corner that leaves 0.58 of the light.
 #[test]
 fn n6_a_rounded_corner_is_as_bright_as_a_flat_one() {
     let mut tried = Tried::new("n6_a_rounded_corner_is_as_bright_as_a_flat_one", 3 * 8);

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use mode13h_lab::cost::{Clock, Host};
 
-/// Of the features those that what is measured depends on.
+/// The features on which the measurements depend, and whether each is on.
 const FEATURES: [(&str, bool); 2] = [("asm", cfg!(feature = "asm")), ("simd", cfg!(feature = "simd"))];
 
 /// Where and by what is measured.

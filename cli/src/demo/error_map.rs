@@ -53,7 +53,7 @@ const OTHER_FACE: u8 = 7;
 const STEPS: u8 = 32;
 /// What a colour keeps in the dark, of 256: else nobody could tell one from another there.
 const LEAST: u32 = 112;
-/// The same of what is right, which need not be told from anything.
+/// What the colour of a right pixel keeps in the dark, of 256: it need not be told from anything.
 const MIN_GREY: u32 = 0;
 
 /// Columns and rows from one pixel to the next that the first map judges.
@@ -102,7 +102,7 @@ struct Found {
 
 /// How far a renderer's picture is from the truth.
 struct Side {
-    /// Of each pixel its place in [`LEVELS`]; `None` where there is no face, nor should be.
+    /// The index of each pixel in [`LEVELS`]; `None` where there is no face, nor should be.
     levels: Vec<Option<u8>>,
     errors: ErrorMap,
     figures: Figures,
@@ -331,9 +331,9 @@ fn place(x: u32, y: u32) -> usize {
 
 /// What is known so far.
 struct Judged {
-    /// Of the truth.
+    /// The true frame.
     right: TruthFrame,
-    /// Of each picture: its faces where the truth is known, none elsewhere.
+    /// What each picture shows: its faces where the truth is known, none elsewhere.
     known: Vec<Shown>,
     /// All faces of each picture.
     faces: Vec<Vec<Option<Face>>>,

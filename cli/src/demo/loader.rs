@@ -130,7 +130,7 @@ fn stamp(file: &Path) -> Stamp {
 #[derive(Clone)]
 struct Watch {
     files: Vec<PathBuf>,
-    /// Of each file as it was loaded; `None` if it changed meanwhile.
+    /// The stamp of each file as it was loaded; `None` if the file changed meanwhile.
     loaded: Vec<Option<Stamp>>,
     seen: Vec<Stamp>,
     /// For how many looks nothing has changed.
@@ -138,7 +138,7 @@ struct Watch {
 }
 
 impl Watch {
-    /// Of files that were loaded from the time `begun` on.
+    /// Watches files that were loaded from the time `begun` on.
     fn new(files: Vec<PathBuf>, begun: SystemTime) -> Watch {
         let seen: Vec<Stamp> = files.iter().map(|file| stamp(file)).collect();
         let is_older = |stamp: &Stamp| stamp.is_none_or(|(changed, _)| changed + LAG < begun);

@@ -229,7 +229,7 @@ struct Demo {
     /// How many different pictures there were.
     number: u64,
     timing: Timing,
-    /// Of making the plan, while it is shown.
+    /// The time of making the plan, while the plan is shown.
     planning: Timing,
     stats: Option<Stats>,
     /// Whether the last frame was drawn, and not the same as the one before.

@@ -71,7 +71,7 @@ pub(super) struct Results {
     pub(super) kept: [Kept; BUDGETS.len()],
     entries: Entries,
     swim: Swim,
-    /// Of the first frame: its shades, and its errors against `lit`.
+    /// The shades of the first frame; `error_map` holds its errors against `lit`.
     pub(super) picture: Vec<u8>,
     pub(super) error_map: Vec<f32>,
 }
@@ -94,7 +94,7 @@ impl Results {
         self.gouraud.cover_errors
     }
 
-    /// The same, vertices unrounded.
+    /// Pixels that show another face than they should, vertices unrounded.
     pub(super) fn cover_errors_unrounded(&self) -> u64 {
         self.unrounded.cover_errors
     }

@@ -78,7 +78,7 @@ impl<'a> Configuration<'a> {
         shadings.chain(BUDGETS.into_iter().map(Self::budget)).collect()
     }
 
-    /// The same with vertices rounded to so many bits after the point.
+    /// The configuration with vertices rounded to `bits` bits after the point.
     pub(super) fn with_vertex_bits(self, bits: u32) -> Self {
         let set = self.set;
         let set = Box::new(move |renderer: &mut Renderer| {
@@ -88,7 +88,7 @@ impl<'a> Configuration<'a> {
         Self { set, ..self }
     }
 
-    /// The same with or without dither.
+    /// The configuration with or without dither.
     pub(super) fn dithered(mut self, dither: bool) -> Self {
         self.dither = Some(dither);
         self

@@ -53,8 +53,10 @@ pub struct Samples {
 const _: () = assert!(size_of::<Sample>() <= 32, "a long study keeps some 100,000");
 
 impl Samples {
-    /// As comma-separated values with a line of headings: the number of the round, the place in the round, what was
-    /// drawn by, the number of frames, and the time for all of them in nanoseconds.
+    /// Writes the samples as comma-separated values with a line of headings.
+    ///
+    /// The columns are the number of the round, the place in the round, what was drawn by (kind and name), the number
+    /// of frames, and the time for all of them in nanoseconds.
     #[must_use]
     pub fn to_csv(&self) -> String {
         let mut text = String::from("round,order,kind,name,frames,ns\n");
@@ -125,7 +127,7 @@ impl Candidate<'_> {
         result.map(|()| time)
     }
 
-    /// The same, counting the work.
+    /// Draws all frames and counts the work.
     fn count(&mut self, vga: &mut Vga) -> Result<(), RenderError> {
         self.work = Work::default();
         for scene in self.scenes {
@@ -153,7 +155,7 @@ pub(super) struct Spent {
     pub(super) seconds: f64,
     /// Whether that is the most, and not what ratios that are not known well enough may prolong.
     pub(super) at_most: bool,
-    /// Of the order.
+    /// The seed of the shuffled order.
     pub(super) seed: u64,
 }
 
@@ -257,7 +259,7 @@ mod tests {
         assert_eq!(samples.to_csv().lines().nth(1), Some("3,1,\"shading, portable kernel\",flat,2,70"));
     }
 
-    /// Of a scene in which nothing moves every frame takes the vertices and, by a budget, the decisions.
+    /// Every frame of a scene in which nothing moves takes the vertices and, by a budget, the decisions.
     #[test]
     fn decisions_of_a_budget_are_made_in_every_frame() {
         let mut scene = Scene::showing(shapes::torus(12, 6));

@@ -21,9 +21,9 @@ use mode13h::scene::Scene;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Entries {
     most: f64,
-    /// Of objects on channels: what was looked up.
+    /// The colours that were looked up for objects on channels.
     colors: BTreeSet<[u8; 3]>,
-    /// Of images: object, surface and shade.
+    /// The object, surface and shade of what was seen of images.
     shades: BTreeSet<(usize, u16, u8)>,
 }
 
@@ -90,7 +90,7 @@ fn nearest_error(palette: &Palette, [r, g, b]: [u8; 3]) -> f64 {
     f64::from(off.into_iter().max().unwrap_or(0))
 }
 
-/// The same for all colours of a surface's image in one shade.
+/// The max of [`nearest_error`] over all colours of a surface's image in one shade.
 fn image_error(scene: &Scene, palette: &Palette, (object, surface): (usize, u16), shade: u8) -> f64 {
     let material = scene.objects()[object].materials.get(usize::from(surface));
     let Some(image) = material.and_then(|m| m.texture.as_ref().or(m.environment.as_ref())) else { return 0.0 };

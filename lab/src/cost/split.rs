@@ -30,7 +30,7 @@ use mode13h::render::{RenderError, Renderer, Screen};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
-/// As [`Screen::MODE_13H`], each pixel cut in two.
+/// [`Screen::MODE_13H`] with each pixel cut in two.
 const WIDE: Screen = Screen { width: 640, height: 200, pixel_aspect: (5, 12) };
 
 /// The fewest and the most rounds.

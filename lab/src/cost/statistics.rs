@@ -150,10 +150,10 @@ mod tests {
         assert!(seen.len() == 6 && seen.values().all(|&times| (855..1145).contains(&times)), "{seen:?}");
     }
 
-    /// Of 401 rounds the median is place 200, from 0. The resampled median's place follows from the binomial law: it is k or
-    /// less where 201 or more of 401 draws are among the first k + 1. That has a share of 0.012 at place 177, of 0.020 at
-    /// 179, of 0.025 at 180, of 0.032 at 181, and of 0.049 at 183. An end that a thousand resamples give is off by one place
-    /// by chance: the mean of 40 by a sixth of one.
+    /// The median of 401 rounds is at index 200. The resampled median's index follows from the binomial law: it is k or
+    /// less where 201 or more of 401 draws are among the first k + 1. That has a share of 0.012 at index 177, of 0.020
+    /// at 179, of 0.025 at 180, of 0.032 at 181, and of 0.049 at 183. An end that a thousand resamples give is off by
+    /// one index by chance; the mean of 40 ends is off by a sixth of one.
     #[test]
     fn the_interval_is_that_of_the_binomial_law() {
         let times: Vec<f64> = (0..401).map(|i| 1000.0 + f64::from(i)).collect();
@@ -192,7 +192,8 @@ mod tests {
         assert!(Ratio::new(&[], &[], &mut Rng::new(5)).cannot_be_told());
     }
 
-    /// Of a hundred pairs that are alike the interval holds 1 in about 95: at least 88, three standard deviations below.
+    /// The interval holds 1 in about 95 of a hundred pairs that are alike: at least 88, three standard deviations
+    /// below.
     #[test]
     fn the_interval_holds_the_truth_as_often_as_it_says() {
         let mut chance = Rng::new(6);

@@ -59,7 +59,7 @@ pub(super) struct Bytes {
     pub(super) level: Option<u8>,
     /// The threshold, and the byte.
     pub(super) dithered: Option<(u8, u8)>,
-    /// Of channels, each with the texel's.
+    /// The three channels, each combined with the texel's.
     pub(super) textured: Option<[u8; 3]>,
     pub(super) mixed: Option<u8>,
     /// The level, and the byte.

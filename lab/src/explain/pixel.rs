@@ -241,8 +241,8 @@ fn here(renderer: &Renderer, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> Fa
     }
 }
 
-/// Of an object's triangles the one that truth finds at the pixel nearest to a depth: where the renderer's own
-/// triangles are not the mesh's.
+/// The object's triangle that truth finds at the pixel nearest to a depth. It serves where the renderer's own triangles
+/// are not the mesh's.
 fn nearest(truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> Option<usize> {
     let apart = |triangle: usize| {
         let face = Face { object: met.object, triangle };

@@ -44,8 +44,8 @@ impl fmt::Display for Pixel {
 }
 
 impl Pixel {
-    /// The same in a few short lines, for where there is little room: at most six, each of at most `width` characters
-    /// (what is longer is cut).
+    /// Writes the account in at most six short lines, for where there is little room. Each line is cut to `width`
+    /// characters.
     #[must_use]
     pub fn lines(&self, width: usize) -> Vec<String> {
         let Self { x, y, byte, color, .. } = self;

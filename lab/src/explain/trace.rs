@@ -27,11 +27,11 @@ pub(super) struct Met {
     pub(super) interpolation: Interpolation,
     /// The palette entries of its surface's shades, where they are known.
     pub(super) ramp: Option<Ramp>,
-    /// Of a face with effects.
+    /// The attributes at the vertices; `None` of a face without effects.
     pub(super) attributes: Option<[Attributes; 3]>,
     pub(super) depth: u32,
     pub(super) fate: Fate,
-    /// Of what is seen, what its stages make.
+    /// What the face's stages make of the pixel; `None` if the face is not seen.
     pub(super) bytes: Option<Bytes>,
 }
 

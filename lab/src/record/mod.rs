@@ -151,7 +151,7 @@ impl Record {
         self.clip
     }
 
-    /// The same frame drawn only inside `clip`, as far as that lies in the frame.
+    /// Sets the clip rectangle: the frame is drawn only inside `clip`, as far as that lies in the frame.
     #[must_use]
     pub fn with_clip(mut self, clip: Option<Rect>) -> Self {
         self.clip = clip.map(|clip| clip.intersection(Rect { x0: 0, y0: 0, x1: self.width, y1: self.height }));

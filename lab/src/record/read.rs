@@ -126,7 +126,7 @@ fn triangle(fields: &mut Fields<'_>) -> Result<([Vertex; 3], Interpolation), Rec
 /// The lines that count.
 struct Lines<R> {
     reader: R,
-    /// Of the line at hand, from 1.
+    /// The number of the line at hand, from 1.
     number: u64,
     text: String,
 }

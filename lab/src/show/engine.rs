@@ -28,7 +28,7 @@ pub(super) fn draw(size: (usize, usize), triangles: &[Triangle], depth_tested: b
     panel
 }
 
-/// The same without a depth buffer, in bands of this many rows, each a frame of its own.
+/// Draws triangles without a depth buffer, in bands of `rows` rows. Each band is a frame of its own.
 pub(super) fn draw_in_bands((width, height): (usize, usize), triangles: &[Triangle], rows: usize) -> Panel {
     let [a, b] = EMPTY.map(|empty| {
         let mut bytes = vec![empty; width * height];
@@ -47,12 +47,12 @@ pub(super) fn draw_in_bands((width, height): (usize, usize), triangles: &[Triang
     panel
 }
 
-/// The same, of faces.
+/// Draws faces as [`draw`] draws triangles.
 pub(super) fn draw_faces(size: (usize, usize), faces: &[Face], depth_tested: bool) -> Panel {
     draw(size, &triangles(faces), depth_tested)
 }
 
-/// As the raster is given them.
+/// Makes of faces the triangles that the raster is given.
 pub(super) fn triangles(faces: &[Face]) -> Vec<Triangle> {
     faces.iter().map(Face::for_raster).collect()
 }
@@ -108,7 +108,7 @@ pub(super) fn outline(triangles: &[Triangle]) -> Vec<Segment> {
     triangles.iter().flat_map(|(vertices, _)| edges(vertices.each_ref().map(point))).collect()
 }
 
-/// Of edges, those that belong to one triangle alone: the silhouette of a ball.
+/// The edges that belong to one triangle alone: the silhouette of a ball.
 pub(super) fn silhouette(edges: &[Segment]) -> Vec<Segment> {
     let shared = |[a, b]: &Segment| edges.contains(&[*b, *a]);
     edges.iter().filter(|edge| !shared(edge)).copied().collect()

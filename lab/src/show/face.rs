@@ -36,7 +36,7 @@ impl Corner {
         Self { x: round(self.x), y: round(self.y), ..self }
     }
 
-    /// As the raster takes it. What it would refuse becomes the origin; no case has such a corner.
+    /// The vertex that the raster takes. A corner that the raster would refuse becomes the origin; no case has one.
     fn vertex(self) -> Vertex {
         let place = I24F8::round_from_f64(self.x).zip(I24F8::round_from_f64(self.y));
         let shade = U8F8::from_bits((self.shade * 256.0 + 0.5) as u16);
@@ -75,7 +75,7 @@ impl Face {
     }
 }
 
-/// Of the edges of quads, each of two faces (a, b, c) and (a, c, d), all but the diagonals.
+/// The edges of quads without the diagonals. Each quad is two faces, (a, b, c) and (a, c, d).
 pub(super) fn without_diagonals(edges: &[Segment]) -> Vec<Segment> {
     edges.iter().enumerate().filter(|(i, _)| ![2, 3].contains(&(i % 6))).map(|(_, edge)| *edge).collect()
 }

@@ -41,7 +41,7 @@ use mode13h::palette::Palette;
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Case {
-    /// As in the list of hard cases, such as `R5`.
+    /// The id in the list of hard cases, such as `R5`.
     pub id: &'static str,
     /// What is hard, in a few words.
     pub title: &'static str,

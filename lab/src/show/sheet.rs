@@ -23,7 +23,7 @@ const MARGIN: i32 = 16;
 const GAP: i32 = 24;
 /// From one line of words to the next.
 const LINE: i32 = 20;
-/// Of a letter.
+/// The width of a letter.
 const LETTER: i32 = 9;
 
 /// The colours that are not of the frame. They take the end of the picture's palette.

@@ -38,7 +38,7 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// Of a shading in a frame of so many columns; `None` of one that claims none.
+    /// The bound of a shading in a frame of `width` columns; `None` if the shading claims none.
     ///
     /// ```
     /// use mode13h::scene::Shading;

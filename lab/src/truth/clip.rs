@@ -20,8 +20,8 @@ pub(super) struct Kept {
     pub(super) seen: Vector,
     /// How much each of the face's three vertices counts here for what is linear on the face in space.
     pub(super) on_face: [f64; 3],
-    /// The same for what is linear on the screen. At the near plane, where the other end of the edge has no
-    /// place on the screen, it is linear along the edge in space.
+    /// How much each of the face's three vertices counts here for what is linear on the screen. At the near plane,
+    /// where the other end of the edge has no place on the screen, it is linear along the edge in space.
     pub(super) on_screen: [f64; 3],
 }
 

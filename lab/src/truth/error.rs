@@ -17,8 +17,8 @@ pub struct Shown {
     pub height: u32,
     /// width × height, row-major: the face that is seen; `None` where there is none.
     pub faces: Vec<Option<Face>>,
-    /// As many: the shade of each channel, 0 to 255; on one channel three times the same. Anything where
-    /// there is no face.
+    /// width × height, row-major: the shade of each channel, 0 to 255. On one channel all three are equal. Where there
+    /// is no face they may be anything.
     pub shades: Vec<[f64; 3]>,
 }
 
@@ -26,7 +26,7 @@ pub struct Shown {
 #[derive(Clone, PartialEq, Debug)]
 pub struct ErrorMap {
     width: usize,
-    /// Of each channel the shade shown less the true one, where both show the same face.
+    /// The shade shown less the true one, on each channel; `None` where the two show different faces, or no face.
     off: Vec<Option<[f64; 3]>>,
     cover_errors: usize,
 }
@@ -34,7 +34,7 @@ pub struct ErrorMap {
 /// The side of a block, in pixels.
 const BLOCK: usize = 4;
 
-/// Of three channels the error that is greatest in size.
+/// The maximum of the absolute errors of three channels.
 fn greatest(off: [f64; 3]) -> f64 {
     off.into_iter().fold(0.0, |most: f64, off| most.max(off.abs()))
 }
@@ -80,8 +80,8 @@ impl ErrorMap {
         figures
     }
 
-    /// The same for means over blocks of 4 × 4 pixels, counted from the frame's upper left corner: of the
-    /// blocks whose 16 pixels were all compared.
+    /// The figures over means of blocks of 4 × 4 pixels, counted from the frame's upper left corner. Only blocks whose
+    /// 16 pixels were all compared count.
     #[must_use]
     pub fn block_figures(&self) -> Figures {
         let mut figures = Figures::default();

@@ -90,7 +90,7 @@ fn draw_band(record: &Record, way: Configuration, band: Frame<'_>) {
     }
 }
 
-/// As the renderer draws them.
+/// Draws triangles in batches, as the renderer does.
 fn in_batches(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Interpolation)]) {
     let mut batch = Batch::new();
     for (vertices, interpolation) in triangles {

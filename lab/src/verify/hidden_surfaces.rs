@@ -113,7 +113,7 @@ mod tests {
         assert!(group.cases > 200);
     }
 
-    /// Of equal depths the last wins: found by two faces, of which the second is wrong.
+    /// The last of equal depths wins. Two faces, of which the second is wrong, are enough to find a fault in that.
     #[test]
     fn a_tie_decided_wrongly_is_told_by_two_triangles() {
         let last = |record: &Record, way: Configuration| {

@@ -197,7 +197,7 @@ mod tests {
         assert!(group.cases > 1_500);
     }
 
-    /// S4's average, divided by the number of faces and left at that.
+    /// The Hungarian tutorial's average, divided by the number of faces and left at that.
     #[test]
     fn short_normals_are_told() {
         let group = check(1, &|mesh| mesh.normals().iter().map(|n| *n * 0.9).collect(), &shades_of);

@@ -201,7 +201,7 @@ fn depth_at(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
 pub(super) struct Drawing {
     /// The bytes, row-major.
     pub(super) pixels: Vec<u8>,
-    /// Of each pixel the triangle that it shows.
+    /// The triangle that each pixel shows.
     pub(super) owners: Vec<Option<usize>>,
     /// How often each pixel is covered.
     pub(super) covered: Vec<u32>,

@@ -24,7 +24,7 @@ impl Random {
         low + ((i128::from(self.next()) * count.max(1)) >> 64) as i64
     }
 
-    /// The same for the numbers of a frame.
+    /// 0 ≤ n < `end`, all alike, for the numbers of a frame; 0 if `end` is 0.
     pub(super) fn below(&mut self, end: u32) -> u32 {
         self.within(0, i64::from(end) - 1) as u32
     }

@@ -115,7 +115,7 @@ mod tests {
     use crate::verify::triangles::any_triangle;
     use mode13h::raster::Interpolation;
 
-    /// Of a hundred triangles one is at fault, for the shade of its second vertex.
+    /// One of a hundred triangles is at fault, for the shade of its second vertex.
     #[test]
     fn one_triangle_is_left_and_what_makes_it_fail() {
         let mut random = Random::new(5, "shrink");

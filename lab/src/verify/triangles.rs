@@ -66,7 +66,7 @@ fn check(seed: u64, cases: u32, draw: Draw<'_>) -> Group {
     group
 }
 
-/// Of two drawings of a frame, what differs.
+/// Says what differs between two drawings of a frame.
 fn same(
     what: &str,
     record: &Record,

@@ -1,6 +1,6 @@
 //! Shapes that need no file: each fits into the unit sphere about the origin.
 //!
-//! All normals are analytic (S2) but for the cube's, which are those of its faces. Numbers of slices,
+//! All normals are analytic (the Polish lecture) but for the cube's, which are those of its faces. Numbers of slices,
 //! stacks and segments that are too small are raised to the least that makes the shape, and those
 //! over 4,096 lowered to that. Cube and wall have texture coordinates.
 //!

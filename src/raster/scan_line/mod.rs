@@ -1,4 +1,4 @@
-//! Hidden surfaces by the scan-line method (S0's own): all faces of a frame at once, row by row, and
+//! Hidden surfaces by the scan-line method (the Russian textbook's own): all faces of a frame at once, row by row, and
 //! every pixel written once.
 //!
 //! ```text

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::process::Command;
 
-use mode13h::plan::Effect;
+use mode13h::plan::{Effect, FaceShading};
 use mode13h::render::{HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::scene::shipped;
 use mode13h::span::Kernel;
@@ -179,6 +179,7 @@ fn documents_name_what_there_is() {
     let mut tried = Tried::new("documents_name_what_there_is", 30);
     let mut known: BTreeSet<&str> = Shading::ALL.map(Shading::name).into();
     known.extend(Effect::ALL.map(Effect::name));
+    known.extend(FaceShading::ALL.map(FaceShading::name));
     known.extend(HiddenSurfaces::ALL.map(HiddenSurfaces::name));
     known.extend(Mapping::ALL.map(Mapping::name));
     known.extend(mode13h::palette::builtin::ALL.iter().map(|palette| palette.name));

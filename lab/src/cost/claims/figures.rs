@@ -16,7 +16,7 @@ pub(super) struct Sphere {
     /// Against `gouraud-unrounded`: with vertices rounded to 1/256, and to whole pixels.
     pub(super) fine: Errors,
     pub(super) whole: Errors,
-    /// Of each of the two the share of pixels that show the wrong face.
+    /// The share of pixels that show the wrong face, for `fine` and for `whole`.
     pub(super) wrong_faces: [f64; 2],
     /// With a highlight, against `lit`: the default shading, and Phong.
     pub(super) linear: Errors,

@@ -20,7 +20,7 @@ pub(super) const THREE: f64 = 3.0;
 /// What two root mean squares may differ by to have met, in shades.
 pub(super) const MET: f64 = 0.1;
 
-/// As fast as: up to a tenth slower.
+/// The max ratio of times that counts as equally fast: a tenth slower.
 pub(super) const AS_FAST: f64 = 1.1;
 
 /// That the first of two is so, and the second.

@@ -89,7 +89,7 @@ fn whole() -> Study {
     study
 }
 
-/// As XML, but for what HTML writes otherwise: the first line, and elements that have no end.
+/// Makes XML of an HTML page: replaces the first line, and closes the elements that have no end.
 fn as_xml(page: &str) -> String {
     let mut text = page
         .strip_prefix("<!DOCTYPE html>")

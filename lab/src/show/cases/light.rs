@@ -34,7 +34,7 @@ pub(super) fn scene(mesh: Option<Mesh>, view: View) -> Scene {
 /// What is left of a case: a mesh, its lights, and the shades that the fault gives its vertices.
 struct Lit {
     mesh: Option<Mesh>,
-    /// As the fault has them: the engine may split vertices.
+    /// The vertices' positions as the fault has them: the engine may split vertices.
     positions: Vec<Vector>,
     triangles: Vec<[usize; 3]>,
     suns: Vec<Light>,

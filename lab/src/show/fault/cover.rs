@@ -52,7 +52,7 @@ pub(in crate::show) fn every_pixel_touched(panel: &mut Panel, corners: &[Corner;
     }
 }
 
-/// One row of S4's table: where its two edges cross it, and their shades there.
+/// One row of the Hungarian tutorial's table: where its two edges cross it, and their shades there.
 #[derive(Clone, Copy, Default)]
 struct TableRow {
     ends: [(i32, i32); 2],
@@ -63,8 +63,8 @@ struct TableRow {
 /// picture has some thirty.
 const SLOPE: f64 = 16.0;
 
-/// S4's table with slopes that are cut off: every edge is walked from its first corner to its second,
-/// one addition a row, so the error of the slope is added once a row too. A neighbour walks the same
+/// The Hungarian tutorial's table with slopes that are cut off: every edge is walked from its first corner to its
+/// second, one addition a row, so the error of the slope is added once a row too. A neighbour walks the same
 /// edge the other way and comes to other places.
 pub(in crate::show) fn cut_slopes(panel: &mut Panel, corners: &[Corner; 3]) {
     let mut table = vec![TableRow::default(); panel.height()];

@@ -29,7 +29,7 @@ fn row(corners: &[Corner], y: i32) -> Option<Row> {
     }
 }
 
-/// A step for every row, (Bs − As) / (Bx − Ax), which has no bound as the row gets short, and S0's
+/// A step for every row, (Bs − As) / (Bx − Ax), which has no bound as the row gets short, and the Russian textbook's
 /// start with its As put back: As + (1 − frac(Ax))·step. That is the next whole pixel, not the next
 /// centre. The sums wrap in 8 bits.
 pub(in crate::show) fn step_of_each_row(panel: &mut Panel, corners: &[Corner; 3]) {
