@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let stage = VertexStage::new(&view, object, &suns, Technique::GouraudReseeded, &mut lit, &mut beams)?;
 
     let mut out = io::stdout().lock();
-    write!(out, "P5 {WIDTH} {HEIGHT} 255\n")?;
+    writeln!(out, "P5 {WIDTH} {HEIGHT} 255")?;
     for first in (0..HEIGHT).step_by(BAND as usize) {
         let (mut bytes, mut depths) = ([0; (WIDTH * BAND) as usize], [0_u32; (WIDTH * BAND) as usize]);
         let rows = first..first + BAND;
