@@ -8,7 +8,7 @@ use super::Stats;
 use super::budget::{Budget, Decided};
 use super::clip::{Carried, Corner, WithEffects, clip};
 use super::faces::Faces;
-use super::lit::{LitVertex, LitVertices};
+use super::lit::{LitVertex, ShadedVertices};
 use super::paint::SurfaceMaterial;
 use super::sift::listed::Listed;
 use super::sift::{self, Sieve, Sifted};
@@ -172,7 +172,7 @@ impl Faces<'_> {
         sink: &impl Sink,
         interpolation: Interpolation,
     ) -> Option<(Listed, Numbered<'_>)> {
-        let LitVertices { places, depths, shades, .. } = self.lit;
+        let ShadedVertices { places, depths, shades, .. } = self.lit;
         let triangles = self.geometry.triangles;
         let plain = !EFFECTS || self.paints.iter().all(|paint| !paint.has_effects);
         let takes = plain && sink.takes_numbers(interpolation);

@@ -1,6 +1,6 @@
 //! What the faces of an object are made from.
 
-use super::lit::LitVertices;
+use super::lit::ShadedVertices;
 use super::paint::SurfaceMaterial;
 use super::vertex::{Geometry, VertexAttributes};
 use crate::light::Lights;
@@ -16,7 +16,7 @@ pub(super) struct Faces<'a> {
     pub(super) lights: Lights<'a>,
     /// One for each surface of the mesh.
     pub(super) paints: &'a [SurfaceMaterial],
-    pub(super) lit: &'a LitVertices,
+    pub(super) lit: &'a ShadedVertices,
     /// The attributes of each vertex, if there are effects.
     pub(super) extras: &'a [VertexAttributes],
     /// Whether faces that are turned away are left out.

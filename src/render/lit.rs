@@ -19,7 +19,7 @@ pub(super) struct LitVertex {
 
 /// All vertices of an object.
 #[derive(Debug, Default)]
-pub(super) struct LitVertices {
+pub(super) struct ShadedVertices {
     pub(super) places: Vec<Place>,
     /// 0 of those that need clipping.
     pub(super) depths: Vec<u32>,
@@ -30,7 +30,7 @@ pub(super) struct LitVertices {
     pub(super) flags: Vec<u8>,
 }
 
-impl LitVertices {
+impl ShadedVertices {
     /// Makes room for `count` vertices of which nothing is known yet. They are to be put on the screen, and lit or left
     /// without light.
     pub(super) fn begin(&mut self, count: usize) {

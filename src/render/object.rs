@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::Stats;
 use super::budget::{Budget, Decided, Lit};
 use super::faces::Faces;
-use super::lit::LitVertices;
+use super::lit::ShadedVertices;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
 use super::settings::{Accuracy, Resolved};
@@ -133,7 +133,7 @@ pub(super) struct ObjectState {
     paints: Vec<SurfaceMaterial>,
     /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
-    lit: LitVertices,
+    lit: ShadedVertices,
     extras: Vec<VertexAttributes>,
     tessellated: Tessellated,
     /// Whether that is what is drawn. What is not stays for when it is again.

@@ -65,7 +65,7 @@ use self::facet::{Facet, Strength};
 use self::light::{Towards, narrow};
 pub(super) use self::question::Question;
 pub(super) use self::settle::Vain;
-use super::lit::LitVertices;
+use super::lit::ShadedVertices;
 use super::paint::SurfaceMaterial;
 use super::sift;
 use super::vertex::{Geometry, VertexAttributes};
@@ -326,7 +326,7 @@ impl Budget {
     /// Marks the object's vertices with the lights that they see, and whether their shades are clamped on either side: what
     /// clusters ask of them. Of three channels, `extras` has the shades.
     #[inline(never)]
-    pub(super) fn mark(&self, object: &Lit<'_>, lit: &mut LitVertices, extras: &[VertexAttributes]) {
+    pub(super) fn mark(&self, object: &Lit<'_>, lit: &mut ShadedVertices, extras: &[VertexAttributes]) {
         let Lit { geometry, .. } = *object;
         if self.is_linear_throughout() || self.by_cones {
             return;
@@ -380,7 +380,7 @@ impl Budget {
 
     /// Whether a face of a cluster is one of these.
     #[inline]
-    fn is_one_of(&self, these: &Where, indices: [u32; 3], lit: &LitVertices) -> bool {
+    fn is_one_of(&self, these: &Where, indices: [u32; 3], lit: &ShadedVertices) -> bool {
         let Where { unmixed, from } = *these;
         let corners = indices.map(|i| i as usize);
         let [a, b, c] = corners.map(|i| lit.flags[i]);
@@ -411,7 +411,7 @@ impl Budget {
 
     /// The lights that a vertex sees, a bit for each, suns first.
     #[inline]
-    fn lights_seen(&self, lit: &LitVertices, vertex: u32) -> u8 {
+    fn lights_seen(&self, lit: &ShadedVertices, vertex: u32) -> u8 {
         if let ([one], true) = (self.strengths.as_slice(), self.by_cones) {
             return u8::from(lit.shades[vertex as usize][0].to_bits() != one.dark);
         }

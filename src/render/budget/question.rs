@@ -11,7 +11,7 @@ use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::SampleSpacing;
 use crate::render::faces::Faces;
-use crate::render::lit::LitVertices;
+use crate::render::lit::ShadedVertices;
 use crate::span::Kernel;
 
 /// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
@@ -64,7 +64,7 @@ impl Budget {
     pub(in crate::render) fn decide_at_once(
         &self,
         (triangle, indices, surface, turned): (usize, [u32; 3], u16, bool),
-        lit: &LitVertices,
+        lit: &ShadedVertices,
         normals: &[Vec3],
     ) -> Choice {
         if !self.simple {

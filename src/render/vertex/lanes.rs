@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::Geometry;
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides, both_sides_of_eight};
-use crate::render::lit::{LitVertices, Place};
+use crate::render::lit::{Place, ShadedVertices};
 use crate::render::paint::SurfaceMaterial;
 use crate::view::ObjectView;
 use crate::view::lanes::{LANES, Narrow};
@@ -16,7 +16,7 @@ pub(super) fn project<const TESTED: bool>(
     view: &ObjectView,
     narrow: &Narrow,
     positions: &[Vec3],
-    lit: &mut LitVertices,
+    lit: &mut ShadedVertices,
     eight: impl Fn(&Narrow, &[Vec3; LANES], &mut [Place; LANES], &mut [u32; LANES]),
 ) {
     let (eights, rest) = positions.as_chunks::<LANES>();
@@ -67,7 +67,7 @@ pub(super) fn one_by_one<const TESTED: bool>(
     view: &ObjectView,
     positions: &[Vec3],
     first: usize,
-    lit: &mut LitVertices,
+    lit: &mut ShadedVertices,
 ) {
     for (i, &position) in positions.iter().enumerate().skip(first) {
         lit.put(i, if TESTED { view.project(position) } else { Some(view.project_inside(position)) });
@@ -80,7 +80,7 @@ pub(super) fn light_suns<const BOTH: bool>(
     geometry: &Geometry<'_>,
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
-    lit: &mut LitVertices,
+    lit: &mut ShadedVertices,
     eight: impl Fn(&SurfaceMaterial, &Lights<'_>, &[Vec3; LANES], &mut [[U8F8; 2]; LANES]),
 ) {
     let (eights, rest) = geometry.normals.as_chunks::<LANES>();
@@ -221,7 +221,7 @@ mod tests {
         ) {
             let geometry = geometry(&positions, &[], &[]);
             for kernel in kernels() {
-                let mut lit = LitVertices::default();
+                let mut lit = ShadedVertices::default();
                 lit.begin(positions.len());
                 project_tested(&view, &geometry, kernel, &mut lit);
                 for (i, &position) in positions.iter().enumerate() {
@@ -253,7 +253,7 @@ mod tests {
             let geometry = geometry(&[], &normals, &vertex_surfaces);
             for kernel in kernels() {
                 for both in [true, false] {
-                    let mut lit = LitVertices::default();
+                    let mut lit = ShadedVertices::default();
                     lit.begin(normals.len());
                     light_suns(&geometry, &paints, &lights, (both, kernel), &mut lit);
                     for (i, &normal) in normals.iter().enumerate() {

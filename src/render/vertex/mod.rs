@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use super::lit::{LitVertices, Place};
+use super::lit::{Place, ShadedVertices};
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Points};
@@ -61,7 +61,7 @@ impl VertexAttributes {
 pub(super) fn respond(
     geometry: &Geometry<'_>,
     paints: &[SurfaceMaterial],
-    lit: &mut LitVertices,
+    lit: &mut ShadedVertices,
     extras: &mut [VertexAttributes],
 ) {
     for (i, &surface) in geometry.vertex_surfaces.iter().enumerate() {
@@ -77,18 +77,18 @@ pub(super) fn respond(
 
 /// Every vertex on the screen, none of which can need clipping.
 #[inline(never)]
-pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut LitVertices) {
+pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut ShadedVertices) {
     project::<false>(view, geometry.positions, kernel, lit);
 }
 
 /// Every vertex on the screen, with a mark on those that need clipping.
 #[inline(never)]
-pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut LitVertices) {
+pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut ShadedVertices) {
     project::<true>(view, geometry.positions, kernel, lit);
 }
 
 #[inline(always)]
-fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Kernel, lit: &mut LitVertices) {
+fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Kernel, lit: &mut ShadedVertices) {
     let Some(narrow) = view.narrow() else {
         return lanes::one_by_one::<TESTED>(view, positions, 0, lit);
     };
@@ -102,7 +102,7 @@ fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Ke
 
 /// Vertices that are rounded already rounded again, to fewer bits after the point, half up.
 #[cold]
-pub(super) fn round_further(bits: u32, lit: &mut LitVertices) {
+pub(super) fn round_further(bits: u32, lit: &mut ShadedVertices) {
     let unit = 1 << (8 - bits.min(8));
     // Within the guard band, which is a multiple of the unit, so no sum is near the ends of i32, and none leaves it.
     let round = |c: i32| (c + unit / 2).div_euclid(unit) * unit;
@@ -113,7 +113,7 @@ pub(super) fn round_further(bits: u32, lit: &mut LitVertices) {
 
 /// No light: each surface has one shade.
 #[inline(never)]
-pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], lit: &mut LitVertices) {
+pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], lit: &mut ShadedVertices) {
     for (shades, &surface) in lit.shades.iter_mut().zip(geometry.vertex_surfaces) {
         *shades = [paints[usize::from(surface)].constant(); 2];
     }
@@ -126,7 +126,7 @@ pub(super) fn light_suns(
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
-    lit: &mut LitVertices,
+    lit: &mut ShadedVertices,
 ) {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     if kernel.has_avx2() {
@@ -149,7 +149,7 @@ pub(super) fn light_all(
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
-    lit: &mut LitVertices,
+    lit: &mut ShadedVertices,
 ) {
     each_eight(geometry, |vertices, surface, points| {
         let paint = &paints[surface];

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::{Geometry, lanes};
 use crate::fixed::U8F8;
 use crate::light::Lights;
-use crate::render::lit::{LitVertices, Place};
+use crate::render::lit::{Place, ShadedVertices};
 use crate::render::paint::SurfaceMaterial;
 use crate::view::ObjectView;
 use crate::view::lanes::{LANES, Narrow};
@@ -18,10 +18,10 @@ pub(super) fn project<const TESTED: bool>(
     view: &ObjectView,
     narrow: &Narrow,
     positions: &[Vec3],
-    lit: &mut LitVertices,
+    lit: &mut ShadedVertices,
 ) {
     #[target_feature(enable = "avx2")]
-    fn avx2<const TESTED: bool>(view: &ObjectView, narrow: &Narrow, positions: &[Vec3], lit: &mut LitVertices) {
+    fn avx2<const TESTED: bool>(view: &ObjectView, narrow: &Narrow, positions: &[Vec3], lit: &mut ShadedVertices) {
         lanes::project::<TESTED>(view, narrow, positions, lit, |narrow, points, places, depths| {
             project_eight(narrow, points, places, depths);
         });
@@ -35,14 +35,14 @@ pub(super) fn light_suns<const BOTH: bool>(
     geometry: &Geometry<'_>,
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
-    lit: &mut LitVertices,
+    lit: &mut ShadedVertices,
 ) {
     #[target_feature(enable = "avx2")]
     fn avx2<const BOTH: bool>(
         geometry: &Geometry<'_>,
         paints: &[SurfaceMaterial],
         lights: &Lights<'_>,
-        lit: &mut LitVertices,
+        lit: &mut ShadedVertices,
     ) {
         lanes::light_suns::<BOTH>(geometry, paints, lights, lit, |paint, lights, normals, shades| {
             light_eight::<BOTH>(paint, lights, normals, shades);
