@@ -32,7 +32,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::gradient::{Key, color_at, fill};
+use super::gradient::{Stop, color_at, fill};
 use super::median_cut::MedianCut;
 use super::{Palette, Ramp, Rgb};
 
@@ -228,7 +228,7 @@ fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
 
 /// A ramp that is wanted, and how many entries it has so far.
 struct Wanted {
-    keys: Vec<Key>,
+    keys: Vec<Stop>,
     /// Where on the ramp the colour in full light stands, in 255ths.
     full_light: u8,
     /// From key to key, in 255ths of a channel.
@@ -249,7 +249,8 @@ impl Wanted {
             Some(colors) => {
                 let last = colors.len() - 1;
                 // 0 to 255.
-                let key = |(i, color): (usize, &Rgb)| Key { at: (255 * i / last) as u8, color: color.nearest_on_dac() };
+                let key =
+                    |(i, color): (usize, &Rgb)| Stop { at: (255 * i / last) as u8, color: color.nearest_on_dac() };
                 (colors.iter().enumerate().map(key).collect(), 255)
             }
             None => {
@@ -258,7 +259,7 @@ impl Wanted {
                 // 0 to 255; NaN, from a black that stays black, becomes 0.
                 let full_light = if on == 0.0 { 255 } else { (up / (up + on) * 255.0 + 0.5) as u8 };
                 let keys = [(0, Rgb::BLACK), (full_light, color), (255, highlight)];
-                (keys.map(|(at, color)| Key { at, color }).to_vec(), full_light)
+                (keys.map(|(at, color)| Stop { at, color }).to_vec(), full_light)
             }
         };
         let mut ramp = Self {

@@ -5,7 +5,7 @@
 //! `palettes/` are written from these tables and a test holds the two equal. All are our own work
 //! but for `bios`.
 
-use super::gradient::{Key, fill};
+use super::gradient::{Stop, fill};
 use super::{BIOS, Palette, Ramp, Rgb, cube};
 
 /// A palette with its name and where it comes from.
@@ -78,27 +78,31 @@ pub fn by_name(name: &str) -> Option<&'static Builtin> {
 }
 
 /// One ramp: entry `i` is `i, i, i`. On the DAC four neighbours look alike.
-pub static GREY: Palette = of_ramps(&[&[Key::new(0, 0x000000), Key::new(255, 0xffffff)]]);
+pub static GREY: Palette = of_ramps(&[&[Stop::new(0, 0x000000), Stop::new(255, 0xffffff)]]);
 
 /// One ramp, grey but for two or three of 255. The channels run so far apart that on the DAC they
 /// step at different entries: 178 shades where [`GREY`] has 64.
 pub static SILVER: Palette =
-    of_ramps(&[&[Key::new(0, 0x000204), Key::new(97, 0x5f6062), Key::new(195, 0xc1c2c4), Key::new(255, 0xfcfeff)]]);
+    of_ramps(&[&[Stop::new(0, 0x000204), Stop::new(97, 0x5f6062), Stop::new(195, 0xc1c2c4), Stop::new(255, 0xfcfeff)]]);
 
 /// One ramp, copper.
 pub static COPPER: Palette = of_ramps(&[COPPER_KEYS]);
 
-const COPPER_KEYS: &[Key] = &[
-    Key::new(0, 0x050102),
-    Key::new(65, 0x4c200b),
-    Key::new(122, 0xa35233),
-    Key::new(194, 0xec996b),
-    Key::new(255, 0xfff8ee),
+const COPPER_KEYS: &[Stop] = &[
+    Stop::new(0, 0x050102),
+    Stop::new(65, 0x4c200b),
+    Stop::new(122, 0xa35233),
+    Stop::new(194, 0xec996b),
+    Stop::new(255, 0xfff8ee),
 ];
 
 /// One ramp, the green of a P1 phosphor.
-pub static PHOSPHOR: Palette =
-    of_ramps(&[&[Key::new(0, 0x000300), Key::new(126, 0x10881e), Key::new(196, 0x4aef68), Key::new(255, 0xe8ffe8)]]);
+pub static PHOSPHOR: Palette = of_ramps(&[&[
+    Stop::new(0, 0x000300),
+    Stop::new(126, 0x10881e),
+    Stop::new(196, 0x4aef68),
+    Stop::new(255, 0xe8ffe8),
+]]);
 
 /// Four ramps of 64: copper, steel, jade, lapis.
 pub static MATERIALS_4X64: Palette =
@@ -139,11 +143,11 @@ pub static MATERIALS_16X16: Palette = of_ramps(&[
 
 /// From a sixteenth of a colour by the colour itself at three fifths of the way, to a highlight: nine
 /// tenths of the way from it to white. No channel ever falls.
-const fn material(rgb: u32) -> [Key; 3] {
+const fn material(rgb: u32) -> [Stop; 3] {
     let base = Rgb::from_u32(rgb);
     let dark = Rgb::new(base.r / 16, base.g / 16, base.b / 16);
     let light = Rgb::new(highlight(base.r), highlight(base.g), highlight(base.b));
-    [Key { at: 0, color: dark }, Key { at: 153, color: base }, Key { at: 255, color: light }]
+    [Stop { at: 0, color: dark }, Stop { at: 153, color: base }, Stop { at: 255, color: light }]
 }
 
 const fn highlight(v: u8) -> u8 {
@@ -152,7 +156,7 @@ const fn highlight(v: u8) -> u8 {
 }
 
 /// A palette of equal ramps, one for each list of keys: 1, 2, 4 … 256.
-const fn of_ramps(ramps: &[&[Key]]) -> Palette {
+const fn of_ramps(ramps: &[&[Stop]]) -> Palette {
     assert!(ramps.len().is_power_of_two() && ramps.len() <= 256, "a const's author counts the ramps");
     let mut colors = [Rgb::BLACK; 256];
     let entries = 256 / ramps.len();

@@ -4,14 +4,14 @@ use super::{Ramp, Rgb};
 
 /// A colour at a place on a ramp.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Key {
+pub struct Stop {
     /// Where: 0 is the ramp's first entry, 255 its last.
     pub at: u8,
     /// The colour there.
     pub color: Rgb,
 }
 
-impl Key {
+impl Stop {
     /// A key at `at`, 0 to 255, of the colour `0xRRGGBB`.
     #[must_use]
     pub const fn new(at: u8, rgb: u32) -> Self {
@@ -24,17 +24,17 @@ impl Key {
 /// Entry `i` of `n` lies at `255·i/(n − 1)`, the only entry of a ramp of one at 255. A channel's
 /// value is rounded to the nearest of 0 to 255, halves upward, from the exact fraction. Before the
 /// first key and behind the last their colours go on. The keys must stand in rising order of
-/// [`Key::at`]; a key that does not rise above the one before it counts for nothing. With no keys
+/// [`Stop::at`]; a key that does not rise above the one before it counts for nothing. With no keys
 /// nothing changes.
 ///
 /// ```
-/// use mode13h::palette::{Ramp, Rgb, gradient::{Key, fill}};
+/// use mode13h::palette::{Ramp, Rgb, gradient::{Stop, fill}};
 /// let mut colors = [Rgb::BLACK; 256];
-/// fill(&mut colors, Ramp::new(16, 3).unwrap(), &[Key::new(0, 0x000000), Key::new(255, 0xff8001)]);
+/// fill(&mut colors, Ramp::new(16, 3).unwrap(), &[Stop::new(0, 0x000000), Stop::new(255, 0xff8001)]);
 /// assert_eq!(colors[17], Rgb::new(128, 64, 1));
 /// assert_eq!(colors[19], Rgb::BLACK);
 /// ```
-pub const fn fill(colors: &mut [Rgb; 256], ramp: Ramp, keys: &[Key]) {
+pub const fn fill(colors: &mut [Rgb; 256], ramp: Ramp, keys: &[Stop]) {
     let mut i = 0;
     while i < ramp.entries() {
         if let Some(color) = color_at(i, ramp.entries(), keys) {
@@ -45,7 +45,7 @@ pub const fn fill(colors: &mut [Rgb; 256], ramp: Ramp, keys: &[Key]) {
 }
 
 /// The colour of entry `i` of `entries`, which are at most 1,025 (the products of [`between`]).
-pub(super) const fn color_at(i: u16, entries: u16, keys: &[Key]) -> Option<Rgb> {
+pub(super) const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
     if keys.is_empty() {
         return None;
     }

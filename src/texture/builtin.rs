@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use super::Texture;
-use crate::palette::gradient::{Key, fill};
+use crate::palette::gradient::{Stop, fill};
 use crate::palette::{Ramp, Rgb};
 
 impl Texture {
@@ -40,7 +40,7 @@ impl Texture {
 }
 
 /// Ramps one after the other, each of so many entries through these keys.
-fn ramps(of: &[(u16, &[Key])]) -> [Rgb; 256] {
+fn ramps(of: &[(u16, &[Stop])]) -> [Rgb; 256] {
     let mut colors = [Rgb::BLACK; 256];
     let mut first = 0_u16;
     for &(entries, keys) in of {
@@ -84,12 +84,12 @@ fn noise(x: i32, y: i32, bits: (u32, u32), seed: u32) -> i32 {
     mix(mix(at(0, 0), at(1, 0), tx), mix(at(0, 1), at(1, 1), tx), ty)
 }
 
-const WOOD: &[Key] = &[
-    Key::new(0, 0x140a04),
-    Key::new(70, 0x4a2a12),
-    Key::new(150, 0x96622e),
-    Key::new(215, 0xcf9a56),
-    Key::new(255, 0xf0cc90),
+const WOOD: &[Stop] = &[
+    Stop::new(0, 0x140a04),
+    Stop::new(70, 0x4a2a12),
+    Stop::new(150, 0x96622e),
+    Stop::new(215, 0xcf9a56),
+    Stop::new(255, 0xf0cc90),
 ];
 
 /// Entries of the wood's ramp.
@@ -113,7 +113,7 @@ fn board(along: i32, across: i32, edge: i32, far: i32, number: u32) -> i32 {
 
 fn wooden_crate() -> Texture {
     const FRAME: i32 = 18;
-    let colors = ramps(&[(96, WOOD), (8, &[Key::new(0, 0x202428), Key::new(255, 0xb0b8c0)])]);
+    let colors = ramps(&[(96, WOOD), (8, &[Stop::new(0, 0x202428), Stop::new(255, 0xb0b8c0)])]);
     Texture::square(7, colors, |x, up| {
         // Down from the top, where the light comes from.
         let y = 127 - up;
@@ -165,9 +165,9 @@ fn checker() -> Texture {
 
 fn bricks() -> Texture {
     const BRICKS: i32 = 40;
-    let red = [Key::new(0, 0x2a0c08), Key::new(128, 0x8c3a26), Key::new(255, 0xe08c68)];
-    let brown = [Key::new(0, 0x24100a), Key::new(128, 0x7c4028), Key::new(255, 0xcf9a70)];
-    let mortar = [Key::new(0, 0x302c28), Key::new(255, 0xb4aca0)];
+    let red = [Stop::new(0, 0x2a0c08), Stop::new(128, 0x8c3a26), Stop::new(255, 0xe08c68)];
+    let brown = [Stop::new(0, 0x24100a), Stop::new(128, 0x7c4028), Stop::new(255, 0xcf9a70)];
+    let mortar = [Stop::new(0, 0x302c28), Stop::new(255, 0xb4aca0)];
     let colors = ramps(&[(40, &red), (40, &brown), (24, &mortar)]);
     Texture::square(7, colors, |x, up| {
         let y = 127 - up;
@@ -203,13 +203,13 @@ fn sky() -> Texture {
     /// 1.0; its square, twice, fits in 32 bits.
     const ONE: i32 = 1 << 14;
     let sky = [
-        Key::new(0, 0xfffcf0),
-        Key::new(40, 0xd8ecff),
-        Key::new(120, 0x7cb4f4),
-        Key::new(200, 0x2c68cc),
-        Key::new(255, 0x103c94),
+        Stop::new(0, 0xfffcf0),
+        Stop::new(40, 0xd8ecff),
+        Stop::new(120, 0x7cb4f4),
+        Stop::new(200, 0x2c68cc),
+        Stop::new(255, 0x103c94),
     ];
-    let ground = [Key::new(0, 0x2c2214), Key::new(60, 0x4c3a22), Key::new(255, 0xa88a58)];
+    let ground = [Stop::new(0, 0x2c2214), Stop::new(60, 0x4c3a22), Stop::new(255, 0xa88a58)];
     let colors = ramps(&[(96, &sky), (64, &ground)]);
     Texture::square(7, colors, |x, y| {
         // The middle of a texel, −127/128 to 127/128.

@@ -7,7 +7,7 @@ use crate::support::property::property;
 use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
 use mode13h::palette::file::{self, FORMATS, Format, PaletteError, PaletteErrorKind, Place};
-use mode13h::palette::gradient::{Key, fill};
+use mode13h::palette::gradient::{Stop, fill};
 use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, cube, dac6_to_8, to_dac6};
 use proptest::prelude::*;
 
@@ -128,9 +128,9 @@ fn packed_forms_are_what_their_names_say() {
 }
 
 /// The exact fraction, in i64, rounded to the nearest, halves upward.
-fn naive_gradient(i: u16, entries: u16, keys: &[Key], channel: impl Fn(Rgb) -> u8) -> u8 {
+fn naive_gradient(i: u16, entries: u16, keys: &[Stop], channel: impl Fn(Rgb) -> u8) -> u8 {
     let (place, scale) = if entries == 1 { (255, 1) } else { (i64::from(i) * 255, i64::from(entries) - 1) };
-    let at = |key: &Key| i64::from(key.at) * scale;
+    let at = |key: &Stop| i64::from(key.at) * scale;
     let (first, last) = (&keys[0], &keys[keys.len() - 1]);
     if place <= at(first) {
         return channel(first.color);
@@ -147,7 +147,7 @@ fn naive_gradient(i: u16, entries: u16, keys: &[Key], channel: impl Fn(Rgb) -> u
 
 #[test]
 fn gradients_equal_the_rounded_fraction() {
-    let keys = [Key::new(0, 0x00ff10), Key::new(3, 0xff0011), Key::new(100, 0x807f00), Key::new(254, 0x0102ff)];
+    let keys = [Stop::new(0, 0x00ff10), Stop::new(3, 0xff0011), Stop::new(100, 0x807f00), Stop::new(254, 0x0102ff)];
     for keys in [&keys[..], &keys[1..3], &keys[3..]] {
         for entries in 1..=256 {
             let ramp = Ramp::new(0, entries).unwrap();
@@ -171,11 +171,11 @@ fn gradients_of_odd_keys_end_well() {
     assert_eq!(colors, [Rgb::new(9, 9, 9); 256]);
     // Keys that stand still or go back count for nothing.
     let odd = [
-        Key::new(10, 0x111111),
-        Key::new(10, 0xffffff),
-        Key::new(5, 0xffffff),
-        Key::new(200, 0x222222),
-        Key::new(0, 0),
+        Stop::new(10, 0x111111),
+        Stop::new(10, 0xffffff),
+        Stop::new(5, 0xffffff),
+        Stop::new(200, 0x222222),
+        Stop::new(0, 0),
     ];
     fill(&mut colors, Ramp::WHOLE, &odd);
     let mut plain = [Rgb::BLACK; 256];
