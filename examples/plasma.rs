@@ -5,7 +5,7 @@
 //! retraces (of 70 a second; 100 unless told).
 
 use mode13h::export;
-use mode13h::palette::gradient::{Key, fill};
+use mode13h::palette::gradient::{Stop, fill};
 use mode13h::palette::{Ramp, Rgb};
 use mode13h::vga::{Vga, timing};
 
@@ -35,13 +35,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn load_colors(vga: &mut Vga) {
     let mut colors = [Rgb::BLACK; 256];
     let keys = [
-        Key::new(0, 0x100030),
-        Key::new(50, 0x8010a0),
-        Key::new(95, 0xff6040),
-        Key::new(128, 0xffe890),
-        Key::new(170, 0x20b0c0),
-        Key::new(215, 0x103080),
-        Key::new(255, 0x100030),
+        Stop::new(0, 0x100030),
+        Stop::new(50, 0x8010a0),
+        Stop::new(95, 0xff6040),
+        Stop::new(128, 0xffe890),
+        Stop::new(170, 0x20b0c0),
+        Stop::new(215, 0x103080),
+        Stop::new(255, 0x100030),
     ];
     fill(&mut colors, Ramp::WHOLE, &keys);
     vga.write_port(0x3C8, 0);
