@@ -52,7 +52,7 @@ pub(crate) struct Turntable {
     has_images: bool,
     /// The palette whose ramps they name.
     palette: Option<Palette>,
-    /// Whether the scene preferences for dither, whatever the palette.
+    /// Whether the scene asks for dither, whatever the palette.
     dithers: bool,
     /// Whether there is dither, whatever the scene and the palette, if that was asked for.
     dither: Option<bool>,
@@ -208,7 +208,7 @@ impl Turntable {
     }
 
     /// Other colours. What the frame is cleared to stays the colour it was chosen for. Where a palette has no ramps,
-    /// objects that have colours of their own are drawn in them; of a model, which preferences for nothing itself, with dither,
+    /// objects that have colours of their own are drawn in them; of a model, which asks for nothing itself, with dither,
     /// as no palette for everything has many shades of one colour.
     pub(crate) fn set_colors(&mut self, colors: &Colors) -> Result<(), RenderError> {
         let mut dithers = self.dithers;

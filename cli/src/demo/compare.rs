@@ -47,7 +47,7 @@ impl Compare {
         Compare { is_on: false, right, divider: Divider::default() }
     }
 
-    /// Does what the user preferences, and says what that changed. `left` is how the left half is shaded, and `renderer` draws
+    /// Does what the user wants, and says what that changed. `left` is how the left half is shaded, and `renderer` draws
     /// that.
     pub(super) fn follow(&mut self, input: &Input, left: &ShadingChoice, renderer: &Renderer) -> Option<String> {
         if input.pressed(Key::C) {

@@ -7,7 +7,7 @@ use mode13h::window::{Input, Key};
 
 /// The budgets that B goes through, in shades of 1/255 of full intensity.
 pub(super) const BUDGETS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
-/// The budget of a scene that preferences for none.
+/// The budget of a scene that asks for none.
 const USUAL: f32 = 2.0;
 
 /// The keys 1 to 9, in the top row and in the number pad, and what they type. The tenth shading has no digit.
@@ -40,7 +40,7 @@ enum Wish {
     More,
 }
 
-/// What the user preferences, if anything.
+/// What the user wants, if anything.
 fn wish(input: &Input) -> Option<Wish> {
     let typed = |character: char| input.typed().contains(character);
     let is_down = |&(key, pad, character): &(Key, Key, char)| {
@@ -65,7 +65,7 @@ fn wish(input: &Input) -> Option<Wish> {
     (without_shift(Key::RightBracket) || typed(']')).then_some(Wish::Dearer)
 }
 
-/// What the user preferences for the right half of a picture: the same keys with Shift.
+/// What the user wants for the right half of a picture: the same keys with Shift.
 fn shifted_wish(input: &Input) -> Option<Wish> {
     let typed = |character: char| input.typed().contains(character);
     // Where digits are typed with Shift they are the left half's.
@@ -104,14 +104,14 @@ impl ShadingChoice {
         ShadingChoice::new(accuracy.shading(), accuracy.max_error())
     }
 
-    /// Does what the user render. Whether they wished anything.
+    /// Does what the user wants. Whether they wanted anything.
     pub(super) fn follow(&mut self, input: &Input) -> bool {
         let wish = wish(input);
         wish.into_iter().for_each(|wish| self.fulfil(wish));
         wish.is_some()
     }
 
-    /// Does what the user preferences for the right half of a picture. Whether they wished anything.
+    /// Does what the user wants for the right half of a picture. Whether they wanted anything.
     pub(super) fn follow_shifted(&mut self, input: &Input) -> bool {
         let wish = shifted_wish(input);
         wish.into_iter().for_each(|wish| self.fulfil(wish));
