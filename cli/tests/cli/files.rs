@@ -434,7 +434,7 @@ fn f2_a_hundred_thousand_faces_with_everything() {
 
 #[cfg(target_os = "linux")]
 #[test]
-#[ignore = "a file of 350 MB, 2 GB of memory: cargo test --release --test files f2_long -- --ignored"]
+#[ignore = "a file of 350 MB, 2 GB of memory: cargo test --release --test cli f2_long -- --ignored"]
 fn f2_long_ten_million_faces() {
     load_in_a_child("f2_long_ten_million_faces", 10_000_000, false);
 }
@@ -442,7 +442,7 @@ fn f2_long_ten_million_faces() {
 /// A bar where a person sees it, and nothing where none does. The terminal is made by `script`, of util-linux.
 #[cfg(target_os = "linux")]
 #[test]
-#[ignore = "a file of 60 MB: cargo test --release --test files f2_long -- --ignored"]
+#[ignore = "a file of 60 MB: cargo test --release --test cli f2_long -- --ignored"]
 fn f2_long_progress_is_shown_on_a_terminal() {
     let mut tried = Tried::new("f2_long_progress_is_shown_on_a_terminal", 2);
     let folder = folder();

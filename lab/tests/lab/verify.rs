@@ -7,7 +7,7 @@ use mode13h::span::Kernel;
 use mode13h_lab::verify::{self, Frames, Group};
 
 /// Every machine draws these frames. A change of the engine's bytes belongs into CHANGELOG.md; it is
-/// written here and in `src/verify/frames.rs`.
+/// written here and in `lab/src/verify/frames.rs`.
 const HASH: u64 = 0x6F06_1FAC_3D2B_F1DD;
 
 #[test]

@@ -176,7 +176,11 @@ fn e1_every_public_field_is_changed() {
     let sources = in_the_sources();
     for name in &sources {
         let changes = CHANGES.iter().filter(|change| change.name == name).count();
-        assert_eq!(changes, usize::from(!exempt(name)), "{name}: a change for it belongs into tests/time/changes.rs");
+        assert_eq!(
+            changes,
+            usize::from(!exempt(name)),
+            "{name}: a change for it belongs into lab/tests/lab/time/changes.rs"
+        );
         tried.add(1);
     }
     // What is of a type of the sources is there.
