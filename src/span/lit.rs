@@ -103,11 +103,7 @@ impl Kernel {
     #[must_use]
     #[doc(hidden)]
     pub fn numerators(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.has_avx2() {
-            return x86::numerators(places, a, da, d, dd);
-        }
-        numerators(places, a, da, d, dd)
+        self.run(|| numerators_inlined(places, a, da, d, dd))
     }
 
     /// [`divide`] as the kernel's processor does it best: the same numbers.
@@ -115,57 +111,13 @@ impl Kernel {
     #[must_use]
     #[doc(hidden)]
     pub fn divide(self, numerators: &Numerators) -> Points {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.has_avx2() {
-            return x86::divide(numerators);
-        }
-        divide(numerators)
+        self.run(|| divide_inlined(numerators))
     }
 
     /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
     pub fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.has_avx2() {
-            return x86::interpolate_at(places, a, da, d, dd);
-        }
-        interpolate_at(places, a, da, d, dd)
-    }
-}
-
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-mod x86 {
-    use super::{Lanes, Numerators, Points, divide_inlined, interpolate_inlined, numerators_inlined};
-
-    /// Only with a kernel for which `Kernel::has_avx2` is true.
-    pub(super) fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
-        #[target_feature(enable = "avx2")]
-        fn avx2(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
-            numerators_inlined(places, a, da, d, dd)
-        }
-        // SAFETY: such a kernel is given out only where AVX2 was found.
-        unsafe { avx2(places, a, da, d, dd) }
-    }
-
-    /// Only with a kernel for which `Kernel::has_avx2` is true.
-    pub(super) fn divide(numerators: &Numerators) -> Points {
-        #[target_feature(enable = "avx2")]
-        fn avx2(numerators: &Numerators) -> Points {
-            divide_inlined(numerators)
-        }
-        // SAFETY: such a kernel is given out only where AVX2 was found.
-        unsafe { avx2(numerators) }
-    }
-
-    /// Only with a kernel for which `Kernel::has_avx2` is true.
-    pub(super) fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-        #[target_feature(enable = "avx2")]
-        fn avx2(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-            interpolate_inlined(places, a, da, d, dd)
-        }
-        // SAFETY: such a kernel is given out only where AVX2 was found.
-        unsafe { avx2(places, a, da, d, dd) }
+        self.run(|| interpolate_inlined(places, a, da, d, dd))
     }
 }
