@@ -26,6 +26,12 @@ pub(crate) enum Level {
     /// What every x86-64 has.
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     Sse2,
+    /// 64-bit ARM, all of which has NEON.
+    #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+    Neon,
+    /// WebAssembly with vectors of 128 bits, known when it is compiled.
+    #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+    Wasm,
     /// See [`Avx2`].
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     Avx2(Avx2),
@@ -47,6 +53,10 @@ impl Level {
             Self::Arrays => "arrays",
             #[cfg(all(feature = "simd", target_arch = "x86_64"))]
             Self::Sse2 => "sse2",
+            #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+            Self::Neon => "neon",
+            #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+            Self::Wasm => "wasm",
             #[cfg(all(feature = "simd", target_arch = "x86_64"))]
             Self::Avx2(_) => "avx2",
             #[cfg(all(feature = "simd", target_arch = "x86_64"))]

@@ -70,12 +70,6 @@ fn unit_normals(points: &Points) -> [Lanes<f32>; 3] {
     normals
 }
 
-/// Whether a surface has highlights. As in `Lights::sum`.
-#[inline(always)]
-fn shines(answer: &Reflectance) -> bool {
-    !cfg!(mode13h_leave_out = "specular") && answer.specular != 0.0
-}
-
 impl Lights<'_> {
     /// The whole sum on one channel, not yet clamped, for the side that the points' normals, of any length, point
     /// away from.
@@ -146,7 +140,7 @@ impl Lights<'_> {
         let of_sun = |sun: &super::Beam| [f64::from(sun.intensity)];
         let of_lamp = |lamp: &super::LampBeam| [f64::from(lamp.intensity)];
         let normals = normals_of::<UNIT>(points);
-        if !shines(answer) {
+        if !answer.shines() {
             let [mut body] = self.front::<1, APART, false>(answer, &normals, points, of_sun, of_lamp).diffuse;
             // Zero is the highlight: −0 becomes 0, as with one.
             body.iter_mut().for_each(|body| *body = (answer.ambient + answer.diffuse * *body) + 0.0);
@@ -169,7 +163,7 @@ impl Lights<'_> {
         let of_sun = |sun: &super::Beam| sun.channels.map(f64::from);
         let of_lamp = |lamp: &super::LampBeam| lamp.channels.map(f64::from);
         let normals = normals_of::<UNIT>(points);
-        if !shines(answer) {
+        if !answer.shines() {
             let mut channels = self.front::<3, APART, false>(answer, &normals, points, of_sun, of_lamp).diffuse;
             for (channel, color) in channels.iter_mut().zip(answer.color) {
                 // As on one channel.
@@ -199,12 +193,15 @@ impl Lights<'_> {
         of_lamp: impl Fn(&super::LampBeam) -> [f64; N],
     ) -> Front<N> {
         let mut front = Front { diffuse: [NOUGHT; N], specular: [NOUGHT; N] };
-        let normals = narrow.each_ref().map(widen);
-        let places = [3, 4, 5].map(|axis| widen(&points[axis]));
-        // As in `Lights::sum`.
+        // Suns alone ask for neither.
+        let wide = || (narrow.each_ref().map(widen), [3, 4, 5].map(|axis| widen(&points[axis])));
+        // As in `Lights::sum_by`.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
         let shininess = Shininess::new(answer.shininess);
-        let eye = SHINES.then(|| Eye::new(unit(&from(&self.eye, &places)), &normals));
+        let eye = SHINES.then(|| {
+            let (normals, places) = wide();
+            Eye::new(unit(&from(&self.eye, &places)), &normals)
+        });
         for sun in self.suns {
             let towards = sun.towards.to_array();
             let mut cosines = NOUGHT;
@@ -222,6 +219,10 @@ impl Lights<'_> {
             });
             front.add(of_sun(sun), None, &cosines, highlights.as_ref());
         }
+        if lamps.is_empty() {
+            return front;
+        }
+        let (normals, places) = wide();
         for lamp in lamps {
             let to_lamp = from(&lamp.position, &places);
             let squares = dot(&to_lamp, &to_lamp).map(|square| square * lamp.inverse_square);

@@ -18,6 +18,8 @@
 //! | `simd` | the best of the levels below | feature `simd` |
 //! | `simd-arrays` | plain arrays, which the compiler vectorises | everywhere, feature `simd` |
 //! | `simd-sse2` | 16 pixels a turn | x86-64, feature `simd` |
+//! | `simd-neon` | 16 pixels a turn | 64-bit ARM, feature `simd` |
+//! | `simd-wasm` | 16 pixels a turn | WebAssembly built with `simd128`, feature `simd` |
 //! | `simd-avx2` | 32 pixels a turn | x86-64 with AVX2 and feature `simd` |
 //! | `simd-avx512` | 64 pixels a turn | x86-64 with AVX-512 BW, BMI2 and feature `simd` |
 //!
@@ -68,8 +70,8 @@ mod lookup;
 mod portable;
 #[cfg(feature = "simd")]
 #[cfg_attr(
-    target_arch = "x86_64",
-    expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
+    any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"),
+    allow(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
 )]
 mod simd;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
@@ -137,13 +139,15 @@ impl Listed {
 }
 
 /// Every kernel there is, portable first.
-static LISTED: [Listed; 8] = [
+static LISTED: [Listed; 10] = [
     Listed { name: "portable", find: || Some((Level::Portable, portable::fill, portable::fill_list)) },
     Listed { name: "asm", find: find_asm },
     Listed { name: "asm-unrolled", find: find_asm_unrolled },
     Listed { name: "simd", find: find_simd },
     Listed { name: "simd-arrays", find: find_arrays },
     Listed { name: "simd-sse2", find: find_sse2 },
+    Listed { name: "simd-neon", find: find_neon },
+    Listed { name: "simd-wasm", find: find_wasm },
     Listed { name: "simd-avx2", find: find_avx2 },
     Listed { name: "simd-avx512", find: find_avx512 },
 ];
@@ -165,7 +169,7 @@ fn find_asm_unrolled() -> Option<Found> {
 }
 
 fn find_simd() -> Option<Found> {
-    find_avx512().or_else(find_avx2).or_else(find_sse2).or_else(find_arrays)
+    [find_avx512, find_avx2, find_sse2, find_neon, find_wasm, find_arrays].iter().find_map(|find| find())
 }
 
 fn find_arrays() -> Option<Found> {
@@ -179,6 +183,20 @@ fn find_sse2() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     return Some((Level::Sse2, simd::sse2::fill, simd::sse2::fill_list));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
+    return None;
+}
+
+fn find_neon() -> Option<Found> {
+    #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+    return Some((Level::Neon, simd::neon::fill, simd::neon::fill_list));
+    #[cfg(not(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little")))]
+    return None;
+}
+
+fn find_wasm() -> Option<Found> {
+    #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+    return Some((Level::Wasm, simd::wasm::fill, simd::wasm::fill_list));
+    #[cfg(not(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128")))]
     return None;
 }
 

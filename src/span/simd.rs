@@ -237,6 +237,16 @@ pub(super) mod sse2 {
     }
 }
 
+#[cfg(any(
+    all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"),
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
+mod halves;
+#[cfg(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+pub(super) use halves::neon;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+pub(super) use halves::wasm;
+
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod nearer;
 

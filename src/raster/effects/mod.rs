@@ -264,7 +264,7 @@ impl<R: Rows, D: Cell> Target<'_, '_, R, D> {
     }
 
     /// Writes pieces, all of each or where it is nearer.
-    #[inline]
+    #[inline(never)]
     fn write<const BLENDS: bool>(
         &mut self,
         faces: &[Face],
