@@ -7,7 +7,7 @@ use std::io::{self, Write};
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    Angle, Beam, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Sun, Technique, Vector, VertexStage,
+    Angle, Beam, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Shading, Sun, Vector, VertexStage,
     View, average_normals,
 };
 use mode13h::palette::Ramp;
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let angles = [Angle::default(), Angle::from_degrees(30), Angle::default()];
     let object = Object { mesh, placement: Placement { angles, ..Placement::default() }, paints: &paints };
     let (mut lit, mut beams) = ([LitVertex::default(); 5], [Beam::default(); 1]);
-    let stage = VertexStage::new(&view, object, &suns, Technique::GouraudReseeded, &mut lit, &mut beams)?;
+    let stage = VertexStage::new(&view, object, &suns, Shading::Gouraud88Reseeded, &mut lit, &mut beams)?;
 
     let mut out = io::stdout().lock();
     writeln!(out, "P5 {WIDTH} {HEIGHT} 255")?;

@@ -113,6 +113,7 @@ impl I24F8 {
     /// Every f32 is an f64.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub fn round_from_f32(pixels: f32) -> Option<Self> {
         Self::round_from_f64(f64::from(pixels))
     }

@@ -65,11 +65,17 @@ pub use glam;
 
 pub mod fixed;
 pub mod integer;
+#[doc(hidden)]
 pub mod lanes;
 pub mod palette;
 pub mod raster;
 pub mod span;
 pub mod vga;
+
+mod names;
+mod shading;
+
+pub use names::UnknownName;
 
 #[cfg(feature = "alloc")]
 pub mod auto_palette;

@@ -20,7 +20,7 @@
 //!
 //! ```
 //! use mode13h::fixed::I16F16;
-//! use mode13h::integer::{Angle, Camera, FixedMesh, Lens, Object, Paint, Placement, VertexStage, Sun, Technique, View};
+//! use mode13h::integer::{Angle, Camera, FixedMesh, Lens, Object, Paint, Placement, VertexStage, Shading, Sun, View};
 //! use mode13h::palette::Ramp;
 //! use mode13h::raster::{Frame, Raster};
 //!
@@ -38,7 +38,7 @@
 //! let suns = [Sun { direction: at(0, 0, 1), intensity: I16F16::ONE }];
 //!
 //! let (mut lit, mut beams) = ([Default::default(); 3], [Default::default(); 1]);
-//! let stage = VertexStage::new(&view, object, &suns, Technique::default(), &mut lit, &mut beams)?;
+//! let stage = VertexStage::new(&view, object, &suns, Shading::default(), &mut lit, &mut beams)?;
 //! let mut bytes = [0; 320 * 200];
 //! let mut raster = Raster::new(Frame::new(&mut bytes, 320, 200, 320)?);
 //! let faces = stage.faces(|vertices, interpolation| {
@@ -60,9 +60,10 @@ mod view;
 use core::fmt;
 
 pub use angle::Angle;
+pub use crate::shading::Shading;
 pub use light::{Beam, Paint, Sun};
 pub use mesh::{FixedMesh, FixedMeshError, Index, average_normals, face_normal};
-pub use stage::{Faces, LitVertex, Object, Technique, VertexStage};
+pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};
 pub use view::{Camera, Lens, Placement, View};
 

@@ -72,6 +72,7 @@ pub(super) fn unit(v: [i128; 3], bits: u32) -> Option<Wide> {
 /// assert_eq!(unit, Some([39_322, 0, -52_429])); // 0.6, 0, −0.8
 /// ```
 #[must_use]
+#[doc(hidden)]
 pub fn unit_vector(v: Vector) -> Option<Vector> {
     narrow_unit(widen(v).map(i128::from))
 }

@@ -64,6 +64,7 @@ impl Lens {
     ///
     /// # Errors
     /// A side that is 0 or above 4,096; a focal length that is not above 0, or above 16,384 pixels.
+    #[doc(hidden)]
     pub fn with_focal_lengths(width: u32, height: u32, focal: [I16F16; 2]) -> Result<Self, IntegerError> {
         Self::checked(width, height, focal.map(|f| i128::from(f.to_bits())))
     }
@@ -126,6 +127,7 @@ impl View {
     ///
     /// # Errors
     /// A scale below 0; a mesh of which a part may be more than 65,535 units from the eye.
+    #[doc(hidden)]
     pub fn check<I: Index>(&self, placement: &Placement, mesh: &FixedMesh<'_, I>) -> Result<(), IntegerError> {
         ObjectView::new(self, placement, mesh).map(|_| ())
     }

@@ -96,7 +96,7 @@ impl Material {
     /// `number` chooses the ramp. The texture is left to the caller, who can read files:
     /// [`with_map`](Self::with_map).
     #[must_use]
-    pub fn from_surface(surface: &Surface, number: u16) -> Self {
+    pub(crate) fn from_surface(surface: &Surface, number: u16) -> Self {
         let diffuse = luminance(surface.diffuse);
         Self {
             name: surface.name.clone(),
@@ -156,6 +156,7 @@ impl Material {
 
     /// Whether its three channels differ.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color) || (self.is_specular() && is_colored(self.highlight))
     }

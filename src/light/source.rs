@@ -92,6 +92,7 @@ impl Light {
 
     /// Whether its three channels differ: whether it takes three to light by it.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color())
     }

@@ -44,7 +44,7 @@ impl Mesh {
     /// For each vertex the number of its surface; 0 where no triangle uses it. Of a mesh without
     /// [one surface a vertex](Self::has_one_surface_a_vertex), that of the last triangle.
     #[must_use]
-    pub fn vertex_surfaces(&self) -> &[u16] {
+    pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         &self.facts.vertex_surfaces
     }
 

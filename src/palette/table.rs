@@ -25,10 +25,11 @@ pub struct Table(Box<[u8; Table::BYTES]>);
 
 impl Table {
     /// 64 KiB.
-    pub const BYTES: usize = 65_536;
+    pub(crate) const BYTES: usize = 65_536;
 
     /// From a byte for every row and column: `byte(high, low)`. For one, Phong's table of shades.
     #[must_use]
+    #[doc(hidden)]
     pub fn from_fn(byte: impl FnMut(u8, u8) -> u8) -> Self {
         let mut table = Self(Box::new([0; Self::BYTES]));
         table.fill(byte);

@@ -1,6 +1,6 @@
 //! The effects, and what each of them may change.
 
-use crate::scene::named;
+use crate::names::named;
 
 named! {
     /// A decision that the plan makes for every object.
@@ -46,8 +46,6 @@ named! {
         /// The DAC is loaded anew as time passes, and nothing is drawn.
         PaletteAnimation = "palette-animation",
     }
-    /// There is no effect of that name. Its text lists those there are.
-    pub struct UnknownEffect;
 }
 
 /// What leaving an effect out may change.
@@ -66,6 +64,7 @@ impl Effect {
     }
 
     /// How many there are.
+    #[doc(hidden)]
     pub const COUNT: usize = Self::ALL.len();
 
     /// What leaving it out may change.

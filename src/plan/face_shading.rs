@@ -52,6 +52,7 @@ impl FaceShading {
 
     /// Whether light beyond that of the corners is worked out for the face.
     #[must_use]
+    #[doc(hidden)]
     pub const fn lights_pixels(self) -> bool {
         match self {
             Self::By(shading) => shading.lights_pixels(),

@@ -12,7 +12,7 @@ use super::stats::Stats;
 use super::{RenderError, Screen, Shading};
 use crate::fixed::I16F16;
 use crate::integer::{
-    Angle, Beam, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Sun, Technique, Vector,
+    Angle, Beam, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Sun, Vector,
     VertexStage, View,
 };
 use crate::light::{Light, Material};
@@ -250,30 +250,17 @@ impl IntegerPath {
         let mesh = fixed_mesh(&self.meshes, prepared, object);
         self.lit.resize(mesh.vertices().max(self.lit.len()), LitVertex::default());
         self.beams.resize(self.suns.len(), Beam::default());
-        let technique = match shading {
-            Shading::Flat => Technique::Flat,
-            Shading::GouraudVintage => Technique::GouraudVintage,
-            Shading::Gouraud88 => Technique::Gouraud,
-            Shading::Gouraud1616 => Technique::Gouraud1616,
-            Shading::GouraudHyperbolic => Technique::GouraudHyperbolic,
-            // The default; of the others it is what `Shading::in_integers` says.
-            Shading::Gouraud88Reseeded
-            | Shading::GouraudTessellated
-            | Shading::PhongTable
-            | Shading::Phong
-            | Shading::Float => Technique::GouraudReseeded,
-        };
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
         // `prepare` has checked the object, and here is room for all.
-        let Ok(stage) = VertexStage::new(view, fixed_object, &self.suns, technique, &mut self.lit, &mut self.beams)
+        let Ok(stage) = VertexStage::new(view, fixed_object, &self.suns, shading, &mut self.lit, &mut self.beams)
         else {
             return;
         };
         let vertices = mesh.vertices() as u64;
         let faces = stage.faces(triangle);
         stats.vertices += vertices;
-        stats.lit += if technique == Technique::Flat { faces.lit } else { vertices };
+        stats.lit += if shading == Shading::Flat { faces.lit } else { vertices };
         stats.faces += object.mesh().triangles().len() as u64;
         stats.clipped += faces.clipped;
         stats.culled += faces.culled;

@@ -59,7 +59,7 @@ use crate::plan::{self, Change, Effect, Findings, Inputs, Plan, decide};
 use crate::raster::scan_line::Lists;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
-pub use crate::scene::{HiddenSurfaces, Mapping, Shading, UnknownHiddenSurfaces, UnknownMapping, UnknownShading};
+pub use crate::scene::{HiddenSurfaces, Mapping, Shading};
 use crate::span::Kernel;
 use crate::vga::Vga;
 pub use crate::view::Screen;
@@ -68,7 +68,7 @@ pub use error::RenderError;
 use error::check;
 pub use settings::{Accuracy, ChosenBy, Resolved, Settings};
 pub use stats::{Shares, Stats};
-pub use vertex_path::{UnknownVertexPath, VertexPath};
+pub use vertex_path::VertexPath;
 
 /// What the frame that was drawn last depends on, beside its objects.
 #[derive(Clone, PartialEq, Debug)]
@@ -270,6 +270,7 @@ impl Renderer {
     /// that was drawn last. `None` of an object that has one shade a face, that is not there, or on the
     /// 16.16 path.
     #[must_use]
+    #[doc(hidden)]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.plan.objects().get(object)?;
         if plan.is_on(Effect::Phong) || (plan.is_on(Effect::Lighting) && !plan.is_on(Effect::Gouraud)) {

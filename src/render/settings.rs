@@ -62,6 +62,7 @@ impl fmt::Display for Accuracy {
 
 /// Who chose what a scene is drawn by.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[doc(hidden)]
 pub enum ChosenBy {
     /// The renderer's settings.
     Renderer,
@@ -85,12 +86,14 @@ pub struct Settings {
     /// The numbers that vertices are made in.
     pub vertex_path: VertexPath,
     /// Effects that are switched by hand.
+    #[doc(hidden)]
     pub overrides: Overrides,
 }
 
 /// What a scene is drawn by. [`Settings::resolve`] makes it.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
+#[doc(hidden)]
 pub struct Resolved {
     /// How exact shades are to be, as it was asked for, or the default.
     pub asked: Accuracy,
@@ -136,6 +139,7 @@ impl Settings {
     /// assert_eq!((resolved.accuracy, resolved.asked_by), (Accuracy::Shading(Shading::Phong), ChosenBy::Renderer));
     /// ```
     #[must_use]
+    #[doc(hidden)]
     pub fn resolve(&self, preferences: &Preferences) -> Resolved {
         let of_scene = preferences.max_error.map(Accuracy::WithinError).or(preferences.shading.map(Accuracy::Shading));
         let (asked, asked_by) = match (self.accuracy, of_scene) {

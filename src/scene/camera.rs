@@ -28,30 +28,24 @@ impl Camera {
     /// Looks along −z at a sphere, from where it fills fifteen sixteenths of the picture's height.
     #[must_use]
     pub fn framing(centre: Vec3, radius: f32) -> Self {
-        Self::framing_from(centre, radius, Vec3::Z, Self::FIELD_OF_VIEW)
-    }
-
-    /// Looks at a sphere from the side that `direction` points to, from where it fills fifteen sixteenths of the
-    /// picture's height. `direction` has any length but zero; the field of view is in radians.
-    #[must_use]
-    pub fn framing_from(centre: Vec3, radius: f32, direction: Vec3, field_of_view: f32) -> Self {
         // Half the angle under which the sphere is seen, and the distance at which its sine is that.
         // The distance is at most f32::MAX, so that a sphere of that size is still something to look
         // at.
-        let half = libm::atanf(Self::FILL * libm::tanf(field_of_view / 2.0));
+        let half = libm::atanf(Self::FILL * libm::tanf(Self::FIELD_OF_VIEW / 2.0));
         let distance = (radius / libm::sinf(half)).clamp(f32::MIN_POSITIVE, f32::MAX);
-        let eye = centre + direction.normalize_or(Vec3::Z) * distance;
+        let eye = centre + Vec3::Z * distance;
         Self {
             eye: eye.clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX)),
             target: centre,
             up: Vec3::Y,
-            field_of_view,
+            field_of_view: Self::FIELD_OF_VIEW,
             near: Self::near_for(distance),
         }
     }
 
     /// How near is as near as need be, where what is looked at is at a distance: a 128th of it.
     #[must_use]
+    #[doc(hidden)]
     pub fn near_for(distance: f32) -> f32 {
         (distance / 128.0).max(f32::MIN_POSITIVE)
     }

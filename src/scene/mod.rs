@@ -13,7 +13,6 @@
 //! | `motion` | [`Motion`]: everything from absolute time |
 //! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
 //! | `preferences` | [`Preferences`]: shading, hidden surfaces, mapping, mipmaps, tessellation, dither |
-//! | `names` | choices that are typed by name |
 //! | `file` | scenes as TOML files (feature `scene-files`) |
 //! | `shipped` | those that are compiled in (feature `scene-files`) |
 
@@ -24,7 +23,6 @@ pub mod file;
 mod fog;
 pub(crate) mod framing;
 mod motion;
-mod names;
 pub(crate) mod object;
 mod preferences;
 #[cfg(feature = "scene-files")]
@@ -44,12 +42,10 @@ pub use animation::PaletteAnimation;
 pub use camera::Camera;
 pub use fog::Fog;
 pub use motion::{Motion, Moving, Path};
-pub(crate) use names::named;
 pub(crate) use object::matrix_product;
 pub use object::{Object, UpAxis};
-pub use preferences::{
-    HiddenSurfaces, Mapping, Preferences, Shading, UnknownHiddenSurfaces, UnknownMapping, UnknownShading,
-};
+pub use crate::shading::Shading;
+pub use preferences::{HiddenSurfaces, Mapping, Preferences};
 
 /// An object of a scene, as [`Scene::add`] returned it. Valid until the object is removed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]

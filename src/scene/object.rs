@@ -94,7 +94,7 @@ impl Object {
 
     /// For each vertex of the mesh, the index of its surface.
     #[must_use]
-    pub fn vertex_surfaces(&self) -> &[u16] {
+    pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         self.mesh.vertex_surfaces()
     }
 

@@ -78,7 +78,7 @@ impl Kernel {
     /// [`interpolate_each`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
-    pub fn interpolate_each(
+    pub(crate) fn interpolate_each(
         self,
         places: &Lanes<f64>,
         a: &[Lanes<f64>; 6],
@@ -96,7 +96,7 @@ impl Kernel {
     /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
-    pub fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+    pub(crate) fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if self.has_avx2() {
             return x86::interpolate_at(places, a, da, d, dd);

@@ -65,6 +65,7 @@ impl Dac {
 
     /// The colour that a pixel's byte shows as: looked up through the pixel mask, in 8 bits.
     #[must_use]
+    #[doc(hidden)]
     pub const fn color_of(&self, pixel: u8) -> Rgb {
         Rgb::from_u32(self.shown[(pixel & self.mask) as usize])
     }

@@ -81,6 +81,7 @@ impl Beam {
 
     /// The dot in its line, 0 to 799; dots 0 to 639 show column `dot / 2`.
     #[must_use]
+    #[doc(hidden)]
     pub const fn dot(self) -> u32 {
         // Below 800.
         (self.units % UNITS_PER_LINE / UNITS_PER_DOT) as u32
@@ -100,6 +101,7 @@ impl Beam {
 
     /// What port 3DAh reads: [`NOT_DISPLAYING`] and [`VERTICAL_RETRACE`], all other bits 0.
     #[must_use]
+    #[doc(hidden)]
     pub const fn status(self) -> u8 {
         let blank = if self.is_displaying() { 0 } else { NOT_DISPLAYING };
         let retrace = if self.is_in_retrace() { VERTICAL_RETRACE } else { 0 };

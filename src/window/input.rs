@@ -43,6 +43,7 @@ impl Input {
     }
 
     /// Whether the key went down since the last frame while Shift was down, however short both were.
+    #[doc(hidden)]
     pub fn pressed_with_shift(&self, key: Key) -> bool {
         self.shifted.contains(&key)
     }

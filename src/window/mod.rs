@@ -197,6 +197,7 @@ impl Window {
     /// # Errors
     ///
     /// [`WindowError`] if the display went away.
+    #[doc(hidden)]
     pub fn show_over(&mut self, vga: &Vga, over: impl FnOnce(&mut Canvas<'_>)) -> Result<Flow, WindowError> {
         self.wait(FRAME);
         let (width, height) = self.size();

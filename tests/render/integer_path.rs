@@ -5,7 +5,7 @@ use crate::support::tried::Tried;
 use mode13h::fixed::I16F16;
 use mode13h::glam::Vec3;
 use mode13h::integer::{
-    Angle, Camera, FixedMesh, FixedMeshError, IntegerError, Lens, Object, Paint, Placement, Sun, Technique, Vector,
+    Angle, Camera, FixedMesh, FixedMeshError, IntegerError, Lens, Object, Paint, Placement, Shading, Sun, Vector,
     VertexStage, View, average_normals, face_normal, turn, unit_vector,
 };
 use mode13h::mesh::{Mesh, shapes};
@@ -199,7 +199,7 @@ fn triangles(
     suns: &[Sun],
 ) -> Result<Vec<([Vertex; 3], Interpolation)>, IntegerError> {
     let (mut lit, mut beams) = (vec![Default::default(); object.mesh.vertices()], vec![Default::default(); suns.len()]);
-    let stage = VertexStage::new(view, object, suns, Technique::default(), &mut lit, &mut beams)?;
+    let stage = VertexStage::new(view, object, suns, Shading::default(), &mut lit, &mut beams)?;
     let mut triangles = Vec::new();
     let faces = stage.faces(|vertices, interpolation| triangles.push((*vertices, interpolation)));
     assert_eq!(faces.drawn, triangles.len() as u64);
@@ -568,7 +568,7 @@ fn what_16_16_cannot_hold_is_refused() {
     let sun = Sun { direction: z, intensity: I16F16::ONE };
     let stage = |object, suns: &[Sun], lit, beams| {
         let (mut lit, mut beams) = (vec![Default::default(); lit], vec![Default::default(); beams]);
-        VertexStage::new(&view, object, suns, Technique::Flat, &mut lit, &mut beams).map(|_| ())
+        VertexStage::new(&view, object, suns, Shading::Flat, &mut lit, &mut beams).map(|_| ())
     };
     check(stage(object, &[sun], 1, 1).is_ok(), "enough room");
     check(stage(object, &[sun], 0, 1) == Err(IntegerError::Room { needed: 1 }), "no room for vertices");
@@ -626,11 +626,11 @@ fn r7_any_legal_input_is_quiet() {
             intensity: I16F16::from_bits(random.one_of(&[i32::MIN, i32::MAX, 65_536])),
         };
         let suns = vec![sun; if random.within(0, 999) == 0 { 4096 } else { 2 }];
-        let technique = random.one_of(&[Technique::Flat, Technique::GouraudReseeded]);
+        let shading = random.one_of(&[Shading::Flat, Shading::Gouraud88Reseeded]);
         let mesh = mesh.with_exponent(random.within(-40, 3) as i8);
         let object = Object { mesh, placement, paints: &[paint] };
         let (mut lit, mut beams) = ([Default::default(); 3], vec![Default::default(); suns.len()]);
-        match VertexStage::new(&view, object, &suns, technique, &mut lit, &mut beams) {
+        match VertexStage::new(&view, object, &suns, shading, &mut lit, &mut beams) {
             Ok(stage) => {
                 let mut raster = Raster::new(Frame::new(&mut pixels, 64, 40, 64).expect("a frame"));
                 drawn += stage

@@ -384,6 +384,7 @@ pub(crate) fn paint_row(
 impl<D: Cell> Raster<'_, D> {
     /// Draws a triangle with effects. The order of the corners and their winding make no difference; a
     /// triangle without area draws nothing.
+    #[doc(hidden)]
     pub fn triangle_with_effects(
         &mut self,
         vertices: &[Vertex; 3],

@@ -125,6 +125,7 @@ impl Scene {
     ///
     /// # Errors
     /// Those of [`from_toml`](Self::from_toml), and bytes that are no text.
+    #[doc(hidden)]
     pub fn from_toml_bytes(
         bytes: &[u8],
         path: impl AsRef<Path>,
