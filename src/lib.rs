@@ -27,6 +27,7 @@
 #![cfg_attr(feature = "png", doc = "```no_run")]
 #![cfg_attr(not(feature = "png"), doc = "```ignore")]
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use mode13h::Angle;
 //! use mode13h::export;
 //! use mode13h::light::Light;
 //! use mode13h::mesh::shapes;
@@ -39,7 +40,7 @@
 //! scene.add_light(Light::sun([0.4, 0.6, 1.0]));
 //! let mut renderer = Renderer::new();
 //! let mut vga = Vga::new();
-//! scene[ship].rotate_y(0.02);
+//! scene[ship].rotate_y(Angle::from_degrees(1.0));
 //! renderer.draw(&scene, &mut vga)?;
 //! export::png(&vga, "torus.png")?;
 //! # Ok(())
@@ -72,9 +73,13 @@ pub mod raster;
 pub mod span;
 pub mod vga;
 
+#[cfg(feature = "alloc")]
+mod angle;
 mod names;
 mod shading;
 
+#[cfg(feature = "alloc")]
+pub use angle::Angle;
 pub use names::UnknownName;
 
 #[cfg(feature = "alloc")]

@@ -19,7 +19,7 @@
 //! The sums on the way are stated where they are taken.
 
 use super::IntegerError;
-use super::angle::{Angle, SINE_BITS};
+use super::angle::{BinaryAngle, SINE_BITS};
 use super::mesh::{FixedMesh, Index, square};
 use super::vector::{Matrix, Vector, Wide, cross, dot, product, round_shift, unit, wide_turn, widen};
 use crate::fixed::{I16F16, I24F8, U8F8};
@@ -47,8 +47,15 @@ impl Lens {
     /// # Errors
     /// A side or part of the aspect that is 0, or too large; an angle that is 0, half a turn or more,
     /// or so small that a focal length exceeds 16,384 pixels.
-    pub fn new(width: u32, height: u32, pixel_aspect: (u32, u32), field_of_view: Angle) -> Result<Self, IntegerError> {
-        if field_of_view == Angle::default() || field_of_view.to_bits() >= Angle::HALF.to_bits() || pixel_aspect.0 == 0
+    pub fn new(
+        width: u32,
+        height: u32,
+        pixel_aspect: (u32, u32),
+        field_of_view: BinaryAngle,
+    ) -> Result<Self, IntegerError> {
+        if field_of_view == BinaryAngle::default()
+            || field_of_view.to_bits() >= BinaryAngle::HALF.to_bits()
+            || pixel_aspect.0 == 0
         {
             return Err(IntegerError::FieldOfView);
         }
@@ -153,7 +160,7 @@ pub struct Placement {
     /// The point that it turns about, in the mesh's own coordinates.
     pub pivot: Vector,
     /// About x, y and z: the turn about z comes first, then y, then x.
-    pub angles: [Angle; 3],
+    pub angles: [BinaryAngle; 3],
     /// How many times as large as the mesh it is; not negative.
     pub scale: I16F16,
 }
@@ -164,7 +171,7 @@ impl Default for Placement {
         Self {
             position: Vector::default(),
             pivot: Vector::default(),
-            angles: [Angle::default(); 3],
+            angles: [BinaryAngle::default(); 3],
             scale: I16F16::ONE,
         }
     }

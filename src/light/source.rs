@@ -37,14 +37,14 @@ const WHITE: [f32; 3] = [1.0; 3];
 impl Light {
     /// A white sun of intensity 1 in `direction`, which points **towards** it; any length but zero.
     #[must_use]
-    pub fn sun(direction: [f32; 3]) -> Self {
-        Self::Sun { direction: Vec3::from_array(direction), intensity: 1.0, color: WHITE }
+    pub fn sun(direction: impl Into<Vec3>) -> Self {
+        Self::Sun { direction: direction.into(), intensity: 1.0, color: WHITE }
     }
 
     /// A white lamp of intensity 1 at `position` that reaches as far as `range`, above 0.
     #[must_use]
-    pub fn lamp(position: [f32; 3], range: f32) -> Self {
-        Self::Lamp { position: Vec3::from_array(position), intensity: 1.0, range, color: WHITE }
+    pub fn lamp(position: impl Into<Vec3>, range: f32) -> Self {
+        Self::Lamp { position: position.into(), intensity: 1.0, range, color: WHITE }
     }
 
     /// Sets the light's intensity.

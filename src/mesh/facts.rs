@@ -179,7 +179,7 @@ mod tests {
             let mut mesh = mesh.with_one_surface_a_vertex();
             check(name, &mesh);
             assert!(mesh.vertex_surfaces().contains(&1), "{name}");
-            mesh.smooth(Weight::Angle, Some(0.5));
+            mesh.smooth(Weight::Angle, Some(crate::Angle::from_radians(0.5)));
             check(name, &mesh);
             mesh.flat();
             check(name, &mesh);

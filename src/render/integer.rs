@@ -12,7 +12,7 @@ use super::stats::Stats;
 use super::{RenderError, Screen, Shading};
 use crate::fixed::I16F16;
 use crate::integer::{
-    Angle, Beam, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Sun, Vector,
+    Beam, BinaryAngle, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Sun, Vector,
     VertexStage, View,
 };
 use crate::light::{Light, Material};
@@ -101,14 +101,6 @@ fn fixed(x: f64) -> Option<I16F16> {
 fn direction(v: [f64; 3]) -> Vector {
     let greatest = v.iter().fold(0.0_f64, |greatest, c| greatest.max(libm::fabs(*c)));
     v.map(|c| if greatest > 0.0 { fixed(c / greatest * 16_384.0).unwrap_or_default() } else { I16F16::default() })
-}
-
-/// The nearest binary angle. Of angles so large that their f64 no longer counts turns, some angle.
-fn binary_angle(radians: f64) -> Angle {
-    let turns = radians / core::f64::consts::TAU;
-    let part = turns - libm::floor(turns);
-    // 0 to 65,536, of which the last is a full turn; the casts truncate, and wrap that to 0.
-    Angle::from_bits((part * 65_536.0 + 0.5) as u32 as u16)
 }
 
 fn sun(light: &Light) -> Option<Sun> {
@@ -211,7 +203,7 @@ impl IntegerPath {
                 // No farther than the farthest.
                 position: from_eye(object.position).map(|c| fixed(c * scale).unwrap_or_default()),
                 pivot: Vector::default(),
-                angles: object.angles().map(binary_angle),
+                angles: object.angles().map(BinaryAngle::from),
                 // 1 to 2.
                 scale: fixed(libm::ldexp(scaled, -scale_exponent)).unwrap_or_default(),
             };

@@ -34,8 +34,10 @@ use core::ops::{Index, IndexMut};
 
 use glam::Vec3;
 
+use crate::angle::Angle;
 use crate::light::Light;
 use crate::palette::{Palette, Rgb, builtin};
+pub use crate::shading::Shading;
 pub use crate::shared::Shared;
 use crate::vga::Vga;
 pub use animation::PaletteAnimation;
@@ -44,7 +46,6 @@ pub use fog::Fog;
 pub use motion::{Motion, Moving, Path};
 pub(crate) use object::matrix_product;
 pub use object::{Object, UpAxis};
-pub use crate::shading::Shading;
 pub use preferences::{HiddenSurfaces, Mapping, Preferences};
 
 /// An object of a scene, as [`Scene::add`] returned it. Valid until the object is removed.
@@ -96,8 +97,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// How far the upper end of what is [shown](Self::showing) is tilted towards the eye, in radians.
-    const TILT: f64 = 0.35;
+    /// How far the upper end of what is [shown](Self::showing) is tilted towards the eye.
+    const TILT: Angle = Angle::from_radians(0.35);
 
     /// An empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four seconds.
     #[must_use]
@@ -136,13 +137,13 @@ impl Scene {
     /// use mode13h::scene::Scene;
     /// let mut scene = Scene::showing(shapes::teapot(8));
     /// scene.set_time(scene.duration / 4.0);
-    /// assert_eq!(scene.objects()[0].angles()[1], std::f64::consts::FRAC_PI_2);
+    /// assert_eq!(scene.objects()[0].angles()[1].to_degrees(), 90.0);
     /// ```
     #[must_use]
     pub fn showing(object: impl Into<Object>) -> Self {
         let mut object = object.into().centred();
         object.position = Vec3::ZERO;
-        object.set_angles([Self::TILT, 0.0, 0.0]);
+        object.set_angles([Self::TILT, Angle::default(), Angle::default()]);
         let mut scene = Self::new();
         scene.camera = Camera::framing_turn(&object);
         let start = object.angles();

@@ -5,6 +5,7 @@ use crate::support::oracle;
 use crate::support::random::Random;
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::fixed::U8F8;
 use mode13h::raster::scan_line::{EdgePair, Lists, Scratch, ScratchError};
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
@@ -442,7 +443,7 @@ fn depths_of_earlier_frames_do_not_count() {
     for round in 0..300 {
         let mut number = |most: f64| (random.unit() * 2.0 - 1.0) * most;
         for object in 0..=1 {
-            scene.objects_mut()[object].set_angles([number(3.0), number(3.0), number(3.0)]);
+            scene.objects_mut()[object].set_angles([number(3.0), number(3.0), number(3.0)].map(Angle::from_radians));
         }
         // Beyond the screen's edges and through the near plane, too.
         let far = number(3.0);

@@ -8,6 +8,7 @@
 
 use crate::support::tried::Tried;
 use allocation_counter::measure;
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
@@ -118,7 +119,7 @@ fn turning(mesh: Mesh) -> Scene {
     let mut scene = Scene::new();
     let object = scene.add(Object::new(mesh));
     scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-    scene.motions.push(Motion::Spin { object, start: [0.0; 3], turns: [0.0, 0.1, 0.0] });
+    scene.motions.push(Motion::Spin { object, start: [Angle::default(); 3], turns: [0.0, 0.1, 0.0] });
     scene
 }
 

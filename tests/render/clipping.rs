@@ -6,6 +6,7 @@ use crate::support::near_plane::{cuts_on_the_near_plane, lit, normal};
 use crate::support::odd_views::odd_views;
 use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
@@ -43,7 +44,13 @@ fn counts_by(renderer: &mut Renderer, scene: &Scene) -> (Vec<u32>, Stats) {
 /// An eye at the origin that looks along −z.
 fn scene(mesh: Mesh) -> Scene {
     let mut scene = Scene::new();
-    scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, field_of_view: 1.0, near: 0.25 };
+    scene.camera = Camera {
+        eye: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        field_of_view: Angle::from_radians(1.0),
+        near: 0.25,
+    };
     scene.add(Object::new(mesh));
     scene
 }

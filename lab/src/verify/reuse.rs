@@ -2,6 +2,7 @@
 
 use super::Group;
 use super::random::Random;
+use mode13h::Angle;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, builtin};
@@ -99,7 +100,7 @@ fn change(random: &mut Random, scene: &mut Scene, meshes: &[Shared<Mesh>], palet
             "the camera"
         }
         _ => {
-            scene.objects_mut()[0].set_angles([0; 3].map(|_| random.around_zero(3.0)));
+            scene.objects_mut()[0].set_angles([0; 3].map(|_| random.around_zero(3.0)).map(Angle::from_radians));
             "the angles"
         }
     }

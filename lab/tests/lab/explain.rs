@@ -4,6 +4,7 @@ use crate::support::oracle::{self, Shades};
 use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::triangles;
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
@@ -186,7 +187,7 @@ fn an_account_leaves_the_renderer_as_it_was() {
     let mut scene = scenes::showing("torus");
     let (mut one, mut other) = (Renderer::new(), Renderer::new());
     for turn in 0..4 {
-        scene.objects_mut()[0].set_angles([0.3, 0.2 * f64::from(turn), 0.0]);
+        scene.objects_mut()[0].set_angles([0.3, 0.2 * f64::from(turn), 0.0].map(Angle::from_radians));
         explain(&mut one, &scene, 160, 100);
         assert!(frame(&mut one, &scene) == frame(&mut other, &scene));
         explain(&mut one, &scenes::showing("cube"), 160, 100);
@@ -203,7 +204,7 @@ fn square(x: [f32; 2], y: [f32; 2]) -> Scene {
     let mut scene = Scene::new();
     scene.add(Object::new(mesh).named("square"));
     scene.add_light(Light::sun([0.0, 0.0, 1.0]));
-    scene.camera = Camera { eye, target, up, field_of_view: std::f32::consts::FRAC_PI_2, near: 1.0 };
+    scene.camera = Camera { eye, target, up, field_of_view: Angle::from_degrees(90.0), near: 1.0 };
     scene
 }
 

@@ -4,6 +4,7 @@ use std::fs;
 use std::ops::Range;
 use std::sync::LazyLock;
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, LightResponse, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
@@ -160,7 +161,9 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Camera.eye", |w, r| w.scene.camera.eye = eye(r)),
     seen("Camera.target", |w, r| w.scene.camera.target = place(r, 0.4)),
     seen("Camera.up", |w, r| w.scene.camera.up = place(r, 1.0)),
-    seen("Camera.field_of_view", |w, r| w.scene.camera.field_of_view = between(r, 0.3, 2.0)),
+    seen("Camera.field_of_view", |w, r| {
+        w.scene.camera.field_of_view = Angle::from_radians(between(r, 0.3, 2.0).into())
+    }),
     seen("Camera.near", |w, r| w.scene.camera.near = between(r, 0.02, 2.5)),
     // Fog
     seen("Fog.color", |w, r| one_fog(w, r).color = color(r)),
@@ -204,7 +207,7 @@ pub(super) const CHANGES: &[Change] = &[
         // By a lamp near a large face, which is split otherwise then.
         if r.within(0, 1) == 1 {
             let mut wall = Object::new(shapes::wall(1, 1));
-            wall.set_angles([0.0, 0.2, 0.0]);
+            wall.set_angles([0.0, 0.2, 0.0].map(Angle::from_radians));
             w.scene.objects_mut()[0] = wall;
             while let Some(&id) = w.scene.light_ids().get(3) {
                 w.scene.remove_light(id);
@@ -292,10 +295,10 @@ pub(super) const CHANGES: &[Change] = &[
         let parent = one_of_few(&ids[..below], r).copied();
         w.scene.objects_mut()[below].parent = parent;
     }),
-    seen("Object::rotate_x", |w, r| one_object(w, r).rotate_x(r.unit())),
-    seen("Object::rotate_y", |w, r| one_object(w, r).rotate_y(r.unit())),
-    seen("Object::rotate_z", |w, r| one_object(w, r).rotate_z(r.unit())),
-    seen("Object::set_angles", |w, r| one_object(w, r).set_angles(angles(r))),
+    seen("Object::rotate_x", |w, r| one_object(w, r).rotate_x(Angle::from_radians(r.unit()))),
+    seen("Object::rotate_y", |w, r| one_object(w, r).rotate_y(Angle::from_radians(r.unit()))),
+    seen("Object::rotate_z", |w, r| one_object(w, r).rotate_z(Angle::from_radians(r.unit()))),
+    seen("Object::set_angles", |w, r| one_object(w, r).set_angles(angles(r).map(Angle::from_radians))),
     // Material
     unseen("Material.name", |w, r| one_material(w, r).name = text(r)),
     seen("Material.ambient", |w, r| one_material(w, r).ambient = between(r, 0.0, 0.6)),
@@ -401,7 +404,7 @@ pub(super) const CHANGES: &[Change] = &[
         // Two bodies that pass through each other, so that each way shows them otherwise.
         if r.within(0, 1) == 1 {
             let mut through = Object::new(shapes::torus(9, 6));
-            through.set_angles(angles(r));
+            through.set_angles(angles(r).map(Angle::from_radians));
             w.scene.objects_mut()[0] = Object::new(shapes::cube());
             w.scene.add(through);
             fewer_objects(w);
@@ -554,7 +557,7 @@ pub(super) fn start(random: &mut Random) -> Scene {
                 let mut object = Object::new(mesh(random));
                 object.position = place(random, 0.6);
                 object.scale = 0.6;
-                object.set_angles(angles(random));
+                object.set_angles(angles(random).map(Angle::from_radians));
                 scene.add(object);
             }
         }
@@ -665,7 +668,7 @@ fn object(random: &mut Random) -> Object {
     let mut object = Object::new(mesh(random));
     object.position = place(random, 0.7);
     object.scale = between(random, 0.4, 1.0);
-    object.set_angles(angles(random));
+    object.set_angles(angles(random).map(Angle::from_radians));
     object.materials[0] = material(random);
     object
 }
@@ -702,8 +705,8 @@ fn texture(random: &mut Random) -> Shared<Texture> {
 
 fn light(random: &mut Random) -> Light {
     match random.within(0, 1) {
-        0 => Light::sun(place(random, 1.0).to_array()).with_intensity(0.5),
-        _ => Light::lamp(place(random, 1.0).to_array(), between(random, 1.0, 4.0)),
+        0 => Light::sun(place(random, 1.0)).with_intensity(0.5),
+        _ => Light::lamp(place(random, 1.0), between(random, 1.0, 4.0)),
     }
 }
 
@@ -778,7 +781,7 @@ fn textured(world: &mut World, random: &mut Random) {
     let object = one_object(world, random);
     if object.mesh().texcoords().is_none() {
         replace_mesh(object, shapes::wall(1, 1));
-        object.set_angles([0.2, 0.9, 0.1]);
+        object.set_angles([0.2, 0.9, 0.1].map(Angle::from_radians));
         object.scale = 1.0;
     }
     if object.materials[0].texture.is_none() {
@@ -813,7 +816,7 @@ fn with_motion(world: &mut World, random: &mut Random, motion: impl FnOnce(&mut 
 
 fn spin(world: &mut World, random: &mut Random, start: [f64; 3], turns: [f64; 3]) {
     let id = world.scene.add(object(random));
-    with_motion(world, random, |_| Motion::Spin { object: id, start, turns });
+    with_motion(world, random, |_| Motion::Spin { object: id, start: start.map(Angle::from_radians), turns });
     world.scene.set_time(0.6);
     fewer_objects(world);
 }
