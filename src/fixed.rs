@@ -177,6 +177,7 @@ impl U8F8 {
     /// sees to both); what does not fit saturates at 255.0.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub fn from_intensity(intensity: f32, first: u8, entries: u16) -> Self {
         let units = f64::from(entries.saturating_sub(1)) * 256.0;
         // `max` gives the other operand for NaN, and `clamp` would not. The product of 24 and 16 bits is exact in

@@ -44,6 +44,7 @@ macro_rules! named {
 
             /// Its name, as it is typed.
             #[must_use]
+            #[doc(hidden)]
             pub const fn name(self) -> &'static str {
                 match self { $( Self::$Variant => $name, )* }
             }

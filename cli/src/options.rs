@@ -258,10 +258,10 @@ impl Drawing {
         let Pipeline { hidden_surfaces, mapping, mipmaps, arithmetic, .. } = self.pipeline;
         let mut renderer = Renderer::new();
         renderer.set_kernel(kernel);
-        renderer.set_hidden_surfaces(hidden_surfaces);
-        renderer.set_mapping(mapping);
-        renderer.set_mipmaps(mipmaps);
-        renderer.set_vertex_path(arithmetic.unwrap_or_default());
+        renderer.settings_mut().hidden_surfaces = hidden_surfaces;
+        renderer.settings_mut().mapping = mapping;
+        renderer.settings_mut().mipmaps = mipmaps;
+        renderer.settings_mut().vertex_path = arithmetic.unwrap_or_default();
         renderer
     }
 }

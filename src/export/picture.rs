@@ -6,6 +6,7 @@ use std::fmt;
 use crate::palette::{Palette, Rgb};
 
 /// The longest side of an exported picture, in pixels.
+#[doc(hidden)]
 pub const MAX_SIDE: u16 = 16_384;
 
 /// The shape of a pixel: its width to its height.

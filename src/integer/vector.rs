@@ -90,6 +90,7 @@ pub(super) fn narrow_unit(v: [i128; 3]) -> Option<Vector> {
 /// the same matrix for ever. Every entry is within 0.501 of a 65,536th, so the rows have the length 1
 /// and stand at right angles to within √3 · 2 · 0.501 / 65,536 < 2⁻¹⁵. (The limit is 2⁻¹³.)
 #[must_use]
+#[doc(hidden)]
 pub fn turn(angles: [BinaryAngle; 3]) -> [Vector; 3] {
     // At most 65,536 either way: the entry before is at most 2³⁰ and a few units.
     wide_turn(angles).map(|row| row.map(|c| I16F16::from_bits(round_shift(c, SINE_BITS - 16) as i32)))

@@ -117,6 +117,7 @@ impl Material {
     /// Puts the picture that an MTL file's `map_Kd` names on the material. Kd tints the picture: a coloured Kd goes
     /// into a copy of it, a grey one leaves it as it is, to be shared.
     #[must_use]
+    #[doc(hidden)]
     pub fn with_map(self, surface: &Surface, map: &Shared<Texture>) -> Self {
         let most = surface.diffuse.iter().copied().fold(0.0, f32::max);
         if !is_colored(surface.diffuse) || most == 0.0 {

@@ -56,11 +56,11 @@ impl Light {
         self
     }
 
-    /// Sets the light's colour: red, green, blue, as a rule 0 to 1.
+    /// Sets the light's colour: red, green, blue, as a rule 0 to 1, or an [`Rgb`](crate::palette::Rgb).
     #[must_use]
-    pub fn with_color(mut self, new: [f32; 3]) -> Self {
+    pub fn with_color(mut self, new: impl Into<[f32; 3]>) -> Self {
         match &mut self {
-            Self::Sun { color, .. } | Self::Lamp { color, .. } => *color = new,
+            Self::Sun { color, .. } | Self::Lamp { color, .. } => *color = new.into(),
         }
         self
     }

@@ -76,6 +76,7 @@ impl Ramp {
     /// Whether a palette index belongs to the ramp.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn contains(self, index: u8) -> bool {
         self.first <= index && index <= self.last()
     }
@@ -83,6 +84,7 @@ impl Ramp {
     /// The palette indices, first to last; as [`Vga::cycle`](crate::vga::Vga::cycle) takes them.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn range(self) -> RangeInclusive<u8> {
         self.first..=self.last()
     }

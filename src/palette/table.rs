@@ -21,6 +21,7 @@ use super::{Palette, Rgb, Search};
 /// assert_eq!(fog.as_array()[255 << 8 | 77], fog.get(255, 77));
 /// ```
 #[derive(Clone, PartialEq, Eq)]
+#[doc(hidden)]
 pub struct Table(Box<[u8; Table::BYTES]>);
 
 impl Table {

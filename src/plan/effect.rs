@@ -50,6 +50,7 @@ named! {
 
 /// What leaving an effect out may change.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[doc(hidden)]
 pub enum Class {
     /// Nothing: always doing the full work gives the same bytes.
     SavesWork,
@@ -69,6 +70,7 @@ impl Effect {
 
     /// What leaving it out may change.
     #[must_use]
+    #[doc(hidden)]
     pub const fn class(self) -> Class {
         match self {
             Self::Transform

@@ -112,6 +112,7 @@ impl ObjectPlan {
 
     /// How it is shaded.
     #[must_use]
+    #[doc(hidden)]
     pub fn shading(&self) -> Shading {
         self.shading
     }
@@ -119,6 +120,7 @@ impl ObjectPlan {
     /// The budget that its triangles are shaded by, each as is cheapest: how many shades of error are accepted.
     /// `None` where there is none, or one shading is known to be the cheapest for all.
     #[must_use]
+    #[doc(hidden)]
     pub fn max_error(&self) -> Option<f32> {
         self.max_error
     }

@@ -19,6 +19,7 @@ pub enum Accuracy {
 impl Accuracy {
     /// The shading; within an error the default, which is what faces get on which nothing has to be decided.
     #[must_use]
+    #[doc(hidden)]
     pub fn shading(self) -> Shading {
         match self {
             Self::Shading(shading) => shading,
@@ -28,6 +29,7 @@ impl Accuracy {
 
     /// How many shades of error are accepted, if it is by that that shadings are chosen.
     #[must_use]
+    #[doc(hidden)]
     pub const fn max_error(self) -> Option<f32> {
         match self {
             Self::Shading(_) => None,
@@ -74,6 +76,7 @@ pub enum ChosenBy {
 
 /// How a renderer is set. What is `None` here is left to the scene, and what the scene does not ask for to the plan.
 #[derive(Clone, PartialEq, Debug, Default)]
+#[non_exhaustive]
 pub struct Settings {
     /// How exact shades are.
     pub accuracy: Option<Accuracy>,

@@ -305,6 +305,7 @@ impl Scene {
     }
 
     /// Loads the DAC with the scene's palette, if it has one, as it is at the scene's time.
+    #[doc(hidden)]
     pub fn load_palette(&self, vga: &mut Vga) {
         match (&self.palette, &self.palette_animation) {
             (Some(palette), Some(animation)) => animation.load(palette, self.time, vga),

@@ -78,6 +78,7 @@ impl Path {
     /// Where it is at a time in seconds. Of a period that is not above 0, or of a time that is not
     /// finite, where it begins.
     #[must_use]
+    #[doc(hidden)]
     pub fn at(&self, seconds: f64) -> Vec3 {
         match *self {
             Self::Line { from, to, period, back } => {

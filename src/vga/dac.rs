@@ -59,6 +59,7 @@ impl Dac {
 
     /// The pixel mask, 0xFF unless changed through port 3C6h.
     #[must_use]
+    #[doc(hidden)]
     pub const fn mask(&self) -> u8 {
         self.mask
     }

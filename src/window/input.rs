@@ -48,11 +48,6 @@ impl Input {
         self.shifted.contains(&key)
     }
 
-    /// The keys that went down since the last frame, in order.
-    pub fn keys_pressed(&self) -> &[Key] {
-        &self.pressed
-    }
-
     /// Whether the key is down.
     pub fn held(&self, key: Key) -> bool {
         self.held.contains(&key)

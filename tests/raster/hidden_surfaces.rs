@@ -438,7 +438,7 @@ fn depths_of_earlier_frames_do_not_count() {
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
     let second = scene.add(Object::new(shapes::by_name("cube").expect("listed")));
     let (mut again, mut machine) = (Renderer::new(), Vga::new());
-    again.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+    again.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     let mut drawn = 0;
     for round in 0..300 {
         let mut number = |most: f64| (random.unit() * 2.0 - 1.0) * most;

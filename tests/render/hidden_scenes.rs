@@ -47,7 +47,7 @@ fn bars() -> Scene {
 
 fn picture(scene: &Scene, way: Option<HiddenSurfaces>) -> (Vec<u8>, HiddenSurfaces) {
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-    renderer.set_hidden_surfaces(way);
+    renderer.settings_mut().hidden_surfaces = way;
     let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
     (vga.pixels().to_vec(), stats.hidden_surfaces)
 }

@@ -23,14 +23,14 @@ const HEIGHT: usize = 200;
 
 fn renderer(path: VertexPath) -> Renderer {
     let mut renderer = Renderer::new();
-    renderer.set_vertex_path(path);
+    renderer.settings_mut().vertex_path = path;
     renderer
 }
 
 fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
     let mut vga = Vga::new();
     let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
-    assert_eq!(stats.vertex_path, renderer.vertex_path());
+    assert_eq!(stats.vertex_path, renderer.settings().vertex_path);
     vga.pixels().to_vec()
 }
 

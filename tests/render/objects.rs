@@ -105,7 +105,7 @@ fn parents_in_a_circle_and_on_the_integer_path_are_refused() {
     scene[cube].parent = Some(torus);
     let mut vga = Vga::new();
     let mut integer = Renderer::new();
-    integer.set_vertex_path(VertexPath::Integer);
+    integer.settings_mut().vertex_path = VertexPath::Integer;
     let refused = |result| matches!(result, Err(RenderError::Object { .. }));
     assert!(refused(integer.draw(&scene, &mut vga)));
     scene[torus].parent = Some(cone);

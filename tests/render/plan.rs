@@ -50,7 +50,8 @@ fn the_full_work_gives_the_same_bytes() {
     for (name, scene) in scenes::all() {
         let (expected, stats, chosen) = draw(&scene, |_| ());
         // What saves work by being on: culling, and hidden surfaces without depths.
-        let (full, _, _) = draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
+        let (full, _, _) =
+            draw(&scene, |renderer| renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
         let covered_twice = differing(&expected, &full);
         assert!(covered_twice == 0, "{name}, depth buffer: {covered_twice} pixels differ");
         for effect in Effect::ALL {
@@ -65,7 +66,7 @@ fn the_full_work_gives_the_same_bytes() {
             let (bytes, forced, renderer) = draw(&scene, |renderer| {
                 renderer.force(effect, Some(on));
                 if !on {
-                    renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+                    renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
                 }
             });
             assert!(
@@ -193,7 +194,7 @@ fn d1_the_plan_never_picks_painters_order_for_what_overlaps() {
         let (_, stats, _) = draw(&scene, |_| ());
         if stats.hidden_surfaces == HiddenSurfaces::PainterOrder {
             let (depth, _, _) =
-                draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
+                draw(&scene, |renderer| renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
             assert_eq!(differing(&draw(&scene, |_| ()).0, &depth), 0, "{name}");
         }
         tried.add(1);
@@ -427,8 +428,8 @@ fn mipmaps_change_nothing_of_what_is_near() {
                 }
                 let frame = |mipmaps| {
                     draw(&scene, |renderer| {
-                        renderer.set_mapping(Some(mapping));
-                        renderer.set_mipmaps(Some(mipmaps));
+                        renderer.settings_mut().mapping = Some(mapping);
+                        renderer.settings_mut().mipmaps = Some(mipmaps);
                     })
                 };
                 let ((without, off, _), (with, on, _)) = (frame(false), frame(true));
@@ -461,7 +462,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
             8192.0_f64.sqrt() * f64::from(distance) * (scene.camera.field_of_view.to_radians() / 2.0).tan() / 100.0;
         assert!((expected..expected * 1.01).contains(&texels), "{texels} texels to a pixel, not {expected}");
         assert_eq!(decision.on, texels > core::f64::consts::FRAC_1_SQRT_2);
-        let without = draw(&scene, |renderer| renderer.set_mipmaps(Some(false))).0;
+        let without = draw(&scene, |renderer| renderer.settings_mut().mipmaps = Some(false)).0;
         // The corners' coordinates and places are rounded.
         if texels < 1.40 {
             assert_eq!(differing(&bytes, &without), 0, "{texels} texels to a pixel");
@@ -477,7 +478,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
 fn mipmaps_are_asked_for() {
     let mut floor = scenes::floor("bricks", 8.0);
     let is_on = |scene: &Scene, asked| {
-        let (_, _, renderer) = draw(scene, |renderer| renderer.set_mipmaps(asked));
+        let (_, _, renderer) = draw(scene, |renderer| renderer.settings_mut().mipmaps = asked);
         called_for(&renderer, Effect::Mipmaps)
     };
     assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [true, true, false]);
@@ -529,8 +530,8 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
         let mut bytes = vec![0; width * height];
         let frame = Frame::new(&mut bytes, width as u32, height as u32, width).expect("a legal frame");
         let mut renderer = Renderer::new();
-        renderer.set_mapping(Some(mapping));
-        renderer.set_mipmaps(Some(mipmaps));
+        renderer.settings_mut().mapping = Some(mapping);
+        renderer.settings_mut().mipmaps = Some(mipmaps);
         renderer.draw_frame(scene, frame, (5, 6)).expect("a legal scene");
         shown(scene, &bytes)
     };
@@ -589,7 +590,7 @@ fn clipping_that_is_needed_cannot_be_switched_off() {
                 let mut frames = [true, false].map(|forced| {
                     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
                     renderer.set_shading(shading);
-                    renderer.set_hidden_surfaces(Some(way));
+                    renderer.settings_mut().hidden_surfaces = Some(way);
                     if forced {
                         renderer.force(Effect::NearClipping, Some(false));
                         renderer.force(Effect::ScreenClipping, Some(false));

@@ -76,7 +76,7 @@ pub fn measure(mesh: &Mesh, kernel: Kernel) -> Result<Whole, Box<dyn Error>> {
     let scale = Scene::default().camera.eye.z / eye.z;
     let mut renderers = [Renderer::new(), Renderer::new()];
     renderers.iter_mut().for_each(|renderer| renderer.set_kernel(kernel));
-    renderers[0].set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+    renderers[0].settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     // An open mesh shows its other side, too.
     let both = !renderers[0].make_plan(&scene, Screen::MODE_13H)?.is_on(0, Effect::BackFaceCulling);
     // SAFETY: Mesa has been started.

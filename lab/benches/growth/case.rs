@@ -98,7 +98,7 @@ fn showing(mesh: &Shared<Mesh>) -> Scene {
 /// With a depth for every pixel, as most models need, also where a sphere is found to be convex.
 fn renderer() -> Renderer {
     let mut renderer = Renderer::new();
-    renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+    renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     renderer
 }
 

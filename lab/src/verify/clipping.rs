@@ -47,7 +47,7 @@ fn check(seed: u64, project: Project<'_>) -> Group {
     // The 16.16 path has 30 bits from the nearest to the farthest.
     floors(&mut group, &[400.0, 1e3, 8e3], &|scene| {
         let mut renderer = Renderer::new();
-        renderer.set_vertex_path(VertexPath::Integer);
+        renderer.settings_mut().vertex_path = VertexPath::Integer;
         Record::of_scene(&mut renderer, scene, Screen::MODE_13H).ok()
     });
     rays(&mut group, &mut random, project);

@@ -51,7 +51,7 @@ pub fn frames(kernel: Kernel) -> Frames {
     for (shape, name) in shapes::NAMES.iter().enumerate() {
         let Some(mesh) = shapes::by_name(name).map(Shared::new) else { continue };
         for (number, (path, shading)) in ways.clone().enumerate() {
-            renderer.set_vertex_path(path);
+            renderer.settings_mut().vertex_path = path;
             renderer.set_shading(shading);
             for step in 0..4_u8 {
                 let mut scene = super::framed(mesh.clone());
@@ -64,9 +64,9 @@ pub fn frames(kernel: Kernel) -> Frames {
     }
     let torus = Shared::new(shapes::torus(24, 12));
     for way in HiddenSurfaces::ALL {
-        renderer.set_hidden_surfaces(Some(way));
+        renderer.settings_mut().hidden_surfaces = Some(way);
         for (path, shading) in ways.clone() {
-            renderer.set_vertex_path(path);
+            renderer.settings_mut().vertex_path = path;
             renderer.set_shading(shading);
             for step in 0..4_u8 {
                 frames.draw(&mut renderer, &close_up(&torus, f64::from(step)), &mut vga);

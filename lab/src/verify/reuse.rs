@@ -48,8 +48,8 @@ fn check(seed: u64, draw: Draw<'_>) -> Group {
         let mut fresh = (Renderer::new(), Vga::new());
         for renderer in [&mut used, &mut fresh.0] {
             renderer.set_shading(shading);
-            renderer.set_hidden_surfaces(forced);
-            renderer.set_vertex_path(path);
+            renderer.settings_mut().hidden_surfaces = forced;
+            renderer.settings_mut().vertex_path = path;
         }
         let drawn = [draw(&mut used, &scene, vga), fresh.0.draw(&scene, &mut fresh.1).is_ok()];
         let differ = vga.pixels().iter().zip(fresh.1.pixels()).filter(|(a, b)| a != b).count();

@@ -62,7 +62,7 @@ fn integer_turn(steps: [f64; 3]) -> [[f64; 3]; 3] {
 /// T3: any angle, and as many turns more.
 fn full_turns(group: &mut Group, random: &mut Random) {
     let mut renderer = Renderer::new();
-    renderer.set_vertex_path(VertexPath::Integer);
+    renderer.settings_mut().vertex_path = VertexPath::Integer;
     let mut scene = super::framed(shapes::torus(16, 8));
     let mut draw = |steps: [i64; 3]| {
         scene.objects_mut()[0]

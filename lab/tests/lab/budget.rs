@@ -343,7 +343,7 @@ fn the_budget_is_the_renderers_or_the_scenes() {
 fn integers_know_no_budget() {
     let scene = crate::support::scenes::framed(shapes::torus(24, 12));
     let mut renderer = within(2.0);
-    renderer.set_vertex_path(VertexPath::Integer);
+    renderer.settings_mut().vertex_path = VertexPath::Integer;
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     assert_eq!(stats.max_error, None);
     assert_eq!(stats.shares.of(Shading::Gouraud88Reseeded), stats.drawn);

@@ -155,8 +155,8 @@ fn an_account_follows_the_way_to_hidden_surfaces() {
         for way in HiddenSurfaces::ALL {
             for path in VertexPath::ALL {
                 let mut renderer = Renderer::new();
-                renderer.set_hidden_surfaces(Some(way));
-                renderer.set_vertex_path(path);
+                renderer.settings_mut().hidden_surfaces = Some(way);
+                renderer.settings_mut().vertex_path = path;
                 if random.unit() < 0.3 {
                     renderer.set_shading(Shading::GouraudVintage);
                 }
@@ -288,8 +288,8 @@ fn faces_with_the_same_corners_keep_their_own_numbers() {
     ] {
         for max_error in [None, Some(4.0)] {
             let mut renderer = Renderer::new();
-            renderer.set_hidden_surfaces(Some(way));
-            renderer.set_accuracy(max_error.map(Accuracy::WithinError));
+            renderer.settings_mut().hidden_surfaces = Some(way);
+            renderer.settings_mut().accuracy = max_error.map(Accuracy::WithinError);
             // Below the diagonal.
             let pixel = explain(&mut renderer, &twice, 105, 80);
             let named: Vec<_> = pixel.faces.iter().map(|face| (face.triangle, face.fate)).collect();
@@ -313,7 +313,7 @@ fn every_pixel_of_a_long_row_and_of_equal_depths() {
         for way in HiddenSurfaces::ALL {
             let mut renderer = Renderer::new();
             renderer.set_shading(shading);
-            renderer.set_hidden_surfaces(Some(way));
+            renderer.settings_mut().hidden_surfaces = Some(way);
             let bytes = frame(&mut renderer, &twins);
             for x in (0..320).step_by(5) {
                 let pixel = explain(&mut renderer, &twins, x, 90);
@@ -536,7 +536,7 @@ fn the_level_of_a_texel_is_named() {
     let scene = scenes::floor("bricks", 24.0);
     let level = |mipmaps: bool, y: u32| {
         let mut renderer = Renderer::new();
-        renderer.set_mipmaps(Some(mipmaps));
+        renderer.settings_mut().mipmaps = Some(mipmaps);
         let bytes = frame(&mut renderer, &scene);
         let pixel = explain(&mut renderer, &scene, 160, y);
         assert_eq!(pixel.byte, bytes[y as usize * 320 + 160]);

@@ -53,7 +53,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
     }
     let fresh = || {
         let mut renderer = Renderer::new();
-        renderer.set_vertex_path(path);
+        renderer.settings_mut().vertex_path = path;
         renderer
     };
     let mesh = Shared::new(shapes::torus(8, 6));

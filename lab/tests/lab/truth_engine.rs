@@ -468,7 +468,7 @@ fn the_probe_numbers_any_triangle() {
     let mut torus = crate::support::scenes::framed(shapes::torus(48, 24));
     torus.objects_mut()[0].set_angles([0.3, 0.2, 0.0].map(Angle::from_radians));
     let mut probe = probe(Shading::Gouraud88Reseeded);
-    probe.renderer().set_vertex_path(VertexPath::Integer);
+    probe.renderer().settings_mut().vertex_path = VertexPath::Integer;
     let shown = probe.look(&torus, SCREEN).expect("a legal scene");
     let errors = compare(&self::truth(&torus).draw(Standard::Gouraud), &shown);
     // Angles of 16 bits, a table sine and normals of 16 bits are off by less than 1/1,000 of what a shade takes.
@@ -895,7 +895,7 @@ fn n2_models_with_faults_have_no_specks() {
             let mut probe = probe(Shading::Gouraud88Reseeded);
             // The others are right for what is convex and far to near.
             let way = if i == 1 { HiddenSurfaces::ScanLine } else { HiddenSurfaces::DepthBuffer };
-            probe.renderer().set_hidden_surfaces(Some(way));
+            probe.renderer().settings_mut().hidden_surfaces = Some(way);
             let specks = specks(&scene, &mut probe);
             tried.worst("specks", specks.len() as f64);
             if !specks.is_empty() {
@@ -946,9 +946,9 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
                     }
                     for setting in 0..12 {
                         let mut probe = probe(Shading::ALL[setting % Shading::ALL.len()]);
-                        probe.renderer().set_hidden_surfaces(Some(way));
+                        probe.renderer().settings_mut().hidden_surfaces = Some(way);
                         match setting {
-                            10 => probe.renderer().set_vertex_path(VertexPath::Integer),
+                            10 => probe.renderer().settings_mut().vertex_path = VertexPath::Integer,
                             11 => {
                                 probe.renderer().set_max_error(4.0);
                             }

@@ -68,6 +68,7 @@ const CREASE: Angle = Angle::from_degrees(40.0);
 
 /// How a model is read.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[doc(hidden)]
 pub struct Options {
     /// The crease angle for corners without a normal: faces whose normals differ by more have an edge between
     /// them. 180° is smooth everywhere, 0 flat; what is beyond counts as these. With `None` the smoothing groups of the

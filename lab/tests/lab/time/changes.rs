@@ -52,12 +52,12 @@ impl Settings {
     pub(super) fn renderer(&self) -> Renderer {
         let Self { accuracy, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
         let mut renderer = Renderer::new();
-        renderer.set_accuracy(*accuracy);
-        renderer.set_mapping(*mapping);
-        renderer.set_mipmaps(*mipmaps);
-        renderer.set_vertex_path(*vertex_path);
+        renderer.settings_mut().accuracy = *accuracy;
+        renderer.settings_mut().mapping = *mapping;
+        renderer.settings_mut().mipmaps = *mipmaps;
+        renderer.settings_mut().vertex_path = *vertex_path;
         renderer.set_kernel(*kernel);
-        renderer.set_hidden_surfaces(*hidden_surfaces);
+        renderer.settings_mut().hidden_surfaces = *hidden_surfaces;
         for (object, effect, on) in forced {
             match object {
                 Some(object) => renderer.force_for(*object, *effect, *on),
@@ -94,8 +94,12 @@ const fn unseen(name: &'static str, apply: fn(&mut World, &mut Random)) -> Chang
 }
 
 /// What no frame depends on, and what is no state of a scene.
-pub(super) const EXEMPT: [(&str, &str); 2] =
-    [("Shipped.name", "of a file that is compiled in"), ("Shipped.text", "a file that is compiled in")];
+pub(super) const EXEMPT: [(&str, &str); 4] = [
+    ("Shipped.name", "of a file that is compiled in"),
+    ("Shipped.text", "a file that is compiled in"),
+    ("Renderer::settings_mut", "its fields are changed one by one"),
+    ("Settings.overrides", "changed by Renderer::force"),
+];
 
 /// All of them.
 pub(super) const CHANGES: &[Change] = &[
@@ -193,7 +197,7 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("Preferences.mapping", |w, r| {
         w.settings.mapping = None;
-        w.kept.set_mapping(None);
+        w.kept.settings_mut().mapping = None;
         let (before, after) = two_mappings(r);
         w.scene.preferences.mapping = before;
         textured(w, r);
@@ -215,7 +219,7 @@ pub(super) const CHANGES: &[Change] = &[
             w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
             w.scene.preferences.max_error = None;
             w.settings.accuracy = None;
-            w.kept.set_accuracy(None);
+            w.kept.settings_mut().accuracy = None;
             w.scene.preferences.tessellation = Some(4.0);
             drawn(w);
             w.scene.preferences.tessellation = Some(between(r, 0.5, 1.0));
@@ -369,38 +373,38 @@ pub(super) const CHANGES: &[Change] = &[
         w.settings.accuracy = Some(Accuracy::Shading(shading));
         w.kept.set_shading(shading);
     }),
-    seen("Renderer::set_accuracy", |w, r| {
+    seen("Settings.accuracy", |w, r| {
         let shades = sometimes(r, |r| between(r, 0.5, 16.0));
         w.settings.accuracy = shades.map(Accuracy::WithinError);
-        w.kept.set_accuracy(w.settings.accuracy);
+        w.kept.settings_mut().accuracy = w.settings.accuracy;
     }),
     seen("Renderer::set_max_error", |w, r| {
         let shades = between(r, 0.5, 16.0);
         w.settings.accuracy = Some(Accuracy::WithinError(shades));
         w.kept.set_max_error(shades);
     }),
-    seen("Renderer::set_mapping", |w, r| {
+    seen("Settings.mapping", |w, r| {
         // The plan's decision is the same for two of them, and the object's vertices are.
         let (before, after) = two_mappings(r);
-        w.kept.set_mapping(before);
+        w.kept.settings_mut().mapping = before;
         textured(w, r);
         w.settings.mapping = after;
-        w.kept.set_mapping(after);
+        w.kept.settings_mut().mapping = after;
     }),
-    seen("Renderer::set_mipmaps", |w, r| {
+    seen("Settings.mipmaps", |w, r| {
         textured(w, r);
         w.settings.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
-        w.kept.set_mipmaps(w.settings.mipmaps);
+        w.kept.settings_mut().mipmaps = w.settings.mipmaps;
     }),
-    seen("Renderer::set_vertex_path", |w, r| {
+    seen("Settings.vertex_path", |w, r| {
         w.settings.vertex_path = r.one_of(&VertexPath::ALL);
-        w.kept.set_vertex_path(w.settings.vertex_path);
+        w.kept.settings_mut().vertex_path = w.settings.vertex_path;
     }),
     unseen("Renderer::set_kernel", |w, r| {
         w.settings.kernel = r.one_of(&Kernel::available().collect::<Vec<_>>());
         w.kept.set_kernel(w.settings.kernel);
     }),
-    seen("Renderer::set_hidden_surfaces", |w, r| {
+    seen("Settings.hidden_surfaces", |w, r| {
         // Two bodies that pass through each other, so that each way shows them otherwise.
         if r.within(0, 1) == 1 {
             let mut through = Object::new(shapes::torus(9, 6));
@@ -408,11 +412,11 @@ pub(super) const CHANGES: &[Change] = &[
             w.scene.objects_mut()[0] = Object::new(shapes::cube());
             w.scene.add(through);
             fewer_objects(w);
-            w.kept.set_hidden_surfaces(Some(HiddenSurfaces::PainterOrder));
+            w.kept.settings_mut().hidden_surfaces = Some(HiddenSurfaces::PainterOrder);
             drawn(w);
         }
         w.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
-        w.kept.set_hidden_surfaces(w.settings.hidden_surfaces);
+        w.kept.settings_mut().hidden_surfaces = w.settings.hidden_surfaces;
     }),
     seen("Renderer::force", |w, r| {
         let (effect, on) = forced(r);
@@ -899,6 +903,8 @@ pub(super) fn in_the_sources() -> Vec<String> {
     }
     let mut names: Vec<String> =
         paths.iter().flat_map(|path| names_in(&fs::read_to_string(path).expect("a file"))).collect();
+    let settings = fs::read_to_string(root.join("render/settings.rs")).expect("a file");
+    names.extend(names_in(&settings).into_iter().filter(|name| name.starts_with("Settings.")));
     names.sort();
     names
 }
