@@ -64,7 +64,7 @@ pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Fail
         return model_or(words, options, "models are .obj files, scenes .toml", &known)
             .map(|model| Input::Model(Box::new(model)));
     };
-    let scene::file::Loaded { scene, warnings, files } = loaded.map_err(Failure::from)?;
+    let scene::file::Loaded { scene, warnings, files, .. } = loaded.map_err(Failure::from)?;
     read_files::add_all(&files);
     for warning in warnings {
         warn(warning);

@@ -10,7 +10,7 @@ use crate::palette::{Palette, Rgb};
 pub const MAX_SIDE: u16 = 16_384;
 
 /// The shape of a pixel: its width to its height.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Hash, Debug, PartialEq, Eq)]
 pub struct PixelShape {
     /// Width, in the same unit as the height; at least 1.
     pub width: u16,

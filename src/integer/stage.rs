@@ -34,6 +34,7 @@ pub struct LitVertex {
 
 /// What the faces of an object came to, in counts.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
 pub struct Faces {
     /// Faces lit, where shading is flat.
     pub lit: u64,

@@ -26,7 +26,7 @@ use crate::fixed::{I16F16, I24F8, U8F8};
 use crate::raster::{Frame, Vertex};
 
 /// The picture: its size in pixels, and how large things look in it.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Lens {
     pub(super) width: u32,
     pub(super) height: u32,
@@ -90,7 +90,7 @@ impl Lens {
 }
 
 /// The eye.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Camera {
     /// Where it is, in units of the scene.
     pub eye: Vector,
@@ -153,7 +153,7 @@ fn right_of(forward: Wide, up: Vector) -> Option<Wide> {
 }
 
 /// Where an object is and how it is turned.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Placement {
     /// Where the pivot is, in units of the scene.
     pub position: Vector,

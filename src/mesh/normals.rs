@@ -27,7 +27,7 @@ use super::{Mesh, topology};
 use crate::angle::Angle;
 
 /// How much each face counts in the normal of a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Hash, Debug, PartialEq, Eq, Default)]
 pub enum Weight {
     /// All alike, as in the source texts. The normal depends on how the faces are cut into triangles.
     Count,

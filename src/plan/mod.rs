@@ -41,6 +41,7 @@ use crate::scene::{HiddenSurfaces, Mapping, Scene, Shading};
 
 /// One decision.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
 pub struct Decision {
     /// Whether the effect is on.
     pub on: bool,

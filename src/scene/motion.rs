@@ -33,7 +33,7 @@ pub enum Motion {
 }
 
 /// What can go along a path.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum Moving {
     /// An object's position.

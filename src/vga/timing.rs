@@ -55,7 +55,7 @@ const RETRACE_STARTS_AT: u64 = UNITS_PER_LINE * RETRACE_START as u64;
 const _: () = assert!(DOT_CLOCK as u64 * UNITS_PER_DOT == UNITS_PER_NANOSECOND * 1_000_000_000);
 
 /// Where the beam is. It starts at the first dot of the first line and moves when told to.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Beam {
     /// Since the frame began, below `UNITS_PER_FRAME`.
     units: u64,

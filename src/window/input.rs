@@ -12,7 +12,8 @@ use super::area::Area;
 const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
 
 /// The mouse's buttons that are down.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Hash, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Buttons {
     /// The left one.
     pub left: bool,

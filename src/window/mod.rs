@@ -32,7 +32,7 @@ const LOOK: Duration = Duration::from_millis(25);
 const RESEND: Duration = Duration::from_millis(500);
 
 /// Whether the window stays open after a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Hash, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// The next frame follows.
     Continue,

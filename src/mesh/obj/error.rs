@@ -6,6 +6,7 @@ use std::{error, fmt, io};
 
 /// Why a model is refused. Displayed as `path:line: what`, on one line.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct ObjError {
     /// The file, as the caller or `mtllib` named it.
     pub path: PathBuf,

@@ -53,6 +53,7 @@ use warnings::Warnings;
 
 /// A model and what was found wanting while it was read.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Loaded {
     /// The model.
     pub mesh: Mesh,

@@ -16,7 +16,7 @@ pub struct PaletteError {
 }
 
 /// A place in a file.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Place {
     /// A line of text, counted from 1. One more than there are lines: where one is missing.
     Line(usize),

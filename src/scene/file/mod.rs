@@ -66,6 +66,7 @@ pub use place::Place;
 
 /// A scene and what was found wanting while it was read.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Loaded {
     /// The scene, at time 0.
     pub scene: Scene,
