@@ -53,6 +53,7 @@ impl I24F8 {
     /// Units in a pixel.
     pub const ONE: i32 = 256;
     /// From the pixel's left edge to its centre, in units.
+    #[doc(hidden)]
     pub const HALF: i32 = 128;
 
     /// From units of 1/256 pixel.
@@ -144,6 +145,7 @@ pub struct U8F8(u16);
 
 impl U8F8 {
     /// The greatest shade that a vertex may have: 255.0.
+    #[doc(hidden)]
     pub const MAX_VERTEX: Self = Self(0xFF00);
 
     /// From units of 1/256 shade.

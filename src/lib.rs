@@ -47,6 +47,16 @@
 //! # }
 //! ```
 //!
+//! # Angles, positions and colours
+//!
+//! Each of these has one type. An angle is an `Angle`, whatever it turns; on the 16.16 path it is an
+//! [`integer::BinaryAngle`]. A position or a direction is a `glam::Vec3`, and functions take whatever becomes one, such
+//! as `[0.0, 1.0, 0.0]`. A colour of the palette, of a picture or of fog is an [`Rgb`](palette::Rgb) of three bytes. A
+//! colour of a light or of a surface is `[f32; 3]`: red, green and blue, as a rule 0 to 1. An `Rgb` becomes one by `into`.
+//!
+//! Functions and methods that only the laboratory and the program use are in [`hooks`], or hidden from this
+//! documentation. They may change with any version.
+//!
 //! # Features
 //!
 //! The default features are what a game needs: `std`, `asm` and `simd` (fast spans; without both the crate forbids

@@ -44,6 +44,7 @@ impl Shading {
 
     /// How the raster shades faces whose vertices are lit, where their shades differ.
     #[must_use]
+    #[doc(hidden)]
     pub const fn interpolation(self) -> Interpolation {
         match self {
             Self::GouraudVintage => Interpolation::GouraudVintage,

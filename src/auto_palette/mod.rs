@@ -54,7 +54,7 @@ impl AutomaticPalette {
 
 /// A palette for a scene, by [`share_beside`], and its materials in it.
 ///
-/// Area and brightness are those of [`seen`]. A material that has no colour of its own and no image, and names a coloured
+/// Area and brightness are what is seen of it over a round. A material that has no colour of its own and no image, and names a coloured
 /// ramp of the scene's palette, keeps the colours of that. Another's colour is its [own](Material::own_colors), in the
 /// light that it gives back in full light, ambient and diffuse together; its highlight adds to that. On its ramp that colour stands
 /// at the intensity `full_light` of [`Entries::Ramp`], so its ambient and diffuse shares are divided up to that, in the

@@ -77,8 +77,10 @@ pub struct BinaryAngle(u16);
 
 impl BinaryAngle {
     /// A quarter of a turn.
+    #[doc(hidden)]
     pub const QUARTER: Self = Self(0x4000);
     /// Half a turn.
+    #[doc(hidden)]
     pub const HALF: Self = Self(0x8000);
 
     /// From 65,536ths of a turn.

@@ -23,7 +23,7 @@ pub struct Sun {
 
 impl Sun {
     /// The most suns of a scene: so many of the greatest intensity stay below 2⁶⁰ in sum.
-    pub const MOST: usize = 4096;
+    pub const MAX_COUNT: usize = 4096;
 
     pub(super) fn beam(&self, view: &ObjectView) -> Result<Beam, IntegerError> {
         let world = unit(widen(self.direction).map(i128::from), SINE_BITS).ok_or(IntegerError::Light)?;

@@ -14,6 +14,7 @@ mod sealed {
 /// The number of a vertex: `u16`, or `u32` for more than 65,536 vertices.
 pub trait Index: Copy + sealed::Sealed {
     /// Its place in the slices.
+    #[doc(hidden)]
     fn place(self) -> usize;
 }
 

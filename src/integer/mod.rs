@@ -84,7 +84,7 @@ pub enum IntegerError {
     Scale,
     /// An object of which a part may be more than 65,535 units from the eye.
     TooFar,
-    /// More than [`Sun::MOST`] suns, or one without direction.
+    /// More than [`Sun::MAX_COUNT`] suns, or one without direction.
     Light,
     /// There are fewer paints than the mesh has surfaces.
     Paints {

@@ -74,7 +74,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
         beams: &'a mut [Beam],
     ) -> Result<Self, IntegerError> {
         let Object { mesh, placement, paints } = &object;
-        if suns.len() > Sun::MOST {
+        if suns.len() > Sun::MAX_COUNT {
             return Err(IntegerError::Light);
         }
         if paints.len() < mesh.surfaces {

@@ -295,7 +295,7 @@ impl Mesh {
             return None;
         }
         let mut classes: Vec<u32> = self.triangles.as_flattened().iter().map(|&i| points[i as usize]).collect();
-        // Point and corner, of which there are fewer than 2³², see `Mesh::MOST`.
+        // Point and corner, of which there are fewer than 2³², see `Mesh::MAX_COUNT`.
         let corners = (0..).zip(&classes).filter(|&(corner, point)| {
             is_divided[*point as usize] && takes_part(corner as usize / 3) //
         });

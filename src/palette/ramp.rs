@@ -48,6 +48,7 @@ impl Ramp {
     /// The lightest entry's palette index.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn last(self) -> u8 {
         // At most 255, as `first + entries` is at most 256.
         (self.first as u16 + self.entries - 1) as u8

@@ -26,6 +26,7 @@ pub(crate) mod stages;
 use alloc::string::String;
 use alloc::vec::Vec;
 
+pub use crate::raster::effects::SampleSpacing;
 pub use effect::{Class, Effect};
 pub use face_shading::FaceShading;
 pub(crate) use findings::{FaceCounts, Findings};

@@ -150,7 +150,7 @@ impl IntegerPath {
         let suns = scene.lights().iter().enumerate().filter(|(_, light)| matches!(light, Light::Sun { .. }));
         for (index, light) in suns {
             let what = "its intensity is beyond ±32,767, or it is one of more than 4,096: too much for 16.16";
-            let sun = sun(light).filter(|_| index < Sun::MOST).ok_or(RenderError::Light { index, what })?;
+            let sun = sun(light).filter(|_| index < Sun::MAX_COUNT).ok_or(RenderError::Light { index, what })?;
             self.suns.push(sun);
         }
         self.convert(scene.objects());

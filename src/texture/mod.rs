@@ -98,6 +98,7 @@ pub struct Texture {
 
 impl Texture {
     /// The most texels in a row, and the most rows.
+    #[doc(hidden)]
     pub const MAX_SIDE: u32 = 256;
 
     /// The most pixels in a row, and the most rows, of a picture that becomes a texture.

@@ -56,6 +56,7 @@ impl Vga {
     #[doc(hidden)]
     pub const PITCH: usize = 320;
     /// Bytes of memory that are shown: 64,000.
+    #[doc(hidden)]
     pub const SHOWN: usize = Self::PITCH * Self::HEIGHT;
     /// Bytes of memory: 65,536.
     #[doc(hidden)]

@@ -237,7 +237,7 @@ fn vertices(
             *others.entry(triple).or_insert(new)
         };
         if vertex == new {
-            if triples.len() == Mesh::MOST {
+            if triples.len() == Mesh::MAX_COUNT {
                 return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 vertices"));
             }
             triples.push(triple);
