@@ -169,7 +169,7 @@ fn floats(folder: &Path, fields: &mut Vec<String>) {
             let (Some(of), Some((name, kind))) = (of, words.split_once(": ")) else { continue };
             let is_float = kind
                 .split(|c: char| !c.is_alphanumeric())
-                .any(|word| ["f32", "f64", "Vec2", "Vec3", "Mat3"].contains(&word));
+                .any(|word| ["Angle", "f32", "f64", "Vec2", "Vec3", "Mat3"].contains(&word));
             if is_float && !words.starts_with("//") {
                 let name = name.trim_start_matches("pub ");
                 let variant = variant.as_ref().map_or(String::new(), |variant| format!("::{variant}"));
