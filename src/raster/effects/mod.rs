@@ -15,9 +15,9 @@
 //! depends on no clip rectangle. Without any effect [`Raster::triangle`] gives the same bytes sooner.
 //!
 //! Shades and channels are what the [`Interpolation`](super::Interpolation) makes of them; fog and the table's normals
-//! are linear, started anew with every piece, whatever the shading, and keep the guarantees of [`shade`](super::shade): no sum leaves the
-//! range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a byte
-//! lies in [min >> 8, ⌈max⌉].
+//! are linear, started anew with every piece, whatever the shading, and keep the guarantees of [`shade`](super::shade): no
+//! sum leaves the range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a
+//! byte lies in [min >> 8, ⌈max⌉].
 
 mod curve;
 mod level;
