@@ -14,6 +14,7 @@ use std::hint::black_box;
 use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
 use mode13h::mesh::{Mesh, shapes};
@@ -28,7 +29,7 @@ type Triangles = Vec<([Vertex; 3], Interpolation)>;
 fn of_mesh(mesh: Mesh, shading: Shading) -> Triangles {
     let mut scene = Scene::showing(mesh);
     scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
-    scene.objects_mut()[0].set_angles([0.4, 0.6, 0.0]);
+    scene.objects_mut()[0].set_angles([0.4, 0.6, 0.0].map(Angle::from_radians));
     let mut renderer = Renderer::new();
     renderer.set_shading(shading);
     let mut triangles = Triangles::new();

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    Angle, Beam, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Sun, Technique, Vector, VertexStage,
+    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Shading, Sun, Vector, VertexStage,
     View, average_normals,
 };
 use mode13h::palette::Ramp;
@@ -28,16 +28,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut normals = [Vector::default(); 5];
     average_normals(&CORNERS, &FACES, &mut normals)?;
     let mesh = FixedMesh::new(&CORNERS, &normals, &FACES, true)?;
-    let lens = Lens::new(WIDTH, HEIGHT, (5, 6), Angle::from_degrees(40))?;
+    let lens = Lens::new(WIDTH, HEIGHT, (5, 6), BinaryAngle::from_degrees(40))?;
     let camera = Camera { eye: at(0, 1, 5), target: at(0, 0, 0), up: at(0, 1, 0), near: I16F16::ONE };
     let view = View::new(&camera, lens)?;
     let suns = [Sun { direction: at(4, 6, 10), intensity: I16F16::ONE }];
     let bits = |share: i32| I16F16::from_bits(65_536 * share / 100);
     let paints = [Paint { ambient: bits(15), diffuse: bits(85), ramp: Ramp::WHOLE }];
-    let angles = [Angle::default(), Angle::from_degrees(30), Angle::default()];
+    let angles = [BinaryAngle::default(), BinaryAngle::from_degrees(30), BinaryAngle::default()];
     let object = Object { mesh, placement: Placement { angles, ..Placement::default() }, paints: &paints };
     let (mut lit, mut beams) = ([LitVertex::default(); 5], [Beam::default(); 1]);
-    let stage = VertexStage::new(&view, object, &suns, Technique::GouraudReseeded, &mut lit, &mut beams)?;
+    let stage = VertexStage::new(&view, object, &suns, Shading::Gouraud88Reseeded, &mut lit, &mut beams)?;
 
     let mut out = io::stdout().lock();
     writeln!(out, "P5 {WIDTH} {HEIGHT} 255")?;

@@ -9,6 +9,7 @@
 use std::collections::BTreeSet;
 use std::error::Error;
 
+use mode13h::Angle;
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
 use mode13h::plan::Effect;
@@ -40,7 +41,11 @@ fn sphere() -> Scene {
     let mut scene = Scene::new();
     let object = scene.add(Object::new(shapes::sphere(200, 200)));
     scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-    scene.motions.push(Motion::Spin { object, start: [0.4, 0.0, 0.1], turns: [0.0, 0.1, 0.0] });
+    scene.motions.push(Motion::Spin {
+        object,
+        start: [0.4, 0.0, 0.1].map(Angle::from_radians),
+        turns: [0.0, 0.1, 0.0],
+    });
     scene
 }
 

@@ -6,6 +6,7 @@ use std::error::Error;
 
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
 use embedded_graphics::{Drawable, geometry::Point, text::Text};
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
@@ -29,14 +30,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut rocks: Vec<ObjectId> =
         places.map(|at| add(&mut scene, Object::new(shapes::sphere(8, 6)), at, 0.4)).collect();
     let mut shots: Vec<(ObjectId, Vec3)> = Vec::new();
-    let (mut renderer, mut angle, mut last) = (Renderer::new(), 0.0_f64, 0.0);
+    let (mut renderer, mut last) = (Renderer::new(), 0.0);
     window::run("mode13h game", |vga, input, seconds| -> Result<Flow, Box<dyn Error>> {
         let step = (seconds - last).min(0.1);
         last = seconds;
-        angle += 3.0 * step * (f64::from(input.held(Key::Left)) - f64::from(input.held(Key::Right)));
-        scene[ship].set_angles([0.0, 0.0, angle]);
+        let turns = f64::from(input.held(Key::Left)) - f64::from(input.held(Key::Right));
+        scene[ship].rotate_z(Angle::TURN / 2.0 * step * turns);
         if input.pressed(Key::Space) {
-            let towards = Vec3::new(-angle.sin() as f32, angle.cos() as f32, 0.0);
+            let towards = scene[ship].rotation() * Vec3::Y;
             shots.push((add(&mut scene, Object::new(shapes::cube()), Vec3::ZERO, 0.1), towards * 6.0));
         }
         shots.retain(|&(shot, speed)| {

@@ -53,6 +53,7 @@ impl I24F8 {
     /// Units in a pixel.
     pub const ONE: i32 = 256;
     /// From the pixel's left edge to its centre, in units.
+    #[doc(hidden)]
     pub const HALF: i32 = 128;
 
     /// From units of 1/256 pixel.
@@ -113,6 +114,7 @@ impl I24F8 {
     /// Every f32 is an f64.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub fn round_from_f32(pixels: f32) -> Option<Self> {
         Self::round_from_f64(f64::from(pixels))
     }
@@ -143,6 +145,7 @@ pub struct U8F8(u16);
 
 impl U8F8 {
     /// The greatest shade that a vertex may have: 255.0.
+    #[doc(hidden)]
     pub const MAX_VERTEX: Self = Self(0xFF00);
 
     /// From units of 1/256 shade.
@@ -176,6 +179,7 @@ impl U8F8 {
     /// sees to both); what does not fit saturates at 255.0.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub fn from_intensity(intensity: f32, first: u8, entries: u16) -> Self {
         let units = f64::from(entries.saturating_sub(1)) * 256.0;
         // `max` gives the other operand for NaN, and `clamp` would not. The product of 24 and 16 bits is exact in

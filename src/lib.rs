@@ -28,6 +28,7 @@
 #![cfg_attr(feature = "png", doc = "```no_run")]
 #![cfg_attr(not(feature = "png"), doc = "```ignore")]
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use mode13h::Angle;
 //! use mode13h::export;
 //! use mode13h::light::Light;
 //! use mode13h::mesh::shapes;
@@ -40,12 +41,22 @@
 //! scene.add_light(Light::sun([0.4, 0.6, 1.0]));
 //! let mut renderer = Renderer::new();
 //! let mut vga = Vga::new();
-//! scene[ship].rotate_y(0.02);
+//! scene[ship].rotate_y(Angle::from_degrees(1.0));
 //! renderer.draw(&scene, &mut vga)?;
 //! export::png(&vga, "torus.png")?;
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Angles, positions and colours
+//!
+//! Each of these has one type. An angle is an `Angle`, whatever it turns; on the 16.16 path it is an
+//! [`integer::BinaryAngle`]. A position or a direction is a `glam::Vec3`, and functions take whatever becomes one, such
+//! as `[0.0, 1.0, 0.0]`. A colour of the palette, of a picture or of fog is an [`Rgb`](palette::Rgb) of three bytes. A
+//! colour of a light or of a surface is `[f32; 3]`: red, green and blue, as a rule 0 to 1. An `Rgb` becomes one by `into`.
+//!
+//! Functions and methods that only the laboratory and the program use are in [`hooks`], or hidden from this
+//! documentation. They may change with any version.
 //!
 //! # Features
 //!
@@ -66,12 +77,22 @@ pub use glam;
 
 pub mod fixed;
 pub mod integer;
+#[doc(hidden)]
 pub mod lanes;
 pub mod palette;
 pub mod raster;
 mod simd;
 pub mod span;
 pub mod vga;
+
+#[cfg(feature = "alloc")]
+mod angle;
+mod names;
+mod shading;
+
+#[cfg(feature = "alloc")]
+pub use angle::Angle;
+pub use names::UnknownName;
 
 #[cfg(feature = "alloc")]
 pub mod auto_palette;

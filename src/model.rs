@@ -71,6 +71,7 @@ pub fn load(path: impl AsRef<Path>, options: &obj::Options) -> Result<Model, Obj
 /// The texture of each surface of a mesh, if the surface names one that can be read and the mesh has texture coordinates;
 /// an error for each file that cannot be read. A file that several surfaces name is read once.
 #[must_use]
+#[doc(hidden)]
 pub fn textures(mesh: &Mesh) -> (Vec<Option<Shared<Texture>>>, Vec<LoadError>) {
     let mut read: HashMap<&str, Option<Shared<Texture>>> = HashMap::new();
     let mut errors = Vec::new();
@@ -90,6 +91,7 @@ pub fn textures(mesh: &Mesh) -> (Vec<Option<Shared<Texture>>>, Vec<LoadError>) {
 
 /// An object whose surfaces show these textures, one for each surface.
 #[must_use]
+#[doc(hidden)]
 pub fn with_textures(mut object: Object, textures: &[Option<Shared<Texture>>]) -> Object {
     for (i, texture) in textures.iter().enumerate() {
         if let (Some(texture), Some(surface)) = (texture, object.mesh().surfaces().get(i)) {
@@ -102,6 +104,7 @@ pub fn with_textures(mut object: Object, textures: &[Option<Shared<Texture>>]) -
 impl Object {
     /// Whether any of its surfaces has a colour of its own: a texture, or a diffuse colour that is not grey.
     #[must_use]
+    #[doc(hidden)]
     pub fn has_colors(&self) -> bool {
         let is_colored = |[red, green, blue]: [f32; 3]| red != green || green != blue;
         self.mesh().surfaces().iter().any(|surface| is_colored(surface.diffuse))

@@ -12,6 +12,7 @@
 
 use glam::{Mat3, Vec3};
 
+use crate::angle::Angle;
 use crate::fixed::{I24F8, U8F8};
 use crate::mesh::Bounds;
 use crate::raster::{Rect, Vertex};
@@ -37,9 +38,9 @@ impl Screen {
     pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
 
     /// fx and fy, in pixels; the field of view in radians.
-    pub(crate) fn focal_lengths(self, field_of_view: f32) -> [f64; 2] {
+    pub(crate) fn focal_lengths(self, field_of_view: Angle) -> [f64; 2] {
         let (pixel_width, pixel_height) = self.pixel_aspect;
-        let fy = f64::from(self.height) / 2.0 / libm::tan(f64::from(field_of_view) / 2.0);
+        let fy = f64::from(self.height) / 2.0 / libm::tan(field_of_view.to_radians() / 2.0);
         [fy * f64::from(pixel_height) / f64::from(pixel_width), fy]
     }
 }
@@ -72,7 +73,7 @@ impl View {
         if !(near > 0.0 && near <= f32::MAX) {
             return Err("its near distance must be above 0 and finite");
         }
-        if !(field_of_view > 0.0 && field_of_view < core::f32::consts::PI) {
+        if !(field_of_view > Angle::default() && field_of_view < Angle::TURN / 2.0) {
             return Err("its field of view must lie between 0 and π");
         }
         let (eye, up) = (widen(eye), widen(up));

@@ -64,7 +64,7 @@ pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Fail
         return model_or(words, options, "models are .obj files, scenes .toml", &known)
             .map(|model| Input::Model(Box::new(model)));
     };
-    let scene::file::Loaded { scene, warnings, files } = loaded.map_err(Failure::from)?;
+    let scene::file::Loaded { scene, warnings, files, .. } = loaded.map_err(Failure::from)?;
     read_files::add_all(&files);
     for warning in warnings {
         warn(warning);
@@ -88,8 +88,8 @@ pub(crate) fn model(words: &OsStr, options: &obj::Options) -> Result<Model, Fail
 fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
     let path = Path::new(words);
     let (name, mesh) = if let Some(mut mesh) = words.to_str().and_then(shapes::by_name) {
-        if let Some(degrees) = options.crease {
-            mesh.smooth(Weight::Angle, Some(degrees.to_radians()));
+        if options.crease.is_some() {
+            mesh.smooth(Weight::Angle, options.crease);
         }
         (words.to_string_lossy().into_owned(), mesh)
     } else if has_extension(path, "obj") {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::mesh::obj;
 use mode13h::palette::{Rgb, builtin};
@@ -46,7 +47,7 @@ pub(crate) struct Drawing {
     ///
     /// [default: the model's smoothing groups, otherwise 40; scans are smooth]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = crease)]
-    crease: Option<f32>,
+    crease: Option<Angle>,
     #[arg(
         long,
         value_name = "FILE|NAME",
@@ -257,10 +258,10 @@ impl Drawing {
         let Pipeline { hidden_surfaces, mapping, mipmaps, arithmetic, .. } = self.pipeline;
         let mut renderer = Renderer::new();
         renderer.set_kernel(kernel);
-        renderer.set_hidden_surfaces(hidden_surfaces);
-        renderer.set_mapping(mapping);
-        renderer.set_mipmaps(mipmaps);
-        renderer.set_vertex_path(arithmetic.unwrap_or_default());
+        renderer.settings_mut().hidden_surfaces = hidden_surfaces;
+        renderer.settings_mut().mapping = mapping;
+        renderer.settings_mut().mipmaps = mipmaps;
+        renderer.settings_mut().vertex_path = arithmetic.unwrap_or_default();
         renderer
     }
 }
@@ -330,9 +331,9 @@ fn switch(words: &str) -> Result<bool, String> {
 }
 
 /// An angle between faces on the command line, in degrees.
-pub(crate) fn crease(words: &str) -> Result<f32, String> {
+pub(crate) fn crease(words: &str) -> Result<Angle, String> {
     match words.parse::<f32>() {
-        Ok(degrees) if (0.0..=180.0).contains(&degrees) => Ok(degrees),
+        Ok(degrees) if (0.0..=180.0).contains(&degrees) => Ok(Angle::from_degrees(degrees.into())),
         _ => Err("not a number of degrees from 0 to 180".to_string()),
     }
 }

@@ -4,6 +4,7 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
+use mode13h::Angle;
 use mode13h::export::{self, Picture, PixelShape, Png, Scale};
 use mode13h::mesh::obj;
 use mode13h::palette::auto::Entries;
@@ -41,7 +42,7 @@ pub(crate) struct Options {
     ///
     /// [default: the model's smoothing groups, otherwise 40; scans are smooth]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, requires = "from", conflicts_with = "palette")]
-    crease: Option<f32>,
+    crease: Option<Angle>,
     /// Write the palette to a file, in the format of its extension
     ///
     /// A name ending in .png is a chart of the colours.
@@ -136,7 +137,7 @@ impl Made {
 fn make(
     model: &OsStr,
     up: Up,
-    crease: Option<f32>,
+    crease: Option<Angle>,
     out: Option<&Path>,
 ) -> Result<(String, Palette, Vec<Made>), Failure> {
     let input::Model { name, mesh } = input::model(model, &obj::Options { crease })?;

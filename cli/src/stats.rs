@@ -8,8 +8,9 @@ use serde_json::{Map, Value, json};
 pub(crate) fn json(number: u32, stats: &Stats) -> Value {
     let shares: Map<String, Value> =
         stats.shares.iter().map(|(shading, triangles)| (shading.name().to_string(), triangles.into())).collect();
-    let DrawStats { spans, covered, pixels, tested, textured, mipmapped, dithered, fogged, blended, mixed, lit } =
-        stats.raster;
+    let DrawStats {
+        spans, covered, pixels, tested, textured, mipmapped, dithered, fogged, blended, mixed, lit, ..
+    } = stats.raster;
     json!({
         "frame": number,
         "shading": stats.shading.name(),

@@ -1,5 +1,6 @@
 //! What is shown: a model in a scene made for it, or a scene of its own.
 
+use mode13h::Angle;
 use mode13h::auto_palette::{self, AutomaticPalette};
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Material};
@@ -130,7 +131,7 @@ impl Turntable {
             Shown::Model => {
                 for object in self.scene.objects_mut() {
                     let [x, y, z] = object.angles();
-                    object.set_angles([x + tilt, y + turn, z]);
+                    object.set_angles([x + Angle::from_radians(tilt), y + Angle::from_radians(turn), z]);
                 }
             }
             Shown::Scene if is_turned => self.scene.camera = gone_round(self.scene.camera, turn, tilt),
@@ -276,8 +277,10 @@ fn has_colors(object: &Object, materials: &[Material]) -> bool {
 /// To enlarge what it sees, a camera's view is narrowed, as going nearer would end inside the model; to make it smaller
 /// it goes farther away, as a wider view would bend it.
 fn zoomed(mut camera: Camera, zoom: f64) -> Camera {
-    let half = f64::from(camera.field_of_view) / 2.0;
-    camera.field_of_view = (2.0 * libm::atan(libm::tan(half) / zoom.max(1.0))) as f32;
+    let half = camera.field_of_view.to_radians() / 2.0;
+    // Rounded to f32: the pictures stay what they were.
+    let narrowed = (2.0 * libm::atan(libm::tan(half) / zoom.max(1.0))) as f32;
+    camera.field_of_view = Angle::from_radians(narrowed.into());
     if zoom < 1.0 {
         camera.eye = camera.target + (camera.eye - camera.target) / zoom as f32;
     }

@@ -25,6 +25,7 @@ use seen::{full_light, moments};
 
 /// A palette for a scene, and the scene's materials in it.
 #[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
 pub struct AutomaticPalette {
     /// The colours.
     pub palette: Palette,
@@ -53,7 +54,7 @@ impl AutomaticPalette {
 
 /// A palette for a scene, by [`share_beside`], and its materials in it.
 ///
-/// Area and brightness are those of [`seen`]. A material that has no colour of its own and no image, and names a coloured
+/// Area and brightness are what is seen of it over a round. A material that has no colour of its own and no image, and names a coloured
 /// ramp of the scene's palette, keeps the colours of that. Another's colour is its [own](Material::own_colors), in the
 /// light that it gives back in full light, ambient and diffuse together; its highlight adds to that. On its ramp that colour stands
 /// at the intensity `full_light` of [`Entries::Ramp`], so its ambient and diffuse shares are divided up to that, in the
@@ -230,8 +231,7 @@ fn colors_of_ramp(material: &Material, palette: &Palette) -> Option<Vec<Rgb>> {
 fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
     let shown = |intensity: f32| {
         // From the first to the last.
-        let Rgb { r, g, b } = along[libm::roundf(intensity.clamp(0.0, 1.0) * (along.len() - 1) as f32) as usize];
-        [r, g, b].map(|channel| f32::from(channel) / 255.0)
+        <[f32; 3]>::from(along[libm::roundf(intensity.clamp(0.0, 1.0) * (along.len() - 1) as f32) as usize])
     };
     let (color, brightest) = (shown(full), shown(full + material.specular));
     let added = |i: usize| (brightest[i] - color[i]).max(0.0) / material.specular;

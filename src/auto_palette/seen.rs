@@ -20,6 +20,7 @@ const POSES: u32 = 16;
 
 /// What is seen of a material over a round.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[doc(hidden)]
 pub struct Seen {
     /// Its pixels among all that are covered, 0 to 1.
     pub area: f32,
@@ -35,6 +36,7 @@ pub struct Seen {
 ///
 /// # Errors
 /// As [`Renderer::draw`].
+#[doc(hidden)]
 pub fn seen(scene: &Scene) -> Result<Vec<Vec<Seen>>, RenderError> {
     let materials = || scene.objects().iter().flat_map(|object| &object.materials);
     let mut tallies = vec![Tally::default(); materials().count()];

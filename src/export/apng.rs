@@ -147,6 +147,7 @@ fn compressed(
 /// assert_eq!(film.finish()?, std::fs::metadata(&path)?.len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(hidden)]
 pub struct ApngFile {
     path: PathBuf,
     film: Writer<AtomicFile>,

@@ -12,8 +12,10 @@ pub struct FrameRate(f64);
 
 impl FrameRate {
     /// The lowest rate: a frame stays for ten seconds.
+    #[doc(hidden)]
     pub const LOWEST: FrameRate = FrameRate(0.1);
     /// The highest rate.
+    #[doc(hidden)]
     pub const HIGHEST: FrameRate = FrameRate(50.0);
 
     /// So many frames a second.
@@ -42,6 +44,7 @@ impl FrameRate {
     /// assert_eq!(FrameRate::new(29.97)?.fraction(), (2997, 100));
     /// # Ok::<(), mode13h::export::FrameRateError>(())
     /// ```
+    #[doc(hidden)]
     pub fn fraction(self) -> (u16, u16) {
         fraction(self.0)
     }
@@ -54,6 +57,7 @@ impl FrameRate {
     /// let delays: Vec<u16> = (0..8).map(|number| FrameRate::default().delay(number)).collect();
     /// assert_eq!(delays, [3, 3, 3, 3, 3, 3, 2, 3]);
     /// ```
+    #[doc(hidden)]
     pub fn delay(self, number: u64) -> u16 {
         // A rate of 0.1 or more has its last bit at 2⁻⁵⁶ or before it: this is a whole number, below 2⁶².
         let rate = (self.0 * (1_u64 << 56) as f64) as u128;

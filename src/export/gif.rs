@@ -40,6 +40,7 @@ use crate::palette::Rgb;
 /// assert_eq!(bytes.len() as u64, film.bytes);
 /// # Ok::<(), mode13h::export::GifError>(())
 /// ```
+#[doc(hidden)]
 pub struct GifWriter<W: Write> {
     scale: Scale,
     rate: FrameRate,
@@ -70,6 +71,7 @@ pub struct Film {
 
 impl Film {
     /// How long one round of the film takes, in seconds.
+    #[doc(hidden)]
     pub fn seconds(&self) -> f64 {
         let hundredths: u64 = self.delays.iter().map(|(&delay, &images)| u64::from(delay) * images).sum();
         hundredths as f64 / 100.0
@@ -276,6 +278,7 @@ fn reason(error: EncodingError) -> io::Error {
 /// Why a film was not written.
 #[derive(Debug)]
 #[non_exhaustive]
+#[doc(hidden)]
 pub enum GifError {
     /// A frame cannot be part of the film.
     Picture(PictureError),

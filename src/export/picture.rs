@@ -6,10 +6,11 @@ use std::fmt;
 use crate::palette::{Palette, Rgb};
 
 /// The longest side of an exported picture, in pixels.
+#[doc(hidden)]
 pub const MAX_SIDE: u16 = 16_384;
 
 /// The shape of a pixel: its width to its height.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Hash, Debug, PartialEq, Eq)]
 pub struct PixelShape {
     /// Width, in the same unit as the height; at least 1.
     pub width: u16,

@@ -44,7 +44,7 @@ pub fn png(vga: &Vga, path: impl AsRef<Path>) -> Result<(), ExportError> {
 /// Png { scale: Scale::FiveBySix, rgb: true }.save(&picture, &path)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Png {
     /// How far the picture is enlarged. `pHYs` has the shape that its pixels then have: 6:5 for a mode 13h frame at
     /// [`Scale::One`] and [`Scale::Double`], 1:1 at [`Scale::FiveBySix`] and 640 × 480.

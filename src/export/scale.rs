@@ -10,7 +10,7 @@ use super::{MAX_SIDE, Picture, PixelShape};
 
 /// How a picture is enlarged when it is exported. Each pixel of the result is one pixel of the frame, never a mixture,
 /// so that an indexed picture stays indexed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Hash, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Scale {
     /// Every pixel once: a 320 × 200 frame gives 320 × 200.

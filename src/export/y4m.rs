@@ -18,6 +18,7 @@ use crate::palette::Rgb;
 /// # Errors
 ///
 /// [`PictureError`] if the picture's sizes do not fit its bytes or are too large when enlarged.
+#[doc(hidden)]
 pub fn y4m_header(picture: &Picture<'_>, scale: Scale, rate: (u16, u16)) -> Result<String, PictureError> {
     let scaled = Scaled::new(picture, scale)?;
     // Pixels per unit of length: of many across, each is narrow.
@@ -31,6 +32,7 @@ pub fn y4m_header(picture: &Picture<'_>, scale: Scale, rate: (u16, u16)) -> Resu
 /// # Errors
 ///
 /// As [`y4m_header`]; no memory.
+#[doc(hidden)]
 pub fn y4m_frame(picture: &Picture<'_>, scale: Scale) -> Result<Vec<u8>, PictureError> {
     const HEADING: &[u8] = b"FRAME\n";
     let scaled = Scaled::new(picture, scale)?;

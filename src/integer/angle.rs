@@ -9,8 +9,12 @@
 //! ```
 //!
 //! in 1.5 KiB. Their entries are sums of Taylor's series in integers, made when the crate is
-//! compiled: [`Angle::sin`] is the multiple of 1/65,536 nearest to the true sine, for every angle.
+//! compiled: [`BinaryAngle::sin`] is the multiple of 1/65,536 nearest to the true sine, for every angle.
 
+use core::ops::Add;
+
+#[cfg(feature = "alloc")]
+use crate::angle::Angle;
 use crate::fixed::I16F16;
 
 /// Bits behind the point of the table's sines.
@@ -63,18 +67,20 @@ static FINE_SINES: [[i32; 2]; FINE] = {
 /// A binary angle: 16 bits, 65,536 to a full turn, counter-clockwise.
 ///
 /// ```
-/// use mode13h::integer::Angle;
-/// assert_eq!(Angle::QUARTER.sin().to_bits(), 65_536);
-/// assert_eq!(Angle::from_degrees(-330), Angle::from_degrees(30));
-/// assert_eq!(Angle::from_degrees(30).sin().to_bits(), 32_766); // 30° is 5461.33, rounded to 5461
+/// use mode13h::integer::BinaryAngle;
+/// assert_eq!(BinaryAngle::QUARTER.sin().to_bits(), 65_536);
+/// assert_eq!(BinaryAngle::from_degrees(-330), BinaryAngle::from_degrees(30));
+/// assert_eq!(BinaryAngle::from_degrees(30).sin().to_bits(), 32_766); // 30° is 5461.33, rounded to 5461
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-pub struct Angle(u16);
+pub struct BinaryAngle(u16);
 
-impl Angle {
+impl BinaryAngle {
     /// A quarter of a turn.
+    #[doc(hidden)]
     pub const QUARTER: Self = Self(0x4000);
     /// Half a turn.
+    #[doc(hidden)]
     pub const HALF: Self = Self(0x8000);
 
     /// From 65,536ths of a turn.
@@ -96,12 +102,6 @@ impl Angle {
         Self(((degrees.rem_euclid(360) * 65_536 + 180) / 360) as u16)
     }
 
-    /// The sum, counted round.
-    #[must_use]
-    pub const fn plus(self, other: Self) -> Self {
-        Self(self.0.wrapping_add(other.0))
-    }
-
     /// The sine: the nearest multiple of 1/65,536.
     #[must_use]
     pub fn sin(self) -> I16F16 {
@@ -114,7 +114,7 @@ impl Angle {
     /// The cosine: the nearest multiple of 1/65,536.
     #[must_use]
     pub fn cos(self) -> I16F16 {
-        self.plus(Self::QUARTER).sin()
+        (self + Self::QUARTER).sin()
     }
 
     /// Sine and cosine with 30 bits behind the point: within 2 units of 2⁻³⁰, and within ±2³⁰.
@@ -124,7 +124,7 @@ impl Angle {
             // The two tables' rounding may add up to a hair more than 1.
             magnitude.min(1 << SINE_BITS) * sine.signum()
         };
-        (narrow(self.wide_sine()), narrow(self.plus(Self::QUARTER).wide_sine()))
+        (narrow(self.wide_sine()), narrow((self + Self::QUARTER).wide_sine()))
     }
 
     /// The sine with 60 bits behind the point, about 30 of them right.
@@ -138,5 +138,25 @@ impl Angle {
         // At most 2⁶⁰ · √2.
         let sine = sin_a * i64::from(cos_b) + cos_a * i64::from(sin_b);
         if self.0 & 0x8000 == 0 { sine } else { -sine }
+    }
+}
+
+/// The sum, counted round.
+impl Add for BinaryAngle {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
+    }
+}
+
+/// The nearest binary angle. Of angles so large that their f64 no longer counts turns, some angle.
+#[cfg(feature = "alloc")]
+impl From<Angle> for BinaryAngle {
+    fn from(angle: Angle) -> Self {
+        let turns = angle.to_radians() / core::f64::consts::TAU;
+        let part = turns - libm::floor(turns);
+        // 0 to 65,536, of which the last is a full turn; the casts truncate, and wrap that to 0.
+        Self((part * 65_536.0 + 0.5) as u32 as u16)
     }
 }

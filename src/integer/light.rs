@@ -13,7 +13,7 @@ use crate::fixed::{I16F16, U8F8};
 use crate::palette::Ramp;
 
 /// A source of light so far away that it comes from one direction everywhere.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Sun {
     /// **Towards** the light, in the scene; any length but zero.
     pub direction: Vector,
@@ -23,7 +23,7 @@ pub struct Sun {
 
 impl Sun {
     /// The most suns of a scene: so many of the greatest intensity stay below 2⁶⁰ in sum.
-    pub const MOST: usize = 4096;
+    pub const MAX_COUNT: usize = 4096;
 
     pub(super) fn beam(&self, view: &ObjectView) -> Result<Beam, IntegerError> {
         let world = unit(widen(self.direction).map(i128::from), SINE_BITS).ok_or(IntegerError::Light)?;
@@ -40,7 +40,7 @@ pub struct Beam {
 }
 
 /// How a surface answers light, and where its shades lie in the palette.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Paint {
     /// ka·Ia: what it gives back of the scene's ambient light.
     pub ambient: I16F16,

@@ -14,6 +14,7 @@ mod sealed {
 /// The number of a vertex: `u16`, or `u32` for more than 65,536 vertices.
 pub trait Index: Copy + sealed::Sealed {
     /// Its place in the slices.
+    #[doc(hidden)]
     fn place(self) -> usize;
 }
 
@@ -96,7 +97,7 @@ pub struct FixedMesh<'a, I: Index = u16> {
 
 impl<'a, I: Index> FixedMesh<'a, I> {
     /// The largest coordinate, either way.
-    pub const REACH: I16F16 = I16F16::from_int(i16::MAX);
+    pub(crate) const REACH: I16F16 = I16F16::from_int(i16::MAX);
 
     /// Vertices with positions and unit normals, and triangles, counter-clockwise seen from
     /// outside, in a right-handed system whose y is up. `closed` says that the triangles enclose a
@@ -146,6 +147,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
     /// Its coordinates then count 2^`exponent` units of the scene. So a mesh may use all of its 32 bits whatever its
     /// size.
     #[must_use]
+    #[doc(hidden)]
     pub fn with_exponent(mut self, exponent: i8) -> Self {
         self.exponent = i32::from(exponent);
         self
@@ -212,6 +214,7 @@ pub(super) fn square(v: Vector) -> u64 {
 /// The unit normal of a face, out of the side from which its corners are counter-clockwise; `None`
 /// if they lie on a line. Exact but for its last rounding.
 #[must_use]
+#[doc(hidden)]
 pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
     let [a, b, c] = [a, b, c].map(widen);
     let from_a = |p: [i64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];

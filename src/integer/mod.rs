@@ -20,7 +20,7 @@
 //!
 //! ```
 //! use mode13h::fixed::I16F16;
-//! use mode13h::integer::{Angle, Camera, FixedMesh, Lens, Object, Paint, Placement, VertexStage, Sun, Technique, View};
+//! use mode13h::integer::{BinaryAngle, Camera, FixedMesh, Lens, Object, Paint, Placement, VertexStage, Shading, Sun, View};
 //! use mode13h::palette::Ramp;
 //! use mode13h::raster::{Frame, Raster};
 //!
@@ -29,16 +29,16 @@
 //! let normals = [at(0, 0, 1); 3];
 //! let mesh = FixedMesh::new(&positions, &normals, &[[0_u16, 1, 2]], false)?;
 //!
-//! let lens = Lens::new(320, 200, (5, 6), Angle::from_degrees(40))?;
+//! let lens = Lens::new(320, 200, (5, 6), BinaryAngle::from_degrees(40))?;
 //! let camera = Camera { eye: at(0, 0, 4), target: at(0, 0, 0), up: at(0, 1, 0), near: I16F16::ONE };
 //! let view = View::new(&camera, lens)?;
 //! let paint = Paint { ambient: I16F16::default(), diffuse: I16F16::ONE, ramp: Ramp::WHOLE };
-//! let placement = Placement { angles: [Angle::default(), Angle::from_degrees(45), Angle::default()], ..Placement::default() };
+//! let placement = Placement { angles: [BinaryAngle::default(), BinaryAngle::from_degrees(45), BinaryAngle::default()], ..Placement::default() };
 //! let object = Object { mesh, placement, paints: &[paint] };
 //! let suns = [Sun { direction: at(0, 0, 1), intensity: I16F16::ONE }];
 //!
 //! let (mut lit, mut beams) = ([Default::default(); 3], [Default::default(); 1]);
-//! let stage = VertexStage::new(&view, object, &suns, Technique::default(), &mut lit, &mut beams)?;
+//! let stage = VertexStage::new(&view, object, &suns, Shading::default(), &mut lit, &mut beams)?;
 //! let mut bytes = [0; 320 * 200];
 //! let mut raster = Raster::new(Frame::new(&mut bytes, 320, 200, 320)?);
 //! let faces = stage.faces(|vertices, interpolation| {
@@ -59,10 +59,11 @@ mod view;
 
 use core::fmt;
 
-pub use angle::Angle;
+pub use crate::shading::Shading;
+pub use angle::BinaryAngle;
 pub use light::{Beam, Paint, Sun};
 pub use mesh::{FixedMesh, FixedMeshError, Index, average_normals, face_normal};
-pub use stage::{Faces, LitVertex, Object, Technique, VertexStage};
+pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};
 pub use view::{Camera, Lens, Placement, View};
 
@@ -83,7 +84,7 @@ pub enum IntegerError {
     Scale,
     /// An object of which a part may be more than 65,535 units from the eye.
     TooFar,
-    /// More than [`Sun::MOST`] suns, or one without direction.
+    /// More than [`Sun::MAX_COUNT`] suns, or one without direction.
     Light,
     /// There are fewer paints than the mesh has surfaces.
     Paints {

@@ -9,25 +9,7 @@ use super::view::{Homogeneous, ObjectView, Placement, View};
 use crate::fixed::U8F8;
 use crate::raster::clip::doubled_area;
 use crate::raster::{Interpolation, Vertex};
-
-/// How faces are shaded: the shadings of the same names, for which see `render::Shading`.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-#[non_exhaustive]
-pub enum Technique {
-    /// One shade for each face.
-    Flat,
-    /// Gouraud's shading as the sources print it, vertices on whole pixels.
-    GouraudVintage,
-    /// Linear between the vertices, each row of a triangle one span.
-    Gouraud,
-    /// Linear between the vertices, each row of a triangle started anew every 64 pixels.
-    #[default]
-    GouraudReseeded,
-    /// Linear between the vertices, shades in 16.16.
-    Gouraud1616,
-    /// Linear on the face in space: an exact quotient for every pixel.
-    GouraudHyperbolic,
-}
+use crate::shading::Shading;
 
 /// A mesh in its place, with one paint for each of its surfaces.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +34,7 @@ pub struct LitVertex {
 
 /// What the faces of an object came to, in counts.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
 pub struct Faces {
     /// Faces lit, where shading is flat.
     pub lit: u64,
@@ -66,7 +49,8 @@ pub struct Faces {
 /// An object whose vertices are ready: its faces can be drawn, as often as there are bands.
 #[derive(Clone, Copy, Debug)]
 pub struct VertexStage<'a, I: Index = u16> {
-    technique: Technique,
+    /// One that is drawn from its vertices alone.
+    shading: Shading,
     object: Object<'a, I>,
     view: ObjectView,
     beams: &'a [Beam],
@@ -75,7 +59,8 @@ pub struct VertexStage<'a, I: Index = u16> {
 
 impl<'a, I: Index> VertexStage<'a, I> {
     /// Lights and projects every vertex of the mesh. `lit` is room for at least as many vertices as
-    /// the mesh has, `beams` for as many beams as there are suns.
+    /// the mesh has, `beams` for as many beams as there are suns. A shading that this path lacks counts as the default:
+    /// those that light pixels, split faces or need floats.
     ///
     /// # Errors
     /// Too little room; a surface without a paint; a scale below 0; an object of which a part may be
@@ -84,12 +69,12 @@ impl<'a, I: Index> VertexStage<'a, I> {
         view: &View,
         object: Object<'a, I>,
         suns: &[Sun],
-        technique: Technique,
+        shading: Shading,
         lit: &'a mut [LitVertex],
         beams: &'a mut [Beam],
     ) -> Result<Self, IntegerError> {
         let Object { mesh, placement, paints } = &object;
-        if suns.len() > Sun::MOST {
+        if suns.len() > Sun::MAX_COUNT {
             return Err(IntegerError::Light);
         }
         if paints.len() < mesh.surfaces {
@@ -105,8 +90,8 @@ impl<'a, I: Index> VertexStage<'a, I> {
             lit.iter_mut().zip(mesh.positions.iter().zip(mesh.normals)).enumerate()
         {
             let vertex = view.project(view.homogeneous(position));
-            let (front, back) = match technique {
-                Technique::Flat => (U8F8::default(), U8F8::default()),
+            let (front, back) = match shading {
+                Shading::Flat => (U8F8::default(), U8F8::default()),
                 _ => paints[mesh.vertex_surface(i)].shades(beams, normal),
             };
             *place = LitVertex {
@@ -115,7 +100,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
                 needs_clipping: vertex.is_none(),
             };
         }
-        Ok(Self { technique, object, view, beams, lit })
+        Ok(Self { shading: shading.in_integers(), object, view, beams, lit })
     }
 
     /// Hands the faces that are to be drawn to `triangle`, clipped where they must be. Those of a
@@ -166,7 +151,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
             let shade = if turned { back } else { vertex.shade() };
             Corner::new(at[i], shade, (!needs_clipping).then(|| vertex.with_shade(shade)))
         };
-        let on_face = self.technique == Technique::GouraudHyperbolic;
+        let on_face = self.shading == Shading::GouraudHyperbolic;
         let Some(clipped) = clip(&self.view, on_face, [corner(0), corner(1), corner(2)]) else { return };
         if self.is_culled(face, clipped.doubled_area()) {
             counts.culled += 1;
@@ -182,13 +167,8 @@ impl<'a, I: Index> VertexStage<'a, I> {
     /// How a face is shaded; its one shade, where it has but one, is worked out here.
     #[inline]
     fn interpolation(&self, face: usize, indices: [usize; 3], turned: bool, counts: &mut Faces) -> Interpolation {
-        match self.technique {
-            Technique::GouraudReseeded => Interpolation::GouraudReseeded,
-            Technique::GouraudVintage => Interpolation::GouraudVintage,
-            Technique::Gouraud => Interpolation::Gouraud,
-            Technique::Gouraud1616 => Interpolation::Gouraud1616,
-            Technique::GouraudHyperbolic => Interpolation::GouraudHyperbolic,
-            Technique::Flat => {
+        match self.shading {
+            Shading::Flat => {
                 counts.lit += 1;
                 let mesh = &self.object.mesh;
                 let [a, b, c] = indices.map(|i| mesh.positions[i]);
@@ -198,6 +178,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
                 let (front, back) = paint.shades(self.beams, normal);
                 Interpolation::Flat(if turned { back } else { front }.nearest())
             }
+            shading => shading.interpolation(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Vectors of three integers: length, direction, turn.
 
-use super::angle::{Angle, SINE_BITS};
+use super::angle::{BinaryAngle, SINE_BITS};
 use crate::fixed::I16F16;
 
 /// A point, or a direction, in 16.16.
@@ -72,6 +72,7 @@ pub(super) fn unit(v: [i128; 3], bits: u32) -> Option<Wide> {
 /// assert_eq!(unit, Some([39_322, 0, -52_429])); // 0.6, 0, −0.8
 /// ```
 #[must_use]
+#[doc(hidden)]
 pub fn unit_vector(v: Vector) -> Option<Vector> {
     narrow_unit(widen(v).map(i128::from))
 }
@@ -89,14 +90,15 @@ pub(super) fn narrow_unit(v: [i128; 3]) -> Option<Vector> {
 /// the same matrix for ever. Every entry is within 0.501 of a 65,536th, so the rows have the length 1
 /// and stand at right angles to within √3 · 2 · 0.501 / 65,536 < 2⁻¹⁵. (The limit is 2⁻¹³.)
 #[must_use]
-pub fn turn(angles: [Angle; 3]) -> [Vector; 3] {
+#[doc(hidden)]
+pub fn turn(angles: [BinaryAngle; 3]) -> [Vector; 3] {
     // At most 65,536 either way: the entry before is at most 2³⁰ and a few units.
     wide_turn(angles).map(|row| row.map(|c| I16F16::from_bits(round_shift(c, SINE_BITS - 16) as i32)))
 }
 
 /// The matrix of [`turn`] with [`SINE_BITS`] behind the point, within 8 units.
-pub(super) fn wide_turn(angles: [Angle; 3]) -> Matrix {
-    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(Angle::sin_cos);
+pub(super) fn wide_turn(angles: [BinaryAngle; 3]) -> Matrix {
+    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(BinaryAngle::sin_cos);
     let narrow = |n: i64| round_shift(n, SINE_BITS);
     // Sines are at most 2³⁰, products 2⁶⁰, sums of two 2⁶¹.
     let (sx_sy, cx_sy) = (narrow(sx * sy), narrow(cx * sy));

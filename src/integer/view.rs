@@ -19,14 +19,14 @@
 //! The sums on the way are stated where they are taken.
 
 use super::IntegerError;
-use super::angle::{Angle, SINE_BITS};
+use super::angle::{BinaryAngle, SINE_BITS};
 use super::mesh::{FixedMesh, Index, square};
 use super::vector::{Matrix, Vector, Wide, cross, dot, product, round_shift, unit, wide_turn, widen};
 use crate::fixed::{I16F16, I24F8, U8F8};
 use crate::raster::{Frame, Vertex};
 
 /// The picture: its size in pixels, and how large things look in it.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Lens {
     pub(super) width: u32,
     pub(super) height: u32,
@@ -47,8 +47,15 @@ impl Lens {
     /// # Errors
     /// A side or part of the aspect that is 0, or too large; an angle that is 0, half a turn or more,
     /// or so small that a focal length exceeds 16,384 pixels.
-    pub fn new(width: u32, height: u32, pixel_aspect: (u32, u32), field_of_view: Angle) -> Result<Self, IntegerError> {
-        if field_of_view == Angle::default() || field_of_view.to_bits() >= Angle::HALF.to_bits() || pixel_aspect.0 == 0
+    pub fn new(
+        width: u32,
+        height: u32,
+        pixel_aspect: (u32, u32),
+        field_of_view: BinaryAngle,
+    ) -> Result<Self, IntegerError> {
+        if field_of_view == BinaryAngle::default()
+            || field_of_view.to_bits() >= BinaryAngle::HALF.to_bits()
+            || pixel_aspect.0 == 0
         {
             return Err(IntegerError::FieldOfView);
         }
@@ -64,6 +71,7 @@ impl Lens {
     ///
     /// # Errors
     /// A side that is 0 or above 4,096; a focal length that is not above 0, or above 16,384 pixels.
+    #[doc(hidden)]
     pub fn with_focal_lengths(width: u32, height: u32, focal: [I16F16; 2]) -> Result<Self, IntegerError> {
         Self::checked(width, height, focal.map(|f| i128::from(f.to_bits())))
     }
@@ -82,7 +90,7 @@ impl Lens {
 }
 
 /// The eye.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Camera {
     /// Where it is, in units of the scene.
     pub eye: Vector,
@@ -126,6 +134,7 @@ impl View {
     ///
     /// # Errors
     /// A scale below 0; a mesh of which a part may be more than 65,535 units from the eye.
+    #[doc(hidden)]
     pub fn check<I: Index>(&self, placement: &Placement, mesh: &FixedMesh<'_, I>) -> Result<(), IntegerError> {
         ObjectView::new(self, placement, mesh).map(|_| ())
     }
@@ -144,14 +153,14 @@ fn right_of(forward: Wide, up: Vector) -> Option<Wide> {
 }
 
 /// Where an object is and how it is turned.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Placement {
     /// Where the pivot is, in units of the scene.
     pub position: Vector,
     /// The point that it turns about, in the mesh's own coordinates.
     pub pivot: Vector,
     /// About x, y and z: the turn about z comes first, then y, then x.
-    pub angles: [Angle; 3],
+    pub angles: [BinaryAngle; 3],
     /// How many times as large as the mesh it is; not negative.
     pub scale: I16F16,
 }
@@ -162,7 +171,7 @@ impl Default for Placement {
         Self {
             position: Vector::default(),
             pivot: Vector::default(),
-            angles: [Angle::default(); 3],
+            angles: [BinaryAngle::default(); 3],
             scale: I16F16::ONE,
         }
     }

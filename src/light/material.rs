@@ -96,7 +96,7 @@ impl Material {
     /// `number` chooses the ramp. The texture is left to the caller, who can read files:
     /// [`with_map`](Self::with_map).
     #[must_use]
-    pub fn from_surface(surface: &Surface, number: u16) -> Self {
+    pub(crate) fn from_surface(surface: &Surface, number: u16) -> Self {
         let diffuse = luminance(surface.diffuse);
         Self {
             name: surface.name.clone(),
@@ -117,6 +117,7 @@ impl Material {
     /// Puts the picture that an MTL file's `map_Kd` names on the material. Kd tints the picture: a coloured Kd goes
     /// into a copy of it, a grey one leaves it as it is, to be shared.
     #[must_use]
+    #[doc(hidden)]
     pub fn with_map(self, surface: &Surface, map: &Shared<Texture>) -> Self {
         let most = surface.diffuse.iter().copied().fold(0.0, f32::max);
         if !is_colored(surface.diffuse) || most == 0.0 {
@@ -156,6 +157,7 @@ impl Material {
 
     /// Whether its three channels differ.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color) || (self.is_specular() && is_colored(self.highlight))
     }

@@ -37,14 +37,14 @@ const WHITE: [f32; 3] = [1.0; 3];
 impl Light {
     /// A white sun of intensity 1 in `direction`, which points **towards** it; any length but zero.
     #[must_use]
-    pub fn sun(direction: [f32; 3]) -> Self {
-        Self::Sun { direction: Vec3::from_array(direction), intensity: 1.0, color: WHITE }
+    pub fn sun(direction: impl Into<Vec3>) -> Self {
+        Self::Sun { direction: direction.into(), intensity: 1.0, color: WHITE }
     }
 
     /// A white lamp of intensity 1 at `position` that reaches as far as `range`, above 0.
     #[must_use]
-    pub fn lamp(position: [f32; 3], range: f32) -> Self {
-        Self::Lamp { position: Vec3::from_array(position), intensity: 1.0, range, color: WHITE }
+    pub fn lamp(position: impl Into<Vec3>, range: f32) -> Self {
+        Self::Lamp { position: position.into(), intensity: 1.0, range, color: WHITE }
     }
 
     /// Sets the light's intensity.
@@ -56,11 +56,11 @@ impl Light {
         self
     }
 
-    /// Sets the light's colour: red, green, blue, as a rule 0 to 1.
+    /// Sets the light's colour: red, green, blue, as a rule 0 to 1, or an [`Rgb`](crate::palette::Rgb).
     #[must_use]
-    pub fn with_color(mut self, new: [f32; 3]) -> Self {
+    pub fn with_color(mut self, new: impl Into<[f32; 3]>) -> Self {
         match &mut self {
-            Self::Sun { color, .. } | Self::Lamp { color, .. } => *color = new,
+            Self::Sun { color, .. } | Self::Lamp { color, .. } => *color = new.into(),
         }
         self
     }
@@ -92,6 +92,7 @@ impl Light {
 
     /// Whether its three channels differ: whether it takes three to light by it.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color())
     }

@@ -6,6 +6,7 @@ use super::wide::{dot, sub, widen};
 
 /// The box and the sphere around a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Bounds {
     /// The least x, y and z.
     pub min: Vec3,

@@ -8,7 +8,7 @@ use core::fmt;
 pub enum MeshError {
     /// There is nothing to draw.
     NoTriangles,
-    /// More than [`Mesh::MOST`](super::Mesh::MOST) vertices or triangles.
+    /// More than [`Mesh::MAX_COUNT`](super::Mesh::MAX_COUNT) vertices or triangles.
     TooLarge,
     /// A position has a NaN or an infinity.
     PositionNotFinite {

@@ -44,7 +44,7 @@ impl Mesh {
     /// For each vertex the number of its surface; 0 where no triangle uses it. Of a mesh without
     /// [one surface a vertex](Self::has_one_surface_a_vertex), that of the last triangle.
     #[must_use]
-    pub fn vertex_surfaces(&self) -> &[u16] {
+    pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         &self.facts.vertex_surfaces
     }
 
@@ -179,7 +179,7 @@ mod tests {
             let mut mesh = mesh.with_one_surface_a_vertex();
             check(name, &mesh);
             assert!(mesh.vertex_surfaces().contains(&1), "{name}");
-            mesh.smooth(Weight::Angle, Some(0.5));
+            mesh.smooth(Weight::Angle, Some(crate::Angle::from_radians(0.5)));
             check(name, &mesh);
             mesh.flat();
             check(name, &mesh);

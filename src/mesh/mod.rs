@@ -68,7 +68,7 @@ pub struct Mesh {
 impl Mesh {
     /// The most vertices, and the most triangles, of a mesh: a third of 2³², so that the corners of
     /// all triangles can be counted in 32 bits.
-    pub const MOST: usize = (u32::MAX / 3) as usize;
+    pub const MAX_COUNT: usize = (u32::MAX / 3) as usize;
 
     /// A mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share
     /// a vertex: a vertex that is listed twice is a crease.
@@ -78,7 +78,7 @@ impl Mesh {
     ///
     /// # Errors
     /// A position that is not finite, an index out of range, no triangle, or more than
-    /// [`MOST`](Self::MOST) of either.
+    /// [`MAX_COUNT`](Self::MAX_COUNT) of either.
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check(&positions, &triangles)?;
         let normals = vec![Vec3::Z; positions.len()];
@@ -285,7 +285,7 @@ fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     if triangles.is_empty() {
         return Err(MeshError::NoTriangles);
     }
-    if positions.len() > Mesh::MOST || triangles.len() > Mesh::MOST {
+    if positions.len() > Mesh::MAX_COUNT || triangles.len() > Mesh::MAX_COUNT {
         return Err(MeshError::TooLarge);
     }
     if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {

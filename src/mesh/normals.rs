@@ -24,9 +24,10 @@ use glam::Vec3;
 use super::sets::Sets;
 use super::wide::{Wide, add, cross, dot, length, narrow, scale, sub, widen};
 use super::{Mesh, topology};
+use crate::angle::Angle;
 
 /// How much each face counts in the normal of a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Hash, Debug, PartialEq, Eq, Default)]
 pub enum Weight {
     /// All alike, as in the source texts. The normal depends on how the faces are cut into triangles.
     Count,
@@ -119,10 +120,10 @@ impl<'a> Together<'a> {
     /// Faces of which no group is known: the angle decides.
     pub(super) const NO_GROUP: u32 = u32::MAX;
 
-    /// By the angle between faces, in radians, and by groups where there are any.
-    pub(super) fn new(crease: f64, groups: &'a [u32]) -> Self {
+    /// By the angle between faces, and by groups where there are any.
+    pub(super) fn new(crease: Angle, groups: &'a [u32]) -> Self {
         // 2⁻⁴⁰ for rounding: faces at exactly the crease angle are smooth. No number at all leaves all faces flat.
-        let least = libm::cos(crease.clamp(0.0, core::f64::consts::PI)) - 1.0 / 1_099_511_627_776.0;
+        let least = libm::cos(crease.to_radians().clamp(0.0, core::f64::consts::PI)) - 1.0 / 1_099_511_627_776.0;
         Self { least, groups, edges: None }
     }
 
@@ -171,16 +172,16 @@ impl<'a> Together<'a> {
 
 impl Mesh {
     /// Gives every vertex the weighted mean of the normals of the faces around its position; vertices
-    /// at the same position count as one. With a crease angle (radians) two faces count together if the
+    /// at the same position count as one. With a crease angle two faces count together if the
     /// angle between their normals is no greater, or if other faces at this position link them so; vertices
     /// are split where they must be. The angle is 0 where two faces lie in one plane.
     ///
     /// Vertices keep their numbers; new ones come at the end. Of more than 64 faces at one position not all are
     /// compared with each other.
-    pub fn smooth(&mut self, weight: Weight, crease: Option<f32>) {
+    pub fn smooth(&mut self, weight: Weight, crease: Option<Angle>) {
         let points = topology::weld(&self.positions);
         let known = vec![None; self.positions.len()];
-        let together = crease.map(|crease| Together::new(f64::from(crease), &[]));
+        let together = crease.map(|crease| Together::new(crease, &[]));
         self.average(&points, weight, together, known);
         self.find_facts();
     }
@@ -221,7 +222,7 @@ impl Mesh {
             let classes = self.classes(points, &faces, rule)?;
             match &rule.edges {
                 Some(edges) if rule.is_scattered(edges, &faces, points.len()) => {
-                    let smooth = Together::new(core::f64::consts::PI, rule.groups);
+                    let smooth = Together::new(Angle::TURN / 2.0, rule.groups);
                     self.classes(points, &faces, &smooth)
                 }
                 _ => Some(classes),
@@ -294,7 +295,7 @@ impl Mesh {
             return None;
         }
         let mut classes: Vec<u32> = self.triangles.as_flattened().iter().map(|&i| points[i as usize]).collect();
-        // Point and corner, of which there are fewer than 2³², see `Mesh::MOST`.
+        // Point and corner, of which there are fewer than 2³², see `Mesh::MAX_COUNT`.
         let corners = (0..).zip(&classes).filter(|&(corner, point)| {
             is_divided[*point as usize] && takes_part(corner as usize / 3) //
         });

@@ -73,7 +73,7 @@ pub(super) fn inside_out(positions: &[Vec3], triangles: &[[u32; 3]], edges: &Edg
 
 /// For each triangle its shell, and how many shells there are.
 fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
-    // Triangles are counted in 32 bits, see `Mesh::MOST`.
+    // Triangles are counted in 32 bits, see `Mesh::MAX_COUNT`.
     let mut sets = Sets::new(triangles as u32);
     let mut has_others = false;
     for mut faces in edges.faces_by_edge() {

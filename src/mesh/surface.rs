@@ -46,6 +46,7 @@ impl Surface {
     /// assert_eq!(Surface::default().highlight(), None);
     /// ```
     #[must_use]
+    #[doc(hidden)]
     pub fn highlight(&self) -> Option<Rgb> {
         let specular = Rgb::from_intensities(self.specular);
         let is_shiny = specular != Rgb::BLACK && self.shininess > 0.0;

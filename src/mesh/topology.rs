@@ -104,7 +104,7 @@ impl Edges {
         for (_, corners) in surface() {
             edges(corners).into_iter().for_each(|(from, to)| starts[from.min(to) as usize + 2] += 1);
         }
-        // Corners are counted in 32 bits, see `Mesh::MOST`.
+        // Corners are counted in 32 bits, see `Mesh::MAX_COUNT`.
         let mut sum = 0;
         starts.iter_mut().for_each(|start| {
             sum += *start;

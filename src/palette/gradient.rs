@@ -3,7 +3,7 @@
 use super::{Ramp, Rgb};
 
 /// A colour at a place on a ramp.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Stop {
     /// Where: 0 is the ramp's first entry, 255 its last.
     pub at: u8,

@@ -60,7 +60,7 @@ pub use table::Table;
 /// assert_eq!(grey.ramps(), 1);
 /// assert_eq!(grey.nearest(Rgb::new(99, 100, 101)), 100);
 /// ```
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Palette {
     colors: [Rgb; 256],
     // 0, or a power of two up to 256.

@@ -48,6 +48,7 @@ impl Ramp {
     /// The lightest entry's palette index.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn last(self) -> u8 {
         // At most 255, as `first + entries` is at most 256.
         (self.first as u16 + self.entries - 1) as u8
@@ -76,6 +77,7 @@ impl Ramp {
     /// Whether a palette index belongs to the ramp.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn contains(self, index: u8) -> bool {
         self.first <= index && index <= self.last()
     }
@@ -83,6 +85,7 @@ impl Ramp {
     /// The palette indices, first to last; as [`Vga::cycle`](crate::vga::Vga::cycle) takes them.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub const fn range(self) -> RangeInclusive<u8> {
         self.first..=self.last()
     }

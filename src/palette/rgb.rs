@@ -182,3 +182,15 @@ impl Rgb {
         r * r + g * g + b * b
     }
 }
+
+/// Red, green and blue of a light or a surface, 0 to 1: each channel's 255ths.
+///
+/// ```
+/// use mode13h::palette::Rgb;
+/// assert_eq!(<[f32; 3]>::from(Rgb::new(255, 51, 0)), [1.0, 0.2, 0.0]);
+/// ```
+impl From<Rgb> for [f32; 3] {
+    fn from(Rgb { r, g, b }: Rgb) -> Self {
+        [r, g, b].map(|channel| f32::from(channel) / 255.0)
+    }
+}

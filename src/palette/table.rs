@@ -21,14 +21,16 @@ use super::{Palette, Rgb, Search};
 /// assert_eq!(fog.as_array()[255 << 8 | 77], fog.get(255, 77));
 /// ```
 #[derive(Clone, PartialEq, Eq)]
+#[doc(hidden)]
 pub struct Table(Box<[u8; Table::BYTES]>);
 
 impl Table {
     /// 64 KiB.
-    pub const BYTES: usize = 65_536;
+    pub(crate) const BYTES: usize = 65_536;
 
     /// From a byte for every row and column: `byte(high, low)`. For one, Phong's table of shades.
     #[must_use]
+    #[doc(hidden)]
     pub fn from_fn(byte: impl FnMut(u8, u8) -> u8) -> Self {
         let mut table = Self(Box::new([0; Self::BYTES]));
         table.fill(byte);

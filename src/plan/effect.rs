@@ -1,6 +1,6 @@
 //! The effects, and what each of them may change.
 
-use crate::scene::named;
+use crate::names::named;
 
 named! {
     /// A decision that the plan makes for every object.
@@ -46,12 +46,11 @@ named! {
         /// The DAC is loaded anew as time passes, and nothing is drawn.
         PaletteAnimation = "palette-animation",
     }
-    /// There is no effect of that name. Its text lists those there are.
-    pub struct UnknownEffect;
 }
 
 /// What leaving an effect out may change.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[doc(hidden)]
 pub enum Class {
     /// Nothing: always doing the full work gives the same bytes.
     SavesWork,
@@ -66,10 +65,12 @@ impl Effect {
     }
 
     /// How many there are.
+    #[doc(hidden)]
     pub const COUNT: usize = Self::ALL.len();
 
     /// What leaving it out may change.
     #[must_use]
+    #[doc(hidden)]
     pub const fn class(self) -> Class {
         match self {
             Self::Transform

@@ -21,6 +21,7 @@ pub enum FaceShading {
 
 impl FaceShading {
     /// All of them, from cheap to exact.
+    #[doc(hidden)]
     pub const ALL: [Self; Shading::ALL.len() + 4] = [
         Self::By(Shading::Flat),
         Self::By(Shading::GouraudVintage),
@@ -40,6 +41,7 @@ impl FaceShading {
 
     /// Its name.
     #[must_use]
+    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
             Self::By(shading) => shading.name(),
@@ -52,6 +54,7 @@ impl FaceShading {
 
     /// Whether light beyond that of the corners is worked out for the face.
     #[must_use]
+    #[doc(hidden)]
     pub const fn lights_pixels(self) -> bool {
         match self {
             Self::By(shading) => shading.lights_pixels(),

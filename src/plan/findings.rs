@@ -11,7 +11,7 @@ use crate::scene::Shading;
 
 /// What drawing found out about an object.
 #[derive(Clone, PartialEq, Debug, Default)]
-pub struct Findings {
+pub(crate) struct Findings {
     /// How its faces were shaded, if an error budget chose that.
     pub face_counts: Option<FaceCounts>,
     /// How far linear shades may be from light at every pixel, in shades of 1/255 of full intensity, if that is known.
@@ -33,7 +33,7 @@ impl Findings {
 
 /// How many faces of an object an error budget had shaded in which way.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct FaceCounts {
+pub(crate) struct FaceCounts {
     /// Each way that any face was shaded in, from cheap to exact.
     pub drawn: Vec<(FaceShading, usize)>,
     /// Faces on which nothing had to be decided, as they are not seen.

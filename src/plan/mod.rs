@@ -6,7 +6,7 @@
 //! | `reason` | [`Reason`]: the reasons |
 //! | `stages` | what is done for an object, as values; [`Choice`] |
 //! | `face_shading` | [`FaceShading`]: how a face is shaded |
-//! | `findings` | [`Findings`]: what drawing found out, in words |
+//! | `findings` | what drawing found out, in words |
 //! | `decide` | the rules, a function an effect |
 //! | `hidden` | which way to leave out hidden surfaces |
 //!
@@ -26,9 +26,10 @@ pub(crate) mod stages;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-pub use effect::{Class, Effect, UnknownEffect};
+pub use crate::raster::effects::SampleSpacing;
+pub use effect::{Class, Effect};
 pub use face_shading::FaceShading;
-pub use findings::{FaceCounts, Findings};
+pub(crate) use findings::{FaceCounts, Findings};
 pub use reason::Reason;
 pub use stages::Choice;
 
@@ -41,6 +42,7 @@ use crate::scene::{HiddenSurfaces, Mapping, Scene, Shading};
 
 /// One decision.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
 pub struct Decision {
     /// Whether the effect is on.
     pub on: bool,
@@ -112,6 +114,7 @@ impl ObjectPlan {
 
     /// How it is shaded.
     #[must_use]
+    #[doc(hidden)]
     pub fn shading(&self) -> Shading {
         self.shading
     }
@@ -119,6 +122,7 @@ impl ObjectPlan {
     /// The budget that its triangles are shaded by, each as is cheapest: how many shades of error are accepted.
     /// `None` where there is none, or one shading is known to be the cheapest for all.
     #[must_use]
+    #[doc(hidden)]
     pub fn max_error(&self) -> Option<f32> {
         self.max_error
     }
@@ -130,6 +134,7 @@ impl ObjectPlan {
 
 /// What is switched by hand: `None` leaves it to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[doc(hidden)]
 pub struct Overrides {
     everywhere: [Option<bool>; Effect::COUNT],
     /// Objects that differ from that, by their places.
@@ -138,26 +143,26 @@ pub struct Overrides {
 
 impl Overrides {
     /// Switches an effect on or off for every object, or leaves it to the plan.
-    pub fn set(&mut self, effect: Effect, on: Option<bool>) {
+    pub(crate) fn set(&mut self, effect: Effect, on: Option<bool>) {
         self.everywhere[effect.index()] = on;
     }
 
     /// How an effect is switched for every object.
     #[must_use]
-    pub fn get(&self, effect: Effect) -> Option<bool> {
+    pub(crate) fn get(&self, effect: Effect) -> Option<bool> {
         self.everywhere[effect.index()]
     }
 
     /// Switches an effect on or off for one object, by its place in the scene, whatever holds for every object;
     /// `None` takes that back.
-    pub fn set_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
+    pub(crate) fn set_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
         self.single.retain(|(place, of, _)| (*place, *of) != (object, effect));
         self.single.extend(on.map(|on| (object, effect, on)));
     }
 
     /// How an effect is switched for an object.
     #[must_use]
-    pub fn get_for(&self, object: usize, effect: Effect) -> Option<bool> {
+    pub(crate) fn get_for(&self, object: usize, effect: Effect) -> Option<bool> {
         let single = self.single.iter().find(|(place, of, _)| (*place, *of) == (object, effect));
         single.map(|(_, _, on)| *on).or(self.get(effect))
     }
@@ -197,6 +202,7 @@ impl Plan {
     /// Whether the plan chose how hidden surfaces are left out, and nobody asked for it. Then an object that is painted far
     /// to near is convex, and its faces are drawn in any order.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_chosen(&self) -> bool {
         self.chosen
     }
@@ -221,13 +227,14 @@ impl Plan {
 
     /// Every decision in words: object by object, in the order of [`Effect::ALL`].
     #[must_use]
+    #[doc(hidden)]
     pub fn rows(&self, scene: &Scene) -> Vec<Row> {
         self.rows_with(scene, |_| Findings::default())
     }
 
     /// Every decision in words, and what drawing found out about each object.
     #[must_use]
-    pub fn rows_with(&self, scene: &Scene, findings: impl Fn(usize) -> Findings) -> Vec<Row> {
+    pub(crate) fn rows_with(&self, scene: &Scene, findings: impl Fn(usize) -> Findings) -> Vec<Row> {
         let mut rows = Vec::with_capacity(self.objects.len() * Effect::COUNT);
         for (place, plan) in self.objects.iter().enumerate() {
             let findings = findings(place);

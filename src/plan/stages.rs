@@ -28,6 +28,7 @@ pub enum Choice {
 impl Choice {
     /// Its name; empty where there is but one way.
     #[must_use]
+    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Only => "",

@@ -198,6 +198,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
     /// The depths of row `y`, or `None` if the buffer does not hold it.
     #[must_use]
     #[inline]
+    #[doc(hidden)]
     pub fn row_mut(&mut self, y: u32) -> Option<&mut [D]> {
         // The index of a row far beyond the last may be more than a 32-bit processor counts.
         let width = self.width as usize;

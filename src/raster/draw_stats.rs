@@ -2,6 +2,7 @@
 
 /// What drawing a triangle came to.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[non_exhaustive]
 pub struct DrawStats {
     /// Spans handed to a pixel loop, pieces between two starts counted each.
     pub spans: u32,

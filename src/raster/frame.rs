@@ -28,6 +28,7 @@ impl Rect {
 
     /// The part that both rectangles hold.
     #[must_use]
+    #[doc(hidden)]
     pub fn intersection(self, other: Self) -> Self {
         Self {
             x0: self.x0.max(other.x0),
@@ -50,6 +51,7 @@ impl Rect {
 
     /// Whether it holds no pixel.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_empty(self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }

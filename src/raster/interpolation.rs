@@ -73,6 +73,7 @@ impl Interpolation {
     /// Whether a pixel is drawn if and only if its centre is in the triangle, and its byte lies within
     /// `[(min + 128) >> 8, (max + 128) >> 8]` of the vertices' shades.
     #[must_use]
+    #[doc(hidden)]
     pub const fn has_exact_cover(self) -> bool {
         !matches!(self, Self::GouraudVintage)
     }

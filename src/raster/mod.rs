@@ -52,6 +52,7 @@ mod draw_target;
 #[doc(hidden)]
 pub mod edge;
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub mod effects;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]

@@ -12,7 +12,7 @@ use super::stats::Stats;
 use super::{RenderError, Screen, Shading};
 use crate::fixed::I16F16;
 use crate::integer::{
-    Angle, Beam, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Sun, Technique, Vector,
+    Beam, BinaryAngle, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Sun, Vector,
     VertexStage, View,
 };
 use crate::light::{Light, Material};
@@ -103,14 +103,6 @@ fn direction(v: [f64; 3]) -> Vector {
     v.map(|c| if greatest > 0.0 { fixed(c / greatest * 16_384.0).unwrap_or_default() } else { I16F16::default() })
 }
 
-/// The nearest binary angle. Of angles so large that their f64 no longer counts turns, some angle.
-fn binary_angle(radians: f64) -> Angle {
-    let turns = radians / core::f64::consts::TAU;
-    let part = turns - libm::floor(turns);
-    // 0 to 65,536, of which the last is a full turn; the casts truncate, and wrap that to 0.
-    Angle::from_bits((part * 65_536.0 + 0.5) as u32 as u16)
-}
-
 fn sun(light: &Light) -> Option<Sun> {
     match *light {
         Light::Sun { direction: towards, .. } => Some(Sun {
@@ -158,7 +150,7 @@ impl IntegerPath {
         let suns = scene.lights().iter().enumerate().filter(|(_, light)| matches!(light, Light::Sun { .. }));
         for (index, light) in suns {
             let what = "its intensity is beyond ±32,767, or it is one of more than 4,096: too much for 16.16";
-            let sun = sun(light).filter(|_| index < Sun::MOST).ok_or(RenderError::Light { index, what })?;
+            let sun = sun(light).filter(|_| index < Sun::MAX_COUNT).ok_or(RenderError::Light { index, what })?;
             self.suns.push(sun);
         }
         self.convert(scene.objects());
@@ -211,7 +203,7 @@ impl IntegerPath {
                 // No farther than the farthest.
                 position: from_eye(object.position).map(|c| fixed(c * scale).unwrap_or_default()),
                 pivot: Vector::default(),
-                angles: object.angles().map(binary_angle),
+                angles: object.angles().map(BinaryAngle::from),
                 // 1 to 2.
                 scale: fixed(libm::ldexp(scaled, -scale_exponent)).unwrap_or_default(),
             };
@@ -250,30 +242,17 @@ impl IntegerPath {
         let mesh = fixed_mesh(&self.meshes, prepared, object);
         self.lit.resize(mesh.vertices().max(self.lit.len()), LitVertex::default());
         self.beams.resize(self.suns.len(), Beam::default());
-        let technique = match shading {
-            Shading::Flat => Technique::Flat,
-            Shading::GouraudVintage => Technique::GouraudVintage,
-            Shading::Gouraud88 => Technique::Gouraud,
-            Shading::Gouraud1616 => Technique::Gouraud1616,
-            Shading::GouraudHyperbolic => Technique::GouraudHyperbolic,
-            // The default; of the others it is what `Shading::in_integers` says.
-            Shading::Gouraud88Reseeded
-            | Shading::GouraudTessellated
-            | Shading::PhongTable
-            | Shading::Phong
-            | Shading::Float => Technique::GouraudReseeded,
-        };
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
         // `prepare` has checked the object, and here is room for all.
-        let Ok(stage) = VertexStage::new(view, fixed_object, &self.suns, technique, &mut self.lit, &mut self.beams)
+        let Ok(stage) = VertexStage::new(view, fixed_object, &self.suns, shading, &mut self.lit, &mut self.beams)
         else {
             return;
         };
         let vertices = mesh.vertices() as u64;
         let faces = stage.faces(triangle);
         stats.vertices += vertices;
-        stats.lit += if technique == Technique::Flat { faces.lit } else { vertices };
+        stats.lit += if shading == Shading::Flat { faces.lit } else { vertices };
         stats.faces += object.mesh().triangles().len() as u64;
         stats.clipped += faces.clipped;
         stats.culled += faces.culled;

@@ -47,7 +47,6 @@ mod vertex_path;
 mod within;
 
 use alloc::vec::Vec;
-use core::mem;
 
 use self::integer::IntegerPath;
 use self::object::ObjectState;
@@ -60,7 +59,7 @@ use crate::raster::effects::EffectBatch;
 use crate::raster::scan_line::Lists;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
-pub use crate::scene::{HiddenSurfaces, Mapping, Shading, UnknownHiddenSurfaces, UnknownMapping, UnknownShading};
+pub use crate::scene::{HiddenSurfaces, Mapping, Shading};
 use crate::span::Kernel;
 use crate::vga::Vga;
 pub use crate::view::Screen;
@@ -69,7 +68,7 @@ pub use error::RenderError;
 use error::check;
 pub use settings::{Accuracy, ChosenBy, Resolved, Settings};
 pub use stats::{Shares, Stats};
-pub use vertex_path::{UnknownVertexPath, VertexPath};
+pub use vertex_path::VertexPath;
 
 /// What the frame that was drawn last depends on, beside its objects.
 #[derive(Clone, PartialEq, Debug)]
@@ -146,6 +145,7 @@ impl Renderer {
 
     /// A new renderer that is set as this one and draws the same bytes, for another thread.
     #[must_use]
+    #[doc(hidden)]
     pub fn set_alike(&self) -> Self {
         Self { settings: self.settings.clone(), kernel: self.kernel, ..Self::new() }
     }
@@ -156,37 +156,30 @@ impl Renderer {
         &self.settings
     }
 
-    /// Chooses how exact shades are, whatever the scene asks for; `None` leaves it to the scene. Returns what was chosen
-    /// before.
-    pub fn set_accuracy(&mut self, accuracy: Option<Accuracy>) -> Option<Accuracy> {
-        mem::replace(&mut self.settings.accuracy, accuracy)
+    /// How it is set, to change it: how textures are mapped, how hidden surfaces are left out, the numbers that vertices
+    /// are made in.
+    ///
+    /// ```
+    /// use mode13h::render::{HiddenSurfaces, Mapping, Renderer};
+    ///
+    /// let mut renderer = Renderer::new();
+    /// renderer.settings_mut().mapping = Some(Mapping::Perspective);
+    /// renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::ScanLine);
+    /// ```
+    pub fn settings_mut(&mut self) -> &mut Settings {
+        &mut self.settings
     }
 
-    /// Chooses a shading: sets the [accuracy](Self::set_accuracy) to [`Accuracy::Shading`]. Returns what was chosen before,
+    /// Chooses a shading: sets the [accuracy](Settings::accuracy) to [`Accuracy::Shading`]. Returns what was chosen before,
     /// a shading or an error that is accepted, in whose place it comes.
     pub fn set_shading(&mut self, shading: Shading) -> Option<Accuracy> {
-        self.set_accuracy(Some(Accuracy::Shading(shading)))
+        self.settings.accuracy.replace(Accuracy::Shading(shading))
     }
 
-    /// Accepts so many shades of error, 1/255 of full intensity each: sets the [accuracy](Self::set_accuracy) to
+    /// Accepts so many shades of error, 1/255 of full intensity each: sets the [accuracy](Settings::accuracy) to
     /// [`Accuracy::WithinError`]. Returns what was chosen before, a shading or another error, in whose place it comes.
     pub fn set_max_error(&mut self, shades: f32) -> Option<Accuracy> {
-        self.set_accuracy(Some(Accuracy::WithinError(shades)))
-    }
-
-    /// Chooses how textures are mapped, whatever the scene asks for; `None` leaves it to the scene.
-    pub fn set_mapping(&mut self, mapping: Option<Mapping>) {
-        self.settings.mapping = mapping;
-    }
-
-    /// Gives textures mipmaps or none, whatever the scene asks for; `None` leaves it to the scene.
-    pub fn set_mipmaps(&mut self, mipmaps: Option<bool>) {
-        self.settings.mipmaps = mipmaps;
-    }
-
-    /// Chooses the way from mesh to vertices.
-    pub fn set_vertex_path(&mut self, vertex_path: VertexPath) {
-        self.settings.vertex_path = vertex_path;
+        self.settings.accuracy.replace(Accuracy::WithinError(shades))
     }
 
     /// Rounds projected vertices once more, to so many bits after the point: 8, as they are, or fewer, so to whole pixels
@@ -195,12 +188,6 @@ impl Renderer {
         self.vertex_bits = bits.min(VERTEX_BITS);
         // Vertices that are kept are rounded otherwise.
         self.states.clear();
-    }
-
-    /// The way from mesh to vertices.
-    #[must_use]
-    pub fn vertex_path(&self) -> VertexPath {
-        self.settings.vertex_path
     }
 
     /// Chooses the span kernel. All give the same bytes.
@@ -214,22 +201,10 @@ impl Renderer {
         self.kernel
     }
 
-    /// Forces a way to leave out hidden surfaces, right or wrong; with `None`, as a new renderer has it,
-    /// the cheapest that is right for the scene is taken.
-    pub fn set_hidden_surfaces(&mut self, way: Option<HiddenSurfaces>) {
-        self.settings.hidden_surfaces = way;
-    }
-
-    /// The way that is forced, if one is.
-    #[must_use]
-    pub fn hidden_surfaces(&self) -> Option<HiddenSurfaces> {
-        self.settings.hidden_surfaces
-    }
-
     /// Switches an effect on or off for every object, or leaves it to the plan, as a new renderer does.
     ///
     /// Of effects that save work, on or off gives the same bytes; that of hidden surfaces is switched by
-    /// [`set_hidden_surfaces`](Self::set_hidden_surfaces). Where an effect that changes the picture is
+    /// [`Settings::hidden_surfaces`]. Where an effect that changes the picture is
     /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
     /// image that changes nothing). Clipping stays on where the plan calls for it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
@@ -238,6 +213,7 @@ impl Renderer {
 
     /// Switches an effect on or off for one object, by its index in the scene, whatever holds for every object. `None`
     /// takes that back. Palette animation is on as soon as it is for one. Otherwise like [`force`](Self::force).
+    #[doc(hidden)]
     pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
         self.settings.overrides.set_for(object, effect, on);
     }
@@ -273,6 +249,7 @@ impl Renderer {
     /// that was drawn last. `None` of an object that has one shade a face, that is not there, or on the
     /// 16.16 path.
     #[must_use]
+    #[doc(hidden)]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.plan.objects().get(object)?;
         if plan.is_on(Effect::Phong) || (plan.is_on(Effect::Lighting) && !plan.is_on(Effect::Gouraud)) {

@@ -19,6 +19,7 @@ pub enum Accuracy {
 impl Accuracy {
     /// The shading; within an error the default, which is what faces get on which nothing has to be decided.
     #[must_use]
+    #[doc(hidden)]
     pub fn shading(self) -> Shading {
         match self {
             Self::Shading(shading) => shading,
@@ -28,6 +29,7 @@ impl Accuracy {
 
     /// How many shades of error are accepted, if it is by that that shadings are chosen.
     #[must_use]
+    #[doc(hidden)]
     pub const fn max_error(self) -> Option<f32> {
         match self {
             Self::Shading(_) => None,
@@ -62,6 +64,7 @@ impl fmt::Display for Accuracy {
 
 /// Who chose what a scene is drawn by.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[doc(hidden)]
 pub enum ChosenBy {
     /// The renderer's settings.
     Renderer,
@@ -73,6 +76,7 @@ pub enum ChosenBy {
 
 /// How a renderer is set. What is `None` here is left to the scene, and what the scene does not ask for to the plan.
 #[derive(Clone, PartialEq, Debug, Default)]
+#[non_exhaustive]
 pub struct Settings {
     /// How exact shades are.
     pub accuracy: Option<Accuracy>,
@@ -85,12 +89,14 @@ pub struct Settings {
     /// The numbers that vertices are made in.
     pub vertex_path: VertexPath,
     /// Effects that are switched by hand.
+    #[doc(hidden)]
     pub overrides: Overrides,
 }
 
 /// What a scene is drawn by. [`Settings::resolve`] makes it.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
+#[doc(hidden)]
 pub struct Resolved {
     /// How exact shades are to be, as it was asked for, or the default.
     pub asked: Accuracy,
@@ -136,6 +142,7 @@ impl Settings {
     /// assert_eq!((resolved.accuracy, resolved.asked_by), (Accuracy::Shading(Shading::Phong), ChosenBy::Renderer));
     /// ```
     #[must_use]
+    #[doc(hidden)]
     pub fn resolve(&self, preferences: &Preferences) -> Resolved {
         let of_scene = preferences.max_error.map(Accuracy::WithinError).or(preferences.shading.map(Accuracy::Shading));
         let (asked, asked_by) = match (self.accuracy, of_scene) {

@@ -1,6 +1,6 @@
 //! The two ways from a mesh to projected vertices.
 
-use crate::scene::named;
+use crate::names::named;
 
 named! {
     /// A way from a mesh to projected vertices. From there on both are drawn by the same raster.
@@ -13,6 +13,4 @@ named! {
         /// converted: a mesh when it is first seen, angles to the nearest 65,536th of a turn.
         Integer = "fixed",
     }
-    /// There is no vertex path of that name. Its text lists those there are.
-    pub struct UnknownVertexPath;
 }

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::angle::Angle;
+
 /// The eye: a perspective camera.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Camera {
@@ -11,16 +13,16 @@ pub struct Camera {
     pub target: Vec3,
     /// What is up in the picture. Where it points along the view, another axis is taken.
     pub up: Vec3,
-    /// The angle between the upper and the lower edge of the picture, in radians; above 0, below π.
-    pub field_of_view: f32,
+    /// The angle between the upper and the lower edge of the picture; above 0, below 180°.
+    pub field_of_view: Angle,
     /// Nothing nearer than this is drawn; in the scene's units, above 0. It also sets the unit of
     /// depth, so it is best not much smaller than needed.
     pub near: f32,
 }
 
 impl Camera {
-    /// 40°, in radians: about that of a 4:3 screen at the length of an arm and a half.
-    pub const FIELD_OF_VIEW: f32 = 40.0 * core::f32::consts::PI / 180.0;
+    /// 40°, rounded to an f32: about that of a 4:3 screen at the length of an arm and a half.
+    pub const FIELD_OF_VIEW: Angle = Angle::from_radians((40.0 * core::f32::consts::PI / 180.0) as f64);
 
     /// The share of the picture's height that a framed sphere fills.
     const FILL: f32 = 15.0 / 16.0;
@@ -28,30 +30,24 @@ impl Camera {
     /// Looks along −z at a sphere, from where it fills fifteen sixteenths of the picture's height.
     #[must_use]
     pub fn framing(centre: Vec3, radius: f32) -> Self {
-        Self::framing_from(centre, radius, Vec3::Z, Self::FIELD_OF_VIEW)
-    }
-
-    /// Looks at a sphere from the side that `direction` points to, from where it fills fifteen sixteenths of the
-    /// picture's height. `direction` has any length but zero; the field of view is in radians.
-    #[must_use]
-    pub fn framing_from(centre: Vec3, radius: f32, direction: Vec3, field_of_view: f32) -> Self {
         // Half the angle under which the sphere is seen, and the distance at which its sine is that.
         // The distance is at most f32::MAX, so that a sphere of that size is still something to look
         // at.
-        let half = libm::atanf(Self::FILL * libm::tanf(field_of_view / 2.0));
+        let half = libm::atanf(Self::FILL * libm::tanf(Self::FIELD_OF_VIEW.to_radians() as f32 / 2.0));
         let distance = (radius / libm::sinf(half)).clamp(f32::MIN_POSITIVE, f32::MAX);
-        let eye = centre + direction.normalize_or(Vec3::Z) * distance;
+        let eye = centre + Vec3::Z * distance;
         Self {
             eye: eye.clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX)),
             target: centre,
             up: Vec3::Y,
-            field_of_view,
+            field_of_view: Self::FIELD_OF_VIEW,
             near: Self::near_for(distance),
         }
     }
 
     /// How near is as near as need be, where what is looked at is at a distance: a 128th of it.
     #[must_use]
+    #[doc(hidden)]
     pub fn near_for(distance: f32) -> f32 {
         (distance / 128.0).max(f32::MIN_POSITIVE)
     }

@@ -19,6 +19,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::{Camera, Object, Path, object};
+use crate::angle::Angle;
 
 /// How much of the picture's width or height is filled, whichever is filled more.
 const FILL: f64 = 0.9;
@@ -76,12 +77,12 @@ impl Swept {
             Turning::Still => Shape::Points(points(object, object.angles())),
             Turning::Upright => {
                 let [tilt, _, roll] = object.angles();
-                let axis = object::turn([tilt, 0.0, 0.0]).map(|row| row[1]);
-                let rings = points(object, [0.0, 0.0, roll]);
+                let axis = object::turn([tilt, Angle::default(), Angle::default()]).map(|row| row[1]);
+                let rings = points(object, [Angle::default(), Angle::default(), roll]);
                 Shape::Rings(axis, rings.into_iter().map(|[x, y, z]| [libm::sqrt(x * x + z * z), y]).collect())
             }
             Turning::Anyhow => {
-                let squares = points(object, [0.0; 3]).into_iter().map(|p| dot(p, p));
+                let squares = points(object, [Angle::default(); 3]).into_iter().map(|p| dot(p, p));
                 Shape::Sphere(libm::sqrt(squares.fold(0.0, f64::max)))
             }
         };
@@ -131,8 +132,8 @@ pub(super) struct Viewpoint {
     /// Towards the eye, of any length but zero.
     pub(super) direction: Vec3,
     pub(super) up: Vec3,
-    /// In radians, from the picture's upper to its lower edge.
-    pub(super) field_of_view: f32,
+    /// From the picture's upper to its lower edge.
+    pub(super) field_of_view: Angle,
     /// The middle of the picture, if it is given.
     pub(super) target: Option<Vec3>,
 }
@@ -143,7 +144,7 @@ impl Viewpoint {
     pub(super) fn camera(&self, everything: &[Swept]) -> Option<Camera> {
         let towards = unit(widen(self.direction)).unwrap_or([0.0, 0.0, 1.0]);
         let axes @ [right, up, towards] = axes(towards.map(|c| -c), widen(self.up))?;
-        let half = FILL * libm::tan(f64::from(self.field_of_view) / 2.0);
+        let half = FILL * libm::tan(self.field_of_view.to_radians() / 2.0);
         let edges = [(right, half * ASPECT), (up, half)];
         let target = self.target.map(|target| axes.map(|axis| dot(axis, widen(target))));
 
@@ -240,7 +241,7 @@ fn best<T: Copy, const N: usize>(list: &[T], value: impl Fn(&T, usize) -> f64) -
 }
 
 /// The vertices that an object's triangles use, about its pivot, at these angles.
-fn points(object: &Object, angles: [f64; 3]) -> Vec<Row> {
+fn points(object: &Object, angles: [Angle; 3]) -> Vec<Row> {
     let mesh = object.mesh();
     let mut used = vec![false; mesh.positions().len()];
     mesh.triangles().iter().flatten().for_each(|&i| used[i as usize] = true);
@@ -305,11 +306,12 @@ impl Camera {
     /// vertices.
     ///
     /// ```
+    /// use mode13h::Angle;
     /// use mode13h::mesh::shapes;
     /// use mode13h::scene::{Camera, Object, Scene};
     /// let mut scene = Scene::new();
     /// let teapot = scene.add(Object::new(shapes::teapot(8)).centred());
-    /// scene[teapot].set_angles([0.35, 0.0, 0.0]);
+    /// scene[teapot].rotate_x(Angle::from_degrees(20.0));
     /// scene.camera = Camera::framing_turn(&scene[teapot]);
     /// // Nearer than from where its sphere would be seen whole.
     /// let sphere = Camera::framing(scene[teapot].position, scene[teapot].mesh().bounds().radius);
@@ -362,12 +364,12 @@ mod tests {
     fn reached(object: &Object, camera: &Camera) -> [f64; 4] {
         let towards = unit(added(widen(camera.eye), widen(camera.target), -1.0)).expect("a direction");
         let [right, up, _] = axes(towards.map(|c| -c), widen(camera.up)).expect("a view");
-        let half = libm::tan(f64::from(camera.field_of_view) / 2.0);
+        let half = libm::tan(camera.field_of_view.to_radians() / 2.0);
         let mut object = object.clone();
         let [tilt, _, roll] = object.angles();
         let mut reached = [0.0_f64; 4];
         for step in 0..ANGLES {
-            object.set_angles([tilt, TAU * f64::from(step) / f64::from(ANGLES), roll]);
+            object.set_angles([tilt, Angle::TURN * f64::from(step) / f64::from(ANGLES), roll]);
             let turn = object.turn();
             for &i in object.mesh().triangles().iter().flatten() {
                 let p = added(widen(object.mesh().positions()[i as usize]), widen(object.pivot), -1.0);
@@ -425,7 +427,7 @@ mod tests {
             object.pivot = object.mesh().bounds().centre + Vec3::splat(size as f32 * 0.5);
             object.position = Vec3::new(random.within(size) as f32, size as f32, 0.0);
             object.scale = 2.5;
-            object.set_angles([random.within(1.2), 1.0, random.within(3.0)]);
+            object.set_angles([random.within(1.2), 1.0, random.within(3.0)].map(Angle::from_radians));
             check(&alloc::format!("object {number}"), &object, &Camera::framing_turn(&object));
         }
         for name in shapes::NAMES {
@@ -463,7 +465,7 @@ mod tests {
             let mut object = Object::new(Mesh::new(positions.clone(), vec![[0, 1, 2]]).expect("a mesh")).centred();
             for tilt in [0.0, 0.35, TAU / 4.0] {
                 for position in [Vec3::ZERO, Vec3::splat(1e6)] {
-                    object.set_angles([tilt, 0.0, 0.0]);
+                    object.set_angles([tilt, 0.0, 0.0].map(Angle::from_radians));
                     object.position = position;
                     let camera = Camera::framing_turn(&object);
                     let made = crate::view::View::new(&camera, crate::view::Screen::MODE_13H);
@@ -490,18 +492,21 @@ mod tests {
                 _ => Some(Path::Circle { centre, from, towards, period: 1.0 }),
             };
             let mut object = Object::new(mesh(&mut random, 12, [1.0, 0.4, 0.7], [3.0, 0.0, 0.0])).centred();
-            object.set_angles([0.3, 1.0, 2.0]);
+            object.set_angles([0.3, 1.0, 2.0].map(Angle::from_radians));
             let target = (number % 2 == 1).then_some(target);
-            let viewpoint = Viewpoint { direction, up, field_of_view: 0.8, target };
+            let viewpoint = Viewpoint { direction, up, field_of_view: Angle::from_radians(0.8), target };
             let camera = viewpoint.camera(&[Swept::new(&object, turning, path.as_ref())]).expect("a camera");
             let mut most = 0.0_f64;
             for step in 0..300 {
                 object.position = path.map_or(Vec3::ZERO, |path| path.at(f64::from(step) / 100.0));
-                object.set_angles(match turning {
-                    Turning::Still => [0.3, 1.0, 2.0],
-                    Turning::Upright => [0.3, random.within(7.0), 2.0],
-                    Turning::Anyhow => [(); 3].map(|()| random.within(7.0)),
-                });
+                object.set_angles(
+                    match turning {
+                        Turning::Still => [0.3, 1.0, 2.0],
+                        Turning::Upright => [0.3, random.within(7.0), 2.0],
+                        Turning::Anyhow => [(); 3].map(|()| random.within(7.0)),
+                    }
+                    .map(Angle::from_radians),
+                );
                 let view = crate::view::View::new(&camera, crate::view::Screen::MODE_13H).expect("a view");
                 let view = crate::view::ObjectView::new(&view, &object);
                 for p in object.mesh().positions() {

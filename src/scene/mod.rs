@@ -13,7 +13,6 @@
 //! | `motion` | [`Motion`]: everything from absolute time |
 //! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
 //! | `preferences` | [`Preferences`]: shading, hidden surfaces, mapping, mipmaps, tessellation, dither |
-//! | `names` | choices that are typed by name |
 //! | `file` | scenes as TOML files (feature `scene-files`) |
 //! | `shipped` | those that are compiled in (feature `scene-files`) |
 
@@ -24,7 +23,6 @@ pub mod file;
 mod fog;
 pub(crate) mod framing;
 mod motion;
-mod names;
 pub(crate) mod object;
 mod preferences;
 #[cfg(feature = "scene-files")]
@@ -36,20 +34,19 @@ use core::ops::{Index, IndexMut};
 
 use glam::Vec3;
 
+use crate::angle::Angle;
 use crate::light::Light;
 use crate::palette::{Palette, Rgb, builtin};
+pub use crate::shading::Shading;
 pub use crate::shared::Shared;
 use crate::vga::Vga;
 pub use animation::PaletteAnimation;
 pub use camera::Camera;
 pub use fog::Fog;
 pub use motion::{Motion, Moving, Path};
-pub(crate) use names::named;
 pub(crate) use object::matrix_product;
 pub use object::{Object, UpAxis};
-pub use preferences::{
-    HiddenSurfaces, Mapping, Preferences, Shading, UnknownHiddenSurfaces, UnknownMapping, UnknownShading,
-};
+pub use preferences::{HiddenSurfaces, Mapping, Preferences};
 
 /// An object of a scene, as [`Scene::add`] returned it. Valid until the object is removed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -100,8 +97,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// How far the upper end of what is [shown](Self::showing) is tilted towards the eye, in radians.
-    const TILT: f64 = 0.35;
+    /// How far the upper end of what is [shown](Self::showing) is tilted towards the eye.
+    const TILT: Angle = Angle::from_radians(0.35);
 
     /// An empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four seconds.
     #[must_use]
@@ -140,13 +137,13 @@ impl Scene {
     /// use mode13h::scene::Scene;
     /// let mut scene = Scene::showing(shapes::teapot(8));
     /// scene.set_time(scene.duration / 4.0);
-    /// assert_eq!(scene.objects()[0].angles()[1], std::f64::consts::FRAC_PI_2);
+    /// assert_eq!(scene.objects()[0].angles()[1].to_degrees(), 90.0);
     /// ```
     #[must_use]
     pub fn showing(object: impl Into<Object>) -> Self {
         let mut object = object.into().centred();
         object.position = Vec3::ZERO;
-        object.set_angles([Self::TILT, 0.0, 0.0]);
+        object.set_angles([Self::TILT, Angle::default(), Angle::default()]);
         let mut scene = Self::new();
         scene.camera = Camera::framing_turn(&object);
         let start = object.angles();
@@ -308,6 +305,7 @@ impl Scene {
     }
 
     /// Loads the DAC with the scene's palette, if it has one, as it is at the scene's time.
+    #[doc(hidden)]
     pub fn load_palette(&self, vga: &mut Vga) {
         match (&self.palette, &self.palette_animation) {
             (Some(palette), Some(animation)) => animation.load(palette, self.time, vga),

@@ -8,6 +8,7 @@ use core::f64::consts::TAU;
 use glam::Vec3;
 
 use super::{LightId, ObjectId};
+use crate::angle::Angle;
 
 /// Something in a scene that moves.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -17,8 +18,8 @@ pub enum Motion {
     Spin {
         /// The object.
         object: ObjectId,
-        /// Its angles about x, y and z at time 0, in radians.
-        start: [f64; 3],
+        /// Its angles about x, y and z at time 0.
+        start: [Angle; 3],
         /// Turns a second about x, y and z. Whole turns over a film's length make it seamless.
         turns: [f64; 3],
     },
@@ -32,7 +33,7 @@ pub enum Motion {
 }
 
 /// What can go along a path.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum Moving {
     /// An object's position.
@@ -77,6 +78,7 @@ impl Path {
     /// Where it is at a time in seconds. Of a period that is not above 0, or of a time that is not
     /// finite, where it begins.
     #[must_use]
+    #[doc(hidden)]
     pub fn at(&self, seconds: f64) -> Vec3 {
         match *self {
             Self::Line { from, to, period, back } => {
@@ -111,8 +113,10 @@ pub(super) fn part(seconds: f64, period: f64) -> f64 {
     if part < 1.0 { part } else { 0.0 }
 }
 
-/// Angles at a time: `start` in radians, `turns` a second. Whole turns are left out first, so that
+/// Angles at a time: `start`, and `turns` a second. Whole turns are left out first, so that
 /// nothing is lost however late it is.
-pub(super) fn spun(start: [f64; 3], turns: [f64; 3], seconds: f64) -> [f64; 3] {
-    core::array::from_fn(|i| if turns[i] == 0.0 { start[i] } else { start[i] + part(seconds, 1.0 / turns[i]) * TAU })
+pub(super) fn spun(start: [Angle; 3], turns: [f64; 3], seconds: f64) -> [Angle; 3] {
+    core::array::from_fn(|i| {
+        if turns[i] == 0.0 { start[i] } else { start[i] + Angle::TURN * part(seconds, 1.0 / turns[i]) }
+    })
 }

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use glam::{Mat3, Vec3};
 
 use super::{ObjectId, Scene, Shared};
+use crate::angle::Angle;
 use crate::light::Material;
 use crate::mesh::Mesh;
 
@@ -40,7 +41,7 @@ pub struct Object {
     /// The object that it moves, turns and grows with; its position is then in that object's own coordinates, those of
     /// its mesh. A parent that was removed counts as none.
     pub parent: Option<ObjectId>,
-    angles: [f64; 3],
+    angles: [Angle; 3],
 }
 
 impl Object {
@@ -63,7 +64,7 @@ impl Object {
             up_axis: UpAxis::Y,
             visible: true,
             parent: None,
-            angles: [0.0; 3],
+            angles: [Angle::default(); 3],
         }
     }
 
@@ -94,7 +95,7 @@ impl Object {
 
     /// For each vertex of the mesh, the index of its surface.
     #[must_use]
-    pub fn vertex_surfaces(&self) -> &[u16] {
+    pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         self.mesh.vertex_surfaces()
     }
 
@@ -106,7 +107,7 @@ impl Object {
         if self.scale < 0.0 {
             return Err("its scale must not be negative");
         }
-        if !self.angles.iter().all(|angle| angle.is_finite()) {
+        if !self.angles.iter().all(|angle| angle.to_radians().is_finite()) {
             return Err("its angles must be finite");
         }
         if self.materials.len() < self.mesh.surfaces().len() {
@@ -118,34 +119,34 @@ impl Object {
         Ok(())
     }
 
-    /// Turns it further about the x axis, by radians.
-    pub fn rotate_x(&mut self, angle: f64) {
+    /// Turns it further about the x axis.
+    pub fn rotate_x(&mut self, angle: Angle) {
         self.angles[0] += angle;
     }
 
-    /// Turns it further about the y axis, by radians.
-    pub fn rotate_y(&mut self, angle: f64) {
+    /// Turns it further about the y axis.
+    pub fn rotate_y(&mut self, angle: Angle) {
         self.angles[1] += angle;
     }
 
-    /// Turns it further about the z axis, by radians.
-    pub fn rotate_z(&mut self, angle: f64) {
+    /// Turns it further about the z axis.
+    pub fn rotate_z(&mut self, angle: Angle) {
         self.angles[2] += angle;
     }
 
-    /// Its angles about x, y and z in radians. The turn about z comes first, then y, then x: y
+    /// Its angles about x, y and z. The turn about z comes first, then y, then x: y
     /// spins it like a turntable, x tilts the table.
     #[must_use]
-    pub fn angles(&self) -> [f64; 3] {
+    pub fn angles(&self) -> [Angle; 3] {
         self.angles
     }
 
-    /// Sets its angles about x, y and z, in radians. Set from the time, frame n is the same
+    /// Sets its angles about x, y and z. Set from the time, frame n is the same
     /// whether or not the frames before it were drawn.
     ///
     /// The matrix is made anew from the angles for every frame, never from a product of small
     /// steps, so it stays a rotation for ever.
-    pub fn set_angles(&mut self, angles: [f64; 3]) {
+    pub fn set_angles(&mut self, angles: [Angle; 3]) {
         self.angles = angles;
     }
 
@@ -163,7 +164,7 @@ impl Object {
     }
 
     /// What [`turn`](Self::turn) would be with other angles.
-    pub(super) fn turned_by(&self, angles: [f64; 3]) -> [[f64; 3]; 3] {
+    pub(super) fn turned_by(&self, angles: [Angle; 3]) -> [[f64; 3]; 3] {
         match self.up_axis {
             UpAxis::Y => turn(angles),
             // (x, y, z) stands up as (x, z, −y).
@@ -255,8 +256,8 @@ impl From<Shared<Mesh>> for Object {
 
 /// The turn of angles about x, y and z, by rows: z first, then y, then x.
 #[must_use]
-pub fn turn(angles: [f64; 3]) -> [[f64; 3]; 3] {
-    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(libm::sincos);
+pub fn turn(angles: [Angle; 3]) -> [[f64; 3]; 3] {
+    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(|angle| libm::sincos(angle.to_radians()));
     let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
     let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
     let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];

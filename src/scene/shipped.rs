@@ -46,6 +46,7 @@ pub fn by_name(name: &str) -> Option<&'static Shipped> {
 impl Shipped {
     /// What it shows, in one line: the first of its file.
     #[must_use]
+    #[doc(hidden)]
     pub fn shows(&self) -> &'static str {
         self.text.lines().next().unwrap_or_default().trim_start_matches(['#', ' '])
     }

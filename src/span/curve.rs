@@ -38,6 +38,7 @@ fn curve_inlined(shades: &mut [u16], [a, b, c]: [f32; 3], least: u16, most: u16)
 impl Kernel {
     /// [`curve`] as the kernel's processor does it best: the same numbers.
     #[inline]
+    #[doc(hidden)]
     pub fn curve(self, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
         self.run(|| curve_inlined(shades, parabola, least, most));
     }

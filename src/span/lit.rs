@@ -117,6 +117,7 @@ impl Kernel {
     /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
+    #[doc(hidden)]
     pub fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
         self.run(|| interpolate_inlined(places, a, da, d, dd))
     }

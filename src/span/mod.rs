@@ -45,6 +45,7 @@
 //! | [`curve::curve`] | writes no pixels: shades on a parabola |
 
 use core::fmt;
+use core::hash::{Hash, Hasher};
 
 use crate::simd::Level;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
@@ -332,6 +333,21 @@ impl fmt::Display for Kernel {
             "simd" => write!(f, "simd ({})", self.level.name()),
             name => f.write_str(name),
         }
+    }
+}
+
+/// Two are equal if they have one name and draw with the same level.
+impl PartialEq for Kernel {
+    fn eq(&self, other: &Self) -> bool {
+        (self.name, self.level) == (other.name, other.level)
+    }
+}
+
+impl Eq for Kernel {}
+
+impl Hash for Kernel {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        (self.name, self.level).hash(state);
     }
 }
 

@@ -9,6 +9,7 @@ use crate::palette::{Ramp, Rgb};
 
 impl Texture {
     /// The names of the textures that are compiled in.
+    #[doc(hidden)]
     pub const NAMES: [&'static str; 4] = ["crate", "checker", "bricks", "sky"];
 
     /// The texture of a name in [`NAMES`](Self::NAMES). Returns `None` if there is none.

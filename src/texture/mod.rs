@@ -98,10 +98,11 @@ pub struct Texture {
 
 impl Texture {
     /// The most texels in a row, and the most rows.
+    #[doc(hidden)]
     pub const MAX_SIDE: u32 = 256;
 
     /// The most pixels in a row, and the most rows, of a picture that becomes a texture.
-    pub const MAX_PICTURE_SIDE: u32 = 4096;
+    pub(crate) const MAX_PICTURE_SIDE: u32 = 4096;
 
     /// From texels, row after row from v = 0 up, and their colours.
     ///

@@ -55,7 +55,7 @@ const RETRACE_STARTS_AT: u64 = UNITS_PER_LINE * RETRACE_START as u64;
 const _: () = assert!(DOT_CLOCK as u64 * UNITS_PER_DOT == UNITS_PER_NANOSECOND * 1_000_000_000);
 
 /// Where the beam is. It starts at the first dot of the first line and moves when told to.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Beam {
     /// Since the frame began, below `UNITS_PER_FRAME`.
     units: u64,
@@ -81,6 +81,7 @@ impl Beam {
 
     /// The dot in its line, 0 to 799; dots 0 to 639 show column `dot / 2`.
     #[must_use]
+    #[doc(hidden)]
     pub const fn dot(self) -> u32 {
         // Below 800.
         (self.units % UNITS_PER_LINE / UNITS_PER_DOT) as u32
@@ -100,6 +101,7 @@ impl Beam {
 
     /// What port 3DAh reads: [`NOT_DISPLAYING`] and [`VERTICAL_RETRACE`], all other bits 0.
     #[must_use]
+    #[doc(hidden)]
     pub const fn status(self) -> u8 {
         let blank = if self.is_displaying() { 0 } else { NOT_DISPLAYING };
         let retrace = if self.is_in_retrace() { VERTICAL_RETRACE } else { 0 };

@@ -7,6 +7,7 @@ pub(super) const HEIGHT: usize = 200;
 
 /// A rectangle of the window's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[doc(hidden)]
 pub struct Area {
     /// Columns of the window to the left of it.
     pub left: usize,
@@ -28,7 +29,7 @@ impl Area {
 
     /// A point of the window as a point of the frame that fills this rectangle: 0 to 320 across and 0 to 200 down if it
     /// is on the picture, beyond these beside it.
-    pub fn to_frame(self, x: f32, y: f32) -> (f32, f32) {
+    pub(crate) fn to_frame(self, x: f32, y: f32) -> (f32, f32) {
         let along = |at: f32, from: usize, length: usize, frame: usize| {
             (at - from as f32) * frame as f32 / length.max(1) as f32
         };

@@ -12,7 +12,8 @@ use super::area::Area;
 const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
 
 /// The mouse's buttons that are down.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Hash, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Buttons {
     /// The left one.
     pub left: bool,
@@ -43,13 +44,9 @@ impl Input {
     }
 
     /// Whether the key went down since the last frame while Shift was down, however short both were.
+    #[doc(hidden)]
     pub fn pressed_with_shift(&self, key: Key) -> bool {
         self.shifted.contains(&key)
-    }
-
-    /// The keys that went down since the last frame, in order.
-    pub fn keys_pressed(&self) -> &[Key] {
-        &self.pressed
     }
 
     /// Whether the key is down.

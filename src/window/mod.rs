@@ -32,7 +32,7 @@ const LOOK: Duration = Duration::from_millis(25);
 const RESEND: Duration = Duration::from_millis(500);
 
 /// Whether the window stays open after a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Hash, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// The next frame follows.
     Continue,
@@ -51,6 +51,7 @@ pub trait FrameResult {
     /// # Errors
     ///
     /// That of the frame function.
+    #[doc(hidden)]
     fn flow(self) -> Result<Flow, Self::Error>;
 }
 
@@ -197,6 +198,7 @@ impl Window {
     /// # Errors
     ///
     /// [`WindowError`] if the display went away.
+    #[doc(hidden)]
     pub fn show_over(&mut self, vga: &Vga, over: impl FnOnce(&mut Canvas<'_>)) -> Result<Flow, WindowError> {
         self.wait(FRAME);
         let (width, height) = self.size();

@@ -5,6 +5,7 @@ use crate::support::oracle;
 use crate::support::random::Random;
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::fixed::U8F8;
 use mode13h::raster::scan_line::{EdgePair, Lists, Scratch, ScratchError};
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
@@ -437,12 +438,12 @@ fn depths_of_earlier_frames_do_not_count() {
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
     let second = scene.add(Object::new(shapes::by_name("cube").expect("listed")));
     let (mut again, mut machine) = (Renderer::new(), Vga::new());
-    again.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+    again.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     let mut drawn = 0;
     for round in 0..300 {
         let mut number = |most: f64| (random.unit() * 2.0 - 1.0) * most;
         for object in 0..=1 {
-            scene.objects_mut()[object].set_angles([number(3.0), number(3.0), number(3.0)]);
+            scene.objects_mut()[object].set_angles([number(3.0), number(3.0), number(3.0)].map(Angle::from_radians));
         }
         // Beyond the screen's edges and through the near plane, too.
         let far = number(3.0);

@@ -8,6 +8,7 @@
 
 use crate::support::tried::Tried;
 use allocation_counter::measure;
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
@@ -89,7 +90,9 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
         let scene = shipped.load().expect("it is shipped").scene;
         try_one(name.to_string(), &scene, &|_, _| ());
         for way in HiddenSurfaces::ALL {
-            try_one(format!("{name}, {way}"), &scene, &|_, renderer| renderer.set_hidden_surfaces(Some(way)));
+            try_one(format!("{name}, {way}"), &scene, &|_, renderer| {
+                renderer.settings_mut().hidden_surfaces = Some(way)
+            });
         }
         for shading in Shading::ALL {
             try_one(format!("{name}, {shading}"), &scene, &|_, renderer| {
@@ -97,14 +100,18 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
             });
         }
         for mapping in Mapping::ALL {
-            try_one(format!("{name}, {mapping}"), &scene, &|_, renderer| renderer.set_mapping(Some(mapping)));
+            try_one(format!("{name}, {mapping}"), &scene, &|_, renderer| {
+                renderer.settings_mut().mapping = Some(mapping)
+            });
         }
         for shades in [0.8, 2.0] {
             try_one(format!("{name}, within {shades}"), &scene, &|_, renderer| {
                 renderer.set_max_error(shades);
             });
         }
-        try_one(format!("{name}, in integers"), &scene, &|_, renderer| renderer.set_vertex_path(VertexPath::Integer));
+        try_one(format!("{name}, in integers"), &scene, &|_, renderer| {
+            renderer.settings_mut().vertex_path = VertexPath::Integer
+        });
         try_one(format!("{name}, dithered"), &scene, &|scene, _| scene.preferences.dither = true);
         for effect in Effect::ALL {
             try_one(format!("{name}, {effect} forced"), &scene, &|_, renderer| renderer.force(effect, Some(true)));
@@ -118,7 +125,7 @@ fn turning(mesh: Mesh) -> Scene {
     let mut scene = Scene::new();
     let object = scene.add(Object::new(mesh));
     scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-    scene.motions.push(Motion::Spin { object, start: [0.0; 3], turns: [0.0, 0.1, 0.0] });
+    scene.motions.push(Motion::Spin { object, start: [Angle::default(); 3], turns: [0.0, 0.1, 0.0] });
     scene
 }
 
@@ -135,7 +142,7 @@ fn nor_of_a_fine_body_or_one_that_is_cut() {
     for (name, scene) in [("a sphere", fine), ("a torus around the eye", cut)] {
         for way in HiddenSurfaces::ALL {
             let (mut scene, mut renderer) = (scene.clone(), Renderer::new());
-            renderer.set_hidden_surfaces(Some(way));
+            renderer.settings_mut().hidden_surfaces = Some(way);
             wrong.extend(turns(&format!("{name}, {way}"), &mut scene, &mut renderer));
             tried.add(u64::from(2 * FRAMES));
         }

@@ -6,6 +6,7 @@ use crate::support::near_plane::{cuts_on_the_near_plane, lit, normal};
 use crate::support::odd_views::odd_views;
 use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
@@ -43,7 +44,13 @@ fn counts_by(renderer: &mut Renderer, scene: &Scene) -> (Vec<u32>, Stats) {
 /// An eye at the origin that looks along −z.
 fn scene(mesh: Mesh) -> Scene {
     let mut scene = Scene::new();
-    scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, field_of_view: 1.0, near: 0.25 };
+    scene.camera = Camera {
+        eye: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        field_of_view: Angle::from_radians(1.0),
+        near: 0.25,
+    };
     scene.add(Object::new(mesh));
     scene
 }
@@ -126,7 +133,7 @@ fn r7_a_corner_within_rounding_of_the_limit() {
         let mesh = Mesh::new(vec![p, q, r, s], vec![[0, 1, 2], [1, 0, 3]]).expect("a mesh");
         for (path, clipped) in VertexPath::ALL.into_iter().zip(&mut clipped) {
             let mut renderer = Renderer::new();
-            renderer.set_vertex_path(path);
+            renderer.settings_mut().vertex_path = path;
             let (counts, stats) = counts_by(&mut renderer, &scene(mesh.clone()));
             *clipped += u64::from(stats.clipped == 1);
             let holes = counts.iter().filter(|&&times| times == 0).count();
@@ -150,7 +157,7 @@ fn c3_what_is_very_far_is_drawn() {
         scene.objects_mut()[0].scale = 1e10;
         scene.add_light(Light::sun([0.0, 0.0, 1.0]));
         let mut renderer = Renderer::new();
-        renderer.set_hidden_surfaces(Some(way));
+        renderer.settings_mut().hidden_surfaces = Some(way);
         let mut vga = Vga::new();
         renderer.draw(&scene, &mut vga).expect("a legal scene");
         let lit = vga.pixels().iter().filter(|&&byte| byte != 0).count();

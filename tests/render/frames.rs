@@ -5,6 +5,7 @@
 
 use crate::support::oracle;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading};
@@ -63,7 +64,7 @@ fn check(scene: &Scene, shading: Shading) -> usize {
 
 fn turned(mesh: Mesh, degrees: f64) -> Scene {
     let mut scene = crate::support::scenes::framed(mesh);
-    scene.objects_mut()[0].set_angles([0.4, degrees.to_radians(), 0.1]);
+    scene.objects_mut()[0].set_angles([0.4, degrees.to_radians(), 0.1].map(Angle::from_radians));
     scene
 }
 

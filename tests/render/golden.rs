@@ -2,6 +2,7 @@
 
 use crate::support::golden::{Indexed, check};
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
 use mode13h::render::{Renderer, Shading};
@@ -26,7 +27,7 @@ fn golden_frames() {
     for (name, shading) in all {
         let mut scene = crate::support::scenes::framed(shapes::by_name(name).expect("listed"));
         scene.palette = Some(builtin::COPPER.clone());
-        scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1]);
+        scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1].map(Angle::from_radians));
         scene.preferences.shading = Some(shading);
         wrong.extend(check(&format!("{name}-{shading}"), &mut tried, |kernel| draw(&scene, kernel)));
     }
@@ -77,7 +78,11 @@ fn golden_frames_of_a_house() {
     house.camera = Camera::framing(object.pivot * 0.0, object.mesh().bounds().radius * 0.8);
     house.add_light(Light::sun([0.4, 0.6, 1.0]));
     let id = house.add(object);
-    house.motions.push(Motion::Spin { object: id, start: [0.35, 0.0, 0.0], turns: [0.0, 0.25, 0.0] });
+    house.motions.push(Motion::Spin {
+        object: id,
+        start: [0.35, 0.0, 0.0].map(Angle::from_radians),
+        turns: [0.0, 0.25, 0.0],
+    });
 
     let mut auto = house.clone();
     auto_palette::of_scene(&house).expect("a scene").apply(&mut auto);

@@ -7,6 +7,7 @@ use crate::support::odd_views::odd_views;
 use crate::support::oracle;
 use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
@@ -22,14 +23,14 @@ const HEIGHT: usize = 200;
 
 fn renderer(path: VertexPath) -> Renderer {
     let mut renderer = Renderer::new();
-    renderer.set_vertex_path(path);
+    renderer.settings_mut().vertex_path = path;
     renderer
 }
 
 fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
     let mut vga = Vga::new();
     let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
-    assert_eq!(stats.vertex_path, renderer.vertex_path());
+    assert_eq!(stats.vertex_path, renderer.settings().vertex_path);
     vga.pixels().to_vec()
 }
 
@@ -57,9 +58,9 @@ fn vertex_bound(scene: &Scene) -> f64 {
     let radius = f64::from(scene.objects()[0].mesh().bounds().radius);
     let eye = f64::from(scene.camera.eye.z);
     let off = 0.51 * 3.0_f64.sqrt() * radius / 65_536.0 + (radius + eye) * (2.0_f64.powi(-21) + 2.0_f64.powi(-24));
-    let focal = 100.0 / f64::tan(f64::from(scene.camera.field_of_view) / 2.0) * 6.0 / 5.0;
+    let focal = 100.0 / f64::tan(scene.camera.field_of_view.to_radians() / 2.0) * 6.0 / 5.0;
     // All of it lies in the picture's height, so |X| / W and |Y| / W are below the tangent of 40°/2.
-    let screen = focal * off * (1.0 + f64::tan(f64::from(scene.camera.field_of_view) / 2.0)) / (eye - radius);
+    let screen = focal * off * (1.0 + f64::tan(scene.camera.field_of_view.to_radians() / 2.0)) / (eye - radius);
     screen + 1.0 / 256.0
 }
 
@@ -149,7 +150,7 @@ fn both_paths_draw_the_same_picture() {
         scene.add_light(Light::sun([-1.0, 0.3, 0.2]).with_intensity(0.5));
         for _ in 0..24 {
             let angles = [0; 3].map(|_| steps(random.within(-70_000, 70_000)));
-            scene.objects_mut()[0].set_angles(angles);
+            scene.objects_mut()[0].set_angles(angles.map(Angle::from_radians));
             let (pixels, others) = compare(&scene, name);
             (compared, differ) = (compared + pixels, differ + others);
             tried.add(1);
@@ -203,7 +204,7 @@ fn every_shading_and_odd_scene_is_drawn_and_counted_alike() {
             let mut object = Object::new(shapes::torus(24, 12));
             (object.scale, object.pivot, object.up_axis) = (scale, Vec3::new(0.3, 2.0, -0.1), UpAxis::Z);
             object.position = Vec3::splat(place);
-            object.set_angles([steps(1000), steps(20_000), steps(-300)]);
+            object.set_angles([steps(1000), steps(20_000), steps(-300)].map(Angle::from_radians));
             scene.add(object);
             scene.add_light(Light::sun([0.4, 0.6, 1.0]));
             scene.camera = Camera::framing(Vec3::splat(place) - Vec3::Y * 2.0 * scale, 2.0 * scale);
@@ -242,7 +243,7 @@ fn t3_a_full_turn_returns_to_the_picture() {
             let mut turned = |n: i64| {
                 let mut angles = [0.1, 0.2, 0.3];
                 angles[axis] = steps(n);
-                scene.objects_mut()[0].set_angles(angles);
+                scene.objects_mut()[0].set_angles(angles.map(Angle::from_radians));
                 frame(&mut renderer, &scene)
             };
             let once = turned(n);
@@ -264,15 +265,15 @@ fn t2_steps_of_any_size() {
     let id = 0;
     let first = frame(&mut renderer, &scene);
     for step in [0.0, -0.0, 0.1, -0.1, 3600.0, -3600.0, 86_400.0, 1e9] {
-        scene.objects_mut()[id].rotate_y(step);
+        scene.objects_mut()[id].rotate_y(Angle::from_radians(step));
         let there = frame(&mut renderer, &scene);
         assert_eq!(there == first, step == 0.0, "a step of {step}");
-        scene.objects_mut()[id].set_angles([0.0; 3]);
+        scene.objects_mut()[id].set_angles([Angle::default(); 3]);
         assert!(frame(&mut renderer, &scene) == first, "and back");
         tried.add(1);
     }
     // Beyond what f64 can count turns in it is some angle.
-    scene.objects_mut()[id].set_angles([f64::MAX, -1e300, f64::MIN_POSITIVE]);
+    scene.objects_mut()[id].set_angles([f64::MAX, -1e300, f64::MIN_POSITIVE].map(Angle::from_radians));
     frame(&mut renderer, &scene);
     tried.add(1);
 }
@@ -283,7 +284,7 @@ fn t1_frame_n_after_n_frames_is_frame_n_at_once() {
     let mut renderer = renderer(VertexPath::Integer);
     let mut scene = crate::support::scenes::framed(shapes::torus(12, 8));
     for n in 0..500 {
-        scene.objects_mut()[0].set_angles([steps(3 * n), steps(131 * n), steps(-7 * n)]);
+        scene.objects_mut()[0].set_angles([steps(3 * n), steps(131 * n), steps(-7 * n)].map(Angle::from_radians));
         let after_all_before = frame(&mut renderer, &scene);
         assert!(after_all_before == frame(&mut self::renderer(VertexPath::Integer), &scene), "frame {n}");
         tried.add(1);
@@ -321,7 +322,7 @@ fn e1_a_changed_mesh_is_converted_anew() {
 fn r8_bands_on_the_integer_path_give_the_bytes_of_the_whole() {
     let mut tried = Tried::new("r8_bands_on_the_integer_path_give_the_bytes_of_the_whole", 25);
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
-    scene.objects_mut()[0].set_angles([steps(5000), steps(900), 0.0]);
+    scene.objects_mut()[0].set_angles([steps(5000), steps(900), 0.0].map(Angle::from_radians));
     let mut renderer = renderer(VertexPath::Integer);
     let whole = frame(&mut renderer, &scene);
     let mut band = [0; WIDTH * 8];
@@ -355,7 +356,13 @@ fn counts(scene: &Scene) -> (Vec<u32>, Stats) {
 /// An eye at the origin that looks along −z.
 fn scene(mesh: Mesh) -> Scene {
     let mut scene = Scene::new();
-    scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, field_of_view: 1.0, near: 0.25 };
+    scene.camera = Camera {
+        eye: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        field_of_view: Angle::from_radians(1.0),
+        near: 0.25,
+    };
     scene.add(Object::new(mesh));
     scene
 }
@@ -495,7 +502,10 @@ fn scenes_that_16_16_cannot_hold_are_refused_and_others_drawn() {
     check(|scene| scene.camera.near *= 1e-4, |r| matches!(r, Err(RenderError::Camera(_))));
     check(|scene| scene.objects_mut()[0].position.x = 1e9, |r| matches!(r, Err(RenderError::Camera(_))));
     check(|scene| scene.objects_mut()[0].position.x = 1e3, |r| r.is_ok());
-    check(|scene| scene.camera.field_of_view = 0.001, |r| matches!(r, Err(RenderError::Camera(_))));
+    check(
+        |scene| scene.camera.field_of_view = Angle::from_radians(0.001),
+        |r| matches!(r, Err(RenderError::Camera(_))),
+    );
     check(|scene| scene.camera.near = f32::MAX, |r| r.is_ok());
     check(|scene| scene.objects_mut()[0].scale = 0.0, |r| r.is_ok());
     check(|scene| scene.objects_mut()[0].scale = f32::MIN_POSITIVE / 8.0, |r| r.is_ok());
@@ -531,7 +541,7 @@ fn r10_denormal_and_huge_scenes_are_scaled_into_range() {
         let mesh = Mesh::with_normals(positions, cube.normals().to_vec(), cube.triangles().to_vec()).expect("sound");
         let mut scene = Scene::new();
         let mut object = Object::new(mesh);
-        object.set_angles([0.4, 0.5, 0.6]);
+        object.set_angles([0.4, 0.5, 0.6].map(Angle::from_radians));
         scene.add(object);
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
         let framed = Camera::framing(Vec3::ZERO, 1.0);

@@ -2,10 +2,11 @@
 
 use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::fixed::I16F16;
 use mode13h::glam::Vec3;
 use mode13h::integer::{
-    Angle, Camera, FixedMesh, FixedMeshError, IntegerError, Lens, Object, Paint, Placement, Sun, Technique, Vector,
+    BinaryAngle, Camera, FixedMesh, FixedMeshError, IntegerError, Lens, Object, Paint, Placement, Shading, Sun, Vector,
     VertexStage, View, average_normals, face_normal, turn, unit_vector,
 };
 use mode13h::mesh::{Mesh, shapes};
@@ -34,19 +35,19 @@ fn any(random: &mut Random, most: i32) -> i32 {
 fn every_angles_sine_is_the_nearest() {
     let mut tried = Tried::new("every_angles_sine_is_the_nearest", 65_536);
     for steps in 0..=u16::MAX {
-        let angle = Angle::from_bits(steps);
+        let angle = BinaryAngle::from_bits(steps);
         let exact = f64::sin(f64::from(steps) * TAU / 65_536.0) * 65_536.0;
         // f64's own error is below 2⁻³⁴ of a unit here.
         assert!((f64::from(angle.sin().to_bits()) - exact).abs() <= 0.5 + 1e-9, "{steps}");
-        let quarter = Angle::from_bits(steps.wrapping_add(0x4000));
+        let quarter = BinaryAngle::from_bits(steps.wrapping_add(0x4000));
         assert_eq!(angle.cos(), quarter.sin());
-        let half = angle.plus(Angle::HALF);
+        let half = angle + BinaryAngle::HALF;
         assert_eq!(half.sin().to_bits(), -angle.sin().to_bits());
         tried.add(1);
     }
     for degrees in -1000..1000_i32 {
         let exact = f64::from(degrees.rem_euclid(360)) / 360.0 * 65_536.0;
-        assert_eq!(u32::from(Angle::from_degrees(degrees).to_bits()), (exact + 0.5).floor() as u32 % 65_536);
+        assert_eq!(u32::from(BinaryAngle::from_degrees(degrees).to_bits()), (exact + 0.5).floor() as u32 % 65_536);
     }
 }
 
@@ -150,7 +151,7 @@ fn t1_the_turn_stays_orthonormal() {
     let mut tried = Tried::new("t1_the_turn_stays_orthonormal", 1_000_000);
     let mut random = Random::named("t1 integer");
     let check = |tried: &mut Tried, angles: [u16; 3]| {
-        let rows = turn(angles.map(Angle::from_bits)).map(|row| row.map(|c| i64::from(c.to_bits())));
+        let rows = turn(angles.map(BinaryAngle::from_bits)).map(|row| row.map(|c| i64::from(c.to_bits())));
         for i in 0..3 {
             for j in i..3 {
                 let product: i64 = (0..3).map(|k| rows[i][k] * rows[j][k]).sum();
@@ -178,8 +179,8 @@ fn the_turn_is_the_f64_turn() {
     let mut object = scene::Object::new(shapes::cube());
     while tried.more() {
         let steps = [0; 3].map(|_| random.next_u64() as u16);
-        let rows = turn(steps.map(Angle::from_bits)).map(real);
-        object.set_angles(steps.map(|a| f64::from(a) * TAU / 65_536.0));
+        let rows = turn(steps.map(BinaryAngle::from_bits)).map(real);
+        object.set_angles(steps.map(|a| f64::from(a) * TAU / 65_536.0).map(Angle::from_radians));
         let exact = object.rotation().transpose().to_cols_array_2d();
         for (row, exact) in rows.iter().flatten().zip(exact.as_flattened()) {
             // 0.501 units, and half an f32's last bit of what it is compared with.
@@ -199,7 +200,7 @@ fn triangles(
     suns: &[Sun],
 ) -> Result<Vec<([Vertex; 3], Interpolation)>, IntegerError> {
     let (mut lit, mut beams) = (vec![Default::default(); object.mesh.vertices()], vec![Default::default(); suns.len()]);
-    let stage = VertexStage::new(view, object, suns, Technique::default(), &mut lit, &mut beams)?;
+    let stage = VertexStage::new(view, object, suns, Shading::default(), &mut lit, &mut beams)?;
     let mut triangles = Vec::new();
     let faces = stage.faces(|vertices, interpolation| triangles.push((*vertices, interpolation)));
     assert_eq!(faces.drawn, triangles.len() as u64);
@@ -341,7 +342,7 @@ fn vertices_are_where_f64_has_them() {
         let placement = Placement {
             position: bits(position),
             pivot: bits(pivot),
-            angles: steps.map(Angle::from_bits),
+            angles: steps.map(BinaryAngle::from_bits),
             scale: I16F16::from_bits(scale),
         };
         let object = Object { mesh: mesh.with_exponent(exponent), placement, paints: &[PAINT] };
@@ -528,7 +529,7 @@ fn what_16_16_cannot_hold_is_refused() {
     }
     check(mesh(corner, z, 1) == Err(FixedMeshError::IndexOutOfRange { triangle: 0 }), "an index");
 
-    let lens = |w, h, aspect, degrees| Lens::new(w, h, aspect, Angle::from_degrees(degrees)).map(|_| ());
+    let lens = |w, h, aspect, degrees| Lens::new(w, h, aspect, BinaryAngle::from_degrees(degrees)).map(|_| ());
     check(lens(320, 200, (5, 6), 40).is_ok(), "the usual picture");
     check(lens(320, 200, (5, 6), 1).is_ok() && lens(320, 200, (5, 6), 179).is_ok(), "1° and 179°");
     check(lens(0, 200, (5, 6), 40) == Err(IntegerError::Size), "no width");
@@ -541,7 +542,7 @@ fn what_16_16_cannot_hold_is_refused() {
     check(lens(320, 200, (5, 0), 40) == Err(IntegerError::FieldOfView), "a pixel without height");
 
     let camera = Camera { eye: corner, target: z, up: z, near: I16F16::ONE };
-    let lens = Lens::new(320, 200, (5, 6), Angle::from_degrees(40)).expect("legal");
+    let lens = Lens::new(320, 200, (5, 6), BinaryAngle::from_degrees(40)).expect("legal");
     let view = |camera: Camera| View::new(&camera, lens).map(|_| ());
     check(view(camera).is_ok(), "up along the view");
     check(view(Camera { target: corner, ..camera }) == Err(IntegerError::Direction), "no direction");
@@ -568,7 +569,7 @@ fn what_16_16_cannot_hold_is_refused() {
     let sun = Sun { direction: z, intensity: I16F16::ONE };
     let stage = |object, suns: &[Sun], lit, beams| {
         let (mut lit, mut beams) = (vec![Default::default(); lit], vec![Default::default(); beams]);
-        VertexStage::new(&view, object, suns, Technique::Flat, &mut lit, &mut beams).map(|_| ())
+        VertexStage::new(&view, object, suns, Shading::Flat, &mut lit, &mut beams).map(|_| ())
     };
     check(stage(object, &[sun], 1, 1).is_ok(), "enough room");
     check(stage(object, &[sun], 0, 1) == Err(IntegerError::Room { needed: 1 }), "no room for vertices");
@@ -613,7 +614,7 @@ fn r7_any_legal_input_is_quiet() {
         let placement = Placement {
             position: vector(&mut random, most),
             pivot: vector(&mut random, most),
-            angles: [0; 3].map(|_| Angle::from_bits(random.next_u64() as u16)),
+            angles: [0; 3].map(|_| BinaryAngle::from_bits(random.next_u64() as u16)),
             scale: I16F16::from_bits((number(&mut random, most).unsigned_abs() >> random.within(0, 31)) as i32),
         };
         let paint = Paint {
@@ -626,11 +627,11 @@ fn r7_any_legal_input_is_quiet() {
             intensity: I16F16::from_bits(random.one_of(&[i32::MIN, i32::MAX, 65_536])),
         };
         let suns = vec![sun; if random.within(0, 999) == 0 { 4096 } else { 2 }];
-        let technique = random.one_of(&[Technique::Flat, Technique::GouraudReseeded]);
+        let shading = random.one_of(&[Shading::Flat, Shading::Gouraud88Reseeded]);
         let mesh = mesh.with_exponent(random.within(-40, 3) as i8);
         let object = Object { mesh, placement, paints: &[paint] };
         let (mut lit, mut beams) = ([Default::default(); 3], vec![Default::default(); suns.len()]);
-        match VertexStage::new(&view, object, &suns, technique, &mut lit, &mut beams) {
+        match VertexStage::new(&view, object, &suns, shading, &mut lit, &mut beams) {
             Ok(stage) => {
                 let mut raster = Raster::new(Frame::new(&mut pixels, 64, 40, 64).expect("a frame"));
                 drawn += stage

@@ -2,6 +2,7 @@
 
 use crate::support::scenes;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::mesh::shapes;
 use mode13h::plan::{Class, Effect};
 use mode13h::raster::Frame;
@@ -49,7 +50,8 @@ fn the_full_work_gives_the_same_bytes() {
     for (name, scene) in scenes::all() {
         let (expected, stats, chosen) = draw(&scene, |_| ());
         // What saves work by being on: culling, and hidden surfaces without depths.
-        let (full, _, _) = draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
+        let (full, _, _) =
+            draw(&scene, |renderer| renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
         let covered_twice = differing(&expected, &full);
         assert!(covered_twice == 0, "{name}, depth buffer: {covered_twice} pixels differ");
         for effect in Effect::ALL {
@@ -64,7 +66,7 @@ fn the_full_work_gives_the_same_bytes() {
             let (bytes, forced, renderer) = draw(&scene, |renderer| {
                 renderer.force(effect, Some(on));
                 if !on {
-                    renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+                    renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
                 }
             });
             assert!(
@@ -192,7 +194,7 @@ fn d1_the_plan_never_picks_painters_order_for_what_overlaps() {
         let (_, stats, _) = draw(&scene, |_| ());
         if stats.hidden_surfaces == HiddenSurfaces::PainterOrder {
             let (depth, _, _) =
-                draw(&scene, |renderer| renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer)));
+                draw(&scene, |renderer| renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
             assert_eq!(differing(&draw(&scene, |_| ()).0, &depth), 0, "{name}");
         }
         tried.add(1);
@@ -216,7 +218,7 @@ fn e1_what_stays_is_not_drawn_again() {
         assert!(third.redrawn && third.vertices == 0, "{name}: the vertices are kept: {third}");
         assert_eq!(vga.pixels(), bytes, "{name}");
         // Something moves.
-        scene.objects_mut()[0].rotate_y(0.3);
+        scene.objects_mut()[0].rotate_y(Angle::from_radians(0.3));
         let moved = renderer.draw(&scene, &mut vga).expect("a legal scene");
         assert!(moved.redrawn && moved.vertices > 0, "{name}: {moved}");
         assert_eq!(vga.pixels(), draw(&scene, |_| ()).0, "{name}: as a new renderer draws it");
@@ -233,7 +235,7 @@ fn a_plan_alone_is_that_of_the_next_frame() {
         let (mut plain, mut plain_vga) = (Renderer::new(), Vga::new());
         // The first frame, one that moves, and one that stays.
         for turn in [0.0, 0.1, 0.0] {
-            scene.objects_mut()[0].rotate_y(turn);
+            scene.objects_mut()[0].rotate_y(Angle::from_radians(turn));
             for _ in 0..2 {
                 renderer.make_plan(&scene, Screen::MODE_13H).expect("a legal scene");
             }
@@ -259,7 +261,7 @@ fn vertices_that_were_kept_by_force_are_made_when_they_are_let_go() {
         let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
         renderer.draw(&scene, &mut vga).expect("a legal scene");
         let before = vga.pixels().to_vec();
-        scene.objects_mut()[0].rotate_y(0.01);
+        scene.objects_mut()[0].rotate_y(Angle::from_radians(0.01));
         renderer.force(Effect::Transform, Some(false));
         let kept = renderer.draw(&scene, &mut vga).expect("a legal scene");
         assert_eq!(kept.vertices, 0, "{name}");
@@ -380,7 +382,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
         let pieces = random.within(1, 24) as u32;
         let mut scene = crate::support::scenes::framed(mode13h::mesh::shapes::wall(pieces, pieces));
         let object = &mut scene.objects_mut()[0];
-        object.set_angles([random.unit() - 0.5, 2.4 * random.unit() - 1.2, random.unit()]);
+        object.set_angles([random.unit() - 0.5, 2.4 * random.unit() - 1.2, random.unit()].map(Angle::from_radians));
         let material = &mut object.materials[0];
         (material.ambient, material.diffuse) = (1.0, 0.0);
         material.texture = Some(mode13h::scene::Shared::clone(&texture));
@@ -418,7 +420,7 @@ fn mipmaps_change_nothing_of_what_is_near() {
                 let mut scene = crate::support::scenes::framed(mode13h::mesh::shapes::wall(3, 3));
                 let object = &mut scene.objects_mut()[0];
                 object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
-                object.set_angles([angle, angle, angle]);
+                object.set_angles([angle, angle, angle].map(Angle::from_radians));
                 // 128 texels on √2 units: even the far corners of the tilted wall have fewer than √2 to a pixel.
                 scene.camera.eye = mode13h::glam::Vec3::new(0.0, 0.0, 0.8);
                 if channels {
@@ -426,8 +428,8 @@ fn mipmaps_change_nothing_of_what_is_near() {
                 }
                 let frame = |mipmaps| {
                     draw(&scene, |renderer| {
-                        renderer.set_mapping(Some(mapping));
-                        renderer.set_mipmaps(Some(mipmaps));
+                        renderer.settings_mut().mapping = Some(mapping);
+                        renderer.settings_mut().mipmaps = Some(mipmaps);
                     })
                 };
                 let ((without, off, _), (with, on, _)) = (frame(false), frame(true));
@@ -457,10 +459,10 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
         let mode13h::plan::Reason::TexelsToPixel { texels } = decision.reason else { panic!("the plan says how many") };
         // 128 texels on √2 units; a pixel is higher than it is wide, and half of the screen's rows lie within half the angle.
         let expected =
-            8192.0_f64.sqrt() * f64::from(distance) * (f64::from(scene.camera.field_of_view) / 2.0).tan() / 100.0;
+            8192.0_f64.sqrt() * f64::from(distance) * (scene.camera.field_of_view.to_radians() / 2.0).tan() / 100.0;
         assert!((expected..expected * 1.01).contains(&texels), "{texels} texels to a pixel, not {expected}");
         assert_eq!(decision.on, texels > core::f64::consts::FRAC_1_SQRT_2);
-        let without = draw(&scene, |renderer| renderer.set_mipmaps(Some(false))).0;
+        let without = draw(&scene, |renderer| renderer.settings_mut().mipmaps = Some(false)).0;
         // The corners' coordinates and places are rounded.
         if texels < 1.40 {
             assert_eq!(differing(&bytes, &without), 0, "{texels} texels to a pixel");
@@ -476,7 +478,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
 fn mipmaps_are_asked_for() {
     let mut floor = scenes::floor("bricks", 8.0);
     let is_on = |scene: &Scene, asked| {
-        let (_, _, renderer) = draw(scene, |renderer| renderer.set_mipmaps(asked));
+        let (_, _, renderer) = draw(scene, |renderer| renderer.settings_mut().mipmaps = asked);
         called_for(&renderer, Effect::Mipmaps)
     };
     assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [true, true, false]);
@@ -528,8 +530,8 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
         let mut bytes = vec![0; width * height];
         let frame = Frame::new(&mut bytes, width as u32, height as u32, width).expect("a legal frame");
         let mut renderer = Renderer::new();
-        renderer.set_mapping(Some(mapping));
-        renderer.set_mipmaps(Some(mipmaps));
+        renderer.settings_mut().mapping = Some(mapping);
+        renderer.settings_mut().mipmaps = Some(mipmaps);
         renderer.draw_frame(scene, frame, (5, 6)).expect("a legal scene");
         shown(scene, &bytes)
     };
@@ -588,7 +590,7 @@ fn clipping_that_is_needed_cannot_be_switched_off() {
                 let mut frames = [true, false].map(|forced| {
                     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
                     renderer.set_shading(shading);
-                    renderer.set_hidden_surfaces(Some(way));
+                    renderer.settings_mut().hidden_surfaces = Some(way);
                     if forced {
                         renderer.force(Effect::NearClipping, Some(false));
                         renderer.force(Effect::ScreenClipping, Some(false));

@@ -4,6 +4,7 @@
 use std::f32::consts::PI;
 
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::normals::face_normal;
 use mode13h::mesh::{Mesh, MeshError, Surface, Weight, shapes};
@@ -86,7 +87,7 @@ fn weights() {
 fn crease_angle_splits_vertices() {
     let mut mesh = box8();
     // A cube's faces meet at 90°; the halves of one at 0°.
-    mesh.smooth(Weight::Angle, Some(PI / 4.0));
+    mesh.smooth(Weight::Angle, Some(Angle::from_degrees(45.0)));
     assert_eq!(mesh.positions().len(), 24);
     for triangle in mesh.triangles() {
         let [a, b, c] = triangle.map(|i| mesh.positions()[i as usize]);
@@ -96,7 +97,7 @@ fn crease_angle_splits_vertices() {
     }
     assert!(mesh.is_closed() && mesh.is_convex());
     // Vertices that were split count as one place: smooth again.
-    mesh.smooth(Weight::Angle, Some(PI / 2.0));
+    mesh.smooth(Weight::Angle, Some(Angle::from_degrees(90.0)));
     assert_eq!(mesh.positions().len(), 24);
     assert!(mesh.normals().iter().zip(mesh.positions()).all(|(n, p)| (*n * 3f32.sqrt()).abs_diff_eq(*p, 1e-6)));
 
@@ -110,7 +111,7 @@ fn crease_angle_splits_vertices() {
 fn a_crease_is_smooth_on_either_side() {
     // A cylinder of eight sides: 45° from side to side, 90° to the caps.
     let mut mesh = shapes::cylinder(8, 1);
-    mesh.smooth(Weight::Angle, Some(PI / 3.0));
+    mesh.smooth(Weight::Angle, Some(Angle::from_degrees(60.0)));
     let sides = mesh.normals().iter().filter(|n| n.y.abs() < 1e-6).count();
     let caps = mesh.normals().iter().filter(|n| n.y.abs() == 1.0).count();
     assert!(sides >= 16 && caps >= 18 && sides + caps == mesh.normals().len());
@@ -143,7 +144,7 @@ fn n1_faces_without_area_have_no_weight() {
     for weight in WEIGHTS {
         for crease in [None, Some(0.0), Some(1.0)] {
             let mut mesh = mesh.clone();
-            mesh.smooth(weight, crease);
+            mesh.smooth(weight, crease.map(Angle::from_radians));
             assert_unit(&mesh);
             assert_eq!(mesh.positions().len(), 5);
             assert!(mesh.normals()[..3].iter().all(|&n| n == Vec3::Z), "{weight:?} {crease:?}");

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::support::property::property;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::Mesh;
 use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
@@ -299,7 +300,14 @@ fn normals_are_averaged_by_place() {
 }
 
 fn with_crease(text: &str, crease: Option<f32>) -> Mesh {
-    obj::parse_with(text.as_bytes(), "model.obj", no_library, &obj::Options { crease }).expect("a model").mesh
+    obj::parse_with(
+        text.as_bytes(),
+        "model.obj",
+        no_library,
+        &obj::Options { crease: crease.map(|degrees| Angle::from_degrees(degrees.into())) },
+    )
+    .expect("a model")
+    .mesh
 }
 
 /// Strips of squares along z, each bent against the last by so many degrees, after the statements in front of it.
@@ -395,7 +403,7 @@ fn creases_are_what_the_naive_oracle_says() {
         let mut text = String::new();
         corners.iter().for_each(|[x, y, z]| writeln!(text, "v {x} {y} {z}").unwrap());
         faces.iter().for_each(|[a, b, c]| writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1).unwrap());
-        let options = obj::Options { crease: Some(crease) };
+        let options = obj::Options { crease: Some(Angle::from_degrees(crease.into())) };
         let Ok(Loaded { mesh, warnings, .. }) = obj::parse_with(text.as_bytes(), "model.obj", no_library, &options)
         else {
             return Ok(());

@@ -2,6 +2,7 @@
 
 use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::auto_palette::{self, Seen, seen};
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, RampChoice};
@@ -380,7 +381,11 @@ fn turning(object: Object) -> (Scene, ObjectId) {
     let id = scene.add(object.centred());
     scene.camera = Camera::framing(Vec3::ZERO, scene[id].mesh().bounds().radius);
     scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-    scene.motions.push(Motion::Spin { object: id, start: [0.35, 0.0, 0.0], turns: [0.0, 0.25, 0.0] });
+    scene.motions.push(Motion::Spin {
+        object: id,
+        start: [0.35, 0.0, 0.0].map(Angle::from_radians),
+        turns: [0.0, 0.25, 0.0],
+    });
     (scene, id)
 }
 
@@ -493,7 +498,7 @@ fn p2_no_pixel_has_an_index_of_another_ramp() {
     let materials = scene[id].materials.clone();
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     for turn in 0..4 {
-        scene[id].set_angles([0.35, f64::from(turn), 0.0]);
+        scene[id].set_angles([0.35, f64::from(turn), 0.0].map(Angle::from_radians));
         for (number, material) in (1..).zip(&mut scene[id].materials) {
             material.ramp = RampChoice::Entries(Ramp::single(number));
         }

@@ -6,6 +6,7 @@ use std::io::{self, BufRead, Cursor};
 use std::path::Path as FilePath;
 
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, RampChoice};
 use mode13h::palette::{Ramp, Rgb, builtin};
@@ -483,7 +484,7 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     let camera = &scene.camera;
     assert_eq!((camera.eye, camera.target), (Vec3::new(0.0, 1.0, 9.0), Vec3::new(1.0, 1.0, 0.0)));
     assert_eq!((camera.up, camera.near), (Vec3::new(0.0, 0.5, 0.0), 0.5));
-    assert_eq!(camera.field_of_view, std::f32::consts::FRAC_PI_2);
+    assert_eq!(camera.field_of_view.to_radians() as f32, std::f32::consts::FRAC_PI_2);
 
     assert_eq!(scene.preferences.shading, Some(Shading::Phong));
     assert_eq!(scene.preferences.hidden_surfaces, Some(HiddenSurfaces::ScanLine));
@@ -498,7 +499,7 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert!((bounds.max - Vec3::new(4.0, 2.0, 0.0) * 0.5_f32.sqrt()).length() < 1e-6, "{bounds:?}");
     assert_eq!((bar.position, bar.scale, bar.up_axis), (Vec3::new(4.0, 5.0, 6.0), 1.0, UpAxis::Z));
     assert_eq!(bar.pivot, Vec3::new(1.0, 0.0, 0.0));
-    assert_eq!(bar.angles(), [90_f64, 0.0, -45.0].map(f64::to_radians));
+    assert_eq!(bar.angles(), [90.0, 0.0, -45.0].map(Angle::from_degrees));
     let material = &bar.materials[0];
     assert_eq!((material.ambient, material.diffuse, material.specular), (0.1, 0.2, 0.3));
     assert_eq!((material.shininess, material.blend), (40.0, Blend::Mix(128)));
@@ -530,14 +531,14 @@ fn things_move_as_a_file_says() {
     near(scene.camera.target, Vec3::new(0.0, 3.0, 0.0));
     // Backwards from (4, 5, 6) to (1, 2, 3).
     near(scene.objects()[0].position, Vec3::new(3.25, 4.25, 5.25));
-    let [x, y, z] = scene.objects()[0].angles();
+    let [x, y, z] = scene.objects()[0].angles().map(Angle::to_radians);
     assert!(
         (x - 180_f64.to_radians()).abs() < 1e-9
             && y == 0.0
             && (z + 225_f64.to_radians()).rem_euclid(360_f64.to_radians()) < 1e-9,
         "{x} {y} {z}"
     );
-    assert!((scene.objects()[1].angles()[1] - 180_f64.to_radians()).abs() < 1e-9);
+    assert!((scene.objects()[1].angles()[1].to_degrees() - 180.0).abs() < 1e-9);
     // Four rounds clockwise: after a quarter of the time it is where it began, at the top.
     let lamp = |scene: &Scene| match scene.lights()[1] {
         Light::Lamp { position, .. } => position,
@@ -551,7 +552,7 @@ fn things_move_as_a_file_says() {
     scene.set_time(8.5);
     near(scene.camera.eye, eye);
     for (a, b) in scene.objects()[0].angles().into_iter().zip(angles) {
-        assert!((a - b).abs() < 1e-9);
+        assert!((a - b).to_degrees().abs() < 1e-9);
     }
     assert_eq!(scene.motions.len(), 7);
     assert!(matches!(scene.motions[6], Motion::Path { what: Moving::Target, path: Path::Circle { .. } }));
@@ -569,7 +570,8 @@ fn what_is_left_out_has_a_default() {
     assert_eq!((torus.name.as_str(), torus.scale, torus.position), ("torus", 1.0, Vec3::ZERO));
     assert_eq!(scene.picture, 0.0);
     // It fills nine tenths of the picture's height: of its front, at the depth z, the point that is seen highest.
-    let reach = |p: &Vec3| p.y / ((scene.camera.eye.z - p.z) * (scene.camera.field_of_view / 2.0).tan());
+    let reach =
+        |p: &Vec3| p.y / ((scene.camera.eye.z - p.z) * (scene.camera.field_of_view.to_radians() as f32 / 2.0).tan());
     let highest = torus.mesh().positions().iter().map(reach).fold(0.0, f32::max);
     assert!((highest - 0.9).abs() < 1e-5, "{highest}");
 }

@@ -3,7 +3,7 @@
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    Angle, Beam, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Sun, Technique, Vector, VertexStage,
+    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Shading, Sun, Vector, VertexStage,
     View, average_normals,
 };
 use mode13h::palette::Ramp;
@@ -56,7 +56,7 @@ pub(crate) fn draw(degrees: i32, mut band: impl FnMut(usize, &[u8])) -> Option<(
     let cube = FixedMesh::new(&CUBE, &normals, &CUBE_FACES, true).ok()?;
     let floor = FixedMesh::new(&FLOOR, &FLOOR_NORMALS, &FLOOR_FACES, false).ok()?;
 
-    let lens = Lens::new(WIDTH as u32, HEIGHT as u32, (5, 6), Angle::from_degrees(40)).ok()?;
+    let lens = Lens::new(WIDTH as u32, HEIGHT as u32, (5, 6), BinaryAngle::from_degrees(40)).ok()?;
     let camera = Camera { eye: at(0, 2, 7), target: at(0, 0, 0), up: at(0, 1, 0), near: I16F16::ONE };
     let view = View::new(&camera, lens).ok()?;
     let suns = [Sun { direction: at(4, 6, 10), intensity: I16F16::ONE }];
@@ -70,15 +70,15 @@ pub(crate) fn draw(degrees: i32, mut band: impl FnMut(usize, &[u8])) -> Option<(
     let (red, blue) = ([paint(0)?], [paint(128)?]);
 
     let turned = Placement {
-        angles: [Angle::from_degrees(degrees), Angle::from_degrees(3 * degrees), Angle::default()],
+        angles: [BinaryAngle::from_degrees(degrees), BinaryAngle::from_degrees(3 * degrees), BinaryAngle::default()],
         ..Placement::default()
     };
     let cube = Object { mesh: cube, placement: turned, paints: &red };
     let floor = Object { mesh: floor, placement: Placement::default(), paints: &blue };
     let (mut lit, mut beams) = ([LitVertex::default(); 8], [Beam::default(); 1]);
-    let cube = VertexStage::new(&view, cube, &suns, Technique::GouraudReseeded, &mut lit, &mut beams).ok()?;
+    let cube = VertexStage::new(&view, cube, &suns, Shading::Gouraud88Reseeded, &mut lit, &mut beams).ok()?;
     let (mut lit, mut beams) = ([LitVertex::default(); 4], [Beam::default(); 1]);
-    let floor = VertexStage::new(&view, floor, &suns, Technique::Flat, &mut lit, &mut beams).ok()?;
+    let floor = VertexStage::new(&view, floor, &suns, Shading::Flat, &mut lit, &mut beams).ok()?;
 
     let (mut pixels, mut depths) = ([0; WIDTH * BAND], [0_u32; WIDTH * BAND]);
     for first in (0..HEIGHT).step_by(BAND) {

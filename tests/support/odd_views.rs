@@ -1,5 +1,6 @@
 //! Odd views on either vertex path, byte by byte.
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
@@ -34,9 +35,9 @@ pub fn odd_views(mut tried: Tried, path: VertexPath) {
             }
             _ => {}
         }
-        scene.camera.field_of_view = random.one_of(&[1.0_f32, 40.0, 90.0, 179.0]).to_radians();
+        scene.camera.field_of_view = Angle::from_degrees(random.one_of(&[1.0, 40.0, 90.0, 179.0]));
         let mut renderer = Renderer::new();
-        renderer.set_vertex_path(path);
+        renderer.settings_mut().vertex_path = path;
         let judged = judged(&mut renderer, &scene, screen);
         assert_eq!(judged.stats.faces, 256);
         seen += u64::from(judged.counts.iter().any(|&times| times > 0));

@@ -1,5 +1,6 @@
 //! Small scenes, each of which calls for something.
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
 use mode13h::mesh::{Mesh, shapes};
@@ -25,7 +26,7 @@ pub fn showing(shape: &str) -> Scene {
     let mut scene = framed(shapes::by_name(shape).expect("listed"));
     scene.name = shape.to_string();
     scene.objects_mut()[0].name = shape.to_string();
-    scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1]);
+    scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1].map(Angle::from_radians));
     scene
 }
 
@@ -43,7 +44,7 @@ pub fn floor(image: &str, times: f32) -> Scene {
     let repeated = wall.texcoords().expect("a wall has some").iter().map(|uv| *uv * times).collect();
     let mut scene = Scene::showing(wall.with_texcoords(repeated).expect("as many"));
     let object = &mut scene.objects_mut()[0];
-    object.set_angles([-core::f64::consts::FRAC_PI_2, 0.3, 0.0]);
+    object.set_angles([-core::f64::consts::FRAC_PI_2, 0.3, 0.0].map(Angle::from_radians));
     object.position = Vec3::new(0.0, -0.5, -5.0);
     object.scale = 12.0;
     (object.materials[0].ambient, object.materials[0].diffuse) = (1.0, 0.0);
@@ -66,13 +67,13 @@ pub fn random(random: &mut Random) -> Scene {
     let mut scene = Scene::new();
     let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
     scene.camera.near = between(0.05, 0.3) as f32;
-    scene.camera.field_of_view = between(0.4, 1.8) as f32;
+    scene.camera.field_of_view = Angle::from_radians((between(0.4, 1.8) as f32).into());
     for _ in 0..between(1.0, 4.0) as u32 {
         let mesh = shapes::by_name(shapes::NAMES[between(0.0, 6.999) as usize]).expect("listed");
         let mut object = Object::new(mesh);
         object.position = [0.0; 3].map(|_| between(-1.5, 1.5) as f32).into();
         object.scale = between(0.3, 2.5) as f32;
-        object.set_angles([0.0; 3].map(|_| between(0.0, 7.0)));
+        object.set_angles([0.0; 3].map(|_| between(0.0, 7.0)).map(Angle::from_radians));
         let material = &mut object.materials[0];
         material.diffuse = between(0.3, 1.0) as f32;
         if between(0.0, 1.0) < 0.5 {
@@ -134,7 +135,7 @@ fn small() -> Vec<(&'static str, Scene)> {
 
     let mut crates = framed(shapes::wall(1, 1));
     material(&mut crates, 0).texture = texture("crate");
-    crates.objects_mut()[0].set_angles([0.0, 1.1, 0.0]);
+    crates.objects_mut()[0].set_angles([0.0, 1.1, 0.0].map(Angle::from_radians));
     scenes.push(("texture", crates.clone()));
     crates.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
     crates.add_light(Light::sun([-1.0, 0.0, 0.5]).with_color([1.0, 0.3, 0.1]));
@@ -157,7 +158,7 @@ fn small() -> Vec<(&'static str, Scene)> {
     let mut glass = showing("torus");
     let mut cube = Object::new(shapes::cube()).named("glass");
     cube.materials[0].blend = Blend::Mix(120);
-    cube.set_angles([0.3, 0.4, 0.0]);
+    cube.set_angles([0.3, 0.4, 0.0].map(Angle::from_radians));
     glass.add(cube);
     scenes.push(("glass", glass));
     let mut glenz = showing("cube");

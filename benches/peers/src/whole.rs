@@ -4,6 +4,7 @@ use std::error::Error;
 use std::ffi::{CStr, c_char, c_int};
 use std::time::Instant;
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::mesh::Mesh;
 use mode13h::plan::Effect;
@@ -33,7 +34,7 @@ const ASPECT: f32 = 4.0 / 3.0;
 pub fn start_mesa() -> Result<String, Box<dyn Error>> {
     let scene = Scene::default();
     let (near, far) = (scene.camera.near, 100.0 * scene.camera.near.max(1.0));
-    let f = 1.0 / (scene.camera.field_of_view / 2.0).tan();
+    let f = 1.0 / (scene.camera.field_of_view.to_radians() as f32 / 2.0).tan();
     #[rustfmt::skip]
     let projection = [
         f / ASPECT, 0.0, 0.0, 0.0,
@@ -75,7 +76,7 @@ pub fn measure(mesh: &Mesh, kernel: Kernel) -> Result<Whole, Box<dyn Error>> {
     let scale = Scene::default().camera.eye.z / eye.z;
     let mut renderers = [Renderer::new(), Renderer::new()];
     renderers.iter_mut().for_each(|renderer| renderer.set_kernel(kernel));
-    renderers[0].set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+    renderers[0].settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     // An open mesh shows its other side, too.
     let both = !renderers[0].make_plan(&scene, Screen::MODE_13H)?.is_on(0, Effect::BackFaceCulling);
     // SAFETY: Mesa has been started.
@@ -86,7 +87,7 @@ pub fn measure(mesh: &Mesh, kernel: Kernel) -> Result<Whole, Box<dyn Error>> {
     for round in 0..=ROUNDS {
         // Each renderer sees each pose once, so nothing is kept. The first round warms up.
         let angles = [0.4, 0.6 + 0.01 * round as f64, 0.0];
-        scene.objects_mut()[0].set_angles(angles);
+        scene.objects_mut()[0].set_angles(angles.map(Angle::from_radians));
         let turn = scene.objects()[0].rotation();
         let mut model = [0.0_f32; 16];
         let offset = turn * -bounds.centre * scale;

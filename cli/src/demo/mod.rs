@@ -577,7 +577,7 @@ impl Demo {
         self.stage.show(self.motion.seconds(), self.motion.pose);
         self.shading.set(&mut self.renderer);
         self.renderer.set_kernel(*self.kernels.chosen());
-        self.renderer.set_mapping(*self.mappings.chosen());
+        self.renderer.settings_mut().mapping = *self.mappings.chosen();
         // Of a picture that stands still the time for its plan stays, too.
         if self.figures.is_open && (self.is_redrawn || self.planning.frame == 0.0) {
             let start = Instant::now();
@@ -596,7 +596,7 @@ impl Demo {
         }
         if self.compare.is_on {
             self.compare.right.renderer.set_kernel(*self.kernels.chosen());
-            self.compare.right.renderer.set_mapping(*self.mappings.chosen());
+            self.compare.right.renderer.settings_mut().mapping = *self.mappings.chosen();
             let is_new = self.compare.draw(&self.stage.scene, self.seconds).map_err(Failure::from)?;
             self.number += u64::from(is_new);
         }

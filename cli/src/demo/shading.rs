@@ -143,10 +143,10 @@ impl ShadingChoice {
 
     /// Has a renderer draw by it.
     pub(super) fn set(&self, renderer: &mut Renderer) {
-        renderer.set_accuracy(Some(match self.by_budget {
+        renderer.settings_mut().accuracy = Some(match self.by_budget {
             true => Accuracy::WithinError(self.budget),
             false => Accuracy::Shading(self.shading),
-        }));
+        });
     }
 
     /// The error that is or would be accepted, in shades.

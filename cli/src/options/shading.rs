@@ -35,13 +35,15 @@ impl ShadingOptions {
 
     /// How exact shades of a scene with these preferences are to be.
     pub(crate) fn accuracy_for(&self, preferences: &Preferences) -> Accuracy {
-        Settings { accuracy: self.accuracy(), ..Settings::default() }.resolve(preferences).asked
+        let mut settings = Settings::default();
+        settings.accuracy = self.accuracy();
+        settings.resolve(preferences).asked
     }
 
     /// A renderer that is set as the command line says.
     pub(crate) fn renderer(&self, drawing: &Drawing, kernel: Kernel) -> Renderer {
         let mut renderer = drawing.renderer(kernel);
-        renderer.set_accuracy(self.accuracy());
+        renderer.settings_mut().accuracy = self.accuracy();
         renderer
     }
 }

@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use allocation_counter::measure;
+use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
@@ -97,7 +98,7 @@ fn showing(mesh: &Shared<Mesh>) -> Scene {
 /// With a depth for every pixel, as most models need, also where a sphere is found to be convex.
 fn renderer() -> Renderer {
     let mut renderer = Renderer::new();
-    renderer.set_hidden_surfaces(Some(HiddenSurfaces::DepthBuffer));
+    renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     renderer
 }
 
@@ -109,7 +110,7 @@ fn draw(renderer: &mut Renderer, scene: &mut Scene, vga: &mut Vga) -> u64 {
 
 fn turn(scene: &mut Scene) {
     let [x, y, z] = scene.objects()[0].angles();
-    scene.objects_mut()[0].set_angles([x, y + 0.01, z]);
+    scene.objects_mut()[0].set_angles([x, y + Angle::from_radians(0.01), z]);
 }
 
 /// Spheres that fill the screen, the more faces the smaller.

@@ -58,7 +58,7 @@ impl<'a> Configuration<'a> {
 
     fn accurate(kind: Kind, name: impl ToString, accuracy: Accuracy) -> Self {
         Self::new(kind, name, move |renderer| {
-            renderer.set_accuracy(Some(accuracy));
+            renderer.settings_mut().accuracy = Some(accuracy);
         })
     }
 
@@ -108,7 +108,7 @@ impl<'a> Configuration<'a> {
         };
         let mut ways = Vec::new();
         for path in VertexPath::ALL {
-            ways.push(with_shading(Aspect::VertexPath, &path, Box::new(move |r| r.set_vertex_path(path))));
+            ways.push(with_shading(Aspect::VertexPath, &path, Box::new(move |r| r.settings_mut().vertex_path = path)));
         }
         for (bits, name) in [(8, "1/256 pixel"), (4, "1/16 pixel"), (0, "whole pixels")] {
             ways.push(with_shading(Aspect::VertexRounding, &name, Box::new(move |r| hooks::set_vertex_bits(r, bits))));
@@ -123,7 +123,11 @@ impl<'a> Configuration<'a> {
         }
         let called_for = core::iter::once((None, "as called for"));
         for (way, name) in called_for.chain(HiddenSurfaces::ALL.into_iter().map(|way| (Some(way), way.name()))) {
-            ways.push(with_shading(Aspect::HiddenSurfaces, &name, Box::new(move |r| r.set_hidden_surfaces(way))));
+            ways.push(with_shading(
+                Aspect::HiddenSurfaces,
+                &name,
+                Box::new(move |r| r.settings_mut().hidden_surfaces = way),
+            ));
         }
         let others = Shading::ALL.into_iter().filter(|shading| *shading != REFERENCE && shadings.contains(shading));
         for shading in core::iter::once(REFERENCE).chain(others) {

@@ -123,7 +123,7 @@ impl Probe {
         let replaced = needs_tables.then(|| self.renderer.set_shading(Shading::Phong));
         let numbers = self.numbers(scene, screen);
         if let Some(accuracy) = replaced {
-            self.renderer.set_accuracy(accuracy);
+            self.renderer.settings_mut().accuracy = accuracy;
         }
         Ok(numbers?.into_iter().map(|number| self.numbered.face(number)).collect())
     }

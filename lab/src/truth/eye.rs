@@ -1,5 +1,6 @@
 //! The camera: from the world to the picture.
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 
 use super::vector::{Vector, cross, dot, sub, unit, wide};
@@ -31,7 +32,7 @@ impl Eye {
         if !(near > 0.0 && near.is_finite()) {
             return Err("its near distance must be above 0 and finite");
         }
-        if !(field_of_view > 0.0 && field_of_view < core::f32::consts::PI) {
+        if !(field_of_view > Angle::default() && field_of_view < Angle::TURN / 2.0) {
             return Err("its field of view must lie between 0 and π");
         }
         let (at, up) = (wide(eye), wide(up));
@@ -43,7 +44,7 @@ impl Eye {
         };
         let right = unit(right).ok_or("it has no right-hand side")?;
         let [width, height] = [screen.width, screen.height].map(f64::from);
-        let fy = height / 2.0 / libm::tan(f64::from(field_of_view) / 2.0);
+        let fy = height / 2.0 / libm::tan(field_of_view.to_radians() / 2.0);
         let (pixel_width, pixel_height) = screen.pixel_aspect;
         let fx = fy * f64::from(pixel_height) / f64::from(pixel_width);
         Ok(Self {

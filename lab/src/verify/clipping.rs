@@ -5,6 +5,7 @@ use super::drawing::{self, Configuration};
 use super::random::Random;
 use super::{Group, replay};
 use crate::record::Record;
+use mode13h::Angle;
 use mode13h::fixed::{I16F16, I24F8};
 use mode13h::glam::Vec3;
 use mode13h::mesh::{Mesh, shapes};
@@ -46,7 +47,7 @@ fn check(seed: u64, project: Project<'_>) -> Group {
     // The 16.16 path has 30 bits from the nearest to the farthest.
     floors(&mut group, &[400.0, 1e3, 8e3], &|scene| {
         let mut renderer = Renderer::new();
-        renderer.set_vertex_path(VertexPath::Integer);
+        renderer.settings_mut().vertex_path = VertexPath::Integer;
         Record::of_scene(&mut renderer, scene, Screen::MODE_13H).ok()
     });
     rays(&mut group, &mut random, project);
@@ -60,7 +61,13 @@ fn check(seed: u64, project: Project<'_>) -> Group {
 /// An eye at the origin that looks along −z.
 fn seen_from_origin(mesh: Mesh) -> Scene {
     let mut scene = Scene::new();
-    scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, field_of_view: 1.0, near: NEAR };
+    scene.camera = Camera {
+        eye: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        field_of_view: Angle::from_radians(1.0),
+        near: NEAR,
+    };
     scene.add(Object::new(mesh));
     scene
 }
@@ -175,7 +182,7 @@ fn odd_views(group: &mut Group, random: &mut Random, project: Project<'_>) {
             scene.camera.eye = random.one_of(mesh.positions());
         }
         scene.objects_mut()[0].scale = random.one_of(&[1.0, 1e-30, 1e-6, 1e6, 1e30]);
-        scene.camera.field_of_view = random.one_of(&[1.0_f32, 40.0, 90.0, 179.0]).to_radians();
+        scene.camera.field_of_view = Angle::from_degrees(random.one_of(&[1.0, 40.0, 90.0, 179.0]));
         let Some(mut record) = project(&scene) else {
             group.check(false, || format!("c4 {:?} is not drawn", scene.camera));
             continue;
@@ -257,11 +264,11 @@ fn refused(group: &mut Group) {
         let spoil: [fn(&mut Scene, f32); 8] = [
             |scene, bad| scene.camera.eye.x = bad,
             |scene, bad| scene.camera.near = bad,
-            |scene, bad| scene.camera.field_of_view = bad,
+            |scene, bad| scene.camera.field_of_view = Angle::from_radians(bad.into()),
             |scene, bad| scene.ambient = bad,
             |scene, bad| scene.objects_mut()[0].position.z = bad,
             |scene, bad| scene.objects_mut()[0].scale = bad,
-            |scene, bad| scene.objects_mut()[0].set_angles([0.0, bad.into(), 0.0]),
+            |scene, bad| scene.objects_mut()[0].set_angles([0.0, bad.into(), 0.0].map(Angle::from_radians)),
             |scene, bad| scene.objects_mut()[0].materials[0].diffuse = bad,
         ];
         for (number, spoil) in spoil.into_iter().enumerate() {

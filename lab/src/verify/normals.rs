@@ -2,6 +2,7 @@
 
 use super::Group;
 use super::random::Random;
+use mode13h::Angle;
 use mode13h::fixed::I16F16;
 use mode13h::glam::Vec3;
 use mode13h::integer::unit_vector;
@@ -100,7 +101,10 @@ fn soup(group: &mut Group, random: &mut Random, normals: Normals<'_>) {
         let kept = before.iter().zip(&after).take(count as usize).all(|(a, b)| a == b);
         group.check(kept, || format!("n1 faces without area change normals {before:?} to {after:?}"));
     }
-    mesh.smooth(random.one_of(&[Weight::Count, Weight::Area, Weight::Angle]), Some(random.unit() as f32 * 3.2));
+    mesh.smooth(
+        random.one_of(&[Weight::Count, Weight::Area, Weight::Angle]),
+        Some(Angle::from_radians(random.unit() * 3.2)),
+    );
     unit(group, "random faces, smoothed", &normals(&mesh));
 }
 

@@ -206,12 +206,13 @@ pub(super) fn difference(record: &Record, is: &[u8], should: &[u8]) -> Option<Di
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mode13h::Angle;
     use mode13h::mesh::shapes;
     use mode13h::render::{Renderer, Screen};
 
     fn torus() -> Record {
         let mut scene = super::super::framed(shapes::torus(12, 6));
-        scene.objects_mut()[0].set_angles([1.1, 0.0, 0.4]);
+        scene.objects_mut()[0].set_angles([1.1, 0.0, 0.4].map(Angle::from_radians));
         Record::of_scene(&mut Renderer::new(), &scene, Screen::MODE_13H).expect("a legal scene")
     }
 

@@ -2,6 +2,7 @@
 
 use super::Group;
 use super::random::Random;
+use mode13h::Angle;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, builtin};
@@ -47,8 +48,8 @@ fn check(seed: u64, draw: Draw<'_>) -> Group {
         let mut fresh = (Renderer::new(), Vga::new());
         for renderer in [&mut used, &mut fresh.0] {
             renderer.set_shading(shading);
-            renderer.set_hidden_surfaces(forced);
-            renderer.set_vertex_path(path);
+            renderer.settings_mut().hidden_surfaces = forced;
+            renderer.settings_mut().vertex_path = path;
         }
         let drawn = [draw(&mut used, &scene, vga), fresh.0.draw(&scene, &mut fresh.1).is_ok()];
         let differ = vga.pixels().iter().zip(fresh.1.pixels()).filter(|(a, b)| a != b).count();
@@ -99,7 +100,7 @@ fn change(random: &mut Random, scene: &mut Scene, meshes: &[Shared<Mesh>], palet
             "the camera"
         }
         _ => {
-            scene.objects_mut()[0].set_angles([0; 3].map(|_| random.around_zero(3.0)));
+            scene.objects_mut()[0].set_angles([0; 3].map(|_| random.around_zero(3.0)).map(Angle::from_radians));
             "the angles"
         }
     }

@@ -3,6 +3,7 @@
 use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::light::{Blend, Light};
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
@@ -93,7 +94,7 @@ fn in_one_sun_no_pixel_is_beyond() {
         let slices = random.within(6, 40) as u32;
         let mut scene = Scene::new();
         let mut object = Object::new(shapes::sphere(slices, slices / 2));
-        object.set_angles([0.0; 3].map(|_| 7.0 * random.unit()));
+        object.set_angles([0.0; 3].map(|_| 7.0 * random.unit()).map(Angle::from_radians));
         let material = &mut object.materials[0];
         (material.ambient, material.diffuse) = (0.15 * random.unit() as f32, 0.6 + 0.4 * random.unit() as f32);
         scene.add(object);
@@ -147,7 +148,7 @@ fn large_faces(random: &mut Random) -> Scene {
     };
     let mut scene = Scene::new();
     let mut object = Object::new(mesh);
-    object.set_angles([0.0; 3].map(|_| between(0.0, 7.0)));
+    object.set_angles([0.0; 3].map(|_| between(0.0, 7.0)).map(Angle::from_radians));
     let material = &mut object.materials[0];
     (material.ambient, material.diffuse) = (between(0.0, 0.3) as f32, between(0.3, 1.1) as f32);
     let kind = between(0.0, 1.0);
@@ -288,7 +289,7 @@ fn kept_decisions_are_those_that_would_be_made() {
                 _ => 4.0,
             };
             if change == 4 {
-                scene.objects_mut()[0].rotate_y(0.3);
+                scene.objects_mut()[0].rotate_y(Angle::from_radians(0.3));
             }
             // The eye alone moves: what bodies are off by is known still.
             if change > 5 {
@@ -342,7 +343,7 @@ fn the_budget_is_the_renderers_or_the_scenes() {
 fn integers_know_no_budget() {
     let scene = crate::support::scenes::framed(shapes::torus(24, 12));
     let mut renderer = within(2.0);
-    renderer.set_vertex_path(VertexPath::Integer);
+    renderer.settings_mut().vertex_path = VertexPath::Integer;
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     assert_eq!(stats.max_error, None);
     assert_eq!(stats.shares.of(Shading::Gouraud88Reseeded), stats.drawn);

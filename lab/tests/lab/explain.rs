@@ -4,6 +4,7 @@ use crate::support::oracle::{self, Shades};
 use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::triangles;
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
@@ -154,8 +155,8 @@ fn an_account_follows_the_way_to_hidden_surfaces() {
         for way in HiddenSurfaces::ALL {
             for path in VertexPath::ALL {
                 let mut renderer = Renderer::new();
-                renderer.set_hidden_surfaces(Some(way));
-                renderer.set_vertex_path(path);
+                renderer.settings_mut().hidden_surfaces = Some(way);
+                renderer.settings_mut().vertex_path = path;
                 if random.unit() < 0.3 {
                     renderer.set_shading(Shading::GouraudVintage);
                 }
@@ -186,7 +187,7 @@ fn an_account_leaves_the_renderer_as_it_was() {
     let mut scene = scenes::showing("torus");
     let (mut one, mut other) = (Renderer::new(), Renderer::new());
     for turn in 0..4 {
-        scene.objects_mut()[0].set_angles([0.3, 0.2 * f64::from(turn), 0.0]);
+        scene.objects_mut()[0].set_angles([0.3, 0.2 * f64::from(turn), 0.0].map(Angle::from_radians));
         explain(&mut one, &scene, 160, 100);
         assert!(frame(&mut one, &scene) == frame(&mut other, &scene));
         explain(&mut one, &scenes::showing("cube"), 160, 100);
@@ -203,7 +204,7 @@ fn square(x: [f32; 2], y: [f32; 2]) -> Scene {
     let mut scene = Scene::new();
     scene.add(Object::new(mesh).named("square"));
     scene.add_light(Light::sun([0.0, 0.0, 1.0]));
-    scene.camera = Camera { eye, target, up, field_of_view: std::f32::consts::FRAC_PI_2, near: 1.0 };
+    scene.camera = Camera { eye, target, up, field_of_view: Angle::from_degrees(90.0), near: 1.0 };
     scene
 }
 
@@ -287,8 +288,8 @@ fn faces_with_the_same_corners_keep_their_own_numbers() {
     ] {
         for max_error in [None, Some(4.0)] {
             let mut renderer = Renderer::new();
-            renderer.set_hidden_surfaces(Some(way));
-            renderer.set_accuracy(max_error.map(Accuracy::WithinError));
+            renderer.settings_mut().hidden_surfaces = Some(way);
+            renderer.settings_mut().accuracy = max_error.map(Accuracy::WithinError);
             // Below the diagonal.
             let pixel = explain(&mut renderer, &twice, 105, 80);
             let named: Vec<_> = pixel.faces.iter().map(|face| (face.triangle, face.fate)).collect();
@@ -312,7 +313,7 @@ fn every_pixel_of_a_long_row_and_of_equal_depths() {
         for way in HiddenSurfaces::ALL {
             let mut renderer = Renderer::new();
             renderer.set_shading(shading);
-            renderer.set_hidden_surfaces(Some(way));
+            renderer.settings_mut().hidden_surfaces = Some(way);
             let bytes = frame(&mut renderer, &twins);
             for x in (0..320).step_by(5) {
                 let pixel = explain(&mut renderer, &twins, x, 90);
@@ -535,7 +536,7 @@ fn the_level_of_a_texel_is_named() {
     let scene = scenes::floor("bricks", 24.0);
     let level = |mipmaps: bool, y: u32| {
         let mut renderer = Renderer::new();
-        renderer.set_mipmaps(Some(mipmaps));
+        renderer.settings_mut().mipmaps = Some(mipmaps);
         let bytes = frame(&mut renderer, &scene);
         let pixel = explain(&mut renderer, &scene, 160, y);
         assert_eq!(pixel.byte, bytes[y as usize * 320 + 160]);

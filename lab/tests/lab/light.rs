@@ -4,6 +4,7 @@ mod floats;
 
 use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material, RampChoice};
@@ -167,7 +168,7 @@ fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
             let on_face = random.one_of(&[middle, corners[1], anywhere]);
             let place = random.one_of(&[corners[0], on_face, on_face + Vec3::Z * hair, scene.camera.eye]);
             let range = random.one_of(&[0.5, 3.0, 10.0]);
-            scene.add_light(Light::lamp(place.to_array(), range).with_intensity(random.one_of(&[0.5, 1.0, 3.0])));
+            scene.add_light(Light::lamp(place, range).with_intensity(random.one_of(&[0.5, 1.0, 3.0])));
         }
         let mut drawn: Vec<Vertex> = Vec::new();
         Renderer::new()
@@ -300,7 +301,7 @@ fn r10_denormals_and_minus_zero_draw_as_zero() {
         scene.camera = Camera { eye: Vec3::new(1.0, 2.0, 4.0), target: Vec3::splat(tiny), ..Camera::default() };
         let object = scene.add(Object::new(mesh(tiny)));
         scene[object].position = Vec3::splat(tiny);
-        scene[object].set_angles([f64::from(tiny); 3]);
+        scene[object].set_angles([f64::from(tiny); 3].map(Angle::from_radians));
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
         let mut vga = Vga::new();
         Renderer::new().draw(&scene, &mut vga).expect("a legal scene");

@@ -5,6 +5,7 @@ use crate::support::property::property;
 use crate::support::random::Random;
 use crate::support::triangles::triangle;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
 use mode13h::raster::{Interpolation, Rect};
@@ -16,7 +17,7 @@ use proptest::prelude::*;
 
 fn scene(name: &str) -> Scene {
     let mut scene = crate::support::scenes::framed(shapes::by_name(name).expect("listed"));
-    scene.objects_mut()[0].set_angles([0.4, 0.5, 0.1]);
+    scene.objects_mut()[0].set_angles([0.4, 0.5, 0.1].map(Angle::from_radians));
     scene
 }
 

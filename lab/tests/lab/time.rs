@@ -6,8 +6,9 @@ mod kept;
 use std::f64::consts::TAU;
 
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::glam::Mat3;
-use mode13h::integer::{self, Angle};
+use mode13h::integer::{self, BinaryAngle};
 use mode13h::mesh::shapes;
 use mode13h::raster::Frame;
 use mode13h::render::{Renderer, VertexPath};
@@ -36,7 +37,8 @@ fn from_orthonormal(matrix: Mat3) -> f32 {
 /// The matrix of the integer path, whose angles are the nearest 65,536ths of a turn. A number of 16.16
 /// up to 1 is an f32.
 fn turn_in_16_16(angles: [f64; 3]) -> Mat3 {
-    let steps = angles.map(|angle| Angle::from_bits(((angle / TAU).rem_euclid(1.0) * 65_536.0).round() as u32 as u16));
+    let steps =
+        angles.map(|angle| BinaryAngle::from_bits(((angle / TAU).rem_euclid(1.0) * 65_536.0).round() as u32 as u16));
     Mat3::from_cols_array_2d(&integer::turn(steps).map(|row| row.map(|c| c.to_bits() as f32 / 65_536.0)))
 }
 
@@ -51,7 +53,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
     }
     let fresh = || {
         let mut renderer = Renderer::new();
-        renderer.set_vertex_path(path);
+        renderer.settings_mut().vertex_path = path;
         renderer
     };
     let mesh = Shared::new(shapes::torus(8, 6));
@@ -63,14 +65,15 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
     let (mut n, mut moved) = (0_u32, 0_u32);
     while tried.more() {
         n += 1;
-        scene.objects_mut()[0].rotate_x(STEPS[0]);
-        scene.objects_mut()[0].rotate_y(STEPS[1]);
+        scene.objects_mut()[0].rotate_x(Angle::from_radians(STEPS[0]));
+        scene.objects_mut()[0].rotate_y(Angle::from_radians(STEPS[1]));
         let before = bytes;
         draw(&mut renderer, &scene, &mut bytes);
         moved += u32::from(bytes != before);
 
         let mut at_once = crate::support::scenes::framed(mesh.clone());
-        at_once.objects_mut()[0].set_angles([f64::from(n) * STEPS[0], f64::from(n) * STEPS[1], 0.0]);
+        at_once.objects_mut()[0]
+            .set_angles([f64::from(n) * STEPS[0], f64::from(n) * STEPS[1], 0.0].map(Angle::from_radians));
         let mut expected = [n as u8; (WIDTH * HEIGHT) as usize];
         draw(&mut fresh(), &at_once, &mut expected);
         let differ = bytes.iter().zip(&expected).filter(|(is, should)| is != should).count();
@@ -79,14 +82,17 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
 
         let (off, limit) = match path {
             VertexPath::Float => (from_orthonormal(scene.objects()[0].rotation()), 1e-6),
-            _ => (from_orthonormal(turn_in_16_16(scene.objects()[0].angles())), f32::powi(2.0, -13)),
+            _ => (
+                from_orthonormal(turn_in_16_16(scene.objects()[0].angles().map(Angle::to_radians))),
+                f32::powi(2.0, -13),
+            ),
         };
         tried.worst("from orthonormal", f64::from(off));
         assert!(off <= limit, "frame {n}, {path}: {off:e} from orthonormal");
 
         // Each of n additions is rounded to half a unit in the last place of a number below 2¹⁴: 2⁻⁴⁰.
-        drifting.rotate_y(step);
-        let drift = (drifting.angles()[1] - f64::from(n) * step).abs();
+        drifting.rotate_y(Angle::from_radians(step));
+        let drift = (drifting.angles()[1].to_radians() - f64::from(n) * step).abs();
         tried.worst("radians of drift", drift);
         assert!(drift <= f64::from(n) * f64::powi(2.0, -40), "frame {n}: {drift:e} radians");
     }
@@ -124,15 +130,15 @@ fn t2_any_step_is_defined() {
     let mut tried = Tried::new("t2_any_step_is_defined", 12);
     let turned = |angle: f64| {
         let mut scene = crate::support::scenes::framed(shapes::cube());
-        scene.objects_mut()[0].rotate_y(angle);
+        scene.objects_mut()[0].rotate_y(Angle::from_radians(angle));
         frame(&mut Renderer::new(), &scene)
     };
     assert_eq!(turned(0.0), turned(-0.0));
     // An hour at 90° a second is 900 whole turns.
     let hour = 3600.0 * std::f64::consts::FRAC_PI_2;
     let mut scene = crate::support::scenes::framed(shapes::cube());
-    scene.objects_mut()[0].rotate_y(hour);
-    scene.objects_mut()[0].rotate_y(-hour);
+    scene.objects_mut()[0].rotate_y(Angle::from_radians(hour));
+    scene.objects_mut()[0].rotate_y(Angle::from_radians(-hour));
     assert_eq!(frame(&mut Renderer::new(), &scene), turned(0.0), "there and back");
     for angle in [-1.0, 1e-300, 3600.0, -3600.0, 1e9, -1e9, 1e15, 1e300, f64::MAX, f64::MIN_POSITIVE] {
         assert!(turned(angle).iter().any(|&byte| byte != 0), "{angle:e}");

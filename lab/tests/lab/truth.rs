@@ -3,6 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
@@ -17,7 +18,13 @@ fn screen(side: u32) -> Screen {
 fn camera(side: u32) -> Camera {
     let field_of_view = 2.0 * f64::atan(f64::from(side) / 64.0);
     // To the nearest f32: fx is 32 within 10⁻⁵.
-    Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, field_of_view: field_of_view as f32, near: 1.0 }
+    Camera {
+        eye: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        field_of_view: Angle::from_radians((field_of_view as f32).into()),
+        near: 1.0,
+    }
 }
 
 /// A scene of one mesh, before that camera, on which ambient light is not thrown back.
@@ -241,7 +248,7 @@ fn backs_of_open_meshes_are_seen_from_their_side() {
         let mut scene = scene(64, square(4.0));
         scene.objects_mut()[0].pivot = Vec3::new(0.0, 0.0, -4.0);
         scene.objects_mut()[0].position = Vec3::new(0.0, 0.0, -4.0);
-        scene.objects_mut()[0].set_angles([0.0, PI, 0.0]);
+        scene.objects_mut()[0].set_angles([0.0, PI, 0.0].map(Angle::from_radians));
         scene.add_light(Light::sun([0.0, 3.0, 4.0]));
         assert_close(at(&draw(&scene, 64, standard), 30, 30).intensity[0], 0.8);
         scene.lights_mut()[0] = Light::sun([0.0, 3.0, -4.0]);
@@ -269,11 +276,20 @@ fn turns_and_axes() {
     assert_eq!(corner(|_| ()), units(1.0, 2.0, 3.0));
     assert_eq!(corner(|object| object.scale = 2.0), units(2.0, 4.0, 6.0));
     assert_eq!(corner(|object| object.pivot = Vec3::new(1.0, 0.0, 0.0)), units(0.0, 2.0, 3.0));
-    assert_eq!(corner(|object| object.set_angles([FRAC_PI_2, 0.0, 0.0])), units(1.0, -3.0, 2.0));
-    assert_eq!(corner(|object| object.set_angles([0.0, FRAC_PI_2, 0.0])), units(3.0, 2.0, -1.0));
-    assert_eq!(corner(|object| object.set_angles([0.0, 0.0, FRAC_PI_2])), units(-2.0, 1.0, 3.0));
+    assert_eq!(
+        corner(|object| object.set_angles([FRAC_PI_2, 0.0, 0.0].map(Angle::from_radians))),
+        units(1.0, -3.0, 2.0)
+    );
+    assert_eq!(
+        corner(|object| object.set_angles([0.0, FRAC_PI_2, 0.0].map(Angle::from_radians))),
+        units(3.0, 2.0, -1.0)
+    );
+    assert_eq!(
+        corner(|object| object.set_angles([0.0, 0.0, FRAC_PI_2].map(Angle::from_radians))),
+        units(-2.0, 1.0, 3.0)
+    );
     // About z first: (−2, 1, 3); then about y: (3, 1, 2); then about x: (3, −2, 1).
-    assert_eq!(corner(|object| object.set_angles([FRAC_PI_2; 3])), units(3.0, -2.0, 1.0));
+    assert_eq!(corner(|object| object.set_angles([FRAC_PI_2; 3].map(Angle::from_radians))), units(3.0, -2.0, 1.0));
     assert_eq!(corner(|object| object.up_axis = UpAxis::Z), units(1.0, 3.0, -2.0));
 }
 

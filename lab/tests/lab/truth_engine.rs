@@ -3,6 +3,7 @@
 use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::tried::Tried;
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
@@ -451,7 +452,7 @@ fn the_probe_numbers_any_triangle() {
     for (n, x) in [(300_u32, -0.8), (20, 0.8)] {
         let wall = scene.add(Object::new(shapes::wall(n, n / 2)));
         scene[wall].position = Vec3::new(x, 0.0, 0.0);
-        scene[wall].set_angles([0.3, 0.2, 0.0]);
+        scene[wall].set_angles([0.3, 0.2, 0.0].map(Angle::from_radians));
     }
     scene.add_light(Light::lamp([0.3, 0.4, 1.0], 3.0));
     let (truth, shown) = (truth(&scene), look(&scene, Shading::GouraudHyperbolic));
@@ -465,9 +466,9 @@ fn the_probe_numbers_any_triangle() {
     assert!(errors.figures().max <= 1.0, "{:?}", errors.figures());
 
     let mut torus = crate::support::scenes::framed(shapes::torus(48, 24));
-    torus.objects_mut()[0].set_angles([0.3, 0.2, 0.0]);
+    torus.objects_mut()[0].set_angles([0.3, 0.2, 0.0].map(Angle::from_radians));
     let mut probe = probe(Shading::Gouraud88Reseeded);
-    probe.renderer().set_vertex_path(VertexPath::Integer);
+    probe.renderer().settings_mut().vertex_path = VertexPath::Integer;
     let shown = probe.look(&torus, SCREEN).expect("a legal scene");
     let errors = compare(&self::truth(&torus).draw(Standard::Gouraud), &shown);
     // Angles of 16 bits, a table sine and normals of 16 bits are off by less than 1/1,000 of what a shade takes.
@@ -493,7 +494,7 @@ fn the_probe_refuses_what_cannot_be_drawn() {
 /// The eye at the origin looks along −z. What a unit at w = 1 is in pixels, across and down.
 fn eye(scene: &mut Scene, near: f32) -> [f64; 2] {
     scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, near, ..Camera::default() };
-    let down = 100.0 / f64::tan(f64::from(Camera::FIELD_OF_VIEW) / 2.0);
+    let down = 100.0 / f64::tan(Camera::FIELD_OF_VIEW.to_radians() / 2.0);
     [1.2 * down, down]
 }
 
@@ -550,7 +551,7 @@ fn n7_a_highlight_inside_a_face_against_the_truth() {
         Material { ambient: 0.1, diffuse: 0.2, specular: 0.6, shininess: 60.0, ..Material::white() };
     scene.add_light(Light::sun([0.2, 0.1, 1.0]));
     for angle in [0.0, 0.05, 0.1, 0.15] {
-        scene[wall].set_angles([0.5 * angle, angle, 2.0 * angle]);
+        scene[wall].set_angles([0.5 * angle, angle, 2.0 * angle].map(Angle::from_radians));
         for (shading, most) in [
             // The loop at every pixel: a half, and vertices.
             (Shading::Phong, 1.0),
@@ -894,7 +895,7 @@ fn n2_models_with_faults_have_no_specks() {
             let mut probe = probe(Shading::Gouraud88Reseeded);
             // The others are right for what is convex and far to near.
             let way = if i == 1 { HiddenSurfaces::ScanLine } else { HiddenSurfaces::DepthBuffer };
-            probe.renderer().set_hidden_surfaces(Some(way));
+            probe.renderer().settings_mut().hidden_surfaces = Some(way);
             let specks = specks(&scene, &mut probe);
             tried.worst("specks", specks.len() as f64);
             if !specks.is_empty() {
@@ -935,7 +936,7 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
                 let near = if eye.length() < 1.0 { 0.5 } else { 0.1 };
                 scene.camera = Camera { eye, target, near, ..Camera::default() };
                 if eye.length() > 10.0 {
-                    scene.camera.field_of_view = 0.08;
+                    scene.camera.field_of_view = Angle::from_radians(0.08);
                 }
                 let toward = look_toward(&mesh, eye);
                 for way in HiddenSurfaces::ALL {
@@ -945,9 +946,9 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
                     }
                     for setting in 0..12 {
                         let mut probe = probe(Shading::ALL[setting % Shading::ALL.len()]);
-                        probe.renderer().set_hidden_surfaces(Some(way));
+                        probe.renderer().settings_mut().hidden_surfaces = Some(way);
                         match setting {
-                            10 => probe.renderer().set_vertex_path(VertexPath::Integer),
+                            10 => probe.renderer().settings_mut().vertex_path = VertexPath::Integer,
                             11 => {
                                 probe.renderer().set_max_error(4.0);
                             }

@@ -6,6 +6,7 @@ use std::{error, fmt, io};
 
 /// Why a model is refused. Displayed as `path:line: what`, on one line.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct ObjError {
     /// The file, as the caller or `mtllib` named it.
     pub path: PathBuf,
@@ -50,7 +51,7 @@ pub enum ObjErrorKind {
     NoFaces,
     /// All corners of each face are on a line, or in one point.
     NoArea,
-    /// More than [`Mesh::MOST`](crate::mesh::Mesh::MOST) of a kind, more than 2³² − 1 corners, more than 65,536
+    /// More than [`Mesh::MAX_COUNT`](crate::mesh::Mesh::MAX_COUNT) of a kind, more than 2³² − 1 corners, more than 65,536
     /// materials, or a concave face of more than 20,000 corners.
     TooLarge(&'static str),
 }

@@ -8,6 +8,7 @@ use glam::{Vec2, Vec3};
 use super::polygon::Splitter;
 use super::statement::{Corner, Model};
 use super::{CREASE, ObjErrorKind};
+use crate::angle::Angle;
 use crate::mesh::normals::Together;
 use crate::mesh::shells::{self, InsideOut};
 use crate::mesh::topology::Edges;
@@ -22,14 +23,14 @@ pub(super) struct Mended {
     pub(super) turned: usize,
 }
 
-/// The mesh. `surfaces` are those of `model.names`; those that no face uses are dropped. `crease` is in degrees.
+/// The mesh. `surfaces` are those of `model.names`; those that no face uses are dropped.
 ///
 /// # Errors
 /// What is wrong, and in which line if one is at fault.
 pub(super) fn mesh(
     model: Model,
     surfaces: Vec<Surface>,
-    crease: Option<f32>,
+    crease: Option<Angle>,
 ) -> Result<(Mesh, Mended), (Option<u64>, ObjErrorKind)> {
     let Split { triangles, mut triangle_surfaces, mut groups, surfaces } = split(&model, surfaces)?;
     let Model { positions, texcoords, normals, corners, .. } = model;
@@ -84,8 +85,8 @@ pub(super) fn mesh(
     mesh.triangle_surfaces = triangle_surfaces;
     if !complete {
         let together = match crease {
-            Some(degrees) => Together::new(f64::from(degrees).to_radians(), &[]),
-            None => Together::new(f64::from(CREASE).to_radians(), &groups).unless_scattered(edges),
+            Some(crease) => Together::new(crease, &[]),
+            None => Together::new(CREASE, &groups).unless_scattered(edges),
         };
         mesh.average(&points, Weight::Angle, Some(together), known);
     }
@@ -236,7 +237,7 @@ fn vertices(
             *others.entry(triple).or_insert(new)
         };
         if vertex == new {
-            if triples.len() == Mesh::MOST {
+            if triples.len() == Mesh::MAX_COUNT {
                 return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 vertices"));
             }
             triples.push(triple);

@@ -38,6 +38,7 @@ mod progress;
 mod statement;
 mod warnings;
 
+use crate::angle::Angle;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -52,6 +53,7 @@ use warnings::Warnings;
 
 /// A model and what was found wanting while it was read.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Loaded {
     /// The model.
     pub mesh: Mesh,
@@ -62,16 +64,17 @@ pub struct Loaded {
     pub files: Vec<PathBuf>,
 }
 
-/// The crease angle of models that ask for none, in degrees.
-const CREASE: f32 = 40.0;
+/// The crease angle of models that ask for none.
+const CREASE: Angle = Angle::from_degrees(40.0);
 
 /// How a model is read.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[doc(hidden)]
 pub struct Options {
-    /// The crease angle, in degrees, for corners without a normal: faces whose normals differ by more have an edge between
-    /// them. 180 is smooth everywhere, 0 flat; what is beyond counts as these. With `None` the smoothing groups of the
-    /// file hold, and where it has none, 40; but a scan, whose sharp edges end anywhere, is smooth everywhere.
-    pub crease: Option<f32>,
+    /// The crease angle for corners without a normal: faces whose normals differ by more have an edge between
+    /// them. 180° is smooth everywhere, 0 flat; what is beyond counts as these. With `None` the smoothing groups of the
+    /// file hold, and where it has none, 40°; but a scan, whose sharp edges end anywhere, is smooth everywhere.
+    pub crease: Option<Angle>,
 }
 
 /// Reads an OBJ file and the MTL files that it names. Of textures it only looks whether they exist.

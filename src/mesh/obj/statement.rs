@@ -93,7 +93,7 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Model, ObjError>
 
 /// One more, if there is room for it.
 fn push<T>(list: &mut Vec<T>, value: T) -> Result<(), ObjErrorKind> {
-    if list.len() >= Mesh::MOST {
+    if list.len() >= Mesh::MAX_COUNT {
         return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 of a kind"));
     }
     list.push(value);
@@ -158,7 +158,7 @@ fn face(model: &mut Model, later: &mut Later, line: u64, rest: &[u8]) -> Result<
     if model.corners.len() > u32::MAX as usize {
         return Err(ObjErrorKind::TooLarge("more than 4,294,967,295 corners"));
     }
-    if model.corners.len() - 2 * model.sizes.len() > Mesh::MOST + 2 {
+    if model.corners.len() - 2 * model.sizes.len() > Mesh::MAX_COUNT + 2 {
         return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 triangles"));
     }
     if size > MAX_CONCAVE {
@@ -202,13 +202,13 @@ const WHAT: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 impl Later {
     /// Counted from 0. `count`: how many there are so far.
     fn resolve(&mut self, kind: usize, index: i64, count: usize, line: u64) -> Result<u32, ObjErrorKind> {
-        // `count` is at most `Mesh::MOST`, see `push`.
+        // `count` is at most `Mesh::MAX_COUNT`, see `push`.
         let from_zero = match index {
             0 => return Err(ObjErrorKind::IndexZero),
             1.. => index - 1,
             _ => count as i64 + index,
         };
-        if from_zero < 0 || from_zero >= Mesh::MOST as i64 {
+        if from_zero < 0 || from_zero >= Mesh::MAX_COUNT as i64 {
             return Err(ObjErrorKind::IndexOutOfRange { what: WHAT[kind], index, count });
         }
         if from_zero >= count as i64 && self.records[kind].last().is_none_or(|&(greatest, _)| index > greatest) {

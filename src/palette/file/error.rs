@@ -16,7 +16,7 @@ pub struct PaletteError {
 }
 
 /// A place in a file.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Place {
     /// A line of text, counted from 1. One more than there are lines: where one is missing.
     Line(usize),
@@ -152,7 +152,7 @@ impl Excerpt {
 
     /// The beginning of what was found, up to 32 characters of ASCII.
     #[must_use]
-    pub fn as_str(&self) -> &str {
+    pub(crate) fn as_str(&self) -> &str {
         // Only ASCII was stored, so the default is never taken.
         core::str::from_utf8(&self.bytes[..usize::from(self.length)]).unwrap_or_default()
     }

@@ -131,12 +131,14 @@ impl Format {
 
     /// The format of an extension, without its dot, in either case.
     #[must_use]
+    #[doc(hidden)]
     pub fn by_extension(extension: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|format| format.extensions.iter().any(|own| own.eq_ignore_ascii_case(extension)))
     }
 
     /// The format of a file's name, by its extension: what to write such a file as.
     #[must_use]
+    #[doc(hidden)]
     pub fn of_file_name(name: &str) -> Option<&'static Self> {
         let (_, extension) = name.rsplit_once('.')?;
         Self::by_extension(extension)
@@ -147,6 +149,7 @@ impl Format {
     /// An 8-bit `.act` of 768 bytes looks like a raw VGA file, and is read alike unless it has no
     /// value over 63.
     #[must_use]
+    #[doc(hidden)]
     pub fn of_bytes(bytes: &[u8]) -> Option<&'static Self> {
         FORMATS.iter().find(|format| (format.recognizes)(bytes))
     }

@@ -14,10 +14,10 @@
 //! inside the frame and every 64 pixels from there, where every value is exact; so a pixel's byte
 //! depends on no clip rectangle. Without any effect [`Raster::triangle`] gives the same bytes sooner.
 //!
-//! Shades and channels are what the [`Interpolation`] makes of them; fog and the table's normals are linear, started anew
-//! with every piece, whatever the shading, and keep the guarantees of [`shade`](super::shade): no sum leaves the
-//! range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a byte
-//! lies in [min >> 8, ⌈max⌉].
+//! Shades and channels are what the [`Interpolation`](super::Interpolation) makes of them; fog and the table's normals
+//! are linear, started anew with every piece, whatever the shading, and keep the guarantees of [`shade`](super::shade): no
+//! sum leaves the range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a
+//! byte lies in [min >> 8, ⌈max⌉].
 
 mod curve;
 mod level;
@@ -326,6 +326,7 @@ impl<D: Cell> Raster<'_, D> {
     /// Draws a triangle with effects. The order of the corners and their winding make no difference; a
     /// triangle without area draws nothing. Many triangles are drawn sooner by
     /// [`batch_with_effects`](Self::batch_with_effects), by which this is drawn, too.
+    #[doc(hidden)]
     pub fn triangle_with_effects(
         &mut self,
         vertices: &[Vertex; 3],
@@ -338,6 +339,7 @@ impl<D: Cell> Raster<'_, D> {
     }
 
     /// Draws the faces of a batch in their order, by one pixel pipeline, and takes them out of it.
+    #[doc(hidden)]
     pub fn batch_with_effects(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
         self.draw_effects::<true>(batch, pipeline)
     }

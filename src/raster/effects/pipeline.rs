@@ -79,6 +79,7 @@ pub enum SampleSpacing {
 
 impl SampleSpacing {
     /// All of them, the nearest first.
+    #[doc(hidden)]
     pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
 
     /// In pixels.

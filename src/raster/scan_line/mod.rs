@@ -179,7 +179,7 @@ impl<D: Cell> Raster<'_, D> {
     ///
     /// # Errors
     /// Those of [`scan_line`](Self::scan_line).
-    pub fn scan_line_with(
+    pub(crate) fn scan_line_with(
         &mut self,
         faces: &[([Vertex; 3], Interpolation)],
         scratch: Scratch<'_>,

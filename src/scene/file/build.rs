@@ -168,12 +168,12 @@ impl<'a> Builder<'a> {
                 if towards == Vec3::ZERO {
                     return Err(Fault::value(direction.span(), "a direction must not be zero"));
                 }
-                Light::sun(towards.to_array())
+                Light::sun(towards)
             }
             (Some(_), None, Some(range)) => {
                 return Err(Fault::value(range.span(), "only a lamp has a range"));
             }
-            (None, Some(position), Some(range)) => Light::lamp(position.get_ref().vec3().to_array(), range.get_ref().0),
+            (None, Some(position), Some(range)) => Light::lamp(position.get_ref().vec3(), range.get_ref().0),
             (None, Some(_), None) => {
                 return Err(Fault::value(layout.span(), "a lamp needs a `range`: how far it reaches"));
             }

@@ -5,6 +5,7 @@ use toml::Spanned;
 
 use super::error::Fault;
 use super::layout::CameraLayout;
+use crate::angle::Angle;
 use crate::scene::Camera;
 use crate::scene::framing::{Swept, Viewpoint};
 
@@ -13,7 +14,8 @@ pub(super) fn camera(layout: Option<&Spanned<CameraLayout>>, everything: &[Swept
     let span = layout.map_or(0..0, Spanned::span);
     let own = layout.map(Spanned::get_ref);
     let degrees = own.and_then(|own| own.field_of_view.as_ref());
-    let field_of_view = degrees.map_or(Camera::FIELD_OF_VIEW, |degrees| degrees.0.to_radians());
+    let field_of_view =
+        degrees.map_or(Camera::FIELD_OF_VIEW, |degrees| Angle::from_radians(f64::from(degrees.0.to_radians())));
     let up = own.and_then(|own| own.up.as_ref()).map_or(Vec3::Y, |up| up.vec3());
     let target = own.and_then(|own| own.target.as_ref()).map(|target| target.vec3());
     let eye = own.and_then(|own| own.eye.as_ref());

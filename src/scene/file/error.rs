@@ -19,6 +19,7 @@ use crate::texture::LoadError;
 ///
 /// Displayed on one line, as ``scene.toml:9:1: key `objects[0].shap`: unknown key; known are name, shape, …``.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct SceneError {
     /// The file, as the caller named it.
     pub path: PathBuf,

@@ -13,7 +13,7 @@ use toml::Spanned;
 
 use super::shape::Shape;
 use super::value::{
-    Angle, Background, Color, Crease, Entries, Entry, FieldOfView, FileName, List, Name, NotNegative, Number,
+    Background, Color, Crease, Entries, Entry, FieldOfView, FileName, Finite, List, Name, NotNegative, Number,
     OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
 };
 use crate::light::Blend;
@@ -32,7 +32,7 @@ pub(super) struct SceneLayout {
     pub(super) fog: Option<Spanned<FogLayout>>,
     pub(super) camera: Option<Spanned<CameraLayout>>,
     pub(super) render: Option<RenderLayout>,
-    pub(super) picture: Option<Angle>,
+    pub(super) picture: Option<Finite>,
     #[serde(default)]
     pub(super) objects: Vec<Spanned<ObjectLayout>>,
     #[serde(default)]
@@ -66,10 +66,10 @@ pub(super) struct ObjectLayout {
     pub(super) positions: Option<Spanned<Vec<Vector>>>,
     pub(super) scale: Option<Spanned<OneOrThree<Positive>>>,
     pub(super) repeat: Option<Spanned<List<Positive, 2>>>,
-    pub(super) angles: Option<List<Angle, 3>>,
+    pub(super) angles: Option<List<Finite, 3>>,
     pub(super) up_axis: Option<Name<Up>>,
     pub(super) pivot: Option<Vector>,
-    pub(super) spin: Option<OneOrThree<Angle>>,
+    pub(super) spin: Option<OneOrThree<Finite>>,
     pub(super) path: Option<Spanned<PathLayout>>,
     pub(super) material: Option<MaterialLayout>,
     pub(super) materials: Option<BTreeMap<Spanned<String>, MaterialLayout>>,
@@ -119,7 +119,7 @@ pub(super) struct CircleLayout {
     pub(super) centre: Option<Vector>,
     pub(super) radius: Option<Positive>,
     pub(super) axis: Option<Name<Axis>>,
-    pub(super) start: Option<Angle>,
+    pub(super) start: Option<Finite>,
     pub(super) from: Option<Vector>,
     pub(super) towards: Option<Vector>,
 }

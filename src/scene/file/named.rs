@@ -11,6 +11,7 @@ use toml::Spanned;
 use super::error::Fault;
 use super::value::FileName;
 use super::{LONGEST, SceneErrorKind};
+use crate::angle::Angle;
 use crate::mesh::{Mesh, obj};
 use crate::palette::{Palette, builtin, file as palette_file};
 use crate::shared::Shared;
@@ -24,7 +25,7 @@ pub(super) struct Named<'a> {
     folder: &'a Path,
     open: &'a mut Open<'a>,
     /// By the file, and the bits of the crease angle that was asked for.
-    models: BTreeMap<(PathBuf, Option<u32>), Shared<Mesh>>,
+    models: BTreeMap<(PathBuf, Option<u64>), Shared<Mesh>>,
     textures: BTreeMap<PathBuf, Shared<Texture>>,
     pub(super) warnings: Vec<String>,
 }
@@ -41,10 +42,10 @@ impl<'a> Named<'a> {
         Self { folder, open, models: BTreeMap::new(), textures: BTreeMap::new(), warnings: Vec::new() }
     }
 
-    /// A model, with a crease angle in degrees if one is asked for.
-    pub(super) fn model(&mut self, name: &Spanned<FileName>, crease: Option<f32>) -> Result<Shared<Mesh>, Fault> {
+    /// A model, with a crease angle if one is asked for.
+    pub(super) fn model(&mut self, name: &Spanned<FileName>, crease: Option<Angle>) -> Result<Shared<Mesh>, Fault> {
         let path = self.folder.join(&name.get_ref().0);
-        let key = (path.clone(), crease.map(f32::to_bits));
+        let key = (path.clone(), crease.map(|crease| crease.to_radians().to_bits()));
         if let Some(known) = self.models.get(&key) {
             return Ok(known.clone());
         }

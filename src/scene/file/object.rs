@@ -14,6 +14,7 @@ use super::layout::ObjectLayout;
 use super::named::Named;
 use super::value::{List, OneOrThree};
 use super::{MAX_TRIANGLES, material};
+use crate::angle::Angle;
 use crate::mesh::Mesh;
 use crate::scene::{Object, Shared};
 
@@ -88,7 +89,10 @@ impl Objects {
                 if let Some(subdivisions) = &layout.subdivisions {
                     return Err(Fault::value(subdivisions.span(), "only a shape has subdivisions"));
                 }
-                let mesh = named.model(model, layout.crease.as_ref().map(|crease| crease.get_ref().0))?;
+                let mesh = named.model(
+                    model,
+                    layout.crease.as_ref().map(|crease| Angle::from_degrees(crease.get_ref().0.into())),
+                )?;
                 if change == Change::NONE { mesh } else { Shared::new(changed(&mesh, change, layout, &span)?) }
             }
             (Some(_), Some(model)) => {
@@ -112,7 +116,7 @@ impl Objects {
             object.up_axis = up.0.0;
         }
         if let Some(List(degrees)) = layout.angles {
-            object.set_angles(degrees.map(|degrees| degrees.0.to_radians()));
+            object.set_angles(degrees.map(|degrees| Angle::from_degrees(degrees.0)));
         }
         self.materials(layout, &mut object, named)?;
         Ok(positions

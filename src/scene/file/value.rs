@@ -74,7 +74,7 @@ numbers! {
     /// A coordinate, an intensity.
     Plain(f32): "a finite number", |_x| true;
     /// An angle in degrees, turns, a moment in seconds.
-    Angle(f64): "a finite number", |_x| true;
+    Finite(f64): "a finite number", |_x| true;
     /// A share.
     Share(f32): "a number from 0 to 1", |x| (0.0..=1.0).contains(&x);
     /// A length.

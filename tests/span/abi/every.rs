@@ -219,7 +219,7 @@ fn s7_frames_keep_the_rules() {
         try_kernels(&format!("case {case}, {shading:?}"), &mut random, &mut tried, |kernel| {
             let mut renderer = Renderer::new();
             renderer.set_kernel(kernel);
-            renderer.set_hidden_surfaces(way);
+            renderer.settings_mut().hidden_surfaces = way;
             if is_budget {
                 renderer.set_max_error(2.0);
             } else if let Some(shading) = shading {

@@ -1,5 +1,6 @@
 //! Normals and light: N1, N2, N4 to N6.
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 
 use super::{EXACT, of_scene};
@@ -21,8 +22,13 @@ const LIT: Measure = Measure { shades: 12, ..EXACT };
 pub(super) fn scene(mesh: Option<Mesh>, view: View) -> Scene {
     let mut scene = Scene::new();
     let eye = Vec3::from_array(view.eye.map(|c| c as f32));
-    scene.camera =
-        Camera { eye, target: eye - Vec3::Z, up: Vec3::Y, field_of_view: view.field_of_view as f32, near: 0.1 };
+    scene.camera = Camera {
+        eye,
+        target: eye - Vec3::Z,
+        up: Vec3::Y,
+        field_of_view: Angle::from_radians((view.field_of_view as f32).into()),
+        near: 0.1,
+    };
     if let Some(mesh) = mesh {
         let mut object = Object::new(mesh);
         object.materials = vec![Material { ambient: 0.0, diffuse: 1.0, ..Material::white() }];

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, Surface};
@@ -58,7 +59,7 @@ fn circle(scene: &mut Scene, change: impl FnOnce((&mut Vec3, &mut Vec3, &mut Vec
 
 fn spun(scene: &mut Scene, start: [f64; 3], turns: [f64; 3]) {
     let object = scene.add(Object::new(mode13h::mesh::shapes::cube()));
-    scene.motions = vec![Motion::Spin { object, start, turns }];
+    scene.motions = vec![Motion::Spin { object, start: start.map(Angle::from_radians), turns }];
     scene.set_time(1.0);
 }
 
@@ -81,7 +82,7 @@ const FLOATS: &[Row] = &[
     ("Camera.eye", 3, |s, bad, i| s.camera.eye[i] = bad, "camera"),
     ("Camera.target", 3, |s, bad, i| s.camera.target[i] = bad, "camera"),
     ("Camera.up", 3, |s, bad, i| s.camera.up[i] = bad, "camera"),
-    ("Camera.field_of_view", 1, |s, bad, _| s.camera.field_of_view = bad, "camera"),
+    ("Camera.field_of_view", 1, |s, bad, _| s.camera.field_of_view = Angle::from_radians(bad.into()), "camera"),
     ("Camera.near", 1, |s, bad, _| s.camera.near = bad, "camera"),
     ("Fog.start", 1, |s, bad, _| s.fog = Some(Fog { color: Rgb::BLACK, start: bad, end: 9.0 }), "fog"),
     ("Fog.end", 1, |s, bad, _| s.fog = Some(Fog { color: Rgb::BLACK, start: 1.0, end: bad }), "fog"),
@@ -103,7 +104,7 @@ const FLOATS: &[Row] = &[
     ("Object.pivot", 3, |s, bad, i| s.objects_mut()[0].pivot[i] = bad, "object 0"),
     ("Object.position", 3, |s, bad, i| s.objects_mut()[0].position[i] = bad, "object 0"),
     ("Object.scale", 1, |s, bad, _| s.objects_mut()[0].scale = bad, "object 0"),
-    ("Object.angles", 3, |s, bad, i| s.objects_mut()[0].set_angles(one(bad, i)), "object 0"),
+    ("Object.angles", 3, |s, bad, i| s.objects_mut()[0].set_angles(one(bad, i).map(Angle::from_radians)), "object 0"),
     (
         "PaletteAnimation::Fade.period",
         1,
@@ -168,7 +169,7 @@ fn floats(folder: &Path, fields: &mut Vec<String>) {
             let (Some(of), Some((name, kind))) = (of, words.split_once(": ")) else { continue };
             let is_float = kind
                 .split(|c: char| !c.is_alphanumeric())
-                .any(|word| ["f32", "f64", "Vec2", "Vec3", "Mat3"].contains(&word));
+                .any(|word| ["Angle", "f32", "f64", "Vec2", "Vec3", "Mat3"].contains(&word));
             if is_float && !words.starts_with("//") {
                 let name = name.trim_start_matches("pub ");
                 let variant = variant.as_ref().map_or(String::new(), |variant| format!("::{variant}"));

@@ -4,6 +4,7 @@ use std::fs;
 use std::ops::Range;
 use std::sync::LazyLock;
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, LightResponse, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
@@ -51,12 +52,12 @@ impl Settings {
     pub(super) fn renderer(&self) -> Renderer {
         let Self { accuracy, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
         let mut renderer = Renderer::new();
-        renderer.set_accuracy(*accuracy);
-        renderer.set_mapping(*mapping);
-        renderer.set_mipmaps(*mipmaps);
-        renderer.set_vertex_path(*vertex_path);
+        renderer.settings_mut().accuracy = *accuracy;
+        renderer.settings_mut().mapping = *mapping;
+        renderer.settings_mut().mipmaps = *mipmaps;
+        renderer.settings_mut().vertex_path = *vertex_path;
         renderer.set_kernel(*kernel);
-        renderer.set_hidden_surfaces(*hidden_surfaces);
+        renderer.settings_mut().hidden_surfaces = *hidden_surfaces;
         for (object, effect, on) in forced {
             match object {
                 Some(object) => renderer.force_for(*object, *effect, *on),
@@ -93,8 +94,12 @@ const fn unseen(name: &'static str, apply: fn(&mut World, &mut Random)) -> Chang
 }
 
 /// What no frame depends on, and what is no state of a scene.
-pub(super) const EXEMPT: [(&str, &str); 2] =
-    [("Shipped.name", "of a file that is compiled in"), ("Shipped.text", "a file that is compiled in")];
+pub(super) const EXEMPT: [(&str, &str); 4] = [
+    ("Shipped.name", "of a file that is compiled in"),
+    ("Shipped.text", "a file that is compiled in"),
+    ("Renderer::settings_mut", "its fields are changed one by one"),
+    ("Settings.overrides", "changed by Renderer::force"),
+];
 
 /// All of them.
 pub(super) const CHANGES: &[Change] = &[
@@ -160,7 +165,9 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Camera.eye", |w, r| w.scene.camera.eye = eye(r)),
     seen("Camera.target", |w, r| w.scene.camera.target = place(r, 0.4)),
     seen("Camera.up", |w, r| w.scene.camera.up = place(r, 1.0)),
-    seen("Camera.field_of_view", |w, r| w.scene.camera.field_of_view = between(r, 0.3, 2.0)),
+    seen("Camera.field_of_view", |w, r| {
+        w.scene.camera.field_of_view = Angle::from_radians(between(r, 0.3, 2.0).into())
+    }),
     seen("Camera.near", |w, r| w.scene.camera.near = between(r, 0.02, 2.5)),
     // Fog
     seen("Fog.color", |w, r| one_fog(w, r).color = color(r)),
@@ -190,7 +197,7 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("Preferences.mapping", |w, r| {
         w.settings.mapping = None;
-        w.kept.set_mapping(None);
+        w.kept.settings_mut().mapping = None;
         let (before, after) = two_mappings(r);
         w.scene.preferences.mapping = before;
         textured(w, r);
@@ -204,7 +211,7 @@ pub(super) const CHANGES: &[Change] = &[
         // By a lamp near a large face, which is split otherwise then.
         if r.within(0, 1) == 1 {
             let mut wall = Object::new(shapes::wall(1, 1));
-            wall.set_angles([0.0, 0.2, 0.0]);
+            wall.set_angles([0.0, 0.2, 0.0].map(Angle::from_radians));
             w.scene.objects_mut()[0] = wall;
             while let Some(&id) = w.scene.light_ids().get(3) {
                 w.scene.remove_light(id);
@@ -212,7 +219,7 @@ pub(super) const CHANGES: &[Change] = &[
             w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
             w.scene.preferences.max_error = None;
             w.settings.accuracy = None;
-            w.kept.set_accuracy(None);
+            w.kept.settings_mut().accuracy = None;
             w.scene.preferences.tessellation = Some(4.0);
             drawn(w);
             w.scene.preferences.tessellation = Some(between(r, 0.5, 1.0));
@@ -292,10 +299,10 @@ pub(super) const CHANGES: &[Change] = &[
         let parent = one_of_few(&ids[..below], r).copied();
         w.scene.objects_mut()[below].parent = parent;
     }),
-    seen("Object::rotate_x", |w, r| one_object(w, r).rotate_x(r.unit())),
-    seen("Object::rotate_y", |w, r| one_object(w, r).rotate_y(r.unit())),
-    seen("Object::rotate_z", |w, r| one_object(w, r).rotate_z(r.unit())),
-    seen("Object::set_angles", |w, r| one_object(w, r).set_angles(angles(r))),
+    seen("Object::rotate_x", |w, r| one_object(w, r).rotate_x(Angle::from_radians(r.unit()))),
+    seen("Object::rotate_y", |w, r| one_object(w, r).rotate_y(Angle::from_radians(r.unit()))),
+    seen("Object::rotate_z", |w, r| one_object(w, r).rotate_z(Angle::from_radians(r.unit()))),
+    seen("Object::set_angles", |w, r| one_object(w, r).set_angles(angles(r).map(Angle::from_radians))),
     // Material
     unseen("Material.name", |w, r| one_material(w, r).name = text(r)),
     seen("Material.ambient", |w, r| one_material(w, r).ambient = between(r, 0.0, 0.6)),
@@ -366,50 +373,50 @@ pub(super) const CHANGES: &[Change] = &[
         w.settings.accuracy = Some(Accuracy::Shading(shading));
         w.kept.set_shading(shading);
     }),
-    seen("Renderer::set_accuracy", |w, r| {
+    seen("Settings.accuracy", |w, r| {
         let shades = sometimes(r, |r| between(r, 0.5, 16.0));
         w.settings.accuracy = shades.map(Accuracy::WithinError);
-        w.kept.set_accuracy(w.settings.accuracy);
+        w.kept.settings_mut().accuracy = w.settings.accuracy;
     }),
     seen("Renderer::set_max_error", |w, r| {
         let shades = between(r, 0.5, 16.0);
         w.settings.accuracy = Some(Accuracy::WithinError(shades));
         w.kept.set_max_error(shades);
     }),
-    seen("Renderer::set_mapping", |w, r| {
+    seen("Settings.mapping", |w, r| {
         // The plan's decision is the same for two of them, and the object's vertices are.
         let (before, after) = two_mappings(r);
-        w.kept.set_mapping(before);
+        w.kept.settings_mut().mapping = before;
         textured(w, r);
         w.settings.mapping = after;
-        w.kept.set_mapping(after);
+        w.kept.settings_mut().mapping = after;
     }),
-    seen("Renderer::set_mipmaps", |w, r| {
+    seen("Settings.mipmaps", |w, r| {
         textured(w, r);
         w.settings.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
-        w.kept.set_mipmaps(w.settings.mipmaps);
+        w.kept.settings_mut().mipmaps = w.settings.mipmaps;
     }),
-    seen("Renderer::set_vertex_path", |w, r| {
+    seen("Settings.vertex_path", |w, r| {
         w.settings.vertex_path = r.one_of(&VertexPath::ALL);
-        w.kept.set_vertex_path(w.settings.vertex_path);
+        w.kept.settings_mut().vertex_path = w.settings.vertex_path;
     }),
     unseen("Renderer::set_kernel", |w, r| {
         w.settings.kernel = r.one_of(&Kernel::available().collect::<Vec<_>>());
         w.kept.set_kernel(w.settings.kernel);
     }),
-    seen("Renderer::set_hidden_surfaces", |w, r| {
+    seen("Settings.hidden_surfaces", |w, r| {
         // Two bodies that pass through each other, so that each way shows them otherwise.
         if r.within(0, 1) == 1 {
             let mut through = Object::new(shapes::torus(9, 6));
-            through.set_angles(angles(r));
+            through.set_angles(angles(r).map(Angle::from_radians));
             w.scene.objects_mut()[0] = Object::new(shapes::cube());
             w.scene.add(through);
             fewer_objects(w);
-            w.kept.set_hidden_surfaces(Some(HiddenSurfaces::PainterOrder));
+            w.kept.settings_mut().hidden_surfaces = Some(HiddenSurfaces::PainterOrder);
             drawn(w);
         }
         w.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
-        w.kept.set_hidden_surfaces(w.settings.hidden_surfaces);
+        w.kept.settings_mut().hidden_surfaces = w.settings.hidden_surfaces;
     }),
     seen("Renderer::force", |w, r| {
         let (effect, on) = forced(r);
@@ -554,7 +561,7 @@ pub(super) fn start(random: &mut Random) -> Scene {
                 let mut object = Object::new(mesh(random));
                 object.position = place(random, 0.6);
                 object.scale = 0.6;
-                object.set_angles(angles(random));
+                object.set_angles(angles(random).map(Angle::from_radians));
                 scene.add(object);
             }
         }
@@ -665,7 +672,7 @@ fn object(random: &mut Random) -> Object {
     let mut object = Object::new(mesh(random));
     object.position = place(random, 0.7);
     object.scale = between(random, 0.4, 1.0);
-    object.set_angles(angles(random));
+    object.set_angles(angles(random).map(Angle::from_radians));
     object.materials[0] = material(random);
     object
 }
@@ -702,8 +709,8 @@ fn texture(random: &mut Random) -> Shared<Texture> {
 
 fn light(random: &mut Random) -> Light {
     match random.within(0, 1) {
-        0 => Light::sun(place(random, 1.0).to_array()).with_intensity(0.5),
-        _ => Light::lamp(place(random, 1.0).to_array(), between(random, 1.0, 4.0)),
+        0 => Light::sun(place(random, 1.0)).with_intensity(0.5),
+        _ => Light::lamp(place(random, 1.0), between(random, 1.0, 4.0)),
     }
 }
 
@@ -778,7 +785,7 @@ fn textured(world: &mut World, random: &mut Random) {
     let object = one_object(world, random);
     if object.mesh().texcoords().is_none() {
         replace_mesh(object, shapes::wall(1, 1));
-        object.set_angles([0.2, 0.9, 0.1]);
+        object.set_angles([0.2, 0.9, 0.1].map(Angle::from_radians));
         object.scale = 1.0;
     }
     if object.materials[0].texture.is_none() {
@@ -813,7 +820,7 @@ fn with_motion(world: &mut World, random: &mut Random, motion: impl FnOnce(&mut 
 
 fn spin(world: &mut World, random: &mut Random, start: [f64; 3], turns: [f64; 3]) {
     let id = world.scene.add(object(random));
-    with_motion(world, random, |_| Motion::Spin { object: id, start, turns });
+    with_motion(world, random, |_| Motion::Spin { object: id, start: start.map(Angle::from_radians), turns });
     world.scene.set_time(0.6);
     fewer_objects(world);
 }
@@ -896,6 +903,8 @@ pub(super) fn in_the_sources() -> Vec<String> {
     }
     let mut names: Vec<String> =
         paths.iter().flat_map(|path| names_in(&fs::read_to_string(path).expect("a file"))).collect();
+    let settings = fs::read_to_string(root.join("render/settings.rs")).expect("a file");
+    names.extend(names_in(&settings).into_iter().filter(|name| name.starts_with("Settings.")));
     names.sort();
     names
 }

@@ -1,6 +1,28 @@
 //! Choices that are typed by name: one table gives the enum, its names, and the error for a name
 //! that is none of them.
 
+use core::fmt;
+
+/// There is no choice of that name. Its text lists those there are.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct UnknownName {
+    /// What was to be chosen.
+    pub(crate) what: &'static str,
+    pub(crate) names: &'static [&'static str],
+}
+
+impl fmt::Display for UnknownName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "unknown {}; there are", self.what)?;
+        for (i, name) in self.names.iter().enumerate() {
+            write!(f, "{} {name}", if i == 0 { "" } else { "," })?;
+        }
+        Ok(())
+    }
+}
+
+impl core::error::Error for UnknownName {}
+
 /// An enum whose every variant has a name, with `ALL`, `name`, `Display` and `FromStr`.
 macro_rules! named {
     (
@@ -8,8 +30,6 @@ macro_rules! named {
         pub enum $Choice:ident, $what:literal {
             $( $(#[$of_variant:meta])* $Variant:ident = $name:literal, )*
         }
-        $(#[$of_error:meta])*
-        pub struct $Error:ident;
     ) => {
         $(#[$of_choice])*
         #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -24,6 +44,7 @@ macro_rules! named {
 
             /// Its name, as it is typed.
             #[must_use]
+            #[doc(hidden)]
             pub const fn name(self) -> &'static str {
                 match self { $( Self::$Variant => $name, )* }
             }
@@ -35,27 +56,12 @@ macro_rules! named {
             }
         }
 
-        $(#[$of_error])*
-        #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-        pub struct $Error;
-
-        impl core::fmt::Display for $Error {
-            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-                f.write_str(concat!("unknown ", $what, "; there are"))?;
-                for (i, choice) in $Choice::ALL.iter().enumerate() {
-                    write!(f, "{} {choice}", if i == 0 { "" } else { "," })?;
-                }
-                Ok(())
-            }
-        }
-
-        impl core::error::Error for $Error {}
-
         impl core::str::FromStr for $Choice {
-            type Err = $Error;
+            type Err = $crate::UnknownName;
 
-            fn from_str(name: &str) -> Result<Self, $Error> {
-                Self::ALL.into_iter().find(|choice| choice.name() == name).ok_or($Error)
+            fn from_str(name: &str) -> Result<Self, Self::Err> {
+                let unknown = $crate::UnknownName { what: $what, names: &[$($name),*] };
+                Self::ALL.into_iter().find(|choice| choice.name() == name).ok_or(unknown)
             }
         }
     };
