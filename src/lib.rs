@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | [`fixed`] | the number types: 8.8 shades, 24.8 screen coordinates, 16.16; every rounding by name | – |
 //! | [`lanes`] | eight numbers at a time | – |
+//! | `simd` | what the processor has, as values | – |
 //! | [`palette`] | 256 colours, ramps of shades, file formats | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
@@ -68,6 +69,7 @@ pub mod integer;
 pub mod lanes;
 pub mod palette;
 pub mod raster;
+mod simd;
 pub mod span;
 pub mod vga;
 

@@ -59,6 +59,14 @@ pub(crate) struct Reflectance {
     pub(crate) highlight: Wide,
 }
 
+impl Reflectance {
+    /// Whether it has highlights. A build that leaves them out (`plan::Effect::is_left_out`) has none.
+    #[inline(always)]
+    pub(super) fn shines(&self) -> bool {
+        !cfg!(mode13h_leave_out = "specular") && self.specular != 0.0
+    }
+}
+
 /// ka·Ia + kd·Σ Id·max(0, n·l), not yet clamped, for the side of the surface that `normal` (unit)
 /// points away from it, and for the other side: suns alone, on one channel, of a matt material.
 ///
@@ -142,13 +150,29 @@ impl Lights<'_> {
         of_sun: impl Fn(&Beam) -> [f64; N],
         of_lamp: impl Fn(&LampBeam) -> [f64; N],
     ) -> [Side<N>; 2] {
+        if answer.shines() {
+            self.sum_by::<N, true>(answer, position, normal, of_sun, of_lamp)
+        } else {
+            self.sum_by::<N, false>(answer, position, normal, of_sun, of_lamp)
+        }
+    }
+
+    /// Without highlights, `SHINES`, the eye is not looked at, and nothing is specular.
+    #[inline]
+    fn sum_by<const N: usize, const SHINES: bool>(
+        &self,
+        answer: &Reflectance,
+        position: Vec3,
+        normal: Vec3,
+        of_sun: impl Fn(&Beam) -> [f64; N],
+        of_lamp: impl Fn(&LampBeam) -> [f64; N],
+    ) -> [Side<N>; 2] {
         let (mut front, mut back) = (Side::DARK, Side::DARK);
         let at = widen(position);
         let wide_normal = widen(normal);
-        // A build that leaves them out (`plan::Effect::is_left_out`) has neither highlights nor lamps.
-        let is_specular = !cfg!(mode13h_leave_out = "specular") && answer.specular != 0.0;
+        // A build that leaves them out (`plan::Effect::is_left_out`) has no lamps.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
-        let to_eye = is_specular.then(|| unit(sub(self.eye, at))).flatten();
+        let to_eye = SHINES.then(|| unit(sub(self.eye, at))).flatten();
         let shininess = Shininess::new(answer.shininess);
         for sun in self.suns {
             let cosine = f64::from(normal.dot(sun.towards));

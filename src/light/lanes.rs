@@ -10,10 +10,6 @@ use super::power::Shininess;
 use crate::lanes::{LANES, Lanes, Points};
 use crate::span::Kernel;
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-mod x86;
-
 type Wides = Lanes<f64>;
 
 /// x, y and z.
@@ -79,8 +75,8 @@ impl Lights<'_> {
     /// away from.
     pub(crate) fn front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if kernel.has_avx2() {
-            return x86::one_channel::<false>(self, answer, points);
+        if let Some(avx2) = kernel.avx2() {
+            return avx2.run(|| self.one_channel_of_eight::<false, false>(answer, points));
         }
         let _ = kernel;
         self.one_channel_apart::<false>(answer, points)
@@ -90,8 +86,8 @@ impl Lights<'_> {
     /// [`front_of_one_channel`](Self::front_of_one_channel).
     pub(crate) fn unit_front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if kernel.has_avx2() {
-            return x86::one_channel::<true>(self, answer, points);
+        if let Some(avx2) = kernel.avx2() {
+            return avx2.run(|| self.one_channel_of_eight::<true, false>(answer, points));
         }
         let _ = kernel;
         self.one_channel_apart::<true>(answer, points)
@@ -101,8 +97,8 @@ impl Lights<'_> {
     /// [`front_of_one_channel`](Self::front_of_one_channel).
     pub(crate) fn front_of_three_channels(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> [Wides; 3] {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if kernel.has_avx2() {
-            return x86::three_channels::<false>(self, answer, points);
+        if let Some(avx2) = kernel.avx2() {
+            return avx2.run(|| self.three_channels_of_eight::<false, false>(answer, points));
         }
         let _ = kernel;
         self.three_channels_apart::<false>(answer, points)
@@ -117,8 +113,8 @@ impl Lights<'_> {
         kernel: Kernel,
     ) -> [Wides; 3] {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if kernel.has_avx2() {
-            return x86::three_channels::<true>(self, answer, points);
+        if let Some(avx2) = kernel.avx2() {
+            return avx2.run(|| self.three_channels_of_eight::<true, false>(answer, points));
         }
         let _ = kernel;
         self.three_channels_apart::<true>(answer, points)
@@ -142,8 +138,15 @@ impl Lights<'_> {
         points: &Points,
     ) -> Wides {
         let of_sun = |sun: &super::Beam| [f64::from(sun.intensity)];
+        let of_lamp = |lamp: &super::LampBeam| [f64::from(lamp.intensity)];
         let normals = normals_of::<UNIT>(points);
-        let front = self.front::<1, APART>(answer, &normals, points, of_sun, |lamp| [f64::from(lamp.intensity)]);
+        if !answer.shines() {
+            let [mut body] = self.front::<1, APART, false>(answer, &normals, points, of_sun, of_lamp).diffuse;
+            // Zero is the highlight: −0 becomes 0, as with one.
+            body.iter_mut().for_each(|body| *body = (answer.ambient + answer.diffuse * *body) + 0.0);
+            return body;
+        }
+        let front = self.front::<1, APART, true>(answer, &normals, points, of_sun, of_lamp);
         let [mut body] = front.diffuse;
         for (body, highlight) in body.iter_mut().zip(&front.specular[0]) {
             *body = (answer.ambient + answer.diffuse * *body) + answer.specular * highlight;
@@ -158,8 +161,17 @@ impl Lights<'_> {
         points: &Points,
     ) -> [Wides; 3] {
         let of_sun = |sun: &super::Beam| sun.channels.map(f64::from);
+        let of_lamp = |lamp: &super::LampBeam| lamp.channels.map(f64::from);
         let normals = normals_of::<UNIT>(points);
-        let front = self.front::<3, APART>(answer, &normals, points, of_sun, |lamp| lamp.channels.map(f64::from));
+        if !answer.shines() {
+            let mut channels = self.front::<3, APART, false>(answer, &normals, points, of_sun, of_lamp).diffuse;
+            for (channel, color) in channels.iter_mut().zip(answer.color) {
+                // As on one channel.
+                channel.iter_mut().for_each(|body| *body = (answer.ambient + answer.diffuse * *body) * color + 0.0);
+            }
+            return channels;
+        }
+        let front = self.front::<3, APART, true>(answer, &normals, points, of_sun, of_lamp);
         let mut channels = front.diffuse;
         for (i, channel) in channels.iter_mut().enumerate() {
             for (body, highlight) in channel.iter_mut().zip(&front.specular[i]) {
@@ -170,8 +182,9 @@ impl Lights<'_> {
         channels
     }
 
+    /// What falls on the points. Without highlights, `SHINES`, the eye is not looked at, and nothing is specular.
     #[inline(always)]
-    fn front<const N: usize, const APART: bool>(
+    fn front<const N: usize, const APART: bool, const SHINES: bool>(
         &self,
         answer: &Reflectance,
         narrow: &[Lanes<f32>; 3],
@@ -180,13 +193,15 @@ impl Lights<'_> {
         of_lamp: impl Fn(&super::LampBeam) -> [f64; N],
     ) -> Front<N> {
         let mut front = Front { diffuse: [NOUGHT; N], specular: [NOUGHT; N] };
-        let normals = narrow.each_ref().map(widen);
-        let places = [3, 4, 5].map(|axis| widen(&points[axis]));
-        // As in `Lights::sum`.
-        let is_specular = !cfg!(mode13h_leave_out = "specular") && answer.specular != 0.0;
+        // Suns alone ask for neither.
+        let wide = || (narrow.each_ref().map(widen), [3, 4, 5].map(|axis| widen(&points[axis])));
+        // As in `Lights::sum_by`.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
         let shininess = Shininess::new(answer.shininess);
-        let eye = is_specular.then(|| Eye::new(unit(&from(&self.eye, &places)), &normals));
+        let eye = SHINES.then(|| {
+            let (normals, places) = wide();
+            Eye::new(unit(&from(&self.eye, &places)), &normals)
+        });
         for sun in self.suns {
             let towards = sun.towards.to_array();
             let mut cosines = NOUGHT;
@@ -204,6 +219,10 @@ impl Lights<'_> {
             });
             front.add(of_sun(sun), None, &cosines, highlights.as_ref());
         }
+        if lamps.is_empty() {
+            return front;
+        }
+        let (normals, places) = wide();
         for lamp in lamps {
             let to_lamp = from(&lamp.position, &places);
             let squares = dot(&to_lamp, &to_lamp).map(|square| square * lamp.inverse_square);

@@ -2,6 +2,7 @@
 
 use super::face::Sink;
 use super::pipelines::Pipelines;
+use super::sinks::Pipeline;
 use super::{RenderError, Renderer, Screen, Stats, VertexPath};
 use crate::palette::Ramp;
 use crate::plan::FaceShading;
@@ -71,7 +72,7 @@ impl Sink for Visitor<'_, '_> {
     ) {
         let triangle = self.triangle(face, vertices, shading.interpolation());
         let transparent = self.pipelines.is_transparent(self.object, surface);
-        self.pipelines.with((self.object, surface, shading), |pipeline| {
+        self.pipelines.with(Pipeline { object: self.object, surface, shading }, |pipeline| {
             let effects = Some(DrawnEffects { attributes, transparent, pipeline });
             (self.visit)(&DrawnTriangle { effects, ..triangle });
             DrawStats::default()

@@ -47,6 +47,8 @@ pub(super) trait Sink {
         surface: u16,
         shading: FaceShading,
     );
+    /// A face without effects comes next, in an object some of whose faces have them.
+    fn after_effects(&mut self) {}
     /// What faces may be left out by, if any: those that cover no pixel centre.
     fn sieve(&self) -> Option<Sieve> {
         None
@@ -157,6 +159,9 @@ impl Faces<'_> {
                     self.hand_on(face, (vertices, attributes), stats, sink);
                 } else {
                     let interpolation = self.interpolation(face, stats);
+                    if EFFECTS {
+                        sink.after_effects();
+                    }
                     sink.plain(index, &vertices, interpolation);
                 }
             }
@@ -205,6 +210,9 @@ impl Faces<'_> {
             });
         } else {
             let interpolation = self.interpolation(face, stats);
+            if EFFECTS {
+                sink.after_effects();
+            }
             self.parts::<CULLS, _>(at, corners, [(); 3], sides(interpolation), stats, |vertices, _, _| {
                 sink.plain(face.index, &vertices, interpolation)
             });

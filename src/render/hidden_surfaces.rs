@@ -5,7 +5,7 @@ use core::mem;
 use super::object::ObjectState;
 use super::pipelines::Pipelines;
 use super::sift::Sieve;
-use super::sinks::{Batched, DeferredFace, DeferredSink, ForEachSink, ImmediateSink, depth_of};
+use super::sinks::{Batched, BatchedEffects, DeferredFace, DeferredSink, ForEachSink, ImmediateSink, depth_of};
 use super::{HiddenSurfaces, Renderer, Stats, VertexPath};
 use crate::plan::{Effect, ObjectPlan, far_to_near};
 use crate::raster::{Batch, DrawStats, Frame, Interpolation, Raster, Vertex};
@@ -50,7 +50,7 @@ impl Renderer {
             let plan = &self.plan.objects[object];
             let mut drawn = DrawStats::default();
             let mut decided = self.states[object].take_decided();
-            let looks =
+            let pipelines =
                 Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
             if self.settings.vertex_path == VertexPath::Integer {
                 let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
@@ -59,17 +59,18 @@ impl Renderer {
                 batched.draw();
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], plan) {
                 let (raster, batch, drawn) = (&mut raster, &mut batch, &mut drawn);
-                let (looks, transparent) = (&looks, &mut self.transparent);
+                let effects = BatchedEffects::new(&mut self.effects, &pipelines, object);
+                let transparent = &mut self.transparent;
                 if plan.is_on(Effect::ScreenClipping) {
                     let batched = Batched::<true> { raster, batch, drawn };
-                    let mut sink = ImmediateSink { batched, looks, object, transparent };
+                    let mut sink = ImmediateSink::new(batched, effects, transparent);
                     faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
-                    sink.batched.draw();
+                    sink.finish();
                 } else {
                     let batched = Batched::<false> { raster, batch, drawn };
-                    let mut sink = ImmediateSink { batched, looks, object, transparent };
+                    let mut sink = ImmediateSink::new(batched, effects, transparent);
                     faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
-                    sink.batched.draw();
+                    sink.finish();
                 }
             }
             self.states[object].put_decided(decided);
@@ -88,14 +89,14 @@ impl Renderer {
         self.far_to_near.clear();
         self.far_to_near.reserve(self.transparent.capacity());
         far_to_near(self.transparent.iter().map(DeferredFace::depth), &mut self.far_to_near);
-        let looks =
+        let pipelines =
             Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        let mut batched = BatchedEffects::new(&mut self.effects, &pipelines, 0);
         for &(_, place) in &self.far_to_near {
-            let face = &self.transparent[place];
-            stats.raster += looks.with((face.object, face.surface, face.shading), |look| {
-                raster.triangle_with_effects(&face.vertices, &face.attributes, look)
-            });
+            let DeferredFace { vertices, attributes, of } = &self.transparent[place];
+            batched.push((vertices, attributes, *of), raster, &mut stats.raster);
         }
+        batched.draw::<true>(raster, &mut stats.raster);
         self.transparent.clear();
     }
 
@@ -138,7 +139,7 @@ impl Renderer {
                 self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                let looks = Pipelines {
+                let pipelines = Pipelines {
                     scene,
                     plan: &self.plan,
                     states: &self.states,
@@ -150,7 +151,7 @@ impl Renderer {
                     places: &mut self.kept_places,
                     kept: &mut self.kept,
                     transparent: &mut self.transparent,
-                    looks: &looks,
+                    looks: &pipelines,
                     object,
                     sieve,
                 };
@@ -170,49 +171,43 @@ impl Renderer {
 
     /// Far to near, each over what is there.
     fn painter(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let looks =
+        let pipelines =
             Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         self.far_to_near.clear();
         self.far_to_near.reserve(self.triangles.capacity());
         far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
         let mut batch = Batch::of_sifted();
         let mut batched = Batched::<true> { raster, batch: &mut batch, drawn: &mut stats.raster };
+        let mut effects = BatchedEffects::new(&mut self.effects, &pipelines, 0);
         for &(_, i) in &self.far_to_near {
             let (vertices, interpolation) = &self.triangles[i];
+            // One of both is always empty: faces are drawn in this order.
             let Some(place) = self.kept_places[i] else {
+                effects.draw::<true>(batched.raster, batched.drawn);
                 batched.triangle(vertices, *interpolation);
                 continue;
             };
             batched.draw();
             let face = &self.kept[place as usize];
-            *batched.drawn += looks.with((face.object, face.surface, face.shading), |look| {
-                batched.raster.triangle_with_effects(vertices, &face.attributes, look)
-            });
+            effects.push((vertices, &face.attributes, face.of), batched.raster, batched.drawn);
         }
         batched.draw();
+        effects.draw::<true>(batched.raster, batched.drawn);
     }
 
     /// All at once, each pixel once.
     fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let looks =
+        let pipelines =
             Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
         self.lists.reserve(self.triangles.capacity());
         let scratch = self.lists.scratch(self.triangles.len());
-        let (places, kept) = (&self.kept_places, &self.kept);
+        let (places, kept, effects) = (&self.kept_places, &self.kept, &mut self.effects);
         // There is room for all.
         stats.raster += raster
             .scan_line_with(&self.triangles, scratch, |i, row, pixels, kernel, drawn| {
                 let Some(face) = places[i].and_then(|place| kept.get(place as usize)) else { return false };
-                looks.with((face.object, face.surface, face.shading), |look| {
-                    crate::raster::effects::paint_row(
-                        &face.vertices,
-                        &face.attributes,
-                        look,
-                        row,
-                        pixels,
-                        kernel,
-                        drawn,
-                    );
+                pipelines.with(face.of, |pipeline| {
+                    effects.paint_row((&face.vertices, &face.attributes), pipeline, row, pixels, kernel, drawn);
                     DrawStats::default()
                 });
                 true

@@ -56,6 +56,7 @@ use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
 pub use crate::plan::FaceShading;
 use crate::plan::{self, Change, Effect, Findings, Inputs, Plan, decide};
+use crate::raster::effects::EffectBatch;
 use crate::raster::scan_line::Lists;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
@@ -100,6 +101,7 @@ pub struct Renderer {
     plan: Plan,
     integer: IntegerPath,
     depths: Vec<u32>,
+    effects: EffectBatch,
     /// The faces of a frame that must be known whole before it is drawn.
     triangles: Vec<([Vertex; 3], Interpolation)>,
     /// For each of `triangles` its index in `kept`, if it has effects.
@@ -130,6 +132,7 @@ impl Renderer {
             plan: Plan::new(),
             integer: IntegerPath::default(),
             depths: Vec::new(),
+            effects: EffectBatch::new(),
             triangles: Vec::new(),
             kept_places: Vec::new(),
             kept: Vec::new(),
@@ -486,6 +489,7 @@ impl Renderer {
             + self.states.iter().map(ObjectState::bytes).sum::<usize>()
             + self.tables.bytes()
             + self.depths.capacity() * 4
+            + self.effects.bytes()
             + self.triangles.capacity() * size_of::<([Vertex; 3], Interpolation)>()
             + self.kept_places.capacity() * size_of::<Option<u32>>()
             + (self.kept.capacity() + self.transparent.capacity()) * size_of::<DeferredFace>()

@@ -4,6 +4,7 @@ use super::budget::limits;
 use super::object::ObjectState;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::PixelLight;
+use super::sinks::Pipeline;
 use super::tables::{Image, Tables};
 use crate::light::{Blend, Material};
 use crate::palette::{Palette, Ramp};
@@ -98,10 +99,10 @@ impl Pipelines<'_> {
             && self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
     }
 
-    /// Hands the look of a surface of an object, shaded by a shading, to `draw`. Of one that is not there, nothing is drawn.
+    /// Hands the pixel pipeline of an object's surface to `draw`. Of one that is not there, nothing is drawn.
     pub(super) fn with(
         &self,
-        (object, surface, shading): (usize, u16, FaceShading),
+        Pipeline { object, surface, shading }: Pipeline,
         draw: impl FnOnce(&PixelPipeline<'_>) -> DrawStats,
     ) -> DrawStats {
         let (Some(plan), Some(state), Some(paint)) =

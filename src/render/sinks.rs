@@ -8,7 +8,7 @@ use super::pipelines::Pipelines;
 use super::sift::Sieve;
 use crate::plan::FaceShading;
 use crate::raster::batch::numbered::Numbered;
-use crate::raster::effects::Attributes;
+use crate::raster::effects::{Attributes, EffectBatch};
 use crate::raster::{Batch, DrawStats, Interpolation, Raster, Vertex};
 
 /// A face with effects that is drawn when all are known.
@@ -16,9 +16,7 @@ use crate::raster::{Batch, DrawStats, Interpolation, Raster, Vertex};
 pub(super) struct DeferredFace {
     pub(super) vertices: [Vertex; 3],
     pub(super) attributes: [Attributes; 3],
-    pub(super) object: usize,
-    pub(super) surface: u16,
-    pub(super) shading: FaceShading,
+    pub(super) of: Pipeline,
 }
 
 impl DeferredFace {
@@ -45,12 +43,44 @@ impl<F: FnMut(&[Vertex; 3], Interpolation)> Sink for ForEachSink<F> {
     }
 }
 
-/// Draws faces as they come; keeps those that shine through.
+/// Draws faces as they come, many at a time; keeps those that shine through.
 pub(super) struct ImmediateSink<'a, 'b, const CLIPS: bool> {
-    pub(super) batched: Batched<'a, 'b, CLIPS>,
-    pub(super) looks: &'a Pipelines<'a>,
-    pub(super) object: usize,
-    pub(super) transparent: &'a mut Vec<DeferredFace>,
+    batched: Batched<'a, 'b, CLIPS>,
+    effects: BatchedEffects<'a>,
+    transparent: &'a mut Vec<DeferredFace>,
+    /// Whether the surface of the last face with effects shines through.
+    is_transparent: bool,
+}
+
+impl<'a, 'b, const CLIPS: bool> ImmediateSink<'a, 'b, CLIPS> {
+    /// For the faces of one object.
+    pub(super) fn new(
+        batched: Batched<'a, 'b, CLIPS>,
+        effects: BatchedEffects<'a>,
+        transparent: &'a mut Vec<DeferredFace>,
+    ) -> Self {
+        Self { batched, effects, transparent, is_transparent: false }
+    }
+
+    /// Draws all that waits.
+    pub(super) fn finish(mut self) {
+        self.draw();
+    }
+
+    fn draw(&mut self) {
+        self.batched.draw();
+        let Batched { raster, drawn, .. } = &mut self.batched;
+        self.effects.draw::<CLIPS>(raster, drawn);
+    }
+
+    /// Begins with faces of another surface or shading, after what waits is drawn: faces are drawn in the order in which
+    /// they came, and of equal depths the first stays.
+    #[inline(never)]
+    fn begin(&mut self, of: Pipeline) {
+        self.draw();
+        self.effects.of = Some(of);
+        self.is_transparent = self.effects.pipelines.is_transparent(of.object, of.surface);
+    }
 }
 
 impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
@@ -64,13 +94,20 @@ impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
         self.batched.triangle(vertices, interpolation);
     }
 
+    #[inline]
+    fn after_effects(&mut self) {
+        if self.effects.of.is_some() {
+            self.draw();
+        }
+    }
+
     fn takes_numbers(&self, interpolation: Interpolation) -> bool {
         Batch::takes(interpolation)
     }
 
     fn numbered(&mut self, from: &Numbered<'_>, numbers: &[u32], interpolation: Interpolation) {
         // Those that came before, if any.
-        self.batched.draw();
+        self.draw();
         let kernel = self.batched.raster.kernel();
         for numbers in numbers.chunks(Batch::CAPACITY) {
             self.batched.batch.refill(from, numbers, interpolation, kernel);
@@ -86,19 +123,67 @@ impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
         surface: u16,
         shading: FaceShading,
     ) {
-        if self.looks.is_transparent(self.object, surface) {
+        let of = Pipeline { object: self.effects.object, surface, shading };
+        if self.effects.of != Some(of) || self.effects.batch.is_full() {
+            self.begin(of);
+        }
+        if self.is_transparent {
             let (vertices, attributes) = (*vertices, *attributes);
-            self.transparent.push(DeferredFace { vertices, attributes, object: self.object, surface, shading });
+            self.transparent.push(DeferredFace { vertices, attributes, of });
             return;
         }
-        // In the order in which they came: of equal depths the first stays.
-        self.batched.draw();
-        let Batched { raster, drawn, .. } = &mut self.batched;
-        **drawn += self.looks.with((self.object, surface, shading), |look| {
+        self.effects.batch.push(vertices, attributes);
+    }
+}
+
+/// What a pixel pipeline is made for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Pipeline {
+    pub(super) object: usize,
+    pub(super) surface: u16,
+    pub(super) shading: FaceShading,
+}
+
+/// Draws faces with effects, many of one pipeline at a time.
+pub(super) struct BatchedEffects<'a> {
+    batch: &'a mut EffectBatch,
+    pipelines: &'a Pipelines<'a>,
+    object: usize,
+    /// What the faces that wait are drawn by; `None` where nothing waits.
+    of: Option<Pipeline>,
+}
+
+impl<'a> BatchedEffects<'a> {
+    /// For the faces of an object, or of any with [`push`](Self::push).
+    pub(super) fn new(batch: &'a mut EffectBatch, pipelines: &'a Pipelines<'a>, object: usize) -> Self {
+        Self { batch, pipelines, object, of: None }
+    }
+
+    /// Adds a face behind those that wait, which are drawn if it has another pipeline or there is no room.
+    pub(super) fn push(
+        &mut self,
+        (vertices, attributes, of): (&[Vertex; 3], &[Attributes; 3], Pipeline),
+        raster: &mut Raster<'_>,
+        drawn: &mut DrawStats,
+    ) {
+        if self.of != Some(of) || self.batch.is_full() {
+            self.draw::<true>(raster, drawn);
+            self.of = Some(of);
+        }
+        self.batch.push(vertices, attributes);
+    }
+
+    /// Draws those that wait.
+    pub(super) fn draw<const CLIPS: bool>(&mut self, raster: &mut Raster<'_>, drawn: &mut DrawStats) {
+        let Some(of) = self.of.take() else { return };
+        if self.batch.is_empty() {
+            return;
+        }
+        *drawn += self.pipelines.with(of, |pipeline| {
             if CLIPS {
-                raster.triangle_with_effects(vertices, attributes, look)
+                raster.batch_with_effects(self.batch, pipeline)
             } else {
-                raster.triangle_with_effects_inside(vertices, attributes, look)
+                raster.batch_with_effects_inside(self.batch, pipeline)
             }
         });
     }
@@ -171,7 +256,8 @@ impl Sink for DeferredSink<'_> {
         surface: u16,
         shading: FaceShading,
     ) {
-        let face = DeferredFace { vertices: *vertices, attributes: *attributes, object: self.object, surface, shading };
+        let of = Pipeline { object: self.object, surface, shading };
+        let face = DeferredFace { vertices: *vertices, attributes: *attributes, of };
         if self.looks.is_transparent(self.object, surface) {
             self.transparent.push(face);
             return;

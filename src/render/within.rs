@@ -70,6 +70,8 @@ impl Faces<'_> {
                         let attributes = indices.map(|i| self.extras[i as usize].side(turned));
                         sink.with_effects((first + at) as u32, &vertices, &attributes, surface, LINEAR_SHADING.into());
                     } else {
+                        // With a budget a face may be lit at its pixels in any object.
+                        sink.after_effects();
                         // Fewer than 2³² faces.
                         sink.plain((first + at) as u32, &vertices, LINEAR_SHADING.interpolation());
                     }
@@ -130,6 +132,7 @@ impl Faces<'_> {
             }
             hand_on_within(face, (vertices, attributes), choice, sink);
         } else {
+            sink.after_effects();
             sink.plain(index, &vertices, choice.interpolation(&vertices));
         }
     }
@@ -164,6 +167,7 @@ impl Faces<'_> {
                 hand_on_within(face, (vertices, attributes), choice, sink);
             });
         } else {
+            sink.after_effects();
             self.parts::<CULLS, _>(at, corners, [(); 3], (interpolation, turned), stats, |vertices, _, _| {
                 sink.plain(face.index, &vertices, choice.interpolation(&vertices));
             });

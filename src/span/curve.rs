@@ -39,26 +39,6 @@ impl Kernel {
     /// [`curve`] as the kernel's processor does it best: the same numbers.
     #[inline]
     pub fn curve(self, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.has_avx2() {
-            return x86::curve(shades, parabola, least, most);
-        }
-        curve(shades, parabola, least, most);
-    }
-}
-
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-mod x86 {
-    use super::curve_inlined;
-
-    /// Only with a kernel for which `Kernel::has_avx2` is true.
-    pub(super) fn curve(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
-        #[target_feature(enable = "avx2")]
-        fn avx2(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
-            curve_inlined(shades, parabola, least, most);
-        }
-        // SAFETY: such a kernel is given out only where AVX2 was found.
-        unsafe { avx2(shades, parabola, least, most) }
+        self.run(|| curve_inlined(shades, parabola, least, most));
     }
 }

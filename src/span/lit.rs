@@ -51,88 +51,73 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
     points
 }
 
-/// Six numbers at each of eight pixels of different rows: `a` and `d` are each one's own. See [`interpolate`].
+/// The numerators of six numbers at each of eight pixels, and their denominators.
+#[doc(hidden)]
+pub type Numerators = [Lanes<f64>; 7];
+
+/// What [`interpolate_at`] divides: with [`divide`] it gives the same numbers, also of pixels of different rows put together.
 #[inline]
 #[must_use]
 #[doc(hidden)]
-pub fn interpolate_each(places: &Lanes<f64>, a: &[Lanes<f64>; 6], da: &[f64; 6], d: &Lanes<f64>, dd: f64) -> Points {
-    each_inlined(places, a, da, d, dd)
+pub fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
+    numerators_inlined(places, a, da, d, dd)
 }
 
 #[inline(always)]
-fn each_inlined(places: &Lanes<f64>, a: &[Lanes<f64>; 6], da: &[f64; 6], d: &Lanes<f64>, dd: f64) -> Points {
-    let mut reciprocals = [0.0; LANES];
-    for (reciprocal, (place, d)) in reciprocals.iter_mut().zip(places.iter().zip(d)) {
-        *reciprocal = 1.0 / (d + *place * dd);
-    }
-    let mut points = [[0.0; LANES]; 6];
-    for (values, (a, da)) in points.iter_mut().zip(a.iter().zip(da)) {
-        for lane in 0..LANES {
-            values[lane] = ((a[lane] + places[lane] * da) * reciprocals[lane]) as f32;
+fn numerators_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
+    let mut numerators = [[0.0; LANES]; 7];
+    for (values, (a, da)) in numerators.iter_mut().zip(a.iter().zip(da).chain([(&d, &dd)])) {
+        for (value, place) in values.iter_mut().zip(places) {
+            *value = a + place * da;
         }
     }
-    points
+    numerators
+}
+
+/// The quotients of [`numerators`].
+#[inline]
+#[must_use]
+#[doc(hidden)]
+pub fn divide(numerators: &Numerators) -> Points {
+    divide_inlined(numerators)
+}
+
+#[inline(always)]
+fn divide_inlined([a, b, c, d, e, f, denominators]: &Numerators) -> Points {
+    let mut reciprocals = [0.0; LANES];
+    for (reciprocal, denominator) in reciprocals.iter_mut().zip(denominators) {
+        *reciprocal = 1.0 / denominator;
+    }
+    [a, b, c, d, e, f].map(|numerators| {
+        let mut values = [0.0; LANES];
+        for (value, (numerator, reciprocal)) in values.iter_mut().zip(numerators.iter().zip(&reciprocals)) {
+            *value = (numerator * reciprocal) as f32;
+        }
+        values
+    })
 }
 
 impl Kernel {
-    /// [`interpolate_each`] as the kernel's processor does it best: the same numbers.
+    /// [`numerators`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
-    pub fn interpolate_each(
-        self,
-        places: &Lanes<f64>,
-        a: &[Lanes<f64>; 6],
-        da: &[f64; 6],
-        d: &Lanes<f64>,
-        dd: f64,
-    ) -> Points {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.has_avx2() {
-            return x86::interpolate_each(places, a, da, d, dd);
-        }
-        interpolate_each(places, a, da, d, dd)
+    #[doc(hidden)]
+    pub fn numerators(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
+        self.run(|| numerators_inlined(places, a, da, d, dd))
+    }
+
+    /// [`divide`] as the kernel's processor does it best: the same numbers.
+    #[inline]
+    #[must_use]
+    #[doc(hidden)]
+    pub fn divide(self, numerators: &Numerators) -> Points {
+        self.run(|| divide_inlined(numerators))
     }
 
     /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
     pub fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.has_avx2() {
-            return x86::interpolate_at(places, a, da, d, dd);
-        }
-        interpolate_at(places, a, da, d, dd)
-    }
-}
-
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-mod x86 {
-    use super::{Lanes, Points, each_inlined, interpolate_inlined};
-
-    /// Only with a kernel for which `Kernel::has_avx2` is true.
-    pub(super) fn interpolate_each(
-        places: &Lanes<f64>,
-        a: &[Lanes<f64>; 6],
-        da: &[f64; 6],
-        d: &Lanes<f64>,
-        dd: f64,
-    ) -> Points {
-        #[target_feature(enable = "avx2")]
-        fn avx2(places: &Lanes<f64>, a: &[Lanes<f64>; 6], da: &[f64; 6], d: &Lanes<f64>, dd: f64) -> Points {
-            each_inlined(places, a, da, d, dd)
-        }
-        // SAFETY: such a kernel is given out only where AVX2 was found.
-        unsafe { avx2(places, a, da, d, dd) }
-    }
-
-    /// Only with a kernel for which `Kernel::has_avx2` is true.
-    pub(super) fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-        #[target_feature(enable = "avx2")]
-        fn avx2(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-            interpolate_inlined(places, a, da, d, dd)
-        }
-        // SAFETY: such a kernel is given out only where AVX2 was found.
-        unsafe { avx2(places, a, da, d, dd) }
+        self.run(|| interpolate_inlined(places, a, da, d, dd))
     }
 }

@@ -18,6 +18,8 @@
 //! | `simd` | the best of the levels below | feature `simd` |
 //! | `simd-arrays` | plain arrays, which the compiler vectorises | everywhere, feature `simd` |
 //! | `simd-sse2` | 16 pixels a turn | x86-64, feature `simd` |
+//! | `simd-neon` | 16 pixels a turn | 64-bit ARM, feature `simd` |
+//! | `simd-wasm` | 16 pixels a turn | WebAssembly built with `simd128`, feature `simd` |
 //! | `simd-avx2` | 32 pixels a turn | x86-64 with AVX2 and feature `simd` |
 //! | `simd-avx512` | 64 pixels a turn | x86-64 with AVX-512 BW, BMI2 and feature `simd` |
 //!
@@ -44,6 +46,10 @@
 
 use core::fmt;
 
+use crate::simd::Level;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+use crate::simd::{Avx2, Avx512};
+
 #[doc(hidden)]
 pub mod channels;
 #[doc(hidden)]
@@ -64,8 +70,8 @@ mod lookup;
 mod portable;
 #[cfg(feature = "simd")]
 #[cfg_attr(
-    target_arch = "x86_64",
-    expect(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
+    any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"),
+    allow(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
 )]
 mod simd;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
@@ -111,7 +117,7 @@ type FillList = fn(pixels: &mut [u8], spans: &[list::Listed]);
 #[derive(Clone, Copy)]
 pub struct Kernel {
     name: &'static str,
-    level: &'static str,
+    level: Level,
     fill: Fill,
     fill_list: FillList,
 }
@@ -120,11 +126,11 @@ pub struct Kernel {
 struct Listed {
     name: &'static str,
     /// The level it draws with and its functions; `None` where the machine or the build lacks it.
-    find: fn() -> Option<Level>,
+    find: fn() -> Option<Found>,
 }
 
 /// What a kernel draws with, and its functions.
-type Level = (&'static str, Fill, FillList);
+type Found = (Level, Fill, FillList);
 
 impl Listed {
     fn kernel(&self) -> Option<Kernel> {
@@ -133,61 +139,78 @@ impl Listed {
 }
 
 /// Every kernel there is, portable first.
-static LISTED: [Listed; 8] = [
-    Listed { name: "portable", find: || Some(("portable", portable::fill, portable::fill_list)) },
+static LISTED: [Listed; 10] = [
+    Listed { name: "portable", find: || Some((Level::Portable, portable::fill, portable::fill_list)) },
     Listed { name: "asm", find: find_asm },
     Listed { name: "asm-unrolled", find: find_asm_unrolled },
     Listed { name: "simd", find: find_simd },
     Listed { name: "simd-arrays", find: find_arrays },
     Listed { name: "simd-sse2", find: find_sse2 },
+    Listed { name: "simd-neon", find: find_neon },
+    Listed { name: "simd-wasm", find: find_wasm },
     Listed { name: "simd-avx2", find: find_avx2 },
     Listed { name: "simd-avx512", find: find_avx512 },
 ];
 
-fn find_asm() -> Option<Level> {
+fn find_asm() -> Option<Found> {
     #[cfg(all(feature = "asm", target_arch = "x86_64"))]
-    return Some(("x86-64", x86::fill, |pixels, spans| list::each(pixels, spans, x86::fill)));
+    return Some((Level::X86_64, x86::fill, |pixels, spans| list::each(pixels, spans, x86::fill)));
     #[cfg(all(feature = "asm", target_arch = "x86"))]
-    return Some(("i686", x86::fill, |pixels, spans| list::each(pixels, spans, x86::fill)));
+    return Some((Level::I686, x86::fill, |pixels, spans| list::each(pixels, spans, x86::fill)));
     #[cfg(not(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86"))))]
     return None;
 }
 
-fn find_asm_unrolled() -> Option<Level> {
+fn find_asm_unrolled() -> Option<Found> {
     #[cfg(all(feature = "asm", target_arch = "x86_64"))]
-    return Some(("x86-64", x86::fill_unrolled, |pixels, spans| list::each(pixels, spans, x86::fill_unrolled)));
+    return Some((Level::X86_64, x86::fill_unrolled, |pixels, spans| list::each(pixels, spans, x86::fill_unrolled)));
     #[cfg(not(all(feature = "asm", target_arch = "x86_64")))]
     return None;
 }
 
-fn find_simd() -> Option<Level> {
-    find_avx512().or_else(find_avx2).or_else(find_sse2).or_else(find_arrays)
+fn find_simd() -> Option<Found> {
+    [find_avx512, find_avx2, find_sse2, find_neon, find_wasm, find_arrays].iter().find_map(|find| find())
 }
 
-fn find_arrays() -> Option<Level> {
+fn find_arrays() -> Option<Found> {
     #[cfg(feature = "simd")]
-    return Some(("arrays", simd::arrays::fill, |pixels, spans| list::each(pixels, spans, simd::arrays::fill)));
+    return Some((Level::Arrays, simd::arrays::fill, |pixels, spans| list::each(pixels, spans, simd::arrays::fill)));
     #[cfg(not(feature = "simd"))]
     return None;
 }
 
-fn find_sse2() -> Option<Level> {
+fn find_sse2() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return Some(("sse2", simd::sse2::fill, simd::sse2::fill_list));
+    return Some((Level::Sse2, simd::sse2::fill, simd::sse2::fill_list));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
 
-fn find_avx2() -> Option<Level> {
+fn find_neon() -> Option<Found> {
+    #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+    return Some((Level::Neon, simd::neon::fill, simd::neon::fill_list));
+    #[cfg(not(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little")))]
+    return None;
+}
+
+fn find_wasm() -> Option<Found> {
+    #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+    return Some((Level::Wasm, simd::wasm::fill, simd::wasm::fill_list));
+    #[cfg(not(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128")))]
+    return None;
+}
+
+fn find_avx2() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return simd::avx2::found().then_some(("avx2", simd::avx2::fill, simd::avx2::fill_list));
+    return Avx2::find().map(|avx2| (Level::Avx2(avx2), simd::avx2::fill as Fill, simd::avx2::fill_list as FillList));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
 
-fn find_avx512() -> Option<Level> {
+fn find_avx512() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return simd::avx512::found().then_some(("avx512", simd::avx512::fill, simd::avx512::fill_list));
+    return Avx512::find()
+        .map(|avx512| (Level::Avx512(avx512), simd::avx512::fill as Fill, simd::avx512::fill_list as FillList));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
@@ -195,7 +218,7 @@ fn find_avx512() -> Option<Level> {
 impl Kernel {
     /// The specification, in Rust.
     pub const PORTABLE: Self =
-        Self { name: "portable", level: "portable", fill: portable::fill, fill_list: portable::fill_list };
+        Self { name: "portable", level: Level::Portable, fill: portable::fill, fill_list: portable::fill_list };
 
     /// The kernels that this machine and this build have, `portable` first.
     ///
@@ -237,7 +260,7 @@ impl Kernel {
     #[must_use]
     #[doc(hidden)]
     pub const fn level(self) -> &'static str {
-        self.level
+        self.level.name()
     }
 
     /// Writes `row[k] = ((shade + k·step) mod 65,536) >> 8` for every `k` below `row.len()`.
@@ -269,7 +292,7 @@ impl Kernel {
         depths: &[list::Depths],
     ) -> u32 {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.has_avx2()
+        if self.avx2().is_some()
             && let Some(cells) = D::as_u32(cells)
         {
             return simd::nearer::fill_list(pixels, cells, spans, depths);
@@ -277,16 +300,28 @@ impl Kernel {
         list::each_nearer(pixels, cells, spans, depths)
     }
 
-    /// Whether the processor has AVX2 and this kernel may use it.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    pub(crate) fn has_avx2(self) -> bool {
-        matches!(self.level, "avx2" | "avx512")
+    /// What `body` gives, compiled for the best level that this kernel may use.
+    #[inline(always)]
+    pub(crate) fn run<R>(self, body: impl FnOnce() -> R) -> R {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(avx2) = self.avx2() {
+            return avx2.run(body);
+        }
+        body()
     }
 
-    /// Whether the processor has the parts of AVX-512 that `simd::avx512::found` names, and this kernel may use them.
+    /// The proof that the processor has AVX2, if this kernel may use it.
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    pub(crate) fn has_avx512(self) -> bool {
-        self.level == "avx512"
+    #[inline]
+    pub(crate) fn avx2(self) -> Option<Avx2> {
+        self.level.avx2()
+    }
+
+    /// The proof that the processor has AVX-512, if this kernel may use it.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[inline]
+    pub(crate) fn avx512(self) -> Option<Avx512> {
+        self.level.avx512()
     }
 }
 
@@ -294,7 +329,7 @@ impl Kernel {
 impl fmt::Display for Kernel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.name {
-            "simd" => write!(f, "simd ({})", self.level),
+            "simd" => write!(f, "simd ({})", self.level.name()),
             name => f.write_str(name),
         }
     }

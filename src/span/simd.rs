@@ -237,6 +237,16 @@ pub(super) mod sse2 {
     }
 }
 
+#[cfg(any(
+    all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"),
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
+mod halves;
+#[cfg(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+pub(super) use halves::neon;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+pub(super) use halves::wasm;
+
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod nearer;
 
@@ -246,15 +256,7 @@ pub(crate) mod avx2 {
     use super::sse2;
     use core::arch::x86_64::*;
 
-    /// Whether this processor has what [`fill`] and the batches of triangles need. (Nearly all that have AVX2 have FMA.)
-    pub(crate) fn found() -> bool {
-        #[cfg(feature = "std")]
-        return std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma");
-        #[cfg(not(feature = "std"))]
-        return cfg!(all(target_feature = "avx2", target_feature = "fma"));
-    }
-
-    /// Only for a processor for which [`found`] is true.
+    /// Only for a processor that has [`Avx2`](crate::simd::Avx2).
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
         // SAFETY: the table gives this function out only where AVX2 was found.
         unsafe { vectors(row, shade, step) }
@@ -398,30 +400,7 @@ pub(super) mod avx512 {
         odd_bytes: 0xFF00_FF00,
     };
 
-    /// Whether this processor has what [`fill`] needs.
-    pub(crate) fn found() -> bool {
-        #[cfg(feature = "std")]
-        return std::arch::is_x86_feature_detected!("avx512f")
-            && std::arch::is_x86_feature_detected!("avx512bw")
-            && std::arch::is_x86_feature_detected!("avx512dq")
-            && std::arch::is_x86_feature_detected!("avx512vl")
-            && super::avx2::found()
-            && std::arch::is_x86_feature_detected!("bmi2")
-            && std::arch::is_x86_feature_detected!("popcnt");
-        #[cfg(not(feature = "std"))]
-        return cfg!(all(
-            target_feature = "avx512f",
-            target_feature = "avx512bw",
-            target_feature = "avx512dq",
-            target_feature = "avx512vl",
-            target_feature = "avx2",
-            target_feature = "fma",
-            target_feature = "bmi2",
-            target_feature = "popcnt"
-        ));
-    }
-
-    /// Only for a processor for which [`found`] is true.
+    /// Only for a processor that has [`Avx512`](crate::simd::Avx512).
     ///
     /// ```text
     /// even[j] = shade + 2·j·step
@@ -439,7 +418,7 @@ pub(super) mod avx512 {
     ///    each tried, none faster at 320 pixels and at 8.
     /// 4. Registers 16 to 31 need no `vzeroupper`, and no calling convention saves them.
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
-        // SAFETY: the table gives this function out only where AVX-512 F, AVX-512 BW and BMI2 were found (`found`).
+        // SAFETY: the table gives this function out only where `simd::Avx512` was found.
         // Written are the row's first 64 bytes, and the next, for as long as more than 64 are left, and then
         // as many bytes as are left, by the mask. Read is `CONSTANTS`, at the offsets of `repr(C)`. The
         // stack is not used; flags and all registers written are given up.

@@ -9,9 +9,10 @@ use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::lanes::{Lanes, Points};
 use mode13h::raster::effects::{
-    Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
+    Attributes, EffectBatch, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping,
+    TextureStage,
 };
-use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
 use mode13h::span::depth::Cell;
@@ -411,7 +412,9 @@ fn triangles_with_effects_are_the_oracles() {
         if vertices.iter().all(|v| within(v.x().to_bits(), WIDTH) && within(v.y().to_bits(), HEIGHT)) {
             let mut unclipped = vec![BEFORE; (WIDTH * HEIGHT) as usize];
             let frame = Frame::new(&mut unclipped, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
-            Raster::new(frame).triangle_with_effects_inside(&vertices, &attributes, &look);
+            let mut batch = EffectBatch::new();
+            batch.push(&vertices, &attributes);
+            Raster::new(frame).batch_with_effects_inside(&mut batch, &look);
             assert_eq!(unclipped, bytes, "{vertices:?}");
             inside += usize::from(bytes.iter().any(|byte| *byte != BEFORE));
         }
@@ -496,60 +499,78 @@ fn r6_order_and_winding_make_no_difference_with_effects() {
     assert!(pixels > 30_000, "{pixels} pixels");
 }
 
-/// Small triangles that are lit at every pixel take light for several rows at once: bytes, depths and counts are those of
-/// rows that are lit one by one, as they are where another stage follows, such as blending that leaves all as it is.
+/// Faces of one pipeline in a batch give the bytes, depths and counts of each face drawn alone, row by row: what many pieces
+/// share (stages, light for pixels of several faces, the list's end in the middle of a face) changes nothing.
 #[test]
-fn small_triangles_that_are_lit_are_those_of_their_rows() {
-    let mut tried = Tried::new("small_triangles_that_are_lit_are_those_of_their_rows", 4000);
-    let mut random = Random::named("effects, small");
-    let own: Box<[u8; 65_536]> = (0..=255).flat_map(|own| [own; 256]).collect::<Vec<u8>>().try_into().expect("64 KiB");
+fn effects_in_batches_are_those_row_by_row() {
+    let mut tried = Tried::new("effects_in_batches_are_those_row_by_row", 1000);
+    let mut random = Random::named("effects, batches");
+    let stock = Stock::new(&mut random);
     let kernels: Vec<Kernel> = Kernel::available().collect();
     let before: Vec<u32> = (0..WIDTH * HEIGHT).map(|_| random.log_uniform(30) as u32).collect();
-    let (mut pixels, mut tall) = (0, 0);
+    let (mut pixels, mut many) = (0, 0);
+    let mut batch = EffectBatch::new();
     while tried.more() {
-        // Up to 9 pixels across, some of them over the frame's edges, and some of many rows.
-        let high = random.one_of(&[3, 9, 40]);
-        let (left, top) = (random.within(-4, i64::from(WIDTH)), random.within(-4, i64::from(HEIGHT)));
-        let vertices = [0; 3].map(|_| {
-            let (x, y) = (left * 256 + random.within(0, 9 * 256), top * 256 + random.within(0, high * 256));
-            let shade = U8F8::from_bits(random.within(0, 0xFF00) as u16);
-            let (x, y) = (I24F8::from_bits(x as i32), I24F8::from_bits(y as i32));
-            Vertex::new(x, y, shade, random.log_uniform(30) as u32).expect("in range")
-        });
-        let attributes = attributes(&mut random);
-        let plain = PixelPipeline {
-            source: ShadeSource::Lit(&Sum),
-            dither: (random.within(0, 1) == 0).then_some(&BAYER),
-            keeps_depth: random.within(0, 1) == 0,
-            ..PixelPipeline::PLAIN
+        // Up to 9 pixels across, some of them over the frame's edges and some of many rows; or of any size.
+        let count = random.one_of(&[1, 3, 20, EffectBatch::CAPACITY]);
+        let (size, high) = (random.within(0, 2), random.one_of(&[3, 9, 40]));
+        let faces: Vec<_> = (0..count)
+            .map(|_| {
+                let (left, top) = (random.within(-4, i64::from(WIDTH)), random.within(-4, i64::from(HEIGHT)));
+                let small = [0; 3].map(|_| {
+                    let (x, y) = (left * 256 + random.within(0, 9 * 256), top * 256 + random.within(0, high * 256));
+                    let shade = U8F8::from_bits(random.within(0, 0xFF00) as u16);
+                    let (x, y) = (I24F8::from_bits(x as i32), I24F8::from_bits(y as i32));
+                    Vertex::new(x, y, shade, random.log_uniform(30) as u32).expect("in range")
+                });
+                let vertices =
+                    if size == 0 { triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into()) } else { small };
+                (vertices, attributes(&mut random))
+            })
+            .collect();
+        let look = if random.within(0, 1) == 0 {
+            look(&mut random, &stock)
+        } else {
+            PixelPipeline { source: ShadeSource::Lit(&Sum), ..PixelPipeline::PLAIN }
         };
         let (x, y) = (random.within(0, WIDTH.into()) as u32, random.within(0, HEIGHT.into()) as u32);
-        let clip = random.one_of(&[None, Some(Rect { x0: x / 2, y0: y / 2, x1: x, y1: y })]);
+        let whole = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
+        let clip = random.one_of(&[whole, Rect { x0: x / 2, y0: y / 2, x1: x, y1: y }]);
         let (has_depth, kernel) = (random.within(0, 1) == 0, random.one_of(&kernels));
-        let draw = |look: &PixelPipeline<'_>| {
+        let draw = |draw: &mut dyn FnMut(&mut Raster<'_>) -> DrawStats| {
             let (mut depths, mut bytes) = (before.clone(), vec![BEFORE; (WIDTH * HEIGHT) as usize]);
             let frame = Frame::new(&mut bytes, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
             let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
-            let mut raster = Raster::new(frame).with_kernel(kernel);
-            if let Some(clip) = clip {
-                raster = raster.with_clip(clip);
-            }
-            let drawn = if has_depth {
-                raster.with_depth(buffer).triangle_with_effects(&vertices, &attributes, look)
-            } else {
-                raster.triangle_with_effects(&vertices, &attributes, look)
-            };
+            let raster = Raster::new(frame).with_kernel(kernel).with_clip(clip);
+            let drawn = draw(&mut if has_depth { raster.with_depth(buffer) } else { raster });
             (drawn, bytes, depths)
         };
-        let (drawn, bytes, depths) = draw(&plain);
-        let (mut by_rows, expected, expected_depths) = draw(&PixelPipeline { blend: Some(&own), ..plain });
-        assert_eq!(by_rows.blended, by_rows.covered);
-        by_rows.blended = 0;
-        assert!((drawn, &bytes, &depths) == (by_rows, &expected, &expected_depths), "{vertices:?}, {attributes:?}");
-        pixels += drawn.covered;
-        tall += u32::from(drawn.spans > 8);
+        let mut room = true;
+        let (drawn, bytes, depths) = draw(&mut |raster| {
+            room = faces.iter().all(|(vertices, attributes)| batch.push(vertices, attributes));
+            raster.batch_with_effects(&mut batch, &look)
+        });
+        assert!(room && batch.is_empty());
+        let by_rows = draw(&mut |_| DrawStats::default());
+        let (mut sum, mut expected, mut expected_depths) = by_rows;
+        for (vertices, attributes) in &faces {
+            for y in clip.y0..clip.y1 {
+                let frame =
+                    Frame::new(&mut expected, WIDTH as u32, HEIGHT as u32, WIDTH as usize).expect("a legal frame");
+                let buffer = DepthBuffer::new(&mut expected_depths, &frame).expect("long enough");
+                let row = Rect { y0: y, y1: y + 1, ..clip };
+                let raster = Raster::new(frame).with_kernel(kernel).with_clip(row);
+                let mut raster = if has_depth { raster.with_depth(buffer) } else { raster };
+                sum += raster.triangle_with_effects(vertices, attributes, &look);
+            }
+        }
+        assert_eq!(drawn, sum, "{faces:?}, {look:?}, {clip:?}");
+        assert!(bytes == expected && depths == expected_depths, "{faces:?}, {look:?}, {clip:?}, {has_depth}");
+        pixels += u64::from(drawn.pixels);
+        many += u64::from(drawn.spans > 64);
     }
-    assert!(pixels > 10_000 && tall > 200, "{pixels} pixels, {tall} of more rows than are lit together");
+    assert!(pixels > 200_000, "{pixels} pixels");
+    assert!(many > 200, "{many} lists were full");
 }
 
 /// Shades of either sign, more than can be shown among them, on triangles of every kind: each byte is that of the exact

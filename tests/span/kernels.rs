@@ -308,6 +308,8 @@ stamp! {
     simd: "simd",
     simd_arrays: "simd-arrays",
     simd_sse2: "simd-sse2",
+    simd_neon: "simd-neon",
+    simd_wasm: "simd-wasm",
     simd_avx2: "simd-avx2",
     simd_avx512: "simd-avx512",
 }
@@ -332,6 +334,12 @@ fn every_kernel_is_tested() {
     }
     if cfg!(all(feature = "simd", target_arch = "x86_64")) {
         certain.push("simd-sse2");
+    }
+    if cfg!(all(feature = "simd", target_arch = "aarch64")) {
+        certain.push("simd-neon");
+    }
+    if cfg!(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128")) {
+        certain.push("simd-wasm");
     }
     #[cfg(all(feature = "simd", feature = "std", target_arch = "x86_64"))]
     {

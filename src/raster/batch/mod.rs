@@ -333,10 +333,10 @@ type AtOnce = fn(&Batch, &[Chosen], (Place, Rect), &mut [u8], Option<&mut [u32]>
 impl Stages {
     fn of(kernel: Kernel) -> Self {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if kernel.has_avx2() {
+        if kernel.avx2().is_some() {
             let stages =
                 Self { sieve: x86::sieve, rows: x86::rows, tall: x86::tall, small: Some(x86::small), at_once: None };
-            if kernel.has_avx512() {
+            if kernel.avx512().is_some() {
                 return Self { sieve: x86::sieve_512, at_once: Some(x86::at_once), ..stages };
             }
             return stages;

@@ -72,7 +72,9 @@ impl Batch {
         self.interpolation[..numbers.len()].fill(interpolation);
         self.count = numbers.len();
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if kernel.has_avx512() && super::avx512::numbered::refill(self, from, numbers) {
+        if let Some(avx512) = kernel.avx512()
+            && super::avx512::numbered::refill(avx512, self, from, numbers)
+        {
             return;
         }
         let _ = kernel;

@@ -16,7 +16,7 @@ use crate::raster::draw_stats::DrawStats;
 use crate::raster::frame::Rect;
 use crate::raster::shade::RESEED;
 
-/// Only with a kernel for which `Kernel::has_avx2` is true.
+/// Only with a kernel that has `Avx2`.
 pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
     #[expect(
         clippy::redundant_closure,
@@ -30,7 +30,7 @@ pub(super) fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept) {
     unsafe { avx2(batch, clip, kept) }
 }
 
-/// Only with a kernel for which `Kernel::has_avx512` is true.
+/// Only with a kernel that has `Avx512`.
 pub(super) fn sieve_512(batch: &Batch, clip: Rect, kept: &mut Kept) {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, clip: Rect, kept: &mut Kept) {
@@ -48,7 +48,7 @@ pub(super) fn sieve_512(batch: &Batch, clip: Rect, kept: &mut Kept) {
     unsafe { avx2(batch, clip, kept) }
 }
 
-/// Only with a kernel for which `Kernel::has_avx2` is true.
+/// Only with a kernel that has `Avx2`.
 pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>) -> usize {
@@ -61,7 +61,7 @@ pub(super) fn rows(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     unsafe { avx2(batch, kept, place, spans) }
 }
 
-/// Draws small triangles. Only with a kernel for which `Kernel::has_avx2` is true.
+/// Draws small triangles. Only with a kernel that has `Avx2`.
 pub(super) fn small(
     batch: &Batch,
     kept: &[Chosen],
@@ -78,7 +78,7 @@ pub(super) fn small(
     }
 }
 
-/// Only with a kernel for which `Kernel::has_avx2` is true.
+/// Only with a kernel that has `Avx2`.
 pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
     #[target_feature(enable = "avx2")]
     fn avx2(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
@@ -91,7 +91,7 @@ pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
 }
 
 /// Draws small, tall and clipped triangles in turn, without a list of more than a few spans. Only with a kernel for which
-/// `Kernel::has_avx512` is true.
+/// `Kernel::avx512` is one.
 pub(super) fn at_once(
     batch: &Batch,
     kept: &[Chosen],

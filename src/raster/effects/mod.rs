@@ -1,4 +1,4 @@
-//! Triangles with effects: a row is made in pieces of up to 64 bytes, which pass through stages.
+//! Triangles with effects: rows are cut into pieces of up to 64 bytes, and many pieces pass through each stage together.
 //!
 //! ```text
 //! shades     as a shading has them, from a table of normals, or lit at every pixel
@@ -8,7 +8,9 @@
 //! write      all of it, or where nearer
 //! ```
 //!
-//! A stage that a [`PixelPipeline`] does not have is not entered. Pieces begin at the row's first covered pixel
+//! An [`EffectBatch`] holds faces of one [`PixelPipeline`]. A stage is one loop over up to 64 pieces of its faces, so a
+//! stage that the pipeline does not have costs one question for all of them. Pieces are written in the order of their
+//! faces; so what one face leaves in the frame is what the next one blends with. Pieces begin at the row's first covered pixel
 //! inside the frame and every 64 pixels from there, where every value is exact; so a pixel's byte
 //! depends on no clip rectangle. Without any effect [`Raster::triangle`] gives the same bytes sooner.
 //!
@@ -19,444 +21,369 @@
 
 mod curve;
 mod level;
+mod lit;
+mod pieces;
 mod pipeline;
-mod planes;
-mod small;
+mod shades;
+mod texture;
 
-use core::ops::Range;
+use alloc::vec::Vec;
 
-use self::curve::CurvePlane;
+use self::pieces::{Bytes, CAPACITY, Face, PIECE, Piece, Pieces, Shades};
 pub use self::pipeline::{
     Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
 };
-use self::planes::{KNOTS, Knots, LitPlane, PIECE, TexturePlane};
 use super::cover::{Row, SortedTriangle};
-use super::depth::{Cell, DepthPlane};
+use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::draw_stats::DrawStats;
-use super::interpolation::Interpolation;
-use super::paint::{RowShader, to_bytes};
+use super::frame::Frame;
 use super::shade::{RESEED, ShadePlane};
 use super::triangle::Raster;
 use super::vertex::Vertex;
-use crate::fixed::U8F8;
-use crate::lanes::LANES;
-use crate::span::channels::{mix_cube, mix_nearest};
 use crate::span::depth::{copy_before, copy_nearer};
 use crate::span::{Kernel, lookup};
 
 /// A half for every pixel: no dither.
 const HALVES: [[u8; 8]; 8] = [[128; 8]; 8];
 
-/// The values of one triangle that its look uses.
-#[derive(Clone, Copy, Debug)]
-enum Planes {
-    Shade(RowShader),
-    Channels([RowShader; 3]),
-    Slope([ShadePlane; 2]),
-    Lit(LitPlane),
-    Curved(CurvePlane),
+/// Faces that are drawn by one pixel pipeline, and room for their pieces. Filled and drawn again and again it allocates
+/// nothing.
+#[derive(Clone, Debug, Default)]
+pub struct EffectBatch {
+    faces: Vec<Face>,
+    pieces: Pieces,
+    buffers: Buffers,
 }
 
-/// A triangle and its look, ready to be painted row by row.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct EffectPaint<'a> {
-    look: &'a PixelPipeline<'a>,
-    planes: Planes,
-    texture: Option<TexturePlane>,
-    fog: Option<ShadePlane>,
+/// What stages make of pieces: a row for each.
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    /// The bytes that are drawn in the end.
+    bytes: Vec<Bytes>,
+    /// Texels, or levels of fog.
+    other: Vec<Bytes>,
+    /// Red, green and blue.
+    channels: [Vec<Bytes>; 3],
+    /// One shade in 8.8, or three channels.
+    shades: [Vec<Shades>; 3],
 }
 
-/// Calls `body` with constants that say which stages a look has: chosen once, not for every piece of a row.
-/// The first: shades are linear and nothing else.
-macro_rules! by_stages {
-    ($look:expr, |$plain:ident, $fog:ident, $blends:ident| $body:expr) => {
-        match ($look.is_plain(), $look.fog().is_some(), $look.blend().is_some()) {
-            (false, false, false) => by_stages!(@ $plain $fog $blends, false, false, false, $body),
-            (false, false, true) => by_stages!(@ $plain $fog $blends, false, false, true, $body),
-            (false, true, false) => by_stages!(@ $plain $fog $blends, false, true, false, $body),
-            (false, true, true) => by_stages!(@ $plain $fog $blends, false, true, true, $body),
-            (true, false, false) => by_stages!(@ $plain $fog $blends, true, false, false, $body),
-            (true, false, true) => by_stages!(@ $plain $fog $blends, true, false, true, $body),
-            (true, true, false) => by_stages!(@ $plain $fog $blends, true, true, false, $body),
-            (true, true, true) => by_stages!(@ $plain $fog $blends, true, true, true, $body),
-        }
+impl Buffers {
+    const EMPTY: Self = Self {
+        bytes: Vec::new(),
+        other: Vec::new(),
+        channels: [const { Vec::new() }; 3],
+        shades: [const { Vec::new() }; 3],
     };
-    (@ $plain:ident $fog:ident $blends:ident, $a:literal, $b:literal, $c:literal, $body:expr) => {{
-        const $plain: bool = $a;
-        const $fog: bool = $b;
-        const $blends: bool = $c;
-        $body
-    }};
+
+    /// Makes room for as many pieces as there may be.
+    fn make_room(&mut self) {
+        self.bytes.resize(CAPACITY, [0; PIECE]);
+        self.other.resize(CAPACITY, [0; PIECE]);
+        self.channels.iter_mut().for_each(|channel| channel.resize(CAPACITY, [0; PIECE]));
+        self.shades.iter_mut().for_each(|shades| shades.resize(CAPACITY, [0; PIECE]));
+    }
 }
 
-/// Rows of 64 bytes.
-type Piece = [u8; PIECE];
+impl EffectBatch {
+    /// Faces that it holds at most.
+    pub const CAPACITY: usize = 64;
 
-/// The attributes of a triangle's corners from top to bottom, of one that is not degenerate.
-fn corners<'a>(
-    triangle: &SortedTriangle,
-    vertices: &[Vertex; 3],
-    attributes: &'a [Attributes; 3],
-) -> [&'a Attributes; 3] {
-    // No two corners of a triangle that has area are in one place.
-    triangle.vertices.each_ref().map(|corner| {
-        let same = |v: &Vertex| v.x() == corner.x() && v.y() == corner.y();
-        &attributes[vertices.iter().position(same).unwrap_or(0)]
-    })
-}
-
-impl<'a> EffectPaint<'a> {
-    /// The paint of a triangle that is not degenerate.
-    /// `attributes` are in the order of `vertices`, from which `triangle` was made.
-    pub(super) fn new(
-        triangle: &SortedTriangle,
-        vertices: &[Vertex; 3],
-        attributes: &[Attributes; 3],
-        look: &'a PixelPipeline<'a>,
-    ) -> Self {
-        let corners = corners(triangle, vertices, attributes);
-        let values = |value: &dyn Fn(&Attributes) -> U8F8| corners.map(|corner| i64::from(value(corner).to_bits()));
-        let plane = |value: fn(&Attributes) -> U8F8| ShadePlane::of_values(triangle, values(&value));
-        let channels = |interpolation| {
-            Planes::Channels(
-                [0, 1, 2].map(|i| RowShader::of_values(triangle, values(&|c| c.channels[i]), interpolation)),
-            )
-        };
-        let planes = match (look.source, look.channels()) {
-            (ShadeSource::Lit(_) | ShadeSource::LitEvery(..), _) => Planes::Lit(LitPlane::new(triangle, corners)),
-            (ShadeSource::Curved(limits), channels) => {
-                Planes::Curved(CurvePlane::new(triangle, corners, limits, if channels.is_some() { 3 } else { 1 }))
-            }
-            (ShadeSource::Shaded(interpolation), None) => Planes::Shade(RowShader::new(triangle, interpolation)),
-            (ShadeSource::Shaded(interpolation), Some(_)) => channels(interpolation),
-            (ShadeSource::NormalTable(_), Some(_)) => channels(Interpolation::default()),
-            (ShadeSource::NormalTable(_), None) => Planes::Slope([plane(|c| c.slope[0]), plane(|c| c.slope[1])]),
-        };
-        let texture =
-            look.texture().map(|texture| TexturePlane::new(triangle, corners, texture.mapping, look.levels()));
-        Self { look, planes, texture, fog: look.fog().map(|_| plane(|c| c.fog)) }
+    /// A batch without faces. When it is drawn for the first time it takes 60 kB.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { faces: Vec::new(), pieces: Pieces::EMPTY, buffers: Buffers::EMPTY }
     }
 
-    /// Paints `row` into `pixels`, the frame's whole row; if there are `depths`, the buffer's whole row,
-    /// where it is nearer.
-    pub(super) fn row<D: Cell>(
-        &self,
-        row: &Row,
-        pixels: &mut [u8],
-        depths: Option<(&mut [D], &DepthPlane)>,
-        kernel: Kernel,
-        drawn: &mut DrawStats,
-    ) {
-        by_stages!(self.look, |PLAIN, FOG, BLENDS| {
-            self.pieces::<D, PLAIN, FOG, BLENDS>(row, pixels, depths, kernel, drawn)
-        })
+    /// Bytes that it holds.
+    pub(crate) fn bytes(&self) -> usize {
+        let Buffers { bytes, other, channels, shades } = &self.buffers;
+        let rows = bytes.capacity() + other.capacity() + channels.iter().map(Vec::capacity).sum::<usize>();
+        let shades = shades.iter().map(Vec::capacity).sum::<usize>();
+        self.faces.capacity() * size_of::<Face>()
+            + self.pieces.bytes()
+            + rows * size_of::<Bytes>()
+            + shades * size_of::<Shades>()
     }
 
-    /// The pieces of a row. `PLAIN`: shades are linear and nothing else.
+    /// Whether it holds no face.
+    #[must_use]
     #[inline]
-    fn pieces<D: Cell, const PLAIN: bool, const FOG: bool, const BLENDS: bool>(
-        &self,
+    pub fn is_empty(&self) -> bool {
+        self.faces.is_empty()
+    }
+
+    /// Whether it has no room for another face.
+    #[must_use]
+    #[inline]
+    pub fn is_full(&self) -> bool {
+        self.faces.len() >= Self::CAPACITY
+    }
+
+    /// Adds a face. The order of the corners and their winding make no difference; a face without area draws nothing.
+    /// Returns `false`, and adds nothing, if there is no room.
+    #[inline]
+    pub fn push(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3]) -> bool {
+        let fits = !self.is_full();
+        if fits {
+            if self.faces.capacity() == 0 {
+                self.faces.reserve_exact(Self::CAPACITY);
+            }
+            self.faces.push(Face { vertices: *vertices, attributes: *attributes });
+        }
+        fits
+    }
+
+    /// The pieces of one row of a triangle that another method found, painted into `pixels`, the frame's whole row.
+    pub(crate) fn paint_row(
+        &mut self,
+        (vertices, attributes): (&[Vertex; 3], &[Attributes; 3]),
+        pipeline: &PixelPipeline<'_>,
         row: &Row,
         pixels: &mut [u8],
-        mut depths: Option<(&mut [D], &DepthPlane)>,
         kernel: Kernel,
         drawn: &mut DrawStats,
     ) {
-        let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
-        let mut x = row.x0;
-        while x < row.x1 {
-            let end = row.x1.min(seed + RESEED);
-            // From the seed on, of which the first may be outside of the clip rectangle.
-            let mut bytes: Piece = [0; PIECE];
-            let length = (end - seed) as usize;
-            let skipped = (x - seed) as usize;
-            let piece = &mut bytes[..length];
-            match &self.planes {
-                Planes::Shade(paint) if PLAIN => paint.piece(row, seed, piece, None, kernel),
-                _ => self.shades(row, seed, piece, kernel),
+        self.faces.clear();
+        self.push(vertices, attributes);
+        let triangle = SortedTriangle::new(vertices);
+        let mut target = Target { rows: OneRow(pixels), depth: None::<&mut DepthBuffer<'_, u32>>, kernel };
+        let Self { faces, pieces, buffers } = self;
+        make_room(pieces, buffers);
+        cut(row, |piece| {
+            if pieces.len() == CAPACITY {
+                pieces.close(&triangle, 0, vertices);
+                target.draw(faces, (pieces, buffers), pipeline, drawn);
             }
-            if FOG && let (Some(fog), Some(table)) = (&self.fog, self.look.fog()) {
-                let mut levels: Piece = [0; PIECE];
-                kernel.fill(&mut levels[..length], fog.start(seed, row.y), fog.step());
-                lookup(piece, &levels[..length], table);
-            }
-            // Columns of a frame.
-            let range = x as usize..end as usize;
-            let Some(pixels) = pixels.get_mut(range.clone()) else { return };
-            let piece = &mut piece[skipped..];
-            if BLENDS && let Some(table) = self.look.blend() {
-                // The table's row is the triangle's own index.
-                let mut behind: Piece = [0; PIECE];
-                let behind = &mut behind[..pixels.len()];
-                behind.copy_from_slice(pixels);
-                lookup(behind, piece, table);
-                piece.copy_from_slice(behind);
-            }
-            drawn.spans += 1;
-            write(range, pixels, piece, row.y, &mut depths, self.look.keeps_depth, drawn);
-            seed += RESEED;
-            x = end;
-        }
-    }
-
-    /// Counts what was done to so many pixels, whatever the depth test said of them.
-    fn count(&self, pixels: u32, drawn: &mut DrawStats) {
-        let add = |on: bool, count: &mut u32| *count += if on { pixels } else { 0 };
-        add(self.look.texture().is_some(), &mut drawn.textured);
-        add(self.look.levels().is_some(), &mut drawn.mipmapped);
-        add(self.look.dither().is_some(), &mut drawn.dithered);
-        add(self.look.fog().is_some(), &mut drawn.fogged);
-        add(self.look.blend().is_some(), &mut drawn.blended);
-        add(self.look.channels().is_some(), &mut drawn.mixed);
-        let by_table = matches!(self.planes, Planes::Slope(_));
-        add(by_table || matches!(self.look.source, ShadeSource::Lit(_)), &mut drawn.lit);
-    }
-
-    /// The bytes from pixel `seed` on: shades, with their texture, or mixed.
-    fn shades(&self, row: &Row, seed: i32, piece: &mut [u8], kernel: Kernel) {
-        let thresholds = &self.look.dither().unwrap_or(&HALVES)[(row.y & 7) as usize];
-        // A column.
-        let column = seed as usize;
-        let length = piece.len();
-        match &self.planes {
-            Planes::Shade(paint) => {
-                paint.piece(row, seed, piece, self.look.dither().is_some().then_some(thresholds), kernel);
-            }
-            Planes::Slope([across, down]) => {
-                let mut rows: Piece = [0; PIECE];
-                kernel.fill(piece, across.start(seed, row.y), across.step());
-                kernel.fill(&mut rows[..length], down.start(seed, row.y), down.step());
-                if let ShadeSource::NormalTable(table) = self.look.source {
-                    lookup(piece, &rows[..length], table);
-                }
-            }
-            Planes::Channels(paints) => {
-                let mut channels = [[0; PIECE]; 3];
-                for (paint, channel) in paints.iter().zip(&mut channels) {
-                    paint.piece(row, seed, &mut channel[..length], None, kernel);
-                }
-                return self.mix(row, seed, channels, thresholds, piece);
-            }
-            Planes::Lit(plane) => {
-                if self.look.channels().is_some() {
-                    let channels = self.lit_channels(plane, (row, seed), length, kernel);
-                    return self.mix(row, seed, channels, thresholds, piece);
-                }
-                match self.look.source {
-                    ShadeSource::Lit(lighting) => plane.points((seed, row.y), length, kernel, |pixels, points| {
-                        let column = column + pixels.start;
-                        to_bytes(&lighting.shades(points), thresholds, column, &mut piece[pixels]);
-                    }),
-                    ShadeSource::LitEvery(apart, lighting) => {
-                        let (knots, mut lit) = (Knots::new(row, seed, length, apart), [0; KNOTS]);
-                        knots.light(plane, (seed, row.y), kernel, |first, points| {
-                            lit[first..first + LANES].copy_from_slice(&lighting.shades(points));
-                        });
-                        knots.fill(&lit, thresholds, column, piece);
-                    }
-                    _ => {}
-                }
-            }
-            Planes::Curved(plane) => {
-                let mut shades = [0; PIECE];
-                if self.look.channels().is_some() {
-                    let mut channels = [[0; PIECE]; 3];
-                    for (i, channel) in channels.iter_mut().enumerate() {
-                        plane.fill((seed, row.y), i, &mut shades[..length], kernel);
-                        to_bytes(&shades[..length], &HALVES[0], 0, &mut channel[..length]);
-                    }
-                    return self.mix(row, seed, channels, thresholds, piece);
-                }
-                plane.fill((seed, row.y), 0, &mut shades[..length], kernel);
-                to_bytes(&shades[..length], thresholds, column, piece);
-            }
-        }
-        if let Some(texture) = self.look.texture() {
-            let mut texels: Piece = [0; PIECE];
-            let texels = &mut texels[..length];
-            self.texels(row, seed, texels);
-            lookup(texels, piece, texture.tables[0]);
-            piece.copy_from_slice(texels);
-        }
-    }
-
-    /// Red, green and blue of a piece that is lit.
-    fn lit_channels(&self, plane: &LitPlane, (row, seed): (&Row, i32), length: usize, kernel: Kernel) -> [Piece; 3] {
-        let mut channels = [[0; PIECE]; 3];
-        match self.look.source {
-            ShadeSource::Lit(lighting) => plane.points((seed, row.y), length, kernel, |pixels, points| {
-                for (shades, channel) in lighting.channels(points).iter().zip(&mut channels) {
-                    to_bytes(shades, &HALVES[0], 0, &mut channel[pixels.clone()]);
-                }
-            }),
-            ShadeSource::LitEvery(apart, lighting) => {
-                let (knots, mut lit) = (Knots::new(row, seed, length, apart), [[0; KNOTS]; 3]);
-                knots.light(plane, (seed, row.y), kernel, |first, points| {
-                    for (lit, shades) in lit.iter_mut().zip(lighting.channels(points)) {
-                        lit[first..first + LANES].copy_from_slice(&shades);
-                    }
-                });
-                for (lit, channel) in lit.iter().zip(&mut channels) {
-                    knots.fill(lit, &HALVES[0], 0, &mut channel[..length]);
-                }
-            }
-            _ => {}
-        }
-        channels
-    }
-
-    /// Channels to indices, through the texture if there is one.
-    fn mix(&self, row: &Row, seed: i32, mut channels: [Piece; 3], thresholds: &[u8; 8], piece: &mut [u8]) {
-        let length = piece.len();
-        if let Some(texture) = self.look.texture() {
-            let mut texels: Piece = [0; PIECE];
-            self.texels(row, seed, &mut texels[..length]);
-            for (channel, table) in channels.iter_mut().zip(texture.tables) {
-                let mut shown = texels;
-                lookup(&mut shown[..length], &channel[..length], table);
-                *channel = shown;
-            }
-        }
-        let [red, green, blue] = channels.each_ref().map(|channel| &channel[..length]);
-        // A column.
-        let column = seed as usize;
-        match self.look.channels() {
-            Some(Mix::Nearest { map, spread }) => {
-                mix_nearest(piece, red, green, blue, thresholds, column, spread, map);
-            }
-            Some(Mix::Only(channel)) => piece.copy_from_slice([red, green, blue][channel.min(2)]),
-            _ => mix_cube(piece, red, green, blue, thresholds, column),
-        }
-    }
-
-    /// The texels from pixel `seed` on.
-    fn texels(&self, row: &Row, seed: i32, texels: &mut [u8]) {
-        if let (Some(look), Some(plane)) = (self.look.texture(), &self.texture) {
-            plane.fill(look, self.look.levels(), row, seed, texels);
-        }
+            pieces.push(piece);
+        });
+        pieces.close(&triangle, 0, vertices);
+        target.draw(faces, (pieces, buffers), pipeline, drawn);
+        count(pipeline, (row.x1 - row.x0) as u32, drawn);
+        self.faces.clear();
     }
 }
 
-/// Writes a piece, all of it or where it is nearer.
-fn write<D: Cell>(
-    range: Range<usize>,
-    pixels: &mut [u8],
-    piece: &[u8],
-    y: i32,
-    depths: &mut Option<(&mut [D], &DepthPlane)>,
-    keeps_depth: bool,
-    drawn: &mut DrawStats,
-) {
-    let Some((depths, plane)) = depths else {
-        pixels.copy_from_slice(piece);
-        // At most 64.
-        drawn.pixels += pixels.len() as u32;
-        return;
-    };
-    // A column.
-    let z = plane.fixed_at(range.start as i32, y);
-    let Some(depths) = depths.get_mut(range) else { return };
-    drawn.tested += pixels.len() as u32;
-    drawn.pixels += if keeps_depth {
-        copy_nearer(pixels, depths, piece, z, plane.step())
-    } else {
-        copy_before(pixels, depths, piece, z, plane.step())
-    };
+/// Makes room, the first time, for as many pieces as there may be.
+#[inline]
+fn make_room(pieces: &mut Pieces, buffers: &mut Buffers) {
+    if buffers.bytes.is_empty() {
+        pieces.make_room();
+        buffers.make_room();
+    }
 }
 
-/// Paints one row of a triangle that another method found. Exact, as every row is.
-#[inline(never)]
-pub(crate) fn paint_row(
-    vertices: &[Vertex; 3],
-    attributes: &[Attributes; 3],
-    look: &PixelPipeline<'_>,
-    row: &Row,
-    pixels: &mut [u8],
+/// Cuts the drawn part of a row into pieces.
+#[inline]
+fn cut(row: &Row, mut piece: impl FnMut(Piece)) {
+    let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
+    let mut x = row.x0;
+    while x < row.x1 {
+        let end = row.x1.min(seed + RESEED);
+        piece(Piece { row: *row, seed, x, end });
+        seed += RESEED;
+        x = end;
+    }
+}
+
+/// Counts what was done to so many pixels, whatever the depth test said of them.
+fn count(pipeline: &PixelPipeline<'_>, pixels: u32, drawn: &mut DrawStats) {
+    let add = |on: bool, count: &mut u32| *count += if on { pixels } else { 0 };
+    add(pipeline.texture().is_some(), &mut drawn.textured);
+    add(pipeline.levels().is_some(), &mut drawn.mipmapped);
+    add(pipeline.dither().is_some(), &mut drawn.dithered);
+    add(pipeline.fog().is_some(), &mut drawn.fogged);
+    add(pipeline.blend().is_some(), &mut drawn.blended);
+    add(pipeline.channels().is_some(), &mut drawn.mixed);
+    let by_table = matches!(pipeline.source, ShadeSource::NormalTable(_)) && pipeline.channels().is_none();
+    add(by_table || matches!(pipeline.source, ShadeSource::Lit(_)), &mut drawn.lit);
+}
+
+/// Rows of a frame.
+trait Rows {
+    /// A row's pixels, from column 0 on.
+    fn row_mut(&mut self, y: u32) -> Option<&mut [u8]>;
+}
+
+impl Rows for &mut Frame<'_> {
+    #[inline]
+    fn row_mut(&mut self, y: u32) -> Option<&mut [u8]> {
+        Frame::row_mut(self, y)
+    }
+}
+
+/// The only row that is drawn.
+struct OneRow<'a>(&'a mut [u8]);
+
+impl Rows for OneRow<'_> {
+    #[inline]
+    fn row_mut(&mut self, _: u32) -> Option<&mut [u8]> {
+        Some(self.0)
+    }
+}
+
+/// What is drawn into, and how.
+struct Target<'a, 'b, R, D: Cell> {
+    rows: R,
+    depth: Option<&'a mut DepthBuffer<'b, D>>,
     kernel: Kernel,
-    drawn: &mut DrawStats,
-) {
-    let triangle = SortedTriangle::new(vertices);
-    let paint = EffectPaint::new(&triangle, vertices, attributes, look);
-    paint.row::<u32>(row, pixels, None, kernel, drawn);
-    paint.count((row.x1 - row.x0) as u32, drawn);
+}
+
+impl<R: Rows, D: Cell> Target<'_, '_, R, D> {
+    /// Passes pieces through the stages, writes them, and clears their list.
+    #[inline(never)]
+    fn draw(
+        &mut self,
+        faces: &[Face],
+        (pieces, buffers): (&mut Pieces, &mut Buffers),
+        pipeline: &PixelPipeline<'_>,
+        drawn: &mut DrawStats,
+    ) {
+        let n = pieces.len();
+        if n == 0 {
+            return;
+        }
+        pieces.shade(faces, buffers, pipeline, self.kernel);
+        if let Some(table) = pipeline.fog() {
+            let (kernel, bytes) = (self.kernel, &mut buffers.bytes);
+            let plane = |triangle: &SortedTriangle, corners: [&Attributes; 3]| {
+                ShadePlane::of_values(triangle, corners.map(|corner| i64::from(corner.fog.to_bits())))
+            };
+            pieces.each(faces, &mut bytes[..n], plane, |plane, piece, bytes| {
+                let mut levels: Bytes = [0; PIECE];
+                let levels = &mut levels[..piece.len()];
+                kernel.fill(levels, plane.start(piece.seed, piece.row.y), plane.step());
+                lookup(&mut bytes[..piece.len()], levels, table);
+            });
+        }
+        match pipeline.blend() {
+            None => self.write::<false>(faces, (pieces, buffers), pipeline, drawn),
+            Some(_) => self.write::<true>(faces, (pieces, buffers), pipeline, drawn),
+        }
+        pieces.clear();
+    }
+
+    /// Writes pieces, all of each or where it is nearer.
+    #[inline(never)]
+    fn write<const BLENDS: bool>(
+        &mut self,
+        faces: &[Face],
+        (pieces, buffers): (&Pieces, &mut Buffers),
+        pipeline: &PixelPipeline<'_>,
+        drawn: &mut DrawStats,
+    ) {
+        let bytes = &mut buffers.bytes[..pieces.len()];
+        let (rows, table) = (&mut self.rows, pipeline.blend().filter(|_| BLENDS));
+        let Some(depth) = &mut self.depth else {
+            for (piece, bytes) in pieces.pieces().iter().zip(bytes) {
+                let Some((pixels, bytes)) = visible(rows, piece, bytes, table) else { continue };
+                pixels.copy_from_slice(bytes);
+                drawn.spans += 1;
+                // At most 64.
+                drawn.pixels += pixels.len() as u32;
+            }
+            return;
+        };
+        let plane = |triangle: &SortedTriangle, _: [&Attributes; 3]| DepthPlane::new(triangle);
+        pieces.each(faces, bytes, plane, |plane, piece, bytes| {
+            let Some(depths) = depth.row_mut(piece.row.y as u32) else { return };
+            let Some((pixels, bytes)) = visible(rows, piece, bytes, table) else { return };
+            drawn.spans += 1;
+            let Some(depths) = depths.get_mut(piece.range()) else { return };
+            let z = plane.fixed_at(piece.x, piece.row.y);
+            drawn.tested += pixels.len() as u32;
+            drawn.pixels += if pipeline.keeps_depth {
+                copy_nearer(pixels, depths, bytes, z, plane.step())
+            } else {
+                copy_before(pixels, depths, bytes, z, plane.step())
+            };
+        });
+    }
+}
+
+/// The pixels of a piece that are drawn, and the bytes for them: with a table, what it makes of them and of what is there.
+#[inline(always)]
+fn visible<'a>(
+    rows: &'a mut impl Rows,
+    piece: &Piece,
+    bytes: &'a mut Bytes,
+    blend: Option<&[u8; 65_536]>,
+) -> Option<(&'a mut [u8], &'a [u8])> {
+    let pixels = rows.row_mut(piece.row.y as u32)?.get_mut(piece.range())?;
+    let bytes = &mut bytes[(piece.x - piece.seed) as usize..piece.len()];
+    if let Some(table) = blend {
+        // The table's row is the face's own index.
+        let mut behind: Bytes = [0; PIECE];
+        let behind = &mut behind[..pixels.len()];
+        behind.copy_from_slice(pixels);
+        lookup(behind, bytes, table);
+        bytes.copy_from_slice(behind);
+    }
+    Some((pixels, bytes))
 }
 
 impl<D: Cell> Raster<'_, D> {
     /// Draws a triangle with effects. The order of the corners and their winding make no difference; a
-    /// triangle without area draws nothing.
+    /// triangle without area draws nothing. Many triangles are drawn sooner by
+    /// [`batch_with_effects`](Self::batch_with_effects), by which this is drawn, too.
     pub fn triangle_with_effects(
         &mut self,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
-        look: &PixelPipeline<'_>,
+        pipeline: &PixelPipeline<'_>,
     ) -> DrawStats {
-        self.draw_effects::<true>(vertices, attributes, look)
+        let mut batch = EffectBatch::new();
+        batch.push(vertices, attributes);
+        self.batch_with_effects(&mut batch, pipeline)
     }
 
-    /// Draws a triangle that lies wholly inside the frame, with effects.
+    /// Draws the faces of a batch in their order, by one pixel pipeline, and takes them out of it.
+    pub fn batch_with_effects(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
+        self.draw_effects::<true>(batch, pipeline)
+    }
+
+    /// Draws a batch whose faces lie wholly inside the frame.
     ///
     /// What lies outside is treated as by [`triangle_inside`](Self::triangle_inside).
     #[doc(hidden)]
-    pub fn triangle_with_effects_inside(
-        &mut self,
-        vertices: &[Vertex; 3],
-        attributes: &[Attributes; 3],
-        look: &PixelPipeline<'_>,
-    ) -> DrawStats {
-        self.draw_effects::<false>(vertices, attributes, look)
-    }
-
-    fn draw_effects<const CLIPS: bool>(
-        &mut self,
-        vertices: &[Vertex; 3],
-        attributes: &[Attributes; 3],
-        look: &PixelPipeline<'_>,
-    ) -> DrawStats {
-        by_stages!(look, |PLAIN, FOG, BLENDS| {
-            self.draw_stages::<CLIPS, PLAIN, FOG, BLENDS>(vertices, attributes, look)
-        })
+    pub fn batch_with_effects_inside(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
+        self.draw_effects::<false>(batch, pipeline)
     }
 
     #[inline(never)]
-    fn draw_stages<const CLIPS: bool, const PLAIN: bool, const FOG: bool, const BLENDS: bool>(
-        &mut self,
-        vertices: &[Vertex; 3],
-        attributes: &[Attributes; 3],
-        look: &PixelPipeline<'_>,
-    ) -> DrawStats {
-        let triangle = SortedTriangle::new(vertices);
-        if !PLAIN
-            && !FOG
-            && !BLENDS
-            && let Some(lighting) = look.lit_alone()
-            && small::is_narrow(vertices)
-        {
-            return self.draw_small_lit::<CLIPS>(&triangle, (vertices, attributes), (look, lighting));
-        }
+    fn draw_effects<const CLIPS: bool>(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
         let mut drawn = DrawStats::default();
-        let (mut paint, mut plane) = (None, None);
         let (width, clip) = (self.frame.width(), self.clip);
-        let draw = |row: Row| {
-            drawn.covered += (row.x1 - row.x0) as u32;
-            let y = row.y as u32;
-            let Some(pixels) = self.frame.row_mut(y) else { return };
-            let paint = paint.get_or_insert_with(|| EffectPaint::new(&triangle, vertices, attributes, look));
-            let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-            let Some(depth) = depth else {
-                return paint.pieces::<D, PLAIN, FOG, BLENDS>(&row, pixels, None, self.kernel, &mut drawn);
+        let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+        let mut target = Target { rows: &mut self.frame, depth, kernel: self.kernel };
+        let EffectBatch { faces, pieces, buffers } = batch;
+        make_room(pieces, buffers);
+        for (index, Face { vertices, .. }) in faces.iter().enumerate() {
+            let triangle = SortedTriangle::new(vertices);
+            let each_row = |row: Row| {
+                drawn.covered += (row.x1 - row.x0) as u32;
+                // Columns of a frame, of which there are at most 4,096.
+                if !CLIPS && (row.x0 < 0 || row.x1 > width as i32) {
+                    return;
+                }
+                cut(&row, |piece| {
+                    if pieces.len() == CAPACITY {
+                        pieces.close(&triangle, index, vertices);
+                        target.draw(faces, (pieces, buffers), pipeline, &mut drawn);
+                    }
+                    pieces.push(piece);
+                });
             };
-            let Some(depths) = depth.row_mut(y) else { return };
-            let plane = &*plane.get_or_insert_with(|| DepthPlane::new(&triangle));
-            paint.pieces::<D, PLAIN, FOG, BLENDS>(&row, pixels, Some((depths, plane)), self.kernel, &mut drawn);
-        };
-        if CLIPS {
-            triangle.rows(width, clip, draw)
-        } else {
-            triangle.rows_inside(draw)
+            if CLIPS {
+                triangle.rows(width, clip, each_row);
+            } else {
+                triangle.rows_inside(each_row);
+            }
+            pieces.close(&triangle, index, vertices);
         }
-        if let Some(paint) = &paint {
-            paint.count(drawn.covered, &mut drawn);
-        }
+        target.draw(faces, (pieces, buffers), pipeline, &mut drawn);
+        faces.clear();
+        count(pipeline, drawn.covered, &mut drawn);
         drawn
     }
 }

@@ -153,15 +153,6 @@ pub struct PixelPipeline<'a> {
 
 /// The stages. One that a build leaves out (`plan::Effect::is_left_out`) is not there, and the compiler knows.
 impl<'a> PixelPipeline<'a> {
-    /// Whether its shades are linear and nothing is made of them but what fog and blending do.
-    #[inline]
-    pub(super) fn is_plain(&self) -> bool {
-        matches!(self.source, ShadeSource::Shaded(_))
-            && self.channels().is_none()
-            && self.dither().is_none()
-            && self.texture().is_none()
-    }
-
     #[inline]
     pub(super) fn channels(&self) -> Option<Mix<'a>> {
         self.channels.filter(|_| !cfg!(mode13h_leave_out = "rgb-channels"))

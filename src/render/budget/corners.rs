@@ -10,10 +10,6 @@ use crate::lanes::{LANES, Lanes};
 use crate::light::Lights;
 use crate::span::Kernel;
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-mod x86;
-
 /// The normal and the position of each vertex of a mesh.
 #[derive(Clone, Copy)]
 struct Corners<'a> {
@@ -112,20 +108,11 @@ impl Budget {
 /// Marks the vertices with the lights that their fronts see.
 pub(super) fn mark(object: &Lit<'_>, flags: &mut [u8]) {
     let corners = Corners { normals: object.geometry.normals, positions: object.geometry.positions };
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    if object.kernel.has_avx2() {
-        return x86::mark(corners, object.lights, flags);
-    }
-    corners.mark(object.lights, flags);
+    object.kernel.run(|| corners.mark(object.lights, flags));
 }
 
 fn chords_of(corners: Corners<'_>, lights: &Lights<'_>, chords: &mut [f32], kernel: Kernel) -> Nearest {
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    if kernel.has_avx2() {
-        return x86::chords(corners, lights, chords);
-    }
-    let _ = kernel;
-    corners.chords(lights, chords)
+    kernel.run(|| corners.chords(lights, chords))
 }
 
 /// Up to eight; what is missing is the last again.

@@ -24,10 +24,6 @@ use crate::light::{Lights, Reflectance};
 use crate::render::faces::Faces;
 use crate::span::Kernel;
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-mod x86;
-
 /// From which exponent on a highlight is known to curve less away from its middle.
 const SHARP: f32 = 8.0;
 
@@ -459,12 +455,7 @@ impl Faces<'_> {
 
 #[inline]
 fn model_of(falling: &Falling<'_>, eight: &Eight, kernel: Kernel) -> [Lanes<f32>; 2] {
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    if kernel.has_avx2() {
-        return x86::model(falling, eight);
-    }
-    let _ = kernel;
-    falling.model(eight)
+    kernel.run(|| falling.model(eight))
 }
 
 /// What is lost for want of length, or at the clamp, whichever is more.

@@ -1,5 +1,6 @@
 //! Sixteen faces at a time in assembly for AVX-512.
 
+use crate::simd::Avx512;
 use core::arch::asm;
 use core::mem::offset_of;
 
@@ -62,13 +63,12 @@ static CONSTANTS: Constants = {
     constants
 };
 
-/// Only with a kernel for which `Kernel::has_avx512` is true.
-pub(super) fn sift(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4], culls: bool) -> Sifted {
+pub(super) fn sift(_: Avx512, places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4], culls: bool) -> Sifted {
     let mut sifted = Sifted::default();
     let triangles = &triangles[..triangles.len().min(MOST)];
     let (sixteens, rest) = triangles.as_chunks::<LANES>();
     for (number, sixteen) in sixteens.iter().enumerate() {
-        // SAFETY: such a kernel is given out only where AVX-512 was found.
+        // SAFETY: the processor has AVX-512, says the token.
         let Some(found) = (unsafe { sift_sixteen(places, sixteen, &sides, culls) }) else {
             return super::sift(places, triangles, sides, culls);
         };
@@ -338,16 +338,16 @@ unsafe fn sift_sixteen(
     (known == 0xFFFF).then_some([clipped as u16, front as u16, back as u16, covers as u16])
 }
 
-/// `Listed::add`. Only with a kernel for which `Kernel::has_avx512` is true.
+/// `Listed::add`.
 #[inline(always)]
-pub(super) fn list(listed: &mut Listed, first: u32, chosen: u64, turned: u64) {
+pub(super) fn list(_: Avx512, listed: &mut Listed, first: u32, chosen: u64, turned: u64) {
     for part in 0..(MOST / LANES) as u32 {
         let bits = |all: u64| (all >> (LANES as u32 * part)) as u16;
         if bits(chosen) == 0 {
             continue;
         }
         let Some(to) = listed.numbers.get_mut(listed.count..).and_then(|rest| rest.first_chunk_mut()) else { return };
-        // SAFETY: such a kernel is given out only where AVX-512 was found.
+        // SAFETY: the processor has AVX-512, says the token.
         listed.count += unsafe { list_sixteen(to, first + LANES as u32 * part, bits(chosen), bits(turned)) };
     }
 }

@@ -28,8 +28,8 @@ impl Listed {
         // Below `TURNED`, or there is no list.
         let first = first as u32;
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if kernel.has_avx512() {
-            return super::avx512::list(self, first, chosen, turned);
+        if let Some(avx512) = kernel.avx512() {
+            return super::avx512::list(avx512, self, first, chosen, turned);
         }
         let _ = kernel;
         self.add_one_by_one(first, chosen, turned);

@@ -48,12 +48,12 @@ impl Sieve {
         // Inside a frame, at most 4,096.
         let sides = [self.clip.x0, self.clip.y0, self.clip.x1, self.clip.y1].map(|side| side as i32);
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.kernel.has_avx512() {
-            return avx512::sift(places, triangles, sides, culls);
+        if let Some(avx512) = self.kernel.avx512() {
+            return avx512::sift(avx512, places, triangles, sides, culls);
         }
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.kernel.has_avx2() {
-            return x86::sift(places, triangles, sides, culls);
+        if let Some(avx2) = self.kernel.avx2() {
+            return x86::sift(avx2, places, triangles, sides, culls);
         }
         let _ = self.kernel;
         sift(places, triangles, sides, culls)

@@ -4,10 +4,10 @@ use core::arch::x86_64::*;
 
 use super::{MOST, Sifted, TINY_SIDE};
 use crate::render::lit::Place;
+use crate::simd::Avx2;
 
-/// Only with a kernel for which `Kernel::has_avx2` is true.
-pub(super) fn sift(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4], culls: bool) -> Sifted {
-    // SAFETY: such a kernel is given out only where AVX2 was found.
+pub(super) fn sift(_: Avx2, places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4], culls: bool) -> Sifted {
+    // SAFETY: the processor has AVX2, says the token.
     unsafe { avx2(places, triangles, sides, culls) }
 }
 

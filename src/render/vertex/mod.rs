@@ -93,8 +93,8 @@ fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Ke
         return lanes::one_by_one::<TESTED>(view, positions, 0, lit);
     };
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    if kernel.has_avx2() {
-        return x86::project::<TESTED>(view, &narrow, positions, lit);
+    if let Some(avx2) = kernel.avx2() {
+        return x86::project::<TESTED>(avx2, (view, &narrow), positions, lit);
     }
     let _ = kernel;
     lanes::project::<TESTED>(view, &narrow, positions, lit, lanes::project_eight_apart);
@@ -129,10 +129,10 @@ pub(super) fn light_suns(
     lit: &mut ShadedVertices,
 ) {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    if kernel.has_avx2() {
+    if let Some(avx2) = kernel.avx2() {
         return match both {
-            true => x86::light_suns::<true>(geometry, paints, lights, lit),
-            false => x86::light_suns::<false>(geometry, paints, lights, lit),
+            true => x86::light_suns::<true>(avx2, geometry, paints, lights, lit),
+            false => x86::light_suns::<false>(avx2, geometry, paints, lights, lit),
         };
     }
     let _ = kernel;

@@ -10,13 +10,13 @@ use crate::fixed::U8F8;
 use crate::light::Lights;
 use crate::render::lit::{Place, ShadedVertices};
 use crate::render::paint::SurfaceMaterial;
+use crate::simd::Avx2;
 use crate::view::ObjectView;
 use crate::view::lanes::{LANES, Narrow};
 
-/// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn project<const TESTED: bool>(
-    view: &ObjectView,
-    narrow: &Narrow,
+    _: Avx2,
+    (view, narrow): (&ObjectView, &Narrow),
     positions: &[Vec3],
     lit: &mut ShadedVertices,
 ) {
@@ -26,12 +26,12 @@ pub(super) fn project<const TESTED: bool>(
             project_eight(narrow, points, places, depths);
         });
     }
-    // SAFETY: such a kernel is given out only where AVX2 was found.
+    // SAFETY: the processor has AVX2, says the token.
     unsafe { avx2::<TESTED>(view, narrow, positions, lit) }
 }
 
-/// Only with a kernel for which `Kernel::has_avx2` is true.
 pub(super) fn light_suns<const BOTH: bool>(
+    _: Avx2,
     geometry: &Geometry<'_>,
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
@@ -48,7 +48,7 @@ pub(super) fn light_suns<const BOTH: bool>(
             light_eight::<BOTH>(paint, lights, normals, shades);
         });
     }
-    // SAFETY: such a kernel is given out only where AVX2 was found.
+    // SAFETY: the processor has AVX2, says the token.
     unsafe { avx2::<BOTH>(geometry, paints, lights, lit) }
 }
 

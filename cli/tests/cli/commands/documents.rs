@@ -186,7 +186,7 @@ fn documents_name_what_there_is() {
     known.extend(shipped::ALL.iter().map(|scene| scene.name));
     known.extend(["mode13h-lab", "mode13h-cli"]);
     // The error lists those that this machine lacks, too.
-    known.extend(["asm-unrolled", "simd-arrays", "simd-sse2", "simd-avx2", "simd-avx512"]);
+    known.extend(["asm-unrolled", "simd-arrays", "simd-sse2", "simd-neon", "simd-wasm", "simd-avx2", "simd-avx512"]);
     assert!(Kernel::available().all(|kernel| known.contains(kernel.name()) || !kernel.name().contains('-')));
     let features = include_str!("../../../../Cargo.toml").split("[features]").nth(1).expect("features");
     known.extend(features.split("\n[").next().expect("features").lines().filter_map(|line| line.split(" = ").next()));

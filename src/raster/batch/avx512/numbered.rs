@@ -1,5 +1,6 @@
 //! `Batch::refill`, sixteen triangles at a time.
 
+use crate::simd::Avx512;
 use core::arch::asm;
 
 use super::super::Batch;
@@ -23,9 +24,8 @@ static HALVES: Halves = {
     halves
 };
 
-/// Only with a kernel for which `Kernel::has_avx512` is true. Whether all numbers were those of triangles and vertices; else
-/// anything stands in the batch.
-pub(in super::super) fn refill(batch: &mut Batch, from: &Numbered<'_>, numbers: &[u32]) -> bool {
+/// Returns whether all numbers were those of triangles and vertices; otherwise anything stands in the batch.
+pub(in super::super) fn refill(_: Avx512, batch: &mut Batch, from: &Numbered<'_>, numbers: &[u32]) -> bool {
     // Offsets are signed, in numbers of four bytes.
     if from.triangles.len() >= (1 << 31) / 3 {
         return false;
@@ -34,7 +34,7 @@ pub(in super::super) fn refill(batch: &mut Batch, from: &Numbered<'_>, numbers: 
     let mut known = true;
     for at in (0..Batch::CAPACITY).step_by(LANES) {
         let Some((sixteen, others)) = rest.split_first_chunk() else { break };
-        // SAFETY: such a kernel is given out only where AVX-512 was found; `at` is a multiple of 16 below the capacity.
+        // SAFETY: the processor has AVX-512, says the token; `at` is a multiple of 16 below the capacity.
         known &= unsafe { put(batch, at, from, sixteen, LANES) };
         rest = others;
     }

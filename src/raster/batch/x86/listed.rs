@@ -25,8 +25,8 @@ const FOUR: usize = 4;
 /// The most rows of a group.
 const MOST: usize = LANES * LANES;
 
-/// Draws small triangles, with `DEPTHS` where they are nearer than cells. Only for a processor for which `Kernel::has_avx2` is
-/// true.
+/// Draws small triangles, with `DEPTHS` where they are nearer than cells. Only for a processor that has
+/// `Avx2`.
 #[target_feature(enable = "avx2,fma")]
 pub(super) fn draw<const DEPTHS: bool>(
     batch: &Batch,

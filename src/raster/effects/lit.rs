@@ -1,0 +1,250 @@
+//! Light at the pixels: at each of them, or at some of a row with shades that are linear between.
+
+use super::pieces::{Bytes, Face, PIECE, Piece, Pieces, Shades};
+use super::pipeline::{Attributes, Lighting, SampleSpacing};
+use crate::lanes::{LANES, Lanes, Points};
+use crate::raster::cover::SortedTriangle;
+use crate::raster::paint::to_bytes;
+use crate::raster::weights::Weights;
+use crate::span::Kernel;
+use crate::span::lit::Numerators;
+
+/// The most places in a piece that are lit where not all are, its end being one, and as many as are lit at once.
+const KNOTS: usize = (PIECE / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
+
+/// The shade at eight points, or three channels.
+pub(super) trait Lit<const N: usize> {
+    fn at(&self, points: &Points) -> [Lanes<u16>; N];
+}
+
+impl Lit<1> for &dyn Lighting {
+    #[inline]
+    fn at(&self, points: &Points) -> [Lanes<u16>; 1] {
+        [self.shades(points)]
+    }
+}
+
+impl Lit<3> for &dyn Lighting {
+    #[inline]
+    fn at(&self, points: &Points) -> [Lanes<u16>; 3] {
+        self.channels(points)
+    }
+}
+
+/// Normals and positions over a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LitPlane {
+    weights: Weights,
+    /// The values of each corner times its depth, then its depth.
+    values: [[f64; 7]; 3],
+    /// What their sum changes by from one pixel to the next.
+    step: ([f64; 6], f64),
+}
+
+impl LitPlane {
+    pub(super) fn new(triangle: &SortedTriangle, corners: [&Attributes; 3]) -> Self {
+        let values = [0, 1, 2].map(|k| {
+            let depth = f64::from(triangle.vertices[k].depth().max(1));
+            let [a, b, c, d, e, f] = corners[k].lit.map(|value| f64::from(value) * depth);
+            [a, b, c, d, e, f, depth]
+        });
+        let weights = Weights::new(triangle);
+        Self { weights, values, step: Self::sum(&values, weights.per_column()) }
+    }
+
+    /// The sum over the corners, in their order from top to bottom, of the values with these weights.
+    #[inline]
+    fn sum([va, vb, vc]: &[[f64; 7]; 3], [wa, wb, wc]: [f64; 3]) -> ([f64; 6], f64) {
+        let value = |i: usize| wa * va[i] + wb * vb[i] + wc * vc[i];
+        (core::array::from_fn(value), value(6))
+    }
+
+    /// Numerators and denominator of the values at a pixel.
+    #[inline]
+    fn at(&self, (x, y): (i32, i32)) -> ([f64; 6], f64) {
+        Self::sum(&self.values, self.weights.at(x, y))
+    }
+}
+
+/// The numbers of eight pixels that follow each other.
+#[inline]
+fn places(first: usize) -> Lanes<f64> {
+    // At most 64.
+    core::array::from_fn(|lane| (first + lane) as f64)
+}
+
+/// Pixels of several rows that wait until eight of them are lit together.
+struct Waiting {
+    /// Those of the first eight are whole; behind them is room for what one more row adds.
+    numerators: [[f64; 2 * LANES]; 7],
+    /// The piece of each, and the pixel in it.
+    places: [(usize, usize); 2 * LANES],
+    count: usize,
+}
+
+impl Waiting {
+    fn new() -> Self {
+        let mut numerators = [[0.0; 2 * LANES]; 7];
+        numerators[6] = [1.0; 2 * LANES];
+        Self { numerators, places: [(0, 0); 2 * LANES], count: 0 }
+    }
+
+    /// Puts up to seven pixels, from `first` on, behind those that wait.
+    #[inline]
+    fn push(&mut self, numerators: &Numerators, piece: usize, pixels: core::ops::Range<usize>) {
+        for (waiting, new) in self.numerators.iter_mut().zip(numerators) {
+            waiting[self.count..self.count + LANES].copy_from_slice(new);
+        }
+        for pixel in pixels {
+            self.places[self.count] = (piece, pixel);
+            self.count += 1;
+        }
+    }
+
+    /// Lights the first eight.
+    #[inline]
+    fn light<const N: usize>(&mut self, kernel: Kernel, light: &impl Lit<N>, out: &mut [&mut [Shades]; N]) {
+        let mut numerators = [[0.0; LANES]; 7];
+        for (eight, waiting) in numerators.iter_mut().zip(&self.numerators) {
+            eight.copy_from_slice(&waiting[..LANES]);
+        }
+        let lit = light.at(&kernel.divide(&numerators));
+        for (lane, &(piece, pixel)) in self.places[..self.count.min(LANES)].iter().enumerate() {
+            for (out, lit) in out.iter_mut().zip(&lit) {
+                out[piece][pixel] = lit[lane];
+            }
+        }
+    }
+
+    /// Takes the first eight away.
+    #[inline]
+    fn advance(&mut self) {
+        for waiting in &mut self.numerators {
+            waiting.copy_within(LANES.., 0);
+        }
+        self.places.copy_within(LANES.., 0);
+        self.count -= LANES;
+    }
+}
+
+impl Pieces {
+    /// Lights every pixel. Eight are lit together: those of a row, and what is left of several rows and triangles. A
+    /// pixel's point is made from its own row's first pixel, so its shade does not depend on the other seven.
+    pub(super) fn light_each<const N: usize>(
+        &self,
+        faces: &[Face],
+        kernel: Kernel,
+        light: &impl Lit<N>,
+        mut out: [&mut [Shades]; N],
+    ) {
+        let mut waiting = Waiting::new();
+        let mut index = 0;
+        let mut nothing = [(); super::pieces::CAPACITY];
+        self.each(faces, &mut nothing[..self.len()], LitPlane::new, |plane, piece, ()| {
+            let ((a, d), (da, dd)) = (plane.at(piece.start()), &plane.step);
+            let length = piece.len();
+            let mut first = 0;
+            while length - first >= LANES {
+                let lit = light.at(&kernel.interpolate_at(&places(first), &a, da, d, *dd));
+                for (out, lit) in out.iter_mut().zip(&lit) {
+                    out[index][first..first + LANES].copy_from_slice(lit);
+                }
+                first += LANES;
+            }
+            if first < length {
+                let numerators = kernel.numerators(&places(first), &a, da, d, *dd);
+                waiting.push(&numerators, index, first..length);
+                if waiting.count >= LANES {
+                    waiting.light(kernel, light, &mut out);
+                    waiting.advance();
+                }
+            }
+            index += 1;
+        });
+        if waiting.count > 0 {
+            waiting.light(kernel, light, &mut out);
+        }
+    }
+
+    /// Lights some pixels of each row, and fills in bytes of shades that are linear between them.
+    pub(super) fn light_some<const N: usize>(
+        &self,
+        faces: &[Face],
+        kernel: Kernel,
+        (spacing, light): (SampleSpacing, &impl Lit<N>),
+        pattern: &[[u8; 8]; 8],
+        mut out: [&mut [Bytes]; N],
+    ) {
+        let mut index = 0;
+        let mut nothing = [(); super::pieces::CAPACITY];
+        self.each(faces, &mut nothing[..self.len()], LitPlane::new, |plane, piece, ()| {
+            let knots = Knots::new(piece, spacing);
+            let mut lit = [[0; KNOTS]; N];
+            knots.light(plane, piece, kernel, |first, points| {
+                for (lit, shades) in lit.iter_mut().zip(light.at(points)) {
+                    lit[first..first + LANES].copy_from_slice(&shades);
+                }
+            });
+            for (lit, out) in lit.iter().zip(&mut out) {
+                knots.fill(lit, piece.thresholds(pattern), piece.column(), &mut out[index][..piece.len()]);
+            }
+            index += 1;
+        });
+    }
+}
+
+/// Pixels of a piece that are lit, and those between.
+#[derive(Clone, Copy, Debug)]
+struct Knots {
+    spacing: usize,
+    /// From the piece's first pixel, in pixels.
+    places: [i32; KNOTS],
+    /// How many there are, at least two.
+    count: usize,
+}
+
+impl Knots {
+    /// The lit pixels of a piece.
+    /// Where the row ends inside of the piece, its last pixel is lit, whatever the clip rectangle.
+    fn new(piece: &Piece, spacing: SampleSpacing) -> Self {
+        let spacing = spacing.pixels();
+        let mut places = [0; KNOTS];
+        for (place, number) in places.iter_mut().zip(0..) {
+            // At most 24 · 16.
+            *place = (number * spacing as i32).min((piece.row.last - piece.seed).max(0));
+        }
+        Self { spacing, places, count: piece.len().div_ceil(spacing) + 1 }
+    }
+
+    /// Lights them, eight at a time, and hands the eight on with the number of the first.
+    fn light(&self, plane: &LitPlane, piece: &Piece, kernel: Kernel, mut light: impl FnMut(usize, &Points)) {
+        let ((a, d), (da, dd)) = (plane.at(piece.start()), &plane.step);
+        for (first, eight) in self.places[..self.count].chunks(LANES).enumerate() {
+            let mut places = [0.0; LANES];
+            for (to, place) in places.iter_mut().zip(eight) {
+                *to = f64::from(*place);
+            }
+            light(first * LANES, &kernel.interpolate_at(&places, &a, da, d, *dd));
+        }
+    }
+
+    /// The bytes of shades in 8.8 that are linear between those at the knots.
+    fn fill(&self, knots: &[u16; KNOTS], thresholds: &[u8; 8], column: usize, piece: &mut [u8]) {
+        for (i, piece) in piece.chunks_mut(self.spacing).enumerate() {
+            let (from, to) = (i32::from(knots[i]), i32::from(knots[i + 1]));
+            let pixels = self.places[i + 1] - self.places[i];
+            // In 1/256 of a shade's unit. Rounded toward zero: no sum goes beyond `to`.
+            let step = if pixels == 0 { 0 } else { ((to - from) << 8) / pixels };
+            for (eight, bytes) in piece.chunks_mut(LANES).enumerate() {
+                // Below 16.
+                let first = (eight * LANES) as i32;
+                let mut shades: Lanes<u16> = [0; LANES];
+                for (k, shade) in (first..).zip(&mut shades) {
+                    // Beyond the knot anything, which is not used.
+                    *shade = (from + ((step * k) >> 8)) as u16;
+                }
+                to_bytes(&shades, thresholds, column + i * self.spacing + eight * LANES, bytes);
+            }
+        }
+    }
+}

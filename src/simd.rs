@@ -1,0 +1,144 @@
+//! What the processor has, as values. A token exists only where the processor has its level, so code that takes one
+//! needs no other proof.
+//!
+//! The span kernels and the batches use intrinsics of a level. All else is written once, in plain arrays of eight lanes,
+//! and is compiled anew for a level by [`Avx2::run`].
+
+#![cfg_attr(
+    all(feature = "simd", target_arch = "x86_64"),
+    expect(unsafe_code, reason = "code for processors found only when the program runs")
+)]
+
+/// What a kernel may use.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) enum Level {
+    /// What every processor has.
+    Portable,
+    /// Assembly for x86-64.
+    #[cfg(all(feature = "asm", target_arch = "x86_64"))]
+    X86_64,
+    /// Assembly for 32-bit x86.
+    #[cfg(all(feature = "asm", target_arch = "x86"))]
+    I686,
+    /// Plain arrays that the compiler vectorises.
+    #[cfg(feature = "simd")]
+    Arrays,
+    /// What every x86-64 has.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    Sse2,
+    /// 64-bit ARM, all of which has NEON.
+    #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+    Neon,
+    /// WebAssembly with vectors of 128 bits, known when it is compiled.
+    #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+    Wasm,
+    /// See [`Avx2`].
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    Avx2(Avx2),
+    /// See [`Avx512`].
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    Avx512(Avx512),
+}
+
+impl Level {
+    /// Its name, as `--stats` and records have it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Portable => "portable",
+            #[cfg(all(feature = "asm", target_arch = "x86_64"))]
+            Self::X86_64 => "x86-64",
+            #[cfg(all(feature = "asm", target_arch = "x86"))]
+            Self::I686 => "i686",
+            #[cfg(feature = "simd")]
+            Self::Arrays => "arrays",
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            Self::Sse2 => "sse2",
+            #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+            Self::Neon => "neon",
+            #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+            Self::Wasm => "wasm",
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            Self::Avx2(_) => "avx2",
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            Self::Avx512(_) => "avx512",
+        }
+    }
+
+    /// The proof of AVX2, if this level has it.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[inline]
+    pub(crate) const fn avx2(self) -> Option<Avx2> {
+        match self {
+            Self::Avx2(avx2) | Self::Avx512(Avx512(avx2)) => Some(avx2),
+            _ => None,
+        }
+    }
+
+    /// The proof of AVX-512, if this level has it.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[inline]
+    pub(crate) const fn avx512(self) -> Option<Avx512> {
+        match self {
+            Self::Avx512(avx512) => Some(avx512),
+            _ => None,
+        }
+    }
+}
+
+/// Proof that the processor has AVX2 and FMA. (Nearly all that have AVX2 have FMA.)
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) struct Avx2(());
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+impl Avx2 {
+    /// The proof, if the processor has them.
+    pub(crate) fn find() -> Option<Self> {
+        #[cfg(feature = "std")]
+        let found = std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma");
+        #[cfg(not(feature = "std"))]
+        let found = cfg!(all(target_feature = "avx2", target_feature = "fma"));
+        found.then_some(Self(()))
+    }
+
+    /// What `body` gives, compiled for AVX2: eight f32 or four f64 at a time where SSE2 has half of that. What it calls is
+    /// compiled for AVX2 as far as it is inlined.
+    #[inline(always)]
+    pub(crate) fn run<R>(self, body: impl FnOnce() -> R) -> R {
+        #[target_feature(enable = "avx2")]
+        fn avx2<R>(body: impl FnOnce() -> R) -> R {
+            body()
+        }
+        // SAFETY: the processor has AVX2, says `self`.
+        unsafe { avx2(body) }
+    }
+}
+
+/// Proof that the processor has F, BW, DQ and VL of AVX-512, BMI2, POPCNT and what [`Avx2`] stands for.
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) struct Avx512(Avx2);
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+impl Avx512 {
+    /// The proof, if the processor has them.
+    pub(crate) fn find() -> Option<Self> {
+        #[cfg(feature = "std")]
+        let found = std::arch::is_x86_feature_detected!("avx512f")
+            && std::arch::is_x86_feature_detected!("avx512bw")
+            && std::arch::is_x86_feature_detected!("avx512dq")
+            && std::arch::is_x86_feature_detected!("avx512vl")
+            && std::arch::is_x86_feature_detected!("bmi2")
+            && std::arch::is_x86_feature_detected!("popcnt");
+        #[cfg(not(feature = "std"))]
+        let found = cfg!(all(
+            target_feature = "avx512f",
+            target_feature = "avx512bw",
+            target_feature = "avx512dq",
+            target_feature = "avx512vl",
+            target_feature = "bmi2",
+            target_feature = "popcnt"
+        ));
+        Avx2::find().filter(|_| found).map(Self)
+    }
+}

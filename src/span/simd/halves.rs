@@ -1,0 +1,132 @@
+//! Sixteen pixels at a time where a vector has 128 bits, as on ARM and in WebAssembly: what `sse2` does, in the operations of
+//! each.
+
+/// Even and odd shades of sixteen pixels, as the module `simd` has them.
+pub(super) trait Block: Copy {
+    /// The block whose first pixel has `shade`.
+    fn new(shade: u16, step: u16) -> Self;
+    /// The block whose shades are higher by `by`.
+    fn raised(self, by: u16) -> Self;
+    /// Its sixteen bytes.
+    fn store(self, to: &mut [u8; 16]);
+}
+
+/// Pixels a turn.
+const BLOCK: usize = 16;
+
+/// Fills a row: blocks from its first pixel on, and one that ends with its last.
+#[inline(always)]
+pub(super) fn fill<B: Block>(row: &mut [u8], shade: u16, step: u16) {
+    let n = row.len();
+    let mut block = B::new(shade, step);
+    if n < BLOCK {
+        let mut bytes = [0; BLOCK];
+        block.store(&mut bytes);
+        return row.copy_from_slice(&bytes[..n]);
+    }
+    // The wrap is meant, of the length, too: shades are sums modulo 2¹⁶.
+    let last = block.raised(step.wrapping_mul((n - BLOCK) as u16));
+    let (blocks, _) = row.as_chunks_mut::<BLOCK>();
+    for to in blocks {
+        block.store(to);
+        block = block.raised(step.wrapping_mul(BLOCK as u16));
+    }
+    if let Some(to) = row.last_chunk_mut::<BLOCK>() {
+        last.store(to);
+    }
+}
+
+/// 64-bit ARM, all of which has NEON.
+#[cfg(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+pub(in super::super) mod neon {
+    use super::super::super::list::{Listed, each};
+    use core::arch::aarch64::*;
+
+    #[derive(Clone, Copy)]
+    struct Block {
+        even: uint16x8_t,
+        odd: uint16x8_t,
+    }
+
+    impl super::Block for Block {
+        #[inline(always)]
+        fn new(shade: u16, step: u16) -> Self {
+            const EVEN: [u16; 8] = [0, 2, 4, 6, 8, 10, 12, 14];
+            // SAFETY: the target has NEON, and the load reads the eight numbers of `EVEN`.
+            unsafe {
+                let steps = vdupq_n_u16(step);
+                let even = vmlaq_u16(vdupq_n_u16(shade), vld1q_u16(EVEN.as_ptr()), steps);
+                Self { even, odd: vaddq_u16(even, steps) }
+            }
+        }
+
+        #[inline(always)]
+        fn raised(self, by: u16) -> Self {
+            // SAFETY: the target has NEON.
+            unsafe {
+                let by = vdupq_n_u16(by);
+                Self { even: vaddq_u16(self.even, by), odd: vaddq_u16(self.odd, by) }
+            }
+        }
+
+        #[inline(always)]
+        fn store(self, to: &mut [u8; 16]) {
+            // The upper byte of an even shade goes below that of the odd one.
+            // SAFETY: the target has NEON, and `to` is 16 writable bytes; the store asks for no alignment.
+            unsafe { vst1q_u8(to.as_mut_ptr(), vreinterpretq_u8_u16(vsriq_n_u16::<8>(self.odd, self.even))) }
+        }
+    }
+
+    pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
+        super::fill::<Block>(row, shade, step);
+    }
+
+    /// Every span of a list.
+    pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
+        each(pixels, spans, fill);
+    }
+}
+
+/// WebAssembly with vectors of 128 bits.
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+pub(in super::super) mod wasm {
+    use super::super::super::list::{Listed, each};
+    use core::arch::wasm32::*;
+
+    #[derive(Clone, Copy)]
+    struct Block {
+        even: v128,
+        odd: v128,
+    }
+
+    impl super::Block for Block {
+        #[inline(always)]
+        fn new(shade: u16, step: u16) -> Self {
+            let steps = u16x8_splat(step);
+            let even = u16x8_add(u16x8_splat(shade), u16x8_mul(u16x8(0, 2, 4, 6, 8, 10, 12, 14), steps));
+            Self { even, odd: u16x8_add(even, steps) }
+        }
+
+        #[inline(always)]
+        fn raised(self, by: u16) -> Self {
+            let by = u16x8_splat(by);
+            Self { even: u16x8_add(self.even, by), odd: u16x8_add(self.odd, by) }
+        }
+
+        #[inline(always)]
+        fn store(self, to: &mut [u8; 16]) {
+            let bytes = v128_or(u16x8_shr(self.even, 8), v128_and(self.odd, u16x8_splat(0xFF00)));
+            // SAFETY: `to` is 16 writable bytes; the store asks for no alignment.
+            unsafe { v128_store(to.as_mut_ptr().cast(), bytes) }
+        }
+    }
+
+    pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
+        super::fill::<Block>(row, shade, step);
+    }
+
+    /// Every span of a list.
+    pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
+        each(pixels, spans, fill);
+    }
+}
