@@ -1,8 +1,7 @@
 //! Every triangle of a frame with all that the raster would get, for the laboratory.
 
 use super::face::Sink;
-use super::pipelines::Pipelines;
-use super::sinks::Pipeline;
+use super::pipelines::{Pipeline, Pipelines};
 use super::{RenderError, Renderer, Screen, Stats, VertexPath};
 use crate::palette::Ramp;
 use crate::plan::FaceShading;

@@ -4,7 +4,6 @@ use super::budget::limits;
 use super::object::ObjectState;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::PixelLight;
-use super::sinks::Pipeline;
 use super::tables::{Image, Tables};
 use crate::light::{Blend, Material};
 use crate::palette::{Palette, Ramp};
@@ -73,7 +72,15 @@ pub(super) fn need(tables: &mut Tables, scene: &Scene, palette: &Palette, plan: 
     }
 }
 
-/// The looks of a frame's surfaces.
+/// The surface and the shading that a pixel pipeline is made for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Pipeline {
+    pub(super) object: usize,
+    pub(super) surface: u16,
+    pub(super) shading: FaceShading,
+}
+
+/// The pixel pipelines of a frame's surfaces.
 #[derive(Clone, Copy)]
 pub(super) struct Pipelines<'a> {
     pub(super) scene: &'a Scene,

@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use super::face::Sink;
-use super::pipelines::Pipelines;
+use super::pipelines::{Pipeline, Pipelines};
 use super::sift::Sieve;
 use crate::plan::FaceShading;
 use crate::raster::batch::numbered::Numbered;
@@ -134,14 +134,6 @@ impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
         }
         self.effects.batch.push(vertices, attributes);
     }
-}
-
-/// What a pixel pipeline is made for.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Pipeline {
-    pub(super) object: usize,
-    pub(super) surface: u16,
-    pub(super) shading: FaceShading,
 }
 
 /// Draws faces with effects, many of one pipeline at a time.

@@ -1,5 +1,7 @@
 //! Small scenes, each of which calls for something.
 
+use std::sync::LazyLock;
+
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
@@ -92,9 +94,12 @@ pub fn random(random: &mut Random) -> Scene {
     scene
 }
 
-/// Every scene under its name, those that are shipped too; together they call for every effect.
+/// Every scene under its name, those that are shipped too; together they call for every effect. They are loaded once.
 pub fn all() -> Vec<(String, Scene)> {
-    small().into_iter().map(|(name, scene)| (name.to_string(), scene)).chain(super::shipped::scenes()).collect()
+    static ALL: LazyLock<Vec<(String, Scene)>> = LazyLock::new(|| {
+        small().into_iter().map(|(name, scene)| (name.to_string(), scene)).chain(super::shipped::scenes()).collect()
+    });
+    ALL.clone()
 }
 
 fn small() -> Vec<(&'static str, Scene)> {

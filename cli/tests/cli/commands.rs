@@ -267,7 +267,7 @@ fn f4_an_interrupted_row_is_made_of_whole_pictures() {
     let mut tried = Tried::new("f4_an_interrupted_row_is_made_of_whole_pictures", 20);
     let directory = directory();
     let mut child = program(&directory)
-        .args(["render", "torus", "-o", "%06d.png", "--frames", "1000000", "--scale", "2"])
+        .args(["render", "torus", "-o", "%06d.png", "--frames", "100000", "--scale", "2"])
         .stderr(Stdio::piped())
         .spawn()
         .expect("started");
@@ -738,7 +738,7 @@ fn f4_an_interrupted_film_leaves_nothing_behind() {
         }
         let names = names_in(directory.path());
         let mut child = program(&directory)
-            .args(["render", "torus", "-o", "x.gif", "--frames", "1000000", "--record", "r%d.txt"])
+            .args(["render", "torus", "-o", "x.gif", "--frames", "100000", "--record", "r%d.txt"])
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()

@@ -1,22 +1,38 @@
 //! `mode13h verify`.
 
-use std::process::Command;
+use std::process::{Command, Output};
+use std::sync::OnceLock;
 
 use mode13h::span::Kernel;
 use mode13h_lab::verify::{self, Frames};
 
 use crate::support::tried::Tried;
 
-fn run(words: &[&str]) -> (String, Option<i32>) {
-    let output = Command::new(env!("CARGO_BIN_EXE_mode13h")).args(words).output().expect("started");
+fn run(words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mode13h")).args(words).output().expect("started")
+}
+
+/// What `mode13h verify` comes to. It takes seconds: it is run once for all tests.
+pub(crate) fn verified() -> &'static Output {
+    static OUTPUT: OnceLock<Output> = OnceLock::new();
+    OUTPUT.get_or_init(|| run(&["verify"]))
+}
+
+/// What `mode13h verify --json --seed 7` comes to, run once as well.
+pub(crate) fn verified_as_json() -> &'static Output {
+    static OUTPUT: OnceLock<Output> = OnceLock::new();
+    OUTPUT.get_or_init(|| run(&["verify", "--json", "--seed", "7"]))
+}
+
+fn text_and_status(output: &Output) -> (&str, Option<i32>) {
     assert!(output.status.code() != Some(0) || output.stderr.is_empty(), "{output:?}");
-    (String::from_utf8(output.stdout).expect("text"), output.status.code())
+    (str::from_utf8(&output.stdout).expect("text"), output.status.code())
 }
 
 #[test]
 fn a_line_for_each_group_and_the_hash() {
     let mut tried = Tried::new("a_line_for_each_group_and_the_hash", 10);
-    let (text, status) = run(&["verify"]);
+    let (text, status) = text_and_status(verified());
     assert_eq!(status, Some(0), "{text}");
     let lines: Vec<&str> = text.lines().collect();
     let kernels: Vec<&str> = Kernel::available().map(Kernel::name).collect();
@@ -33,9 +49,9 @@ fn a_line_for_each_group_and_the_hash() {
 #[test]
 fn the_same_for_programs() {
     let mut tried = Tried::new("the_same_for_programs", 9);
-    let (text, status) = run(&["verify", "--json", "--seed", "7"]);
+    let (text, status) = text_and_status(verified_as_json());
     assert_eq!(status, Some(0), "{text}");
-    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let json: serde_json::Value = serde_json::from_str(text).expect("JSON");
     assert_eq!((&json["schema"], &json["seed"], &json["passed"]), (&1.into(), &7.into(), &true.into()));
     assert_eq!(json["frames"]["hash"], format!("{:016x}", Frames::EXPECTED.hash));
     let by_kernel = json["frames"]["by_kernel"].as_array().expect("a list");

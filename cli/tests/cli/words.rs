@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::process::{Command, Output};
+use std::sync::OnceLock;
 
 use crate::support::tried::{Tried, is_here};
+use crate::verify::{verified, verified_as_json};
 use mode13h::scene::shipped;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -28,6 +30,15 @@ fn program(directory: &TempDir) -> Command {
 /// Runs the program with words that have spaces between them.
 fn run(directory: &TempDir, words: &str) -> Output {
     program(directory).args(words.split_whitespace()).output().expect("started")
+}
+
+/// A study that takes two seconds and writes no file.
+const COST: &str = "cost cube --frames 1 --seconds 0 --shadings flat --json";
+
+/// What [`COST`] comes to, run once for all tests.
+fn cost() -> &'static Output {
+    static OUTPUT: OnceLock<Output> = OnceLock::new();
+    OUTPUT.get_or_init(|| run(&directory(), COST))
 }
 
 #[track_caller]
@@ -275,7 +286,7 @@ fn every_command_ends_with_the_status_that_help_names() {
             &[
                 // Its integers know no budget, so that a budget of half a shade is not kept.
                 ("cost torus --frames 1 --seconds 0 --shadings flat --json --arithmetic fixed", 1),
-                ("cost cube --frames 1 --seconds 0 --shadings flat --json", 0),
+                (COST, 0),
                 ("cost cube --frames 0", 2),
                 ("cost broken.obj", 2),
                 ("cost none.toml", 3),
@@ -321,7 +332,11 @@ fn every_command_ends_with_the_status_that_help_names() {
         let known: Vec<i32> = said.lines().filter_map(|line| line.split_whitespace().next()?.parse().ok()).collect();
         assert_eq!(known, [0, 1, 2, 3, 130], "{command}: {said}");
         for (words, status) in runs {
-            let output = run(&directory, words);
+            let output = match *words {
+                "verify" => verified(),
+                COST => cost(),
+                words => &run(&directory, words),
+            };
             assert_eq!(output.status.code(), Some(*status), "{words}: {}", String::from_utf8_lossy(&output.stderr));
             tried.add(1);
         }
@@ -332,11 +347,11 @@ fn every_command_ends_with_the_status_that_help_names() {
 #[test]
 fn lists_and_figures_are_json_for_programs() {
     let directory = directory();
-    let json = |words: &str| -> Value {
-        let output = run(&directory, words);
+    let value = |words: &str, output: &Output| -> Value {
         assert!(output.status.success(), "{words}: {output:?}");
         serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{words}: {error}: {output:?}"))
     };
+    let json = |words: &str| value(words, &run(&directory, words));
     let length = |value: &Value| value.as_array().expect("a list").len();
 
     let scenes = json("scenes --json");
@@ -382,8 +397,8 @@ fn lists_and_figures_are_json_for_programs() {
     assert_eq!((&pixel["shading"], &pixel["arithmetic"]), (&"phong".into(), &"float".into()));
     assert!(pixel["shading_reason"].is_string() && pixel["faces"][0]["interpolation"].is_string(), "{pixel}");
     assert_eq!(length(&json("explain torus --row 60 --json")["columns"]), 320);
-    assert_eq!(json("verify --json")["passed"], true);
-    let cost = json("cost cube --frames 1 --seconds 0 --shadings flat --json");
+    assert_eq!(value("verify --json", verified_as_json())["passed"], true);
+    let cost = value(COST, cost());
     assert_eq!((&cost["schema"], &cost["shadings"][0]["shading"]), (&2.into(), &"flat".into()));
     for text in [pixel, cost] {
         let text = text.to_string();

@@ -1,5 +1,7 @@
 //! The engine against the truth: every shading that claims something, on every scene.
 
+use std::sync::LazyLock;
+
 use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::tried::Tried;
@@ -37,8 +39,13 @@ fn compare(frame: &TruthFrame, shown: &Shown) -> ErrorMap {
     ErrorMap::new(frame, shown).expect("of one size")
 }
 
-/// Every scene, those that are shipped at two more moments of their round.
+/// Every scene, those that are shipped at two more moments of their round. They are loaded once.
 fn all() -> Vec<(String, Scene)> {
+    static ALL: LazyLock<Vec<(String, Scene)>> = LazyLock::new(load);
+    ALL.clone()
+}
+
+fn load() -> Vec<(String, Scene)> {
     let mut all = scenes::all();
     for shipped in &mode13h::scene::shipped::ALL {
         for part in [0.05, 0.73] {
