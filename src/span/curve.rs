@@ -1,6 +1,7 @@
 //! Shades that are quadratic along a row. A pass that writes no pixel.
 
 use super::Kernel;
+use crate::simd::at_best_level;
 
 /// Shades in 8.8 on a parabola, held between two, which are at most 0xFF00:
 ///
@@ -40,6 +41,6 @@ impl Kernel {
     #[inline]
     #[doc(hidden)]
     pub fn curve(self, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
-        self.run(|| curve_inlined(shades, parabola, least, most));
+        at_best_level!(self, curve_inlined(shades, parabola, least, most));
     }
 }

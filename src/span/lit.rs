@@ -2,6 +2,8 @@
 
 use super::Kernel;
 use crate::lanes::{LANES, Lanes, Points};
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+use crate::simd::compiled_for_avx2;
 
 /// Six numbers at each of eight pixels of a row, from pixel `first` on, each the quotient of two that change
 /// linearly along it:
@@ -103,7 +105,11 @@ impl Kernel {
     #[must_use]
     #[doc(hidden)]
     pub fn numerators(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
-        self.run(|| numerators_inlined(places, a, da, d, dd))
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(avx2) = self.avx2() {
+            return numerators_avx2(avx2, places, a, da, d, dd);
+        }
+        numerators(places, a, da, d, dd)
     }
 
     /// [`divide`] as the kernel's processor does it best: the same numbers.
@@ -111,7 +117,11 @@ impl Kernel {
     #[must_use]
     #[doc(hidden)]
     pub fn divide(self, numerators: &Numerators) -> Points {
-        self.run(|| divide_inlined(numerators))
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(avx2) = self.avx2() {
+            return divide_avx2(avx2, numerators);
+        }
+        divide(numerators)
     }
 
     /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
@@ -119,6 +129,31 @@ impl Kernel {
     #[must_use]
     #[doc(hidden)]
     pub fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-        self.run(|| interpolate_inlined(places, a, da, d, dd))
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(avx2) = self.avx2() {
+            return interpolate_at_avx2(avx2, places, a, da, d, dd);
+        }
+        interpolate_at(places, a, da, d, dd)
+    }
+}
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+compiled_for_avx2! {
+    fn numerators_avx2(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
+        numerators_inlined(places, a, da, d, dd)
+    }
+}
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+compiled_for_avx2! {
+    fn divide_avx2(numerators: &Numerators) -> Points {
+        divide_inlined(numerators)
+    }
+}
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+compiled_for_avx2! {
+    fn interpolate_at_avx2(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+        interpolate_inlined(places, a, da, d, dd)
     }
 }

@@ -301,16 +301,6 @@ impl Kernel {
         list::each_nearer(pixels, cells, spans, depths)
     }
 
-    /// What `body` gives, compiled for the best level that this kernel may use.
-    #[inline(always)]
-    pub(crate) fn run<R>(self, body: impl FnOnce() -> R) -> R {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if let Some(avx2) = self.avx2() {
-            return avx2.run(body);
-        }
-        body()
-    }
-
     /// The proof that the processor has AVX2, if this kernel may use it.
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     #[inline]

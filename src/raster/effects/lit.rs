@@ -130,6 +130,7 @@ impl Waiting {
 impl Pieces {
     /// Lights every pixel. Eight are lit together: those of a row, and what is left of several rows and triangles. A
     /// pixel's point is made from its own row's first pixel, so its shade does not depend on the other seven.
+    #[inline(never)]
     pub(super) fn light_each<const N: usize>(
         &self,
         faces: &[Face],
@@ -167,6 +168,7 @@ impl Pieces {
     }
 
     /// Lights some pixels of each row, and fills in bytes of shades that are linear between them.
+    #[inline(never)]
     pub(super) fn light_some<const N: usize>(
         &self,
         faces: &[Face],

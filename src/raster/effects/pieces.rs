@@ -138,9 +138,7 @@ impl Pieces {
 
     /// One stage: for every triangle `plane` makes what its values are over it, from its corners top to bottom; for every
     /// piece `fill` makes one of `out` from that.
-    ///
-    /// Each stage is a function of its own: inlined they would be one, and each would be made slower by the others.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn each<'a, P, T>(
         &self,
         faces: &'a [Face],

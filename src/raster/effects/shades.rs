@@ -48,6 +48,7 @@ impl Pieces {
     }
 
     /// The bytes of shades, of which there is one at a pixel.
+    #[inline(never)]
     fn shade_bytes(&self, faces: &[Face], buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let n = self.len();
         let Buffers { bytes, shades: [shades, ..], .. } = buffers;
@@ -104,6 +105,7 @@ impl Pieces {
     }
 
     /// The bytes of three channels.
+    #[inline(never)]
     fn shade_channels(&self, faces: &[Face], buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let n = self.len();
         let Buffers { channels, shades, .. } = buffers;

@@ -31,6 +31,8 @@ impl Pieces {
         }
     }
 
+    /// A function for each, so that none is compiled otherwise where another is left out.
+    #[inline(never)]
     fn texels_by<const MAPPING: u8>(
         &self,
         faces: &[Face],

@@ -8,6 +8,7 @@ use super::light::narrow;
 use super::{Budget, LIGHTS, Lit};
 use crate::lanes::{LANES, Lanes};
 use crate::light::Lights;
+use crate::simd::at_best_level;
 use crate::span::Kernel;
 
 /// The normal and the position of each vertex of a mesh.
@@ -108,11 +109,11 @@ impl Budget {
 /// Marks the vertices with the lights that their fronts see.
 pub(super) fn mark(object: &Lit<'_>, flags: &mut [u8]) {
     let corners = Corners { normals: object.geometry.normals, positions: object.geometry.positions };
-    object.kernel.run(|| corners.mark(object.lights, flags));
+    at_best_level!(object.kernel, corners.mark(object.lights, flags));
 }
 
 fn chords_of(corners: Corners<'_>, lights: &Lights<'_>, chords: &mut [f32], kernel: Kernel) -> Nearest {
-    kernel.run(|| corners.chords(lights, chords))
+    at_best_level!(kernel, corners.chords(lights, chords))
 }
 
 /// Up to eight; what is missing is the last again.

@@ -22,6 +22,7 @@ use super::{Budget, CURVATURE, EXACT, LINEAR, brightest, highlight, parts};
 use crate::lanes::{LANES, Lanes};
 use crate::light::{Lights, Reflectance};
 use crate::render::faces::Faces;
+use crate::simd::at_best_level;
 use crate::span::Kernel;
 
 /// From which exponent on a highlight is known to curve less away from its middle.
@@ -455,7 +456,7 @@ impl Faces<'_> {
 
 #[inline]
 fn model_of(falling: &Falling<'_>, eight: &Eight, kernel: Kernel) -> [Lanes<f32>; 2] {
-    kernel.run(|| falling.model(eight))
+    at_best_level!(kernel, falling.model(eight))
 }
 
 /// What is lost for want of length, or at the clamp, whichever is more.
