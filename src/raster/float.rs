@@ -45,7 +45,7 @@ pub(super) struct FloatPlane {
     weights: Weights,
     /// The depth of each vertex times its shade, then its depth.
     values: [[f64; 2]; 3],
-    /// What both sums change by from one pixel to the next.
+    /// Change of both sums from one pixel to the next.
     steps: [f32; 2],
     /// The least and the greatest shade of a vertex.
     range: [f32; 2],

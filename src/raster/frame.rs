@@ -49,7 +49,7 @@ impl Rect {
         }
     }
 
-    /// Whether it holds no pixel.
+    /// Returns whether it holds no pixel.
     #[must_use]
     #[doc(hidden)]
     pub fn is_empty(self) -> bool {

@@ -49,12 +49,12 @@ impl Linear {
         self.origin + self.per_column * i128::from(x) + self.per_row * i128::from(y)
     }
 
-    /// What it changes by from one pixel to the next.
+    /// Change from one pixel to the next.
     pub(super) fn per_column(&self) -> i128 {
         self.per_column
     }
 
-    /// What it changes by from one row to the next.
+    /// Change from one row to the next.
     pub(super) fn per_row(&self) -> i128 {
         self.per_row
     }
@@ -101,7 +101,7 @@ impl HyperbolicPlane {
         (n, 256 * d)
     }
 
-    /// What both change by from one pixel to the next.
+    /// Change of both from one pixel to the next.
     #[must_use]
     pub fn step(&self) -> (i128, i128) {
         let (n, d) = self.sums(self.weights.per_column(), 128);

@@ -1,4 +1,4 @@
-//! From a row of a triangle to bytes: which pixel loop, from which start.
+//! Painting of a triangle's rows: the choice of the pixel loop and of its start.
 //!
 //! Every way to draw a triangle paints its rows here, whole or in parts, so all give the same bytes.
 

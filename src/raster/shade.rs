@@ -49,9 +49,9 @@ pub struct ShadePlane {
     area: Divisor,
     /// N at column 0's centre of row 0.
     origin: i64,
-    /// What N changes by from one pixel to the next.
+    /// Change of N from one pixel to the next.
     per_column: i64,
-    /// What N changes by from one row to the next.
+    /// Change of N from one row to the next.
     per_row: i64,
     step: u16,
 }
@@ -111,7 +111,7 @@ impl ShadePlane {
         self.origin + self.per_column * i64::from(x) + self.per_row * i64::from(y)
     }
 
-    /// What N changes by from one pixel to the next: within 2⁴⁶.
+    /// Change of N from one pixel to the next: within 2⁴⁶.
     #[inline]
     pub(super) fn per_column(&self) -> i64 {
         self.per_column

@@ -1,4 +1,4 @@
-//! What may enter the raster: a projected vertex inside the guard band.
+//! Vertices of the raster: projected ones inside the guard band.
 
 use core::fmt;
 

@@ -76,7 +76,7 @@ impl Edge {
         Self { y, x: self.x + self.step_x * rows, shade: self.shade + self.step_shade * rows, ..*self }
     }
 
-    /// On to the next row.
+    /// Steps to the next row.
     #[inline]
     fn down(&mut self) {
         self.y += 1;
@@ -101,8 +101,8 @@ pub(super) struct PeriodTriangle {
 }
 
 impl PeriodTriangle {
-    /// With these shades, 0 to 0xFF00, at its vertices. The order of the vertices stays: what is above in
-    /// 1/256 pixel is not below in pixels.
+    /// Makes one with these shades, 0 to 0xFF00, at its vertices. The order of the vertices stays: a vertex above
+    /// another in 1/256 pixel is not below it in pixels.
     #[inline]
     pub(super) fn new(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let corner = |i: usize| {

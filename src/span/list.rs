@@ -28,7 +28,7 @@ pub struct Listed {
 pub struct Depths {
     /// That of the first pixel, with 24 fraction bits, as `fill_nearer` takes it.
     pub z: i64,
-    /// From one pixel to the next.
+    /// Change from one pixel to the next.
     pub dz: i64,
     /// The offset of its first cell.
     pub at: u32,

@@ -78,7 +78,7 @@ impl Batch {
         Self { is_sifted: true, ..Self::new() }
     }
 
-    /// Whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
+    /// Returns whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
     #[must_use]
     #[inline]
     #[doc(hidden)]
@@ -109,21 +109,21 @@ impl Batch {
         true
     }
 
-    /// How many triangles it holds.
+    /// Number of triangles in the batch.
     #[must_use]
     #[inline]
     pub const fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether it holds none.
+    /// Returns whether the batch holds no triangle.
     #[must_use]
     #[inline]
     pub const fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Whether there is no room left.
+    /// Returns whether there is no room left.
     #[must_use]
     #[inline]
     #[doc(hidden)]

@@ -96,7 +96,7 @@ impl<'a> Spans<'a> {
     }
 }
 
-/// Where the frame's pixels lie.
+/// Place of the frame's pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     /// The row whose pixels come first.

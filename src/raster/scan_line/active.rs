@@ -73,7 +73,7 @@ impl EdgePair {
         self.last = right.min(frame_width as i32) - 1;
     }
 
-    /// On to row `y`, the next. Returns whether it has that row.
+    /// Steps to row `y`, the next. Returns whether it has that row.
     #[inline]
     fn down(&mut self, y: i32) -> bool {
         if y >= self.end {
@@ -175,7 +175,7 @@ impl<'a> List<'a> {
         }
     }
 
-    /// On to the next row: faces that end leave, the others are put in order again.
+    /// Steps to the next row: faces that end leave, the others are put in order again.
     pub(super) fn down(&mut self) {
         self.y += 1;
         let mut kept = 0;

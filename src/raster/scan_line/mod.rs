@@ -56,7 +56,7 @@ impl<'a> Scratch<'a> {
     /// Entries of the list that a face needs: one each among those to come, the active and the open.
     pub const LIST_EACH: usize = 3;
 
-    /// For n faces `list` is [`LIST_EACH`](Self::LIST_EACH)·n long at least, and `pairs` n.
+    /// Takes memory for n faces: `list` is [`LIST_EACH`](Self::LIST_EACH)·n long at least, and `pairs` n.
     #[must_use]
     pub fn new(list: &'a mut [u64], pairs: &'a mut [EdgePair]) -> Self {
         Self { list, pairs }
@@ -229,7 +229,7 @@ struct Run {
     x1: i32,
 }
 
-/// What goes along a row from left to right.
+/// Sweep along a row, from left to right.
 struct Sweep {
     drawn: DrawStats,
     /// Not yet painted, because the next segment may be the same face's.

@@ -22,7 +22,7 @@ const SIXTEEN: usize = 2 * LANES;
 /// Groups of at most so many rows are listed together.
 pub(in super::super) const FEW_ROWS: i32 = 4;
 
-/// What the assembly reads and writes.
+/// Input and output of the assembly.
 #[repr(C, align(64))]
 pub(in super::super) struct Spans {
     // One entry for each span. Up to sixteen are written at a time; those that are no spans are written over.
@@ -49,7 +49,7 @@ pub(in super::super) struct Spans {
     drawn: u32,
     /// Pixels that were nearer.
     nearer: u32,
-    /// How many pixels and cells there are.
+    /// Number of pixels and cells.
     pixels: u32,
     cells: u32,
     pitch: u32,

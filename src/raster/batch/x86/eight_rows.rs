@@ -17,7 +17,7 @@ pub(super) struct Rows {
     pub(super) z: [__m256i; 2],
 }
 
-/// Where the next row of eight triangles begins.
+/// Beginnings of the next row of eight triangles.
 pub(super) struct Columns {
     at: __m256i,
     cell: __m256i,
