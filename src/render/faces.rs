@@ -1,4 +1,4 @@
-//! What the faces of an object are made from.
+//! Input for the faces of an object.
 
 use super::lit::ShadedVertices;
 use super::paint::SurfaceMaterial;
@@ -19,7 +19,7 @@ pub(super) struct Faces<'a> {
     pub(super) lit: &'a ShadedVertices,
     /// The attributes of each vertex, if there are effects.
     pub(super) extras: &'a [VertexAttributes],
-    /// Whether faces that are turned away are left out.
+    /// Whether back faces are left out.
     pub(super) culls: bool,
     /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. Turned away, such a
     /// face is left out even where others show their backs: the other one has the same depth, and looks toward the eye.
@@ -35,6 +35,6 @@ pub(super) struct Faces<'a> {
     pub(super) affine: bool,
     /// Whether pixels may be lit each for itself.
     pub(super) lights_pixels: bool,
-    /// What light is worked out by where a face is decided on.
+    /// Kernel for the light where a face is decided on.
     pub(super) kernel: Kernel,
 }

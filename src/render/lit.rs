@@ -40,7 +40,7 @@ impl ShadedVertices {
         self.flags.clear();
     }
 
-    /// Where faces or pixels are lit: no vertex has a shade.
+    /// Leaves vertices without shades: faces or pixels are lit.
     pub(super) fn leave_without_light(&mut self) {
         self.shades.fill([U8F8::default(); 2]);
     }

@@ -1,4 +1,4 @@
-//! From a scene to bytes, frame by frame.
+//! Rendering: from a scene to bytes, frame by frame.
 //!
 //! | file | what |
 //! |---|---|
@@ -70,7 +70,7 @@ pub use settings::{Accuracy, ChosenBy, Resolved, Settings};
 pub use stats::{Shares, Stats};
 pub use vertex_path::VertexPath;
 
-/// What the frame that was drawn last depends on, beside its objects.
+/// Inputs of the last frame that was drawn, beside its objects.
 #[derive(Clone, PartialEq, Debug)]
 struct Drawing {
     screen: Screen,
@@ -103,7 +103,7 @@ pub struct Renderer {
     effects: EffectBatch,
     /// The faces of a frame that must be known whole before it is drawn.
     triangles: Vec<([Vertex; 3], Interpolation)>,
-    /// For each of `triangles` its index in `kept`, if it has effects.
+    /// Index in `kept` of each of `triangles`, if it has effects.
     kept_places: Vec<Option<u32>>,
     kept: Vec<DeferredFace>,
     /// Faces that shine through.
@@ -150,14 +150,14 @@ impl Renderer {
         Self { settings: self.settings.clone(), kernel: self.kernel, ..Self::new() }
     }
 
-    /// How it is set.
+    /// Settings of the renderer.
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// How it is set, to change it: how textures are mapped, how hidden surfaces are left out, the numbers that vertices
-    /// are made in.
+    /// Settings of the renderer, to change them: how textures are mapped, how hidden surfaces are left out, the numbers
+    /// that vertices are made in.
     ///
     /// ```
     /// use mode13h::render::{HiddenSurfaces, Mapping, Renderer};
@@ -244,9 +244,9 @@ impl Renderer {
         })
     }
 
-    /// How far the shades of an object, by its place, may be from light at every pixel, in shades of 1/255
-    /// of full intensity and rounding aside: a bound, from normals, lights and vertices, for the frame
-    /// that was drawn last. `None` of an object that has one shade a face, that is not there, or on the
+    /// Bounds the error of an object's linear shades against light at every pixel, in shades of 1/255 of full
+    /// intensity and rounding aside, from normals, lights and vertices, for the frame that was drawn last.
+    /// `object` is its index. `None` if the object has one shade a face, or is not there, or on the
     /// 16.16 path.
     #[must_use]
     #[doc(hidden)]
