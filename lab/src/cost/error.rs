@@ -12,7 +12,7 @@ use mode13h::render::RenderError;
 pub enum CostError {
     /// The scene cannot be drawn.
     Scene(RenderError),
-    /// What it shows cannot be looked at.
+    /// The pixels that it shows cannot be found out.
     Probe(ProbeError),
     /// There is no truth about it.
     Truth(TruthError),

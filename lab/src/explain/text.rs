@@ -246,7 +246,7 @@ impl Pixel {
         text.say("shading", &words);
     }
 
-    /// What else meets the pixel.
+    /// Says what else meets the pixel.
     fn say_others(&self, text: &mut Text) {
         let others: Vec<&FaceHere> =
             self.faces.iter().filter(|face| !matches!(face.fate, Fate::Seen | Fate::SeenThrough)).collect();

@@ -63,7 +63,7 @@ pub(super) const fn flat(corners: [Corner; 3], byte: u8) -> Face {
 }
 
 impl Face {
-    /// What the raster is given.
+    /// Input of the raster.
     pub(super) fn for_raster(&self) -> ([Vertex; 3], Interpolation) {
         (self.corners.map(Corner::vertex), self.interpolation)
     }

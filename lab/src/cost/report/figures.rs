@@ -83,7 +83,7 @@ pub(super) fn ratio(ratio: f64) -> String {
     }
 }
 
-/// From – to.
+/// Formats an interval: from – to.
 pub(super) fn interval((low, high): (f64, f64)) -> String {
     format!("{} to {}", ratio(low), ratio(high))
 }
