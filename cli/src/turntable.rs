@@ -1,4 +1,4 @@
-//! What is shown: a model in a scene made for it, or a scene of its own.
+//! Turntable: a model in a scene made for it, or a scene of its own.
 
 use mode13h::Angle;
 use mode13h::auto_palette::{self, AutomaticPalette};
@@ -13,14 +13,14 @@ use mode13h::texture::Texture;
 
 use crate::input::Colors;
 
-/// How the user has turned what is shown, and how near it is, beyond what the clock does.
+/// Pose into which the user has turned what is shown, and its nearness, beyond what the clock does.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Pose {
     /// About its own upward axis, counter-clockwise seen from above, in radians.
     pub(crate) turn: f64,
     /// Its upper end towards the camera, in radians.
     pub(crate) tilt: f64,
-    /// How many times as large as at first.
+    /// Factor of its size to that at first.
     pub(crate) zoom: f64,
 }
 
@@ -29,7 +29,7 @@ impl Pose {
     pub(crate) const FIRST: Pose = Pose { turn: 0.0, tilt: 0.0, zoom: 1.0 };
 }
 
-/// What a frame is cleared to.
+/// Background that a frame is cleared to.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Background {
     /// An entry of the palette.
@@ -43,9 +43,9 @@ pub(crate) enum Background {
 pub(crate) struct Turntable {
     pub(crate) scene: Scene,
     shown: Shown,
-    /// Where it stands by itself.
+    /// The camera's own place.
     camera: Camera,
-    /// How many times as large it is shown, whatever the pose.
+    /// Factor of its size, whatever the pose.
     zoom: f64,
     /// The objects' materials, whatever the palette.
     materials: Vec<Vec<Material>>,
@@ -59,7 +59,7 @@ pub(crate) struct Turntable {
     dither: Option<bool>,
     /// Made when first asked for.
     automatic: Option<AutomaticPalette>,
-    /// What was chosen last.
+    /// Colours that were chosen last.
     pub(crate) colors: Option<Colors>,
 }
 
@@ -101,7 +101,7 @@ impl Turntable {
         }
     }
 
-    /// Whether any of its objects has colours of its own: a texture, or a surface that is not grey.
+    /// Returns whether any of its objects has colours of its own: a texture, or a surface that is not grey.
     pub(crate) fn has_colors(&self) -> bool {
         self.scene.objects().iter().zip(&self.materials).any(|(object, materials)| has_colors(object, materials))
     }
