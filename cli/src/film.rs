@@ -53,7 +53,7 @@ pub(crate) struct Film {
     kind: Kind,
     out: PathBuf,
     frames: u32,
-    /// Whether the number of frames was given.
+    /// True if the number of frames was given.
     is_told: bool,
     rate: FrameRate,
     scale: Scale,

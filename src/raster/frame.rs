@@ -57,7 +57,7 @@ impl Rect {
     }
 }
 
-/// Why bytes can't serve as a frame.
+/// Error of bytes that cannot serve as a frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum FrameError {

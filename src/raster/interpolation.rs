@@ -42,7 +42,7 @@ pub enum Interpolation {
 }
 
 impl Interpolation {
-    /// All that interpolate between the vertices.
+    /// Interpolations between the vertices, all of them.
     #[doc(hidden)]
     pub const INTERPOLATED: &[Self] = &[
         Self::GouraudVintage,

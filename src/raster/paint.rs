@@ -162,7 +162,7 @@ impl RowShader {
     }
 }
 
-/// For the stages of `effects`.
+/// Shading for the stages of `effects`.
 #[cfg(feature = "alloc")]
 impl RowShader {
     /// The bytes of `piece`, which begins at column `x` of `row` and has no start but there. With dither, the

@@ -51,7 +51,7 @@ pub struct TableRow {
     pub right_shade: U8F8,
 }
 
-/// Why a polygon was not drawn.
+/// Error of a polygon that was not drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum PolygonError {
@@ -123,7 +123,7 @@ fn is_down(edge: (i64, i64)) -> bool {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Winding {
-    /// On a screen whose y runs down: left edges run up.
+    /// Clockwise on a screen whose y runs down: left edges run up.
     Clockwise,
     CounterClockwise,
 }

@@ -23,7 +23,7 @@
 //! where they come from. Say they rise. After k pixels the sum is at least the start, which is at
 //! least min (a floor of something not below the integer min), and at most the exact value there,
 //! which is at most max: the step is no more than dI/dx, the start no more than the exact start.
-//! Where they fall the same holds turned over. So every sum lies in [min, max] as long as the
+//! Where they fall the same holds with the signs exchanged. So every sum lies in [min, max] as long as the
 //! pixel's centre lies in the triangle, and exact cover says that it does. Half a shade added to
 //! the start makes the byte the nearest shade; max ≤ 0xFF00 keeps it from wrapping.
 //!

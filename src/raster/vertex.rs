@@ -14,7 +14,7 @@ pub struct Vertex {
     depth: u32,
 }
 
-/// Why a vertex was refused.
+/// Error of a vertex that was refused.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum VertexError {

@@ -4,7 +4,7 @@
 //! vertices:   X = floor(x + ½), Y = floor(y + ½)          on whole pixels
 //! edges:      StepY = (a1 − a0) / (Y1 − Y0)               of x in 16.16, of the shade in 8.8
 //! rows:       StepX = (Bs − As) / (Bx − Ax)               of the shade in 8.8; each row its own
-//! pixels:     from Ax to the last before Bx: the whole part of As + k·StepX
+//! pixels:     from Ax to the last before Bx: the integer part of As + k·StepX
 //! ```
 //!
 //! Every quotient is cut toward zero; there is one addition a scan line and edge, one a pixel, and no half is

@@ -32,7 +32,7 @@ pub struct DrawnTriangle<'a> {
 pub struct DrawnEffects<'a> {
     /// Attributes of the corners beside their shades.
     pub attributes: &'a [Attributes; 3],
-    /// Whether it shines through, and is drawn after all that does not.
+    /// True if it shines through, and is drawn after all that does not.
     pub transparent: bool,
     /// The stages.
     pub pipeline: &'a PixelPipeline<'a>,

@@ -1,10 +1,10 @@
-//! Why a scene could not be drawn.
+//! Errors of scenes that cannot be drawn.
 
 use core::fmt;
 
 use crate::scene::Scene;
 
-/// Why a scene could not be drawn.
+/// Error of a scene that could not be drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum RenderError {

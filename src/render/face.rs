@@ -1,7 +1,7 @@
 //! The stage of an object's faces: each picks its vertices, is clipped where it must be and left out
-//! where it is turned away.
+//! where it is a back face.
 //!
-//! What the plan decides for the object is a constant of the loop: a loop that needs no clipping has no
+//! The plan's decisions for the object are constants of the loop: a loop that needs no clipping has no
 //! test for it.
 
 use super::Stats;

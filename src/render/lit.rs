@@ -1,4 +1,4 @@
-//! An object's vertices, lit and projected, in arrays: the faces that are turned away, most of a fine model, need
+//! An object's vertices, lit and projected, in arrays: the back faces, most of a fine model, need
 //! places alone.
 
 use alloc::vec::Vec;

@@ -2,24 +2,24 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `object` | what is kept of an object: its vertices, and what they were made from |
-//! | `vertex`, `lit` | the stages of vertices: projected, lit, given what effects need; what they come to, in arrays |
+//! | `object` | the state kept of an object: its vertices, and their inputs |
+//! | `vertex`, `lit` | the stages of vertices: projected, lit, given attributes for effects; their results, in arrays |
 //! | `tessellate`, `edge_map` | faces split along their edges; a number for each edge |
-//! | `sift` | which faces are turned away, and which cover no pixel centre |
-//! | `faces` | what an object's faces are made from |
+//! | `sift` | culling: back faces, and those that cover no pixel centre |
+//! | `faces` | the input for an object's faces |
 //! | `face`, `within` | the stage of faces, with `clip`: near plane and guard band |
-//! | `bound` | how far linear shades may be from light at every pixel |
-//! | `budget` | the error budget: which shading for which triangle |
-//! | `sinks`, `visible` | what becomes of faces: drawn as they come, or kept; the ways to visible surfaces |
-//! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
+//! | `bound` | bounds of the error of linear shades against light at every pixel |
+//! | `budget` | the error budget: the shading for each triangle |
+//! | `sinks`, `visible` | where faces go: drawn as they come, or kept; the ways to visible surfaces |
+//! | `paint`, `pixel_light`, `tables`, `look` | the input for pixels |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
-//! | `settings` | how a renderer is set; what a scene is drawn by, and who chose that |
-//! | `stats` | what a frame came to |
+//! | `settings` | settings of a renderer and of the scene drawn, and whose choice counts |
+//! | `stats` | counts of a frame |
 //! | `each_triangle` | every triangle of a frame with all that the raster would get, for the laboratory |
 //!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed,
 //! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
-//! be and left out where they are turned away; the [`raster`](crate::raster) draws what is left.
+//! be and left out where they are back faces; the [`raster`](crate::raster) draws what is left.
 
 mod bound;
 mod budget;

@@ -126,7 +126,7 @@ struct Made<'a> {
 #[derive(Debug, Default)]
 pub(super) struct ObjectState {
     source: Option<ShadeSource>,
-    /// Whether the source has changed since the vertices were made.
+    /// True if the source has changed since the vertices were made.
     stale: bool,
     /// The plan that the vertices were made by, its reasons aside.
     made_by: Option<[bool; Effect::COUNT]>,
@@ -136,7 +136,7 @@ pub(super) struct ObjectState {
     lit: ShadedVertices,
     extras: Vec<VertexAttributes>,
     tessellated: Tessellated,
-    /// Whether that is what is drawn. What is not stays for when it is again.
+    /// True if the tessellated mesh is drawn. Otherwise it stays for when it is again.
     is_tessellated: bool,
     /// The mesh and the number of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,

@@ -17,7 +17,7 @@ pub(super) struct SurfaceMaterial {
     pub(super) texture_size: Option<[u32; 2]>,
     pub(super) environment_size: Option<[u32; 2]>,
     pub(super) blend: Blend,
-    /// Whether its pixels pass through stages.
+    /// True if its pixels pass through stages.
     pub(super) has_effects: bool,
     pub(super) response: Option<LightResponse>,
 }

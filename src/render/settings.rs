@@ -84,7 +84,7 @@ pub struct Settings {
     pub hidden_surfaces: Option<HiddenSurfaces>,
     /// Mapping of textures.
     pub mapping: Option<Mapping>,
-    /// Whether textures have mipmaps.
+    /// Mipmaps of textures, on or off.
     pub mipmaps: Option<bool>,
     /// The numbers that vertices are made in.
     pub vertex_path: VertexPath,
@@ -108,17 +108,17 @@ pub struct Resolved {
     pub hidden_surfaces: Option<HiddenSurfaces>,
     /// Mapping of textures; `None` leaves it to the plan.
     pub mapping: Option<Mapping>,
-    /// Whether textures have mipmaps; `None` leaves it to the plan.
+    /// Mipmaps of textures, on or off; `None` leaves it to the plan.
     pub mipmaps: Option<bool>,
-    /// Whether faces are to be split. A budget sees to it otherwise that shades follow the light.
+    /// True if faces are to be split. A budget makes shades follow the light otherwise.
     pub tessellates: bool,
     /// Faces that are split are split until the shades on their edges are linear to so many shades.
     pub tolerance: f32,
-    /// Whether shades between two entries of a ramp are shown as a pattern of both.
+    /// True if shades between two entries of a ramp are shown as a pattern of both.
     pub dither: bool,
     /// The numbers that vertices are made in.
     pub vertex_path: VertexPath,
-    /// Whether what was made of a vertex may be kept for the next frame.
+    /// True if vertices may be kept for the next frame.
     pub keeps_vertices: bool,
 }
 

@@ -47,7 +47,7 @@ pub(super) struct ImmediateSink<'a, 'b, const CLIPS: bool> {
     batched: Batched<'a, 'b, CLIPS>,
     effects: BatchedEffects<'a>,
     transparent: &'a mut Vec<DeferredFace>,
-    /// Whether the surface of the last face with effects shines through.
+    /// True if the surface of the last face with effects shines through.
     is_transparent: bool,
 }
 

@@ -22,7 +22,7 @@ pub struct Stats {
     pub kernel: &'static str,
     /// Method for hidden surfaces.
     pub hidden_surfaces: HiddenSurfaces,
-    /// Whether anything was drawn: where nothing changed, the last frame is left as it is.
+    /// True if anything was drawn: where nothing changed, the last frame is left as it is.
     pub redrawn: bool,
     /// Objects whose vertices are last frame's.
     pub kept: u64,
@@ -38,7 +38,7 @@ pub struct Stats {
     pub faces: u64,
     /// Faces cut by the near plane or the guard band, or wholly beyond them.
     pub clipped: u64,
-    /// Faces turned away, or without area once clipped and rounded.
+    /// Back faces, and those without area once clipped and rounded.
     pub culled: u64,
     /// Triangles handed to the raster: faces, and the parts of those that were clipped.
     pub drawn: u64,

@@ -16,7 +16,7 @@ use crate::texture::{Mipmap, Texture};
 #[derive(Clone, Copy)]
 pub(super) struct Image<'a> {
     pub(super) texture: &'a Shared<Texture>,
-    /// Whether it has smaller copies, and so more colours.
+    /// True if it has smaller copies, and so more colours.
     pub(super) has_levels: bool,
 }
 

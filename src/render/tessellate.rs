@@ -43,7 +43,7 @@ pub(super) struct Tessellated {
     points: Vec<u32>,
     /// A bit for each triangle whose mesh's triangle lies back to back with another; empty if there is none.
     twins: Vec<u64>,
-    /// Whether each triangle's edges have been looked at, and none of them bent.
+    /// True if each triangle's edges have been looked at, and none of them bent.
     settled: Vec<bool>,
     /// The light of each vertex, and how far what it mirrors is from each light.
     known: Known,
@@ -272,7 +272,7 @@ struct Bend<'a> {
     paints: &'a [SurfaceMaterial],
     /// The greatest error that is allowed, as a share of full intensity.
     tolerance: f64,
-    /// Whether any surface has one.
+    /// True if any surface has one.
     has_highlights: bool,
 }
 

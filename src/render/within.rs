@@ -207,7 +207,7 @@ impl Faces<'_> {
     }
 }
 
-/// Returns whether a triangle has fewer pixels: at [`SMALL`], lighting each costs no more than some questions.
+/// Returns whether a triangle has fewer pixels. Lighting each of [`SMALL`] costs no more than a few questions about it.
 fn is_smaller(vertices: &[Vertex; 3], pixels: u64) -> bool {
     // Twice, in 1/256 pixel.
     doubled_area(vertices).unsigned_abs() < pixels * 131_072

@@ -41,7 +41,7 @@ impl Inputs {
 pub(super) struct Loading {
     /// Its place in the list of inputs.
     pub(super) at: usize,
-    /// Whether it was loaded because a file changed.
+    /// True if it was loaded because a file changed.
     pub(super) is_again: bool,
     pub(super) result: Result<Box<Turntable>, Failure>,
     watch: Watch,
@@ -146,7 +146,7 @@ impl Watch {
         Watch { files, loaded, seen, rested: 0 }
     }
 
-    /// Looks at all files. Whether they are others than were loaded, and have been so for a while.
+    /// Looks at all files. Returns whether they are others than were loaded, and have been so for a while.
     fn has_changed(&mut self) -> bool {
         let now: Vec<Stamp> = self.files.iter().map(|file| stamp(file)).collect();
         self.rested = if now == self.seen { self.rested + 1 } else { 0 };

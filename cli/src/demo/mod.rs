@@ -197,15 +197,15 @@ struct Demo {
     triangles: usize,
     /// Scene on show; without objects until something could be loaded.
     stage: Turntable,
-    /// Why what is shown is not what the files say.
+    /// Reason why the scene on show is not that of the files.
     wrong: Option<Failure>,
     renderer: Renderer,
     shading: ShadingChoice,
-    /// Whether a key chose it.
+    /// True if a key chose it.
     chose_shading: bool,
     kernels: Choice<Kernel>,
     palettes: Choice<(String, Colors)>,
-    /// Whether a key chose one.
+    /// True if a key chose one.
     chose_palette: bool,
     /// `None` leaves it to the plan.
     mappings: Choice<Option<Mapping>>,
@@ -232,7 +232,7 @@ struct Demo {
     /// The time of making the plan, while the plan is shown.
     planning: Timing,
     stats: Option<Stats>,
-    /// Whether the last frame was drawn, and not the same as the one before.
+    /// True if the last frame was drawn, and not the same as the one before.
     is_redrawn: bool,
     /// Words at the lower edge, and until when.
     notice: Option<(String, f64)>,

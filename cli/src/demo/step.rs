@@ -18,7 +18,7 @@ pub(super) struct Traced {
     exact_cover: bool,
     /// Source of its shades, if the loop does not make them.
     other: Option<&'static str>,
-    /// Whether something is made of the loop's byte before it is shown.
+    /// True if something is made of the loop's byte before it is shown.
     has_effects: bool,
 }
 

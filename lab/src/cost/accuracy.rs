@@ -67,7 +67,7 @@ pub(super) struct Results {
     gouraud: Against,
     unrounded: Against,
     lit: Against,
-    /// For each of [`BUDGETS`].
+    /// Pixels within each of [`BUDGETS`].
     pub(super) kept: [Kept; BUDGETS.len()],
     entries: Entries,
     swim: Swim,
@@ -133,7 +133,7 @@ impl Results {
 /// Results of all ways on one frame.
 type Judged = Result<Vec<Results>, CostError>;
 
-/// What is judged.
+/// Frames and ways that are judged.
 pub(super) struct Referee<'a> {
     pub(super) ways: &'a [Configuration<'a>],
     pub(super) base: &'a (dyn Fn() -> Renderer + Sync),

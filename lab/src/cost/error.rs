@@ -1,4 +1,4 @@
-//! Why nothing could be measured.
+//! Errors of a study.
 
 use core::fmt;
 
@@ -6,7 +6,7 @@ use super::ProbeError;
 use crate::truth::TruthError;
 use mode13h::render::RenderError;
 
-/// Why nothing could be found out.
+/// Error of a study.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum CostError {

@@ -153,7 +153,7 @@ pub(super) struct Spent {
     pub(super) clock: Clock,
     /// About how long.
     pub(super) seconds: f64,
-    /// Whether that is the most, and not what ratios that are not known well enough may prolong.
+    /// True if that is the most, and not what ratios that are not known well enough may prolong.
     pub(super) at_most: bool,
     /// The seed of the shuffled order.
     pub(super) seed: u64,

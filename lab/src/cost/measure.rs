@@ -35,15 +35,15 @@ pub struct Subject<'a> {
 pub struct Settings {
     /// The shadings that are studied. `gouraud-8.8` is drawn in any case, as ratios are to it.
     pub shadings: Vec<Shading>,
-    /// Whether vertex path, vertex rounding, kernels, dither and the ways to visible surfaces are compared, too.
+    /// True if vertex path, vertex rounding, kernels, dither and the ways to visible surfaces are compared, too.
     pub choices: bool,
-    /// Whether the sources' claims are measured, on scenes of their own.
+    /// True if the sources' claims are measured, on scenes of their own.
     pub claims: bool,
     /// Clock that times are read from.
     pub clock: Clock,
     /// About how long times are taken; up to twice as long where ratios are not known well enough.
     pub seconds: f64,
-    /// Whether that is the most. Fewer rounds are drawn then, but seven in any case.
+    /// True if that is the most. Fewer rounds are drawn then, but seven in any case.
     pub at_most: bool,
     /// Seed of the order of drawing, and of resampling.
     pub seed: u64,

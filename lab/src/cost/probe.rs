@@ -42,7 +42,7 @@ use mode13h::scene::{Object, Scene, Shared};
 pub struct Probe {
     renderer: Renderer,
     numbered: Numbered,
-    /// Whether shades are dithered, on a ramp of few entries then in any case.
+    /// Dither, on a ramp of few entries then in any case.
     dither: Option<bool>,
 }
 
@@ -156,7 +156,7 @@ impl Probe {
     }
 }
 
-/// Why nothing could be found out.
+/// Error of a probe.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum ProbeError {

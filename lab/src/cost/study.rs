@@ -115,7 +115,7 @@ pub struct ShadingRow {
     pub cover_errors: u64,
     /// Change of errors from a frame to the next, root mean square.
     pub swim: f64,
-    /// Whether no other shading is as near to `lit` and faster, as far as times can be told apart.
+    /// True if no other shading is as near to `lit` and faster, as far as times can be told apart.
     pub efficient: bool,
     /// Shadings whose time cannot be told from this one's.
     pub as_fast_as: Vec<Shading>,

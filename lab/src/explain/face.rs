@@ -14,7 +14,7 @@ pub struct FaceHere {
     pub object: usize,
     /// The triangle's place in the object's mesh; `None` where it could not be told.
     pub triangle: Option<usize>,
-    /// Whether it is only a part of that triangle, which was split.
+    /// True if it is only a part of that triangle, which was split.
     pub is_part: bool,
     /// Interpolation of its shades, where they come from its corners.
     pub interpolation: Interpolation,

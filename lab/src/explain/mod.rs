@@ -1,4 +1,4 @@
-//! Why a pixel has its byte: the whole way from three corners to an entry of the palette, in numbers.
+//! Explanation of a pixel's byte: the whole way from three corners to an entry of the palette, in numbers.
 //!
 //! | file | what |
 //! |---|---|
@@ -52,7 +52,7 @@ pub use row::{Column, Row, row};
 pub use trace::Fate;
 pub use walk::{Registers, Step, Walk};
 
-/// Why there is nothing to explain.
+/// Error of explaining a pixel or a row.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum ExplainError {

@@ -92,7 +92,7 @@ impl OnePixel {
         if drawn.pixels == 0 { None } else { self.row.get(x as usize).copied() }
     }
 
-    /// The byte of a face by a look with some stages taken away.
+    /// The byte of a face by a pixel pipeline with some stages taken away.
     fn look(&mut self, met: (&[Vertex; 3], &[Attributes; 3]), behind: u8, look: &PixelPipeline<'_>) -> u8 {
         self.draw(behind, |raster| raster.triangle_with_effects(met.0, met.1, look)).unwrap_or(behind)
     }
@@ -224,7 +224,7 @@ impl OnePixel {
     }
 }
 
-/// Applies each stage of a look to the pixel.
+/// Applies each stage of a pixel pipeline to the pixel.
 fn stages(
     look: &PixelPipeline<'_>,
     met: (&[Vertex; 3], &[Attributes; 3]),

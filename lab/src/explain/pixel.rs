@@ -30,17 +30,17 @@ pub struct Pixel {
     pub y: u32,
     /// The frame's byte: an entry of the palette.
     pub byte: u8,
-    /// That entry's colour, at the scene's time.
+    /// Colour of that entry, at the scene's time.
     pub color: Rgb,
     /// Byte that the frame was cleared to.
     pub background: u8,
     /// Method for hidden surfaces.
     pub hidden_surfaces: HiddenSurfaces,
-    /// Why so, in words; empty where there is no object.
+    /// Reason for it, in words; empty where there is no object.
     pub hidden_surfaces_why: String,
     /// The technique of shading.
     pub shading: Shading,
-    /// Why so, in words.
+    /// Reason for it, in words.
     pub shading_why: String,
     /// The budget that chooses a technique for each face in place of `shading`, in shades, if there is one.
     pub max_error: Option<f32>,
@@ -66,7 +66,7 @@ pub struct Seen {
     pub ramp: Ramp,
     /// Source of its shades.
     pub shaded_by: ShadedBy,
-    /// Whether it covers the pixels whose centres are in it, and no others.
+    /// True if it covers the pixels whose centres are in it, and no others.
     pub exact_cover: bool,
     /// Traces of its values to the pixel: one for shades from corners, or three for red, green and blue; two for a
     /// table of normals, the normal's column and row in it; none for light at the pixel.

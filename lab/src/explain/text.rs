@@ -15,7 +15,7 @@ use mode13h::plan::Effect;
 use mode13h::raster::Interpolation;
 use mode13h::render::{FaceShading, Shading};
 
-/// Triangles that are listed, at most.
+/// Triangles that are printed, at most.
 const LISTED: usize = 6;
 
 impl fmt::Display for Pixel {

@@ -55,7 +55,7 @@ pub enum Fate {
 #[derive(Debug)]
 pub(super) struct Trace {
     pub(super) stats: Stats,
-    /// In the order of drawing; those that shine through last.
+    /// Triangles in the order of drawing; those that shine through last.
     pub(super) met: Vec<Met>,
     pub(super) byte: u8,
     /// The plan in words.

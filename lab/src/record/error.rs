@@ -7,7 +7,7 @@ use std::io;
 use super::VERSION;
 use mode13h::raster::{FrameError, VertexError};
 
-/// Why a record was refused. Nothing of it is used.
+/// Error of a record that was refused. Nothing of it is used.
 ///
 /// Displays as `line 7: expected a depth, found "-1"`, to stand behind the file's name and a colon.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use mode13h::raster::{Interpolation, Vertex};
 /// A corner on the screen.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Corner {
-    /// To the right, in pixels.
+    /// Distance to the right, in pixels.
     pub(super) x: f64,
     /// Down, in pixels.
     pub(super) y: f64,

@@ -64,7 +64,7 @@ pub struct Comparison {
     pub right: Panel,
     /// Triangles that the engine's raster was given, in this order.
     pub triangles: Vec<Triangle>,
-    /// Whether depth decides which face has a pixel, so that faces may hide each other.
+    /// True if depth decides which face has a pixel, so that faces may hide each other.
     pub depth_tested: bool,
     /// The true edges.
     pub outline: Vec<Segment>,

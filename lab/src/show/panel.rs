@@ -48,7 +48,7 @@ pub struct Panel {
 pub(super) struct Measure {
     /// A byte may be this far off, in shades, and is not marked yet.
     pub(super) shades: u8,
-    /// Whether it counts how many faces drew a pixel. Where faces hide each other it means nothing.
+    /// True if it counts how many faces drew a pixel. Where faces hide each other it means nothing.
     pub(super) counts_writes: bool,
     /// Meaning of a byte that is further off.
     pub(super) other_byte: Mark,

@@ -23,9 +23,9 @@ pub(super) struct Body<'a> {
     pub(super) object: &'a Object,
     /// One for each vertex of its mesh.
     pub(super) corners: Vec<Corner>,
-    /// Whether back faces are seen too, other than those back to back with a front face.
+    /// True if back faces are seen too, other than those back to back with a front face.
     pub(super) two_sided: bool,
-    /// Whether red, green and blue are lit each for itself.
+    /// True if red, green and blue are lit each for itself.
     pub(super) in_color: bool,
 }
 

@@ -34,7 +34,7 @@ pub(super) struct Part {
 #[derive(Clone, Debug)]
 pub(super) struct Rounded {
     pub(super) parts: Vec<Part>,
-    /// Whether it shows its back.
+    /// True if it shows its back.
     pub(super) turned: bool,
 }
 

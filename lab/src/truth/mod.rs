@@ -299,7 +299,7 @@ impl<'a> Truth<'a> {
     }
 
     /// The triangles that the face is drawn in, each three corners (x and y) in 1/256 pixel from the frame's
-    /// upper left corner: one, or if it is clipped none to six. None, too, if it is turned away or has no area.
+    /// upper left corner: one, or if it is clipped none to six. None, too, if it is a back face or has no area.
     #[must_use]
     pub fn rounded_triangles(&self, face: Face) -> Vec<[[i64; 2]; 3]> {
         match self.drawn(face) {
@@ -323,7 +323,7 @@ impl<'a> Truth<'a> {
         Some((body, body.triangle(face.triangle)?))
     }
 
-    /// A face clipped and rounded, if it is not turned away.
+    /// A face clipped and rounded, if it is no back face.
     fn drawn(&self, face: Face) -> Option<Rounded> {
         let (body, corners) = self.triangle(face)?;
         let rounded = Rounded::new(&self.eye, &corners);
@@ -371,7 +371,7 @@ impl<'a> Truth<'a> {
         Self::hit(&self.eye, face, (body, &corners), at)
     }
 
-    /// Does so for a face whose corners are at hand.
+    /// Finds the hit on a face whose corners are at hand.
     fn hit(eye: &Eye, face: Face, (body, corners): (&Body<'a>, &[Corner; 3]), at: [f64; 2]) -> Option<Hit> {
         let met = ray::meet(eye, corners, at)?;
         let hit = Hit { face, turned: met.turned, weights: met.on_face, inverse_w: 1.0 / met.w };

@@ -18,7 +18,7 @@ pub(super) struct Met {
     /// Weights of the three corners there, on the face in space; together 1.
     pub(super) on_face: [f64; 3],
     pub(super) w: f64,
-    /// Whether the eye sees the face's back.
+    /// True if the eye sees the face's back.
     pub(super) turned: bool,
 }
 

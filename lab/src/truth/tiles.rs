@@ -1,7 +1,7 @@
 //! The truth of [`Standard::Lit`] for parts of a picture, for those who cannot wait for the whole.
 //!
-//! Every face is projected once and listed with the tiles that it may cover; what is turned away or out of the frame is
-//! listed nowhere. After that a tile costs no more than its own faces.
+//! Every face is projected once and entered into the tiles that it may cover; a face that is a back face or out of the
+//! frame is entered nowhere. After that a tile costs no more than its own faces.
 
 use alloc::vec;
 use alloc::vec::Vec;

@@ -35,7 +35,7 @@ pub struct Comparison {
     pub hidden_surfaces: HiddenSurfaces,
     /// Pixels that differ.
     pub pixels: u64,
-    /// Whether they must be none: the methods that compare depths give the same bytes, but for triangles
+    /// True if they must be none: the methods that compare depths give the same bytes, but for triangles
     /// without exact cover, which the scan-line method gives it. The others need
     /// not: their differences are where they are wrong.
     pub must_agree: bool,

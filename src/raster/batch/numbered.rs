@@ -1,4 +1,4 @@
-//! Triangles by their numbers, of vertices that lie in arrays: what survives a sieve is put into a batch at once.
+//! Triangles by their numbers, of vertices that lie in arrays: those that survive culling are put into a batch at once.
 
 use super::Batch;
 use crate::fixed::U8F8;

@@ -1,4 +1,4 @@
-//! The sieve: which triangles of a batch may cover a pixel.
+//! Culling: the triangles of a batch that may cover a pixel.
 
 use super::Batch;
 use super::rows::{Ints, LANES, MAX_ACROSS, MAX_AREA_4X4, MAX_COLUMNS, MAX_DOWN, MAX_ROWS};
@@ -11,12 +11,12 @@ pub(super) enum Kind {
     Small,
     /// Lies inside the clip rectangle and is small enough for `tall`.
     Large,
-    /// Reaches over the clip rectangle's edge, and is no larger than a tall one.
+    /// Reaches over the clip rectangle's edge, and is no larger than `Large` allows.
     Clipped,
     Other,
 }
 
-/// A triangle's number, and above it what becomes of it: 1 small, 2 tall, 3 another, 4 clipped.
+/// Number of a triangle, and above it its class: 1 small, 2 large, 3 another, 4 clipped.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(super) struct Chosen(u16);
@@ -38,7 +38,7 @@ impl Chosen {
         }
     }
 
-    /// Counts those kept, from the first on, that are small, tall or clipped.
+    /// Counts those kept, from the first on, that are small, large or clipped.
     #[inline(always)]
     pub(super) fn in_batch(kept: &[Self]) -> usize {
         // Eight at a time, as in `alike`. Only of another both of the lowest bits above the number are set.
@@ -162,7 +162,7 @@ pub(super) fn sieve_by(
 /// right only if the corners are less than 1,024 units away; for others it may be anything.
 ///
 /// ```text
-/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if turned over, negative
+/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
 /// ```
 ///
 /// A point on an edge lies inside if the edge is a left or a top one; otherwise one step of E more makes it negative.

@@ -90,8 +90,8 @@ pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     unsafe { avx2(batch, kept, place, spans, draw) }
 }
 
-/// Draws small, tall and clipped triangles in turn, without a list of more than a few spans. Only with a kernel for which
-/// `Kernel::avx512` is one.
+/// Draws small, large and clipped triangles in turn, without a list of more than a few spans. Only with a kernel for
+/// which `Kernel::avx512` is one.
 pub(super) fn at_once(
     batch: &Batch,
     kept: &[Chosen],

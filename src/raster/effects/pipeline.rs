@@ -5,7 +5,7 @@ use crate::lanes::{Lanes, Points};
 use crate::raster::interpolation::Interpolation;
 use crate::span::texture::{Levels, Texels};
 
-/// The values of a corner beyond its position, shade and depth. What a look does not use may be
+/// The values of a corner beyond its position, shade and depth. Values that a pipeline does not use may be
 /// anything.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Attributes {
@@ -148,7 +148,7 @@ pub struct PixelPipeline<'a> {
     pub fog: Option<&'a [u8; 65_536]>,
     /// The index for the triangle's own (row) and the frame's (column).
     pub blend: Option<&'a [u8; 65_536]>,
-    /// Whether the depth buffer keeps its depth, so that it hides what is drawn later behind it.
+    /// True if the depth buffer keeps its depth, so that it hides what is drawn later behind it.
     pub keeps_depth: bool,
 }
 

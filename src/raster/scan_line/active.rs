@@ -33,7 +33,7 @@ pub struct EdgePair {
     pub(super) x1: i32,
     /// The row's last pixel inside the frame.
     pub(super) last: i32,
-    /// Whether it hides the background wherever it is: the depths of its vertices are above 0.
+    /// True if it hides the background wherever it is: the depths of its vertices are above 0.
     pub(super) hides_background: bool,
     paint: Option<RowShader>,
     depth: Option<DepthPlane>,

@@ -111,7 +111,7 @@ struct Falling {
     turn: f32,
     /// The greatest n·l.
     most: f32,
-    /// Whether all faces lie in the light or all in the dark.
+    /// True if all faces lie in the light or all in the dark.
     unmixed: bool,
 }
 
@@ -134,7 +134,7 @@ pub(in crate::render) enum Linear {
     Unknown,
 }
 
-/// Those of which no corner's shade is clamped, and
+/// Faces of which no corner's shade is clamped, and
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(in crate::render) struct Where {
     /// whose corners all see the same lights, if that matters, and

@@ -104,7 +104,7 @@ struct OnScreen<'a> {
     positions: [Vec3; 3],
     depths: [f32; 3],
     answer: &'a Reflectance,
-    /// Whether its light goes on below the horizon.
+    /// True if its light goes on below the horizon.
     below: bool,
     kernel: Kernel,
 }

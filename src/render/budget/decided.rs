@@ -60,7 +60,7 @@ impl Choice {
 #[derive(Clone, Debug, Default)]
 pub(in crate::render) struct Decided {
     triangles: usize,
-    /// One for as many triangles as are sifted at a time.
+    /// One for as many triangles as are culled at a time.
     chunks: Vec<Chunk>,
     choices: Vec<Choice>,
     bodies: Vec<Bodies>,
@@ -74,7 +74,7 @@ pub(in crate::render) type Bodies = [f32; 2];
 struct Chunk {
     /// A bit for each triangle that is known to be linear.
     linear: u64,
-    /// Whether what is kept of its choices, and of its bodies, is what was found, and not from before.
+    /// True if its choices, and its bodies, were found since, and are not from before.
     has_choices: bool,
     has_bodies: bool,
 }

@@ -70,7 +70,7 @@ pub(super) struct OneLight<'a> {
     pub(super) shininess: f32,
     /// The edges of the parts that the triangle is looked at in, in edges of its own: 1 for the whole.
     pub(super) part: f32,
-    /// Whether light is meant as it goes on below the horizon, less than none.
+    /// True if light is meant as it goes on below the horizon, less than none.
     pub(super) below: bool,
 }
 

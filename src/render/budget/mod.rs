@@ -115,7 +115,7 @@ pub(super) struct Budget {
     /// Whose facets these are; of a mesh that was split, none.
     mesh: Option<Shared<Mesh>>,
     facets: Vec<Facet>,
-    /// One for as many faces as are sifted at a time.
+    /// One for as many faces as are culled at a time.
     clusters: Vec<Cluster>,
     /// The cones of each cluster's faces.
     cones: Vec<Cones>,
@@ -131,16 +131,16 @@ pub(super) struct Budget {
     most_spread: f32,
     /// A quarter of ρ − 1, at most, of any triangle that no plane clips.
     bend: f32,
-    /// Whether there are more suns than a vertex has bits for, and whether there is one.
+    /// True if there are more suns than a vertex has bits for; and if there is one.
     many_suns: bool,
     one_sun: bool,
-    /// Whether there are suns alone, no more than that, and no highlight.
+    /// True if there are suns alone, no more than that, and no highlight.
     simple: bool,
     /// Then, whether linear shades keep within wherever all corners see the same suns and none is clamped.
     linear_unless_mixed: bool,
-    /// Whether linear shades, as in `linear_unless_mixed`, keep within where they are clamped, too.
+    /// True if linear shades, as in `linear_unless_mixed`, keep within where they are clamped, too.
     linear_unless_mixed_or_clamped: bool,
-    /// Whether that is so and there are but one sun and one surface: vertices then need no marks.
+    /// True if that is so and there are only one sun and one surface: vertices then need no marks.
     by_cones: bool,
     /// Rest of what is allowed, for the clamp.
     left_for_clamp: f32,
@@ -151,12 +151,12 @@ pub(super) struct Budget {
     known_lamps: Vec<LampBeam>,
     answers: Vec<Reflectance>,
     in_color: bool,
-    /// Whether no light and no material takes light away.
+    /// True if no light and no material takes light away.
     adds: bool,
     /// Greatest turn of the direction to the eye along an edge of 1.
     eye_turn: f32,
-    /// For each vertex, if there are highlights, the chord between the eye and the mirrored light that is nearest to it: no
-    /// more than the angle.
+    /// Chords between the eye and the mirrored light that is nearest to it, one for each vertex, if there are
+    /// highlights: no more than the angle.
     chords: Vec<f32>,
     /// Greatest turn of the direction to any lamp along an edge of 1.
     lamp_turn: f32,

@@ -53,7 +53,7 @@ pub(in crate::render) struct Question<'a> {
     pub(in crate::render) turned: bool,
     /// The corners' shades, or, of the channels, the three of each.
     pub(in crate::render) shades: [[u16; 3]; 3],
-    /// Where it is on the screen; of what is clipped nowhere.
+    /// Place on the screen; `None` if it is clipped.
     pub(in crate::render) vertices: Option<&'a [Vertex; 3]>,
 }
 

@@ -19,7 +19,7 @@ pub(in crate::render) struct Vain {
     in_a_row: u32,
     left_out: u32,
     chunks_left_out: u32,
-    /// Faces that bounds were found for by eights, and those that they settled.
+    /// Faces that bounds were found for by eights, and those that they decided.
     bounded: u32,
     settled: u32,
 }
@@ -48,7 +48,7 @@ impl Vain {
         true
     }
 
-    /// Counts the last faces that were bounded by eights, and those settled so. Those of long ago count less and less.
+    /// Counts the last faces that were bounded by eights, and those decided so. Those of long ago count less and less.
     fn by_eights(&mut self, bounded: u32, settled: u32) {
         (self.bounded, self.settled) = (self.bounded / 2 + bounded, self.settled / 2 + settled);
         if settled != 0 {

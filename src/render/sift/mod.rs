@@ -30,19 +30,19 @@ pub(super) struct Sifted {
     pub(super) clipped: u64,
     /// Turned towards the eye.
     pub(super) front: u64,
-    /// Turned away. What is neither has no area.
+    /// Back faces. A face that is neither has no area.
     pub(super) back: u64,
-    /// A pixel centre of the sieve's rectangle lies in the face's box, its left and top sides included; and if the box has
-    /// but 2 × 2, one of them in the face.
+    /// A pixel centre of the clip rectangle lies in the face's box, its left and top sides included; and if the box has
+    /// only 2 × 2, one of them in the face.
     pub(super) covers: u64,
 }
 
 impl Sieve {
-    /// One for those that want to know all faces: what it says of pixel centres says nothing.
+    /// One for those that want to know all faces: its answer on pixel centres means nothing.
     pub(super) const EVERYTHING: Self = Self { clip: Rect { x0: 0, y0: 0, x1: 0, y1: 0 }, kernel: Kernel::PORTABLE };
 
-    /// Sifts up to 64 faces of these corners. Whether pixels are covered is said of those that have an area, and if it
-    /// `culls`, only of those that are turned towards the eye.
+    /// Culls up to 64 faces of these corners. The cover of pixels is found for those that have an area, and if it
+    /// `culls`, only for those that are turned towards the eye.
     #[inline]
     pub(super) fn sift(&self, places: &[Place], triangles: &[[u32; 3]], culls: bool) -> Sifted {
         // Inside a frame, at most 4,096.
@@ -104,7 +104,7 @@ const TINY_SIDE: i32 = 2;
 /// be less than 1,024 units away.
 ///
 /// ```text
-/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if turned over, negative
+/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
 /// ```
 ///
 /// A point on an edge lies inside if the edge is a left or a top one; for others E has to be one step more.

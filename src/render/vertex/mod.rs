@@ -214,7 +214,7 @@ fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize
     }
 }
 
-/// Points with their normals turned round.
+/// Points with their normals reversed.
 fn from_behind(points: &Points) -> Points {
     let [x, y, z, ..] = points.map(|values| values.map(|value| -value));
     [x, y, z, points[3], points[4], points[5]]

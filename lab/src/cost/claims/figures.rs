@@ -18,7 +18,7 @@ pub(super) struct Sphere {
     pub(super) whole: Errors,
     /// The share of pixels that show the wrong face, for `fine` and for `whole`.
     pub(super) wrong_faces: [f64; 2],
-    /// With a highlight, against `lit`: the default shading, and Phong.
+    /// Errors with a highlight, against `lit`: the default shading, and Phong.
     pub(super) linear: Errors,
     pub(super) phong: Errors,
     /// Nanoseconds for a frame.

@@ -1,6 +1,6 @@
-//! The rows of a tall triangle to bytes, eight rows at a time.
+//! Rows of a large triangle to bytes, eight rows at a time.
 //!
-//! What `rows::lines` does for eight rows takes half the instructions here, and the rows go to the pixels without a list
+//! Eight rows take half the instructions of `rows::lines` here, and the rows go to the pixels without a list
 //! between: 3,570 pixels in 100 rows take 221 ns where they took 426.
 
 use core::arch::asm;

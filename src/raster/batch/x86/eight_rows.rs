@@ -13,7 +13,7 @@ pub(super) struct Rows {
     pub(super) cell: __m256i,
     pub(super) length: __m256i,
     pub(super) paint: __m256i,
-    /// Depths of numbers 0 to 3 and 4 to 7, the whole parts in the upper halves.
+    /// Depths of numbers 0 to 3 and 4 to 7, the integer parts in the upper halves.
     pub(super) z: [__m256i; 2],
 }
 
