@@ -82,7 +82,7 @@ pub fn clip<C: Copy, D: Copy + PartialOrd + Default>(
     Some(polygon)
 }
 
-/// A convex polygon, but for the rounding of its corners.
+/// A convex polygon, except for the rounding of its corners.
 #[derive(Clone, Copy, Debug)]
 pub struct Clipped {
     vertices: [Vertex; MAX_CORNERS],

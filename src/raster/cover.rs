@@ -5,7 +5,7 @@ use super::frame::Rect;
 use super::vertex::Vertex;
 
 /// A triangle whose vertices are in order: top, middle, bottom, of equal heights the left one
-/// first. What is drawn depends on the three points alone, not on the order they were given in.
+/// first. The pixels depend on the three points alone, not on the order they were given in.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SortedTriangle {
     /// The vertices by (y, x).

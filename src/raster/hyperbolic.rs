@@ -1,6 +1,6 @@
 //! Perspective-correct shades: linear on the face, so a hyperbola along a row (Hill).
 //!
-//! What is linear on a face in space is, over the screen, the quotient of two linear functions:
+//! A value that is linear on a face in space is, over the screen, the quotient of two linear functions:
 //! the value divided by w, and 1 / w. A vertex's depth is `2³⁰·near / w`, rounded, so with λ the
 //! weights of the three vertices, which are areas and whole numbers,
 //!
@@ -119,7 +119,7 @@ impl HyperbolicPlane {
 
     /// Fills a row by quotients in f64, exact where these cannot decide. Returns whether it was done.
     ///
-    /// What is estimated is t = 2¹⁶·I/256 with the half added: below T = 2²⁴. With ε = 2⁻⁵³, N(k) and D(k) the exact
+    /// The estimated value is t = 2¹⁶·I/256 with the half added: below T = 2²⁴. With ε = 2⁻⁵³, N(k) and D(k) the exact
     /// sums at pixel k, their largest values N and D at the two ends, and R = D over the least D(k), which lies at an end
     /// too:
     ///

@@ -148,8 +148,8 @@ fn cut<C: Carried>(
     }
 }
 
-/// Clips a triangle that is drawn with `interpolation`. Returns `None` if nothing is left, else the polygon and what its
-/// corners carry.
+/// Clips a triangle that is drawn with `interpolation`. Returns `None` if nothing is left; otherwise the polygon and
+/// its corners' values.
 pub(super) fn clip<C: Carried>(
     view: &ObjectView,
     interpolation: Interpolation,

@@ -143,7 +143,7 @@ pub(super) struct IntegerPath {
 }
 
 impl IntegerPath {
-    /// Converts a scene whose numbers are finite. What passes here can be drawn.
+    /// Converts a scene whose numbers are finite. A scene that passes can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();
         // Lamps are left out: the plan says so.

@@ -10,7 +10,7 @@ pub(super) use crate::raster::batch::numbered::Place;
 /// A vertex of the object at hand, lit and projected.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct LitVertex {
-    /// Its shade is that of the front: the side that the normal points away from. Of a vertex that
+    /// Its shade is that of the front: the side that the normal points away from. In a vertex that
     /// needs clipping only the shade counts.
     pub(super) vertex: Vertex,
     pub(super) back: U8F8,

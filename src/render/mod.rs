@@ -203,7 +203,7 @@ impl Renderer {
 
     /// Switches an effect on or off for every object, or leaves it to the plan, as a new renderer does.
     ///
-    /// Of effects that save work, on or off gives the same bytes; that of hidden surfaces is switched by
+    /// Effects that save work give the same bytes on or off. That of hidden surfaces is switched by
     /// [`Settings::hidden_surfaces`]. Where an effect that changes the picture is
     /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
     /// image that changes nothing). Clipping stays on where the plan calls for it.
@@ -222,7 +222,7 @@ impl Renderer {
     /// palette; with `None`, as a new renderer has it, they are mixed. For those who measure shades.
     pub(crate) fn show_channel(&mut self, channel: Option<usize>) {
         self.tables.only_channel = channel;
-        // What the machine holds is another picture.
+        // The machine holds another picture.
         self.last = None;
     }
 
@@ -234,8 +234,8 @@ impl Renderer {
 
     /// The plan of the frame that was drawn last, in words: [`Plan::rows`] of `scene`, which it must have
     /// been drawn from, and how far the picture may be off where light at every pixel or splitting is not
-    /// on. That is worked out here, face by face, and only here. Of an object that is drawn within an error budget,
-    /// how many of its triangles each shading got.
+    /// on. That is worked out here, face by face, and only here. For an object that is drawn within an error
+    /// budget, it says how many of its triangles each shading got.
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         self.plan.rows_with(scene, |object| Findings {
@@ -277,7 +277,7 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// As [`draw`](Self::draw), but for what 16.16 can't hold, which shows only when it is drawn.
+    /// Those of [`draw`](Self::draw), except for numbers that 16.16 can't hold, which show only when it is drawn.
     pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
         let view = self.checked(scene, screen)?;
         self.decide(scene, &view, true);
@@ -297,7 +297,7 @@ impl Renderer {
         let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
         let before = self.bytes();
         let (mut stats, changed) = self.prepare(scene, Screen::MODE_13H, shown.as_ref(), true)?;
-        // Of a scene without objects nothing was decided.
+        // Nothing was decided for a scene without objects.
         if self.plan.is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
             scene.load_palette(vga);
         } else if let Some(palette) = &scene.palette {
@@ -339,7 +339,7 @@ impl Renderer {
 
     /// Hands every triangle that is to be drawn to `triangle`, as the raster would get it: object by
     /// object, far to near where the scene calls for that, each in the order of its faces; a forced
-    /// painter's order does not sort them here. What effects need besides is left out. The counts of the
+    /// painter's order does not sort them here. Attributes for effects are left out. The counts of the
     /// work are returned, without the raster's.
     ///
     /// # Errors

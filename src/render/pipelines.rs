@@ -106,7 +106,7 @@ impl Pipelines<'_> {
             && self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
     }
 
-    /// Hands the pixel pipeline of an object's surface to `draw`. Of one that is not there, nothing is drawn.
+    /// Hands the pixel pipeline of an object's surface to `draw`. A surface that is not there is not drawn.
     pub(super) fn with(
         &self,
         Pipeline { object, surface, shading }: Pipeline,

@@ -74,7 +74,7 @@ pub enum ChosenBy {
     Default,
 }
 
-/// Settings of a renderer. What is `None` here is left to the scene, and what the scene does not ask for to the plan.
+/// Settings of a renderer. The scene decides those that are `None`, and the plan those that the scene leaves open.
 #[derive(Clone, PartialEq, Debug, Default)]
 #[non_exhaustive]
 pub struct Settings {

@@ -213,7 +213,7 @@ fn is_smaller(vertices: &[Vertex; 3], pixels: u64) -> bool {
     doubled_area(vertices).unsigned_abs() < pixels * 131_072
 }
 
-/// Hands on a face with effects that is shaded by choice. Of a flat one every corner gets the shade in the middle.
+/// Hands on a face with effects that is shaded by choice. Every corner of a flat one gets the shade in the middle.
 fn hand_on_within(
     face: Face,
     (mut vertices, mut attributes): ([Vertex; 3], [Attributes; 3]),

@@ -26,7 +26,7 @@
 //! `simd` can be forced down to one of its levels, for tests and measurements. With `std` the processor is
 //! asked what it has; without, what the compiler was told counts.
 //!
-//! What a span alone cannot draw is made of other loops, over short rows of bytes. Each has a portable
+//! Other loops, over short rows of bytes, draw more than a span alone can. Each has a portable
 //! specification; where a faster twin was worth its code, the loop of the plain name takes it, and the
 //! specification is beside it as `…_portable`.
 //!

@@ -273,7 +273,7 @@ pub(crate) mod avx2 {
     }
 
     /// Fills a span at `at`, up to sixteen pixels at once. `paint` has its shade, and above it the step.
-    /// What lies behind the span, of whichever row, is written as it was read. Nothing is drawn of a span that
+    /// Bytes behind the span, of whichever row, are written as they were read. Nothing is drawn of a span that
     /// reaches beyond `pixels`.
     #[inline]
     #[target_feature(enable = "avx2")]

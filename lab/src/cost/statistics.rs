@@ -57,7 +57,7 @@ fn sorted(numbers: &[f64]) -> Vec<f64> {
     numbers
 }
 
-/// The median; 0 of none. What is not a number was not measured, and does not count.
+/// The median; 0 of none. Those that are not a number were not measured, and do not count.
 pub(super) fn median(numbers: &[f64]) -> f64 {
     quantile(&sorted(numbers), 0.5)
 }

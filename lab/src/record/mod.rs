@@ -161,7 +161,7 @@ impl Record {
     /// The record in a file that was opened for reading.
     ///
     /// # Errors
-    /// What is wrong, and in which line. Nothing of a broken file is used.
+    /// A fault of the file, with its line. Nothing of a broken file is used.
     pub fn read(reader: impl io::BufRead) -> Result<Self, RecordError> {
         read::read(reader)
     }

@@ -24,16 +24,16 @@
 //! **Intensity.** 0 to 1, before ramp, texture, fog, dither and blending, and rounded nowhere. The sum of
 //! light is clamped once, at a vertex or, `Lit`, at the pixel: there position and vertex normals are
 //! interpolated on the face's own plane, and the normal is made unit again. Where light or one of an object's
-//! materials is coloured there are three channels, each times the material's own colour; else one,
+//! materials is coloured there are three channels, each times the material's own colour; otherwise one,
 //! which stands in all three places.
 //!
-//! **Clipped faces.** On the face in space (`Lit`, `GouraudPerspective`) a cut changes nothing. What is linear on
+//! **Clipped faces.** On the face in space (`Lit`, `GouraudPerspective`) a cut changes nothing. A value linear on
 //! the screen cannot be continued to a vertex behind the eye, so there the engine's rule is the definition:
 //! the intensity where an edge meets the near plane is linear along the edge in space; what is left of the
 //! face is drawn as the fan from its first corner. The guard band, which lies 4,095 pixels from the frame's corner, cuts
 //! after the near plane, and changes no intensity that is linear on the screen.
 //!
-//! What the engine makes of the scene, as [`Shown`], is compared by [`ErrorMap`]. [`Tiles`] gives `Lit` part by part.
+//! [`ErrorMap`] compares the engine's picture of the scene, as [`Shown`]. [`Tiles`] gives `Lit` part by part.
 
 mod body;
 mod bound;

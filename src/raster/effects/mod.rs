@@ -346,7 +346,7 @@ impl<D: Cell> Raster<'_, D> {
 
     /// Draws a batch whose faces lie wholly inside the frame.
     ///
-    /// What lies outside is treated as by [`triangle_inside`](Self::triangle_inside).
+    /// Parts that lie outside are treated as by [`triangle_inside`](Self::triangle_inside).
     #[doc(hidden)]
     pub fn batch_with_effects_inside(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
         self.draw_effects::<false>(batch, pipeline)

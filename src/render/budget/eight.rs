@@ -32,7 +32,7 @@ pub(super) type Vectors = [Lanes<f32>; 3];
 
 pub(super) const NOUGHT: Lanes<f32> = [0.0; LANES];
 
-/// Eight faces, on the side that is seen. What there is fewer of is zero.
+/// Eight faces, on the side that is seen. Missing ones are zero.
 pub(super) struct Eight {
     /// The normals at each corner.
     normals: [Vectors; 3],

@@ -82,7 +82,7 @@ impl OneLight<'_> {
         if most <= 0.0 && !self.below { 0.0 } else { self.kd * self.matt(most, least) }
     }
 
-    /// A sun's highlight. What is not more than `limit` is not looked at any closer.
+    /// A sun's highlight. A bound that is not more than `limit` is not refined.
     pub(super) fn highlight_of_sun(&self, towards: Vec3, intensity: f32, limit: f32) -> f32 {
         let cosines = self.normals.map(|normal| normal.dot(towards));
         if ends(cosines).0 <= 0.0 {
@@ -120,7 +120,7 @@ impl OneLight<'_> {
         self.kd * (CURVATURE * curvature + fall_off * self.matt(most, least))
     }
 
-    /// A lamp's highlight. What is not more than `limit` is not looked at any closer.
+    /// A lamp's highlight. A bound that is not more than `limit` is not refined.
     pub(super) fn highlight_of_lamp(
         &self,
         to_lamp: [Towards; 3],

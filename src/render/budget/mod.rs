@@ -1,6 +1,6 @@
 //! The error budget: for each triangle the cheapest shading that is known to keep within it.
 //!
-//! What the light at a point of a triangle should be, and what a shading makes of it, differ for three reasons, each of
+//! A shading's light at a point of a triangle differs from the right one for three reasons, each of
 //! which is bounded here from normals, lights and vertices:
 //!
 //! - **The model.** A linear shade is that of the sum N = Σ λᵢnᵢ of the vertices' normals; light at the point takes N
@@ -324,7 +324,7 @@ impl Budget {
     }
 
     /// Marks the object's vertices with the lights that they see, and whether their shades are clamped on either side: what
-    /// clusters ask of them. Of three channels, `extras` has the shades.
+    /// clusters ask of them. `extras` has the shades of three channels.
     #[inline(never)]
     pub(super) fn mark(&self, object: &Lit<'_>, lit: &mut ShadedVertices, extras: &[VertexAttributes]) {
         let Lit { geometry, .. } = *object;

@@ -1,4 +1,4 @@
-//! Numbers as text. What is not a finite number is a dash.
+//! Numbers as text. A number that is not finite is a dash.
 
 use std::fmt::Display;
 

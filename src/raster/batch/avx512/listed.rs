@@ -156,7 +156,7 @@ impl Spans {
     }
 
     /// Lists all rows of triangle `i` of a group, and draws whenever there is no room left. Where a row may have more than
-    /// one of the pieces that start anew, a span is one of these. What lies outside of `clip`, if there is one, is left out.
+    /// one of the pieces that start anew, a span is one of these. Parts outside `clip`, if there is one, are left out.
     /// `pixels` and `cells` are always the same. Without `planes` there is no depth test.
     ///
     /// # Safety

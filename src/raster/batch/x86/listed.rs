@@ -21,7 +21,7 @@ use crate::span::nearer::{self, Tested};
 
 /// Spans at most, ...
 const CAPACITY: usize = 192;
-/// ... and rows that are put in at a time. What is behind those that are spans is written over.
+/// ... and rows that are put in at a time. Those behind the last span are written over.
 const FOUR: usize = 4;
 /// The most rows of a group.
 const MOST: usize = LANES * LANES;
