@@ -217,8 +217,8 @@ pub(super) fn rows_by(
         listed += group.len();
         set_up(&gathered, place, &mut spans.group);
         let planes = place.depth_width.map(|width| (width, planes(&gathered, &spans.group)));
-        // The next before this one's rows are listed: vectors that are read just after their numbers were stored one by
-        // one wait for these. (3 to 6 % of the time of triangles of 0.6 pixels; with up to four rows less elsewhere.)
+        // The next before this one's rows enter the list: vectors that are read just after their numbers were stored one
+        // by one wait for these. (3 to 6 % of the time of triangles of 0.6 pixels; with up to four rows less elsewhere.)
         gathered.gather(batch, &kept[listed.min(kept.len())..], place);
         list(group.len(), place, spans, planes.as_ref(), &row);
     }
@@ -246,7 +246,7 @@ impl Gathered {
     /// The first eight. Where there are less the last place's are others.
     #[inline(always)]
     pub(super) fn gather(&mut self, batch: &Batch, triangles: &[Chosen], place: Place) {
-        // Faces that were sifted before are mostly all kept.
+        // Faces that were culled before are mostly all kept.
         if let Some([first, .., last]) = triangles.first_chunk::<LANES>()
             && last.number() == first.number() + LANES - 1
         {

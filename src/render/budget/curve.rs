@@ -174,7 +174,7 @@ impl Quadratic {
     }
 }
 
-/// Returns the greatest value; not a number if one is none.
+/// Returns the greatest value; not a number if one of them is not.
 fn greatest<const N: usize>(values: [f32; N]) -> f32 {
     values.into_iter().fold(0.0, |most, value| if value <= most { most } else { value })
 }
