@@ -318,7 +318,7 @@ mod tests {
     use super::*;
     use crate::fixed::{I24F8, U8F8};
 
-    /// Where nothing is nearer, every kind is painted as without depths.
+    /// Tests that every kind is painted as without depths where nothing is nearer.
     #[test]
     fn rows_where_nearer_are_rows() {
         const WIDTH: u32 = 200;
