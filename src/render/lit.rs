@@ -25,8 +25,8 @@ pub(super) struct ShadedVertices {
     pub(super) depths: Vec<u32>,
     /// Front and back.
     pub(super) shades: Vec<[U8F8; 2]>,
-    /// Flags of the vertices, as many, where a budget asks: a bit for each of the first seven lights, suns first, if the
-    /// front sees it; and the highest, if a shade is clamped.
+    /// Flags of the vertices, as many, where a budget asks: a bit for each of the first seven lights, suns first, if
+    /// the front sees it; and the highest, if a shade is clamped.
     pub(super) flags: Vec<u8>,
 }
 
