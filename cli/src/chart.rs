@@ -8,10 +8,10 @@ use mode13h_lab::explain::{Column, Row};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-/// What is shown of a pixel: its name, its colour, and where it stands.
+/// Curve of a value along a row: its name, its colour, and its height at a pixel.
 type Curve = (&'static str, RGBColor, fn(&Column) -> Option<f64>);
 
-/// Those that lie over others come later.
+/// Curves in the order of drawing: those that lie over others come later.
 const CURVES: [Curve; 3] = [
     ("lit (the model at every pixel)", RGBColor(217, 95, 2), |column| column.lit),
     ("gouraud (linear, exact)", RGBColor(27, 120, 180), |column| column.gouraud),
@@ -118,8 +118,8 @@ fn shown(row: &Row) -> Range<usize> {
     }
 }
 
-/// From the least to the greatest value, with some room; 0 to 1 of none. Of slopes, which are great where the intensity
-/// itself has a step, the eight tenths in the middle and as much again on both sides.
+/// Range from the least to the greatest value, with some room; 0 to 1 if there is none. For slopes, which are great
+/// where the intensity itself has a step, the eight tenths in the middle and as much again on both sides.
 fn span(curves: &[Vec<Option<f64>>], columns: &Range<usize>, are_slopes: bool) -> (f64, f64) {
     let mut values: Vec<f64> = curves.iter().flat_map(|curve| &curve[columns.clone()]).copied().flatten().collect();
     values.sort_by(f64::total_cmp);
@@ -189,7 +189,7 @@ fn plot(columns: &Range<usize>, curves: [(char, Vec<Option<f64>>); 2], lines: us
     text + &format!("{} +{}\n{}{}{right:>gap$}\n", " ".repeat(8), "-".repeat(across), " ".repeat(10), columns.start)
 }
 
-/// Where the slope of linear shades jumps most: between two faces, on both of which it is known.
+/// Words on the greatest jump of the slope of linear shades: between two faces, on both of which it is known.
 fn bands(row: &Row) -> String {
     let columns = &row.columns;
     let slope = |a: usize, b: usize| {

@@ -1,4 +1,4 @@
-//! What an effect costs: measured on the spot, against the frame as the plan has it.
+//! Cost of an effect: measured on the spot, against the frame as the plan has it.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -15,11 +15,11 @@ const ROUNDS: (usize, usize) = (15, 1_001);
 
 /// Times frames of a scene that moves: the two come in turn, each after the other.
 pub(crate) struct EffectCost<'a, Make: Fn() -> Renderer> {
-    /// What draws as the user asked for.
+    /// Maker of renderers that draw as the user asked for.
     pub(crate) renderer: Make,
     /// 1/35 s apart.
     pub(crate) frames: &'a [Scene; 2],
-    /// How long an effect is measured.
+    /// Time for which an effect is measured.
     pub(crate) time: Duration,
 }
 
@@ -44,14 +44,14 @@ impl Artist {
 }
 
 impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
-    /// What a frame takes, in nanoseconds: the median of many.
+    /// Measures the time of a frame, in nanoseconds: the median of many.
     pub(crate) fn frame(&self) -> Result<f64, Failure> {
         let mut artist = Artist::new((self.renderer)());
         let times = self.rounds(|scene, _| artist.draw(scene))?;
         Ok(median(times))
     }
 
-    /// What making the plan takes, in nanoseconds: the median of many, each of ten plans.
+    /// Measures the time of making the plan, in nanoseconds: the median of many, each of ten plans.
     pub(crate) fn plan(&self) -> Result<f64, Failure> {
         const PLANS: usize = 10;
         let mut renderer = (self.renderer)();
@@ -67,9 +67,9 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
         Ok(median(times))
     }
 
-    /// By how many nanoseconds a frame is longer with an effect on one object than without it. `on`: whether it is on
-    /// as the plan has it, for otherwise it is switched on. Hidden surfaces and palette animation are those of all
-    /// objects. `None` where it cannot be switched.
+    /// Measures by how many nanoseconds a frame is longer with an effect on one object than without it. `on`: whether
+    /// it is on as the plan has it, for otherwise it is switched on. Hidden surfaces and palette animation are those of
+    /// all objects. `None` where it cannot be switched.
     ///
     /// The frame as it is and the frame with the effect switched are drawn in turn; the price is what [`above_noise`]
     /// makes of the differences.
@@ -101,7 +101,7 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
         Ok(Some(above_noise(differences)))
     }
 
-    /// What `measure` gives for the two frames in turn, over and over, as long as there is time. The first four
+    /// Calls `measure` for the two frames in turn, over and over, as long as there is time. The first four
     /// times do not count: tables and vertices are made then.
     fn rounds(&self, mut measure: impl FnMut(&Scene, usize) -> Result<f64, Failure>) -> Result<Vec<f64>, Failure> {
         for round in 0..4 {

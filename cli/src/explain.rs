@@ -95,7 +95,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// What is not in the frame, if anything.
+/// Finds a pixel or row that is not in the frame, if there is any.
 fn outside(pixel: Option<(u32, u32)>, row: Option<u32>, screen: Screen) -> Option<ExplainError> {
     let Screen { width, height, .. } = screen;
     match (pixel, row) {

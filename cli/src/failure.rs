@@ -1,4 +1,4 @@
-//! How the program ends when it fails: one line and an exit status.
+//! Failures of the program: one line and an exit status.
 
 use std::fmt;
 use std::process::ExitCode;
@@ -21,7 +21,7 @@ Exit status:
   3    A file could not be read or written
   130  Interrupted";
 
-/// What is said on standard error, and the exit status.
+/// Line on standard error, and exit status.
 #[derive(PartialEq, Debug)]
 pub(crate) struct Failure {
     line: String,

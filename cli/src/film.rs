@@ -17,7 +17,7 @@ use crate::failure::{Failure, on_one_line};
 use crate::output;
 use crate::renderer_pool::RendererPool;
 
-/// What a frame shows.
+/// Pixels and palette of a frame.
 pub(crate) struct Frame {
     pixels: Vec<u8>,
     palette: Palette,
@@ -33,7 +33,7 @@ impl Frame {
     }
 }
 
-/// What a film is written as.
+/// File formats of a film.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Gif,
@@ -42,18 +42,18 @@ pub(crate) enum Kind {
     Stream,
 }
 
-/// What a film's file came to: a line, and the same for programs.
+/// Figures of a film's file: a line, and the same for programs.
 pub(crate) struct Figures {
     pub(crate) line: String,
     pub(crate) json: Value,
 }
 
-/// Where a film goes, and how it is shown.
+/// Film: its file, and how it is shown.
 pub(crate) struct Film {
     kind: Kind,
     out: PathBuf,
     frames: u32,
-    /// Whether somebody said how many frames.
+    /// True if the number of frames was given.
     is_told: bool,
     rate: FrameRate,
     scale: Scale,
@@ -80,7 +80,7 @@ impl Film {
         (self.kind != Kind::Stream).then_some(&self.out)
     }
 
-    /// Where nobody said how many frames, as many as so many seconds hold.
+    /// Sets the number of frames to as many as so many seconds hold, where nobody gave it.
     pub(crate) fn lasts(&mut self, seconds: f64) {
         if !self.is_told {
             // Saturates.
@@ -161,7 +161,7 @@ impl Film {
         Ok(Figures { line, json })
     }
 
-    /// That nobody reads on ends it, and is no failure.
+    /// Writes a stream. That nobody reads on ends it, and is no failure.
     fn write_stream<Artist: Send>(
         &self,
         progress: &ProgressBar,
@@ -229,7 +229,7 @@ impl Film {
         Ok(())
     }
 
-    /// What a GIF came to.
+    /// Figures of a GIF.
     fn figures(&self, film: &export::Film) -> Figures {
         let export::Film { width, height, frames, images, delays, bytes, .. } = film;
         let json = json!({

@@ -1,4 +1,4 @@
-//! From the words INPUT and FILE|NAME to a scene or a mesh, and to a palette.
+//! Input: from the words INPUT and FILE|NAME to a scene or a mesh, and to a palette.
 
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -23,14 +23,14 @@ pub(crate) struct Model {
     pub(crate) mesh: Mesh,
 }
 
-/// What INPUT says.
+/// Scene or model that INPUT names.
 pub(crate) enum Input {
     Model(Box<Model>),
     Scene { name: String, scene: Box<Scene> },
 }
 
 impl Input {
-    /// What to call it.
+    /// Its name.
     pub(crate) fn name(&self) -> &str {
         match self {
             Self::Model(model) => &model.name,
@@ -39,15 +39,15 @@ impl Input {
     }
 }
 
-/// What INPUT may be, for the help.
+/// Meaning of INPUT, for the help.
 pub(crate) const HELP: &str = "A scene (.toml), a model (.obj), or the name of a scene or a shape";
 
-/// What INPUT may be, for the long help.
+/// Meaning of INPUT, for the long help.
 pub(crate) fn long_help() -> String {
     format!("{HELP}. `mode13h scenes` lists the names. Where a scene and a shape share a name, it is the scene.")
 }
 
-/// What to call an INPUT, whether it can be loaded or not.
+/// Name of an INPUT, whether it can be loaded or not.
 pub(crate) fn name_of(words: &OsStr) -> String {
     Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned()
 }
@@ -111,9 +111,9 @@ fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn()
     Ok(Model { name, mesh })
 }
 
-/// For each surface of a model its texture, if it names one that can be read and the model says where it lies. One that
-/// cannot is a warning, a line on standard error, and the surface is drawn without it. Files named by several surfaces
-/// are read once.
+/// Reads the texture of each surface of a model, if it names one that can be read and the model says where it lies.
+/// For one that cannot, a warning goes to standard error, a line, and the surface is drawn without it. Files named by
+/// several surfaces are read once.
 pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
     let (textures, errors) = model::textures(mesh);
     errors.iter().for_each(|error| warn(format!("{error}; drawn without it")));
@@ -174,12 +174,12 @@ pub(crate) fn palette_extensions() -> String {
     extensions.join(", ")
 }
 
-/// What the entries of the frame's bytes are.
+/// Colours of the frame's bytes.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum Colors {
-    /// Those of a palette.
+    /// The colours of a palette.
     Palette(Box<Palette>),
-    /// Those that are made for what is seen.
+    /// Colours that are made for what is seen.
     Auto,
 }
 

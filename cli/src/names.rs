@@ -7,7 +7,7 @@ use crate::read_files;
 
 /// The names of a row of files.
 pub(crate) struct Names {
-    /// What stands before and behind the number, and the number's least count of digits; nothing if the name holds
+    /// Text before and behind the number, and the number's least count of digits; nothing if the name holds
     /// no number.
     numbered: Option<(String, usize, String)>,
     out: PathBuf,

@@ -137,12 +137,12 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    /// In seconds, of one frame of a scene.
+    /// Time in seconds of one frame of a scene.
     pub(crate) fn of_picture(&self, scene: &Scene) -> f64 {
         self.time.unwrap_or(scene.picture)
     }
 
-    /// In seconds, of the first of several frames.
+    /// Time in seconds of the first of several frames.
     pub(crate) fn of_first(&self) -> f64 {
         self.time.unwrap_or_default()
     }
@@ -179,7 +179,7 @@ impl Drawing {
         }
     }
 
-    /// What INPUT says, read as was asked for.
+    /// Reads INPUT as was asked for.
     pub(crate) fn input(&self, words: &OsStr) -> Result<Input, Failure> {
         let input = input::input(words, &obj::Options { crease: self.crease })?;
         if self.crease.is_some() && matches!(input, Input::Scene { .. }) {
@@ -188,7 +188,7 @@ impl Drawing {
         Ok(input)
     }
 
-    /// What INPUT shows, drawn as was asked for.
+    /// Makes the stage of INPUT, drawn as was asked for.
     pub(crate) fn stage(&self, input: Input) -> Result<Turntable, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
         let (mut stage, usual) = match input {
@@ -235,7 +235,7 @@ impl Drawing {
         Ok(stage)
     }
 
-    /// What the palette is called that was asked for.
+    /// Name of the palette that was asked for.
     pub(crate) fn palette_name(&self) -> Option<String> {
         let words = self.palette.as_deref()?;
         Some(Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned())
@@ -283,7 +283,7 @@ pub(crate) fn finite(words: &str) -> Result<f64, String> {
     }
 }
 
-/// How many times as large, on the command line.
+/// Factor of enlargement, on the command line.
 fn factor(words: &str) -> Result<f64, String> {
     match words.parse::<f64>() {
         // Beyond these a camera's f32 shows nothing.
@@ -310,7 +310,7 @@ fn camera(words: &str) -> Result<(Vec3, Vec3), String> {
     Ok((eye, target))
 }
 
-/// What a frame is cleared to, on the command line.
+/// Background that a frame is cleared to, on the command line.
 fn background(words: &str) -> Result<Background, String> {
     let digits = words.strip_prefix('#').unwrap_or(words);
     let is_color = digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());

@@ -1,4 +1,4 @@
-//! What the program says and writes: standard output, pictures, and the end by Ctrl-C.
+//! Output of the program: standard output, pictures, and the end by Ctrl-C.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ static WRITING: RwLock<()> = RwLock::new(());
 /// Held while a file is written that may take long, and is given up when the program is told to end.
 static WRITING_LONG: Mutex<()> = Mutex::new(());
 
-/// That the program has been told to end.
+/// Set once the program has been told to end.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Makes Ctrl-C, and what else asks a program to end, wait for the files that are being written: each is then whole
@@ -56,7 +56,7 @@ pub(crate) fn long_file<T>(write: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Whether the program has been told to end.
+/// Returns whether the program has been told to end.
 pub(crate) fn is_interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
@@ -108,7 +108,7 @@ pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure
     Err(Failure::file(format!("{}: exists already; --force overwrites it, and -o names another place", path.display())))
 }
 
-/// Whether a person sees what [`print`] prints, with colours.
+/// Returns whether a person sees what [`print`] prints, with colours.
 pub(crate) fn is_colored_terminal() -> bool {
     io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }

@@ -117,7 +117,7 @@ fn as_json(name: &str, palette: &Palette, made: &[Made]) -> Value {
     })
 }
 
-/// What a palette that was made for a model holds for one of its materials.
+/// Entries that a palette made for a model holds for one of its materials.
 struct Made {
     material: String,
     what: &'static str,

@@ -17,10 +17,10 @@ use crate::options::{Drawing, ShadingOptions, finite};
 use crate::turntable::Pose;
 use crate::{input, output};
 
-/// From one frame to the next, in seconds: films have 35 a second.
+/// Time from one frame to the next, in seconds: films have 35 a second.
 const STEP: f64 = 1.0 / 35.0;
 
-/// How long all prices together take to measure, and one at least and at most.
+/// Time of measuring all prices together, and of one at least and at most.
 const TIME: Duration = Duration::from_secs(6);
 const TIME_OF_ONE: (Duration, Duration) = (Duration::from_millis(5), Duration::from_millis(100));
 
@@ -138,13 +138,13 @@ fn as_json<'a>(name: &'a str, rows: &'a [Row], prices: Option<&'a [Option<u64>]>
     Json { schema: 2, scene: name, objects: objects.collect() }
 }
 
-/// What holds for all objects.
+/// Facts about all objects.
 struct Head<'a> {
     name: &'a str,
     at: f64,
     plan: &'a Plan,
     stats: &'a Stats,
-    /// What making the plan takes, in nanoseconds.
+    /// Time of making the plan, in nanoseconds.
     planning: f64,
 }
 

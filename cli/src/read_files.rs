@@ -22,8 +22,8 @@ enum Identity {
 }
 
 impl Identity {
-    /// That of an ordinary file. A device or a pipe is not replaced by writing to it; what does not exist is lost by
-    /// nothing.
+    /// Identity of an ordinary file. A device or a pipe is not replaced by writing to it; a file that does not exist is
+    /// lost by nothing.
     fn of(path: &Path) -> Option<Identity> {
         let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
         #[cfg(unix)]
@@ -44,7 +44,7 @@ thread_local! {
     static NOTED: RefCell<Option<Vec<PathBuf>>> = const { RefCell::new(None) };
 }
 
-/// What `read` returns, and the files that this thread read or looked for meanwhile.
+/// Calls `read`, and returns its result and the files that this thread read or looked for meanwhile.
 pub(crate) fn noting<T>(read: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
     let outer = NOTED.replace(Some(Vec::new()));
     let result = read();

@@ -192,7 +192,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// What was written and, with --stats, what was drawn.
+/// Lists the files that were written and, with --stats, the counts of drawing.
 fn as_json(options: &Options, out: &Out, film: Option<film::Figures>, mut drawn: Vec<(u32, Stats)>) -> Value {
     drawn.sort_by_key(|(number, _)| *number);
     let mut json = json!({
@@ -209,9 +209,9 @@ fn as_json(options: &Options, out: &Out, film: Option<film::Figures>, mut drawn:
     json
 }
 
-/// What is written.
+/// Output of the command.
 enum Out {
-    /// So many pictures.
+    /// This many pictures.
     Pictures(Names, u32),
     Film(Film),
 }
@@ -272,7 +272,7 @@ impl Out {
     }
 }
 
-/// What kind of film a name asks for, if it asks for one.
+/// Kind of film that a name asks for, if it asks for one.
 fn film_kind(out: &Path) -> Option<Kind> {
     let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
     match () {
@@ -283,7 +283,7 @@ fn film_kind(out: &Path) -> Option<Kind> {
     }
 }
 
-/// What moves from frame to frame.
+/// Motion from frame to frame.
 struct Motion {
     frames: u32,
     /// Over all frames, in degrees.
@@ -316,8 +316,8 @@ impl Motion {
     }
 }
 
-/// What draws frames, one after the other. Each is drawn from its own number alone, never from the frame before it: that
-/// is why the order, and the number of threads, change nothing.
+/// Artist: draws frames, one after the other. Each is drawn from its own number alone, never from the frame before it:
+/// that is why the order, and the number of threads, change nothing.
 struct Artist {
     renderer: Renderer,
     stage: Turntable,

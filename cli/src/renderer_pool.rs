@@ -1,4 +1,4 @@
-//! Those who draw, as many as work at a time. Each keeps what it has made, tables and memory, for the next frame.
+//! Pool of renderers, as many as work at a time. Each keeps what it has made, tables and memory, for the next frame.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

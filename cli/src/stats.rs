@@ -1,4 +1,4 @@
-//! What drawing a frame came to, for programs.
+//! Counts of drawing a frame, for programs.
 
 use mode13h::raster::DrawStats;
 use mode13h::render::Stats;

@@ -10,7 +10,7 @@ use mode13h::window::Key;
 
 use crate::turntable::Turntable;
 
-/// What a key switches.
+/// Switches of the keys.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Switch {
     Lights,
@@ -32,12 +32,12 @@ impl Switch {
         }
     }
 
-    /// Whether the last frame had it anywhere.
+    /// Returns whether the last frame had it anywhere.
     pub(crate) fn is_on(self, renderer: &Renderer) -> bool {
         self.effects().iter().any(|effect| renderer.plan().is_on_anywhere(*effect))
     }
 
-    /// What became of it, in words.
+    /// Outcome of switching it, in words.
     pub(crate) fn outcome(self, was_on: bool, is_on: bool) -> String {
         let name = match self {
             Switch::Lights => "lights",
@@ -93,8 +93,8 @@ fn fog(scene: &mut Scene) {
     scene.fog = Some(Fog { color, start: nearest, end: farthest + 0.2 * (farthest - nearest) });
 }
 
-/// Where an object begins and ends along the view, in the scene's units: the ball about it. Nothing is seen behind the
-/// near plane.
+/// Depths at which an object begins and ends along the view, in the scene's units: the ball about it. Nothing is seen
+/// behind the near plane.
 fn depths(scene: &Scene, object: &Object) -> (f32, f32) {
     let bounds = object.mesh().bounds();
     let centre: Vec3 = object.position + object.rotation() * (bounds.centre - object.pivot) * object.scale;
@@ -161,8 +161,8 @@ mod tests {
         }
         assert!(failures.is_empty(), "{failures:#?}");
     }
-    /// What T leaves of a model with an image, in a palette made for what is seen and in one without ramps: shades in
-    /// order, not the entries of the palette one after the other.
+    /// Tests that T leaves of a model with an image, in a palette made for what is seen and in one without ramps,
+    /// shades in order, not the entries of the palette one after the other.
     #[test]
     fn a_model_without_its_image_is_shaded_in_order() {
         let texture = Texture::by_name("crate").map(mode13h::scene::Shared::new);

@@ -1,4 +1,4 @@
-//! What is shown: a model in a scene made for it, or a scene of its own.
+//! Turntable: a model in a scene made for it, or a scene of its own.
 
 use mode13h::Angle;
 use mode13h::auto_palette::{self, AutomaticPalette};
@@ -13,14 +13,14 @@ use mode13h::texture::Texture;
 
 use crate::input::Colors;
 
-/// How the user has turned what is shown, and how near it is, beyond what the clock does.
+/// Pose into which the user has turned what is shown, and its nearness, beyond what the clock does.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Pose {
     /// About its own upward axis, counter-clockwise seen from above, in radians.
     pub(crate) turn: f64,
     /// Its upper end towards the camera, in radians.
     pub(crate) tilt: f64,
-    /// How many times as large as at first.
+    /// Factor of its size to that at first.
     pub(crate) zoom: f64,
 }
 
@@ -29,7 +29,7 @@ impl Pose {
     pub(crate) const FIRST: Pose = Pose { turn: 0.0, tilt: 0.0, zoom: 1.0 };
 }
 
-/// What a frame is cleared to.
+/// Background that a frame is cleared to.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Background {
     /// An entry of the palette.
@@ -43,23 +43,23 @@ pub(crate) enum Background {
 pub(crate) struct Turntable {
     pub(crate) scene: Scene,
     shown: Shown,
-    /// Where it stands by itself.
+    /// The camera's own place.
     camera: Camera,
-    /// How many times as large it is shown, whatever the pose.
+    /// Factor of its size, whatever the pose.
     zoom: f64,
     /// The objects' materials, whatever the palette.
     materials: Vec<Vec<Material>>,
-    /// Whether their images are shown.
+    /// True if their images are shown.
     has_images: bool,
     /// The palette whose ramps they name.
     palette: Option<Palette>,
-    /// Whether the scene asks for dither, whatever the palette.
+    /// True if the scene asks for dither, whatever the palette.
     dithers: bool,
-    /// Whether there is dither, whatever the scene and the palette, if that was asked for.
+    /// Dither on or off, whatever the scene and the palette, if that was asked for.
     dither: Option<bool>,
     /// Made when first asked for.
     automatic: Option<AutomaticPalette>,
-    /// What was chosen last.
+    /// Colours that were chosen last.
     pub(crate) colors: Option<Colors>,
 }
 
@@ -101,18 +101,18 @@ impl Turntable {
         }
     }
 
-    /// Whether any of its objects has colours of its own: a texture, or a surface that is not grey.
+    /// Returns whether any of its objects has colours of its own: a texture, or a surface that is not grey.
     pub(crate) fn has_colors(&self) -> bool {
         self.scene.objects().iter().zip(&self.materials).any(|(object, materials)| has_colors(object, materials))
     }
 
-    /// How long a round takes, in seconds: of a model a turn.
+    /// Length of a round in seconds: for a model, a turn.
     pub(crate) fn seconds(&self) -> f64 {
         self.scene.duration
     }
 
-    /// What `--turn` means by so many degrees at a time: the time and the pose. A model is turned. A scene that moves by
-    /// itself goes on, 360 degrees being one round of it; one that does not is gone round by the camera.
+    /// Time and pose for `--turn` by so many degrees at a time. A model is turned. A scene that moves by itself goes
+    /// on, 360 degrees being one round of it; round one that does not, the camera goes.
     pub(crate) fn turned(&self, seconds: f64, degrees: f64) -> (f64, Pose) {
         let moves = !self.scene.motions.is_empty() || self.scene.palette_animation.is_some();
         match self.shown {
@@ -156,7 +156,7 @@ impl Turntable {
         self.scene.motions.retain(|motion| !moves_eye(motion));
     }
 
-    /// What the frame is cleared to, from the next [`set_colors`](Self::set_colors) on.
+    /// Sets the background that a frame is cleared to, from the next [`set_colors`](Self::set_colors) on.
     pub(crate) fn set_background(&mut self, background: Background) {
         (self.scene.background, self.scene.background_color) = match background {
             Background::Entry(entry) => (entry, None),
@@ -164,7 +164,7 @@ impl Turntable {
         };
     }
 
-    /// With dither or without, from the next [`set_colors`](Self::set_colors) on.
+    /// Sets dither on or off, from the next [`set_colors`](Self::set_colors) on.
     pub(crate) fn set_dither(&mut self, dither: bool) {
         self.dither = Some(dither);
     }
@@ -274,8 +274,8 @@ fn has_colors(object: &Object, materials: &[Material]) -> bool {
         || materials.iter().any(|material| material.texture.is_some())
 }
 
-/// To enlarge what it sees, a camera's view is narrowed, as going nearer would end inside the model; to make it smaller
-/// it goes farther away, as a wider view would bend it.
+/// Enlarges a camera's picture. To enlarge it, the view is narrowed, as going nearer would end inside the model; to
+/// make it smaller the camera goes farther away, as a wider view would bend it.
 fn zoomed(mut camera: Camera, zoom: f64) -> Camera {
     let half = camera.field_of_view.to_radians() / 2.0;
     // Rounded to f32: the pictures stay what they were.

@@ -75,7 +75,7 @@ pub(crate) fn command() -> clap::Command {
         .after_long_help(keys_and_status)
 }
 
-/// What was typed; or, where that is help or a failure, what has become of it.
+/// Parses what was typed; where that is help or a failure, returns what has become of it.
 pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
     let typed = command().try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
     typed.map_err(|error| match error.kind() {
@@ -106,7 +106,7 @@ pub(crate) fn run(words: &Words) -> Result<(), Failure> {
     }
 }
 
-/// What is wrong with the words, as one sentence.
+/// Describes what is wrong with the words, as one sentence.
 fn sentence(error: &clap::Error) -> String {
     if let Some(sentence) = mistyped_command() {
         return sentence;
@@ -138,7 +138,7 @@ fn sentence(error: &clap::Error) -> String {
     format!("{}{near} ({help} shows the options)", paragraph.join(" "))
 }
 
-/// Where the first word is nearly a command's name, and nothing else: that.
+/// Finds the command whose name the first word nearly is, if there is nothing else.
 fn mistyped_command() -> Option<String> {
     let word = first_word()?;
     let command = typo::mistyped_command(&word)?;

@@ -46,10 +46,10 @@ impl<C: Copy> Corners<C> {
     }
 }
 
-/// What the planes leave of a triangle (Sutherland, Hodgman 1974), or `None` if that is nothing.
+/// Clips a triangle by planes (Sutherland, Hodgman 1974); `None` if nothing is left.
 ///
-/// `distance` is that of a corner from a plane, 0 ([`Default`]) or more inside. `cut` is the point
-/// where an edge meets a plane: of the plane, the inside and the outside end, and their distances.
+/// `distance` is a corner's distance from a plane, 0 ([`Default`]) or more inside. `cut` is the point where
+/// an edge meets a plane; it is given the plane, the inside and the outside end, and their distances.
 #[must_use]
 pub fn clip<C: Copy, D: Copy + PartialOrd + Default>(
     [a, b, c]: [C; 3],
@@ -82,7 +82,7 @@ pub fn clip<C: Copy, D: Copy + PartialOrd + Default>(
     Some(polygon)
 }
 
-/// A convex polygon, but for the rounding of its corners.
+/// A convex polygon, except for the rounding of its corners.
 #[derive(Clone, Copy, Debug)]
 pub struct Clipped {
     vertices: [Vertex; MAX_CORNERS],

@@ -1,11 +1,11 @@
-//! Which pixels a triangle covers: its rows, top to bottom.
+//! Cover: the pixels of a triangle, as rows from top to bottom.
 
 use super::edge::Edge;
 use super::frame::Rect;
 use super::vertex::Vertex;
 
 /// A triangle whose vertices are in order: top, middle, bottom, of equal heights the left one
-/// first. What is drawn depends on the three points alone, not on the order they were given in.
+/// first. The pixels depend on the three points alone, not on the order they were given in.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SortedTriangle {
     /// The vertices by (y, x).
@@ -51,8 +51,8 @@ impl SortedTriangle {
         self.doubled_area.abs()
     }
 
-    /// How a value that is linear over the triangle, and `values` at its vertices, changes from one
-    /// 1/256 pixel to the next: numerators (in x, in y) over [`area`](Self::area).
+    /// Gradient of a value that is linear over the triangle, with `values` at its vertices: its change from one
+    /// 1/256 pixel to the next, as numerators (in x, in y) over [`area`](Self::area).
     ///
     /// ```text
     /// gx = (v1 − v0)·(y2 − y0) − (v2 − v0)·(y1 − y0)

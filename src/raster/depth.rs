@@ -99,7 +99,7 @@ impl DepthPlane {
             .wrapping_add(self.per_row.wrapping_mul(i64::from(y)))
     }
 
-    /// From one pixel to the next, with 24 fraction bits, modulo 2⁶⁴.
+    /// Change from one pixel to the next, with 24 fraction bits, modulo 2⁶⁴.
     #[must_use]
     #[inline]
     pub fn step(&self) -> i64 {
@@ -183,7 +183,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
         }
     }
 
-    /// Whether it was laid over a frame of this width that holds these rows.
+    /// Returns whether it was laid over a frame of this width that holds these rows.
     pub(super) fn holds(&self, width: u32, rows: &core::ops::Range<u32>) -> bool {
         let values = u64::from(width) * u64::from(rows.end - rows.start);
         self.width == width && self.first_row == rows.start && self.values.len() as u64 == values

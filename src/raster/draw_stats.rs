@@ -1,6 +1,6 @@
-//! What drawing came to, in counts.
+//! Counts of what was drawn.
 
-/// What drawing a triangle came to.
+/// Counts of drawing a triangle.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub struct DrawStats {

@@ -52,7 +52,7 @@ impl Edge {
         }
     }
 
-    /// On to the next row.
+    /// Steps to the next row.
     #[inline]
     pub fn down(&mut self) {
         // Both rests are below 2²⁹.

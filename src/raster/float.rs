@@ -12,9 +12,9 @@
 //!
 //! # Where a row starts
 //!
-//! At its far end: its first covered pixel inside the frame if 1/w grows to the right or stays, else its last, and
-//! k then counts down from 0. From the near end on the divisor would shrink, while the rounding error of its start
-//! stays: for w from 1 to 10⁴ in a row that is up to 0.9 of a shade. Both ends are the frame's, whatever the
+//! A row starts at its far end: its first covered pixel inside the frame if 1/w grows to the right or stays; otherwise
+//! its last, and k then counts down from 0. From the near end on the divisor would shrink, while the rounding error of
+//! its start stays: for w from 1 to 10⁴ in a row that is up to 0.9 of a shade. Both ends are the frame's, whatever the
 //! clip rectangle, and every pixel is made from its own k, so a part of a row has the bytes of the whole.
 //!
 //! # How far a byte is from exact
@@ -45,7 +45,7 @@ pub(super) struct FloatPlane {
     weights: Weights,
     /// The depth of each vertex times its shade, then its depth.
     values: [[f64; 2]; 3],
-    /// What both sums change by from one pixel to the next.
+    /// Change of both sums from one pixel to the next.
     steps: [f32; 2],
     /// The least and the greatest shade of a vertex.
     range: [f32; 2],

@@ -49,7 +49,7 @@ impl Rect {
         }
     }
 
-    /// Whether it holds no pixel.
+    /// Returns whether it holds no pixel.
     #[must_use]
     #[doc(hidden)]
     pub fn is_empty(self) -> bool {
@@ -57,7 +57,7 @@ impl Rect {
     }
 }
 
-/// Why bytes can't serve as a frame.
+/// Error of bytes that cannot serve as a frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum FrameError {

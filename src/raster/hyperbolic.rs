@@ -1,6 +1,6 @@
 //! Perspective-correct shades: linear on the face, so a hyperbola along a row (Hill).
 //!
-//! What is linear on a face in space is, over the screen, the quotient of two linear functions:
+//! A value that is linear on a face in space is, over the screen, the quotient of two linear functions:
 //! the value divided by w, and 1 / w. A vertex's depth is `2³⁰·near / w`, rounded, so with λ the
 //! weights of the three vertices, which are areas and whole numbers,
 //!
@@ -49,12 +49,12 @@ impl Linear {
         self.origin + self.per_column * i128::from(x) + self.per_row * i128::from(y)
     }
 
-    /// What it changes by from one pixel to the next.
+    /// Change from one pixel to the next.
     pub(super) fn per_column(&self) -> i128 {
         self.per_column
     }
 
-    /// What it changes by from one row to the next.
+    /// Change from one row to the next.
     pub(super) fn per_row(&self) -> i128 {
         self.per_row
     }
@@ -101,7 +101,7 @@ impl HyperbolicPlane {
         (n, 256 * d)
     }
 
-    /// What both change by from one pixel to the next.
+    /// Change of both from one pixel to the next.
     #[must_use]
     pub fn step(&self) -> (i128, i128) {
         let (n, d) = self.sums(self.weights.per_column(), 128);
@@ -119,7 +119,7 @@ impl HyperbolicPlane {
 
     /// Fills a row by quotients in f64, exact where these cannot decide. Returns whether it was done.
     ///
-    /// What is estimated is t = 2¹⁶·I/256 with the half added: below T = 2²⁴. With ε = 2⁻⁵³, N(k) and D(k) the exact
+    /// The estimated value is t = 2¹⁶·I/256 with the half added: below T = 2²⁴. With ε = 2⁻⁵³, N(k) and D(k) the exact
     /// sums at pixel k, their largest values N and D at the two ends, and R = D over the least D(k), which lies at an end
     /// too:
     ///

@@ -1,6 +1,6 @@
-//! How the pixels of a triangle get their shade: a list to which one can add a row.
+//! Interpolation of shades over a triangle: a list to which one can add a row.
 
-/// How a triangle's pixels get their shade.
+/// Interpolation of shades over the pixels of a triangle.
 ///
 /// | shading | off from exact by less than | in |
 /// |---|---|---|
@@ -42,7 +42,7 @@ pub enum Interpolation {
 }
 
 impl Interpolation {
-    /// All that interpolate between the vertices.
+    /// Interpolations between the vertices, all of them.
     #[doc(hidden)]
     pub const INTERPOLATED: &[Self] = &[
         Self::GouraudVintage,
@@ -70,7 +70,7 @@ impl Interpolation {
         }
     }
 
-    /// Whether a pixel is drawn if and only if its centre is in the triangle, and its byte lies within
+    /// Returns whether a pixel is drawn if and only if its centre is in the triangle, and its byte lies within
     /// `[(min + 128) >> 8, (max + 128) >> 8]` of the vertices' shades.
     #[must_use]
     #[doc(hidden)]
@@ -78,7 +78,7 @@ impl Interpolation {
         !matches!(self, Self::GouraudVintage)
     }
 
-    /// Whether shades are linear on the face in space, and not on the screen.
+    /// Returns whether shades are linear on the face in space, and not on the screen.
     #[must_use]
     #[doc(hidden)]
     pub const fn is_linear_on_the_face(self) -> bool {
@@ -90,7 +90,7 @@ impl Interpolation {
         }
     }
 
-    /// What is added to a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
+    /// Summand of a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
     #[must_use]
     #[doc(hidden)]
     pub const fn rounding(self) -> u8 {

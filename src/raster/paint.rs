@@ -1,4 +1,4 @@
-//! From a row of a triangle to bytes: which pixel loop, from which start.
+//! Painting of a triangle's rows: the choice of the pixel loop and of its start.
 //!
 //! Every way to draw a triangle paints its rows here, whole or in parts, so all give the same bytes.
 
@@ -162,7 +162,7 @@ impl RowShader {
     }
 }
 
-/// For the stages of `effects`.
+/// Shading for the stages of `effects`.
 #[cfg(feature = "alloc")]
 impl RowShader {
     /// The bytes of `piece`, which begins at column `x` of `row` and has no start but there. With dither, the
@@ -318,7 +318,7 @@ mod tests {
     use super::*;
     use crate::fixed::{I24F8, U8F8};
 
-    /// Where nothing is nearer, every kind is painted as without depths.
+    /// Tests that every kind is painted as without depths where nothing is nearer.
     #[test]
     fn rows_where_nearer_are_rows() {
         const WIDTH: u32 = 200;

@@ -38,7 +38,7 @@ use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 
-/// Where the two edges of a convex polygon cross a row's centre.
+/// Crossings of a convex polygon's two edges with a row's centre.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct TableRow {
     /// Left crossing, rounded up to 1/256 pixel.
@@ -51,7 +51,7 @@ pub struct TableRow {
     pub right_shade: U8F8,
 }
 
-/// Why a polygon was not drawn.
+/// Error of a polygon that was not drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum PolygonError {
@@ -81,11 +81,11 @@ impl fmt::Display for PolygonError {
 
 impl core::error::Error for PolygonError {}
 
-/// How a convex polygon is wound on the screen; `None` if it has no area.
+/// Winding of a convex polygon on the screen; `None` if it has no area.
 ///
-/// Exact. All its turns must go the same way, and its direction must change from down to up (in the
-/// order of (y, x)) once and from up to down once: else it would go round more than once. Vertices that
-/// repeat, or lie on the line between their neighbours, make no difference.
+/// The answer is exact. All its turns must go the same way, and its direction must change from down to up
+/// (in the order of (y, x)) once and from up to down once: otherwise it would go round more than once.
+/// Vertices that repeat, or lie on the line between their neighbours, make no difference.
 fn winding(vertices: &[Vertex]) -> Result<Option<Winding>, PolygonError> {
     let Some(last) = vertices.last() else { return Ok(None) };
     let mut turns = [false; 2];
@@ -123,7 +123,7 @@ fn is_down(edge: (i64, i64)) -> bool {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Winding {
-    /// On a screen whose y runs down: left edges run up.
+    /// Clockwise on a screen whose y runs down: left edges run up.
     Clockwise,
     CounterClockwise,
 }

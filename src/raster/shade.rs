@@ -23,7 +23,7 @@
 //! where they come from. Say they rise. After k pixels the sum is at least the start, which is at
 //! least min (a floor of something not below the integer min), and at most the exact value there,
 //! which is at most max: the step is no more than dI/dx, the start no more than the exact start.
-//! Where they fall the same holds turned over. So every sum lies in [min, max] as long as the
+//! Where they fall the same holds with the signs exchanged. So every sum lies in [min, max] as long as the
 //! pixel's centre lies in the triangle, and exact cover says that it does. Half a shade added to
 //! the start makes the byte the nearest shade; max ≤ 0xFF00 keeps it from wrapping.
 //!
@@ -49,9 +49,9 @@ pub struct ShadePlane {
     area: Divisor,
     /// N at column 0's centre of row 0.
     origin: i64,
-    /// What N changes by from one pixel to the next.
+    /// Change of N from one pixel to the next.
     per_column: i64,
-    /// What N changes by from one row to the next.
+    /// Change of N from one row to the next.
     per_row: i64,
     step: u16,
 }
@@ -111,7 +111,7 @@ impl ShadePlane {
         self.origin + self.per_column * i64::from(x) + self.per_row * i64::from(y)
     }
 
-    /// What N changes by from one pixel to the next: within 2⁴⁶.
+    /// Change of N from one pixel to the next: within 2⁴⁶.
     #[inline]
     pub(super) fn per_column(&self) -> i64 {
         self.per_column

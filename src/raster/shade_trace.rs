@@ -1,6 +1,6 @@
-//! How one pixel of a triangle comes to its byte: the start and the step of its span, and the sum up to it.
+//! Trace of one pixel of a triangle to its byte: the start and the step of its span, and the sum up to it.
 //!
-//! The loops of [`span`](crate::span) keep none of this; here it is worked out again for a single pixel, from the very
+//! The loops of [`span`](crate::span) keep none of this. It is worked out again here for a single pixel, from the
 //! planes that the loops start from.
 
 use alloc::vec::Vec;
@@ -18,9 +18,9 @@ use crate::span::float::{fill_float, quotient};
 /// An exact number: a fraction.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Ratio {
-    /// What stands above the line.
+    /// Number above the line.
     pub numerator: i128,
-    /// What stands below it; above 0.
+    /// Number below the line; above 0.
     pub denominator: i128,
 }
 
@@ -32,7 +32,7 @@ impl Ratio {
     }
 }
 
-/// How a value runs along the row to a pixel.
+/// Progression of a value along the row to a pixel.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Progression {
     /// One byte for the whole triangle.
@@ -70,7 +70,7 @@ pub struct Accumulator {
     pub steps: i32,
     /// 8, or 16.
     pub fraction_bits: u32,
-    /// What of the start is there for rounding: half a shade, or nothing.
+    /// Part of the start that is there for rounding: half a shade, or nothing.
     pub half: u32,
 }
 
@@ -90,11 +90,11 @@ impl Accumulator {
     }
 }
 
-/// How a value of a triangle's corners comes to be at one of its pixels.
+/// Trace of a value from a triangle's corners to one of its pixels.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct ShadeTrace {
-    /// How it runs there.
+    /// Progression along the row.
     pub way: Progression,
     /// The exact value at the pixel's centre, in 1/256 shade: linear on the screen or, where the shading is, on the face.
     /// `None` of a flat triangle.

@@ -110,7 +110,7 @@ impl<'a, D: Cell> Raster<'a, D> {
 
     /// Draws a triangle that lies wholly inside the frame, without comparing its rows with any edge.
     ///
-    /// All of it is drawn. What lies outside all the same is not drawn, or some of it.
+    /// All of it is drawn. Parts that lie outside all the same are not drawn, or only some of them.
     #[inline]
     #[doc(hidden)]
     pub fn triangle_inside(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {

@@ -1,4 +1,4 @@
-//! What may enter the raster: a projected vertex inside the guard band.
+//! Vertices of the raster: projected ones inside the guard band.
 
 use core::fmt;
 
@@ -14,7 +14,7 @@ pub struct Vertex {
     depth: u32,
 }
 
-/// Why a vertex was refused.
+/// Error of a vertex that was refused.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum VertexError {

@@ -4,7 +4,7 @@
 //! vertices:   X = floor(x + ½), Y = floor(y + ½)          on whole pixels
 //! edges:      StepY = (a1 − a0) / (Y1 − Y0)               of x in 16.16, of the shade in 8.8
 //! rows:       StepX = (Bs − As) / (Bx − Ax)               of the shade in 8.8; each row its own
-//! pixels:     from Ax to the last before Bx: the whole part of As + k·StepX
+//! pixels:     from Ax to the last before Bx: the integer part of As + k·StepX
 //! ```
 //!
 //! Every quotient is cut toward zero; there is one addition a scan line and edge, one a pixel, and no half is
@@ -76,7 +76,7 @@ impl Edge {
         Self { y, x: self.x + self.step_x * rows, shade: self.shade + self.step_shade * rows, ..*self }
     }
 
-    /// On to the next row.
+    /// Steps to the next row.
     #[inline]
     fn down(&mut self) {
         self.y += 1;
@@ -101,8 +101,8 @@ pub(super) struct PeriodTriangle {
 }
 
 impl PeriodTriangle {
-    /// With these shades, 0 to 0xFF00, at its vertices. The order of the vertices stays: what is above in
-    /// 1/256 pixel is not below in pixels.
+    /// Makes one with these shades, 0 to 0xFF00, at its vertices. The order of the vertices stays: a vertex above
+    /// another in 1/256 pixel is not below it in pixels.
     #[inline]
     pub(super) fn new(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let corner = |i: usize| {

@@ -33,14 +33,14 @@ impl WholeWeights {
         weights
     }
 
-    /// At the centre of pixel (`x`, `y`).
+    /// Returns the weights at the centre of pixel (`x`, `y`).
     #[inline]
     pub(super) fn at(&self, x: i32, y: i32) -> [i64; 3] {
         let (x, y) = (i64::from(x), i64::from(y));
         core::array::from_fn(|i| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y)
     }
 
-    /// What they change by from one pixel to the next; they add up to 0. Within 2³⁰.
+    /// Change of the weights from one pixel to the next. They add up to 0, and are within 2³⁰.
     #[inline]
     pub(super) fn per_column(&self) -> [i64; 3] {
         self.per_column
@@ -66,14 +66,14 @@ impl Weights {
         Self { origin: exact(whole.origin), per_column: exact(whole.per_column), per_row: exact(whole.per_row) }
     }
 
-    /// At the centre of pixel (`x`, `y`).
+    /// Returns the weights at the centre of pixel (`x`, `y`).
     #[inline]
     pub(super) fn at(&self, x: i32, y: i32) -> [f64; 3] {
         let (x, y) = (f64::from(x), f64::from(y));
         core::array::from_fn(|i| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y)
     }
 
-    /// What they change by from one pixel to the next; they add up to 0.
+    /// Change of the weights from one pixel to the next; they add up to 0.
     #[inline]
     pub(super) fn per_column(&self) -> [f64; 3] {
         self.per_column

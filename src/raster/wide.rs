@@ -42,7 +42,7 @@ impl ShadePlane16 {
         Self { plane, step }
     }
 
-    /// What is added from pixel to pixel, in 1/65,536 shade modulo 2³².
+    /// Step from pixel to pixel, in 1/65,536 shade modulo 2³².
     #[must_use]
     #[inline]
     pub fn step(&self) -> u32 {

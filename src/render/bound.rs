@@ -1,4 +1,4 @@
-//! How far linear shades may be from light at every pixel: a bound, from normals, lights and vertices.
+//! Bounds of the error of linear shades against light at every pixel, from normals, lights and vertices.
 //!
 //! Over a triangle a linear shade lies between those of the three vertices, wherever on it and however it
 //! is interpolated. Light worked out at a point of the triangle, with a normal between the vertices', lies
@@ -77,7 +77,7 @@ fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
     if lengths > 0.0 { libm::acos((dot(a, b) / lengths).clamp(-1.0, 1.0)) } else { PI / 2.0 }
 }
 
-/// By how much the direction to a point at `distance` turns along an edge of `edge`.
+/// Returns the angle by which the direction to a point at `distance` turns along an edge of `edge`.
 fn turn(edge: f64, distance: f64) -> f64 {
     if edge < distance { libm::asin(edge / distance) } else { PI }
 }
@@ -140,7 +140,7 @@ impl Face {
         sum
     }
 
-    /// How far linear shades may be off, of full intensity.
+    /// Bounds the error of linear shades, in shares of full intensity.
     fn error(&self, lights: &Lights<'_>, paint: &SurfaceMaterial, shades: [f64; 3]) -> f64 {
         let shown = |intensity: f64| intensity.clamp(0.0, 1.0);
         let (mut low, mut high) = (0.0_f64, 1.0_f64);

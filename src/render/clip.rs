@@ -11,7 +11,7 @@ use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
 use crate::view::{Homogeneous, ObjectView};
 
-/// Which part of the way from one end of an edge to the other a cut lies at.
+/// Place of a cut on an edge, as the part of the way from one end to the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parts {
     /// Along the edge in space.
@@ -33,7 +33,7 @@ impl Carried for () {
     fn between(&self, (): &Self, _: Parts) -> Self {}
 }
 
-/// What effects need, and whether the image's coordinates are linear on the screen.
+/// Attributes that effects need, and whether the image's coordinates are linear on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WithEffects {
     pub(super) attributes: Attributes,
@@ -148,8 +148,8 @@ fn cut<C: Carried>(
     }
 }
 
-/// Clips a triangle that is drawn with `interpolation`. Returns `None` if nothing is left, else the polygon and what its
-/// corners carry.
+/// Clips a triangle that is drawn with `interpolation`. Returns `None` if nothing is left; otherwise the polygon and
+/// its corners' values.
 pub(super) fn clip<C: Carried>(
     view: &ObjectView,
     interpolation: Interpolation,

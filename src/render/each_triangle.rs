@@ -19,20 +19,20 @@ pub struct DrawnTriangle<'a> {
     pub face: Option<usize>,
     /// The corners, projected and lit.
     pub vertices: &'a [Vertex; 3],
-    /// How its shades run, where they come from its corners.
+    /// Interpolation of its shades, where they come from its corners.
     pub interpolation: Interpolation,
     /// The palette entries of its surface's shades; `None` on the 16.16 path.
     pub ramp: Option<Ramp>,
-    /// What its pixels pass through, if they pass through stages.
+    /// Stages that its pixels pass through, if there are any.
     pub effects: Option<DrawnEffects<'a>>,
 }
 
-/// What the pixels of a triangle pass through.
+/// Stages that the pixels of a triangle pass through.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawnEffects<'a> {
-    /// What the corners carry beside their shades.
+    /// Attributes of the corners beside their shades.
     pub attributes: &'a [Attributes; 3],
-    /// Whether it shines through, and is drawn after all that does not.
+    /// True if it shines through, and is drawn after all that does not.
     pub transparent: bool,
     /// The stages.
     pub pipeline: &'a PixelPipeline<'a>,

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 /// No edge: both its ends would be one.
 const FREE: (u32, u32) = (u32::MAX, u32::MAX);
 
-/// From an edge, two different numbers, to a number.
+/// Map from an edge, two different numbers, to a number.
 #[derive(Debug, Default)]
 pub(super) struct EdgeMap {
     /// Edges and their numbers, at indices by hash. The length is a power of two, or zero.
@@ -49,7 +49,7 @@ impl EdgeMap {
         self.places.capacity() * size_of::<((u32, u32), u32)>()
     }
 
-    /// Where an edge stands, or would; nowhere in a table without places.
+    /// Place where an edge stands, or would; nowhere in a table without places.
     fn place(&self, (a, b): (u32, u32)) -> Option<usize> {
         let last = self.places.len().checked_sub(1)?;
         // Knuth's multiplicative hash (The Art of Computer Programming, 6.4), 2⁶⁴ over the golden ratio. Its upper

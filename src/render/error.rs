@@ -1,10 +1,10 @@
-//! Why a scene could not be drawn.
+//! Errors of scenes that cannot be drawn.
 
 use core::fmt;
 
 use crate::scene::Scene;
 
-/// Why a scene could not be drawn.
+/// Error of a scene that could not be drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -14,14 +14,14 @@ pub enum RenderError {
     Object {
         /// Its place, from 0.
         index: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// A light, by its place in the scene.
     Light {
         /// Its place, from 0.
         index: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// The scene's ambient light is not finite.
@@ -30,7 +30,7 @@ pub enum RenderError {
     Fog(&'static str),
     /// The palette's animation.
     PaletteAnimation(&'static str),
-    /// What is asked for.
+    /// The preferences.
     Preferences(&'static str),
 }
 
@@ -50,7 +50,7 @@ impl fmt::Display for RenderError {
 
 impl core::error::Error for RenderError {}
 
-/// What is wrong with a scene, if anything.
+/// Checks a scene for faults.
 pub(super) fn check(scene: &Scene) -> Result<(), RenderError> {
     if !scene.ambient.is_finite() {
         return Err(RenderError::Ambient);

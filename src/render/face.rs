@@ -1,7 +1,7 @@
 //! The stage of an object's faces: each picks its vertices, is clipped where it must be and left out
-//! where it is turned away.
+//! where it is a back face.
 //!
-//! What the plan decides for the object is a constant of the loop: a loop that needs no clipping has no
+//! The plan's decisions for the object are constants of the loop: a loop that needs no clipping has no
 //! test for it.
 
 use super::Stats;
@@ -49,11 +49,11 @@ pub(super) trait Sink {
     );
     /// A face without effects comes next, in an object some of whose faces have them.
     fn after_effects(&mut self) {}
-    /// What faces may be left out by, if any: those that cover no pixel centre.
+    /// Culling of faces that cover no pixel centre, if there is any.
     fn sieve(&self) -> Option<Sieve> {
         None
     }
-    /// Whether it takes faces without effects by their numbers, too.
+    /// Returns whether it takes faces without effects by their numbers, too.
     fn takes_numbers(&self, _: Interpolation) -> bool {
         false
     }
@@ -85,15 +85,15 @@ impl Faces<'_> {
         stats.shares.add(self.shading.into(), stats.drawn - before);
     }
 
-    /// Which of a chunk of up to 64 triangles lie back to back with others.
+    /// Finds those of a chunk of up to 64 triangles that lie back to back with others.
     #[inline]
     pub(super) fn twins_of(&self, chunk: usize) -> u64 {
         self.twins.get(chunk).copied().unwrap_or(0)
     }
 
-    /// Which of up to 64 faces are to be drawn, those that need clipping among them. A face that covers no pixel centre is
-    /// left out where it would draw nothing (a shading with a cover of its own draws beside them), though it counts as
-    /// drawn.
+    /// Finds the faces to be drawn among up to 64, those that need clipping included. A face that covers no pixel
+    /// centre is left out where it would draw nothing (a shading with a cover of its own draws beside them), though it
+    /// counts as drawn.
     #[inline]
     pub(super) fn sift<const CULLS: bool>(
         &self,
@@ -274,7 +274,7 @@ impl Faces<'_> {
         sink.with_effects(face.index, &vertices, &attributes, face.surface, self.shading.into());
     }
 
-    /// How a face is shaded; its one shade, where it has but one, is worked out here.
+    /// Chooses a face's interpolation; its one shade, where it has but one, is worked out here.
     #[inline]
     fn interpolation(&self, face: Face, stats: &mut Stats) -> Interpolation {
         if self.lit_by_face {
@@ -311,8 +311,8 @@ impl Faces<'_> {
     }
 }
 
-/// Whether the eye is behind the face, wherever its corners are: the sign of the volume between
-/// the eye and the three corners.
+/// Returns whether the eye is behind the face, wherever its corners are: the sign of the volume
+/// between the eye and the three corners.
 pub(super) fn is_turned_away(at: &[Homogeneous; 3]) -> bool {
     let [a, b, c] = at;
     let volume = a.w * (b.x * c.y - c.x * b.y) + b.w * (c.x * a.y - a.x * c.y) + c.w * (a.x * b.y - b.x * a.y);

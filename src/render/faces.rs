@@ -1,4 +1,4 @@
-//! What the faces of an object are made from.
+//! Input for the faces of an object.
 
 use super::lit::ShadedVertices;
 use super::paint::SurfaceMaterial;
@@ -19,22 +19,22 @@ pub(super) struct Faces<'a> {
     pub(super) lit: &'a ShadedVertices,
     /// The attributes of each vertex, if there are effects.
     pub(super) extras: &'a [VertexAttributes],
-    /// Whether faces that are turned away are left out.
+    /// True if back faces are left out.
     pub(super) culls: bool,
-    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. Turned away, such a
-    /// face is left out even where others show their backs: the other one has the same depth, and looks toward the eye.
+    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. As a back face it
+    /// is left out even where others show their backs: the other one has the same depth, and looks toward the eye.
     pub(super) twins: &'a [u64],
-    /// Whether its shades run: else each surface has one.
+    /// True if its shades run; otherwise each surface has one.
     pub(super) runs: bool,
-    /// Whether there are lamps or highlights.
+    /// True if there are lamps or highlights.
     pub(super) full: bool,
-    /// Whether faces are lit, each on one channel or on three, and not vertices.
+    /// True if faces are lit, each on one channel or on three, and not vertices.
     pub(super) lit_by_face: bool,
     pub(super) channels: bool,
-    /// Whether texture coordinates are linear on the screen.
+    /// True if texture coordinates are linear on the screen.
     pub(super) affine: bool,
-    /// Whether pixels may be lit each for itself.
+    /// True if pixels may be lit each for itself.
     pub(super) lights_pixels: bool,
-    /// What light is worked out by where a face is decided on.
+    /// Kernel for the light where a face is decided on.
     pub(super) kernel: Kernel,
 }

@@ -77,7 +77,7 @@ impl Converted {
         Shared::ptr_eq(&self.mesh, object.shared_mesh()) && self.pivot == object.pivot && self.up_axis == object.up_axis
     }
 
-    /// How far the object's vertices may be from its position, in the scene's units.
+    /// Bounds the distance of the object's vertices from its position, in the scene's units.
     fn reach(&self, object: &scene::Object) -> f64 {
         // The radius is below 2³³.
         f64::from(object.scale) * libm::ldexp(self.radius as f64 / 65_536.0, self.exponent)
@@ -143,7 +143,7 @@ pub(super) struct IntegerPath {
 }
 
 impl IntegerPath {
-    /// Converts a scene whose numbers are finite. What passes here can be drawn.
+    /// Converts a scene whose numbers are finite. A scene that passes can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();
         // Lamps are left out: the plan says so.

@@ -1,4 +1,4 @@
-//! An object's vertices, lit and projected, in arrays: the faces that are turned away, most of a fine model, need
+//! An object's vertices, lit and projected, in arrays: the back faces, most of a fine model, need
 //! places alone.
 
 use alloc::vec::Vec;
@@ -10,7 +10,7 @@ pub(super) use crate::raster::batch::numbered::Place;
 /// A vertex of the object at hand, lit and projected.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct LitVertex {
-    /// Its shade is that of the front: the side that the normal points away from. Of a vertex that
+    /// Its shade is that of the front: the side that the normal points away from. In a vertex that
     /// needs clipping only the shade counts.
     pub(super) vertex: Vertex,
     pub(super) back: U8F8,
@@ -25,8 +25,8 @@ pub(super) struct ShadedVertices {
     pub(super) depths: Vec<u32>,
     /// Front and back.
     pub(super) shades: Vec<[U8F8; 2]>,
-    /// Where a budget asks, as many: a bit for each of the first seven lights, suns first, whether the front sees it; and the
-    /// highest, whether a shade is clamped.
+    /// Flags of the vertices, as many, where a budget asks: a bit for each of the first seven lights, suns first, if
+    /// the front sees it; and the highest, if a shade is clamped.
     pub(super) flags: Vec<u8>,
 }
 
@@ -40,7 +40,7 @@ impl ShadedVertices {
         self.flags.clear();
     }
 
-    /// Where faces or pixels are lit: no vertex has a shade.
+    /// Leaves vertices without shades: faces or pixels are lit.
     pub(super) fn leave_without_light(&mut self) {
         self.shades.fill([U8F8::default(); 2]);
     }

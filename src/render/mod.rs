@@ -1,25 +1,25 @@
-//! From a scene to bytes, frame by frame.
+//! Rendering: from a scene to bytes, frame by frame.
 //!
 //! | file | what |
 //! |---|---|
-//! | `object` | what is kept of an object: its vertices, and what they were made from |
-//! | `vertex`, `lit` | the stages of vertices: projected, lit, given what effects need; what they come to, in arrays |
+//! | `object` | the state kept of an object: its vertices, and their inputs |
+//! | `vertex`, `lit` | the stages of vertices: projected, lit, given attributes for effects; their results, in arrays |
 //! | `tessellate`, `edge_map` | faces split along their edges; a number for each edge |
-//! | `sift` | which faces are turned away, and which cover no pixel centre |
-//! | `faces` | what an object's faces are made from |
+//! | `sift` | culling: back faces, and those that cover no pixel centre |
+//! | `faces` | the input for an object's faces |
 //! | `face`, `within` | the stage of faces, with `clip`: near plane and guard band |
-//! | `bound` | how far linear shades may be from light at every pixel |
-//! | `budget` | the error budget: which shading for which triangle |
-//! | `sinks`, `visible` | what becomes of faces: drawn as they come, or kept; the ways to visible surfaces |
-//! | `paint`, `pixel_light`, `tables`, `look` | what pixels are made from |
+//! | `bound` | bounds of the error of linear shades against light at every pixel |
+//! | `budget` | the error budget: the shading for each triangle |
+//! | `sinks`, `visible` | where faces go: drawn as they come, or kept; the ways to visible surfaces |
+//! | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
-//! | `settings` | how a renderer is set; what a scene is drawn by, and who chose that |
-//! | `stats` | what a frame came to |
+//! | `settings` | settings of a renderer and of the scene drawn, and whose choice counts |
+//! | `stats` | counts of a frame |
 //! | `each_triangle` | every triangle of a frame with all that the raster would get, for the laboratory |
 //!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed,
 //! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
-//! be and left out where they are turned away; the [`raster`](crate::raster) draws what is left.
+//! be and left out where they are back faces; the [`raster`](crate::raster) draws what is left.
 
 mod bound;
 mod budget;
@@ -70,7 +70,7 @@ pub use settings::{Accuracy, ChosenBy, Resolved, Settings};
 pub use stats::{Shares, Stats};
 pub use vertex_path::VertexPath;
 
-/// What the frame that was drawn last depends on, beside its objects.
+/// Inputs of the last frame that was drawn, beside its objects.
 #[derive(Clone, PartialEq, Debug)]
 struct Drawing {
     screen: Screen,
@@ -103,7 +103,7 @@ pub struct Renderer {
     effects: EffectBatch,
     /// The faces of a frame that must be known whole before it is drawn.
     triangles: Vec<([Vertex; 3], Interpolation)>,
-    /// For each of `triangles` its index in `kept`, if it has effects.
+    /// Index in `kept` of each of `triangles`, if it has effects.
     kept_places: Vec<Option<u32>>,
     kept: Vec<DeferredFace>,
     /// Faces that shine through.
@@ -150,14 +150,14 @@ impl Renderer {
         Self { settings: self.settings.clone(), kernel: self.kernel, ..Self::new() }
     }
 
-    /// How it is set.
+    /// Settings of the renderer.
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// How it is set, to change it: how textures are mapped, how hidden surfaces are left out, the numbers that vertices
-    /// are made in.
+    /// Settings of the renderer, to change them: how textures are mapped, how hidden surfaces are left out, the numbers
+    /// that vertices are made in.
     ///
     /// ```
     /// use mode13h::render::{HiddenSurfaces, Mapping, Renderer};
@@ -203,7 +203,7 @@ impl Renderer {
 
     /// Switches an effect on or off for every object, or leaves it to the plan, as a new renderer does.
     ///
-    /// Of effects that save work, on or off gives the same bytes; that of hidden surfaces is switched by
+    /// Effects that save work give the same bytes on or off. That of hidden surfaces is switched by
     /// [`Settings::hidden_surfaces`]. Where an effect that changes the picture is
     /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
     /// image that changes nothing). Clipping stays on where the plan calls for it.
@@ -222,7 +222,7 @@ impl Renderer {
     /// palette; with `None`, as a new renderer has it, they are mixed. For those who measure shades.
     pub(crate) fn show_channel(&mut self, channel: Option<usize>) {
         self.tables.only_channel = channel;
-        // What the machine holds is another picture.
+        // The machine holds another picture.
         self.last = None;
     }
 
@@ -234,8 +234,8 @@ impl Renderer {
 
     /// The plan of the frame that was drawn last, in words: [`Plan::rows`] of `scene`, which it must have
     /// been drawn from, and how far the picture may be off where light at every pixel or splitting is not
-    /// on. That is worked out here, face by face, and only here. Of an object that is drawn within an error budget,
-    /// how many of its triangles each shading got.
+    /// on. That is worked out here, face by face, and only here. For an object that is drawn within an error
+    /// budget, it says how many of its triangles each shading got.
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         self.plan.rows_with(scene, |object| Findings {
@@ -244,9 +244,9 @@ impl Renderer {
         })
     }
 
-    /// How far the shades of an object, by its place, may be from light at every pixel, in shades of 1/255
-    /// of full intensity and rounding aside: a bound, from normals, lights and vertices, for the frame
-    /// that was drawn last. `None` of an object that has one shade a face, that is not there, or on the
+    /// Bounds the error of an object's linear shades against light at every pixel, in shades of 1/255 of full
+    /// intensity and rounding aside, from normals, lights and vertices, for the frame that was drawn last.
+    /// `object` is its index. `None` if the object has one shade a face, or is not there, or on the
     /// 16.16 path.
     #[must_use]
     #[doc(hidden)]
@@ -277,7 +277,7 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// As [`draw`](Self::draw), but for what 16.16 can't hold, which shows only when it is drawn.
+    /// Those of [`draw`](Self::draw), except for numbers that 16.16 can't hold, which show only when it is drawn.
     pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
         let view = self.checked(scene, screen)?;
         self.decide(scene, &view, true);
@@ -297,7 +297,7 @@ impl Renderer {
         let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
         let before = self.bytes();
         let (mut stats, changed) = self.prepare(scene, Screen::MODE_13H, shown.as_ref(), true)?;
-        // Of a scene without objects nothing was decided.
+        // Nothing was decided for a scene without objects.
         if self.plan.is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
             scene.load_palette(vga);
         } else if let Some(palette) = &scene.palette {
@@ -339,7 +339,7 @@ impl Renderer {
 
     /// Hands every triangle that is to be drawn to `triangle`, as the raster would get it: object by
     /// object, far to near where the scene calls for that, each in the order of its faces; a forced
-    /// painter's order does not sort them here. What effects need besides is left out. The counts of the
+    /// painter's order does not sort them here. Attributes for effects are left out. The counts of the
     /// work are returned, without the raster's.
     ///
     /// # Errors

@@ -1,5 +1,5 @@
-//! What a renderer keeps of an object from frame to frame: its vertices, lit and projected, and what
-//! they were made from. As long as that stays, so do they.
+//! Objects as a renderer keeps them from frame to frame: vertices, lit and projected, and what they
+//! were made from. As long as that stays, so do they.
 
 use alloc::vec::Vec;
 
@@ -23,7 +23,7 @@ use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
 
-/// What an object's vertices depend on, beside the plan.
+/// Inputs of an object's vertices, beside the plan.
 #[derive(Clone, PartialEq, Debug)]
 struct ShadeSource {
     mesh: Shared<Mesh>,
@@ -113,7 +113,7 @@ pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
     })
 }
 
-/// What an object's vertices are made of and by.
+/// Inputs of making an object's vertices.
 struct Made<'a> {
     scene: &'a Scene,
     object: &'a Object,
@@ -126,7 +126,7 @@ struct Made<'a> {
 #[derive(Debug, Default)]
 pub(super) struct ObjectState {
     source: Option<ShadeSource>,
-    /// Whether the source has changed since the vertices were made.
+    /// True if the source has changed since the vertices were made.
     stale: bool,
     /// The plan that the vertices were made by, its reasons aside.
     made_by: Option<[bool; Effect::COUNT]>,
@@ -136,15 +136,15 @@ pub(super) struct ObjectState {
     lit: ShadedVertices,
     extras: Vec<VertexAttributes>,
     tessellated: Tessellated,
-    /// Whether that is what is drawn. What is not stays for when it is again.
+    /// True if the tessellated mesh is drawn. Otherwise it stays for when it is again.
     is_tessellated: bool,
     /// The mesh and the number of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
     /// One for each surface, and what they were made from.
     normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Table)>,
-    /// What they would be made from now.
+    /// Lights that the vertices would be made from now.
     beams: Vec<Beam>,
-    /// What a budget's decisions are made from, and those that were made, one for each triangle.
+    /// Data of a budget's decisions, and those that were made, one for each triangle.
     budget: Budget,
     has_budget: bool,
     decided: Decided,
@@ -184,7 +184,7 @@ impl ObjectState {
         self.source.as_ref().map_or(&[], |source| &source.lamps)
     }
 
-    /// What is kept is of no use any more.
+    /// Marks all that is kept as of no use any more.
     pub(super) fn forget(&mut self) {
         self.made_by = None;
     }
@@ -250,7 +250,7 @@ impl ObjectState {
         self.tessellated.split(&mesh_geometry(object), (points, twins), &lights, &self.paints, source.tolerance);
     }
 
-    /// Where the vertices are on the screen.
+    /// Projects the vertices to the screen.
     fn project(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>, stats: &mut Stats) {
         let Some(source) = &self.source else { return };
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
@@ -295,7 +295,7 @@ impl ObjectState {
         }
     }
 
-    /// What the vertices carry for images and fog.
+    /// Adds the vertices' attributes for images and fog.
     fn add_attributes(&mut self, &Made { scene, object, plan, .. }: &Made<'_>) {
         let Some(source) = &self.source else { return };
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
@@ -312,7 +312,7 @@ impl ObjectState {
         }
     }
 
-    /// What a budget decides on faces by, if there is one.
+    /// Prepares a budget's decisions on faces, if there is one.
     fn bound_errors(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>, changed: bool, stats: &mut Stats) {
         let Some(source) = &self.source else { return };
         self.has_budget = plan.max_error().is_some();
@@ -336,7 +336,7 @@ impl ObjectState {
         self.budget.mark(&lit, &mut self.lit, &self.extras);
     }
 
-    /// What pixels are lit by, where all are.
+    /// Prepares light for the pixels, where all are lit.
     fn prepare_pixels(&mut self, &Made { scene, object, view, plan, .. }: &Made<'_>) {
         let Some(source) = &self.source else { return };
         if plan.stages().lit_at != LitAt::Pixels {
@@ -437,7 +437,7 @@ impl ObjectState {
         })
     }
 
-    /// What its faces are decided on by, if that is done for each.
+    /// Budget that its faces are decided on by, if that is done for each.
     pub(super) fn budget(&self) -> Option<&Budget> {
         self.has_budget.then_some(&self.budget)
     }
@@ -447,7 +447,7 @@ impl ObjectState {
         drawn_geometry(self.is_tessellated, &self.tessellated, object).triangles.len()
     }
 
-    /// Whether pixels of its faces may pass through stages. A budget lights some where it must.
+    /// Returns whether pixels of its faces may pass through stages. A budget lights some where it must.
     pub(super) fn may_have_effects(&self) -> bool {
         !self.extras.is_empty() || self.has_budget
     }
@@ -457,7 +457,7 @@ impl ObjectState {
         core::mem::take(&mut self.decided)
     }
 
-    /// How many triangles were shaded in which way, by a budget's choices; `None` without a budget.
+    /// Counts the triangles by the way in which they were shaded, by a budget's choices; `None` without a budget.
     pub(super) fn face_counts(&self) -> Option<FaceCounts> {
         self.has_budget.then(|| self.decided.counts())
     }
@@ -486,7 +486,7 @@ impl ObjectState {
     }
 }
 
-/// What is drawn of an object: its mesh, or what splitting made of it.
+/// Geometry drawn of an object: its mesh, or the result of splitting it.
 fn drawn_geometry<'a>(is_tessellated: bool, tessellated: &'a Tessellated, object: &'a Object) -> Geometry<'a> {
     if is_tessellated { tessellated.geometry() } else { mesh_geometry(object) }
 }

@@ -11,13 +11,13 @@ use crate::texture::Texture;
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct SurfaceMaterial {
     pub(super) answer: Reflectance,
-    /// Where one channel's shades lie: the material's entries, or, of an image or of channels, all 256.
+    /// Place of one channel's shades: the material's entries; all 256 for an image or channels.
     pub(super) ramp: Ramp,
     /// The image's width and height, if it is on.
     pub(super) texture_size: Option<[u32; 2]>,
     pub(super) environment_size: Option<[u32; 2]>,
     pub(super) blend: Blend,
-    /// Whether its pixels pass through stages.
+    /// True if its pixels pass through stages.
     pub(super) has_effects: bool,
     pub(super) response: Option<LightResponse>,
 }
@@ -99,7 +99,7 @@ impl SurfaceMaterial {
     }
 }
 
-/// What a response makes of a shade of a ramp.
+/// Answer of a response to a shade of a ramp.
 #[cold]
 fn answered(response: &LightResponse, shade: U8F8, ramp: Ramp) -> U8F8 {
     // A ramp of one entry has one shade.

@@ -1,4 +1,4 @@
-//! What is done to the pixels of a surface: the plan, the material and the tables, put together.
+//! Pixel pipelines of surfaces: the plan, the material and the tables, put together.
 
 use super::budget::limits;
 use super::object::ObjectState;
@@ -100,13 +100,13 @@ impl Pipelines<'_> {
         self.paint(object, surface).map(|paint| paint.ramp)
     }
 
-    /// Whether a surface shines through.
+    /// Returns whether a surface shines through.
     pub(super) fn is_transparent(&self, object: usize, surface: u16) -> bool {
         self.plan.is_on(object, Effect::Transparency)
             && self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
     }
 
-    /// Hands the pixel pipeline of an object's surface to `draw`. Of one that is not there, nothing is drawn.
+    /// Hands the pixel pipeline of an object's surface to `draw`. A surface that is not there is not drawn.
     pub(super) fn with(
         &self,
         Pipeline { object, surface, shading }: Pipeline,

@@ -1,4 +1,4 @@
-//! How a renderer is set, and what a scene is drawn by: the only place that knows whose choice counts.
+//! Settings of a renderer and of the scene drawn: the only place that knows whose choice counts.
 
 use core::fmt;
 
@@ -6,7 +6,7 @@ use super::VertexPath;
 use crate::plan::{Effect, Overrides};
 use crate::scene::{HiddenSurfaces, Mapping, Preferences, Shading};
 
-/// How exact shades are: one choice, so that a shading and a budget cannot both be set.
+/// Accuracy of shades: one choice, so that a shading and a budget cannot both be set.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Accuracy {
     /// Every face gets this shading, and shades are as exact as it makes them.
@@ -27,7 +27,7 @@ impl Accuracy {
         }
     }
 
-    /// How many shades of error are accepted, if it is by that that shadings are chosen.
+    /// Accepted error in shades, if shadings are chosen by that.
     #[must_use]
     #[doc(hidden)]
     pub const fn max_error(self) -> Option<f32> {
@@ -62,7 +62,7 @@ impl fmt::Display for Accuracy {
     }
 }
 
-/// Who chose what a scene is drawn by.
+/// Origin of a choice that a scene is drawn by.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[doc(hidden)]
 pub enum ChosenBy {
@@ -74,17 +74,17 @@ pub enum ChosenBy {
     Default,
 }
 
-/// How a renderer is set. What is `None` here is left to the scene, and what the scene does not ask for to the plan.
+/// Settings of a renderer. The scene decides those that are `None`, and the plan those that the scene leaves open.
 #[derive(Clone, PartialEq, Debug, Default)]
 #[non_exhaustive]
 pub struct Settings {
-    /// How exact shades are.
+    /// Accuracy of shades.
     pub accuracy: Option<Accuracy>,
-    /// How hidden surfaces are left out, right or wrong.
+    /// Method for hidden surfaces, right or wrong.
     pub hidden_surfaces: Option<HiddenSurfaces>,
-    /// How textures are mapped.
+    /// Mapping of textures.
     pub mapping: Option<Mapping>,
-    /// Whether textures have mipmaps.
+    /// Mipmaps of textures, on or off.
     pub mipmaps: Option<bool>,
     /// The numbers that vertices are made in.
     pub vertex_path: VertexPath,
@@ -93,32 +93,32 @@ pub struct Settings {
     pub overrides: Overrides,
 }
 
-/// What a scene is drawn by. [`Settings::resolve`] makes it.
+/// Settings that a scene is drawn by. [`Settings::resolve`] makes it.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 #[doc(hidden)]
 pub struct Resolved {
-    /// How exact shades are to be, as it was asked for, or the default.
+    /// Accuracy that was asked for, or the default.
     pub asked: Accuracy,
-    /// Who asked for that.
+    /// Origin of `asked`.
     pub asked_by: ChosenBy,
-    /// How exact shades are: what the vertex path has of it.
+    /// Accuracy that the vertex path offers for `asked`.
     pub accuracy: Accuracy,
-    /// How hidden surfaces are left out; `None` leaves it to the plan.
+    /// Method for hidden surfaces; `None` leaves it to the plan.
     pub hidden_surfaces: Option<HiddenSurfaces>,
-    /// How textures are mapped; `None` leaves it to the plan.
+    /// Mapping of textures; `None` leaves it to the plan.
     pub mapping: Option<Mapping>,
-    /// Whether textures have mipmaps; `None` leaves it to the plan.
+    /// Mipmaps of textures, on or off; `None` leaves it to the plan.
     pub mipmaps: Option<bool>,
-    /// Whether faces are to be split. A budget sees to it otherwise that shades follow the light.
+    /// True if faces are to be split. A budget makes shades follow the light otherwise.
     pub tessellates: bool,
     /// Faces that are split are split until the shades on their edges are linear to so many shades.
     pub tolerance: f32,
-    /// Whether shades between two entries of a ramp are shown as a pattern of both.
+    /// True if shades between two entries of a ramp are shown as a pattern of both.
     pub dither: bool,
     /// The numbers that vertices are made in.
     pub vertex_path: VertexPath,
-    /// Whether what was made of a vertex may be kept for the next frame.
+    /// True if vertices may be kept for the next frame.
     pub keeps_vertices: bool,
 }
 
@@ -126,9 +126,9 @@ pub struct Resolved {
 const DEFAULT_TOLERANCE: f32 = 1.0;
 
 impl Settings {
-    /// What a scene with these preferences is drawn by. The settings count before the preferences. Of a scene's own
-    /// preferences an error that is accepted counts before a shading. Vertices in 16.16 know no budget and not every shading:
-    /// there the shading is the nearest that they have.
+    /// Resolves the settings for a scene with these preferences. The settings count before the preferences. Among a
+    /// scene's preferences an error that is accepted counts before a shading. Vertices in 16.16 know no budget and not
+    /// every shading: there the shading is the nearest that they have.
     ///
     /// ```
     /// use mode13h::render::{Accuracy, ChosenBy, Settings, Shading};
@@ -175,7 +175,7 @@ impl Settings {
         }
     }
 
-    /// Whether a frame that is there may stay where nothing has changed.
+    /// Returns whether a frame that is there may stay where nothing has changed.
     pub(super) fn keeps_frames(&self) -> bool {
         self.overrides.get(Effect::Transform) != Some(true)
     }

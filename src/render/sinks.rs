@@ -1,5 +1,4 @@
-//! What becomes of faces that are handed on: they are drawn as they come, many at a time, or kept for when all are
-//! known.
+//! Sinks: where faces go, drawn at once, many at a time, or kept until all are known.
 
 use alloc::vec::Vec;
 
@@ -48,12 +47,12 @@ pub(super) struct ImmediateSink<'a, 'b, const CLIPS: bool> {
     batched: Batched<'a, 'b, CLIPS>,
     effects: BatchedEffects<'a>,
     transparent: &'a mut Vec<DeferredFace>,
-    /// Whether the surface of the last face with effects shines through.
+    /// True if the surface of the last face with effects shines through.
     is_transparent: bool,
 }
 
 impl<'a, 'b, const CLIPS: bool> ImmediateSink<'a, 'b, CLIPS> {
-    /// For the faces of one object.
+    /// Makes one for the faces of one object.
     pub(super) fn new(
         batched: Batched<'a, 'b, CLIPS>,
         effects: BatchedEffects<'a>,
@@ -141,12 +140,12 @@ pub(super) struct BatchedEffects<'a> {
     batch: &'a mut EffectBatch,
     pipelines: &'a Pipelines<'a>,
     object: usize,
-    /// What the faces that wait are drawn by; `None` where nothing waits.
+    /// Pipeline of the faces that wait; `None` where nothing waits.
     of: Option<Pipeline>,
 }
 
 impl<'a> BatchedEffects<'a> {
-    /// For the faces of an object, or of any with [`push`](Self::push).
+    /// Makes one for the faces of an object, or of any with [`push`](Self::push).
     pub(super) fn new(batch: &'a mut EffectBatch, pipelines: &'a Pipelines<'a>, object: usize) -> Self {
         Self { batch, pipelines, object, of: None }
     }

@@ -1,4 +1,4 @@
-//! What drawing a frame came to, in counts.
+//! Counts of drawing a frame.
 
 use core::fmt;
 
@@ -14,15 +14,15 @@ use crate::span::Kernel;
 pub struct Stats {
     /// The shading that shaded, where no error was accepted.
     pub shading: Shading,
-    /// How many shades of error were accepted.
+    /// Accepted error in shades.
     pub max_error: Option<f32>,
     /// The way from mesh to vertices.
     pub vertex_path: VertexPath,
     /// The name of the span kernel that drew.
     pub kernel: &'static str,
-    /// How hidden surfaces were left out.
+    /// Method for hidden surfaces.
     pub hidden_surfaces: HiddenSurfaces,
-    /// Whether anything was drawn: where nothing changed, the last frame is left as it is.
+    /// True if anything was drawn: where nothing changed, the last frame is left as it is.
     pub redrawn: bool,
     /// Objects whose vertices are last frame's.
     pub kept: u64,
@@ -38,17 +38,17 @@ pub struct Stats {
     pub faces: u64,
     /// Faces cut by the near plane or the guard band, or wholly beyond them.
     pub clipped: u64,
-    /// Faces turned away, or without area once clipped and rounded.
+    /// Back faces, and those without area once clipped and rounded.
     pub culled: u64,
     /// Triangles handed to the raster: faces, and the parts of those that were clipped.
     pub drawn: u64,
-    /// How they were shaded.
+    /// Shares of the shadings.
     pub shares: Shares,
-    /// What the raster did with them.
+    /// Counts of the raster.
     pub raster: DrawStats,
 }
 
-/// How many triangles were shaded in which way.
+/// Counts of triangles by the way in which they were shaded.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Shares([u64; FaceShading::ALL.len()]);
 

@@ -16,11 +16,11 @@ use crate::texture::{Mipmap, Texture};
 #[derive(Clone, Copy)]
 pub(super) struct Image<'a> {
     pub(super) texture: &'a Shared<Texture>,
-    /// Whether it has smaller copies, and so more colours.
+    /// True if it has smaller copies, and so more colours.
     pub(super) has_levels: bool,
 }
 
-/// What was made for an image.
+/// Table that was made for an image.
 #[derive(Debug)]
 struct Made<T> {
     texture: Shared<Texture>,
@@ -194,7 +194,7 @@ impl<T> Made<T> {
     }
 }
 
-/// What was made for an image: for the very same texture, not for one that looks alike.
+/// Finds the table of an image: for the very same texture, not for one that looks alike.
 fn find<'a, T>(all: &'a [Made<T>], image: Image<'_>) -> Option<&'a T> {
     let is_of = |made: &&Made<T>| Shared::ptr_eq(&made.texture, image.texture) && made.has_levels == image.has_levels;
     all.iter().find(is_of).map(|made| &made.made)

@@ -24,7 +24,7 @@ use super::vertex::Geometry;
 use crate::light::Lights;
 use crate::mesh::normals::unit;
 
-/// How often an edge is halved at most: 64 pieces.
+/// Greatest number of halvings of an edge: 64 pieces.
 const DEPTH: usize = 6;
 
 /// Splitting ends where there are so many triangles.
@@ -43,7 +43,7 @@ pub(super) struct Tessellated {
     points: Vec<u32>,
     /// A bit for each triangle whose mesh's triangle lies back to back with another; empty if there is none.
     twins: Vec<u64>,
-    /// Whether each triangle's edges have been looked at, and none of them bent.
+    /// True if each triangle's edges have been looked at, and none of them bent.
     settled: Vec<bool>,
     /// The light of each vertex, and how far what it mirrors is from each light.
     known: Known,
@@ -53,7 +53,7 @@ pub(super) struct Tessellated {
     middles: EdgeMap,
 }
 
-/// What the light at the vertices is found out to be, once for each.
+/// Light at the vertices, found out once for each.
 #[derive(Debug, Default)]
 struct Known {
     /// Intensities of front and back.
@@ -117,8 +117,8 @@ impl Tessellated {
         }
     }
 
-    /// Which of its triangles lie back to back with others, as [`Mesh::twins`](crate::mesh::Mesh::twins) has it: parts of
-    /// two such triangles may be cut differently, but lie in one plane, and are turned away together.
+    /// Triangles that lie back to back with others, as [`Mesh::twins`](crate::mesh::Mesh::twins) has it: parts of two
+    /// such triangles may be cut differently, but lie in one plane, and show their backs together.
     pub(super) fn twins(&self) -> &[u64] {
         &self.twins
     }
@@ -266,18 +266,18 @@ fn two(a: u32, b: u32, c: u32, ab: u32, bc: u32) -> [Option<[u32; 3]>; 3] {
     [Some([a, ab, c]), Some([ab, b, bc]), Some([ab, bc, c])]
 }
 
-/// How much light bends along an edge.
+/// Bend of light along an edge.
 struct Bend<'a> {
     lights: &'a Lights<'a>,
     paints: &'a [SurfaceMaterial],
     /// The greatest error that is allowed, as a share of full intensity.
     tolerance: f64,
-    /// Whether any surface has one.
+    /// True if any surface has one.
     has_highlights: bool,
 }
 
 impl Bend<'_> {
-    /// Whether linear shades between the vertices `a` and `b` are off by more than the tolerance.
+    /// Returns whether linear shades between the vertices `a` and `b` are off by more than the tolerance.
     fn is_too_great(&self, mesh: &Tessellated, a: u32, b: u32) -> bool {
         let (a, b) = (a as usize, b as usize);
         let (pa, pb) = (mesh.positions[a], mesh.positions[b]);
@@ -328,7 +328,7 @@ impl Bend<'_> {
         suns.chain(self.lights.lamps.iter().map(move |lamp| sub(lamp.position, at))).map(angle)
     }
 
-    /// Whether a highlight near the edge bends too much along it.
+    /// Returns whether a highlight near the edge bends too much along it.
     fn mirrors(&self, mesh: &Tessellated, edge: [usize; 2], paint: &SurfaceMaterial, square: f64, eight: f64) -> bool {
         let ends = edge.map(|vertex| widen(mesh.positions[vertex]));
         let normals = edge.map(|vertex| mesh.normals[vertex]);

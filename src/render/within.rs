@@ -13,7 +13,7 @@ use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
 use crate::scene::Shading;
 
-/// What linear faces are drawn by within a budget.
+/// Shading of linear faces within a budget.
 const LINEAR_SHADING: Shading = Shading::Gouraud88Reseeded;
 
 /// In pixels.
@@ -192,7 +192,7 @@ impl Faces<'_> {
         self.cheapest_within(budget, &question, known)
     }
 
-    /// What the corners of a face carry that is shaded by choice.
+    /// Attributes of the corners of a face that is shaded by choice.
     #[inline]
     fn attributes<const EFFECTS: bool>(&self, indices: [u32; 3], turned: bool, choice: Choice) -> [Attributes; 3] {
         indices.map(|i| {
@@ -207,13 +207,13 @@ impl Faces<'_> {
     }
 }
 
-/// Whether a triangle is of fewer pixels: of [`SMALL`], lighting each costs no more than a few questions about it.
+/// Returns whether a triangle has fewer pixels. Lighting each of [`SMALL`] costs no more than a few questions about it.
 fn is_smaller(vertices: &[Vertex; 3], pixels: u64) -> bool {
     // Twice, in 1/256 pixel.
     doubled_area(vertices).unsigned_abs() < pixels * 131_072
 }
 
-/// Hands on a face with effects that is shaded by choice. Of a flat one every corner gets the shade in the middle.
+/// Hands on a face with effects that is shaded by choice. Every corner of a flat one gets the shade in the middle.
 fn hand_on_within(
     face: Face,
     (mut vertices, mut attributes): ([Vertex; 3], [Attributes; 3]),
@@ -239,7 +239,7 @@ fn middle([a, b, c]: [U8F8; 3]) -> U8F8 {
 }
 
 impl Choice {
-    /// How the raster shades a face without effects.
+    /// Interpolation of a face without effects in the raster.
     #[inline]
     fn interpolation(self, vertices: &[Vertex; 3]) -> Interpolation {
         match self {

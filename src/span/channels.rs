@@ -16,12 +16,12 @@ const LEVELS: [u8; 6] = {
     levels
 };
 
-/// Where a channel value lies among the levels.
+/// Place of a channel value among the levels.
 #[derive(Clone, Copy)]
 struct Between {
     /// The number of the highest level that is not above the value.
     level: u8,
-    /// It takes the next level at thresholds below this one; 0 where it is a level itself.
+    /// Threshold below which it takes the next level; 0 where it is a level itself.
     next_below: u8,
 }
 

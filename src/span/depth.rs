@@ -25,7 +25,7 @@ mod sealed {
     }
 }
 
-/// What a depth buffer holds for a pixel: greater is nearer, 0 is nothing yet.
+/// Cell of a depth buffer, one for each pixel: greater is nearer, 0 is nothing yet.
 ///
 /// | cell | holds | what is lost |
 /// |---|---|---|
@@ -35,8 +35,8 @@ mod sealed {
 /// In the engine d is at most 2³⁰, so a u16 holds the upper 16 of its 30 bits. They are rounded up:
 /// whatever is drawn with u32 cells (d ≥ 1) hides the background here too, however far it is. At a
 /// distance w two surfaces are told apart that lie w² / (2¹⁶·near) from each other, in front of one
-/// another: at 100 times the near distance that is 0.15 of the near distance. The two nearest values,
-/// of which one would be d = 2³⁰ alone, are the same.
+/// another: at 100 times the near distance that is 0.15 of the near distance. The two nearest values
+/// are the same, of which one would be d = 2³⁰ alone.
 pub trait Cell: Copy + Ord + Default + sealed::Sealed + 'static {
     /// The cell's value for a depth.
     fn of_depth(depth: u32) -> Self;

@@ -28,8 +28,8 @@ pub(crate) fn quotient(k: i32, [n, dn]: [f32; 2], [d, dd]: [f32; 2], [low, high]
 /// `n` and `d` are the values at k = 0, each with what it changes by from one pixel to the next; the row's first
 /// pixel is k = `first`, and all are within ±2²⁴. `range` is the least and the greatest shade, 0 to 255, multiples of 1/256.
 ///
-/// A sum of 256.5 to 511.5 has 15 bits behind the point, so its whole part lies in bits 15 to 22 of the float: three
-/// times as fast at 64 pixels as a cast, which looks for what is out of range (28 ns against 90).
+/// A sum of 256.5 to 511.5 has 15 bits behind the point, so its integer part lies in bits 15 to 22 of the float: three
+/// times as fast at 64 pixels as a cast, which checks for numbers out of range (28 ns against 90).
 ///
 /// ```
 /// use mode13h::span::float::fill_float;

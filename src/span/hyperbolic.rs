@@ -73,7 +73,7 @@ pub(crate) fn floor_quotient(n: i128, d: i128) -> i64 {
 mod tests {
     use super::*;
 
-    /// At whole quotients of either sign, and one part of the divisor beside them.
+    /// Tests whole quotients of either sign, and one part of the divisor beside them.
     #[test]
     fn floors_are_exact() {
         for bits in 0..78 {

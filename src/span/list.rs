@@ -16,9 +16,9 @@ pub struct Listed {
     pub at: u32,
     /// Pixels.
     pub length: u32,
-    /// In 8.8, as `fill` takes them.
+    /// Shade in 8.8, as `fill` takes it.
     pub shade: u16,
-    /// In 8.8.
+    /// Step in 8.8.
     pub step: u16,
 }
 
@@ -26,9 +26,9 @@ pub struct Listed {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
 pub struct Depths {
-    /// That of the first pixel, with 24 fraction bits, as `fill_nearer` takes it.
+    /// Depth of the first pixel, with 24 fraction bits, as `fill_nearer` takes it.
     pub z: i64,
-    /// From one pixel to the next.
+    /// Change from one pixel to the next.
     pub dz: i64,
     /// The offset of its first cell.
     pub at: u32,

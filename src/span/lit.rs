@@ -1,4 +1,4 @@
-//! What light needs at every pixel: normal and position, perspective-correct. A pass that writes no pixel.
+//! Normal and position at every pixel, perspective-correct, for light. The pass writes no pixel.
 
 use super::Kernel;
 use crate::lanes::{LANES, Lanes, Points};
@@ -57,7 +57,7 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
 #[doc(hidden)]
 pub type Numerators = [Lanes<f64>; 7];
 
-/// What [`interpolate_at`] divides: with [`divide`] it gives the same numbers, also of pixels of different rows put together.
+/// Dividends of [`interpolate_at`]: with [`divide`] they give its numbers, for pixels of different rows too.
 #[inline]
 #[must_use]
 #[doc(hidden)]

@@ -26,7 +26,7 @@
 //! `simd` can be forced down to one of its levels, for tests and measurements. With `std` the processor is
 //! asked what it has; without, what the compiler was told counts.
 //!
-//! What a span alone cannot draw is made of other loops, over short rows of bytes. Each has a portable
+//! Other loops, over short rows of bytes, draw more than a span alone can. Each has a portable
 //! specification; where a faster twin was worth its code, the loop of the plain name takes it, and the
 //! specification is beside it as `…_portable`.
 //!
@@ -96,9 +96,9 @@ pub mod entry {
     pub use super::x86::entry::*;
 }
 
-/// What every kernel is: `row` (any length), `shade` and `step` in 8.8.
+/// Signature of every kernel: `row` (any length), `shade` and `step` in 8.8.
 type Fill = fn(row: &mut [u8], shade: u16, step: u16);
-/// What every kernel for a list of spans is.
+/// Signature of every kernel for a list of spans.
 type FillList = fn(pixels: &mut [u8], spans: &[list::Listed]);
 
 /// A way to fill a span that this machine has.
@@ -130,7 +130,7 @@ struct Listed {
     find: fn() -> Option<Found>,
 }
 
-/// What a kernel draws with, and its functions.
+/// Level that a kernel draws with, and its functions.
 type Found = (Level, Fill, FillList);
 
 impl Listed {
@@ -257,7 +257,7 @@ impl Kernel {
         self.name
     }
 
-    /// What it draws with: for `simd` the level that was chosen, such as `avx2`.
+    /// Name of the level that it draws with: for `simd` the one that was chosen, such as `avx2`.
     #[must_use]
     #[doc(hidden)]
     pub const fn level(self) -> &'static str {

@@ -19,7 +19,7 @@ pub(super) mod arrays {
     const LANES: usize = 8;
     /// Pixels a turn.
     const BLOCK: usize = 2 * LANES;
-    /// From this length on the compiler's own vectors of the portable loop are faster: on x86-64 at
+    /// Length from which on the compiler's own vectors of the portable loop are faster: on x86-64 at
     /// 160 pixels 9.7 ns and 30 here, at 100 about the same, at random 1 to 64 pixels 26 and 15.
     const LONG: usize = 128;
 
@@ -273,7 +273,7 @@ pub(crate) mod avx2 {
     }
 
     /// Fills a span at `at`, up to sixteen pixels at once. `paint` has its shade, and above it the step.
-    /// What lies behind the span, of whichever row, is written as it was read. Nothing is drawn of a span that
+    /// Bytes behind the span, of whichever row, are written as they were read. Nothing is drawn of a span that
     /// reaches beyond `pixels`.
     #[inline]
     #[target_feature(enable = "avx2")]
@@ -372,7 +372,7 @@ pub(crate) mod avx2 {
 pub(super) mod avx512 {
     use super::super::list::{Listed, each};
 
-    /// What the vectors start from, read by the assembly at the offsets beside it.
+    /// Start values of the vectors, read by the assembly at the offsets beside them.
     #[repr(C, align(64))]
     struct Constants {
         /// 0: the number of each even pixel of a block.

@@ -70,7 +70,7 @@ impl<'a> Texels<'a> {
         self.bytes[self.place(u, v)]
     }
 
-    /// Where it lies, below the length: the compiler sees that from the last mask, for bytes that it knows not
+    /// Place of the texel, below the length. The compiler sees that from the last mask, for bytes that it knows not
     /// to be empty, and leaves out the check (if all is in usize; for a u32 it did not).
     #[inline]
     fn place(self, u: u32, v: u32) -> usize {

@@ -19,7 +19,7 @@
 pub fn fill_16_16(row: &mut [u8], shade: u32, step: u32) {
     let mut sum = shade;
     for pixel in row {
-        // The whole part's lower byte.
+        // The integer part's lower byte.
         *pixel = (sum >> 16) as u8;
         sum = sum.wrapping_add(step);
     }

@@ -57,7 +57,7 @@ pub(super) use x86_64::{fill, fill_unrolled};
 mod x86_64 {
     assemble!("../../asm/span_x86_64.s");
 
-    /// What both loops take: `row` is valid for `count` bytes, `count` is not 0.
+    /// Signature of both loops: `row` is valid for `count` bytes, `count` is not 0.
     pub type Entry = unsafe extern "sysv64" fn(row: *mut u8, count: u32, shade: u16, step: u16);
 
     unsafe extern "sysv64" {
@@ -96,7 +96,7 @@ pub(super) use x86::fill;
 mod x86 {
     assemble!("../../asm/span_i686.s");
 
-    /// What the loop takes: `row` is valid for `count` bytes, `count` is not 0.
+    /// Signature of the loop: `row` is valid for `count` bytes, `count` is not 0.
     pub type Entry = unsafe extern "cdecl" fn(row: *mut u8, count: u16, shade: u16, step: u16);
 
     unsafe extern "cdecl" {

@@ -11,8 +11,8 @@ use crate::{output, read_files};
 /// Their names.
 const NAMES: [&str; 4] = ["samples.csv", "cost.json", "chart.svg", "report.html"];
 
-/// That they can be written into a directory, which need not exist yet, that none of them was read, and that none is
-/// overwritten unless that is allowed.
+/// Checks that they can be written into a directory, which need not exist yet, that none of them was read, and that
+/// none is overwritten unless that is allowed.
 pub(super) fn check(directory: &Path, overwrites: bool) -> Result<(), Failure> {
     if directory.exists() && !directory.is_dir() {
         return Err(Failure::file(format!("{}: is no directory", directory.display())));

@@ -8,7 +8,7 @@ use mode13h_lab::cost::{Clock, Host};
 /// The features on which the measurements depend, and whether each is on.
 const FEATURES: [(&str, bool); 2] = [("asm", cfg!(feature = "asm")), ("simd", cfg!(feature = "simd"))];
 
-/// Where and by what is measured.
+/// Machine and program that measure.
 pub(super) fn host() -> Host {
     let features: Vec<&str> = FEATURES.iter().filter(|(_, on)| *on).map(|(name, _)| *name).collect();
     let features = if features.is_empty() { "none of asm, simd".to_string() } else { features.join(", ") };
@@ -44,7 +44,7 @@ fn macos() -> Option<String> {
     Some(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// What times are read from: how long this thread has run, where the system counts that.
+/// Clock that times are read from: how long this thread has run, where the system counts that.
 pub(super) fn clock() -> Clock {
     #[cfg(unix)]
     if has_run().is_ok() {

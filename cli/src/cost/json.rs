@@ -45,7 +45,7 @@ impl From<Errors> for JsonErrors {
     }
 }
 
-/// Where the time goes, in nanoseconds for a frame.
+/// Split of the time, in nanoseconds for a frame.
 #[derive(Serialize)]
 struct JsonSplit {
     plan: f64,

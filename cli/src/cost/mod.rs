@@ -159,7 +159,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// So many frames of what is shown, each turned by so many degrees more than the one before it.
+/// Makes so many frames of what is shown, each turned by so many degrees more than the one before it.
 fn turned(stage: &mut Turntable, frames: u32, degrees: f64) -> Vec<Scene> {
     let mut scenes = Vec::new();
     for frame in 0..frames {

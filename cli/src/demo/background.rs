@@ -14,7 +14,7 @@ pub(super) struct Background<Question, Answer> {
     desk: Arc<Desk<Question, Answer>>,
 }
 
-/// Where questions and answers lie. It is locked for moving one, never while one is worked on.
+/// Desk for questions and answers. It is locked for moving one, never while one is worked on.
 pub(super) struct Desk<Question, Answer> {
     papers: Mutex<Papers<Question, Answer>>,
     asked: Condvar,
@@ -47,7 +47,7 @@ impl<Question, Answer> Desk<Question, Answer> {
         drop(before);
     }
 
-    /// Whether there is a newer question, or nobody who waits for an answer.
+    /// Returns whether there is a newer question, or nobody who waits for an answer.
     pub(super) fn is_overtaken(&self) -> bool {
         let papers = self.papers();
         papers.question.is_some() || papers.closed

@@ -18,7 +18,8 @@ use super::shading::ShadingChoice;
 use super::timing::Timing;
 use crate::overlay::{Row, Sheet, Side};
 
-/// How far the mouse may move while its button is down, in pixels of the frame, for a click. Beyond that it turns the model.
+/// Greatest way of the mouse while its button is down, in pixels of the frame, for a click. Beyond that it turns the
+/// model.
 const CLICK: f32 = 2.0;
 
 /// A shading, what draws by it, and what it drew.
@@ -47,8 +48,8 @@ impl Compare {
         Compare { is_on: false, right, divider: Divider::default() }
     }
 
-    /// Does what the user wants, and says what that changed. `left` is how the left half is shaded, and `renderer` draws
-    /// that.
+    /// Follows the user's input, and says what that changed. `left` is the shading of the left half, and `renderer`
+    /// draws that.
     pub(super) fn follow(&mut self, input: &Input, left: &ShadingChoice, renderer: &Renderer) -> Option<String> {
         if input.pressed(Key::C) {
             self.is_on ^= true;
@@ -74,7 +75,7 @@ impl Compare {
         })
     }
 
-    /// Has the right half drawn by a renderer that is set as the left one's.
+    /// Gives the right half a renderer that is set as the left one's.
     pub(super) fn renew(&mut self, left: &Renderer) {
         self.right.renderer = left.set_alike();
         self.right.timing = Timing::default();
@@ -136,19 +137,19 @@ impl Compare {
     }
 }
 
-/// What a shading is compared with: light at every pixel, or where that is the shading itself the default.
+/// Opposite of a shading: light at every pixel, or where that is the shading itself the default.
 fn opposite(left: &ShadingChoice) -> ShadingChoice {
     let exact = ShadingChoice::new(Shading::Phong, None);
     if left.to_string() == exact.to_string() { ShadingChoice::new(Shading::default(), None) } else { exact }
 }
 
-/// Where the picture is divided.
+/// Divider of the picture.
 #[derive(Debug)]
 struct Divider {
     /// 0 to 320.
     column: usize,
     is_fixed: bool,
-    /// How far the mouse came since its button went down, while it is down.
+    /// Way of the mouse since its button went down, while it is down.
     dragged: Option<f32>,
 }
 

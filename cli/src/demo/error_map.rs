@@ -1,4 +1,4 @@
-//! How far each pixel of a frame is from the truth, worked out in the background and laid over the picture.
+//! Error map of a frame, pixel by pixel, worked out in the background and laid over the picture.
 //!
 //! The picture under it is another machine's: its palette has 32 entries of brightness in each of eight colours. So
 //! what is shown stays recognizable, and E costs a table look-up a pixel.
@@ -36,7 +36,7 @@ const fn level(below: f64, label: &'static str, color: u32) -> Level {
     Level { below, label, color: Rgb::from_u32(color) }
 }
 
-/// From right to wrong. The last is for pixels that show another face than they should.
+/// Levels from right to wrong. The last is for pixels that show another face than they should.
 const LEVELS: [Level; 8] = [
     level(0.5, "0", 0xFFFFFF),
     level(1.0, "0.5", 0x4C7DFF),
@@ -51,9 +51,9 @@ const LEVELS: [Level; 8] = [
 const OTHER_FACE: u8 = 7;
 /// Entries of brightness that each colour has.
 const STEPS: u8 = 32;
-/// What a colour keeps in the dark, of 256: else nobody could tell one from another there.
+/// Least brightness of a colour, of 256: otherwise nobody could tell one from another in the dark.
 const LEAST: u32 = 112;
-/// What the colour of a right pixel keeps in the dark, of 256: it need not be told from anything.
+/// Least brightness of a right pixel's colour, of 256: it need not be told from anything.
 const MIN_GREY: u32 = 0;
 
 /// Columns and rows from one pixel to the next that the first map judges.
@@ -63,11 +63,11 @@ const REPORT: Duration = Duration::from_millis(60);
 /// The small picture's share of the large one's sides.
 const SMALL: f32 = 0.3;
 
-/// What is to be measured: the picture of one renderer, or of two side by side.
+/// Picture to be measured: that of one renderer, or of two side by side.
 pub(super) struct Frame {
     pub(super) snapshot: Snapshot,
     pub(super) scene: Scene,
-    /// Those that are set as the ones that drew it, from the left.
+    /// Renderers that are set as the ones that drew it, from the left.
     pub(super) renderers: Vec<Renderer>,
     /// The pixel from which on it is refined.
     pub(super) mouse: Pixel,
@@ -78,16 +78,16 @@ pub(super) struct Frame {
 pub(super) struct Snapshot {
     /// Its number, which changes when the picture does.
     pub(super) number: u64,
-    /// When it is shown, in seconds.
+    /// Time at which it is shown, in seconds.
     pub(super) seconds: f64,
     pub(super) picture: Vga,
     /// The column from which on the second renderer's picture is seen.
     pub(super) divider: usize,
-    /// How each is shaded.
+    /// Shading of each.
     pub(super) shadings: Vec<String>,
 }
 
-/// What was found.
+/// Result of measuring.
 struct Measured {
     snapshot: Arc<Snapshot>,
     found: Result<Found, String>,
@@ -96,11 +96,11 @@ struct Measured {
 struct Found {
     /// One for each renderer.
     sides: Vec<Side>,
-    /// How much of it is refined, 0 to 1.
+    /// Part of it that is refined, 0 to 1.
     refined: f64,
 }
 
-/// How far a renderer's picture is from the truth.
+/// Errors of a renderer's picture against the truth.
 struct Side {
     /// The index of each pixel in [`LEVELS`]; `None` where there is no face, nor should be.
     levels: Vec<Option<u8>>,
@@ -117,7 +117,7 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// Has the frame measured that has this number, unless that was asked already, and takes what has been found
+    /// Asks for the frame of this number to be measured, unless that was asked already, and takes what has been found
     /// since.
     pub(super) fn follow(&mut self, number: u64, frame: impl FnOnce() -> Frame) -> Result<(), Failure> {
         let thread = match &mut self.thread {
@@ -138,19 +138,19 @@ impl Map {
         Ok(())
     }
 
-    /// What was found of the frame of this number.
+    /// Results for the frame of this number.
     fn of(&self, number: u64) -> Option<&Found> {
         let measured = self.last.as_ref().filter(|measured| measured.snapshot.number == number)?;
         measured.found.as_ref().ok()
     }
 
-    /// How far a side of the frame of this number is from the truth; `None` until all of its pixels were judged.
+    /// Figures of a side's errors in the frame of this number; `None` until all of its pixels were judged.
     pub(super) fn errors_of(&self, number: u64, side: usize) -> Option<Figures> {
         let found = self.of(number).filter(|found| found.refined == 1.0)?;
         Some(found.sides.get(side)?.figures)
     }
 
-    /// When the picture that it is of was shown, and how much of that is known, in words.
+    /// State of the map: when its picture was shown, and how much of that is known, in words.
     fn state(&self, number: u64, seconds: f64) -> String {
         let Some(Measured { snapshot, found }) = &self.last else { return "computing".into() };
         let refined = found.as_ref().map_or(1.0, |found| found.refined);
@@ -166,7 +166,7 @@ impl Map {
         }
     }
 
-    /// How far the picture is from the truth, in a line.
+    /// Figures of the picture's errors, in a line.
     pub(super) fn figures(&self, number: u64, seconds: f64, budget: f32) -> String {
         let state = self.state(number, seconds);
         match self.last.as_ref().map(|measured| &measured.found) {
@@ -208,7 +208,8 @@ impl Map {
         sheet.picture(Area { left, top, width, height }, colors, Vga::WIDTH);
     }
 
-    /// What the colours mean, and which picture they are laid over: with its shading, unless that `is_named` elsewhere.
+    /// Legend of the colours, and of the picture that they are laid over: with its shading, unless that `is_named`
+    /// elsewhere.
     pub(super) fn legend(&self, sheet: &mut Sheet, number: u64, seconds: f64, is_named: bool) {
         let mut rows = vec![Row::text("error in shades")];
         let mut state = self.state(number, seconds);
@@ -240,7 +241,7 @@ impl Found {
     }
 }
 
-/// How bright a colour is, in the steps that each colour of the map has.
+/// Brightness of a colour, in the steps that each colour of the map has.
 fn step(color: Rgb) -> u8 {
     // The brightness is at most 255,000, so the quotient at most 31.
     (color.brightness() * u32::from(STEPS) / 255_001) as u8
@@ -329,11 +330,11 @@ fn place(x: u32, y: u32) -> usize {
     y as usize * Vga::WIDTH + x as usize
 }
 
-/// What is known so far.
+/// Truth and pictures, as far as they are known.
 struct Judged {
     /// The true frame.
     right: TruthFrame,
-    /// What each picture shows: its faces where the truth is known, none elsewhere.
+    /// Pixels of each picture: its faces where the truth is known, none elsewhere.
     known: Vec<Shown>,
     /// All faces of each picture.
     faces: Vec<Vec<Option<Face>>>,
@@ -347,7 +348,7 @@ impl Judged {
         Judged { is_known: vec![false; right.pixels.len()], right, known: shown, faces }
     }
 
-    /// That the truth is known of the pixels that a tile draws by steps of `step`.
+    /// Marks the truth as known for the pixels that a tile draws by steps of `step`.
     fn know(&mut self, [columns, rows]: [Range<u32>; 2], step: u32) {
         let is_drawn = |at: &u32| at % step == step / 2;
         for y in rows.filter(is_drawn) {
@@ -360,7 +361,7 @@ impl Judged {
         }
     }
 
-    /// How far the pictures are from it.
+    /// Measures the pictures' errors against it.
     fn found(&self, refined: f64) -> Result<Found, String> {
         let side = |(known, faces): (&Shown, &Vec<Option<Face>>)| {
             let errors = ErrorMap::new(&self.right, known).ok_or("the frames differ in size")?;
@@ -435,7 +436,7 @@ mod tests {
         ErrorMap::new(&truth, &shown).expect("of one size")
     }
 
-    /// All that is found of a frame, and no newer one comes.
+    /// Finds all results for a frame, in their order.
     fn all_found(scene: &Scene, shadings: &[Shading], is_overtaken: bool) -> Vec<Found> {
         let found = std::cell::RefCell::new(Vec::new());
         let Frame { renderers, mouse, .. } = frame(0, scene, shadings);

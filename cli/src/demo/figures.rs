@@ -39,7 +39,7 @@ pub(super) fn help() -> Vec<Row> {
     KEYS.iter().map(|&(key, does)| Row::new(key, does)).collect()
 }
 
-/// So many of something, in words.
+/// Formats a number of things, in words.
 fn counted(number: usize, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
@@ -99,7 +99,7 @@ impl Demo {
     }
 }
 
-/// How the triangles were shared out among the shadings.
+/// Words on the shares of the shadings.
 fn of_shadings(shares: &Shares) -> Vec<String> {
     shares.iter().map(|(shading, triangles)| format!("{shading} {triangles}")).collect()
 }
@@ -137,8 +137,8 @@ mod tests {
         demo
     }
 
-    /// In every scene, window and page, with one panel open or both, no letter is cut, missing from the font, or over
-    /// another; and every word of a panel stands on one of its pages.
+    /// Tests that in every scene, window and page, with one panel open or both, no letter is cut, missing from the
+    /// font, or over another, and that every word of a panel stands on one of its pages.
     #[test]
     fn text_is_never_cut_in_any_scene() {
         for scene in shipped::ALL {

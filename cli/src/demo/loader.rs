@@ -14,16 +14,16 @@ use crate::options::{Drawing, ShadingOptions};
 use crate::turntable::Turntable;
 use crate::{input, read_files};
 
-/// How often it is looked whether a file has changed.
+/// Time between two looks at the files.
 const PERIOD: Duration = Duration::from_millis(250);
-/// For how many looks a change must rest before it is believed: a file may be half written. One that is gone is waited
+/// Looks for which a change must rest before it is believed: a file may be half written. One that is gone is waited
 /// for longer, as there are editors that put a new one in its place.
 const REST: u32 = 1;
 const REST_GONE: u32 = 4;
-/// By how much the time of a file's change may lag behind the clock.
+/// Greatest lag of the time of a file's change behind the clock.
 const LAG: Duration = Duration::from_millis(20);
 
-/// What is to be loaded, and how it is to be drawn.
+/// Inputs to be loaded, and how they are to be drawn.
 pub(super) struct Inputs {
     pub(super) drawing: Drawing,
     pub(super) shading: ShadingOptions,
@@ -31,7 +31,7 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// What to call an input, whether it can be loaded or not.
+    /// Name of an input, whether it can be loaded or not.
     pub(super) fn name(&self, at: usize) -> String {
         input::name_of(&self.words[at])
     }
@@ -41,7 +41,7 @@ impl Inputs {
 pub(super) struct Loading {
     /// Its place in the list of inputs.
     pub(super) at: usize,
-    /// Whether it was loaded because a file changed.
+    /// True if it was loaded because a file changed.
     pub(super) is_again: bool,
     pub(super) result: Result<Box<Turntable>, Failure>,
     watch: Watch,
@@ -106,19 +106,19 @@ impl Loader {
         Ok(Loader { wanted, loaded })
     }
 
-    /// Has the input at this place loaded.
+    /// Asks for the input at this place to be loaded.
     pub(super) fn ask(&self, at: usize) {
         // The thread ends after this.
         let _ = self.wanted.send(at);
     }
 
-    /// What was loaded since the last call.
+    /// Takes the input that was loaded since the last call.
     pub(super) fn loaded(&self) -> Option<Loading> {
         self.loaded.try_iter().last()
     }
 }
 
-/// When a file was changed, and its length; `None` while there is none.
+/// Time of a file's last change, and its length; `None` while there is none.
 type Stamp = Option<(SystemTime, u64)>;
 
 fn stamp(file: &Path) -> Stamp {
@@ -133,7 +133,7 @@ struct Watch {
     /// The stamp of each file as it was loaded; `None` if the file changed meanwhile.
     loaded: Vec<Option<Stamp>>,
     seen: Vec<Stamp>,
-    /// For how many looks nothing has changed.
+    /// Number of looks in which nothing has changed.
     rested: u32,
 }
 
@@ -146,7 +146,7 @@ impl Watch {
         Watch { files, loaded, seen, rested: 0 }
     }
 
-    /// Looks at all files. Whether they are others than were loaded, and have been so for a while.
+    /// Looks at all files. Returns whether they are others than were loaded, and have been so for a while.
     fn has_changed(&mut self) -> bool {
         let now: Vec<Stamp> = self.files.iter().map(|file| stamp(file)).collect();
         self.rested = if now == self.seen { self.rested + 1 } else { 0 };

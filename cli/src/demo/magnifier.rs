@@ -35,7 +35,7 @@ const COLUMNS: u16 = 10;
 const ROWS: u16 = 7;
 /// The place in the lens of the pixel under the mouse.
 const MIDDLE: (i32, i32) = (5, 3);
-/// What lies under the account, and how much of 255 of it is seen.
+/// Paper under the account, and how much of 255 of it is seen.
 const PAPER: (Rgb, u8) = (Rgb::new(0x08, 0x08, 0x10), 224);
 /// Pixels of the window between the account and the picture's edge.
 const MARGIN: usize = 4;
@@ -78,7 +78,7 @@ impl Pixel {
         (i32::from(self.x) - MIDDLE.0, i32::from(self.y) - MIDDLE.1)
     }
 
-    /// Where lens and account stand, by their upper left corners.
+    /// Places of lens and account, by their upper left corners.
     fn places(self) -> Places {
         let left = i32::from(self.x) < WIDTH / 2;
         let upper = i32::from(self.y) < HEIGHT / 2;
@@ -95,7 +95,7 @@ struct Places {
     shade_trace: (i32, i32),
 }
 
-/// What the lens asks about.
+/// Question of the lens.
 pub(super) struct Question {
     /// The number of the frame.
     pub(super) number: u64,
@@ -155,8 +155,7 @@ pub(super) struct Magnifier {
 }
 
 impl Magnifier {
-    /// Has the pixel asked about in the frame that has this number, unless that was done already, and takes the last
-    /// answer.
+    /// Asks about the pixel in the frame that has this number, unless that was done already, and takes the last answer.
     pub(super) fn follow(
         &mut self,
         number: u64,
@@ -180,7 +179,7 @@ impl Magnifier {
         Ok(())
     }
 
-    /// What is seen at a pixel of the frame of this number; `None` until that is known.
+    /// Face seen at a pixel of the frame of this number; `None` until that is known.
     pub(super) fn seen(&self, number: u64, pixel: Pixel) -> Option<Option<&Traced>> {
         let answer = self.last.as_ref().filter(|answer| (answer.number, answer.pixel) == (number, pixel))?;
         Some(answer.seen.as_ref())
@@ -335,7 +334,7 @@ fn answer(question: Question) -> Answer {
     Answer { number, pixel, cells, edges, shade_trace, seen }
 }
 
-/// Whether the rectangle about a triangle meets the view.
+/// Returns whether the rectangle about a triangle meets the view.
 fn meets(vertices: &[Vertex; 3], columns: &Range<i32>, rows: &Range<i32>) -> bool {
     let meets = |of: fn(&Vertex) -> i32, view: &Range<i32>| {
         let least = vertices.iter().map(of).min().unwrap_or(0);

@@ -99,17 +99,17 @@ impl Options {
     }
 }
 
-/// What is said at first, and for how long, in seconds.
+/// Words at first, and their time in seconds.
 const HINT: &str = "H help, I figures";
 const HINT_SECONDS: f64 = 3.0;
-/// How long it is said what a key has changed, and where a picture was saved.
+/// Seconds for which the words stand on what a key has changed, and on where a picture was saved.
 const NOTICE: f64 = 1.0;
 const SAVED: f64 = 3.0;
 
-/// For how long nothing changes in what stands still.
+/// Time for which nothing changes in what stands still.
 const STILL: Duration = Duration::from_millis(500);
-/// For how long at most nothing is done but wait for the user: where all stands still, and where something moves so slowly
-/// that now and then two frames are the same.
+/// Longest time in which nothing is done but wait for the user: where all stands still, and where something moves so
+/// slowly that now and then two frames are the same.
 const STILL_REST: Duration = Duration::from_millis(100);
 const SHORT_REST: Duration = Duration::from_millis(14);
 
@@ -164,7 +164,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// All that can be seen in the window.
+/// Contents of the window.
 #[derive(PartialEq)]
 struct PixelPipeline {
     pixels: Vec<u8>,
@@ -178,7 +178,7 @@ impl PixelPipeline {
     }
 }
 
-/// What the keys ask for beyond a change of the picture.
+/// Request of the keys beyond a change of the picture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Wish {
     Nothing,
@@ -195,24 +195,24 @@ struct Demo {
     /// Its name.
     name: String,
     triangles: usize,
-    /// What is shown; without objects until something could be loaded.
+    /// Scene on show; without objects until something could be loaded.
     stage: Turntable,
-    /// Why what is shown is not what the files say.
+    /// Reason why the scene on show is not that of the files.
     wrong: Option<Failure>,
     renderer: Renderer,
     shading: ShadingChoice,
-    /// Whether a key chose it.
+    /// True if a key chose it.
     chose_shading: bool,
     kernels: Choice<Kernel>,
     palettes: Choice<(String, Colors)>,
-    /// Whether a key chose one.
+    /// True if a key chose one.
     chose_palette: bool,
     /// `None` leaves it to the plan.
     mappings: Choice<Option<Mapping>>,
     motion: Motion,
     /// The keys.
     help: Panel,
-    /// What is known of the picture.
+    /// Figures of the picture.
     figures: Panel,
     maps: bool,
     magnifies: bool,
@@ -226,15 +226,15 @@ struct Demo {
     vga: Vga,
     /// The picture with what is laid over it.
     shown: Vga,
-    /// How many different pictures there were.
+    /// Number of different pictures so far.
     number: u64,
     timing: Timing,
     /// The time of making the plan, while the plan is shown.
     planning: Timing,
     stats: Option<Stats>,
-    /// Whether the last frame was drawn, and not the same as the one before.
+    /// True if the last frame was drawn, and not the same as the one before.
     is_redrawn: bool,
-    /// What is said at the lower edge, and until when.
+    /// Words at the lower edge, and until when.
     notice: Option<(String, f64)>,
     /// An effect that a key has just switched, and whether it was on before.
     switched: Option<(Switch, bool)>,
@@ -244,7 +244,7 @@ struct Demo {
 }
 
 impl Demo {
-    /// With nothing to show yet.
+    /// Makes a demo with nothing to show yet.
     fn new(inputs: Arc<Inputs>, kernel: Kernel) -> Demo {
         let Inputs { drawing, shading, .. } = &*inputs;
         let stage = Turntable::of_scene(Scene::new());
@@ -399,7 +399,7 @@ impl Demo {
         }
     }
 
-    /// Does what the user asks for in the frame that shows the time `seconds`.
+    /// Follows the user's input in the frame that shows the time `seconds`.
     fn follow(&mut self, input: &Input, seconds: f64) -> Result<Wish, Failure> {
         self.seconds = seconds;
         self.notice.take_if(|(_, until)| *until < seconds);
@@ -549,7 +549,7 @@ impl Demo {
         }
     }
 
-    /// What is laid over the picture in a window of this size.
+    /// Lays out the sheet over the picture in a window of this size.
     fn sheet(&mut self, size: (usize, usize)) -> Sheet {
         let mut sheet = Sheet::new(size);
         if self.maps && !self.magnifies {
@@ -608,7 +608,7 @@ impl Demo {
         self.stepper.pixel().unwrap_or(self.mouse)
     }
 
-    /// What draws a column of the picture, and the picture that is its own.
+    /// Renderer that draws a column of the picture, and the picture that is its own.
     fn side(&self, column: u16) -> (&Renderer, &Vga) {
         let is_left = usize::from(column) < self.compare.divider();
         if is_left { (&self.renderer, &self.vga) } else { (&self.compare.right.renderer, &self.compare.right.vga) }
@@ -639,7 +639,7 @@ impl Demo {
         followed
     }
 
-    /// What was drawn last.
+    /// Picture that was drawn last.
     fn on_screen(&self) -> &Vga {
         if self.maps || self.magnifies || self.compare.is_on { &self.shown } else { &self.vga }
     }
@@ -658,7 +658,7 @@ impl Demo {
         format!("{} - {} - {} - mode13h", self.name, self.shading, self.drawn())
     }
 
-    /// How long the picture took to draw, and how often it is drawn.
+    /// Words on the time that the picture took to draw, and on how often it is drawn.
     fn drawn(&self) -> String {
         let again = if self.is_redrawn { "" } else { ", not drawn again" };
         format!("{}{again}", self.timing)
@@ -697,7 +697,7 @@ fn palettes(stage: &Turntable, drawing: &Drawing) -> Choice<(String, Colors)> {
 struct Panel {
     is_open: bool,
     page: usize,
-    /// How many pages there were when it was laid last.
+    /// Number of pages when it was laid last.
     pages: usize,
 }
 

@@ -1,4 +1,4 @@
-//! What moves, by the clock and by hand.
+//! Motion by the clock and by hand.
 
 use std::fmt;
 
@@ -7,30 +7,30 @@ use mode13h::window::{Input, Key};
 
 use crate::turntable::Pose;
 
-/// How fast the arrow keys turn, in radians a second.
+/// Speed of turning by the arrow keys, in radians a second.
 const ARROW_SPEED: f64 = 2.0;
-/// How far one press of an arrow key turns at once, in radians: a tap shorter than a frame shows too.
+/// Angle by which one press of an arrow key turns at once, in radians: a tap shorter than a frame shows too.
 const ARROW_TAP: f64 = 0.05;
-/// How far a drag over one pixel of the frame turns, in radians: half a turn over its width.
+/// Angle by which a drag over one pixel of the frame turns, in radians: half a turn over its width.
 const DRAG: f64 = std::f64::consts::PI / Vga::WIDTH as f64;
 /// A pixel's height in pixel widths.
 const PIXEL_HEIGHT: f64 = Vga::PIXEL_ASPECT.1 as f64 / Vga::PIXEL_ASPECT.0 as f64;
-/// How much one notch of the wheel, or one + or -, enlarges.
+/// Factor by which one notch of the wheel, or one + or -, enlarges.
 const NOTCH: f64 = 1.1;
 /// The least and the greatest enlargement.
 const ZOOM: (f64, f64) = (0.25, 8.0);
 /// The longest time that a key counts as held for in one frame, in seconds: nothing is caught up with after a pause.
 const LONGEST_FRAME: f64 = 0.1;
 
-/// What moves: the scene's time, by the clock unless it is stopped, and what the user has turned.
+/// Motion: the scene's time, by the clock unless it is stopped, and what the user has turned.
 pub(super) struct Motion {
     /// The scene's time at the time `change`, in seconds.
     time: f64,
-    /// When the clock began to move it, in seconds; nothing while it is stopped.
+    /// Time at which the clock began to move it, in seconds; nothing while it is stopped.
     change: Option<f64>,
     pub(super) pose: Pose,
     now: f64,
-    /// What the user changed last.
+    /// Last change by the user.
     changed: Changed,
 }
 
@@ -40,7 +40,7 @@ enum Changed {
     Zoom,
 }
 
-/// What the user changed last, in words.
+/// Last change by the user, in words.
 impl fmt::Display for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Pose { turn, tilt, zoom } = self.pose;
@@ -60,7 +60,7 @@ impl Motion {
         Motion { time: 0.0, change: Some(0.0), pose: Pose::FIRST, now: 0.0, changed: Changed::Clock }
     }
 
-    /// At time 0, in the first pose; stopped if it is.
+    /// Begins anew at time 0, in the first pose; stopped if it is.
     pub(super) fn begin_anew(&mut self) {
         (self.time, self.pose) = (0.0, Pose::FIRST);
         self.change = self.change.map(|_| self.now);

@@ -1,4 +1,4 @@
-//! What the pixel under the mouse says of itself.
+//! Words on the pixel under the mouse.
 
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
@@ -40,7 +40,7 @@ fn edges(face: &FaceHere, x: u32, y: u32) -> String {
     format!("edges: {}", edges.each_ref().map(edge).join(", "))
 }
 
-/// What linear shades, or exact quotients, would be without any rounding.
+/// Words on the exact value of linear shades, or of quotients, without any rounding.
 fn exact(seen: &Seen) -> Option<String> {
     let shade_trace = seen.accounts.first()?;
     let shade = shade_trace.exact?.to_f64() / 256.0;

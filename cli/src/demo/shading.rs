@@ -1,4 +1,4 @@
-//! What the keys choose for the shades: a shading, or a budget of error.
+//! Choice of the shades by keys: a shading, or a budget of error.
 
 use std::fmt;
 
@@ -23,7 +23,7 @@ const DIGITS: [(Key, Key, char); 9] = [
     (Key::Key9, Key::NumPad9, '9'),
 ];
 
-/// What a key does.
+/// Request of a key.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Wish {
     /// This shading.
@@ -40,7 +40,7 @@ enum Wish {
     More,
 }
 
-/// What the user wants, if anything.
+/// Finds the user's request, if there is any.
 fn wish(input: &Input) -> Option<Wish> {
     let typed = |character: char| input.typed().contains(character);
     let is_down = |&(key, pad, character): &(Key, Key, char)| {
@@ -65,7 +65,7 @@ fn wish(input: &Input) -> Option<Wish> {
     (without_shift(Key::RightBracket) || typed(']')).then_some(Wish::Dearer)
 }
 
-/// What the user wants for the right half of a picture: the same keys with Shift.
+/// Finds the user's request for the right half of a picture: the same keys with Shift.
 fn shifted_wish(input: &Input) -> Option<Wish> {
     let typed = |character: char| input.typed().contains(character);
     // Where digits are typed with Shift they are the left half's.
@@ -99,19 +99,19 @@ impl ShadingChoice {
         ShadingChoice { shading, budget: budget.unwrap_or(USUAL), by_budget: budget.is_some() }
     }
 
-    /// What draws with this accuracy.
+    /// Makes the choice that draws with this accuracy.
     pub(super) fn of(accuracy: Accuracy) -> ShadingChoice {
         ShadingChoice::new(accuracy.shading(), accuracy.max_error())
     }
 
-    /// Does what the user wants. Whether they wanted anything.
+    /// Follows the user's input. Returns whether there was a request.
     pub(super) fn follow(&mut self, input: &Input) -> bool {
         let wish = wish(input);
         wish.into_iter().for_each(|wish| self.fulfil(wish));
         wish.is_some()
     }
 
-    /// Does what the user wants for the right half of a picture. Whether they wanted anything.
+    /// Follows the user's input for the right half of a picture. Returns whether there was a request.
     pub(super) fn follow_shifted(&mut self, input: &Input) -> bool {
         let wish = shifted_wish(input);
         wish.into_iter().for_each(|wish| self.fulfil(wish));
@@ -141,7 +141,7 @@ impl ShadingChoice {
         }
     }
 
-    /// Has a renderer draw by it.
+    /// Sets a renderer to draw by it.
     pub(super) fn set(&self, renderer: &mut Renderer) {
         renderer.settings_mut().accuracy = Some(match self.by_budget {
             true => Accuracy::WithinError(self.budget),

@@ -16,14 +16,14 @@ pub(super) struct Traced {
     corners: [Vertex; 3],
     interpolation: Interpolation,
     exact_cover: bool,
-    /// Where its shades come from, if the loop does not make them.
+    /// Source of its shades, if the loop does not make them.
     other: Option<&'static str>,
-    /// Whether something is made of the loop's byte before it is shown.
+    /// True if something is made of the loop's byte before it is shown.
     has_effects: bool,
 }
 
 impl Traced {
-    /// What is seen at a pixel that gave this account.
+    /// Takes the face that is seen at a pixel that gave this account.
     pub(super) fn of(shade_trace: &explain::Pixel) -> Option<Traced> {
         let (face, seen) = shade_trace.front()?;
         let object = shade_trace.objects.get(face.object).map_or("", String::as_str);
@@ -37,7 +37,7 @@ impl Traced {
     }
 }
 
-/// Where a face's shades come from, if the loop does not make them.
+/// Source of a face's shades, if the loop does not make them.
 fn other(face: &FaceHere, seen: &Seen) -> Option<&'static str> {
     match (seen.shaded_by, face.interpolation) {
         (ShadedBy::Light { .. } | ShadedBy::BetweenLit { .. } | ShadedBy::BetweenSix(_), _) => {
@@ -61,7 +61,7 @@ struct Wished {
 }
 
 impl Wished {
-    /// By the keys: a key that is held goes on.
+    /// Reads the keys: a key that is held goes on.
     fn of(input: &Input) -> Wished {
         let typed = |wanted: char| input.typed().chars().filter(|typed| *typed == wanted).count() as isize;
         let with_shift = |key| isize::from(input.pressed_with_shift(key));
@@ -74,10 +74,10 @@ impl Wished {
     }
 }
 
-/// Where one is in a triangle.
+/// Place in a triangle.
 #[derive(Debug)]
 struct Place {
-    /// Where the mouse was when it began.
+    /// Place of the mouse when it began.
     mouse: Pixel,
     pixel: Pixel,
     /// The number of the picture that the walk is of.
@@ -139,8 +139,8 @@ impl Stepper {
         place.go();
     }
 
-    /// What the registers hold at the pixel that was reached in the picture of this number, whose byte there is given; in
-    /// lines. None while nobody steps.
+    /// Lines on the registers at the pixel that was reached in the picture of this number, whose byte there is given.
+    /// None while nobody steps.
     pub(super) fn lines(&self, number: u64, byte: u8) -> Vec<String> {
         let Some(place) = &self.0 else { return Vec::new() };
         let walk = place.walk.as_ref().filter(|_| place.number == number);

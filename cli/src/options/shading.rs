@@ -1,4 +1,4 @@
-//! How faces are shaded: `--shading` and `--max-error`.
+//! Shading of faces: `--shading` and `--max-error`.
 
 use clap::Args;
 use mode13h::render::{Accuracy, Renderer, Settings, Shading};
@@ -28,12 +28,12 @@ pub(crate) struct ShadingOptions {
 }
 
 impl ShadingOptions {
-    /// How exact shades are, if that was asked for.
+    /// Accuracy of shades, if that was asked for.
     fn accuracy(&self) -> Option<Accuracy> {
         self.max_error.map(Accuracy::WithinError).or(self.shading.map(Accuracy::Shading))
     }
 
-    /// How exact shades of a scene with these preferences are to be.
+    /// Accuracy that is asked for with these preferences of a scene.
     pub(crate) fn accuracy_for(&self, preferences: &Preferences) -> Accuracy {
         let mut settings = Settings::default();
         settings.accuracy = self.accuracy();

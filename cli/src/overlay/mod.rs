@@ -1,4 +1,4 @@
-//! What is laid over the picture, at the window's own resolution: panels of text, blocks, lines and small pictures.
+//! Overlay on the picture, at the window's own resolution: panels of text, blocks, lines and small pictures.
 //!
 //! A [`Sheet`] is a list of things to draw, laid out for a window of one size. Equal sheets look the same, which tells
 //! whether a picture that stands still has to be shown again. Nothing is drawn before [`Sheet::draw`].
@@ -20,15 +20,15 @@ pub(crate) use text::{Letters, Row, wrapped};
 
 /// Text of its own weight.
 pub(crate) const TEXT: Rgb = Rgb::new(0xF0, 0xF0, 0xF0);
-/// What names the text beside it.
+/// Colour of a name of the text beside it.
 pub(crate) const HEAD: Rgb = Rgb::new(0xFF, 0xD0, 0x60);
-/// What went wrong.
+/// Colour of a fault.
 pub(crate) const WRONG: Rgb = Rgb::new(0xFF, 0x90, 0x80);
-/// What panels lay under their text, and how much of 255 of it is seen: the picture shines through.
+/// Paper of panels under their text, and how much of 255 of it is seen: the picture shines through.
 const PANEL: (Rgb, u8) = (Rgb::new(0x08, 0x08, 0x10), 176);
 /// Pixels between a panel's edge and its text, and between a panel and the window's edge.
 const PADDING: usize = 4;
-/// Where a panel stands.
+/// Side on which a panel stands.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Side {
     Left,
@@ -64,7 +64,7 @@ enum Thing {
     },
 }
 
-/// What is laid over the picture in a window of one size.
+/// Things that are laid over the picture in a window of one size.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Sheet {
     width: usize,
@@ -84,7 +84,7 @@ impl Sheet {
         Sheet { width, height, picture, letters, things: Vec::new(), free }
     }
 
-    /// Where the picture stands in the window. [`Area::from_frame`] finds a pixel of the frame there.
+    /// Area of the picture in the window. [`Area::from_frame`] finds a pixel of the frame there.
     pub(crate) fn picture_area(&self) -> Area {
         self.picture
     }
@@ -259,7 +259,7 @@ pub(crate) mod tests {
             texts.flat_map(str::split_whitespace).map(str::to_string).collect()
         }
 
-        /// What is wrong with its text: letters that reach beyond the window, that the font lacks, or that stand on those
+        /// Faults of its text: letters that reach beyond the window, that the font lacks, or that stand on those
         /// of another line.
         pub(crate) fn faults(&self) -> Vec<String> {
             let boxes = self.things.iter().filter_map(|thing| match thing {
@@ -357,7 +357,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// In each set of letters the full stop is a rectangle, as a full stop is, and no small cross.
+    /// Tests that in each set of letters the full stop is a rectangle, and no small cross.
     #[test]
     fn a_full_stop_is_a_full_stop() {
         for letters in [Letters::Large, Letters::Small, Letters::Tiny] {

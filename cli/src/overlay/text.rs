@@ -19,7 +19,7 @@ pub(crate) enum Letters {
 }
 
 impl Letters {
-    /// Those that suit a window.
+    /// Letters that suit a window.
     pub(super) fn of_window(width: usize, height: usize) -> Letters {
         match (width, height) {
             (800.., 600..) => Letters::Large,

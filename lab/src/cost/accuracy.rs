@@ -52,7 +52,7 @@ impl Against {
     }
 }
 
-/// How one way keeps a bound.
+/// Pixels of one way within a bound.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct Kept {
     /// Pixels within it.
@@ -61,13 +61,13 @@ pub(super) struct Kept {
     pub(super) patch: usize,
 }
 
-/// What is found of one way over many frames.
+/// Results of one way over many frames.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Results {
     gouraud: Against,
     unrounded: Against,
     lit: Against,
-    /// For each of [`BUDGETS`].
+    /// Pixels within each of [`BUDGETS`].
     pub(super) kept: [Kept; BUDGETS.len()],
     entries: Entries,
     swim: Swim,
@@ -130,10 +130,10 @@ impl Results {
     }
 }
 
-/// What is found of all ways on one frame.
+/// Results of all ways on one frame.
 type Judged = Result<Vec<Results>, CostError>;
 
-/// What is judged.
+/// Frames and ways that are judged.
 pub(super) struct Referee<'a> {
     pub(super) ways: &'a [Configuration<'a>],
     pub(super) base: &'a (dyn Fn() -> Renderer + Sync),
@@ -229,7 +229,7 @@ impl Referee<'_> {
         self.ways.iter().map(judged).collect()
     }
 
-    /// From one step to the next.
+    /// Judges the frames from one step to the next.
     fn step(&self, index: usize, probe: &mut Probe) -> Result<Vec<Results>, CostError> {
         let scenes = &self.steps[index..index + 2];
         let mut truths = Vec::new();
@@ -254,7 +254,7 @@ impl Referee<'_> {
     }
 }
 
-/// How far frames drawn by some ways are from a standard, way by way.
+/// Errors of frames drawn by some ways against a standard, way by way.
 pub(super) fn against(
     standard: Standard,
     frames: &[Scene],
@@ -276,7 +276,7 @@ pub(super) fn against(
     Ok(all)
 }
 
-/// How far two standards are from each other, over all frames.
+/// Distance of two standards from each other, over all frames.
 pub(super) fn between(standards: [Standard; 2], frames: &[Scene]) -> Result<Errors, CostError> {
     let mut all = Against::default();
     for scene in frames {

@@ -1,4 +1,4 @@
-//! What times are read from.
+//! Clocks that times are read from.
 
 use core::fmt;
 use std::sync::OnceLock;
@@ -12,9 +12,9 @@ use super::statistics::median;
 /// of is not slower for that. The standard library has none.
 #[derive(Clone, Copy)]
 pub struct Clock {
-    /// What it is, in a few words.
+    /// Description, in a few words.
     pub name: &'static str,
-    /// What it shows now; only differences count, of one thread.
+    /// Reading; only differences count, of one thread.
     pub now: fn() -> Duration,
 }
 
@@ -22,7 +22,7 @@ impl Clock {
     /// The one on the wall.
     pub const WALL: Self = Self { name: "wall clock", now: on_the_wall };
 
-    /// How many nanoseconds `work` takes.
+    /// Measures the nanoseconds that `work` takes.
     pub(super) fn time<T>(self, work: impl FnOnce() -> T) -> (f64, T) {
         let start = (self.now)();
         let result = work();
@@ -31,7 +31,7 @@ impl Clock {
         (time.as_nanos() as f64, result)
     }
 
-    /// How long a step of it is seen to be, in nanoseconds: the median of a hundred.
+    /// Measures the length of a step of it, in nanoseconds: the median of a hundred.
     pub(super) fn step(self) -> f64 {
         let mut steps = [0.0; 100];
         for step in &mut steps {

@@ -16,7 +16,7 @@ pub const BUDGETS: [f64; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
 /// The shading whose time is 1.
 pub(super) const REFERENCE: Shading = Shading::Gouraud88;
 
-/// What a way to draw is measured for.
+/// Purpose that a way to draw is measured for.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Kind {
     Shading(Shading),
@@ -41,7 +41,7 @@ pub(super) struct Configuration<'a> {
     pub(super) kind: Kind,
     pub(super) name: String,
     set: Box<dyn Fn(&mut Renderer) + Sync + 'a>,
-    /// Whether dither is asked for, whatever the scene does.
+    /// Dither that is asked for, whatever the scene does.
     pub(super) dither: Option<bool>,
 }
 
@@ -94,10 +94,10 @@ impl<'a> Configuration<'a> {
         self
     }
 
-    /// What else may be chosen, aspect by aspect, the default first; all with the default shading, and at the end each of
-    /// these shadings, and the reference first, by the portable kernel.
+    /// Lists the other choices, aspect by aspect, the default first; all with the default shading, and at the end each
+    /// of these shadings, and the reference first, by the portable kernel.
     ///
-    /// Vertices are rounded to fewer bits after they have been to 8: what that takes is no gain of time that a machine
+    /// Vertices are rounded to fewer bits after they have been to 8. The time that this takes is no gain that a machine
     /// with fewer bits would have, and no loss either.
     pub(super) fn choices(shadings: &[Shading]) -> Vec<Self> {
         let with_shading = |aspect, name: &dyn fmt::Display, set: Box<dyn Fn(&mut Renderer) + Sync>| {

@@ -1,4 +1,4 @@
-//! Why nothing could be measured.
+//! Errors of a study.
 
 use core::fmt;
 
@@ -6,13 +6,13 @@ use super::ProbeError;
 use crate::truth::TruthError;
 use mode13h::render::RenderError;
 
-/// Why nothing could be found out.
+/// Error of a study.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum CostError {
     /// The scene cannot be drawn.
     Scene(RenderError),
-    /// What it shows cannot be looked at.
+    /// The pixels that it shows cannot be found out.
     Probe(ProbeError),
     /// There is no truth about it.
     Truth(TruthError),

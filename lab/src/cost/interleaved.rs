@@ -78,7 +78,7 @@ impl Samples {
         times
     }
 
-    /// How many rounds there are.
+    /// Number of rounds.
     pub(super) fn rounds(&self) -> usize {
         self.list.last().map_or(0, |sample| sample.round + 1)
     }
@@ -90,7 +90,7 @@ fn cell(text: &str) -> Cow<'_, str> {
     if text.contains(',') { Cow::Owned(format!("\"{text}\"")) } else { Cow::Borrowed(text) }
 }
 
-/// What drawing all frames comes to, whatever the time.
+/// Work of drawing all frames, whatever the time.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(super) struct Work {
     pub(super) triangles: u64,
@@ -147,19 +147,19 @@ pub(super) fn always_drawing(mut renderer: Renderer) -> Renderer {
     renderer
 }
 
-/// What times are taken with.
+/// Settings of a contest.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spent {
     pub(super) clock: Clock,
     /// About how long.
     pub(super) seconds: f64,
-    /// Whether that is the most, and not what ratios that are not known well enough may prolong.
+    /// True if that is the most, and not what ratios that are not known well enough may prolong.
     pub(super) at_most: bool,
     /// The seed of the shuffled order.
     pub(super) seed: u64,
 }
 
-/// What a contest found out.
+/// Outcome of a contest.
 pub(super) struct Outcome {
     pub(super) samples: Samples,
     /// One for each way.
@@ -233,7 +233,7 @@ pub(super) fn contest(
     Ok(Outcome { samples, work: contenders.iter().map(|contender| contender.work).collect() })
 }
 
-/// Whether all ratios that are asked for are known well enough.
+/// Returns whether all ratios that are asked for are known well enough.
 fn is_narrow(ways: &[(&Configuration<'_>, &[Scene])], samples: &Samples, seed: u64) -> bool {
     let mut chance = Rng::new(seed);
     let first = samples.of(0);

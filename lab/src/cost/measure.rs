@@ -18,9 +18,9 @@ use mode13h::scene::Scene;
 /// The share of pixels that a budget, and a shading that is compared with it, must keep within the bound.
 const PROMISE: f64 = 0.999;
 
-/// What a study is made of.
+/// Subject of a study.
 pub struct Subject<'a> {
-    /// What to call it.
+    /// Its name.
     pub name: &'a str,
     /// Frames all over one round of it: at least one.
     pub frames: &'a [Scene],
@@ -30,22 +30,22 @@ pub struct Subject<'a> {
     pub renderer: &'a (dyn Fn() -> Renderer + Sync),
 }
 
-/// How a study is made.
+/// Settings of a study.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// The shadings that are studied. `gouraud-8.8` is drawn in any case, as ratios are to it.
     pub shadings: Vec<Shading>,
-    /// Whether vertex path, vertex rounding, kernels, dither and the ways to visible surfaces are compared, too.
+    /// True if vertex path, vertex rounding, kernels, dither and the ways to visible surfaces are compared, too.
     pub choices: bool,
-    /// Whether the sources' claims are measured, on scenes of their own.
+    /// True if the sources' claims are measured, on scenes of their own.
     pub claims: bool,
-    /// What times are read from.
+    /// Clock that times are read from.
     pub clock: Clock,
     /// About how long times are taken; up to twice as long where ratios are not known well enough.
     pub seconds: f64,
-    /// Whether that is the most. Fewer rounds are drawn then, but seven in any case.
+    /// True if that is the most. Fewer rounds are drawn then, but seven in any case.
     pub at_most: bool,
-    /// What the order of drawing, and resampling, are made from.
+    /// Seed of the order of drawing, and of resampling.
     pub seed: u64,
     /// The machine and the program, as they are to be named. The clock is named here.
     pub host: Host,
@@ -66,7 +66,7 @@ impl Default for Settings {
     }
 }
 
-/// What a study is doing.
+/// Steps of a study.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum Step {
@@ -187,10 +187,10 @@ fn times(ways: &[Configuration<'_>], samples: &Samples) -> Vec<Vec<f64>> {
     (0..ways.len()).map(|way| samples.of(way)).collect()
 }
 
-/// All that was found out, way by way.
+/// Results, way by way.
 struct Rows<'a> {
     ways: &'a [Configuration<'a>],
-    /// For a frame, round by round.
+    /// Times for a frame, round by round.
     times: Vec<Vec<f64>>,
     findings: Vec<Results>,
     outcome: &'a Outcome,
@@ -320,8 +320,8 @@ fn mark_efficient(rows: &mut [ShadingRow]) {
     }
 }
 
-/// What is to be warned of, a line each: neighbours in time that cannot be told apart, and budgets that have not kept what
-/// they promise.
+/// Warnings of a study, a line each: neighbours in time that cannot be told apart, and budgets that have not kept their
+/// promise.
 #[must_use]
 pub fn warnings(study: &Study) -> Vec<String> {
     let mut rows: Vec<&ShadingRow> = study.shadings.iter().collect();
@@ -337,7 +337,7 @@ pub fn warnings(study: &Study) -> Vec<String> {
     tied.chain(broken).collect()
 }
 
-/// Whether each budget keeps the share of pixels within its error that it promises.
+/// Returns whether each budget keeps the share of pixels within its error that it promises.
 pub fn budgets_are_kept(study: &Study) -> bool {
     study.budget.iter().all(|row| row.within >= PROMISE)
 }
@@ -376,9 +376,9 @@ mod tests {
     /// Rounds of a study.
     const ROUNDS: usize = 232;
 
-    /// What a study says of two shadings, one of which takes `slower` times as long as the other: their ratio, its interval,
-    /// and whether they can be told apart. Each of its rounds is one of those recorded, and in it the shadings take the times of two of
-    /// the six, chosen by chance: the noise that there is, and no difference but the one that is planted.
+    /// Compares two shadings, one of which takes `slower` times as long as the other: their ratio, its interval, and
+    /// whether they can be told apart. Each of its rounds is one of those recorded, and in it the shadings take the
+    /// times of two of the six, chosen by chance: the noise that there is, and no difference but the planted one.
     fn told(recorded: &[Vec<f64>], slower: f64, chance: &mut Rng) -> (f64, (f64, f64), bool) {
         let mut times = alloc::vec![Vec::new(), Vec::new()];
         for _ in 0..ROUNDS {
@@ -413,8 +413,8 @@ mod tests {
         RECORDED.lines().skip(1).map(numbers).collect()
     }
 
-    /// It is found, and its size is: 95 of 100 intervals hold it, with a standard deviation of √(100 · 0.95 · 0.05) = 2.2, so
-    /// at least 88 do, three of them off.
+    /// Tests that the slowdown and its size are found: 95 of 100 intervals hold it, with a standard deviation of
+    /// √(100 · 0.95 · 0.05) = 2.2, so at least 88 do, three of them off.
     #[test]
     fn a_slowdown_of_a_twentieth_is_found() {
         let (recorded, mut chance) = (recorded(), Rng::new(13));
@@ -427,8 +427,8 @@ mod tests {
         assert!(found >= 95 && held >= 88, "found in {found} of 100 studies, and 1.05 in {held} intervals");
     }
 
-    /// In 95 of 100 studies none is said to be slower: of 1,000 in 950 by chance, with a standard deviation of
-    /// √(1000 · 0.95 · 0.05) = 6.9, so in 929 to 971, three of them off. An interval of 90 % would hold in 900.
+    /// Tests that in 95 of 100 studies none is said to be slower: of 1,000 in 950 by chance, with a standard deviation
+    /// of √(1000 · 0.95 · 0.05) = 6.9, so in 929 to 971, three of them off. An interval of 90 % would hold in 900.
     #[test]
     fn what_takes_the_same_time_is_said_to_be_slower_as_seldom_as_is_promised() {
         let (recorded, mut chance) = (recorded(), Rng::new(14));

@@ -1,15 +1,15 @@
-//! What accuracy costs: every shading's error against the [`truth`](crate::truth), and its time.
+//! Cost of accuracy: every shading's error against the [`truth`](crate::truth), and its time.
 //!
 //! | file | what |
 //! |---|---|
-//! | `probe` | what a renderer shows, pixel by pixel |
-//! | `study` | what a study found out, in numbers |
+//! | `probe` | the pixels that a renderer shows |
+//! | `study` | the results of a study, in numbers |
 //! | `measure` | a study from beginning to end |
-//! | `way` | what is measured against each other: shadings, budgets, and what else may be chosen |
-//! | `judge`, `entries` | errors against each standard of truth; what ramp or palette adds |
-//! | `clock`, `contest`, `split` | times, all ways side by side; where the time goes |
-//! | `claims` | what the sources claim, measured |
-//! | `statistics` | quartiles, ratios, and what chance makes of them |
+//! | `configuration` | the things that are measured against each other: shadings, budgets, and the other choices |
+//! | `accuracy`, `quantization` | errors against each standard of truth; errors that ramp or palette add |
+//! | `clock`, `interleaved`, `split` | times, all configurations side by side; the parts of a frame's time |
+//! | `claims` | the sources' claims, measured |
+//! | `statistics` | quartiles, ratios, and their ranges by chance |
 //! | `report` | a study as an HTML file and charts |
 
 mod accuracy;

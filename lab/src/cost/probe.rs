@@ -1,4 +1,4 @@
-//! What a renderer shows, pixel by pixel: which face, and which shade before anything is made of it.
+//! Probe of a renderer, pixel by pixel: the face shown, and its shade before anything is made of it.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -42,7 +42,7 @@ use mode13h::scene::{Object, Scene, Shared};
 pub struct Probe {
     renderer: Renderer,
     numbered: Numbered,
-    /// Whether shades are dithered, on a ramp of few entries then in any case.
+    /// Dither, on a ramp of few entries then in any case.
     dither: Option<bool>,
 }
 
@@ -61,13 +61,13 @@ impl Probe {
         &mut self.renderer
     }
 
-    /// Whether shades are dithered, and on a ramp of 32 entries either way, which stand for shades 8.2 apart; with `None`
-    /// they are not, on one of 256.
+    /// Sets whether shades are dithered, and on a ramp of 32 entries either way, which stand for shades 8.2 apart; with
+    /// `None` they are not, on one of 256.
     pub(super) fn dither(&mut self, dither: Option<bool>) {
         self.dither = dither;
     }
 
-    /// What the renderer shows of a scene.
+    /// Finds out the pixels that the renderer shows of a scene.
     ///
     /// # Errors
     /// A scene that cannot be drawn; a screen that no [`Frame`] is as large as; an object of more than 32,768
@@ -156,7 +156,7 @@ impl Probe {
     }
 }
 
-/// Why nothing could be found out.
+/// Error of a probe.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum ProbeError {
@@ -185,9 +185,9 @@ impl core::error::Error for ProbeError {}
 #[derive(Debug, Default)]
 struct Numbered {
     meshes: Vec<Shared<Mesh>>,
-    /// How many numbers a digit tells apart.
+    /// Count of numbers that a digit tells apart.
     base: usize,
-    /// For each digit, the lowest first, every mesh with a surface for each of its own and each value of the
+    /// Meshes for each digit, the lowest first: every mesh with a surface for each of its own and each value of the
     /// digit. Its own count still, because how a face is split depends on its material.
     digits: Vec<Vec<Shared<Mesh>>>,
 }

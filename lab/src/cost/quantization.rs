@@ -1,4 +1,4 @@
-//! What the nearest entry of a ramp or a palette adds to the error of a shade.
+//! Quantization error: the distance of the nearest entry of a ramp or a palette from a shade.
 
 use alloc::collections::{BTreeMap, BTreeSet};
 
@@ -73,7 +73,7 @@ impl Entries {
     }
 }
 
-/// How far the nearest entry of a ramp is from a shade.
+/// Distance of the nearest entry of a ramp from a shade.
 fn ramp_error(ramp: Ramp, shade: f64) -> f64 {
     let steps = f64::from(ramp.entries()) - 1.0;
     if steps < 1.0 {
@@ -83,7 +83,7 @@ fn ramp_error(ramp: Ramp, shade: f64) -> f64 {
     (shade - 255.0 * entry / steps).abs()
 }
 
-/// How far a palette's nearest entry is from a colour, on the channel where it is farthest.
+/// Distance of a palette's nearest entry from a colour, on the channel where it is farthest.
 fn nearest_error(palette: &Palette, [r, g, b]: [u8; 3]) -> f64 {
     let near = palette.color(palette.nearest(Rgb::new(r, g, b)));
     let off = [r.abs_diff(near.r), g.abs_diff(near.g), b.abs_diff(near.b)];

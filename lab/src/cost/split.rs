@@ -1,4 +1,4 @@
-//! Where the time of a frame goes.
+//! Split of a frame's time into parts.
 //!
 //! | part | how |
 //! |---|---|
@@ -9,9 +9,9 @@
 //! | scan-out | [`Vga::scan_out`] alone |
 //!
 //! A frame of 640 × 200 pixels that are half as wide shows the same: as many vertices, triangles and rows of
-//! triangles, each row twice as long. So what it takes longer is what 320 × 200 pixels take, by whatever
-//! loop: nothing has to be left out of the loops, or played back without what surrounds them. What a loop takes before
-//! its first pixel and after its last counts as set-up; and a row that is so short that it
+//! triangles, each row twice as long. So what it takes longer is the time of 320 × 200 pixels, by whatever
+//! loop: nothing has to be left out of the loops, or played back without what surrounds them. The time of a loop before
+//! its first pixel and after its last counts as set-up. A row that is so short that it
 //! covers no pixel in one of the frames blurs the border between the two, by as much as faces are small.
 
 use alloc::vec;
@@ -39,7 +39,7 @@ const ROUNDS: (usize, usize) = (3, 301);
 /// Frames that are drawn of those there are, at most.
 const FRAMES: usize = 4;
 
-/// What is measured of a frame.
+/// Measured parts of a frame.
 #[derive(Clone, Copy)]
 enum Part {
     Plan,

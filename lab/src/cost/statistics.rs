@@ -1,4 +1,4 @@
-//! What many samples of a time come to: quartiles, and ratios with what chance alone would make of them.
+//! Statistics of many samples of a time: quartiles, and ratios with their ranges by chance alone.
 
 use alloc::vec::Vec;
 
@@ -57,7 +57,7 @@ fn sorted(numbers: &[f64]) -> Vec<f64> {
     numbers
 }
 
-/// The median; 0 of none. What is not a number was not measured, and does not count.
+/// The median; 0 of none. Those that are not a number were not measured, and do not count.
 pub(super) fn median(numbers: &[f64]) -> f64 {
     quantile(&sorted(numbers), 0.5)
 }
@@ -77,7 +77,7 @@ pub(super) fn quartiles(samples: &[f64]) -> Nanoseconds {
 pub(super) struct Ratio {
     /// The median of the ratios of all rounds.
     pub(super) median: f64,
-    /// Where the median lies in 95 of 100 resamples of the rounds.
+    /// Interval in which the median lies in 95 of 100 resamples of the rounds.
     pub(super) interval: (f64, f64),
 }
 
@@ -107,12 +107,12 @@ impl Ratio {
         Self { median: quantile(&ratios, 0.5), interval: (quantile(&medians, TAIL), quantile(&medians, 1.0 - TAIL)) }
     }
 
-    /// Whether the interval holds 1, so that neither can be said to be faster.
+    /// Returns whether the interval holds 1, so that neither can be said to be faster.
     pub(super) fn cannot_be_told(&self) -> bool {
         self.interval.0 <= 1.0 && 1.0 <= self.interval.1
     }
 
-    /// How wide the interval is, as a share of the ratio.
+    /// Width of the interval, as a share of the ratio.
     pub(super) fn spread(&self) -> f64 {
         (self.interval.1 - self.interval.0) / self.median
     }

@@ -1,4 +1,4 @@
-//! What a study found out, in numbers. Times are in nanoseconds, errors in shades of 1/255 of full intensity.
+//! Results of a study, in numbers. Times are in nanoseconds, errors in shades of 1/255 of full intensity.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -9,7 +9,7 @@ use mode13h::render::{FaceShading, Shading};
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Study {
-    /// What was measured, by name.
+    /// Name of the input that was measured.
     pub input: String,
     /// The machine and the program.
     pub host: Host,
@@ -23,13 +23,13 @@ pub struct Study {
     pub shadings: Vec<ShadingRow>,
     /// A budget each, the greatest error first.
     pub budget: Vec<BudgetRow>,
-    /// What else may be chosen, grouped by aspect.
+    /// Other choices, grouped by aspect.
     pub options: Vec<OptionRow>,
-    /// What the sources claim.
+    /// Claims of the sources.
     pub claims: Vec<Claim>,
 }
 
-/// Where and how a study was made.
+/// Machine and programs of a study.
 #[derive(Clone, PartialEq, Debug, Default)]
 #[non_exhaustive]
 pub struct Host {
@@ -41,7 +41,7 @@ pub struct Host {
     pub flags: String,
     /// The clock that times were read from.
     pub clock: String,
-    /// How long a step of it is seen to be.
+    /// Length of a step of it, as measured.
     pub clock_step: f64,
 }
 
@@ -56,22 +56,22 @@ pub struct Nanoseconds {
     pub upper_quartile: f64,
 }
 
-/// Where the time of a frame goes; medians.
+/// Split of a frame's time into parts; medians.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Split {
     /// Deciding which effects are on.
     pub plan: f64,
     /// Transforming, projecting and lighting vertices.
     pub vertices: f64,
-    /// From three vertices to the ends of spans and their first shades.
+    /// Set-up: from three vertices to the ends of spans and their first shades.
     pub setup: f64,
     /// The pixel loops.
     pub spans: f64,
-    /// From indices to red, green and blue.
+    /// Scan-out: from indices to red, green and blue.
     pub scan_out: f64,
 }
 
-/// How far frames are from a standard of truth.
+/// Errors of frames against a standard of truth.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Errors {
     /// The largest.
@@ -89,19 +89,19 @@ pub struct Errors {
 /// One shading.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ShadingRow {
-    /// Which.
+    /// The shading.
     pub shading: Shading,
-    /// For a frame, scan-out left out.
+    /// Time for a frame, scan-out left out.
     pub per_frame: Nanoseconds,
-    /// For a pixel written.
+    /// Time for a pixel written.
     pub per_pixel: f64,
-    /// For a triangle drawn.
+    /// Time for a triangle drawn.
     pub per_triangle: f64,
     /// The time as a ratio to that of `gouraud-8.8`.
     pub ratio: f64,
     /// Its 95 % interval, by bootstrap.
     pub ratio_interval: (f64, f64),
-    /// Where the time goes.
+    /// Split of the time.
     pub split: Split,
     /// Instructions for a frame, where they were counted.
     pub instructions: Option<u64>,
@@ -109,13 +109,13 @@ pub struct ShadingRow {
     pub error_gouraud: Errors,
     /// Against `lit`.
     pub error_lit: Errors,
-    /// What the nearest entry of the scene's own ramp or palette adds, at most.
+    /// Error that the nearest entry of the scene's own ramp or palette adds, at most.
     pub error_palette: f64,
     /// Pixels that show another face than they should, over all frames, vertices rounded alike.
     pub cover_errors: u64,
-    /// How much errors change from a frame to the next, root mean square.
+    /// Change of errors from a frame to the next, root mean square.
     pub swim: f64,
-    /// Whether no other shading is as near to `lit` and faster, as far as times can be told apart.
+    /// True if no other shading is as near to `lit` and faster, as far as times can be told apart.
     pub efficient: bool,
     /// Shadings whose time cannot be told from this one's.
     pub as_fast_as: Vec<Shading>,
@@ -138,7 +138,7 @@ pub struct BudgetRow {
     pub rms: f64,
     /// The pixels of the largest connected patch beyond it.
     pub patch: usize,
-    /// For a frame.
+    /// Time for a frame.
     pub per_frame: Nanoseconds,
     /// The cheapest shading with exact cover that keeps 99.9 % of the pixels within; none may.
     pub best_single_shading: Option<Shading>,
@@ -150,13 +150,13 @@ pub struct BudgetRow {
     pub triangles: Vec<(FaceShading, u64)>,
 }
 
-/// What may be chosen beside the shading.
+/// Aspects that may be chosen beside the shading.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[non_exhaustive]
 pub enum Aspect {
     /// f32 or 16.16.
     VertexPath,
-    /// How far projected vertices are rounded.
+    /// Rounding of projected vertices.
     VertexRounding,
     /// The span kernel.
     Kernel,
@@ -193,11 +193,11 @@ impl core::fmt::Display for Aspect {
 /// One choice of an aspect, all else as by default.
 #[derive(Clone, PartialEq, Debug)]
 pub struct OptionRow {
-    /// What is chosen.
+    /// The aspect chosen.
     pub aspect: Aspect,
     /// Its name.
     pub name: String,
-    /// For a frame.
+    /// Time for a frame.
     pub per_frame: Nanoseconds,
     /// The time as a ratio to that of the aspect's first row, and its 95 % interval.
     pub ratio: (f64, (f64, f64)),
@@ -207,24 +207,24 @@ pub struct OptionRow {
     pub cover_errors: u64,
 }
 
-/// What measuring says to a claim.
+/// Verdict of measuring on a claim.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Verdict {
-    /// It holds.
+    /// The claim holds.
     Holds,
-    /// It holds within limits, which the text names.
+    /// The claim holds within limits, which the text names.
     HoldsInPart,
-    /// It does not hold.
+    /// The claim does not hold.
     DoesNotHold,
 }
 
 /// A claim that an old text makes, and what was measured.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Claim {
-    /// What is claimed.
+    /// The claim.
     pub claim: String,
-    /// What was measured, with figures.
+    /// Result of measuring, with figures.
     pub measured: String,
-    /// What that says.
+    /// The verdict.
     pub verdict: Verdict,
 }

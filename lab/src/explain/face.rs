@@ -14,19 +14,19 @@ pub struct FaceHere {
     pub object: usize,
     /// The triangle's place in the object's mesh; `None` where it could not be told.
     pub triangle: Option<usize>,
-    /// Whether it is but a part of that triangle, which was split.
+    /// True if it is only a part of that triangle, which was split.
     pub is_part: bool,
-    /// How its shades run, where they come from its corners.
+    /// Interpolation of its shades, where they come from its corners.
     pub interpolation: Interpolation,
     /// Its corners: the upper one first (of equal heights the left one), then clockwise as one sees them.
     pub corners: [Vertex; 3],
     /// Its depth at the pixel; greater is nearer.
     pub depth: u32,
-    /// What became of it.
+    /// Its fate.
     pub fate: Fate,
 }
 
-/// What kind of edge it is, the triangle seen clockwise.
+/// Kind of an edge, the triangle seen clockwise.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum EdgeKind {
     /// Level, the triangle below it.
@@ -40,8 +40,8 @@ pub enum EdgeKind {
 }
 
 impl EdgeKind {
-    /// Whether a pixel whose centre lies on it belongs to the triangle: a top or a left edge. The neighbour on its other
-    /// side has it as a bottom or a right one.
+    /// Returns whether a pixel whose centre lies on it belongs to the triangle: a top or a left edge. The neighbour on
+    /// its other side has it as a bottom or a right one.
     #[must_use]
     pub const fn owns_ties(self) -> bool {
         matches!(self, Self::Top | Self::Left)
@@ -62,7 +62,7 @@ impl fmt::Display for EdgeKind {
 /// An edge of a triangle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Edge {
-    /// Which.
+    /// The kind of edge.
     pub kind: EdgeKind,
     /// The edge function at the pixel's centre, exact, in (1/256 pixel)²: twice the area of the edge and the centre,
     /// above 0 inside.

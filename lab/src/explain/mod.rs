@@ -1,4 +1,4 @@
-//! Why a pixel has its byte: the whole way from three corners to an entry of the palette, in numbers.
+//! Explanation of a pixel's byte: the whole way from three corners to an entry of the palette, in numbers.
 //!
 //! | file | what |
 //! |---|---|
@@ -52,7 +52,7 @@ pub use row::{Column, Row, row};
 pub use trace::Fate;
 pub use walk::{Registers, Step, Walk};
 
-/// Why there is nothing to explain.
+/// Error of explaining a pixel or a row.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum ExplainError {
@@ -80,7 +80,7 @@ pub enum ExplainError {
     Scene(RenderError),
     /// The truth cannot be drawn.
     Truth(TruthError),
-    /// What is shown cannot be found out.
+    /// The pixels that are shown cannot be found out.
     Probe(ProbeError),
 }
 
@@ -103,7 +103,7 @@ impl fmt::Display for ExplainError {
 
 impl core::error::Error for ExplainError {}
 
-/// Whether there is a frame of that size.
+/// Checks that there is a frame of that size.
 fn check(screen: Screen) -> Result<(), ExplainError> {
     let side = 1..=Frame::MAX_SIDE;
     if side.contains(&screen.width) && side.contains(&screen.height) { Ok(()) } else { Err(ExplainError::Screen) }

@@ -16,14 +16,14 @@ use mode13h::render::Screen;
 use mode13h::span::Kernel;
 use mode13h::span::texture::{Levels, Texels};
 
-/// Where the shades of a face come from.
+/// Source of a face's shades.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum ShadedBy {
-    /// From its corners.
+    /// The corners.
     Corners,
-    /// From a table of 256 × 256 normals.
+    /// A table of 256 × 256 normals.
     NormalTable,
-    /// From the light at the pixel.
+    /// The light at the pixel.
     Light {
         /// The normal there, not made unit yet, in the object's own space.
         normal: [f32; 3],
@@ -34,11 +34,11 @@ pub enum ShadedBy {
     },
     /// Between two pixels of its row that are lit.
     BetweenLit {
-        /// How far the two lie apart, at most.
+        /// Distance between the two, at most.
         spacing: SampleSpacing,
         /// The shades in 8.8 of the one before it, or of itself, of three channels or three times the same.
         before: [u16; 3],
-        /// Those of the next.
+        /// Shades of the next.
         after: [u16; 3],
     },
     /// Quadratic on the screen between six points that are lit. For each corner the shades in 8.8 there, of three
@@ -46,7 +46,7 @@ pub enum ShadedBy {
     BetweenSix([[f32; 6]; 3]),
 }
 
-/// What the stages of a face make of a pixel.
+/// Output of a face's stages at a pixel.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Bytes {
     pub(super) shaded_by: ShadedBy,
@@ -64,7 +64,7 @@ pub(super) struct Bytes {
     pub(super) mixed: Option<u8>,
     /// The level, and the byte.
     pub(super) fogged: Option<(u8, u8)>,
-    /// What is behind, and the byte.
+    /// Byte behind, and the byte.
     pub(super) blended: Option<(u8, u8)>,
     pub(super) byte: u8,
 }
@@ -92,12 +92,12 @@ impl OnePixel {
         if drawn.pixels == 0 { None } else { self.row.get(x as usize).copied() }
     }
 
-    /// The byte of a face by a look with some stages taken away.
+    /// The byte of a face by a pixel pipeline with some stages taken away.
     fn look(&mut self, met: (&[Vertex; 3], &[Attributes; 3]), behind: u8, look: &PixelPipeline<'_>) -> u8 {
         self.draw(behind, |raster| raster.triangle_with_effects(met.0, met.1, look)).unwrap_or(behind)
     }
 
-    /// Whether an edge of a triangle that does not cover the pixel runs through its centre.
+    /// Returns whether an edge of a triangle that does not cover the pixel runs through its centre.
     pub(super) fn is_on_edge(&self, vertices: &[Vertex; 3]) -> bool {
         // Within a frame of at most 4,096 pixels a side.
         let centre = [self.x, self.y].map(|c| i64::from(c) * 256 + 128);
@@ -193,7 +193,7 @@ impl Lighting for Numbers {
 }
 
 impl OnePixel {
-    /// What a face makes of the pixel, where `behind` is.
+    /// Applies a face's stages to the pixel, where `behind` is.
     pub(super) fn bytes(&mut self, triangle: &DrawnTriangle<'_>, behind: u8, scan_line: bool) -> Bytes {
         let plain = |shade: u8, exact_cover: bool| Bytes {
             shaded_by: ShadedBy::Corners,
@@ -224,7 +224,7 @@ impl OnePixel {
     }
 }
 
-/// What each stage of a look makes of the pixel.
+/// Applies each stage of a pixel pipeline to the pixel.
 fn stages(
     look: &PixelPipeline<'_>,
     met: (&[Vertex; 3], &[Attributes; 3]),

@@ -30,17 +30,17 @@ pub struct Pixel {
     pub y: u32,
     /// The frame's byte: an entry of the palette.
     pub byte: u8,
-    /// That entry's colour, at the scene's time.
+    /// Colour of that entry, at the scene's time.
     pub color: Rgb,
-    /// What the frame was cleared to.
+    /// Byte that the frame was cleared to.
     pub background: u8,
-    /// How hidden surfaces are left out.
+    /// Method for hidden surfaces.
     pub hidden_surfaces: HiddenSurfaces,
-    /// Why so, in words; empty where there is no object.
+    /// Reason for it, in words; empty where there is no object.
     pub hidden_surfaces_why: String,
     /// The technique of shading.
     pub shading: Shading,
-    /// Why so, in words.
+    /// Reason for it, in words.
     pub shading_why: String,
     /// The budget that chooses a technique for each face in place of `shading`, in shades, if there is one.
     pub max_error: Option<f32>,
@@ -51,7 +51,7 @@ pub struct Pixel {
     /// Every triangle that covers the pixel, or whose edge runs through its centre, in the order of drawing; those that
     /// shine through last.
     pub faces: Vec<FaceHere>,
-    /// Those that are seen: one that hides what is behind it, if there is one, then those that shine through, far to
+    /// Faces that are seen: one that hides what is behind it, if there is one, then those that shine through, far to
     /// near. None where the background shows.
     pub seen: Vec<Seen>,
 }
@@ -64,22 +64,23 @@ pub struct Seen {
     pub face: usize,
     /// The palette entries that its shades lie in.
     pub ramp: Ramp,
-    /// Where its shades come from.
+    /// Source of its shades.
     pub shaded_by: ShadedBy,
-    /// Whether it covers the pixels whose centres are in it, and no others.
+    /// True if it covers the pixels whose centres are in it, and no others.
     pub exact_cover: bool,
-    /// How each of its values came here: of shades from corners one, or three of red, green and blue; of a table of
-    /// normals two, the normal's column and row in it; of light at the pixel none.
+    /// Traces of its values to the pixel: one for shades from corners, or three for red, green and blue; two for a
+    /// table of normals, the normal's column and row in it; none for light at the pixel.
     pub accounts: Vec<ShadeTrace>,
-    /// What each stage made of the pixel, in their order. The last one's byte is what the face leaves in the frame.
+    /// Stages with their results at the pixel, in their order. The last one's byte is what the face leaves in the
+    /// frame.
     pub stages: Vec<PixelStage>,
-    /// How far the shade is from the truth, by several standards; fewer where truth has no such face here.
+    /// Errors of the shade against several standards of truth; fewer where truth has no such face here.
     pub against: Vec<Against>,
     /// The effects that are on for its object, with their reasons.
     pub effects: Vec<plan::Row>,
 }
 
-/// What a stage made of the pixel.
+/// Result of a stage at the pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum PixelStage {
@@ -91,7 +92,7 @@ pub enum PixelStage {
     Dither {
         /// The threshold.
         threshold: u8,
-        /// What came of it.
+        /// Resulting byte.
         byte: u8,
     },
     /// Shade and texel were looked up in a table.
@@ -100,7 +101,7 @@ pub enum PixelStage {
         texel: u8,
         /// The level of the image that it is of; `None` of an image without smaller copies.
         level: Option<u8>,
-        /// What came of it.
+        /// Resulting byte.
         byte: u8,
     },
     /// Each channel was multiplied with the texel's.
@@ -109,28 +110,28 @@ pub enum PixelStage {
         texel: u8,
         /// The level of the image that it is of; `None` of an image without smaller copies.
         level: Option<u8>,
-        /// What came of it.
+        /// Resulting channels.
         channels: [u8; 3],
     },
     /// The channels were mixed to an entry of the palette.
     Mix {
         /// The threshold of dither, if it is on.
         threshold: Option<u8>,
-        /// What came of it.
+        /// Resulting byte.
         byte: u8,
     },
     /// A level of fog was looked up with the byte.
     Fog {
-        /// How thick it is, 0 to 255.
+        /// Density, 0 to 255.
         level: u8,
-        /// What came of it.
+        /// Resulting byte.
         byte: u8,
     },
     /// The byte was looked up with the one behind it.
     Blend {
-        /// What the frame held.
+        /// Byte that the frame held.
         behind: u8,
-        /// What came of it.
+        /// Resulting byte.
         byte: u8,
     },
 }
@@ -156,10 +157,10 @@ impl PixelStage {
 pub struct Against {
     /// The standard.
     pub standard: Standard,
-    /// What is right, in shades of 1/255 of full intensity: of three channels, or three times the same.
+    /// Right shades, of 1/255 of full intensity: of three channels, or three times the same.
     pub shades: [f64; 3],
-    /// What is shown less that, before texture, fog and dither, in the same unit; of three channels the one that is
-    /// farthest off.
+    /// Shown shade less the right one, before texture, fog and dither, in the same unit; for three channels that of the
+    /// one that is farthest off.
     pub error: f64,
 }
 
@@ -255,7 +256,7 @@ fn nearest(truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> Option<usize> {
     all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(triangle, _)| triangle)
 }
 
-/// What a seen face is explained from.
+/// Input of explaining a seen face.
 struct Inputs<'a> {
     scene: &'a Scene,
     screen: Screen,

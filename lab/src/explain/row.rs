@@ -14,7 +14,7 @@ use mode13h::scene::Scene;
 /// A row of the frame.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Row {
-    /// Which.
+    /// Number of the row.
     pub y: u32,
     /// Its pixels, from the left.
     pub columns: Vec<Column>,
@@ -26,11 +26,11 @@ pub struct Row {
 pub struct Column {
     /// The face that is drawn.
     pub face: Option<Face>,
-    /// What is drawn; `None` where there is no face.
+    /// Drawn value; `None` where there is no face.
     pub drawn: Option<f64>,
-    /// What is right by [`Standard::Gouraud`].
+    /// Right value by [`Standard::Gouraud`].
     pub gouraud: Option<f64>,
-    /// What is right by [`Standard::Lit`].
+    /// Right value by [`Standard::Lit`].
     pub lit: Option<f64>,
 }
 

@@ -15,7 +15,7 @@ use mode13h::plan::Effect;
 use mode13h::raster::Interpolation;
 use mode13h::render::{FaceShading, Shading};
 
-/// Triangles that are listed, at most.
+/// Triangles that are printed, at most.
 const LISTED: usize = 6;
 
 impl fmt::Display for Pixel {
@@ -246,7 +246,7 @@ impl Pixel {
         text.say("shading", &words);
     }
 
-    /// What else meets the pixel.
+    /// Says what else meets the pixel.
     fn say_others(&self, text: &mut Text) {
         let others: Vec<&FaceHere> =
             self.faces.iter().filter(|face| !matches!(face.fate, Fate::Seen | Fate::SeenThrough)).collect();

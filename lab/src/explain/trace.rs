@@ -18,7 +18,7 @@ use super::one_pixel::{Bytes, OnePixel};
 /// A triangle that covers the pixel, or whose edge runs through its centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
-    /// How many triangles of the frame come before it.
+    /// Number of triangles of the frame that come before it.
     number: usize,
     pub(super) object: usize,
     /// Its index in the mesh, or in what splitting made of it; `None` where that is not known.
@@ -31,20 +31,20 @@ pub(super) struct Met {
     pub(super) attributes: Option<[Attributes; 3]>,
     pub(super) depth: u32,
     pub(super) fate: Fate,
-    /// What the face's stages make of the pixel; `None` if the face is not seen.
+    /// Output of the face's stages at the pixel; `None` if the face is not seen.
     pub(super) bytes: Option<Bytes>,
 }
 
-/// What becomes of a triangle at a pixel.
+/// Fate of a triangle at a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Fate {
-    /// It is seen.
+    /// The triangle is seen.
     Seen,
-    /// It shines through, and is seen before what is behind it.
+    /// The triangle shines through, and is seen before what is behind it.
     SeenThrough,
-    /// It is farther away than what is seen, or as far and drawn later.
+    /// The triangle is farther away than what is seen, or as far and drawn later.
     Behind,
-    /// What is seen was painted over it.
+    /// The triangle was painted over by what is seen.
     PaintedOver,
     /// Its edge runs through the pixel's centre, and the pixel is its neighbour's: the edge is neither a top nor a left
     /// one.
@@ -55,7 +55,7 @@ pub enum Fate {
 #[derive(Debug)]
 pub(super) struct Trace {
     pub(super) stats: Stats,
-    /// In the order of drawing; those that shine through last.
+    /// Triangles in the order of drawing; those that shine through last.
     pub(super) met: Vec<Met>,
     pub(super) byte: u8,
     /// The plan in words.

@@ -8,13 +8,13 @@ use mode13h::raster::shade::RESEED;
 use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::Screen;
 
-/// What the registers hold when the loop comes to `mov [edi], ah`.
+/// Registers when the loop comes to `mov [edi], ah`.
 ///
 /// In 16.16 the shade and its step are 32 bits wide, and the byte is the third of EAX.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub struct Registers {
-    /// Where the byte goes, in bytes from the frame's first: of mode 13h an offset in video memory.
+    /// Place of the byte, in bytes from the frame's first: in mode 13h an offset in video memory.
     pub edi: u32,
     /// The running shade, what is added for rounding included: AX, or in 16.16 EAX.
     pub eax: u32,
@@ -32,13 +32,13 @@ pub struct Step {
     pub x: u32,
     /// Its row.
     pub y: u32,
-    /// Which of the triangle's rows this is, from 0.
+    /// Index of the row in the triangle, from 0.
     pub row: usize,
-    /// Which of the row's pixels this is, from 0.
+    /// Index of the pixel in the row, from 0.
     pub column: usize,
-    /// How many pixels the row has.
+    /// Number of pixels in the row.
     pub columns: usize,
-    /// Where the loop was last started in this row: its first pixel, or so many times 64 after it.
+    /// Column where the loop was last started in this row: its first pixel, or so many times 64 after it.
     pub start: u32,
     /// Its value, the byte among others.
     pub shade_trace: ShadeTrace,
@@ -93,13 +93,13 @@ impl Walk {
         Self { triangle, interpolation, width: screen.width, rows, before, pixels }
     }
 
-    /// How many pixels there are.
+    /// Number of pixels.
     #[must_use]
     pub fn pixels(&self) -> usize {
         self.pixels
     }
 
-    /// How many rows have pixels.
+    /// Number of rows that have pixels.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows.len()

@@ -1,4 +1,4 @@
-//! What is wrong with a record's file, and in which line.
+//! Errors of a record's file, with their lines.
 
 use std::error::Error;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::io;
 use super::VERSION;
 use mode13h::raster::{FrameError, VertexError};
 
-/// Why a record was refused. Nothing of it is used.
+/// Error of a record that was refused. Nothing of it is used.
 ///
 /// Displays as `line 7: expected a depth, found "-1"`, to stand behind the file's name and a colon.
 #[derive(Debug)]
@@ -15,11 +15,11 @@ use mode13h::raster::{FrameError, VertexError};
 pub struct RecordError {
     /// The line, counted from 1; 0 where none was read.
     pub line: u64,
-    /// What is wrong.
+    /// Kind of the error.
     pub kind: RecordErrorKind,
 }
 
-/// What can be wrong with a record.
+/// Kinds of errors in a record.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum RecordErrorKind {
@@ -29,21 +29,21 @@ pub enum RecordErrorKind {
     NoRecord,
     /// A record of another version than this.
     Version {
-        /// What stands there.
+        /// Text found there.
         found: String,
     },
     /// A line is not UTF-8, or longer than any line of a record.
     NoText,
     /// Something else should stand there.
     Expected {
-        /// What should.
+        /// Text expected there.
         expected: &'static str,
-        /// What does, cut short if it is long.
+        /// Text found there, cut short if it is long.
         found: String,
     },
     /// The file ends before its end.
     BrokenOff {
-        /// What should follow.
+        /// Text that should follow.
         expected: &'static str,
     },
     /// The frame's size is none.

@@ -72,9 +72,9 @@ pub struct Record {
     clip: Option<Rect>,
     /// The index that the frame is cleared to.
     pub background: u8,
-    /// How the renderer left out hidden surfaces.
+    /// Method of the renderer for hidden surfaces.
     pub hidden_surfaces: HiddenSurfaces,
-    /// What the DAC was set to, if it was.
+    /// Palette of the DAC, if it was set.
     pub palette: Option<Palette>,
     /// The triangles, in the order in which they are handed to the raster.
     pub triangles: Vec<([Vertex; 3], Interpolation)>,
@@ -161,7 +161,7 @@ impl Record {
     /// The record in a file that was opened for reading.
     ///
     /// # Errors
-    /// What is wrong, and in which line. Nothing of a broken file is used.
+    /// A fault of the file, with its line. Nothing of a broken file is used.
     pub fn read(reader: impl io::BufRead) -> Result<Self, RecordError> {
         read::read(reader)
     }

@@ -132,7 +132,7 @@ struct Lines<R> {
 }
 
 impl<R: BufRead> Lines<R> {
-    /// On to the next line; `false` if there is none.
+    /// Steps to the next line; `false` if there is none.
     fn next(&mut self) -> Result<bool, RecordErrorKind> {
         loop {
             self.number += 1;
@@ -152,7 +152,7 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// On to the next line, which there must be.
+    /// Steps to the next line, which there must be.
     fn need(&mut self, expected: &'static str) -> Result<(), RecordErrorKind> {
         if self.next()? { Ok(()) } else { Err(RecordErrorKind::BrokenOff { expected }) }
     }
@@ -165,7 +165,7 @@ impl<R: BufRead> Lines<R> {
         self.text.split_ascii_whitespace().next() == Some(word)
     }
 
-    /// What follows the line's first word, which must be `word`.
+    /// Returns the fields after the line's first word, which must be `word`.
     fn after(&self, word: &str, expected: &'static str) -> Result<Fields<'_>, RecordErrorKind> {
         let mut fields = self.fields();
         if fields.next(expected)? == word { Ok(fields) } else { Err(fields.not(expected)) }
@@ -203,7 +203,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// What stands there, as far as a person wants to read it.
+/// Excerpt of a line, as far as a person wants to read it.
 fn excerpt(text: &str) -> String {
     let mut found: String = text.chars().take(32).collect();
     if found.len() < text.len() {

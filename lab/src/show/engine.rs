@@ -12,7 +12,7 @@ pub type Triangle = ([Vertex; 3], Interpolation);
 /// Bytes that drawing begins on. Twice, so that what was drawn can be told from what was there.
 const EMPTY: [u8; 2] = [0x00, 0xFF];
 
-/// What [`Raster::triangle`] draws of these triangles, one after the other, each counted for itself;
+/// Draws these triangles with [`Raster::triangle`], one after the other, each counted for itself;
 /// with a depth buffer, all into one frame.
 pub(super) fn draw(size: (usize, usize), triangles: &[Triangle], depth_tested: bool) -> Panel {
     let mut panel = Panel::new(size);
@@ -78,8 +78,8 @@ fn bytes((width, height): (usize, usize), triangles: &[Triangle], depth_tested: 
     bytes
 }
 
-/// What [`Renderer::draw_frame`] draws of a scene on square pixels, and the triangles that it hands to
-/// the raster. Empty if the scene is refused; no case has such a scene.
+/// Draws a scene with [`Renderer::draw_frame`] on square pixels; returns the triangles that it hands to
+/// the raster, too. Empty if the scene is refused; no case has such a scene.
 pub(super) fn draw_scene(size: (usize, usize), scene: &Scene) -> (Panel, Vec<Triangle>) {
     let (width, height) = (size.0 as u32, size.1 as u32);
     let mut renderer = Renderer::new();

@@ -13,7 +13,7 @@ use mode13h::raster::{Frame, Index};
 /// either.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Enlarged {
-    /// Where its upper left corner stands, in pixels of the frame that is drawn on.
+    /// Place of its upper left corner, in pixels of the frame that is drawn on.
     pub at: (i32, i32),
     /// Columns that are enlarged.
     pub columns: u16,

@@ -6,7 +6,7 @@ use mode13h::raster::{Interpolation, Vertex};
 /// A corner on the screen.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Corner {
-    /// To the right, in pixels.
+    /// Distance to the right, in pixels.
     pub(super) x: f64,
     /// Down, in pixels.
     pub(super) y: f64,
@@ -63,7 +63,7 @@ pub(super) const fn flat(corners: [Corner; 3], byte: u8) -> Face {
 }
 
 impl Face {
-    /// What the raster is given.
+    /// Input of the raster.
     pub(super) fn for_raster(&self) -> ([Vertex; 3], Interpolation) {
         (self.corners.map(Corner::vertex), self.interpolation)
     }

@@ -43,13 +43,13 @@ use mode13h::palette::Palette;
 pub struct Case {
     /// The id in the list of hard cases, such as `R5`.
     pub id: &'static str,
-    /// What is hard, in a few words.
+    /// Title: the difficulty, in a few words.
     pub title: &'static str,
-    /// What one sees, in one sentence.
+    /// One sentence on what one sees.
     pub sentence: &'static str,
-    /// What the left side does wrong.
+    /// Fault of the left side.
     pub wrong: &'static str,
-    /// What the engine does instead.
+    /// The engine's way instead.
     pub right: &'static str,
     build: fn() -> Comparison,
 }
@@ -62,9 +62,9 @@ pub struct Comparison {
     pub fault: Panel,
     /// Drawn by the engine.
     pub right: Panel,
-    /// What the engine's raster was given, in this order.
+    /// Triangles that the engine's raster was given, in this order.
     pub triangles: Vec<Triangle>,
-    /// Whether faces may hide each other: whether depth decides which has a pixel.
+    /// True if depth decides which face has a pixel, so that faces may hide each other.
     pub depth_tested: bool,
     /// The true edges.
     pub outline: Vec<Segment>,

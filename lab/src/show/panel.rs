@@ -1,18 +1,18 @@
 //! One half of a picture: a small frame, what was drawn into it, and which of its pixels are wrong.
 
-/// What is wrong with a pixel.
+/// Fault of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum Mark {
-    /// It belongs to a face and was not drawn.
+    /// The pixel belongs to a face and was not drawn.
     LeftOut,
-    /// It was drawn by more faces than own it.
+    /// The pixel was drawn by more faces than own it.
     Twice,
-    /// It belongs to no face and was drawn.
+    /// The pixel belongs to no face and was drawn.
     Outside,
-    /// It has another byte than it should.
+    /// The pixel has another byte than it should.
     Shade,
-    /// It shows another face than the one in front.
+    /// The pixel shows another face than the one in front.
     Face,
 }
 
@@ -20,7 +20,7 @@ impl Mark {
     /// All of them, in the order of a legend.
     pub const ALL: [Self; 5] = [Self::LeftOut, Self::Twice, Self::Outside, Self::Shade, Self::Face];
 
-    /// In words.
+    /// Name in words.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -43,14 +43,14 @@ pub struct Panel {
     marks: Vec<Option<Mark>>,
 }
 
-/// How a panel is compared with what it should be.
+/// Comparison of a panel with what it should be.
 #[derive(Clone, Copy)]
 pub(super) struct Measure {
     /// A byte may be this far off, in shades, and is not marked yet.
     pub(super) shades: u8,
-    /// Whether it counts how many faces drew a pixel. Where faces hide each other it means nothing.
+    /// True if it counts how many faces drew a pixel. Where faces hide each other it means nothing.
     pub(super) counts_writes: bool,
-    /// What it means that a byte is further off.
+    /// Meaning of a byte that is further off.
     pub(super) other_byte: Mark,
 }
 
@@ -78,19 +78,19 @@ impl Panel {
         &self.pixels
     }
 
-    /// How often each pixel was drawn.
+    /// Number of times each pixel was drawn.
     #[must_use]
     pub fn writes(&self) -> &[u8] {
         &self.writes
     }
 
-    /// What is wrong with each pixel.
+    /// Fault of each pixel.
     #[must_use]
     pub fn marks(&self) -> &[Option<Mark>] {
         &self.marks
     }
 
-    /// How many pixels have this mark.
+    /// Counts the pixels with this mark.
     #[must_use]
     pub fn count(&self, mark: Mark) -> usize {
         self.marks.iter().filter(|there| **there == Some(mark)).count()

@@ -21,7 +21,7 @@ const ZOOM: i32 = Enlarged::ZOOM;
 const MARGIN: i32 = 16;
 /// Between the panels.
 const GAP: i32 = 24;
-/// From one line of words to the next.
+/// Height of a line of words.
 const LINE: i32 = 20;
 /// The width of a letter.
 const LETTER: i32 = 9;
@@ -166,7 +166,7 @@ fn pixels_in_words(count: usize) -> String {
     if count == 1 { "1 pixel".to_string() } else { format!("{count} pixels") }
 }
 
-/// What the engine's own side came to.
+/// Words about the engine's own side.
 fn about_right(panel: &Panel) -> String {
     let drawn = panel.writes().iter().filter(|writes| **writes > 0).count();
     match (drawn, panel.writes().iter().max()) {
@@ -251,7 +251,7 @@ fn draw_mark(frame: &mut Frame<'_>, cell: Point, mark: Mark, open: Sides) {
     }
 }
 
-/// Which sides of a square have a rim.
+/// Sides of a square that have a rim.
 #[derive(Clone, Copy)]
 struct Sides {
     left: bool,
@@ -265,7 +265,7 @@ struct Sides {
 impl Sides {
     const ALL: Self = Self { left: true, right: true, top: true, bottom: true, side: ZOOM };
 
-    /// Those where the neighbour of pixel (`x`, `y`) has another mark.
+    /// Sides where the neighbour of pixel (`x`, `y`) has another mark.
     fn of(panel: &Panel, x: usize, y: usize) -> Self {
         let mark = |x: usize, y: usize| {
             let inside = x < panel.width() && y < panel.height();

@@ -23,9 +23,9 @@ pub(super) struct Body<'a> {
     pub(super) object: &'a Object,
     /// One for each vertex of its mesh.
     pub(super) corners: Vec<Corner>,
-    /// Whether faces that are turned away are seen too, other than those back to back with one that is not.
+    /// True if back faces are seen too, other than those back to back with a front face.
     pub(super) two_sided: bool,
-    /// Whether red, green and blue are lit each for itself.
+    /// True if red, green and blue are lit each for itself.
     pub(super) in_color: bool,
 }
 
@@ -57,7 +57,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Whether a triangle is seen that is `turned` away, or is not.
+    /// Returns whether a triangle is seen that is `turned` away, or is not.
     pub(super) fn shows(&self, triangle: usize, turned: bool) -> bool {
         !turned || (self.two_sided && !self.object.mesh().has_twin(triangle))
     }
@@ -75,7 +75,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// How an object is turned: its up axis, then about z, then y, then x.
+/// Rotation of an object: its up axis, then about z, then y, then x.
 struct Turn {
     up_axis: UpAxis,
     /// Sine and cosine of the angles about x, y and z.

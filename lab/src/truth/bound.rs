@@ -1,9 +1,9 @@
-//! How far a shading may be from what is right for it.
+//! Bounds of a shading's error.
 
 use super::Standard;
 use mode13h::scene::Shading;
 
-/// How far a shading's shades may be from a standard.
+/// Bound of a shading's error against a standard.
 ///
 /// | shading | standard | off by at most, in shades | of which beyond the byte's ½ and the vertices' 1/512 |
 /// |---|---|---|---|
@@ -23,17 +23,17 @@ use mode13h::scene::Shading;
 /// w up to 4,096 times the near distance that is 2⁻¹⁹ of it, either way, and a quotient of sums that are off by so
 /// much is off by 2⁻¹⁸ of 255 shades: 1/1,000, and less than 1/256 up to 10,000 times.
 ///
-/// That is of the vertices as the truth has them. The engine's vertices come from f32, so that one coordinate of a hundred
-/// is rounded to the unit of 1/256 pixel beside the right one, and where a face is clipped new corners are rounded: a
-/// pixel of such a face may be off by what the face's shades change over 1/256 pixel more.
+/// This holds for the vertices as the truth has them. The engine's vertices come from f32, so that one coordinate of a
+/// hundred is rounded to the unit of 1/256 pixel beside the right one, and where a face is clipped new corners are
+/// rounded: a pixel of such a face may be off by the change of the face's shades over 1/256 pixel more.
 ///
-/// A flat face has the model's shade at its middle, by its own normal, to ½ + 1/512 + 1/100; from what its corners have it
-/// may be any shade away. What else claims no bound is measured.
+/// A flat face has the model's shade at its middle, by its own normal, to ½ + 1/512 + 1/100. It may be any shade away
+/// from its corners' shades. Other shadings without a bound are measured.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Bound {
-    /// What is right for it.
+    /// Standard that it should meet.
     pub standard: Standard,
-    /// How far a shade may be off.
+    /// Greatest error of a shade.
     pub shades: f64,
 }
 

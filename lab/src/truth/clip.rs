@@ -1,7 +1,7 @@
-//! What is left of a face that reaches beyond the near plane or the guard band.
+//! Clipping: what is left of a face that reaches beyond the near plane or the guard band.
 //!
 //! The planes come in one order: near, then 4,095 pixels from the frame's upper left corner to the left, to
-//! the right, up and down. What is left is a polygon, drawn as the fan of triangles from its first corner;
+//! the right, up and down. A polygon is left, drawn as the fan of triangles from its first corner;
 //! if rounding has dented it, from the first from which no triangle of the fan turns the other way.
 
 use alloc::vec::Vec;
@@ -10,7 +10,7 @@ use super::body::Corner;
 use super::eye::Eye;
 use super::vector::{Vector, between};
 
-/// How far from the frame's upper left corner faces are drawn, in pixels, along x and along y.
+/// Distance from the frame's upper left corner to which faces are drawn, in pixels, along x and along y.
 const LIMIT: f64 = 4095.0;
 
 /// A corner of what is left of a face.
@@ -18,9 +18,9 @@ const LIMIT: f64 = 4095.0;
 pub(super) struct Kept {
     /// Before the division: [`Eye::see`].
     pub(super) seen: Vector,
-    /// How much each of the face's three vertices counts here for what is linear on the face in space.
+    /// Weights of the face's three vertices here for values that are linear on the face in space.
     pub(super) on_face: [f64; 3],
-    /// How much each of the face's three vertices counts here for what is linear on the screen. At the near plane,
+    /// Weights of the face's three vertices here for values that are linear on the screen. At the near plane,
     /// where the other end of the edge has no place on the screen, it is linear along the edge in space.
     pub(super) on_screen: [f64; 3],
 }
@@ -51,12 +51,12 @@ pub(super) fn clip(eye: &Eye, triangle: &[Corner; 3]) -> Vec<Kept> {
     polygon
 }
 
-/// Whether clipping leaves a triangle as it is.
+/// Returns whether clipping leaves a triangle as it is.
 pub(super) fn is_whole(eye: &Eye, triangle: &[Corner; 3]) -> bool {
     triangle.iter().all(|corner| (0..5).all(|plane| inside(eye, plane, corner.seen) >= 0.0))
 }
 
-/// How far inside a plane a point lies, in whatever unit; below 0 it is outside.
+/// Distance of a point inside a plane, in whatever unit; below 0 it is outside.
 fn inside(eye: &Eye, plane: usize, [x, y, w]: Vector) -> f64 {
     let [cx, cy] = eye.centre;
     match plane {

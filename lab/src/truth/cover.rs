@@ -1,4 +1,4 @@
-//! Which pixels a face covers, once its corners are rounded to 1/256 pixel: exact, in whole numbers.
+//! Cover of a face, once its corners are rounded to 1/256 pixel: exact, in whole numbers.
 
 use alloc::vec::Vec;
 
@@ -30,11 +30,11 @@ pub(super) struct Part {
     pub(super) corners: [Kept; 3],
 }
 
-/// What is drawn of a face.
+/// Face as it is drawn.
 #[derive(Clone, Debug)]
 pub(super) struct Rounded {
     pub(super) parts: Vec<Part>,
-    /// Whether it shows its back.
+    /// True if it shows its back.
     pub(super) turned: bool,
 }
 

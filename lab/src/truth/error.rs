@@ -1,14 +1,14 @@
-//! How far a frame is from the truth.
+//! Errors of a frame against the truth.
 //!
 //! The unit is the shade, 1/255 of full intensity, whatever ramp a picture is shown in. Errors are taken where
 //! truth and frame show the same face; everything else counts as an error of cover or of visible surface,
-//! apart. Of three channels the one that is farthest off counts.
+//! apart. With three channels the one that is farthest off counts.
 
 use alloc::vec::Vec;
 
 use super::{Face, TruePixel, TruthFrame};
 
-/// What a frame that is to be judged shows.
+/// Pixels of a frame that is to be judged.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Shown {
     /// Columns.
@@ -22,7 +22,7 @@ pub struct Shown {
     pub shades: Vec<[f64; 3]>,
 }
 
-/// How far each pixel of a frame is from the truth.
+/// Error of each pixel of a frame against the truth.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ErrorMap {
     width: usize,
@@ -114,7 +114,7 @@ impl ErrorMap {
         if all == 0 { 1.0 } else { f64::from(within) / f64::from(all) }
     }
 
-    /// How many pixels the largest patch has whose errors are all greater than `shades`, pixels being
+    /// Number of pixels of the largest patch whose errors are all greater than `shades`, pixels being
     /// neighbours to the left, the right, above and below.
     #[must_use]
     pub fn largest_patch(&self, shades: f64) -> usize {
@@ -144,14 +144,14 @@ impl ErrorMap {
     }
 }
 
-/// What many errors come to, in shades.
+/// Figures of many errors, in shades.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Figures {
-    /// How many errors there are: one for each pixel, or block, that was compared.
+    /// Number of errors: one for each pixel, or block, that was compared.
     pub count: u64,
     /// The largest.
     pub max: f64,
-    /// How many are 1 or more.
+    /// Number of errors of 1 or more.
     pub by_one: u64,
     sum: f64,
     squares: f64,
@@ -199,7 +199,7 @@ impl Figures {
     }
 }
 
-/// How the errors change from one frame to the next, which the eye sees as crawling.
+/// Change of the errors from one frame to the next, which the eye sees as crawling.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Swim {
     changes: u64,

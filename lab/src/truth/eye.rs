@@ -65,7 +65,7 @@ impl Eye {
         [self.focal[0] * dot(self.right, d), -self.focal[1] * dot(self.up, d), dot(self.forward, d)]
     }
 
-    /// Where such a point is in the picture, in pixels from its upper left corner.
+    /// Projects such a point to the picture, in pixels from its upper left corner.
     pub(super) fn project(&self, [x, y, w]: Vector) -> [f64; 2] {
         [self.centre[0] + x / w, self.centre[1] + y / w]
     }

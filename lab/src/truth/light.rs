@@ -4,8 +4,8 @@
 //! I = ka·Ia + Σ over lights of (kd·max(0, n·l) + ks·max(0, r·v)^s) · Id · fall-off
 //! ```
 //!
-//! Of three channels the first two terms take on the body's colour, the last one the highlight's. r = 2·(n·l)·n − l. A light that n points away from adds nothing. A lamp at the distance d falls off as
-//! (1 − d²/R²)² within its range R.
+//! With three channels the first two terms take on the body's colour, the last one the highlight's. r = 2·(n·l)·n − l.
+//! A light that n points away from adds nothing. A lamp at the distance d falls off as (1 − d²/R²)² within its range R.
 
 use super::vector::{Vector, dot, sub, times, unit, wide};
 use mode13h::light::{Light, Material};

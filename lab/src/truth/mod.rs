@@ -1,4 +1,4 @@
-//! What a picture should be: any scene in f64, slow and plain, to measure the engine by.
+//! Truth: the right picture of any scene in f64, slow and plain, to measure the engine by.
 //!
 //! It shares nothing with the engine but the scene and its meshes; camera, turning, clipping, cover and light are
 //! written here anew, from their formulas. What "should be" means depends on what one wants to know, so
@@ -17,23 +17,23 @@
 //!
 //! **Visible surface.** The face with the greatest 1/w at the pixel; of equal ones the first in the order of
 //! the scene. w, the distance along the view, is that of the unrounded vertices, and 1/w linear on the
-//! screen. A closed mesh that looks outward has no backs; of others a face whose back is seen has its normals turned
-//! round. Of two faces back to back the one that looks toward the eye is seen.
+//! screen. A closed mesh that looks outward has no backs; in others a face whose back is seen has its normals turned
+//! round. With two faces back to back the one that looks toward the eye is seen.
 //! Nothing is nearer than the near plane. A body that shines through counts as an opaque one.
 //!
 //! **Intensity.** 0 to 1, before ramp, texture, fog, dither and blending, and rounded nowhere. The sum of
 //! light is clamped once, at a vertex or, `Lit`, at the pixel: there position and vertex normals are
 //! interpolated on the face's own plane, and the normal is made unit again. Where light or one of an object's
-//! materials is coloured there are three channels, each times the material's own colour; else one,
+//! materials is coloured there are three channels, each times the material's own colour; otherwise one,
 //! which stands in all three places.
 //!
-//! **Clipped faces.** On the face in space (`Lit`, `GouraudPerspective`) a cut changes nothing. What is linear on
+//! **Clipped faces.** On the face in space (`Lit`, `GouraudPerspective`) a cut changes nothing. A value linear on
 //! the screen cannot be continued to a vertex behind the eye, so there the engine's rule is the definition:
 //! the intensity where an edge meets the near plane is linear along the edge in space; what is left of the
 //! face is drawn as the fan from its first corner. The guard band, which lies 4,095 pixels from the frame's corner, cuts
 //! after the near plane, and changes no intensity that is linear on the screen.
 //!
-//! What the engine makes of the scene, as [`Shown`], is compared by [`ErrorMap`]. [`Tiles`] gives `Lit` part by part.
+//! [`ErrorMap`] compares the engine's picture of the scene, as [`Shown`]. [`Tiles`] gives `Lit` part by part.
 
 mod body;
 mod bound;
@@ -61,7 +61,7 @@ use mode13h::hooks;
 pub use mode13h::render::Screen;
 use mode13h::scene::Scene;
 
-/// What is taken for right.
+/// Standard of truth.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[non_exhaustive]
 pub enum Standard {
@@ -96,14 +96,14 @@ impl Standard {
         }
     }
 
-    /// Whether vertices are rounded to 1/256 pixel.
+    /// Returns whether vertices are rounded to 1/256 pixel.
     #[must_use]
     pub const fn rounds_vertices(self) -> bool {
         matches!(self, Self::Gouraud | Self::GouraudPerspective)
     }
 }
 
-/// What is wrong with a scene.
+/// Errors of a scene.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum TruthError {
@@ -113,14 +113,14 @@ pub enum TruthError {
     Object {
         /// Its place, from 0.
         index: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// A light, by its place in the scene.
     Light {
         /// Its place, from 0.
         index: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// The scene's ambient light is not finite.
@@ -152,7 +152,7 @@ pub struct Face {
     pub triangle: usize,
 }
 
-/// What is right at a point of the picture.
+/// Truth at a point of the picture.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct TruePixel {
     /// The face that is seen.
@@ -163,7 +163,7 @@ pub struct TruePixel {
     pub w: f64,
 }
 
-/// What is right at every pixel.
+/// Truth at every pixel.
 #[derive(Clone, PartialEq, Debug)]
 pub struct TruthFrame {
     /// Columns.
@@ -216,7 +216,7 @@ pub struct Truth<'a> {
 struct Hit {
     face: Face,
     turned: bool,
-    /// How much each of its three vertices counts there.
+    /// Weights of its three vertices there.
     weights: [f64; 3],
     inverse_w: f64,
 }
@@ -249,7 +249,7 @@ impl<'a> Truth<'a> {
         Ok(Self { scene, screen, eye, bodies })
     }
 
-    /// What is right at every pixel.
+    /// Draws the truth at every pixel.
     #[must_use]
     pub fn draw(&self, standard: Standard) -> TruthFrame {
         let Screen { width, height, .. } = self.screen;
@@ -276,16 +276,15 @@ impl<'a> Truth<'a> {
         TruthFrame { width, height, pixels }
     }
 
-    /// What is right at a point of the picture if `face` is what is seen there, by [`Standard::Lit`]; x and y
-    /// in pixels from the frame's upper left corner. `None` if the face cannot be seen there, whatever
-    /// may hide it.
+    /// Truth at a point of the picture if `face` is seen there, by [`Standard::Lit`]; x and y in pixels from the
+    /// frame's upper left corner. `None` if the face cannot be seen there, whatever may hide it.
     #[must_use]
     pub fn sampling(&self, face: Face, x: f64, y: f64) -> Option<TruePixel> {
         self.pixel(Standard::Lit, self.met(face, [x, y])?)
     }
 
-    /// What is right at the centre of a pixel if `face` is what is seen there, by any standard. `None` if the face does
-    /// not cover the pixel, whatever may hide it.
+    /// Truth at the centre of a pixel if `face` is seen there, by any standard. `None` if the face does not cover the
+    /// pixel, whatever may hide it.
     #[must_use]
     pub fn of_face_at(&self, standard: Standard, face: Face, x: u32, y: u32) -> Option<TruePixel> {
         let (x, y) = (i64::from(x), i64::from(y));
@@ -300,7 +299,7 @@ impl<'a> Truth<'a> {
     }
 
     /// The triangles that the face is drawn in, each three corners (x and y) in 1/256 pixel from the frame's
-    /// upper left corner: one, or if it is clipped none to six. None, too, if it is turned away or has no area.
+    /// upper left corner: one, or if it is clipped none to six. None, too, if it is a back face or has no area.
     #[must_use]
     pub fn rounded_triangles(&self, face: Face) -> Vec<[[i64; 2]; 3]> {
         match self.drawn(face) {
@@ -309,7 +308,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// How many triangles an object has; none if there is no such object.
+    /// Number of an object's triangles; none if there is no such object.
     pub(crate) fn triangles(&self, object: usize) -> usize {
         self.bodies.get(object).map_or(0, |body| body.object.mesh().triangles().len())
     }
@@ -324,7 +323,7 @@ impl<'a> Truth<'a> {
         Some((body, body.triangle(face.triangle)?))
     }
 
-    /// A face clipped and rounded, if it is not turned away.
+    /// A face clipped and rounded, if it is no back face.
     fn drawn(&self, face: Face) -> Option<Rounded> {
         let (body, corners) = self.triangle(face)?;
         let rounded = Rounded::new(&self.eye, &corners);
@@ -366,13 +365,13 @@ impl<'a> Truth<'a> {
         Some(hit)
     }
 
-    /// Where the ray through a point of the picture meets a face, if that does not turn its back on the eye.
+    /// Hit of the ray through a point of the picture on a face, if that does not turn its back on the eye.
     fn met(&self, face: Face, at: [f64; 2]) -> Option<Hit> {
         let (body, corners) = self.triangle(face)?;
         Self::hit(&self.eye, face, (body, &corners), at)
     }
 
-    /// Does so for a face whose corners are at hand.
+    /// Finds the hit on a face whose corners are at hand.
     fn hit(eye: &Eye, face: Face, (body, corners): (&Body<'a>, &[Corner; 3]), at: [f64; 2]) -> Option<Hit> {
         let met = ray::meet(eye, corners, at)?;
         let hit = Hit { face, turned: met.turned, weights: met.on_face, inverse_w: 1.0 / met.w };

@@ -1,4 +1,4 @@
-//! Where a ray from the eye through a point of the picture meets a face: cover without any rounding to
+//! Rays from the eye through a point of the picture, and the faces that they meet: cover without any rounding to
 //! pixels or parts of them.
 //!
 //! With a, b, c the corners before their division and p = (x, y, 1) on the screen, the corners' weights on the
@@ -12,18 +12,18 @@ use super::clip::{clip, fan};
 use super::eye::Eye;
 use super::vector::{Vector, cross, dot, weighted};
 
-/// Where a ray meets a face.
+/// Meeting of a ray and a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
-    /// How much each of the three corners counts there, on the face in space; together 1.
+    /// Weights of the three corners there, on the face in space; together 1.
     pub(super) on_face: [f64; 3],
     pub(super) w: f64,
-    /// Whether the eye sees the face's back.
+    /// True if the eye sees the face's back.
     pub(super) turned: bool,
 }
 
-/// Where the ray through (`x`, `y`), in pixels from the frame's upper left corner, meets a triangle; `None`
-/// if it does not, or nearer than the near plane.
+/// Finds the point where the ray through (`x`, `y`), in pixels from the frame's upper left corner, meets a
+/// triangle; `None` if it does not, or nearer than the near plane.
 ///
 /// Two faces that share an edge work out the same number for it, but for its sign. Where it is 0 the ray goes
 /// to the face whose left or top edge it is: so never to both, nor to neither.
@@ -53,13 +53,13 @@ fn volume([a, b, c]: &[Corner; 3]) -> f64 {
     dot(a.seen, cross(b.seen, c.seen))
 }
 
-/// Whether the eye sees the triangle's back, wherever a ray meets it.
+/// Returns whether the eye sees the triangle's back, wherever a ray meets it.
 pub(super) fn is_turned(triangle: &[Corner; 3]) -> bool {
     volume(triangle) > 0.0
 }
 
-/// How much each of the three corners counts at a point of the picture for what is linear on the screen; of a
-/// face that is clipped, over the triangles of what is left. Unrounded.
+/// Weights of the three corners at a point of the picture for values that are linear on the screen; for a
+/// clipped face, over the triangles of what is left. Unrounded.
 pub(super) fn on_screen(eye: &Eye, triangle: &[Corner; 3], at: [f64; 2]) -> [f64; 3] {
     let polygon = clip(eye, triangle);
     let points: Vec<[f64; 2]> = polygon.iter().map(|corner| eye.project(corner.seen)).collect();

@@ -1,7 +1,7 @@
 //! The truth of [`Standard::Lit`] for parts of a picture, for those who cannot wait for the whole.
 //!
-//! Every face is projected once and listed with the tiles that it may cover; what is turned away or out of the frame is
-//! listed nowhere. After that a tile costs no more than its own faces.
+//! Every face is projected once and entered into the tiles that it may cover; a face that is a back face or out of the
+//! frame is entered nowhere. After that a tile costs no more than its own faces.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -10,8 +10,8 @@ use core::ops::Range;
 use super::clip::{self, is_whole};
 use super::{Face, Hit, Standard, Truth, TruthFrame, ray};
 
-/// How far outside of its corners' box a face is looked for, in pixels. The ray test is exact to 10⁻¹⁰ pixel, so this is
-/// more than it takes.
+/// Margin of its corners' box in which a face is looked for, in pixels. The ray test is exact to 10⁻¹⁰ pixel, so this
+/// is more than it takes.
 const PAD: f64 = 1.0 / 64.0;
 
 /// The faces of a scene, sorted into square tiles of the picture.
@@ -34,9 +34,9 @@ pub struct Tiles<'t, 'a> {
     truth: &'t Truth<'a>,
     columns: u32,
     faces: Vec<Listed>,
-    /// For each tile, row by row, the places in `faces` of those that may cover it, ascending.
+    /// Indices in `faces` of those that may cover each tile, row by row, ascending.
     tiles: Vec<Vec<u32>>,
-    /// What is seen in the tile that is being drawn.
+    /// Hits in the tile that is being drawn.
     hits: Vec<Option<Hit>>,
 }
 
@@ -102,13 +102,13 @@ impl Tiles<'_, '_> {
     /// The side of a tile, in pixels. Those at the right and at the lower edge of the frame may be smaller.
     pub const SIDE: u32 = 16;
 
-    /// How many tiles there are, row by row.
+    /// Number of tiles, row by row.
     #[must_use]
     pub fn count(&self) -> usize {
         self.tiles.len()
     }
 
-    /// Whether no face may be seen in a tile: nothing is to be drawn there.
+    /// Returns whether no face may be seen in a tile: nothing is to be drawn there.
     #[must_use]
     pub fn is_empty(&self, tile: usize) -> bool {
         self.tiles.get(tile).is_none_or(Vec::is_empty)

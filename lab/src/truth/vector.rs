@@ -25,7 +25,7 @@ pub(super) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// With the operands exchanged it is the negative, to the bit.
+/// Cross product. With the operands exchanged it is the negative, to the bit.
 pub(super) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
@@ -42,7 +42,7 @@ pub(super) fn weighted(vectors: [Vector; 3], weights: [f64; 3]) -> Vector {
     add(add(a, b), c)
 }
 
-/// From one vector to another, `part` of the way.
+/// Point from one vector to another, `part` of the way.
 pub(super) fn between(from: Vector, to: Vector, part: f64) -> Vector {
     add(from, times(sub(to, from), part))
 }

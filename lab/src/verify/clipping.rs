@@ -33,7 +33,7 @@ pub fn clipping(seed: u64) -> Group {
     check(seed, &triangles_of)
 }
 
-/// What a scene hands to the raster.
+/// Projection of a scene: the record of what it hands to the raster.
 type Project<'a> = &'a dyn Fn(&Scene) -> Option<Record>;
 
 fn triangles_of(scene: &Scene) -> Option<Record> {
@@ -72,7 +72,7 @@ fn seen_from_origin(mesh: Mesh) -> Scene {
     scene
 }
 
-/// How often each pixel is covered.
+/// Counts how often each pixel is covered.
 fn counts(triangles: &[([Vertex; 3], Interpolation)]) -> Vec<u32> {
     let mut counts = vec![0; (WIDTH * HEIGHT) as usize];
     for (vertices, _) in triangles {
@@ -157,7 +157,7 @@ fn rays(group: &mut Group, random: &mut Random, project: Project<'_>) {
     }
 }
 
-/// Whether a ray from the origin meets a triangle beyond the near plane. The ray's z is −1, so its
+/// Returns whether a ray from the origin meets a triangle beyond the near plane. The ray's z is −1, so its
 /// parameter is the distance along the view.
 fn is_hit([a, b, c]: &[[f64; 3]; 3], ray: [f64; 3]) -> bool {
     let sub = |p: &[f64; 3], q: &[f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];

@@ -6,7 +6,7 @@ use mode13h::raster::{Batch, Frame, FrameError, Interpolation, Raster, Vertex};
 use mode13h::render::HiddenSurfaces;
 use mode13h::span::Kernel;
 
-/// How a record is drawn.
+/// Ways to draw a record.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Configuration {
     /// Back faces only: the triangles one after the other, each over what is there.
@@ -22,7 +22,7 @@ impl Configuration {
     }
 }
 
-/// What draws a record, row-major; that it wrote beside the frame, if it did. The checks are given it,
+/// Drawing of a record, row-major; an error if it wrote beside the frame. The checks are given it,
 /// so that the tests can give them a wrong one.
 pub(super) type Draw<'a> = &'a dyn Fn(&Record, Configuration) -> Result<Vec<u8>, Stray>;
 

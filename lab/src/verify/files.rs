@@ -9,8 +9,8 @@ use mode13h::palette::file::{self, FORMATS, Format};
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::render::HiddenSurfaces;
 
-/// What is written is read again: palettes in every format, records, and with the features `obj` and
-/// `scene-files` models and scenes. What is broken off or changed is refused or read, and never more
+/// Checks that written files are read again: palettes in every format, records, and with the features `obj` and
+/// `scene-files` models and scenes. A file that is broken off or changed is refused or read, and never more
 /// than that (P5, F1, F3, F5).
 ///
 /// ```

@@ -12,7 +12,7 @@ pub(super) fn fnv_1a(hash: u64, bytes: &[u8]) -> u64 {
 mod tests {
     use super::*;
 
-    /// From the draft's table.
+    /// Tests the values of the draft's table.
     #[test]
     fn it_is_fnv_1a() {
         assert_eq!(fnv_1a(START, b""), 0xCBF2_9CE4_8422_2325);

@@ -15,18 +15,18 @@ use mode13h::vga::Vga;
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Frames {
-    /// How many.
+    /// Number of frames.
     pub count: u64,
     /// FNV-1a, 64 bits, over the 64,000 bytes of each and the 256 colours that the machine shows.
     pub hash: u64,
 }
 
 impl Frames {
-    /// What [`frames`] gives on every machine. It changes with the golden frames, and then stands in
+    /// Count and hash that [`frames`] gives on every machine. They change with the golden frames, and then stand in
     /// CHANGELOG.md.
     pub const EXPECTED: Self = Self { count: 880, hash: 0x6F06_1FAC_3D2B_F1DD };
 
-    /// Whether they are the frames of every other machine.
+    /// Returns whether they are the frames of every other machine.
     #[must_use]
     pub fn passed(self) -> bool {
         self == Self::EXPECTED

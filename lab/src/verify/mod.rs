@@ -74,13 +74,13 @@ pub const GROUPS: [fn(u64) -> Group; 9] =
 /// No more failures of a group are kept (of spans: of a kernel, of a loop): one fault shows in many cases.
 const FAILURES: usize = 4;
 
-/// What one group of checks found.
+/// Results of one group of checks.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Group {
     /// Its name, such as `spans`.
     pub name: &'static str,
-    /// How many cases were tried. A group that tried none has shown nothing.
+    /// Number of cases tried. A group that tried none has shown nothing.
     pub cases: u64,
     /// One line for each case that failed, small enough to read; empty if all went well.
     pub failures: Vec<String>,
@@ -93,7 +93,7 @@ impl Group {
         Self { name, cases: 0, failures: Vec::new(), record: None }
     }
 
-    /// Whether it tried something and nothing failed.
+    /// Returns whether it tried something and nothing failed.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.cases > 0 && self.failures.is_empty()

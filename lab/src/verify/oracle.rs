@@ -21,7 +21,7 @@ fn points(vertices: &[Vertex; 3]) -> [Point; 3] {
     vertices.each_ref().map(|v| (i128::from(v.x().to_bits()), i128::from(v.y().to_bits())))
 }
 
-/// Whether a pixel is drawn: its centre is inside, or on a top or a left edge.
+/// Returns whether a pixel is drawn: its centre is inside, or on a top or a left edge.
 fn covers(triangle: [Point; 3], p: Point) -> bool {
     let [a, mut b, mut c] = triangle;
     let area = edge(a, b, c);
@@ -203,11 +203,11 @@ pub(super) struct Drawing {
     pub(super) pixels: Vec<u8>,
     /// The triangle that each pixel shows.
     pub(super) owners: Vec<Option<usize>>,
-    /// How often each pixel is covered.
+    /// Number of times each pixel is covered.
     pub(super) covered: Vec<u32>,
 }
 
-/// Whether a triangle may write a pixel that holds a depth.
+/// Depth test: whether a triangle may write a pixel that holds a depth.
 pub(super) type Test = fn(new: u32, old: u32) -> bool;
 
 /// The nearest wins, of equal ones the first; 0 is nothing.

@@ -10,7 +10,7 @@ use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::HiddenSurfaces;
 use mode13h::span::Kernel;
 
-/// What replaying a frame found.
+/// Results of replaying a frame.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Replay {
@@ -22,7 +22,7 @@ pub struct Replay {
     pub comparisons: Vec<Comparison>,
     /// One line for each thing that is wrong; empty if all went well.
     pub failures: Vec<String>,
-    /// If something is wrong: a frame as small as could be found that fails too.
+    /// Smallest failing frame that could be found, if something is wrong.
     pub smallest: Option<Record>,
 }
 
@@ -35,9 +35,9 @@ pub struct Comparison {
     pub hidden_surfaces: HiddenSurfaces,
     /// Pixels that differ.
     pub pixels: u64,
-    /// Whether they must be none: the methods that compare depths give the same bytes, but for triangles
+    /// True if they must be none: the methods that compare depths give the same bytes, but for triangles
     /// without exact cover, which the scan-line method gives it. The others need
-    /// not, and what differs is where they are wrong.
+    /// not: their differences are where they are wrong.
     pub must_agree: bool,
 }
 
@@ -100,7 +100,7 @@ fn replay_by(record: &Record, draw: Draw<'_>) -> Replay {
     replay
 }
 
-/// What is wrong with a record, if anything.
+/// Fault of a record, if it has any.
 type Wrong<'a> = Box<dyn Fn(&Record) -> Option<String> + 'a>;
 
 impl fmt::Display for Configuration {
@@ -165,7 +165,7 @@ fn out_of_range(record: &Record, should: &Drawing, is: &[u8]) -> Option<String> 
     })
 }
 
-/// How two frames differ.
+/// Difference of two frames.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Difference {
     pub(super) pixels: u64,
@@ -191,7 +191,7 @@ impl fmt::Display for Difference {
     }
 }
 
-/// How two frames of a record differ, if they do.
+/// Finds the difference of two frames of a record, if they differ.
 pub(super) fn difference(record: &Record, is: &[u8], should: &[u8]) -> Option<Difference> {
     let mut found: Option<Difference> = None;
     for (place, (is, should)) in (0..).zip(is.iter().zip(should)) {

@@ -4,7 +4,7 @@ use crate::record::Record;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::raster::Vertex;
 
-/// How often the frame is tried at most.
+/// Greatest number of times that the frame is tried.
 const TRIES: u32 = 2_000;
 
 /// The smallest record found that still `fails`. Simple and greedy: first triangles are left out, half

@@ -82,7 +82,7 @@ fn full_turns(group: &mut Group, random: &mut Random) {
     }
 }
 
-/// R·Rᵀ is 1 within the limit, and no axis is turned over.
+/// R·Rᵀ is 1 within the limit, and no axis is reversed.
 fn orthonormal(group: &mut Group, turn: Turn<'_>, angles: [f64; 3], limit: f64) {
     let [a, b, c] = turn(angles);
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

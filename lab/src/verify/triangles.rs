@@ -202,7 +202,7 @@ fn refused(group: &mut Group) {
     }
 }
 
-/// What does not fit is cut to what does.
+/// Makes a vertex; values that do not fit are cut to those that do.
 pub(super) fn vertex(x: i64, y: i64, shade: i64, depth: i64) -> Vertex {
     const BAND: i64 = Vertex::GUARD_BAND as i64;
     let coordinate = |c: i64| I24F8::from_bits(c.clamp(-BAND, BAND) as i32);

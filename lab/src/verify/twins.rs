@@ -98,7 +98,7 @@ impl Twins {
     }
 }
 
-/// What is wrong with a row in a canvas of guard bytes, if anything.
+/// Fault of a row in a canvas of guard bytes, if it has any.
 fn wrong(canvas: &[u8], start: usize, right: &[u8]) -> Option<String> {
     let end = start + right.len();
     let row = &canvas[start..end];

@@ -17,7 +17,7 @@ mod planes;
 pub(super) mod sieve;
 pub(super) mod tall;
 
-/// What set-up adds and multiplies by.
+/// Summands and factors of set-up.
 #[repr(C)]
 struct Constants {
     sign: u64,

@@ -124,7 +124,7 @@ impl Walk {
         }
     }
 
-    /// To the next row.
+    /// Steps to the next row.
     #[inline(always)]
     pub(super) fn down(&mut self) {
         self.z = self.z.wrapping_add(self.per_row);

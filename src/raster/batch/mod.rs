@@ -1,4 +1,4 @@
-//! Many triangles at once: what covers no pixel is found out with vectors, and so are the rows of what is small.
+//! Batches: many triangles at once. Vectors cull those that cover no pixel, and find the rows of small ones.
 //!
 //! Half of the triangles of a fine model cover no pixel centre, and most of the others a few. So a triangle's own
 //! work has to be small: no sorting by branches, no division for itself, no loop for a row of one pixel. A
@@ -12,8 +12,8 @@
 //!
 //! With AVX-512 and without a depth buffer larger ones need no list: their rows go to the pixels eight at a time.
 //!
-//! What is larger than 2¹⁸ pixels, or reaches over the clip rectangle's edge, is drawn by [`Raster::triangle`]
-//! when its turn comes. The bytes are those of a call of it for each triangle in turn.
+//! A triangle larger than 2¹⁸ pixels, or one that reaches over the clip rectangle's edge, is drawn by
+//! [`Raster::triangle`] when its turn comes. The bytes are those of a call of it for each triangle in turn.
 
 use super::Interpolation;
 use super::depth::{Cell, DepthPlane};
@@ -44,7 +44,7 @@ use sieve::{Chosen, Kept, Kind};
 #[derive(Clone, Debug)]
 pub struct Batch {
     count: usize,
-    /// Whether triangles of no pixel have mostly been left out already: to look for more does not pay.
+    /// True if triangles of no pixel have mostly been left out already: to look for more does not pay.
     is_sifted: bool,
     /// The corners of all triangles: x and y in 1/256 pixel, shade in 1/256.
     x: [[i32; Self::CAPACITY]; 3],
@@ -78,7 +78,7 @@ impl Batch {
         Self { is_sifted: true, ..Self::new() }
     }
 
-    /// Whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
+    /// Returns whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
     #[must_use]
     #[inline]
     #[doc(hidden)]
@@ -109,21 +109,21 @@ impl Batch {
         true
     }
 
-    /// How many triangles it holds.
+    /// Number of triangles in the batch.
     #[must_use]
     #[inline]
     pub const fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether it holds none.
+    /// Returns whether the batch holds no triangle.
     #[must_use]
     #[inline]
     pub const fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Whether there is no room left.
+    /// Returns whether there is no room left.
     #[must_use]
     #[inline]
     #[doc(hidden)]
@@ -142,7 +142,7 @@ impl Batch {
         DepthPlane::of_corners([0, 1, 2].map(|corner| (self.x[corner][at], self.y[corner][at], self.depth[corner][at])))
     }
 
-    /// The most pieces that start anew in a row of a tall triangle.
+    /// The most pieces that start anew in a row of a large triangle.
     fn pieces(&self, at: usize) -> usize {
         if self.interpolation[at] != Interpolation::GouraudReseeded {
             return 1;
@@ -215,7 +215,7 @@ impl<D: Cell> Raster<'_, D> {
         }
     }
 
-    /// Draws what the sieve has kept, all but others together.
+    /// Draws the triangles that culling has kept, all but others together.
     fn draw_at_once<const CLIPS: bool>(
         &mut self,
         batch: &Batch,
@@ -242,7 +242,7 @@ impl<D: Cell> Raster<'_, D> {
         drawn
     }
 
-    /// Draws what the sieve has kept.
+    /// Draws the triangles that culling has kept.
     fn draw_kept<const CLIPS: bool>(
         &mut self,
         batch: &Batch,
@@ -327,7 +327,7 @@ struct Stages {
 /// Draws small triangles into pixels, and where they are nearer than cells, if there are any.
 type Small = fn(&Batch, &[Chosen], Place, &mut [u8], Option<&mut [u32]>) -> DrawStats;
 
-/// Draws small, tall and clipped triangles into pixels, and where they are nearer than cells, if there are any.
+/// Draws small, large and clipped triangles into pixels, and where they are nearer than cells, if there are any.
 type AtOnce = fn(&Batch, &[Chosen], (Place, Rect), &mut [u8], Option<&mut [u32]>) -> DrawStats;
 
 impl Stages {

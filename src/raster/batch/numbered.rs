@@ -1,12 +1,12 @@
-//! Triangles by their numbers, of vertices that lie in arrays: what survives a sieve is put into a batch at once.
+//! Triangles by their numbers, of vertices that lie in arrays: those that survive culling are put into a batch at once.
 
 use super::Batch;
 use crate::fixed::U8F8;
 use crate::raster::Interpolation;
 use crate::span::Kernel;
 
-/// Where a vertex is on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping. In one number,
-/// so that it is read at once.
+/// Place of a vertex on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping. It is one
+/// number, so that it is read at once.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(transparent)]
 pub(crate) struct Place(u64);
@@ -108,7 +108,7 @@ mod tests {
 
     use super::*;
 
-    /// What a batch holds.
+    /// Returns the triangles of a batch.
     fn held(batch: &Batch) -> Vec<([[i32; 4]; 3], Interpolation)> {
         let corner = |at: usize, k: usize| {
             [batch.x[k][at], batch.y[k][at], i32::from(batch.shade[k][at]), batch.depth[k][at].cast_signed()]
@@ -118,7 +118,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2_000))]
-        /// By every kernel the triangles are those of the definition, front or back, and no others.
+        /// Every kernel puts in the triangles of the definition, front or back, and no others.
         #[test]
         fn numbered_triangles_are_put_in_as_one_by_one(
             vertices in prop::collection::vec((any::<i32>(), any::<i32>(), any::<u32>(), any::<[u16; 2]>()), 1..50),

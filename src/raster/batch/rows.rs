@@ -33,7 +33,7 @@ use crate::span::list::{Depths, Listed};
 pub(super) const MAX_COLUMNS: i32 = 64;
 /// The highest.
 pub(super) const MAX_ROWS: i32 = 16;
-/// The widest that a tall triangle's box is, in 1/256 pixel, and the highest.
+/// The widest that a large triangle's box is, in 1/256 pixel, and the highest.
 pub(super) const MAX_ACROSS: i32 = 1_024 * 256;
 pub(super) const MAX_DOWN: i32 = 4_096 * 256;
 /// The most squares of four pixels a side that the box has, sides rounded up: 2³⁴ units.
@@ -45,8 +45,8 @@ pub(super) const LANES: usize = 8;
 /// 1.5 · 2⁵².
 pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
 
-/// Room for the spans of a group, and for eight rows of a tall triangle. All is cleared for every batch: more room costs
-/// more than it saves.
+/// Room for the spans of a group, and for eight rows of a large triangle. All is cleared for every batch: more room
+/// costs more than it saves.
 const CAPACITY: usize = LANES * MAX_ROWS as usize + 32;
 const _: () = assert!(LANES * MAX_PIECES <= CAPACITY);
 
@@ -96,7 +96,7 @@ impl<'a> Spans<'a> {
     }
 }
 
-/// Where the frame's pixels lie.
+/// Place of the frame's pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     /// The row whose pixels come first.
@@ -217,8 +217,9 @@ pub(super) fn rows_by(
         listed += group.len();
         set_up(&gathered, place, &mut spans.group);
         let planes = place.depth_width.map(|width| (width, planes(&gathered, &spans.group)));
-        // The next before this one's rows are listed: vectors that are read just after their numbers were stored one by
-        // one wait for these. (3 to 6 % of the time of triangles of 0.6 pixels; with up to four rows less elsewhere.)
+        // The next before this one's rows enter the list: vectors that are read just after their numbers were stored
+        // one by one wait for these. (3 to 6 % of the time of triangles of 0.6 pixels; with up to four rows less
+        // elsewhere.)
         gathered.gather(batch, &kept[listed.min(kept.len())..], place);
         list(group.len(), place, spans, planes.as_ref(), &row);
     }
@@ -230,7 +231,7 @@ pub(super) struct Gathered {
     pub(super) x: [Ints; 3],
     pub(super) y: [Ints; 3],
     pub(super) shade: [Ints; 3],
-    /// Where there is a depth buffer.
+    /// Depths, if there is a depth buffer.
     pub(super) depth: [[u32; LANES]; 3],
 }
 
@@ -246,7 +247,7 @@ impl Gathered {
     /// The first eight. Where there are less the last place's are others.
     #[inline(always)]
     pub(super) fn gather(&mut self, batch: &Batch, triangles: &[Chosen], place: Place) {
-        // Faces that were sifted before are mostly all kept.
+        // Faces that were culled before are mostly all kept.
         if let Some([first, .., last]) = triangles.first_chunk::<LANES>()
             && last.number() == first.number() + LANES - 1
         {
@@ -457,7 +458,7 @@ fn list(
     *covered += pixels;
 }
 
-/// Groups of at most so many rows have all their triangles' listed, as many of each.
+/// Most rows of a group for which all its triangles' rows are put into the span list, as many of each.
 const FEW_ROWS: i32 = 2;
 
 /// Lists as many rows of each triangle of a group. Those that it lacks have no length: how many it has is not foreseen.
@@ -503,10 +504,10 @@ impl Lines {
     pub(super) const NONE: Self = Self { at: [0; LANES], length: [0; LANES], paint: [[0; LANES]; MAX_PIECES] };
 }
 
-/// Draws the spans that are listed.
+/// Draws the spans of the list.
 pub(super) type Draw<'a> = &'a mut dyn FnMut(&Spans<'_>);
 
-/// Draws tall triangles: one after the other, eight rows at a time, through `draw`, which takes what is listed.
+/// Draws large triangles: one after the other, eight rows at a time, through `draw`, which takes the span list.
 pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spans<'_>, draw: Draw<'_>) {
     // As for `rows`.
     if !HAS_F64 {

@@ -1,22 +1,22 @@
-//! The sieve: which triangles of a batch may cover a pixel.
+//! Culling: the triangles of a batch that may cover a pixel.
 
 use super::Batch;
 use super::rows::{Ints, LANES, MAX_ACROSS, MAX_AREA_4X4, MAX_COLUMNS, MAX_DOWN, MAX_ROWS};
 use crate::raster::frame::Rect;
 
-/// What becomes of a triangle that has a pixel centre in its box.
+/// Class of a triangle that has a pixel centre in its box.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Kind {
-    /// It lies inside the clip rectangle and is small enough for `rows`.
+    /// Lies inside the clip rectangle and is small enough for `rows`.
     Small,
-    /// It lies inside the clip rectangle and is small enough for `tall`.
+    /// Lies inside the clip rectangle and is small enough for `tall`.
     Large,
-    /// It reaches over the clip rectangle's edge, and is no larger than a tall one.
+    /// Reaches over the clip rectangle's edge, and is no larger than `Large` allows.
     Clipped,
     Other,
 }
 
-/// A triangle's number, and above it what becomes of it: 1 small, 2 tall, 3 another, 4 clipped.
+/// Number of a triangle, and above it its class: 1 small, 2 large, 3 another, 4 clipped.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(super) struct Chosen(u16);
@@ -38,7 +38,7 @@ impl Chosen {
         }
     }
 
-    /// How many of those kept, from the first on, are small, tall or clipped.
+    /// Counts those kept, from the first on, that are small, large or clipped.
     #[inline(always)]
     pub(super) fn in_batch(kept: &[Self]) -> usize {
         // Eight at a time, as in `alike`. Only of another both of the lowest bits above the number are set.
@@ -48,14 +48,14 @@ impl Chosen {
         whole + kept[whole..].iter().take_while(|chosen| is_other(chosen) == 0).count()
     }
 
-    /// Whether all of these, of which none is another, are small.
+    /// Returns whether all of these, of which none is another, are small.
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     #[inline(always)]
     pub(super) fn are_small(kept: &[Self]) -> bool {
         kept.iter().fold(0, |any, chosen| any | chosen.0) & 6 << 8 == 0
     }
 
-    /// How many of those kept, from the first on, become the same.
+    /// Counts those kept, from the first on, that are of the first one's kind.
     #[inline(always)]
     pub(super) fn alike(kept: &[Self]) -> usize {
         let Some(first) = kept.first() else { return 0 };
@@ -67,7 +67,7 @@ impl Chosen {
     }
 }
 
-/// Those of numbers in order that are kept, packed.
+/// The kept ones among numbers in order, packed.
 pub(super) struct Kept {
     // Sixteen places more than triangles: up to so many are written at a time, and those that are not kept are written over.
     pub(super) triangles: [Chosen; Batch::CAPACITY + 2 * LANES],
@@ -158,14 +158,14 @@ pub(super) fn sieve_by(
     kept.count = count;
 }
 
-/// Whether a triangle has none of four pixels: that at the origin, the next, and the two below. Right only of corners
-/// that are less than 1,024 units away; of others anything may come out.
+/// Returns whether a triangle has none of four pixels: that at the origin, the next, and the two below. The answer is
+/// right only if the corners are less than 1,024 units away; for others it may be anything.
 ///
 /// ```text
-/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if turned over, negative
+/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
 /// ```
 ///
-/// On an edge lies inside if it is a left one or a top one, so that one step of E more makes it negative if it is not.
+/// A point on an edge lies inside if the edge is a left or a top one; otherwise one step of E more makes it negative.
 #[inline(always)]
 fn covers_none(a: (i32, i32), b: (i32, i32), c: (i32, i32)) -> bool {
     let at_origin = |(ax, ay): (i32, i32), (bx, by): (i32, i32)| ax.wrapping_mul(by).wrapping_sub(ay.wrapping_mul(bx));

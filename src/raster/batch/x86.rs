@@ -90,8 +90,8 @@ pub(super) fn tall(batch: &Batch, kept: &[Chosen], place: Place, spans: &mut Spa
     unsafe { avx2(batch, kept, place, spans, draw) }
 }
 
-/// Draws small, tall and clipped triangles in turn, without a list of more than a few spans. Only with a kernel for which
-/// `Kernel::avx512` is one.
+/// Draws small, large and clipped triangles in turn, without a list of more than a few spans. Only with a kernel for
+/// which `Kernel::avx512` is one.
 pub(super) fn at_once(
     batch: &Batch,
     kept: &[Chosen],
@@ -243,14 +243,14 @@ impl Eight {
         self.with(other, |a, b| _mm256_mul_pd(a, b))
     }
 
-    /// These times others, plus others, rounded once: nearer than in two steps, of which the margin in `rows` is for.
+    /// Multiplies and adds, rounded once: nearer than in two steps, which the margin in `rows` is for.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     fn times_plus(self, by: Self, plus: Self) -> Self {
         Self(_mm256_fmadd_pd(self.0, by.0, plus.0), _mm256_fmadd_pd(self.1, by.1, plus.1))
     }
 
-    /// These where a mask of eight i32 is set, else the others.
+    /// Selects these where a mask of eight i32 is set, otherwise the others.
     #[inline]
     #[target_feature(enable = "avx2")]
     fn or_where_not(self, mask: __m256i, others: Self) -> Self {

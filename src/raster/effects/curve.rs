@@ -21,7 +21,7 @@ use crate::raster::cover::SortedTriangle;
 use crate::raster::weights::Weights;
 use crate::span::Kernel;
 
-/// What a shade may be at a point, in 8.8: 2⁸ times what is ever shown. So no sum is infinite.
+/// Greatest shade at a point, in 8.8: 2⁸ times the brightest that is shown. So no sum is infinite.
 const GREATEST: f32 = 16_777_216.0;
 
 /// One shade or channel.
@@ -30,7 +30,7 @@ struct Curve {
     corners: [f64; 3],
     /// 2D of the edge opposite to each corner.
     bends: [f64; 3],
-    /// What the linear part changes by from one pixel to the next, and c.
+    /// Change of the linear part from one pixel to the next, and c.
     step: f64,
     square: f64,
 }

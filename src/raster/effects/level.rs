@@ -1,4 +1,4 @@
-//! Which level of a mipmap a pixel's texel is taken from.
+//! Mipmap levels: the one that a pixel's texel is taken from.
 //!
 //! A step of one pixel goes (∂u/∂x, ∂v/∂x) texels along a row of the screen, (∂u/∂y, ∂v/∂y) down a column. The longer of
 //! the two steps, ρ, is the texels to a pixel (L. Williams, *Pyramidal Parametrics*, SIGGRAPH 1983), and the level is the
@@ -48,7 +48,7 @@ pub(super) fn of_face(coordinates: &[Linear; 2], area: i64, last: u32) -> u32 {
     choose(across, down, u128::from(area.unsigned_abs()) << 16, last)
 }
 
-/// Where a face has which level, if its coordinates follow the perspective.
+/// Levels of a face whose coordinates follow the perspective.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LevelPlane {
     area: i64,
@@ -81,7 +81,7 @@ impl LevelPlane {
         doubled([0, 1].map(|of| self.sums[of] * centre - times[of]))
     }
 
-    /// What [`at`](Self::at) needs of a row: twice the length of a step along it.
+    /// Returns the part of [`at`](Self::at) that is a row's: twice the length of a step along it.
     pub(super) fn across(&self, y: i32) -> u128 {
         self.doubled_at(y, &self.times_y)
     }

@@ -37,7 +37,7 @@ pub(super) struct LitPlane {
     weights: Weights,
     /// The values of each corner times its depth, then its depth.
     values: [[f64; 7]; 3],
-    /// What their sum changes by from one pixel to the next.
+    /// Change of their sum from one pixel to the next.
     step: ([f64; 6], f64),
 }
 
@@ -201,7 +201,7 @@ struct Knots {
     spacing: usize,
     /// From the piece's first pixel, in pixels.
     places: [i32; KNOTS],
-    /// How many there are, at least two.
+    /// Number of knots, at least two.
     count: usize,
 }
 

@@ -55,7 +55,7 @@ pub struct EffectBatch {
     buffers: Buffers,
 }
 
-/// What stages make of pieces: a row for each.
+/// Output of the stages for pieces: a row for each.
 #[derive(Clone, Debug, Default)]
 struct Buffers {
     /// The bytes that are drawn in the end.
@@ -106,14 +106,14 @@ impl EffectBatch {
             + shades * size_of::<Shades>()
     }
 
-    /// Whether it holds no face.
+    /// Returns whether the batch holds no face.
     #[must_use]
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.faces.is_empty()
     }
 
-    /// Whether it has no room for another face.
+    /// Returns whether the batch has no room for another face.
     #[must_use]
     #[inline]
     pub fn is_full(&self) -> bool {
@@ -222,7 +222,7 @@ impl Rows for OneRow<'_> {
     }
 }
 
-/// What is drawn into, and how.
+/// Target of drawing, and its settings.
 struct Target<'a, 'b, R, D: Cell> {
     rows: R,
     depth: Option<&'a mut DepthBuffer<'b, D>>,
@@ -346,7 +346,7 @@ impl<D: Cell> Raster<'_, D> {
 
     /// Draws a batch whose faces lie wholly inside the frame.
     ///
-    /// What lies outside is treated as by [`triangle_inside`](Self::triangle_inside).
+    /// Parts that lie outside are treated as by [`triangle_inside`](Self::triangle_inside).
     #[doc(hidden)]
     pub fn batch_with_effects_inside(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
         self.draw_effects::<false>(batch, pipeline)

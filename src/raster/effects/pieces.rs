@@ -53,7 +53,7 @@ impl Piece {
         self.x as usize..self.end as usize
     }
 
-    /// Where the first pixel lies.
+    /// Place of the first pixel.
     #[inline]
     pub(super) fn start(&self) -> (i32, i32) {
         (self.seed, self.row.y)
@@ -79,7 +79,7 @@ struct Covered {
     triangle: SortedTriangle,
     /// The index of its face.
     face: usize,
-    /// Which corner of the face is which of the triangle.
+    /// Order of the corners: which one of the face is which of the triangle.
     order: [usize; 3],
     /// The index of the piece behind its last one.
     end: usize,

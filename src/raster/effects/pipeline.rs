@@ -1,26 +1,26 @@
-//! What is done to the pixels of a triangle: where shades come from, and the stages that they pass.
+//! Pixel pipeline of a triangle: the source of its shades, and the stages that they pass.
 
 use crate::fixed::U8F8;
 use crate::lanes::{Lanes, Points};
 use crate::raster::interpolation::Interpolation;
 use crate::span::texture::{Levels, Texels};
 
-/// The values of a corner beyond its position, shade and depth. What a look does not use may be
+/// The values of a corner beyond its position, shade and depth. Values that a pipeline does not use may be
 /// anything.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Attributes {
     /// Texture coordinates, across and down, in texels with 16 fraction bits.
     pub texture: [i32; 2],
-    /// How thick the fog is, 0 to 0xFF00.
+    /// Density of the fog, 0 to 0xFF00.
     pub fog: U8F8,
     /// Red, green and blue, each 0 to 0xFF00.
     pub channels: [U8F8; 3],
     /// The column and the row in the table of [`ShadeSource::NormalTable`], each 0 to 0xFF00.
     pub slope: [U8F8; 2],
-    /// What [`Lighting`] is handed: a normal and a position.
+    /// Input of [`Lighting`]: a normal and a position.
     ///
     /// For [`ShadeSource::Curved`] it is the shade at the corner, or its three channels, and then those at the middle
-    /// (on the screen) of the edge opposite to it. They are in 8.8, and beyond what can be shown, too, where the
+    /// (on the screen) of the edge opposite to it. They are in 8.8, and may lie beyond what can be shown, where the
     /// limits cut them off.
     pub lit: [f32; 6],
 }
@@ -35,7 +35,7 @@ pub trait Lighting: core::fmt::Debug {
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3];
 }
 
-/// Where a pixel's shade comes from.
+/// Source of a pixel's shade.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum ShadeSource<'a> {
@@ -66,7 +66,7 @@ pub struct Limits {
     pub most: U8F8,
 }
 
-/// How far two pixels of a row that are lit lie apart.
+/// Distance between two lit pixels of a row.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum SampleSpacing {
     /// 4 pixels.
@@ -82,7 +82,7 @@ impl SampleSpacing {
     #[doc(hidden)]
     pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
 
-    /// In pixels.
+    /// Distance in pixels.
     #[must_use]
     pub const fn pixels(self) -> usize {
         match self {
@@ -93,7 +93,7 @@ impl SampleSpacing {
     }
 }
 
-/// How texture coordinates run along a row.
+/// Progression of texture coordinates along a row.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum TextureMapping {
     /// Linear on the screen.
@@ -104,7 +104,7 @@ pub enum TextureMapping {
     Perspective,
 }
 
-/// What three channels are mixed to.
+/// Result of mixing three channels.
 #[derive(Clone, Copy, Debug)]
 pub enum Mix<'a> {
     /// The 6 × 6 × 6 colours of [`palette::cube`](crate::palette::cube).
@@ -113,10 +113,10 @@ pub enum Mix<'a> {
     Nearest {
         /// Indices by red, green and blue, five bits each.
         map: &'a [u8; 32_768],
-        /// How far dither moves a channel, from end to end.
+        /// Range over which dither moves a channel, from end to end.
         spread: u8,
     },
-    /// Nothing: one channel's shades as they are, 0 red, 1 green, 2 blue, for those who measure them.
+    /// No mixing: one channel's shades as they are, 0 red, 1 green, 2 blue, for those who measure them.
     Only(usize),
 }
 
@@ -127,16 +127,16 @@ pub struct TextureStage<'a> {
     pub texels: Texels<'a>,
     /// Its smaller copies, from which one is taken where more than √2 texels go to a pixel; `None` for the image alone.
     pub levels: Option<Levels<'a>>,
-    /// How its coordinates run.
+    /// Progression of its coordinates.
     pub mapping: TextureMapping,
     /// The byte for a shade (row) and a texel (column); of channels, one table each.
     pub tables: [&'a [u8; 65_536]; 3],
 }
 
-/// What is done to the pixels of a triangle.
+/// Stages that the pixels of a triangle pass.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelPipeline<'a> {
-    /// Where shades come from.
+    /// Source of the shades.
     pub source: ShadeSource<'a>,
     /// Red, green and blue instead of one shade, and what they are mixed to.
     pub channels: Option<Mix<'a>>,
@@ -148,7 +148,7 @@ pub struct PixelPipeline<'a> {
     pub fog: Option<&'a [u8; 65_536]>,
     /// The index for the triangle's own (row) and the frame's (column).
     pub blend: Option<&'a [u8; 65_536]>,
-    /// Whether it hides what is drawn later behind it: whether the depth buffer keeps its depth.
+    /// True if the depth buffer keeps its depth, so that it hides what is drawn later behind it.
     pub keeps_depth: bool,
 }
 

@@ -67,9 +67,9 @@ pub(super) struct TexturePlane {
     numerators: [Linear; 2],
     /// The divisor. For affine mapping it is the area times 2ⁿ for level n, constant, so coordinates are the level's.
     denominator: Linear,
-    /// What affine coordinates change by from one pixel to the next, rounded toward zero.
+    /// Change of affine coordinates from one pixel to the next, rounded toward zero.
     steps: [u32; 2],
-    /// Which level's texels are shown, if the image has several.
+    /// Level whose texels are shown, if the image has several.
     level: Level,
 }
 

@@ -33,7 +33,7 @@ pub struct EdgePair {
     pub(super) x1: i32,
     /// The row's last pixel inside the frame.
     pub(super) last: i32,
-    /// Whether it hides the background wherever it is: the depths of its vertices are above 0.
+    /// True if it hides the background wherever it is: the depths of its vertices are above 0.
     pub(super) hides_background: bool,
     paint: Option<RowShader>,
     depth: Option<DepthPlane>,
@@ -73,7 +73,7 @@ impl EdgePair {
         self.last = right.min(frame_width as i32) - 1;
     }
 
-    /// On to row `y`, the next. Returns whether it has that row.
+    /// Steps to row `y`, the next. Returns whether it has that row.
     #[inline]
     fn down(&mut self, y: i32) -> bool {
         if y >= self.end {
@@ -175,7 +175,7 @@ impl<'a> List<'a> {
         }
     }
 
-    /// On to the next row: faces that end leave, the others are put in order again.
+    /// Steps to the next row: faces that end leave, the others are put in order again.
     pub(super) fn down(&mut self) {
         self.y += 1;
         let mut kept = 0;

@@ -44,7 +44,7 @@ use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::span::Kernel;
 
-/// The memory of the scan-line method, lent by the caller. What it holds between two frames makes no
+/// The memory of the scan-line method, lent by the caller. Its contents between two frames make no
 /// difference.
 #[derive(Debug)]
 pub struct Scratch<'a> {
@@ -56,7 +56,7 @@ impl<'a> Scratch<'a> {
     /// Entries of the list that a face needs: one each among those to come, the active and the open.
     pub const LIST_EACH: usize = 3;
 
-    /// For n faces `list` is [`LIST_EACH`](Self::LIST_EACH)·n long at least, and `pairs` n.
+    /// Takes memory for n faces: `list` is [`LIST_EACH`](Self::LIST_EACH)·n long at least, and `pairs` n.
     #[must_use]
     pub fn new(list: &'a mut [u64], pairs: &'a mut [EdgePair]) -> Self {
         Self { list, pairs }
@@ -78,7 +78,7 @@ impl Lists {
         self.list.capacity() * size_of::<u64>() + self.pairs.capacity() * size_of::<EdgePair>()
     }
 
-    /// Sees to it that memory for so many faces needs no allocation. What is not used yet is not touched either.
+    /// Sees to it that memory for so many faces needs no allocation. Unused memory is not touched.
     pub(crate) fn reserve(&mut self, faces: usize) {
         self.list.reserve((faces * Scratch::LIST_EACH).saturating_sub(self.list.len()));
         self.pairs.reserve(faces.saturating_sub(self.pairs.len()));
@@ -140,7 +140,7 @@ impl<D: Cell> Raster<'_, D> {
     /// Draws all `faces` of a frame, of each pixel the nearest one, and writes no pixel twice: the
     /// bytes of drawing them one after the other with a cleared depth buffer.
     ///
-    /// What the frame held before counts as background. A depth buffer that the raster has is neither
+    /// The frame's former contents count as background. A depth buffer that the raster has is neither
     /// looked at nor changed.
     ///
     /// ```
@@ -229,7 +229,7 @@ struct Run {
     x1: i32,
 }
 
-/// What goes along a row from left to right.
+/// Sweep along a row, from left to right.
 struct Sweep {
     drawn: DrawStats,
     /// Not yet painted, because the next segment may be the same face's.

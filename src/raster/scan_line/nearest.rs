@@ -1,4 +1,4 @@
-//! Which of several faces is in front, along a piece of a row.
+//! Nearest face of several, along a piece of a row.
 //!
 //! Depths are linear along a row before they are cut to whole units: z, with 24 fraction bits. The
 //! cut one decides, d = z >> 24, and the order of submission among equal depths. So face i leads
@@ -11,7 +11,7 @@
 //!
 //! The difference is linear, so where this holds at both ends it holds all between; where it does not
 //! at the right end, it holds up to the pixel that one division gives. From there on it is looked at
-//! anew. Where i leads at the first pixel by less than that, the first pixel is all that is decided.
+//! anew. Where i leads at the first pixel by less than that, only the first pixel is decided.
 //! The background counts as a face of depth 0 submitted before all others.
 
 use super::active::List;

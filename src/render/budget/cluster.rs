@@ -13,7 +13,7 @@ use crate::light::{Beam, LampBeam};
 /// Cosines and sines of f32 are off by less.
 const ROUNDING: f32 = 1e-3;
 
-/// What faces that follow each other do not exceed, wherever light comes from.
+/// Bounds of faces that follow each other, wherever light comes from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cluster {
     /// See [`Facet`].
@@ -67,7 +67,7 @@ struct EightCones {
 /// Faces of a cone.
 const FOUR: usize = 4;
 
-/// How many cones there are of eight faces.
+/// Number of cones of eight faces.
 const EVERY: usize = LANES / FOUR;
 
 impl Cones {
@@ -107,16 +107,16 @@ struct Falling {
     brightness: f32,
     first: f32,
     second: f32,
-    /// What the direction turns by along an edge.
+    /// Turn of the direction along an edge.
     turn: f32,
     /// The greatest n·l.
     most: f32,
-    /// Whether all faces lie in the light or all in the dark.
+    /// True if all faces lie in the light or all in the dark.
     unmixed: bool,
 }
 
-/// What linear shades are off by where all corners of a face see the light or none, and anywhere; what shades differ by
-/// over a face, and what they are at most: in shares of a light's strength.
+/// Errors and spreads of linear shades, in shares of a light's strength: the error where all corners of a face see
+/// the light or none, the error anywhere, the difference of shades over a face, and their greatest value.
 #[derive(Clone, Copy)]
 struct Share {
     unmixed: f32,
@@ -125,7 +125,7 @@ struct Share {
     brightest: f32,
 }
 
-/// Which faces of a cluster are known to be linear.
+/// Faces of a cluster that are known to be linear.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(in crate::render) enum Linear {
     All,
@@ -134,7 +134,7 @@ pub(in crate::render) enum Linear {
     Unknown,
 }
 
-/// Those of which no corner's shade is clamped, and
+/// Faces of which no corner's shade is clamped, and
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(in crate::render) struct Where {
     /// whose corners all see the same lights, if that matters, and
@@ -173,7 +173,7 @@ impl Cluster {
         }
     }
 
-    /// Which of its faces linear shades keep within `allowed` on.
+    /// Finds the faces on which linear shades keep within `allowed`.
     pub(super) fn linear(&self, object: &Lit<'_>, strengths: &[Strength], (allowed, adds): (f32, bool)) -> Linear {
         let Lit { view, lights, paints, channels, .. } = *object;
         let Some(surface) = self.surface.map(usize::from) else { return Linear::Unknown };
@@ -234,13 +234,13 @@ impl Cluster {
         Linear::Where(Where { unmixed, from: from + 2.0 * APART_ANGLE * self.spread + APART_TURN * (eye + lamp) })
     }
 
-    /// How far away a point is from the box, and from what is farthest in it.
+    /// Distances of a point from the box, and from what is farthest in it.
     fn distances(&self, point: Vec3) -> (f32, f32) {
         let away = (point - self.centre).abs();
         ((away - self.half).max(Vec3::ZERO).length(), (away + self.half).length())
     }
 
-    /// What the direction to a point turns by at most along an edge of one of its faces.
+    /// Bounds the turn of the direction to a point along an edge of one of its faces.
     fn turn_towards(&self, point: Vec3) -> f32 {
         let (nearest, _) = self.distances(point);
         if nearest > 0.0 { self.edge / nearest } else { f32::INFINITY }
@@ -288,12 +288,12 @@ impl Cluster {
         }))
     }
 
-    /// What linear shades of any of these faces are off by in one light: `OneLight::body_of_lamp`, whichever face it
-    /// is.
+    /// Bounds the error of linear shades of any of these faces in one light: `OneLight::body_of_lamp`, whichever face
+    /// it is.
     ///
     /// On a face that lies partly in the dark, the cosines at the corners, P of the light and S of the dark, differ by
-    /// no more than d, which is what normals and light turn by. So P ≤ d, and what is off at the clamp, PS / (P + S),
-    /// is no more than d/4.
+    /// no more than d, the turn of normals and light. So P ≤ d, and the error at the clamp, PS / (P + S), is no more
+    /// than d/4.
     fn in_light(&self, light: &Falling) -> Share {
         let Falling { brightness, first, second, turn, most, unmixed } = *light;
         let differ = self.spread + turn;
@@ -316,7 +316,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// What cones say of faces is so of each: its corners lie all in the light, or all in the dark.
+        /// Tests what cones say of each face: its corners lie all in the light, or all in the dark.
         #[test]
         fn faces_of_cones_that_are_not_mixed_are_not(
             points in prop::collection::vec(prop::array::uniform3(-1.0_f32..1.0), 3..60),

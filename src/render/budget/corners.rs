@@ -1,5 +1,5 @@
-//! What decisions need to know of an object's vertices, eight at a time in plain arrays that the compiler vectorises: how far
-//! they are from the highlights, and which lights they see.
+//! Corners of faces, for decisions: their distance from the highlights, and the lights that they see. Eight vertices
+//! are worked out at a time in plain arrays that the compiler vectorises.
 
 use glam::Vec3;
 
@@ -18,7 +18,7 @@ struct Corners<'a> {
     positions: &'a [Vec3],
 }
 
-/// How near the eye and any lamp come to a vertex.
+/// Least distances of the eye, and of any lamp, from a vertex.
 struct Nearest {
     eye: f32,
     lamp: f32,
@@ -130,7 +130,7 @@ fn transposed(of: &[Vec3]) -> Vectors {
     vectors
 }
 
-/// From places to `to`.
+/// Returns the ways from places to `to`.
 #[inline(always)]
 pub(super) fn ways(to: Vec3, places: &Vectors) -> Vectors {
     let mut ways = *places;

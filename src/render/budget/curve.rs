@@ -47,8 +47,8 @@ const WORTH_CURVE: f32 = 16.0;
 /// 1.04 of the time of the shading, at 5 0.99, at 3 0.95; a grid that is lit in vain is dearer the finer it is.)
 const PIXELS_A_POINT: f32 = 4.0;
 
-/// What may be said of the light between the points of a grid for it to be worth lighting, of what is allowed. (With 0.5 the
-/// torus within 1 shade takes 1.00 of `phong`, with 0.9 0.93.)
+/// Share of the allowed error up to which light may be off between the points of a grid for it to be worth lighting.
+/// (With 0.5 the torus within 1 shade takes 1.00 of `phong`, with 0.9 0.93.)
 const MODEL: f32 = 0.9;
 
 /// Weights of eight points on the screen.
@@ -95,7 +95,7 @@ static FOURTHS: [Weights; 2] = grid(4);
 static EIGHTHS: [Weights; 5] = grid(8);
 static SIXTEENTHS: [Weights; 19] = grid(16);
 
-/// How many parts an edge is divided in, and at which points.
+/// Divisions of an edge: the number of parts, and the points.
 const GRIDS: [(f32, &[Weights]); 3] = [(4.0, &FOURTHS), (8.0, &EIGHTHS), (16.0, &SIXTEENTHS)];
 
 /// A face on the screen.
@@ -104,7 +104,7 @@ struct OnScreen<'a> {
     positions: [Vec3; 3],
     depths: [f32; 3],
     answer: &'a Reflectance,
-    /// Whether its light goes on below the horizon.
+    /// True if its light goes on below the horizon.
     below: bool,
     kernel: Kernel,
 }
@@ -151,7 +151,7 @@ impl Quadratic {
         Self { corners: [fa, fb, fc], bends: [bend(fb, ma, fc), bend(fc, mb, fa), bend(fa, mc, fb)] }
     }
 
-    /// How far it is from some values, at most.
+    /// Bounds its distance from some values.
     #[inline]
     fn off(&self, [a, b, c]: &Weights, values: &Lanes<f32>) -> f32 {
         let ([fa, fb, fc], [da, db, dc]) = (self.corners, self.bends);
@@ -164,7 +164,7 @@ impl Quadratic {
         greatest(off)
     }
 
-    /// How far it may be from light that is so far off at the points, between them.
+    /// Bounds its distance, between the points, from light that is so far off at the points.
     fn between(&self, off: f32, n: f32, ratio: f32) -> f32 {
         let [fa, fb, fc] = self.corners;
         let range = greatest([fa - fb, fb - fc, fc - fa].map(f32::abs));
@@ -174,7 +174,7 @@ impl Quadratic {
     }
 }
 
-/// Not a number if one is none.
+/// Returns the greatest value; not a number if one of them is not.
 fn greatest<const N: usize>(values: [f32; N]) -> f32 {
     values.into_iter().fold(0.0, |most, value| if value <= most { most } else { value })
 }
@@ -244,7 +244,7 @@ impl Faces<'_> {
         }
     }
 
-    /// Whether quadratic shades keep within.
+    /// Returns whether quadratic shades keep within.
     #[inline(never)]
     pub(super) fn is_quadratic(&self, budget: &Budget, question: &Question<'_>) -> bool {
         let (Some(vertices), (far, near), pixels) = (question.vertices, question.depths(), question.pixels()) else {
@@ -296,7 +296,7 @@ impl Faces<'_> {
         false
     }
 
-    /// What the corners of a face carry that is quadratic: see `Attributes::lit`.
+    /// Puts the quadratic attributes of a face's corners: see `Attributes::lit`.
     #[inline(never)]
     pub(in crate::render) fn put_curve(
         &self,

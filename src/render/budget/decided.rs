@@ -1,4 +1,4 @@
-//! What a budget decides for a triangle.
+//! Decisions of a budget on triangles.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use crate::raster::effects::SampleSpacing;
 use crate::render::sift;
 use crate::scene::Shading;
 
-/// What is decided for a triangle.
+/// Decision on a triangle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(in crate::render) enum Choice {
     /// Nobody has asked yet.
@@ -24,7 +24,7 @@ pub(in crate::render) enum Choice {
 }
 
 impl Choice {
-    /// Those that draw something, from cheap to exact.
+    /// Choices that draw something, from cheap to exact.
     const ALL: [Self; 8] = [
         Self::Flat,
         Self::Linear,
@@ -49,38 +49,38 @@ impl Choice {
 }
 
 impl Choice {
-    /// Whether its pixels need light beyond that of the corners.
+    /// Returns whether its pixels need light beyond that of the corners.
     pub(in crate::render) fn needs_light(self) -> bool {
         matches!(self, Self::Phong | Self::PhongEvery(_) | Self::Curved)
     }
 }
 
-/// What is known of an object's triangles. What is forgotten is overwritten when it is asked for: most chunks are linear at
-/// once, and nobody asks.
+/// Decisions on an object's triangles. Forgotten ones are overwritten when they are asked for: most chunks are linear
+/// at once, and nobody asks.
 #[derive(Clone, Debug, Default)]
 pub(in crate::render) struct Decided {
     triangles: usize,
-    /// One for as many triangles as are sifted at a time.
+    /// One for as many triangles as are culled at a time.
     chunks: Vec<Chunk>,
     choices: Vec<Choice>,
     bodies: Vec<Bodies>,
 }
 
-/// For the two sides of a triangle, how far linear shades are from the model, highlights aside; where that is not known, not a
-/// number. It stays as long as the object and its lights are what they are, wherever the eye is.
+/// Distances of linear shades from the model, highlights aside, for the two sides of a triangle; not a number where it
+/// is not known. They stay as long as the object and its lights are what they are, wherever the eye is.
 pub(in crate::render) type Bodies = [f32; 2];
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Chunk {
     /// A bit for each triangle that is known to be linear.
     linear: u64,
-    /// Whether what is kept of its choices, and of its bodies, is what was found, and not from before.
+    /// True if its choices, and its bodies, were found since, and are not from before.
     has_choices: bool,
     has_bodies: bool,
 }
 
 impl Decided {
-    /// So many of which nothing is known.
+    /// Forgets all, for so many triangles.
     pub(in crate::render) fn nothing_of(&mut self, triangles: usize) {
         self.triangles = triangles;
         self.chunks.clear();
@@ -105,7 +105,7 @@ impl Decided {
         self.triangles
     }
 
-    /// Those of a chunk that are known to be linear.
+    /// Faces of a chunk that are known to be linear, a bit for each.
     #[inline]
     pub(in crate::render) fn linear(&mut self, chunk: usize) -> &mut u64 {
         &mut self.chunks[chunk].linear
@@ -136,7 +136,7 @@ impl Decided {
         (choices, bodies)
     }
 
-    /// How many have been drawn by this choice.
+    /// Counts the triangles that have been drawn by this choice.
     fn count(&self, choice: Choice) -> usize {
         let of_chunk = |chunk: usize| {
             let linear = self.chunks[chunk].linear;
@@ -147,7 +147,7 @@ impl Decided {
         (0..self.chunks.len()).map(of_chunk).sum()
     }
 
-    /// How many triangles were shaded in which way.
+    /// Counts the triangles by the way in which they were shaded.
     pub(in crate::render) fn counts(&self) -> FaceCounts {
         let drawn = Choice::ALL.map(|choice| (choice.shading(), self.count(choice)));
         let drawn: Vec<(FaceShading, usize)> = drawn.into_iter().filter(|(_, count)| *count > 0).collect();

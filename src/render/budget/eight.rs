@@ -1,5 +1,5 @@
-//! Which of eight faces are linear, in plain arrays that the compiler vectorises: the bounds of `light` for eight whole faces
-//! at once, in the light of all sources. What it does not say of a face, `question` is asked.
+//! Bounds of `light` for eight whole faces at once, in the light of all sources: which of them are linear. The arrays
+//! are plain, so that the compiler vectorises them. A face that the bounds leave open is asked of `question`.
 //!
 //! A highlight's curvature is bounded more closely than there, for where a face is far from its middle: along the angle μ from
 //! it the second derivative of cosˢμ is s·c^(s−2)·(s − 1 − s·c²), c being cos μ, and across −s·cˢ. With y = s(1 − c)
@@ -25,7 +25,7 @@ use crate::render::faces::Faces;
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 
-/// From which exponent on a highlight is known to curve less away from its middle.
+/// Exponent from which on a highlight is known to curve less away from its middle.
 const SHARP: f32 = 8.0;
 
 /// x, y and z.
@@ -33,7 +33,7 @@ pub(super) type Vectors = [Lanes<f32>; 3];
 
 pub(super) const NOUGHT: Lanes<f32> = [0.0; LANES];
 
-/// Eight faces, on the side that is seen. What there is fewer of is zero.
+/// Eight faces, on the side that is seen. Missing ones are zero.
 pub(super) struct Eight {
     /// The normals at each corner.
     normals: [Vectors; 3],
@@ -44,12 +44,12 @@ pub(super) struct Eight {
     edge: Lanes<f32>,
 }
 
-/// What was found of faces of one chunk, a bit for each.
+/// Results for the faces of one chunk, a bit for each.
 #[derive(Clone, Copy, Default)]
 pub(in crate::render) struct Looked {
     pub(in crate::render) at: u64,
     pub(in crate::render) linear: u64,
-    /// Those that bounds for whole faces say nothing of.
+    /// Faces that bounds for whole faces say nothing of.
     pub(in crate::render) hopeless: u64,
 }
 
@@ -76,7 +76,7 @@ struct Towards {
 }
 
 impl Falling<'_> {
-    /// How far linear shades are from the model, in shades: those of the body, and of the highlights.
+    /// Bounds the error of linear shades against the model, in shades: those of the body, and of the highlights.
     #[inline(always)]
     fn model(&self, eight: &Eight) -> [Lanes<f32>; 2] {
         let Lights { suns, lamps, eye } = self.lights;
@@ -153,7 +153,7 @@ impl Falling<'_> {
         }
     }
 
-    /// How far linear highlights are off on each of eight faces: `OneLight::highlight` in lanes.
+    /// Bounds the error of linear highlights on each of eight faces: `OneLight::highlight` in lanes.
     #[inline(always)]
     fn highlight(
         &self,
@@ -431,7 +431,7 @@ impl Faces<'_> {
         linear
     }
 
-    /// Whether linear shades keep within that are so far from the model.
+    /// Returns whether linear shades that are so far from the model keep within.
     #[inline]
     fn is_linear_within(&self, budget: &Budget, (triangle, surface, turned): (usize, u16, bool), model: f32) -> bool {
         let strength = &budget.strengths[usize::from(surface)];
@@ -459,7 +459,7 @@ fn model_of(falling: &Falling<'_>, eight: &Eight, kernel: Kernel) -> [Lanes<f32>
     at_best_level!(kernel, falling.model(eight))
 }
 
-/// What is lost for want of length, or at the clamp, whichever is more.
+/// Loss for want of length, or at the clamp, whichever is more.
 #[inline(always)]
 fn matt(most: f32, least: f32, shortening: f32) -> f32 {
     let short = if most > 0.0 { most * shortening } else { 0.0 };
@@ -472,7 +472,7 @@ fn falling(y: f32) -> f32 {
     1.0 / (1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y / 120.0)))))
 }
 
-/// In this form one instruction.
+/// Returns the greater one. In this form it is one instruction.
 #[inline(always)]
 pub(super) fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

@@ -1,8 +1,8 @@
-//! What is known of triangles and surfaces, whichever of them is decided on.
+//! Figures of triangles and surfaces, whichever of them is decided on.
 
 use glam::Vec3;
 
-/// What a triangle's normals and edges say, whatever the light.
+/// Bounds from a triangle's normals and edges, whatever the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Facet {
     /// 1/|N| − 1 where |N| is least.
@@ -36,7 +36,7 @@ impl Facet {
     }
 }
 
-/// What the light on a material comes to at most.
+/// Greatest strength of the light on a material.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strength {
     /// The shade of the ramp's first entry, in 1/256 of an entry.
@@ -47,18 +47,19 @@ pub(super) struct Strength {
     pub(super) last: u16,
     /// The shade without any light but ambient light.
     pub(super) dark: u16,
-    /// What all suns that shine straight at it add, in shades.
+    /// Sum of all suns that shine straight at it, in shades.
     pub(super) body: f32,
-    /// What all highlights together curve by, in shades for an angle of 1; 0 without any.
+    /// Curvature of all highlights together, in shades for an angle of 1; 0 without any.
     pub(super) curvature: f32,
-    /// What all highlights at their brightest add, in shades.
+    /// Sum of all highlights at their brightest, in shades.
     pub(super) highlights: f32,
-    /// From so far on, as an angle, nothing is seen of them but one, two or three quarters of what is allowed.
+    /// Angles from which on nothing is seen of them but one, two or three quarters of what is allowed.
     pub(super) faint_from: [f32; 3],
 }
 
 impl Strength {
-    /// Whether some of the shades between these two are cut off, and not all: above, or, where light may be taken away, below.
+    /// Returns whether some of the shades between these two are cut off, and not all: above, or below where light may
+    /// be taken away.
     #[inline]
     pub(super) fn cuts(&self, least: u16, most: u16, adds: bool) -> bool {
         (most >= self.last && least < self.last) | (!adds & (least <= self.first) & (most > self.first))

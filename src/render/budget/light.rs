@@ -1,4 +1,4 @@
-//! How far linear shades are off in the light of one source.
+//! Bounds of the error of linear shades in the light of one source.
 
 use glam::Vec3;
 
@@ -19,14 +19,15 @@ const BEND: f32 = 0.236;
 /// is at most 1.5: of three that are as far from each other sin R = (2/√3)·sin(a/2).
 pub(super) const APART_ANGLE: f32 = 0.61;
 
-/// What directions to a point turn by from any corner on, in edges over the distance of the nearest vertex, if that is at least two
-/// edges away: no point of the triangle is nearer by more than 1/√3 of an edge. (The corner whose normal is nearest may be any.)
+/// Turn of directions to a point from any corner on, in edges over the distance of the nearest vertex, if that is at
+/// least two edges away: no point of the triangle is nearer by more than 1/√3 of an edge. (The corner whose normal is
+/// nearest may be any.)
 pub(super) const APART_TURN: f32 = 1.0 / (1.0 - 0.578 / 2.0);
 
 /// Highlights of which not more than this is seen are not looked at any closer, in shades.
 const FAINT: f32 = 0.05;
 
-/// Where something is, seen from a vertex.
+/// Place of something, seen from a vertex.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Towards {
     /// Unit.
@@ -45,7 +46,7 @@ pub(super) fn narrow([x, y, z]: [f64; 3]) -> Vec3 {
     Vec3::new(x as f32, y as f32, z as f32)
 }
 
-/// What reaches a triangle of a lamp.
+/// Light of a lamp on a triangle.
 struct Lamplight {
     /// At the corners.
     cosines: [f32; 3],
@@ -53,7 +54,7 @@ struct Lamplight {
     fall_off: f32,
     first: f32,
     second: f32,
-    /// What the direction to the lamp turns by.
+    /// Turn of the direction to the lamp.
     turn: f32,
 }
 
@@ -69,19 +70,19 @@ pub(super) struct OneLight<'a> {
     pub(super) shininess: f32,
     /// The edges of the parts that the triangle is looked at in, in edges of its own: 1 for the whole.
     pub(super) part: f32,
-    /// Whether light is meant as it goes on below the horizon, less than none.
+    /// True if light is meant as it goes on below the horizon, less than none.
     pub(super) below: bool,
 }
 
 impl OneLight<'_> {
-    /// In the light of a sun of intensity 1, its highlight aside.
+    /// Bounds the error in the light of a sun of intensity 1, its highlight aside.
     pub(super) fn body_of_sun(&self, towards: Vec3) -> f32 {
         let (most, least) = ends(self.normals.map(|normal| normal.dot(towards)));
         // Below the horizon nothing of the face sees it: N·l is linear.
         if most <= 0.0 && !self.below { 0.0 } else { self.kd * self.matt(most, least) }
     }
 
-    /// A sun's highlight. What is not more than `limit` is not looked at any closer.
+    /// A sun's highlight. A bound that is not more than `limit` is not refined.
     pub(super) fn highlight_of_sun(&self, towards: Vec3, intensity: f32, limit: f32) -> f32 {
         let cosines = self.normals.map(|normal| normal.dot(towards));
         if ends(cosines).0 <= 0.0 {
@@ -90,7 +91,8 @@ impl OneLight<'_> {
         intensity * self.highlight([towards; 3], cosines, 0.0, limit / intensity)
     }
 
-    /// For light from one direction, of cosines up to these: what is lost as normals are not made unit, and at the clamp.
+    /// Bounds the loss in light from one direction, of cosines up to these: as normals are not made unit, and at the
+    /// clamp.
     fn matt(&self, most: f32, least: f32) -> f32 {
         let (unit, clamp) = if self.below {
             (most.abs().max(least.abs()) * self.facet.shortening, 0.0)
@@ -106,7 +108,7 @@ impl OneLight<'_> {
         unit.min(BEND * turn * turn) + clamp.min(turn / 4.0)
     }
 
-    /// In the light of a lamp of intensity 1, its highlight aside.
+    /// Bounds the error in the light of a lamp of intensity 1, its highlight aside.
     pub(super) fn body_of_lamp(&self, to_lamp: [Towards; 3], inverse_range: f32) -> f32 {
         let Some(lamp) = self.lamp(to_lamp, inverse_range) else { return 0.0 };
         let Lamplight { cosines, fall_off, first, second, turn } = lamp;
@@ -118,7 +120,7 @@ impl OneLight<'_> {
         self.kd * (CURVATURE * curvature + fall_off * self.matt(most, least))
     }
 
-    /// A lamp's highlight. What is not more than `limit` is not looked at any closer.
+    /// A lamp's highlight. A bound that is not more than `limit` is not refined.
     pub(super) fn highlight_of_lamp(
         &self,
         to_lamp: [Towards; 3],
@@ -135,7 +137,7 @@ impl OneLight<'_> {
         intensity * (fading + fall_off * self.highlight(towards, cosines, turn, limit / intensity))
     }
 
-    /// What reaches the triangle of a lamp; nothing where that is out of range.
+    /// Light of a lamp that reaches the triangle; nothing where the lamp is out of range.
     fn lamp(&self, to_lamp: [Towards; 3], inverse_range: f32) -> Option<Lamplight> {
         let edge = self.facet.edge;
         let (farthest, nearest) = ends(to_lamp.map(|lamp| lamp.distance));
@@ -160,8 +162,8 @@ impl OneLight<'_> {
         })
     }
 
-    /// How far linear highlights are off: by their curvature, or by no more than the brightest. What is not more than
-    /// `limit` is not looked at any closer.
+    /// Bounds the error of linear highlights: by their curvature, or by no more than the brightest. A bound that is not
+    /// more than `limit` is not refined.
     fn highlight(&self, towards: [Vec3; 3], cosines: [f32; 3], light_turn: f32, limit: f32) -> f32 {
         let (most, least) = ends(cosines);
         let (_, nearest) = ends(self.to_eye.map(|eye| eye.distance));
@@ -242,7 +244,7 @@ fn ends([a, b, c]: [f32; 3]) -> (f32, f32) {
     (a.max(b).max(c), a.min(b).min(c))
 }
 
-/// How far Σ λᵢ max(0, cᵢ) and max(0, Σ λᵢ cᵢ) are apart at most.
+/// Bounds the distance between Σ λᵢ max(0, cᵢ) and max(0, Σ λᵢ cᵢ).
 pub(super) fn clamp_error(most: f32, least: f32) -> f32 {
     if most > 0.0 && least < 0.0 { most * least / (least - most) } else { 0.0 }
 }

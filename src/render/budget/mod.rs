@@ -1,6 +1,6 @@
 //! The error budget: for each triangle the cheapest shading that is known to keep within it.
 //!
-//! What the light at a point of a triangle should be, and what a shading makes of it, differ for three reasons, each of
+//! A shading's light at a point of a triangle differs from the right one for three reasons, each of
 //! which is bounded here from normals, lights and vertices:
 //!
 //! - **The model.** A linear shade is that of the sum N = Σ λᵢnᵢ of the vertices' normals; light at the point takes N
@@ -79,10 +79,10 @@ use crate::view::ObjectView;
 /// and `two-lights` within 2 shades 25 % more.)
 pub(super) const WORTH_SAMPLES: u64 = 5;
 
-/// What rounding adds to a linear shade that starts anew every 64 pixels: a half, and a quarter of drift.
+/// Rounding of a linear shade that starts anew every 64 pixels: a half, and a quarter of drift.
 const LINEAR: f32 = 0.75;
 
-/// What rounding adds to a shade that is exact before it: a half, and what f32 may be off.
+/// Rounding of a shade that is exact before it: a half, and the error of f32.
 const EXACT: f32 = 0.51;
 
 /// The shares of what is allowed, in quarters, that highlights may take where they are faint.
@@ -101,7 +101,7 @@ pub(super) struct Lit<'a> {
     /// Its mesh, if that is what is drawn.
     pub(super) whole: Option<&'a Shared<Mesh>>,
     pub(super) view: &'a ObjectView,
-    /// How near it comes, along the view.
+    /// Least distance, along the view.
     pub(super) nearest: f64,
     pub(super) lights: &'a Lights<'a>,
     pub(super) paints: &'a [SurfaceMaterial],
@@ -109,17 +109,17 @@ pub(super) struct Lit<'a> {
     pub(super) kernel: Kernel,
 }
 
-/// What is kept for an object's decisions.
+/// Error budget of an object: the data that its decisions are made from.
 #[derive(Debug, Default)]
 pub(super) struct Budget {
     /// Whose facets these are; of a mesh that was split, none.
     mesh: Option<Shared<Mesh>>,
     facets: Vec<Facet>,
-    /// One for as many faces as are sifted at a time.
+    /// One for as many faces as are culled at a time.
     clusters: Vec<Cluster>,
     /// The cones of each cluster's faces.
     cones: Vec<Cones>,
-    /// Which faces of each cluster are known to be linear; empty if `linear_unless_mixed`.
+    /// Faces of each cluster that are known to be linear; empty if `linear_unless_mixed`.
     linear: Vec<Linear>,
     /// One for each surface.
     strengths: Vec<Strength>,
@@ -131,42 +131,42 @@ pub(super) struct Budget {
     most_spread: f32,
     /// A quarter of ρ − 1, at most, of any triangle that no plane clips.
     bend: f32,
-    /// Whether there are more suns than a vertex has bits for, and whether there is one.
+    /// True if there are more suns than a vertex has bits for; and if there is one.
     many_suns: bool,
     one_sun: bool,
-    /// Whether there are suns alone, no more than that, and no highlight.
+    /// True if there are suns alone, no more than that, and no highlight.
     simple: bool,
     /// Then, whether linear shades keep within wherever all corners see the same suns and none is clamped.
     linear_unless_mixed: bool,
-    /// Whether linear shades, as in `linear_unless_mixed`, keep within where they are clamped, too.
+    /// True if linear shades, as in `linear_unless_mixed`, keep within where they are clamped, too.
     linear_unless_mixed_or_clamped: bool,
-    /// Whether that is so and there are but one sun and one surface: vertices then need no marks.
+    /// True if that is so and there are only one sun and one surface: vertices then need no marks.
     by_cones: bool,
-    /// What is left of what is allowed, for the clamp.
+    /// Rest of what is allowed, for the clamp.
     left_for_clamp: f32,
     /// The max spread of normals up to which a face's linear shades keep within everywhere; below 0 if there is none.
     harmless_spread: f32,
-    /// What lights it, and what it answers: what bodies' errors are known for.
+    /// Lights and materials that the bodies' errors are known for.
     suns: Vec<Beam>,
     known_lamps: Vec<LampBeam>,
     answers: Vec<Reflectance>,
     in_color: bool,
-    /// Whether no light and no material takes light away.
+    /// True if no light and no material takes light away.
     adds: bool,
-    /// What an edge of 1 turns the direction to the eye by, at most.
+    /// Greatest turn of the direction to the eye along an edge of 1.
     eye_turn: f32,
-    /// For each vertex, if there are highlights, the chord between the eye and the mirrored light that is nearest to it: no
-    /// more than the angle.
+    /// Chords between the eye and the mirrored light that is nearest to it, one for each vertex, if there are
+    /// highlights: no more than the angle.
     chords: Vec<f32>,
-    /// What an edge of 1 turns the direction to any lamp by, at most.
+    /// Greatest turn of the direction to any lamp along an edge of 1.
     lamp_turn: f32,
-    /// For each lamp 1 / range and its intensity, that of its brightest channel; and for each vertex where it is.
+    /// Lamps: 1 / range and the intensity, that of the brightest channel; and the place from each vertex.
     lamps: Vec<(f32, f32)>,
     to_lamps: Vec<Towards>,
 }
 
 impl Budget {
-    /// What light is worked out by.
+    /// Kernel that light is worked out by.
     pub(super) fn kernel(&self) -> Kernel {
         self.kernel.unwrap_or(Kernel::PORTABLE)
     }
@@ -307,8 +307,8 @@ impl Budget {
         }
     }
 
-    /// What is seen of a highlight on a face at most, if that is no more than three quarters of what is allowed: it is so
-    /// far from each corner, and from the nearest no point is farther than the shares that are in `light`.
+    /// Bounds a highlight on a face, if that is no more than three quarters of what is allowed: it is so far from each
+    /// corner, and from the nearest no point is farther than the shares that are in `light`.
     #[inline]
     fn faint_highlight(&self, indices: [u32; 3], facet: &Facet, strength: &Strength) -> Option<f32> {
         let [a, b, c] = indices.map(|i| self.chords[i as usize]);
@@ -324,7 +324,7 @@ impl Budget {
     }
 
     /// Marks the object's vertices with the lights that they see, and whether their shades are clamped on either side: what
-    /// clusters ask of them. Of three channels, `extras` has the shades.
+    /// clusters ask of them. `extras` has the shades of three channels.
     #[inline(never)]
     pub(super) fn mark(&self, object: &Lit<'_>, lit: &mut ShadedVertices, extras: &[VertexAttributes]) {
         let Lit { geometry, .. } = *object;
@@ -361,7 +361,7 @@ impl Budget {
         corners::mark(object, &mut lit.flags);
     }
 
-    /// Which faces of a cluster are known to be linear.
+    /// Faces of a cluster that are known to be linear.
     #[inline]
     pub(super) fn of_cluster(&self, cluster: usize) -> Linear {
         if self.is_linear_throughout() {
@@ -373,12 +373,12 @@ impl Budget {
         }
     }
 
-    /// Whether all of its faces are linear.
+    /// Returns whether all of its faces are linear.
     fn is_linear_throughout(&self) -> bool {
         self.most_spread <= self.harmless_spread
     }
 
-    /// Whether a face of a cluster is one of these.
+    /// Returns whether a face of a cluster is one of these.
     #[inline]
     fn is_one_of(&self, these: &Where, indices: [u32; 3], lit: &ShadedVertices) -> bool {
         let Where { unmixed, from } = *these;
@@ -389,20 +389,20 @@ impl Budget {
         same && !clamped && (from == 0.0 || corners.into_iter().all(|i| self.chords[i] >= from))
     }
 
-    /// Whether there are suns alone and no highlight, so that `decide_at_once` may say something.
+    /// Returns whether there are suns alone and no highlight, so that `decide_at_once` may say something.
     #[inline]
     pub(in crate::render) fn is_simple(&self) -> bool {
         self.simple
     }
 
-    /// Whether a vertex says by its shades which sun it sees: there is one, and no other light. Only what it sees by
-    /// less than a step of its shades goes unnoticed.
+    /// Returns whether a vertex says by its shades which sun it sees: there is one sun, and no other light. Only light
+    /// that is less than a step of its shades goes unnoticed.
     #[inline]
     fn by_shades(&self) -> bool {
         self.simple && self.one_sun && self.strengths.len() == 1
     }
 
-    /// Which faces of a chunk see the sun from all of their corners, or from none, as far as their cones say.
+    /// Finds the faces of a chunk that see the sun from all of their corners, or from none, as far as their cones say.
     #[inline]
     fn unmixed_by_cones(&self, chunk: usize) -> u64 {
         let all = self.suns.iter().map(|sun| self.cones[chunk].unmixed(sun.towards));
@@ -439,7 +439,7 @@ fn curve(shininess: f32) -> f32 {
     if shininess >= 1.0 { shininess } else { f32::INFINITY }
 }
 
-/// From which angle on `strength`·cosˢ is not more than `limit`: xˢ ≤ exp(−s(1 − x)).
+/// Angle from which on `strength`·cosˢ is not more than `limit`: xˢ ≤ exp(−s(1 − x)).
 fn faint_from(strength: f32, shininess: f32, limit: f32) -> f32 {
     if strength <= limit {
         return 0.0;
@@ -448,7 +448,7 @@ fn faint_from(strength: f32, shininess: f32, limit: f32) -> f32 {
     if cosine > -1.0 { libm::acosf(cosine) } else { f32::INFINITY }
 }
 
-/// Whether none takes light away.
+/// Returns whether no light and no material takes light away.
 fn adds(lights: &Lights<'_>, paints: &[SurfaceMaterial]) -> bool {
     let is_light = |intensity: f32, channels: [f32; 3]| intensity >= 0.0 && channels.iter().all(|c| *c >= 0.0);
     lights.suns.iter().all(|sun| is_light(sun.intensity, sun.channels))

@@ -53,7 +53,7 @@ pub(in crate::render) struct Question<'a> {
     pub(in crate::render) turned: bool,
     /// The corners' shades, or, of the channels, the three of each.
     pub(in crate::render) shades: [[u16; 3]; 3],
-    /// Where it is on the screen; of what is clipped nowhere.
+    /// Place on the screen; `None` if it is clipped.
     pub(in crate::render) vertices: Option<&'a [Vertex; 3]>,
 }
 
@@ -211,7 +211,7 @@ impl Faces<'_> {
         }
     }
 
-    /// Whether light is linear enough between two pixels of a row that are so far apart.
+    /// Returns whether light is linear enough between two pixels of a row that are so far apart.
     #[inline(never)]
     fn is_linear_between(&self, budget: &Budget, question: &Question<'_>, clamped: bool, apart: SampleSpacing) -> bool {
         // At most 16.
@@ -246,7 +246,7 @@ impl Faces<'_> {
         spare > 0.0 && self.model_error(budget, question, part, spare, None) <= spare
     }
 
-    /// What light from one source needs to know.
+    /// Gathers the input of the bounds for one source.
     pub(super) fn one_light<'a>(&self, budget: &'a Budget, question: &Question<'_>, part: f32) -> OneLight<'a> {
         let paint = &self.paints[usize::from(question.surface)];
         let side = if question.turned { -1.0 } else { 1.0 };
@@ -264,21 +264,21 @@ impl Faces<'_> {
         }
     }
 
-    /// Where a point is, from the corners.
+    /// Place of a point, from each corner.
     fn seen_from(&self, question: &Question<'_>, point: [f64; 3]) -> [Towards; 3] {
         let point = narrow(point);
         question.indices.map(|i| Towards::new(point - self.geometry.positions[i as usize]))
     }
 
-    /// How far linear shades are from the model, in shades; where that is more than `limit`, anything beyond it. `body`
-    /// is what they are off by without highlights, if that is known.
+    /// Bounds the error of linear shades against the model, in shades; anything beyond `limit` where it is more than
+    /// that. `body` is the error without highlights, if that is known.
     #[inline(never)]
     fn model_error(&self, budget: &Budget, question: &Question<'_>, part: f32, limit: f32, body: Option<f32>) -> f32 {
         self.model_error_in(budget, question, &self.one_light(budget, question, part), limit, body)
     }
 
-    /// How far linear shades are from the model in this light, in shades; where that is more than `limit`, anything
-    /// beyond it. `body` is what they are off by without highlights, if that is known.
+    /// Bounds the error of linear shades against the model in this light, in shades; anything beyond `limit` where it
+    /// is more than that. `body` is the error without highlights, if that is known.
     #[inline]
     pub(super) fn model_error_in(
         &self,
@@ -310,8 +310,8 @@ impl Faces<'_> {
         sum
     }
 
-    /// How far linear shades are from the model without highlights, in shades; where that is more than `limit`,
-    /// anything beyond it. Where the eye is makes no difference.
+    /// Bounds the error of linear shades against the model without highlights, in shades; anything beyond `limit` where
+    /// it is more than that. The eye's place makes no difference.
     #[inline(never)]
     fn body_error(&self, budget: &Budget, question: &Question<'_>, light: &OneLight<'_>, limit: f32) -> f32 {
         let answer = &self.paints[usize::from(question.surface)].answer;
@@ -342,9 +342,9 @@ impl Faces<'_> {
         most
     }
 
-    /// How far linear shades are from the model, in shades, found at points between the corners. The points divide each
-    /// edge in four: between them the function is no farther from linear than a part of a fourth of the size may be.
-    /// Where that is enough they divide it in two, and are half as many.
+    /// Error of linear shades against the model, in shades, found at points between the corners. The points divide
+    /// each edge in four: between them the function is no farther from linear than a part of a fourth of the size may
+    /// be. Where that is enough they divide it in two, and are half as many.
     #[inline(never)]
     fn error_between_samples(&self, budget: &Budget, question: &Question<'_>, limit: f32) -> f32 {
         let between = self.model_error(budget, question, 0.25, limit, None);
@@ -395,7 +395,7 @@ impl Faces<'_> {
         error
     }
 
-    /// How far intensities at as many of the points are from linear at most, in shades.
+    /// Bounds the distance of intensities at as many of the points from linear, in shades.
     #[inline]
     fn off_linear(&self, intensities: &[[f32; 3]], adds: bool) -> f32 {
         let (mut off, mut clamp) = (0.0_f32, 0.0_f32);

@@ -1,4 +1,4 @@
-//! Which faces of a chunk are linear, before any of them is looked at by itself.
+//! Linear faces of a chunk, found before any of them is looked at by itself.
 
 use super::cluster::{Linear, Where};
 use super::decided::{Bodies, Choice, Decided};
@@ -11,21 +11,21 @@ use crate::render::vertex::Geometry;
 
 const ENOUGH: u32 = 8;
 
-/// Whether it is in vain to decide on faces one by one: as long as the last [`ENOUGH`] that were decided on have to be lit at
-/// each pixel, small ones are, and only every eighth is decided on. Light bends alike on neighbours, and each answer costs
-/// some 100 ns. (`still` within 1 shade 1.19 to 1.03 of the time of `phong`.)
+/// Back-off: as long as the last [`ENOUGH`] faces that were decided on all needed light at each pixel, only every
+/// eighth small face is decided on, and the others are lit. Light bends alike on neighbours, and each answer costs some
+/// 100 ns. (`still` within 1 shade 1.19 to 1.03 of the time of `phong`.)
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::render) struct Vain {
     in_a_row: u32,
     left_out: u32,
     chunks_left_out: u32,
-    /// Faces that bounds were found for by eights, and those that they settled.
+    /// Faces that bounds were found for by eights, and those that they decided.
     bounded: u32,
     settled: u32,
 }
 
 impl Vain {
-    /// Whether the next small one is left out.
+    /// Returns whether the next small face is left out.
     pub(in crate::render) fn is_it(&mut self) -> bool {
         if self.in_a_row < ENOUGH || self.left_out == 7 {
             self.left_out = 0;
@@ -35,9 +35,9 @@ impl Vain {
         true
     }
 
-    /// Whether the next chunk is left out, where bounds are found for eight at once: after longer, as that takes a tenth as
-    /// much for a face, or as long as they settle less than a quarter. (`two-lights` within 2 shades takes 7 % less so, `torus`
-    /// within 1 shade 6 %.)
+    /// Returns whether the next chunk is left out, where bounds are found for eight at once: after longer, as that
+    /// takes a tenth as much for a face, or as long as they decide less than a quarter. (`two-lights` within 2 shades
+    /// takes 7 % less so, `torus` within 1 shade 6 %.)
     fn is_chunk(&mut self) -> bool {
         let mostly = self.bounded >= 4 * ENOUGH && self.settled < self.bounded / 4;
         if (self.in_a_row < 4 * ENOUGH && !mostly) || self.chunks_left_out == 3 {
@@ -48,7 +48,7 @@ impl Vain {
         true
     }
 
-    /// Counts the last faces that were bounded by eights, and those settled so. Those of long ago count less and less.
+    /// Counts the last faces that were bounded by eights, and those decided so. Those of long ago count less and less.
     fn by_eights(&mut self, bounded: u32, settled: u32) {
         (self.bounded, self.settled) = (self.bounded / 2 + bounded, self.settled / 2 + settled);
         if settled != 0 {
@@ -63,8 +63,8 @@ impl Vain {
 }
 
 impl Faces<'_> {
-    /// Those of a chunk's faces that are known to be linear, a bit for each, among those in `left`: from before, or from what is
-    /// known of the chunk, or by bounds that are found for eight at once; and those that such bounds are too much for.
+    /// Finds a chunk's faces that are known to be linear, a bit for each, among those in `left`: from before, or from
+    /// the chunk's bounds, or by bounds that are found for eight at once; and those that such bounds are too much for.
     /// `first` is the first one's number, `back` has the bits of those that show their other side.
     #[inline]
     pub(in crate::render) fn settled(
@@ -115,8 +115,8 @@ impl Faces<'_> {
         (settled | more, hopeless)
     }
 
-    /// Those that lie among others which all see the sun, or all do not; and of the others those that are linear by their own
-    /// corners' normals. (By `decide_at_once` these take 14 ns each, of 32 that it takes to draw one.)
+    /// Finds faces among others which all see the sun, or all do not; and of the other faces those that are linear by
+    /// their own corners' normals. (By `decide_at_once` these take 14 ns each, of 32 that it takes to draw one.)
     #[inline]
     fn by_cones(&self, budget: &Budget, (first, back): (usize, u64), asked: u64) -> u64 {
         let unmixed = asked & budget.unmixed_by_cones(first / sift::MOST);
@@ -124,8 +124,8 @@ impl Faces<'_> {
         if mixed == 0 { unmixed } else { unmixed | self.by_normals(budget, (first, back), mixed) }
     }
 
-    /// With P the most that a corner lies in the light and S the most that one lies in the dark, linear shades are off by
-    /// PS / (P + S), and bent by a share of P.
+    /// Finds linear faces by normals. With P the most that a corner lies in the light and S the most that one lies in
+    /// the dark, linear shades are off by PS / (P + S), and bent by a share of P.
     #[inline(never)]
     fn by_normals(&self, budget: &Budget, (first, back): (usize, u64), asked: u64) -> u64 {
         let ([sun], [strength]) = (self.lights.suns, budget.strengths.as_slice()) else { return 0 };
@@ -158,8 +158,8 @@ impl Faces<'_> {
         linear
     }
 
-    /// Those whose corners see the same suns and are not clamped, or whose normals are so near to each other that this does no
-    /// harm.
+    /// Finds faces whose corners see the same suns and are not clamped, or whose normals are so near to each other that
+    /// this does no harm.
     #[inline]
     fn unmixed(&self, budget: &Budget, first: usize, asked: u64) -> u64 {
         let (triangles, facets) = (&self.geometry.triangles[first..], &budget.facets[first..]);
@@ -172,7 +172,7 @@ impl Faces<'_> {
         unmixed | those(asked & !unmixed, |at| facets[at].spread <= budget.harmless_spread)
     }
 
-    /// Those that are known to be linear at once.
+    /// Finds faces that are known to be linear at once.
     #[inline(never)]
     fn linear_at_once(&self, budget: &Budget, (first, back): (usize, u64), unknown: u64) -> u64 {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
@@ -184,7 +184,7 @@ impl Faces<'_> {
         })
     }
 
-    /// What bounds for eight at once say.
+    /// Asks the bounds for eight at once.
     #[inline(never)]
     fn linear_by_eights(
         &self,
@@ -216,7 +216,7 @@ impl Faces<'_> {
     }
 }
 
-/// Those of the bits for which this holds.
+/// Returns those of the bits for which this holds.
 #[inline(always)]
 fn those(mut bits: u64, is_one: impl Fn(usize) -> bool) -> u64 {
     let mut those = 0;
@@ -228,7 +228,7 @@ fn those(mut bits: u64, is_one: impl Fn(usize) -> bool) -> u64 {
     those
 }
 
-/// Those on which something has been decided.
+/// Returns the faces on which something has been decided.
 fn chosen(choices: &[Choice], asked: u64) -> u64 {
     those(asked, |at| choices[at] != Choice::Unknown)
 }

@@ -13,8 +13,8 @@ const LANES: usize = 16;
 
 #[repr(C, align(64))]
 struct Constants {
-    /// Where the corners of the first eight faces stand in two vectors; of the last eight, in the two vectors from the second
-    /// on.
+    /// Places of the corners of the first eight faces in two vectors; those of the last eight, in the two vectors from
+    /// the second on.
     first: [[u32; LANES]; 3],
     last: [[u32; LANES]; 3],
     /// The lower and the upper halves of two vectors of pairs.

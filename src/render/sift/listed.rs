@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// By every kernel the faces are those whose bits are set, in order, and they come out as batches and a rest.
+        /// Every kernel lists the faces whose bits are set, in order, and they come out as batches and a rest.
         #[test]
         fn faces_are_listed_in_order(
             parts in prop::collection::vec((any::<u64>(), any::<u64>(), any::<u64>(), any::<bool>()), 0..20),

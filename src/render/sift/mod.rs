@@ -1,5 +1,5 @@
-//! Which faces are turned away and which cover no pixel centre, many at a time: most of a fine model's are done with
-//! here, by the places of their corners alone.
+//! Culling of many faces at a time, by the places of their corners alone: back faces and those that cover no pixel
+//! centre. Most of a fine model's faces end here.
 
 use super::lit::Place;
 use crate::raster::Rect;
@@ -16,33 +16,33 @@ mod x86;
 /// Faces at a time.
 pub(super) const MOST: usize = 64;
 
-/// What faces may be left out by: pixels that are drawn, and whose processor finds out.
+/// Culling by cover: the pixels that are drawn, and the kernel that decides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sieve {
     pub(super) clip: Rect,
     pub(super) kernel: Kernel,
 }
 
-/// What becomes of up to 64 faces: a bit for each, the first lowest.
+/// Results for up to 64 faces: a bit for each, the first lowest.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct Sifted {
     /// A corner needs clipping. The other bits of such a face are 0.
     pub(super) clipped: u64,
     /// Turned towards the eye.
     pub(super) front: u64,
-    /// Turned away. What is neither has no area.
+    /// Back faces. A face that is neither has no area.
     pub(super) back: u64,
-    /// A pixel centre of the sieve's rectangle lies in the face's box, its left and top sides included; and if the box has
-    /// but 2 × 2, one of them in the face.
+    /// A pixel centre of the clip rectangle lies in the face's box, its left and top sides included; and if the box has
+    /// only 2 × 2, one of them in the face.
     pub(super) covers: u64,
 }
 
 impl Sieve {
-    /// One for those that want to know all faces: what it says of pixel centres says nothing.
+    /// One for those that want to know all faces: its answer on pixel centres means nothing.
     pub(super) const EVERYTHING: Self = Self { clip: Rect { x0: 0, y0: 0, x1: 0, y1: 0 }, kernel: Kernel::PORTABLE };
 
-    /// Sifts up to 64 faces of these corners. Whether pixels are covered is said of those that have an area, and if it
-    /// `culls`, only of those that are turned towards the eye.
+    /// Culls up to 64 faces of these corners. The cover of pixels is found for those that have an area, and if it
+    /// `culls`, only for those that are turned towards the eye.
     #[inline]
     pub(super) fn sift(&self, places: &[Place], triangles: &[[u32; 3]], culls: bool) -> Sifted {
         // Inside a frame, at most 4,096.
@@ -100,14 +100,14 @@ impl Sifted {
 /// The longer side, in pixels, of the box of a face whose pixels are looked at one by one.
 const TINY_SIDE: i32 = 2;
 
-/// Whether a triangle has one of four pixels: that at the origin, the next, and the two below. Of corners less than
-/// 1,024 units away.
+/// Returns whether a triangle has one of four pixels: that at the origin, the next, and the two below. Its corners must
+/// be less than 1,024 units away.
 ///
 /// ```text
-/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if turned over, negative
+/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
 /// ```
 ///
-/// On an edge lies inside if it is a left one or a top one: of others E has to be one step more.
+/// A point on an edge lies inside if the edge is a left or a top one; for others E has to be one step more.
 fn covers_one_of_four(a: (i32, i32), b: (i32, i32), c: (i32, i32)) -> bool {
     let area = (b.0 - a.0) * (c.1 - a.1) - (c.0 - a.0) * (b.1 - a.1);
     let (b, c) = if area < 0 { (c, b) } else { (b, c) };

@@ -104,7 +104,7 @@ unsafe fn sift_eight(places: &[Place], triangles: &[[u32; 3]; 8], sides: [i32; 4
     [clipped, front, back, covers]
 }
 
-/// Not `covers_one_of_four`.
+/// Negation of `covers_one_of_four`.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn covers_none_of_four(a: Point, b: Point, c: Point) -> u64 {
@@ -112,7 +112,7 @@ fn covers_none_of_four(a: Point, b: Point, c: Point) -> u64 {
         |(ax, ay): Point, (bx, by): Point| _mm256_sub_epi32(_mm256_mullo_epi32(ax, by), _mm256_mullo_epi32(ay, bx));
     // The edges at the origin, whose sum is twice the area.
     let (ab, bc, ca) = (cross(a, b), cross(b, c), cross(c, a));
-    // −1 if it is negative: then all is turned over.
+    // −1 if it is negative: then all signs are exchanged.
     let turned = _mm256_srai_epi32(_mm256_add_epi32(_mm256_add_epi32(ab, bc), ca), 31);
     let ab = at_four(ab, a, b, turned);
     let bc = at_four(bc, b, c, turned);
@@ -160,7 +160,7 @@ fn first_centre(units: __m256i) -> __m256i {
     _mm256_srai_epi32(_mm256_add_epi32(units, _mm256_set1_epi32(127)), 8)
 }
 
-/// Where two ranges overlap.
+/// Overlap of two ranges.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn overlap(from: __m256i, to: __m256i, first: __m256i, end: __m256i) -> __m256i {

@@ -21,7 +21,7 @@ mod lanes;
 #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
 mod x86;
 
-/// What is drawn of an object: its mesh, or what tessellation made of it.
+/// Geometry drawn of an object: its mesh, or the result of tessellation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Geometry<'a> {
     pub(super) positions: &'a [Vec3],
@@ -32,7 +32,7 @@ pub(super) struct Geometry<'a> {
     pub(super) triangle_surfaces: &'a [u16],
 }
 
-/// What effects need of a vertex, for its front; and the channels of its back.
+/// Attributes of a vertex for effects, on its front; and the channels of its back.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct VertexAttributes {
     pub(super) front: Attributes,
@@ -214,7 +214,7 @@ fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize
     }
 }
 
-/// Points with their normals turned round.
+/// Points with their normals reversed.
 fn from_behind(points: &Points) -> Points {
     let [x, y, z, ..] = points.map(|values| values.map(|value| -value));
     [x, y, z, points[3], points[4], points[5]]
@@ -246,7 +246,7 @@ fn texels(part: f32, size: u32) -> i32 {
     libm::floor(near * 65_536.0 + 0.5) as i32
 }
 
-/// Where an image of the surroundings is mirrored: by the normal as the eye sees it.
+/// Coordinates at which an image of the surroundings is mirrored: by the normal as the eye sees it.
 #[inline(never)]
 pub(super) fn environment_coordinates(
     geometry: &Geometry<'_>,
@@ -265,7 +265,7 @@ pub(super) fn environment_coordinates(
     }
 }
 
-/// How thick the fog is before every vertex.
+/// Density of the fog before every vertex.
 #[inline(never)]
 pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, extras: &mut [VertexAttributes]) {
     for (extra, &position) in extras.iter_mut().zip(geometry.positions) {
@@ -273,7 +273,7 @@ pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, 
     }
 }
 
-/// How thick the fog is at a distance along the view, 0 to 0xFF00.
+/// Density of the fog at a distance along the view, 0 to 0xFF00.
 pub(super) fn fog_level(fog: &Fog, distance: f64) -> U8F8 {
     U8F8::from_intensity(fog.level(distance) as f32, 0, Ramp::WHOLE.entries())
 }

@@ -36,7 +36,7 @@ pub(crate) struct Tested {
     pub(crate) length: u32,
     /// Shade, and above it the step.
     pub(crate) paint: u32,
-    /// Depths, the whole parts in the upper halves, modulo 2⁶⁴.
+    /// Depths, the integer parts in the upper halves, modulo 2⁶⁴.
     pub(crate) z: i64,
     pub(crate) dz: i64,
 }

@@ -1,4 +1,4 @@
-//! All that is measured for the claims, and what to say about it.
+//! Figures for the claims, and the words for them.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -18,10 +18,10 @@ pub(super) struct Sphere {
     pub(super) whole: Errors,
     /// The share of pixels that show the wrong face, for `fine` and for `whole`.
     pub(super) wrong_faces: [f64; 2],
-    /// With a highlight, against `lit`: the default shading, and Phong.
+    /// Errors with a highlight, against `lit`: the default shading, and Phong.
     pub(super) linear: Errors,
     pub(super) phong: Errors,
-    /// For a frame, in nanoseconds.
+    /// Nanoseconds for a frame.
     pub(super) linear_time: f64,
     pub(super) phong_time: f64,
     /// Ratios of times: of `gouraud-8.8` to flat, of Phong and Phong's table to `gouraud-8.8`.
@@ -33,7 +33,7 @@ pub(super) struct Sphere {
 /// About everything.
 #[derive(Clone, Debug)]
 pub(super) struct Figures {
-    /// From coarse to fine.
+    /// Spheres from coarse to fine.
     pub(super) spheres: Vec<Sphere>,
     /// 8.8, 8.8 started anew, and 16.16, against `gouraud`.
     pub(super) fixed: [Errors; 3],
@@ -41,7 +41,7 @@ pub(super) struct Figures {
     pub(super) float: Errors,
     /// Ratios of times to the default shading's: 8.8, 16.16 and float.
     pub(super) of_default: [f64; 3],
-    /// How far linear and perspective-correct shades are from each other, both exact.
+    /// Distance of linear and perspective-correct shades from each other, both exact.
     pub(super) linear_on_torus: Errors,
     pub(super) linear_on_floor: Errors,
     pub(super) hyperbolic_to_linear: f64,

@@ -1,13 +1,13 @@
-//! What the old texts claim, each measured on scenes made for it, so whatever the input is.
+//! Claims of the old texts, each measured on scenes made for it, so whatever the input is.
 //!
-//! A claim is a sentence; to measure it one has to say what its words mean. That is said in numbers in `verdict`, and
+//! A claim is a sentence. To measure it one has to say what its words mean. `verdict` says that in numbers, and
 //! nothing else decides: the verdicts are worked out from the figures.
 //!
 //! | file | what |
 //! |---|---|
 //! | `scenes` | spheres of few and of many faces, a torus, a floor that runs away from the eye |
 //! | `figures` | everything that is measured, and the words for it |
-//! | `verdict` | what the words of a claim come to in numbers |
+//! | `verdict` | the words of a claim in numbers |
 
 mod figures;
 mod scenes;
@@ -26,7 +26,7 @@ use crate::truth::Standard;
 use mode13h::render::{Renderer, Shading};
 use mode13h::scene::Scene;
 
-/// What is drawn by what.
+/// Scenes, and the shadings that draw them.
 struct Entrants {
     scenes: Vec<Vec<Scene>>,
     /// A way, and the number of a scene.

@@ -1,4 +1,4 @@
-//! What claims are measured on.
+//! Scenes that claims are measured on.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;

@@ -1,4 +1,4 @@
-//! What the words of a claim come to in numbers.
+//! Verdicts: the words of a claim in numbers.
 
 use crate::cost::Verdict;
 
@@ -17,13 +17,13 @@ pub(super) const LITTLE_MORE: f64 = 1.25;
 /// Three additions against one.
 pub(super) const THREE: f64 = 3.0;
 
-/// What two root mean squares may differ by to have met, in shades.
+/// Greatest difference of two root mean squares that have met, in shades.
 pub(super) const MET: f64 = 0.1;
 
 /// The max ratio of times that counts as equally fast: a tenth slower.
 pub(super) const AS_FAST: f64 = 1.1;
 
-/// That the first of two is so, and the second.
+/// Verdict on both: the first of two is so, and the second.
 pub(super) fn both(one: bool, other: bool) -> Verdict {
     match (one, other) {
         (true, true) => Verdict::Holds,
@@ -32,7 +32,7 @@ pub(super) fn both(one: bool, other: bool) -> Verdict {
     }
 }
 
-/// That a list falls: everywhere, or from its first to its last at least.
+/// Verdict on whether a list falls: everywhere, or from its first to its last at least.
 pub(super) fn falls(list: &[f64]) -> Verdict {
     let ends = list.first().zip(list.last()).is_some_and(|(first, last)| last < first);
     both(ends, ends && list.windows(2).all(|pair| pair[1] <= pair[0]))

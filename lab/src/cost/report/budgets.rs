@@ -8,7 +8,7 @@ use crate::cost::{BudgetRow, Study};
 /// The share of covered pixels that must be within the budget.
 const PROMISE: f64 = 0.999;
 
-/// How much longer than the best single shading a budget may take.
+/// Greatest time of a budget, in times of the best single shading.
 const LIMIT: f64 = 1.05;
 
 /// The table and its chart.
@@ -60,7 +60,7 @@ fn line(row: &BudgetRow) -> Markup {
     } }
 }
 
-/// Whether the promise of accuracy and the limit of time are kept.
+/// Verdict on the promise of accuracy and on the limit of time.
 pub(super) fn verdict(row: &BudgetRow) -> String {
     let accuracy = if row.within >= PROMISE { "accuracy kept" } else { "accuracy not kept" };
     let time = match (row.best_single_shading, row.ratio) {

@@ -205,7 +205,7 @@ pub(super) fn name(root: &Area<'_>, text: &str, at: (i32, i32), place: Rectangle
     Ok(root.draw(&Text::new(text.to_string(), (x, middle), style))?)
 }
 
-/// What the marks mean, above the chart.
+/// Key to the marks, above the chart.
 fn key(root: &Area<'_>, no_budget: bool) -> Outcome {
     let style = ("sans-serif", LETTERS).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
     let y = 18;

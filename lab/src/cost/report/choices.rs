@@ -1,4 +1,4 @@
-//! What else may be chosen, and what the sources claim.
+//! Other choices, and the sources' claims.
 
 use maud::{Markup, html};
 

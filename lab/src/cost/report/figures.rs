@@ -1,4 +1,4 @@
-//! Numbers as text. What is not a finite number is a dash.
+//! Numbers as text. A number that is not finite is a dash.
 
 use std::fmt::Display;
 
@@ -83,7 +83,7 @@ pub(super) fn ratio(ratio: f64) -> String {
     }
 }
 
-/// From – to.
+/// Formats an interval: from – to.
 pub(super) fn interval((low, high): (f64, f64)) -> String {
     format!("{} to {}", ratio(low), ratio(high))
 }

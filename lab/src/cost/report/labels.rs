@@ -1,4 +1,4 @@
-//! Where names stand beside the points of a chart.
+//! Places of names beside the points of a chart.
 
 /// A rectangle in pixels: left, top, right, bottom.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -1,4 +1,4 @@
-//! How it was measured.
+//! Method of measuring.
 
 use maud::{Markup, html};
 

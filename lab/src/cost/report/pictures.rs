@@ -19,7 +19,7 @@ pub(super) const COLORS: [(f32, &str, u32); 7] = [
     (f32::INFINITY, "more", 0xfc_fdbf),
 ];
 
-/// Where none was taken: the background, and pixels that show another face than they should.
+/// Colour where no error was taken: the background, and pixels that show another face than they should.
 pub(super) const NONE: u32 = 0x8a_9099;
 
 /// A frame of greys, as a URI; none if it is not one of 320 × 200.

@@ -7,8 +7,8 @@ use mode13h::render::Shading;
 /// Below this many shades a difference between two largest errors is none that anyone sees.
 const NOTHING: f64 = 0.05;
 
-/// What a study comes to, in two sentences, whatever it found: what 8.8 arithmetic costs and what it is off by, and
-/// what light at every pixel removes of the rest. Of other shadings the fastest and the nearest, if there is no 8.8.
+/// Summary of a study in two sentences, whatever it found: the cost and the error of 8.8 arithmetic, and the part of
+/// the rest that light at every pixel removes. If there is no 8.8, the fastest and the nearest of the other shadings.
 /// Bounds are rounded up.
 #[must_use]
 pub fn summary(study: &Study) -> [String; 2] {
@@ -94,7 +94,7 @@ fn of_others(study: &Study) -> [String; 2] {
     [first, second]
 }
 
-/// What `row` takes of the time of `other`, called `name`.
+/// Compares the time of `row` with that of `other`, called `name`.
 fn takes(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
     let times = row.ratio / other.ratio;
     if row.as_fast_as.contains(&other.shading) || other.as_fast_as.contains(&row.shading) {

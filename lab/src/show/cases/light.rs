@@ -37,7 +37,7 @@ pub(super) fn scene(mesh: Option<Mesh>, view: View) -> Scene {
     scene
 }
 
-/// What is left of a case: a mesh, its lights, and the shades that the fault gives its vertices.
+/// Rest of a case: a mesh, its lights, and the shades that the fault gives its vertices.
 struct Lit {
     mesh: Option<Mesh>,
     /// The vertices' positions as the fault has them: the engine may split vertices.
@@ -70,7 +70,7 @@ fn sun(towards: Vector) -> Light {
     Light::sun(towards.map(|c| c as f32))
 }
 
-/// For each vertex the sum of its faces' unit normals, as it is.
+/// Sums of the unit normals of each vertex's faces, as they are.
 fn sums(positions: &[Vector], triangles: &[[usize; 3]]) -> Vec<Vector> {
     let mut sums = vec![[0.0; 3]; positions.len()];
     for triangle in triangles {

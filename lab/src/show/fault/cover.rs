@@ -59,7 +59,7 @@ struct TableRow {
     count: usize,
 }
 
-/// To this part of a pixel a row's slope is cut. In 8.8 the same shows after a few hundred rows; a
+/// Part of a pixel that a row's slope is cut to. In 8.8 the fault shows after a few hundred rows; a
 /// picture has some thirty.
 const SLOPE: f64 = 16.0;
 

@@ -28,7 +28,7 @@ pub(in crate::show) fn unit(v: Vector) -> Vector {
 pub(in crate::show) struct View {
     pub(in crate::show) size: (usize, usize),
     pub(in crate::show) eye: Vector,
-    /// From the upper to the lower edge, in radians.
+    /// Angle from the upper to the lower edge, in radians.
     pub(in crate::show) field_of_view: f64,
 }
 
@@ -42,7 +42,7 @@ impl View {
         Corner { x: width / 2.0 + scale * x / w, y: height / 2.0 - scale * y / w, shade, depth: 1.0 / w }.rounded()
     }
 
-    /// How far in front of the eye a point is.
+    /// Distance of a point in front of the eye.
     pub(in crate::show) fn w(&self, point: Vector) -> f64 {
         self.eye[2] - point[2]
     }

@@ -11,7 +11,7 @@ struct Row {
     right: (f64, f64),
 }
 
-/// Where the edges of a convex polygon cross the centre of row `y`; `None` where they do not.
+/// Crossings of a convex polygon's edges with the centre of row `y`; `None` where there is none.
 fn row(corners: &[Corner], y: i32) -> Option<Row> {
     let yc = f64::from(y) + 0.5;
     let mut ends = Vec::new();

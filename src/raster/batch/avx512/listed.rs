@@ -19,10 +19,10 @@ use crate::raster::shade::RESEED;
 /// Spans at most.
 const CAPACITY: usize = 128;
 const SIXTEEN: usize = 2 * LANES;
-/// Groups of at most so many rows are listed together.
+/// Most rows of a group for which the rows enter the list together.
 pub(in super::super) const FEW_ROWS: i32 = 4;
 
-/// What the assembly reads and writes.
+/// Input and output of the assembly.
 #[repr(C, align(64))]
 pub(in super::super) struct Spans {
     // One entry for each span. Up to sixteen are written at a time; those that are no spans are written over.
@@ -31,7 +31,7 @@ pub(in super::super) struct Spans {
     length: MaybeUninit<[u32; CAPACITY + SIXTEEN]>,
     /// Shade, and above it the step.
     paint: MaybeUninit<[u32; CAPACITY + SIXTEEN]>,
-    /// Depths, the whole parts in the upper halves.
+    /// Depths, the integer parts in the upper halves.
     z: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
     dz: MaybeUninit<[i64; CAPACITY + SIXTEEN]>,
     /// The first pixels of the rows of eight triangles, up to four rows each.
@@ -49,12 +49,12 @@ pub(in super::super) struct Spans {
     drawn: u32,
     /// Pixels that were nearer.
     nearer: u32,
-    /// How many pixels and cells there are.
+    /// Number of pixels and cells.
     pixels: u32,
     cells: u32,
     pitch: u32,
     width: u32,
-    /// Pixels to the left of what is listed, in each row, ...
+    /// Pixels to the left of those in the list, in each row, ...
     skipped: f64,
     /// ... and the most that a span has.
     longest: f64,
@@ -156,7 +156,7 @@ impl Spans {
     }
 
     /// Lists all rows of triangle `i` of a group, and draws whenever there is no room left. Where a row may have more than
-    /// one of the pieces that start anew, a span is one of these. What lies outside of `clip`, if there is one, is left out.
+    /// one of the pieces that start anew, a span is one of these. Parts outside `clip`, if there is one, are left out.
     /// `pixels` and `cells` are always the same. Without `planes` there is no depth test.
     ///
     /// # Safety
@@ -206,7 +206,7 @@ impl Spans {
         (self.pixels, self.cells) = (most(pixels.len()), most(cells.len()));
     }
 
-    /// Lists all small triangles of a group of few rows, eight at a time, like [`add`](Self::add).
+    /// Lists all small triangles of a group of short ones, eight at a time, like [`add`](Self::add).
     /// There are `triangles` of them, of at most [`FEW_ROWS`] rows. They are put into their order afterwards.
     ///
     /// # Safety

@@ -1,4 +1,4 @@
-//! `sieve::sieve_by` of triangles that were sifted before, sixteen at a time.
+//! Culling of triangles that were culled before, sixteen at a time: `sieve::sieve_by`.
 
 use core::arch::asm;
 
@@ -29,8 +29,8 @@ pub(in super::super) unsafe fn sieve(batch: &Batch, clip: Rect, kept: &mut Kept)
     kept.count = count;
 }
 
-/// Writes what becomes of those of sixteen triangles that are kept one after the other, and anything behind them. Says how many
-/// they are.
+/// Writes the classes of those of sixteen triangles that are kept one after the other, and anything behind them.
+/// Returns their number.
 ///
 /// # Safety
 /// See `sieve`; `first` and 16 are together no more than the capacity.
@@ -92,7 +92,7 @@ unsafe fn sieve_sixteen(
             "vpsubd     zmm19, zmm19, zmm18",
             "vpcmpd     k3{{k2}}, zmm17, dword ptr [{c} + 4]{{1to16}}, 2",
             "vpcmpd     k3{{k3}}, zmm19, dword ptr [{c} + 8]{{1to16}}, 2",
-            // It is no larger than a tall one.
+            // It is no larger than `Large` allows.
             "vpbroadcastd zmm22, dword ptr [{c} + 12]",                 // 1,023
             "vpcmpd     k4, zmm20, dword ptr [{c} + 16]{{1to16}}, 2",
             "vpcmpd     k4{{k4}}, zmm21, dword ptr [{c} + 20]{{1to16}}, 2",
@@ -136,7 +136,7 @@ unsafe fn sieve_sixteen(
 #[repr(C, align(64))]
 struct Constants {
     numbers: [i32; LANES],
-    /// What becomes of another, and its number.
+    /// Classes of the other triangles, with their numbers.
     others: [i32; LANES],
 }
 

@@ -13,11 +13,11 @@ pub(super) struct Rows {
     pub(super) cell: __m256i,
     pub(super) length: __m256i,
     pub(super) paint: __m256i,
-    /// Depths of numbers 0 to 3 and 4 to 7, the whole parts in the upper halves.
+    /// Depths of numbers 0 to 3 and 4 to 7, the integer parts in the upper halves.
     pub(super) z: [__m256i; 2],
 }
 
-/// Where the next row of eight triangles begins.
+/// Beginnings of the next row of eight triangles.
 pub(super) struct Columns {
     at: __m256i,
     cell: __m256i,

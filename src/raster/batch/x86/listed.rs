@@ -1,9 +1,10 @@
 //! Small triangles by AVX2: their rows as a list in arrays, four rows at a time, and the list to pixels.
 //!
-//! What `rows::list` does row by row is done here for four rows at once, and what is no row is squeezed out of the
-//! vectors, by a table of the sixteen ways to do so: no branch asks how many rows a triangle has. Where the eight of a group
-//! have at most four rows each, a row of all eight is worked out at once, and then put into the triangles' order; else eight
-//! rows of one. (Whole frames of triangles of 8 pixels 29 ns a face, where row by row they are 36.7; of 2.7 22 and 26.4.)
+//! Four rows at once are worked out here, where `rows::list` goes row by row. Empty rows are removed from the vectors
+//! by a table of the sixteen ways to do so: no branch asks how many rows a triangle has. Where the eight of a group
+//! have at most four rows each, a row of all eight is worked out at once, and then put into the triangles' order;
+//! otherwise eight rows of one. (Whole frames of triangles of 8 pixels 29 ns a face, where row by row they are 36.7; of
+//! 2.7 22 and 26.4.)
 
 use core::arch::x86_64::*;
 use core::mem::MaybeUninit;
@@ -20,7 +21,7 @@ use crate::span::nearer::{self, Tested};
 
 /// Spans at most, ...
 const CAPACITY: usize = 192;
-/// ... and rows that are put in at a time. What is behind those that are spans is written over.
+/// ... and rows that are put in at a time. Those behind the last span are written over.
 const FOUR: usize = 4;
 /// The most rows of a group.
 const MOST: usize = LANES * LANES;
@@ -53,7 +54,7 @@ pub(super) fn draw<const DEPTHS: bool>(
     spans.drawn(DEPTHS)
 }
 
-/// Which of four are left, one after the other: the places of 32 bits in a vector of 64-bit numbers, ...
+/// Places of those of four that are left, one after the other: of 32 bits in a vector of 64-bit numbers, ...
 static WIDE: [[u32; LANES]; 16] = orders().0;
 /// ... and those of bytes in one of 32-bit numbers; ...
 static NARROW: [[u8; 16]; 16] = orders().1;
@@ -111,11 +112,11 @@ struct Spans {
     length: Numbers,
     /// Shade, and above it the step.
     paint: Numbers,
-    /// Depths, the whole parts in the upper halves.
+    /// Depths, the integer parts in the upper halves.
     z: Depths,
     dz: Depths,
     count: usize,
-    /// Pixels of all that was listed, in four parts.
+    /// Pixels of all that was put into the list, in four parts.
     covered: __m128i,
     /// Spans that have been drawn, and pixels that were nearer.
     spans: u32,
@@ -299,7 +300,7 @@ impl Spans {
         self.count = count + usize::from(COUNT[kept]);
     }
 
-    /// Draws what is listed, and empties the list.
+    /// Draws the span list, and empties it.
     #[target_feature(enable = "avx2,fma")]
     fn draw<const DEPTHS: bool>(&mut self, pixels: &mut [u8], cells: &mut [u32]) {
         let count = self.count.min(CAPACITY);

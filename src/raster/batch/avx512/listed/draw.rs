@@ -6,7 +6,7 @@ use core::mem::offset_of;
 use super::{CONSTANTS, Spans};
 
 impl Spans {
-    /// Draws what is listed, and empties the list.
+    /// Draws the span list, and empties it.
     ///
     /// # Safety
     /// See `add`; `pixels` and `cells` are those of which it was told.

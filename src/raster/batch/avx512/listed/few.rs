@@ -1,4 +1,4 @@
-//! Rows of triangles that have few: of eight triangles at once, put into the order of the list, or eight rows of one triangle
+//! Rows of short triangles: of eight triangles at once, put into the order of the list, or eight rows of one triangle
 //! after the other.
 
 use core::arch::asm;
@@ -7,7 +7,7 @@ use core::mem::offset_of;
 use super::{CONSTANTS, Planes, SIXTEEN, Spans};
 use crate::raster::batch::rows::{Edges, Group, LANES};
 
-/// The order in which sixteen rows out of four times eight are listed: triangle by triangle.
+/// Order in which sixteen rows out of four times eight enter the span list: triangle by triangle.
 #[repr(C, align(64))]
 pub(super) struct Order {
     /// 0: which row of a triangle's eight: those of the first row are numbers 0 to 7, those of the second 8 to 15.
