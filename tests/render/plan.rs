@@ -3,11 +3,12 @@
 use crate::support::scenes;
 use crate::support::tried::Tried;
 use mode13h::Angle;
-use mode13h::mesh::shapes;
+use mode13h::glam::Vec3;
+use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::{Class, Effect};
 use mode13h::raster::Frame;
 use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Screen, Shading, Stats};
-use mode13h::scene::Scene;
+use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
 
 /// The frame of a new renderer, prepared by `prepare`.
@@ -603,5 +604,35 @@ fn clipping_that_is_needed_cannot_be_switched_off() {
                 tried.add(1);
             }
         }
+    }
+}
+
+/// Each way to hidden surfaces is chosen by what the objects are: none, a convex one, one that is not, two of which one lies
+/// behind the other, and two in one place.
+#[test]
+fn the_way_to_hidden_surfaces_follows_the_objects() {
+    let mut tried = Tried::new("the_way_to_hidden_surfaces_follows_the_objects", 5);
+    let at = |z: f32, mesh: Mesh| {
+        let mut object = Object::new(mesh);
+        object.position = Vec3::new(0.0, 0.0, z);
+        object
+    };
+    let cube = shapes::cube;
+    for (objects, expected) in [
+        (vec![], HiddenSurfaces::BackFaces),
+        (vec![at(-8.0, cube())], HiddenSurfaces::BackFaces),
+        (vec![at(-8.0, shapes::torus(24, 12))], HiddenSurfaces::DepthBuffer),
+        (vec![at(-8.0, cube()), at(-20.0, cube())], HiddenSurfaces::PainterOrder),
+        (vec![at(-8.0, cube()), at(-8.5, cube())], HiddenSurfaces::DepthBuffer),
+    ] {
+        let mut scene = Scene::new();
+        let count = objects.len();
+        objects.into_iter().for_each(|object| {
+            scene.add(object);
+        });
+        let (_, stats, renderer) = draw(&scene, |_| ());
+        assert_eq!(renderer.plan().hidden_surfaces(), expected, "{count} objects");
+        assert_eq!(stats.hidden_surfaces, expected);
+        tried.add(1);
     }
 }
