@@ -61,7 +61,7 @@ fn written<W: Write>(frames: &Frames, scale: Scale, colors: &FilmColors, out: W)
 /// The red, green and blue of each pixel.
 type Colors = Vec<[u8; 3]>;
 
-/// What a reader shows of each frame, how many frames blend, and how long each stays.
+/// The pictures that a reader shows, one for each frame; how many frames blend, and how long each stays.
 fn shown(file: &[u8]) -> (Vec<Colors>, usize, Vec<(u16, u16)>) {
     let mut decoder = Decoder::new(Cursor::new(file));
     decoder.set_transformations(Transformations::EXPAND);
