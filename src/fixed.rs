@@ -10,8 +10,8 @@
 //! rounds toward minus infinity and a division rounds toward zero, so a value that is narrowed must
 //! say which. Here each narrowing conversion has its rounding in its name.
 
-/// Whether the target has IEEE double precision in hardware. Without it the branch that uses
-/// floats is not compiled. (x87 is left out: it rounds to 64 bits on the way.)
+/// Set on targets with IEEE double precision in hardware. On others the branch that uses floats is not compiled. (x87
+/// is left out: it rounds to 64 bits on the way.)
 pub(crate) const HAS_F64: bool = cfg!(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
@@ -19,7 +19,7 @@ pub(crate) const HAS_F64: bool = cfg!(any(
     all(target_arch = "x86", target_feature = "sse2")
 ));
 
-/// The whole number nearest to a value within ±2⁵¹, halves to even; of anything else some number.
+/// The whole number nearest to a value within ±2⁵¹, halves to even; for any other value, some number.
 ///
 /// Only where [`HAS_F64`]. SSE2 has no rounding instruction, and a cast to i64 would saturate, at the
 /// cost of two comparisons.
@@ -30,8 +30,8 @@ pub(crate) fn nearest_whole(x: f64) -> i64 {
     (x + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()) as i64
 }
 
-/// The whole part of a value of at least 0 and below 2³¹; of anything else some number. A cast would saturate, which keeps
-/// the compiler from making vectors of it.
+/// The whole part of a value of at least 0 and below 2³¹; for any other value, some number. A cast would saturate,
+/// which keeps the compiler from making vectors of it.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn whole_part(x: f64) -> i32 {
