@@ -54,8 +54,8 @@ impl Rgb {
         Self { r, g, b }
     }
 
-    /// From intensities, as a rule 0 to 1: each channel to the nearest of 0 to 255. What is below 0 or NaN counts as
-    /// 0, what is above 1 as 1.
+    /// Makes a colour from intensities, as a rule 0 to 1: each channel to the nearest of 0 to 255. Values below 0 and
+    /// NaN count as 0, values above 1 as 1.
     #[must_use]
     #[doc(hidden)]
     pub const fn from_intensities(intensities: [f32; 3]) -> Self {
@@ -93,8 +93,8 @@ impl Rgb {
         Self::from_dac(self.to_dac())
     }
 
-    /// The colour nearest to this one that the card can show. [`on_dac`](Self::on_dac) is what it
-    /// shows when it is given this one, which may be a step darker.
+    /// The colour nearest to this one that the card can show. Given this one, the card shows [`on_dac`](Self::on_dac),
+    /// which may be a step darker.
     ///
     /// ```
     /// use mode13h::palette::Rgb;
@@ -108,8 +108,8 @@ impl Rgb {
         Self::from_dac([nearest_six(self.r), nearest_six(self.g), nearest_six(self.b)])
     }
 
-    /// What lies on the way to `other`: 0 is this colour, 255 the other. Each channel is
-    /// `(a·(255 − share) + b·share) / 255`, to the nearest; a sum of 255ths is never half way.
+    /// The colour on the way to `other`: 0 is this colour, 255 the other. Each channel is `(a·(255 − share) + b·share)
+    /// / 255`, to the nearest; a sum of 255ths is never half way.
     ///
     /// ```
     /// use mode13h::palette::Rgb;
