@@ -52,23 +52,23 @@ pub struct I24F8(i32);
 impl I24F8 {
     /// Units in a pixel.
     pub const ONE: i32 = 256;
-    /// From the pixel's left edge to its centre, in units.
+    /// The distance from the pixel's left edge to its centre, in units.
     #[doc(hidden)]
     pub const HALF: i32 = 128;
 
-    /// From units of 1/256 pixel.
+    /// Makes a coordinate from units of 1/256 pixel.
     #[must_use]
     pub const fn from_bits(units: i32) -> Self {
         Self(units)
     }
 
-    /// In units of 1/256 pixel.
+    /// Returns the coordinate in units of 1/256 pixel.
     #[must_use]
     pub const fn to_bits(self) -> i32 {
         self.0
     }
 
-    /// From whole pixels, −2²³ to 2²³ − 1; wraps beyond.
+    /// Makes a coordinate from whole pixels, −2²³ to 2²³ − 1; wraps beyond.
     #[must_use]
     pub const fn from_pixels(pixels: i32) -> Self {
         Self(pixels.wrapping_mul(Self::ONE))
@@ -119,7 +119,7 @@ impl I24F8 {
         Self::round_from_f64(f64::from(pixels))
     }
 
-    /// From 16.16 pixels: `floor(256·x + ½)`, exactly. The sum is taken in 64 bits.
+    /// Rounds 16.16 pixels: `floor(256·x + ½)`, exactly. The sum is taken in 64 bits.
     #[must_use]
     #[inline]
     #[doc(hidden)]
@@ -148,19 +148,19 @@ impl U8F8 {
     #[doc(hidden)]
     pub const MAX_VERTEX: Self = Self(0xFF00);
 
-    /// From units of 1/256 shade.
+    /// Makes a shade from units of 1/256 shade.
     #[must_use]
     pub const fn from_bits(units: u16) -> Self {
         Self(units)
     }
 
-    /// In units of 1/256 shade.
+    /// Returns the shade in units of 1/256 shade.
     #[must_use]
     pub const fn to_bits(self) -> u16 {
         self.0
     }
 
-    /// From a whole shade, 0 to 255.
+    /// Makes a shade from a whole one, 0 to 255.
     #[must_use]
     pub const fn from_shade(shade: u8) -> Self {
         Self((shade as u16) << 8)
@@ -217,19 +217,19 @@ impl I16F16 {
     /// 1.0.
     pub const ONE: Self = Self(65_536);
 
-    /// From units of 1/65,536.
+    /// Makes a number from units of 1/65,536.
     #[must_use]
     pub const fn from_bits(units: i32) -> Self {
         Self(units)
     }
 
-    /// In units of 1/65,536.
+    /// Returns the number in units of 1/65,536.
     #[must_use]
     pub const fn to_bits(self) -> i32 {
         self.0
     }
 
-    /// From a whole number, −32,768 to 32,767.
+    /// Makes a number from a whole one, −32,768 to 32,767.
     #[must_use]
     pub const fn from_int(whole: i16) -> Self {
         Self((whole as i32) << 16)

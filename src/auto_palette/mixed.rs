@@ -50,7 +50,7 @@ pub(super) fn colors(scene: &Scene, own: &[OwnColors]) -> Result<Vec<(Rgb, f32)>
             }
         }
     }
-    // Of 16 pictures at most: 1,024,000 pixels.
+    // 16 pictures at most: 1,024,000 pixels.
     Ok(counts.into_iter().map(|(color, count)| (color, count as f32 / covered.max(1) as f32)).collect())
 }
 

@@ -29,7 +29,7 @@ use seen::{full_light, moments};
 pub struct AutomaticPalette {
     /// The colours.
     pub palette: Palette,
-    /// For each object, for each of its materials, its entries.
+    /// The entries of each material, object by object.
     pub entries: Vec<Vec<Entries>>,
     materials: Vec<Vec<Material>>,
 }
@@ -86,7 +86,7 @@ impl AutomaticPalette {
 /// ```
 ///
 /// # Errors
-/// As [`Renderer::draw`].
+/// Those of [`Renderer::draw`].
 pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     let in_channels = mixed::has_colored_light(scene);
     let mut tints = Tints::default();

@@ -22,7 +22,7 @@ const POSES: u32 = 16;
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[doc(hidden)]
 pub struct Seen {
-    /// Its pixels among all that are covered, 0 to 1.
+    /// The share of its pixels among all that are covered, 0 to 1.
     pub area: f32,
     /// The least intensity of ambient and diffuse light that it shows there, 0 to 1, full light being 1; 0 if it is
     /// never in sight.
@@ -35,7 +35,7 @@ pub struct Seen {
 /// nothing in it moves.
 ///
 /// # Errors
-/// As [`Renderer::draw`].
+/// Those of [`Renderer::draw`].
 #[doc(hidden)]
 pub fn seen(scene: &Scene) -> Result<Vec<Vec<Seen>>, RenderError> {
     let materials = || scene.objects().iter().flat_map(|object| &object.materials);

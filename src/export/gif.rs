@@ -106,7 +106,7 @@ impl<W: Write> GifWriter<W> {
     ///
     /// # Errors
     ///
-    /// As [`add`](Self::add); [`GifError::Picture`] too where it was enlarged to another size than the first.
+    /// Those of [`add`](Self::add); [`GifError::Picture`] too if it was enlarged to another size than the first.
     pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), GifError> {
         self.out.check()?;
         // Nothing stands before it.

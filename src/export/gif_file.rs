@@ -58,7 +58,7 @@ impl GifFile {
     ///
     /// # Errors
     ///
-    /// As [`add`](Self::add).
+    /// Those of [`add`](Self::add).
     #[doc(hidden)]
     pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), ExportError> {
         self.writer.add_frame(frame).map_err(|error| failed(&self.path, error))

@@ -65,7 +65,7 @@ impl GifFrame {
     ///
     /// # Errors
     ///
-    /// As [`first`](Self::first); another size than that of `before`.
+    /// Those of [`first`](Self::first); another size than that of `before`.
     pub fn after(
         before: &Picture<'_>,
         picture: &Picture<'_>,

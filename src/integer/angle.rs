@@ -83,13 +83,13 @@ impl BinaryAngle {
     #[doc(hidden)]
     pub const HALF: Self = Self(0x8000);
 
-    /// From 65,536ths of a turn.
+    /// Makes an angle from 65,536ths of a turn.
     #[must_use]
     pub const fn from_bits(steps: u16) -> Self {
         Self(steps)
     }
 
-    /// In 65,536ths of a turn.
+    /// Returns the angle in 65,536ths of a turn.
     #[must_use]
     pub const fn to_bits(self) -> u16 {
         self.0

@@ -46,7 +46,7 @@ pub struct Paint {
     pub ambient: I16F16,
     /// kd: the share of a light that it gives back in all directions.
     pub diffuse: I16F16,
-    /// Its entries of the palette.
+    /// The entries of the palette.
     pub ramp: Ramp,
 }
 

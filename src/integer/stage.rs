@@ -63,8 +63,8 @@ impl<'a, I: Index> VertexStage<'a, I> {
     /// light pixels, split faces or need floats.
     ///
     /// # Errors
-    /// Too little room; a surface without a paint; a scale below 0; an object that may reach farther than 65,535 units away;
-    /// more than 4,096 suns, or one without direction.
+    /// Too little room; a surface without a paint; a scale below 0; an object that may reach farther than 65,535 units
+    /// away; more than 4,096 suns, or one without direction.
     pub fn new(
         view: &View,
         object: Object<'a, I>,

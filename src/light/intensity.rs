@@ -77,7 +77,7 @@ pub(crate) fn both_sides(ambient: f64, diffuse: f64, suns: &[Beam], normal: Vec3
     let (mut front, mut back) = (0.0, 0.0);
     for sun in suns {
         let cosine = normal.dot(sun.towards);
-        // Of −0.0 and NaN neither side has any.
+        // −0.0 and NaN light neither side.
         if cosine > 0.0 {
             front += f64::from(sun.intensity) * f64::from(cosine);
         } else if cosine < 0.0 {

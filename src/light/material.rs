@@ -65,7 +65,7 @@ pub struct Material {
     pub environment: Option<Shared<Texture>>,
     /// The way in which it covers what is behind it.
     pub blend: Blend,
-    /// Its own answer to light, in place of the lighting model's intensity. The 16.16 path leaves it out.
+    /// The material's own response to light, in place of the lighting model's intensity. The 16.16 path leaves it out.
     pub response: Option<LightResponse>,
 }
 

@@ -41,7 +41,7 @@ impl Shininess {
     pub(crate) fn of_lanes(self, bases: &Lanes<f64>) -> Lanes<f64> {
         let mut positive = [0.0; LANES];
         for (positive, base) in positive.iter_mut().zip(bases) {
-            // Of what is no number, too.
+            // NaN becomes 0, too.
             *positive = if *base > 0.0 { *base } else { 0.0 };
         }
         let mut powers = self.raise(positive);

@@ -37,7 +37,7 @@ impl Bounds {
             let away = sub(widen(p), widen(centre));
             square = square.max(dot(away, away));
         }
-        // Of the greatest square alone: a root keeps the order.
+        // The root of the greatest square alone: a root keeps the order.
         Self { min, max, centre, radius: round_up(libm::sqrt(square)) }
     }
 }

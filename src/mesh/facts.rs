@@ -91,7 +91,7 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
             }
         }
     }
-    // Of the greatest square alone: a root keeps the order.
+    // The roots of the greatest squares alone: a root keeps the order.
     (libm::sqrtf(edge), libm::sqrtf(texture_edge))
 }
 
@@ -129,7 +129,7 @@ fn steepest_texcoords(mesh: &Mesh) -> Vec<f64> {
 fn is_faceted(mesh: &Mesh) -> bool {
     mesh.triangles.iter().all(|corners| {
         let [a, b, c] = corners.map(|i| mesh.positions[i as usize]);
-        // What has no area shows no shade.
+        // A face without area shows no shade.
         let Some(normal) = face_normal(a, b, c) else { return true };
         corners.iter().all(|&i| mesh.normals[i as usize].distance_squared(normal) < 1e-10)
     })

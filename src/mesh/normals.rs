@@ -276,7 +276,7 @@ impl Mesh {
         const NONE: u32 = u32::MAX;
         let count = points.iter().max().map_or(0, |&greatest| greatest as usize + 1);
         let takes_part = |t: usize| faces[t].has_area() && together.group(t) != Together::FLAT;
-        // Where all faces count together with the first one there is nothing to find out: nearly everywhere on a scan.
+        // If all faces count together with the first one there is nothing to find out: nearly everywhere on a scan.
         let mut first = vec![NONE; count];
         let mut is_divided = vec![false; count];
         let mut any = false;

@@ -38,11 +38,11 @@ use super::{Palette, Ramp, Rgb};
 /// A surface's demands on a palette.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Use<'a> {
-    /// Its colour in full light.
+    /// The colour in full light.
     pub color: Rgb,
     /// The colour in the middle of a highlight in full light; `None` if it is matt.
     pub highlight: Option<Rgb>,
-    /// Its share of the visible pixels: any unit, not negative. A surface that is never in sight counts as a millionth
+    /// The share of the visible pixels: any unit, not negative. A surface that is never in sight counts as a millionth
     /// of all, so that it has a colour when it does come into sight.
     pub area: f32,
     /// The least intensity at which it is seen, 0 to 1, highlights left out.

@@ -47,7 +47,7 @@ impl Rgb {
     /// 255, 255, 255.
     pub const WHITE: Self = Self::new(255, 255, 255);
 
-    /// From red, green and blue, 0 to 255 each.
+    /// Makes a colour from red, green and blue, 0 to 255 each.
     #[must_use]
     #[inline]
     pub const fn new(r: u8, g: u8, b: u8) -> Self {
@@ -64,7 +64,7 @@ impl Rgb {
         Self::new((r * 255.0 + 0.5) as u8, (g * 255.0 + 0.5) as u8, (b * 255.0 + 0.5) as u8)
     }
 
-    /// From the DAC's red, green and blue, 0 to 63 each; higher bits are dropped.
+    /// Makes a colour from the DAC's red, green and blue, 0 to 63 each; higher bits are dropped.
     #[must_use]
     #[inline]
     #[doc(hidden)]
@@ -137,7 +137,7 @@ impl Rgb {
         Self::new(self.r.saturating_add(other.r), self.g.saturating_add(other.g), self.b.saturating_add(other.b))
     }
 
-    /// From `0x00RRGGBB`; the top byte is dropped.
+    /// Makes a colour from `0x00RRGGBB`; the top byte is dropped.
     #[must_use]
     #[inline]
     pub const fn from_u32(rgb: u32) -> Self {

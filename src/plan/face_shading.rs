@@ -39,7 +39,7 @@ impl FaceShading {
         Self::By(Shading::Phong),
     ];
 
-    /// Its name.
+    /// The shading's name.
     #[must_use]
     #[doc(hidden)]
     pub const fn name(self) -> &'static str {

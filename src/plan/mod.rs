@@ -260,7 +260,7 @@ impl Plan {
 pub struct Row {
     /// The object's place in the scene.
     pub place: usize,
-    /// Its name.
+    /// The object's name.
     pub object: String,
     /// The effect.
     pub effect: Effect,

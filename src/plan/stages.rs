@@ -26,7 +26,7 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// Its name; empty if there is only one way.
+    /// The choice's name; empty if there is only one way.
     #[must_use]
     #[doc(hidden)]
     pub const fn name(self) -> &'static str {

@@ -321,7 +321,7 @@ impl Camera {
     pub fn framing_turn(object: &Object) -> Self {
         let from = Viewpoint { direction: Vec3::Z, up: Vec3::Y, field_of_view: Self::FIELD_OF_VIEW, target: None };
         let swept = Swept::new(object, Turning::Upright, None);
-        // What reaches farther than f32 is no more to be framed exactly.
+        // A body that reaches farther than f32 cannot be framed exactly.
         from.camera(&[swept]).unwrap_or_else(|| {
             let bounds = object.mesh().bounds();
             let radius = (bounds.radius + bounds.centre.distance(object.pivot)) * object.scale;

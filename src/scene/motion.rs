@@ -109,7 +109,7 @@ impl Path {
 pub(super) fn part(seconds: f64, period: f64) -> f64 {
     let periods = seconds / period;
     let part = periods - libm::floor(periods);
-    // Of what is not finite, and where rounding makes it 1, the beginning.
+    // The beginning, for a value that is not finite, and if rounding makes it 1.
     if part < 1.0 { part } else { 0.0 }
 }
 

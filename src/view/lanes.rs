@@ -73,7 +73,7 @@ impl Narrow {
         }
         let mut eight = Eight { within: [0; LANES], x: [0; LANES], y: [0; LANES], depth: [0; LANES] };
         for i in 0..LANES {
-            // What is no number fails it.
+            // NaN fails it.
             let is_within = (w[i] >= *near) & (x[i].abs() <= Self::LIMIT) & (y[i].abs() <= Self::LIMIT);
             eight.within[i] = -i32::from(is_within);
         }

@@ -13,9 +13,9 @@ pub struct Area {
     pub left: usize,
     /// Rows of the window above it.
     pub top: usize,
-    /// Its columns.
+    /// The number of columns.
     pub width: usize,
-    /// Its rows.
+    /// The number of rows.
     pub height: usize,
 }
 

@@ -122,7 +122,7 @@ fn a_film_shows_what_was_given() {
                 let expected: Vec<_> = frames.iter().map(|frame| given(frame, across, down)).collect();
                 assert!(shown == expected, "{colors:?} at {scale}");
                 assert_eq!(delays, [(1, 35); 40]);
-                // Where no entry is free, nothing is transparent.
+                // Without a free entry, nothing is transparent.
                 assert!(blending == 0 || (colors != FilmColors::True && palette != distinct));
                 blended += blending;
             }

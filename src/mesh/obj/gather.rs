@@ -124,7 +124,7 @@ fn turn(
             triangle.iter().for_each(|&vertex| is_shared[vertex as usize] = true);
         }
     }
-    // Of each vertex of a turned face the vertex that has the turned normal.
+    // For each vertex of a turned face, the vertex that has the turned normal.
     let mut turned: HashMap<u32, u32> = HashMap::new();
     let mut copies = Vec::new();
     for (number, triangle) in triangles.iter_mut().enumerate() {

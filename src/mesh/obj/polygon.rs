@@ -72,7 +72,7 @@ impl Splitter {
         let at = |i: u32| self.flat[i as usize % n][axis];
         // Fewer than 2³² corners, see `statement`.
         let count = n as u32;
-        // Where the least coordinate is left for good, and where the greatest is reached.
+        // The corners where the least coordinate is left for good, and where the greatest is reached.
         let least = (0..count).fold(0, |best, i| if at(i) < at(best) { i } else { best });
         let Some(first) = (least..least + count).find(|&i| at(i + 1) > at(i)) else { return false };
         let turn = (first..first + count).find(|&i| at(i + 1) < at(i)).unwrap_or(first);

@@ -118,7 +118,7 @@ impl Fault {
                     *message = turned;
                 }
             }
-            // Of two keys that are alike the second is the fault, which no table holds.
+            // If two keys are alike the second is the fault, which no table holds.
             SceneErrorKind::NotToml(message) if message == "duplicate key" => {
                 key = span.and_then(|span| text.get(span)).map(String::from);
             }

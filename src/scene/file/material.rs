@@ -21,7 +21,7 @@ pub(super) fn apply(
     set(&mut material.diffuse, layout.diffuse.map(|share| share.0));
     set(&mut material.specular, layout.specular.map(|share| share.0));
     set(&mut material.shininess, layout.shininess.map(|exponent| exponent.0));
-    // What never was shiny has no exponent.
+    // A material that never was shiny has no exponent.
     if material.shininess <= 0.0 {
         material.shininess = SHININESS;
     }
