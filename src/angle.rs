@@ -30,13 +30,13 @@ impl Angle {
         Self(radians)
     }
 
-    /// Its degrees.
+    /// Returns the angle in degrees.
     #[must_use]
     pub const fn to_degrees(self) -> f64 {
         self.0.to_degrees()
     }
 
-    /// Its radians.
+    /// Returns the angle in radians.
     #[must_use]
     pub const fn to_radians(self) -> f64 {
         self.0

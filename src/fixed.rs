@@ -10,8 +10,8 @@
 //! rounds toward minus infinity and a division rounds toward zero, so a value that is narrowed must
 //! say which. Here each narrowing conversion has its rounding in its name.
 
-/// Whether the target has IEEE double precision in hardware. Without it the branch that uses
-/// floats is not compiled. (x87 is left out: it rounds to 64 bits on the way.)
+/// Set on targets with IEEE double precision in hardware. On others the branch that uses floats is not compiled. (x87
+/// is left out: it rounds to 64 bits on the way.)
 pub(crate) const HAS_F64: bool = cfg!(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
@@ -19,7 +19,7 @@ pub(crate) const HAS_F64: bool = cfg!(any(
     all(target_arch = "x86", target_feature = "sse2")
 ));
 
-/// The whole number nearest to a value within ±2⁵¹, halves to even; of anything else some number.
+/// The whole number nearest to a value within ±2⁵¹, halves to even; for any other value, some number.
 ///
 /// Only where [`HAS_F64`]. SSE2 has no rounding instruction, and a cast to i64 would saturate, at the
 /// cost of two comparisons.
@@ -30,8 +30,8 @@ pub(crate) fn nearest_whole(x: f64) -> i64 {
     (x + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()) as i64
 }
 
-/// The whole part of a value of at least 0 and below 2³¹; of anything else some number. A cast would saturate, which keeps
-/// the compiler from making vectors of it.
+/// The whole part of a value of at least 0 and below 2³¹; for any other value, some number. A cast would saturate,
+/// which keeps the compiler from making vectors of it.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn whole_part(x: f64) -> i32 {
@@ -52,23 +52,23 @@ pub struct I24F8(i32);
 impl I24F8 {
     /// Units in a pixel.
     pub const ONE: i32 = 256;
-    /// From the pixel's left edge to its centre, in units.
+    /// The distance from the pixel's left edge to its centre, in units.
     #[doc(hidden)]
     pub const HALF: i32 = 128;
 
-    /// From units of 1/256 pixel.
+    /// Makes a coordinate from units of 1/256 pixel.
     #[must_use]
     pub const fn from_bits(units: i32) -> Self {
         Self(units)
     }
 
-    /// In units of 1/256 pixel.
+    /// Returns the coordinate in units of 1/256 pixel.
     #[must_use]
     pub const fn to_bits(self) -> i32 {
         self.0
     }
 
-    /// From whole pixels, −2²³ to 2²³ − 1; wraps beyond.
+    /// Makes a coordinate from whole pixels, −2²³ to 2²³ − 1; wraps beyond.
     #[must_use]
     pub const fn from_pixels(pixels: i32) -> Self {
         Self(pixels.wrapping_mul(Self::ONE))
@@ -119,7 +119,7 @@ impl I24F8 {
         Self::round_from_f64(f64::from(pixels))
     }
 
-    /// From 16.16 pixels: `floor(256·x + ½)`, exactly. The sum is taken in 64 bits.
+    /// Rounds 16.16 pixels: `floor(256·x + ½)`, exactly. The sum is taken in 64 bits.
     #[must_use]
     #[inline]
     #[doc(hidden)]
@@ -148,19 +148,19 @@ impl U8F8 {
     #[doc(hidden)]
     pub const MAX_VERTEX: Self = Self(0xFF00);
 
-    /// From units of 1/256 shade.
+    /// Makes a shade from units of 1/256 shade.
     #[must_use]
     pub const fn from_bits(units: u16) -> Self {
         Self(units)
     }
 
-    /// In units of 1/256 shade.
+    /// Returns the shade in units of 1/256 shade.
     #[must_use]
     pub const fn to_bits(self) -> u16 {
         self.0
     }
 
-    /// From a whole shade, 0 to 255.
+    /// Makes a shade from a whole one, 0 to 255.
     #[must_use]
     pub const fn from_shade(shade: u8) -> Self {
         Self((shade as u16) << 8)
@@ -217,19 +217,19 @@ impl I16F16 {
     /// 1.0.
     pub const ONE: Self = Self(65_536);
 
-    /// From units of 1/65,536.
+    /// Makes a number from units of 1/65,536.
     #[must_use]
     pub const fn from_bits(units: i32) -> Self {
         Self(units)
     }
 
-    /// In units of 1/65,536.
+    /// Returns the number in units of 1/65,536.
     #[must_use]
     pub const fn to_bits(self) -> i32 {
         self.0
     }
 
-    /// From a whole number, −32,768 to 32,767.
+    /// Makes a number from a whole one, −32,768 to 32,767.
     #[must_use]
     pub const fn from_int(whole: i16) -> Self {
         Self((whole as i32) << 16)

@@ -1,4 +1,5 @@
-//! What a laboratory needs beside the public API: what drew each pixel, one triangle at a time, and how a renderer is set.
+//! Hooks for a laboratory, beside the public API: what drew each pixel, one triangle at a time, and a renderer's
+//! settings.
 //!
 //! A game needs none of this. It may change with any version.
 
@@ -11,9 +12,9 @@ use crate::render::{RenderError, Renderer, Screen, Stats};
 pub use crate::scene::object::turn;
 use crate::scene::{Object, Scene, Shared};
 
-/// Hands every triangle that [`Renderer::draw`] would draw to `visit`, in the order of [`Renderer::for_each_triangle`], with
-/// all that the raster would get. Returns the counts of the work, without the raster's. Nothing is drawn, and the frames that
-/// are drawn after it are those that would have been drawn without it.
+/// Hands every triangle that [`Renderer::draw`] would draw to `visit`, in the order of [`Renderer::for_each_triangle`],
+/// with all that the raster would get. Returns the counts of the work, without the raster's. Nothing is drawn, and
+/// later frames are the same as without this call.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`], before the first triangle.
@@ -52,18 +53,18 @@ pub fn shared_mesh(object: &Object) -> &Shared<Mesh> {
     object.shared_mesh()
 }
 
-/// What is wrong with a light, if anything.
+/// Checks a light.
 ///
 /// # Errors
-/// One line that says it.
+/// One line that says what is wrong.
 pub fn check_light(light: &Light) -> Result<(), &'static str> {
     light.check()
 }
 
-/// What is wrong with an object, by its index, if anything.
+/// Checks an object, by its index.
 ///
 /// # Errors
-/// One line that says it.
+/// One line that says what is wrong.
 pub fn check_object(scene: &Scene, index: usize) -> Result<(), &'static str> {
     scene.objects().get(index).map_or(Ok(()), Object::check)?;
     scene.check_parents(index)

@@ -1,6 +1,7 @@
-//! Eight numbers at a time: what light, vertices and pixels are worked out in.
+//! Eight numbers at a time: the form in which light, vertices and pixels are computed.
 
-/// Pixels or vertices that are worked on at a time: two to eight vectors of a processor, and no more than short spans have.
+/// The number of pixels or vertices in one batch: two to eight vectors of a processor, and no more than short spans
+/// have.
 pub const LANES: usize = 8;
 
 /// One number for each of so many pixels or vertices that follow each other.

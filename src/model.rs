@@ -14,7 +14,7 @@ use crate::render::RenderError;
 use crate::scene::{Object, Scene, Shared};
 use crate::texture::{self, LoadError, Texture};
 
-/// Why a model file gave no scene.
+/// An error of a model file that gave no scene.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ModelError {
@@ -48,7 +48,7 @@ impl Error for ModelError {
 pub struct Model {
     /// The mesh with its materials and textures, under the file's name.
     pub object: Object,
-    /// What was left out or mended, one line each; a texture that cannot be read is left out.
+    /// The parts that were left out or mended, one line each; a texture that cannot be read is left out.
     pub warnings: Vec<String>,
 }
 
@@ -68,8 +68,8 @@ pub fn load(path: impl AsRef<Path>, options: &obj::Options) -> Result<Model, Obj
     Ok(Model { object, warnings })
 }
 
-/// The texture of each surface of a mesh, if the surface names one that can be read and the mesh has texture coordinates;
-/// an error for each file that cannot be read. A file that several surfaces name is read once.
+/// Reads the texture of each surface of a mesh, if the surface names one that can be read and the mesh has texture
+/// coordinates. Returns an error for each file that cannot be read. A file that several surfaces name is read once.
 #[must_use]
 #[doc(hidden)]
 pub fn textures(mesh: &Mesh) -> (Vec<Option<Shared<Texture>>>, Vec<LoadError>) {
@@ -89,7 +89,7 @@ pub fn textures(mesh: &Mesh) -> (Vec<Option<Shared<Texture>>>, Vec<LoadError>) {
     (textures.collect(), errors)
 }
 
-/// An object whose surfaces show these textures, one for each surface.
+/// Gives an object's surfaces these textures, one for each surface.
 #[must_use]
 #[doc(hidden)]
 pub fn with_textures(mut object: Object, textures: &[Option<Shared<Texture>>]) -> Object {
@@ -102,7 +102,7 @@ pub fn with_textures(mut object: Object, textures: &[Option<Shared<Texture>>]) -
 }
 
 impl Object {
-    /// Whether any of its surfaces has a colour of its own: a texture, or a diffuse colour that is not grey.
+    /// Returns whether any of its surfaces has a colour of its own: a texture, or a diffuse colour that is not grey.
     #[must_use]
     #[doc(hidden)]
     pub fn has_colors(&self) -> bool {
@@ -113,11 +113,11 @@ impl Object {
 }
 
 impl Scene {
-    /// A model file to look at: with its materials and textures, in the middle of the picture, turning once in a
-    /// [round](Self::duration) as [`showing`](Self::showing) says. A model with colours gets a palette made for them;
-    /// a grey one is drawn in greys.
+    /// Makes a scene that shows a model file with its materials and textures, in the middle of the picture, turning
+    /// once in a [round](Self::duration) as [`showing`](Self::showing) says. A model with colours gets a palette made
+    /// for them; a grey one is drawn in greys.
     ///
-    /// [`load`] returns the warnings, which this leaves out.
+    /// It leaves out the warnings, which [`load`] returns.
     ///
     /// ```no_run
     /// use mode13h::export;
@@ -133,7 +133,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`ModelError`] with the file and the line, or with what cannot be drawn.
+    /// [`ModelError`] with the file and the line, or with the part that cannot be drawn.
     pub fn from_model(path: impl AsRef<Path>) -> Result<Self, ModelError> {
         let object = load(path, &obj::Options::default()).map_err(ModelError::Obj)?.object;
         let has_colors = object.has_colors();

@@ -1,12 +1,11 @@
-//! Choices that are typed by name: one table gives the enum, its names, and the error for a name
-//! that is none of them.
+//! Choices that are typed by name: one table gives the enum, its names, and the error for an unknown name.
 
 use core::fmt;
 
-/// There is no choice of that name. Its text lists those there are.
+/// An unknown name. Its text lists the known ones.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct UnknownName {
-    /// What was to be chosen.
+    /// The thing to be chosen.
     pub(crate) what: &'static str,
     pub(crate) names: &'static [&'static str],
 }
@@ -39,10 +38,10 @@ macro_rules! named {
         }
 
         impl $Choice {
-            /// All of them, in order.
+            /// All variants, in order.
             pub const ALL: [Self; [$($name),*].len()] = [$(Self::$Variant),*];
 
-            /// Its name, as it is typed.
+            /// The variant's name, as it is typed.
             #[must_use]
             #[doc(hidden)]
             pub const fn name(self) -> &'static str {

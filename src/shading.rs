@@ -1,15 +1,15 @@
-//! How a face is shaded, as a scene, a renderer and the 16.16 path name it.
+//! The shading of a face, as a scene, a renderer and the 16.16 path name it.
 
 use crate::names::named;
 use crate::raster::Interpolation;
 
 named! {
-    /// How a face is shaded, from cheap to exact.
+    /// The shading of a face, from cheap to exact.
     #[derive(Default)]
     pub enum Shading, "shading" {
         /// One shade for each face.
         Flat = "flat",
-        /// What the sources print: vertices on whole pixels, a step for every span by a division that cuts.
+        /// The method printed in the sources: vertices on whole pixels, a step for every span by a division that cuts.
         /// Without exact cover ([`raster::vintage`](crate::raster::vintage)).
         GouraudVintage = "gouraud-vintage",
         /// Linear between the vertices in 8.8, each row of a triangle one span.
@@ -28,21 +28,21 @@ named! {
         PhongTable = "phong-table",
         /// The normal at every pixel, perspective-correct and made unit again, and the whole model.
         Phong = "phong",
-        /// Shades in f32, divided by w at the vertices and multiplied by it again at every pixel: what a program
-        /// of today does.
+        /// Shades in f32, divided by w at the vertices and multiplied by it again at every pixel: the method of a
+        /// program of today.
         Float = "float",
     }
 }
 
 impl Shading {
-    /// Whether light is worked out at every pixel, and not at the vertices or for a face.
+    /// Returns whether light is computed at every pixel, and not at the vertices or for a face.
     #[must_use]
     #[doc(hidden)]
     pub const fn lights_pixels(self) -> bool {
         matches!(self, Self::PhongTable | Self::Phong)
     }
 
-    /// How the raster shades faces whose vertices are lit, where their shades differ.
+    /// The raster's interpolation for faces whose vertices are lit, if their shades differ.
     #[must_use]
     #[doc(hidden)]
     pub const fn interpolation(self) -> Interpolation {
@@ -61,14 +61,14 @@ impl Shading {
         }
     }
 
-    /// Whether its faces cover the pixels whose centres are in them, and no others.
+    /// Returns whether its faces cover the pixels whose centres are in them, and no others.
     #[must_use]
     #[doc(hidden)]
     pub const fn has_exact_cover(self) -> bool {
         self.interpolation().has_exact_cover()
     }
 
-    /// What the 16.16 vertex path draws for it: the same, or of what it lacks the default.
+    /// The shading of the 16.16 vertex path for it: itself, or the default if that path lacks it.
     #[must_use]
     #[doc(hidden)]
     pub const fn in_integers(self) -> Self {

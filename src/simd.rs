@@ -1,4 +1,4 @@
-//! What the processor has, as values. A token exists only where the processor has its level, so code that takes one
+//! Levels of the processor, as values. A token exists only where the processor has its level, so code that takes one
 //! needs no other proof.
 //!
 //! The span kernels and the batches use intrinsics of a level. All else is written once, in plain arrays of eight lanes,
@@ -9,10 +9,10 @@
     expect(unsafe_code, reason = "code for processors found only when the program runs")
 )]
 
-/// What a kernel may use.
+/// A level that a kernel may use.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) enum Level {
-    /// What every processor has.
+    /// The instructions that every processor has.
     Portable,
     /// Assembly for x86-64.
     #[cfg(all(feature = "asm", target_arch = "x86_64"))]
@@ -23,7 +23,7 @@ pub(crate) enum Level {
     /// Plain arrays that the compiler vectorises.
     #[cfg(feature = "simd")]
     Arrays,
-    /// What every x86-64 has.
+    /// The instructions that every x86-64 has.
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     Sse2,
     /// 64-bit ARM, all of which has NEON.
@@ -41,7 +41,7 @@ pub(crate) enum Level {
 }
 
 impl Level {
-    /// Its name, as `--stats` and records have it.
+    /// Its name, as in `--stats` and records.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",
@@ -101,8 +101,8 @@ impl Avx2 {
         found.then_some(Self(()))
     }
 
-    /// What `body` gives, compiled for AVX2: eight f32 or four f64 at a time where SSE2 has half of that. What it calls is
-    /// compiled for AVX2 as far as it is inlined.
+    /// Runs `body`, compiled for AVX2: eight f32 or four f64 at a time where SSE2 has half of that. Functions that it
+    /// calls are compiled for AVX2 as far as they are inlined.
     #[inline(always)]
     pub(crate) fn run<R>(self, body: impl FnOnce() -> R) -> R {
         #[target_feature(enable = "avx2")]

@@ -22,7 +22,7 @@ use crate::scene::{Camera, Object, matrix_product};
 
 pub(crate) mod lanes;
 
-/// What is drawn on: size in pixels, and the shape of a pixel.
+/// The screen: size in pixels, and the shape of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Screen {
     /// Columns.
@@ -117,9 +117,9 @@ pub(crate) struct ObjectView {
     fast: Option<(Mat3, Vec3)>,
     centre: (f32, f32),
     near: f32,
-    /// The turn alone: from the object's directions to the world's.
+    /// The turn alone, from the object's directions to the world's.
     turn: Matrix,
-    /// From the object's directions to the eye's: right, up, towards the eye.
+    /// The turn from the object's directions to the eye's: right, up, towards the eye.
     to_eye: Matrix,
     /// The eye, in the object's own space.
     eye: Row,
@@ -129,17 +129,17 @@ pub(crate) struct ObjectView {
     size: (f64, f64),
 }
 
-/// Where an object may be seen, once what is nearer than the near plane is cut off: somewhat more than
-/// where it is.
+/// The part of space and screen where an object may be seen, once its part before the near plane is cut off: somewhat
+/// more than it covers.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ScreenBounds {
     /// The least distance along the view; may be negative.
     pub(crate) nearest: f64,
-    /// The greatest.
+    /// The greatest distance along the view.
     pub(crate) farthest: f64,
-    /// Whether some of it may be nearer than the near plane.
+    /// Some of it may be nearer than the near plane.
     pub(crate) crosses_near: bool,
-    /// Whether some of it may be projected beyond the screen's edges.
+    /// Some of it may be projected beyond the screen's edges.
     pub(crate) leaves_screen: bool,
     /// The part of the screen where it may be.
     pub(crate) seen: Rect,
@@ -154,14 +154,14 @@ pub(crate) struct Homogeneous {
 }
 
 impl ObjectView {
-    /// What is projected beyond this, in pixels either way, is clipped: inside the raster's guard
-    /// band by a whole pixel, more than all rounding of a clipped point comes to.
+    /// The limit of projected coordinates, in pixels either way; points beyond it are clipped. It lies inside the
+    /// raster's guard band by a whole pixel, more than all rounding of a clipped point comes to.
     pub(crate) const LIMIT: f64 = 4095.0;
 
-    /// Beyond this a sum of products might overflow f32, or, below its inverse, vanish in it.
+    /// The reach beyond which a sum of products might overflow f32, or, below its inverse, vanish in it.
     const FAST_REACH: f64 = 1e30;
 
-    /// An object without a parent.
+    /// The way of an object without a parent.
     #[cfg(test)]
     pub(crate) fn new(view: &View, object: &Object) -> Self {
         Self::placed(view, object, &Placement::of(object))
@@ -202,7 +202,7 @@ impl ObjectView {
         this
     }
 
-    /// A point of the world in the object's own space. Of an object without size, the pivot.
+    /// A point of the world in the object's own space; the pivot, for an object without size.
     pub(crate) fn point_in_object(&self, world: [f64; 3]) -> [f64; 3] {
         if self.scale <= 0.0 {
             return self.pivot;
@@ -218,12 +218,12 @@ impl ObjectView {
         self.eye
     }
 
-    /// Where the object's pivot is in the world.
+    /// The position of the object's pivot in the world.
     pub(crate) fn position(&self) -> Vec3 {
         Vec3::from_array(self.position.map(|c| c as f32))
     }
 
-    /// How many times as large as its mesh the object is.
+    /// The object's size in units of its mesh's.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
@@ -233,7 +233,7 @@ impl ObjectView {
         Mat3::from_cols_array_2d(&self.to_eye.map(|row| row.map(|c| c as f32))).transpose()
     }
 
-    /// Where the box `bounds` of the object's mesh may be seen.
+    /// The bounds on the screen of the box `bounds` of the object's mesh.
     pub(crate) fn reach(&self, bounds: Bounds) -> ScreenBounds {
         let (matrix, offset) = &self.exact;
         let (min, max) = (widen(bounds.min), widen(bounds.max));
@@ -281,8 +281,8 @@ impl ObjectView {
         }
     }
 
-    /// The vertex on the screen, of an object that neither crosses the near plane nor leaves the
-    /// screen. The same numbers as [`project`](Self::project) gives.
+    /// Projects a vertex of an object that neither crosses the near plane nor leaves the screen. The numbers equal
+    /// those of [`project`](Self::project).
     #[inline]
     pub(crate) fn project_inside(&self, p: Vec3) -> Vertex {
         match self.fast {
@@ -324,7 +324,8 @@ impl ObjectView {
         self.near
     }
 
-    /// How near a box comes at least, along the view: its corners with the least coordinates and with the greatest.
+    /// A lower bound of a box's distance along the view, from its corners with the least coordinates and with the
+    /// greatest.
     pub(crate) fn nearest(&self, min: Vec3, max: Vec3) -> f64 {
         let ([.., row], [.., offset]) = &self.exact;
         let (min, max) = (widen(min), widen(max));
@@ -335,8 +336,8 @@ impl ObjectView {
         least.iter().sum::<f64>() + offset - slack
     }
 
-    /// A vertex before its division. The same numbers whoever asks, so that triangles that share
-    /// the vertex agree on where it is.
+    /// A vertex before its division. Its numbers do not depend on the triangle, so triangles that share the vertex
+    /// agree on its place.
     #[inline]
     pub(crate) fn homogeneous(&self, p: Vec3) -> Homogeneous {
         match self.fast {
@@ -352,7 +353,7 @@ impl ObjectView {
         }
     }
 
-    /// The vertex on the screen, without its shade; `None` if it must be clipped.
+    /// Projects a vertex, without its shade; `None` if it must be clipped.
     #[inline]
     pub(crate) fn project(&self, p: Vec3) -> Option<Vertex> {
         match self.fast {
@@ -372,8 +373,8 @@ impl ObjectView {
         }
     }
 
-    /// The vertex on the screen of a point that is not nearer than the near plane; `None` if it
-    /// lies beyond the limit.
+    /// Projects a point that is not nearer than the near plane to a vertex on the screen; `None` if it lies beyond the
+    /// limit.
     #[inline]
     pub(crate) fn divide(&self, h: Homogeneous, shade: U8F8) -> Option<Vertex> {
         let (cx, cy) = (f64::from(self.centre.0), f64::from(self.centre.1));
@@ -394,7 +395,7 @@ impl ObjectView {
         Vertex::new(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, shade, self.depth(w)).ok()
     }
 
-    /// round(2³⁰ · near / w).
+    /// The depth: round(2³⁰ · near / w).
     #[inline]
     fn depth(&self, w: f64) -> u32 {
         // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates. There is no
@@ -403,8 +404,8 @@ impl ObjectView {
         ((f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32).max(1)
     }
 
-    /// The least and the greatest depth that a vertex within `bounds` may have, once what is nearer
-    /// than the near plane is cut off; somewhat wider than they are.
+    /// The least and the greatest depth that a vertex within `bounds` may have, once the part before the near plane is
+    /// cut off; somewhat wider than they are.
     pub(crate) fn depths(&self, bounds: Bounds) -> (u32, u32) {
         let (row, offset) = (self.exact.0[2], self.exact.1[2]);
         let (min, max) = (widen(bounds.min), widen(bounds.max));

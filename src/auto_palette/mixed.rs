@@ -18,9 +18,9 @@ use crate::vga::Vga;
 /// The colour of a material, and that of its highlight, on three channels.
 pub(super) type OwnColors = ([f32; 3], [f32; 3]);
 
-/// The colours of the pixels that are mixed, as the card shows them, and that of the background, if one was chosen; each
-/// with its area in parts of all covered pixels. `own`
-/// are those of the scene's materials, of all objects one after the other.
+/// The colours of the pixels that are mixed, as the card shows them, each with its area in parts of all covered pixels.
+/// The background's colour is among them, if one was chosen. `own` are the colours of the scene's materials, of all
+/// objects one after the other.
 pub(super) fn colors(scene: &Scene, own: &[OwnColors]) -> Result<Vec<(Rgb, f32)>, RenderError> {
     let everywhere = has_colored_light(scene) || scene.fog.is_some();
     let materials = scene.objects().iter().flat_map(|object| &object.materials);
@@ -50,16 +50,16 @@ pub(super) fn colors(scene: &Scene, own: &[OwnColors]) -> Result<Vec<(Rgb, f32)>
             }
         }
     }
-    // Of 16 pictures at most: 1,024,000 pixels.
+    // 16 pictures at most: 1,024,000 pixels.
     Ok(counts.into_iter().map(|(color, count)| (color, count as f32 / covered.max(1) as f32)).collect())
 }
 
-/// Whether a light in the scene is coloured, so that all is lit on three channels.
+/// Returns whether a light in the scene is coloured, so that all is lit on three channels.
 pub(super) fn has_colored_light(scene: &Scene) -> bool {
     scene.lights().iter().any(|light| light.is_colored() && light.intensity() != 0.0)
 }
 
-/// Entry i is the grey nearest to i that the card shows.
+/// The palette whose entry i is the grey nearest to i that the card shows.
 fn grey() -> Palette {
     // Below 256.
     Palette::from_colors(core::array::from_fn(|i| even(i as u8).nearest_on_dac()))

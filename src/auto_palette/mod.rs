@@ -1,4 +1,4 @@
-//! A palette for a scene: what is seen of each of its materials over a round, and from that the entries.
+//! A palette for a scene: each of its materials is measured over a round, and the entries are made from that.
 //!
 //! | file | what |
 //! |---|---|
@@ -29,15 +29,15 @@ use seen::{full_light, moments};
 pub struct AutomaticPalette {
     /// The colours.
     pub palette: Palette,
-    /// For each object, for each of its materials, its entries.
+    /// The entries of each material, object by object.
     pub entries: Vec<Vec<Entries>>,
     materials: Vec<Vec<Material>>,
 }
 
 impl AutomaticPalette {
-    /// Gives `scene` the palette, and its objects their materials in it. It is the scene that the palette was made for,
-    /// or one with the same objects; objects with other numbers of materials stay as they are. Its wish for such a palette
-    /// is met.
+    /// Gives `scene` the palette, and its objects their materials in it. The scene is the one that the palette was made
+    /// for, or one with the same objects. Objects with other numbers of materials stay as they are. The scene's
+    /// preference for such a palette is cleared.
     pub fn apply(&self, scene: &mut Scene) {
         scene.preferences.auto_palette = false;
         if let Some(color) = scene.background_color {
@@ -54,19 +54,20 @@ impl AutomaticPalette {
 
 /// A palette for a scene, by [`share_beside`], and its materials in it.
 ///
-/// Area and brightness are what is seen of it over a round. A material that has no colour of its own and no image, and names a coloured
-/// ramp of the scene's palette, keeps the colours of that. Another's colour is its [own](Material::own_colors), in the
-/// light that it gives back in full light, ambient and diffuse together; its highlight adds to that. On its ramp that colour stands
-/// at the intensity `full_light` of [`Entries::Ramp`], so its ambient and diffuse shares are divided up to that, in the
-/// proportion that they have, and what is left is the highlight's. It then needs no channels any more, as its colour is
-/// in the ramp, and a `ramp` that it named is another one now. A material with an image keeps its shares; the image's
-/// colours, tinted by the material's, are the base of entries at the brightnesses seen; where its plan calls for mipmaps,
-/// their colours too, those of each level counting half as much as those of the level before.
+/// Area and brightness are measured from what is seen over a round. A material that has no colour of its own and no
+/// image, and names a coloured ramp of the scene's palette, keeps the colours of that ramp. Any other material's colour
+/// is its [own](Material::own_colors), in the light that it gives back in full light, ambient and diffuse together; its
+/// highlight adds to that. On its ramp that colour stands at the intensity `full_light` of [`Entries::Ramp`]. So its
+/// ambient and diffuse shares are divided up to that, in the proportion that they have, and the rest is the
+/// highlight's. The material then needs no channels any more, because its colour is in the ramp, and a `ramp` that it
+/// named is replaced. A material with an image keeps its shares. The image's colours, tinted by the material's, are the
+/// base of entries at the brightnesses seen. If its plan calls for mipmaps, their colours count too, those of each
+/// level half as much as those of the level before.
 ///
-/// What is mixed on the screen lies on no ramp: colours in fog and behind bodies that shine through, and all colours
-/// where a light is coloured. These are measured in true colour, and share the block of the textures. Under coloured
-/// light there are no ramps: materials keep their own colours, are lit on three channels, and drawn in the nearest of
-/// the colours so found.
+/// Colours that are mixed on the screen lie on no ramp: those in fog and behind bodies that shine through, and all
+/// colours under a coloured light. They are measured in true colour, and share the block of the textures. Under
+/// coloured light there are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the
+/// nearest of the measured colours.
 ///
 /// ```
 /// use mode13h::mesh::shapes;
@@ -85,7 +86,7 @@ impl AutomaticPalette {
 /// ```
 ///
 /// # Errors
-/// As [`Renderer::draw`].
+/// Those of [`Renderer::draw`].
 pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     let in_channels = mixed::has_colored_light(scene);
     let mut tints = Tints::default();
@@ -131,7 +132,7 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     Ok(automatic)
 }
 
-/// Whether each object's plan calls for mipmaps at any moment.
+/// Returns for each object whether its plan calls for mipmaps at any moment.
 fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
     let mut any = vec![false; scene.objects().len()];
     if scene.objects().iter().flat_map(|object| &object.materials).any(|material| material.texture.is_some()) {
@@ -145,17 +146,17 @@ fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
     Ok(any)
 }
 
-/// What a material of an object is to look like.
+/// The target colours of one material of an object.
 struct Body {
-    /// What it gives back in full light, of 1: its ambient and diffuse shares.
+    /// The share of full light that it gives back, of 1: ambient and diffuse together.
     full: f32,
-    /// On three channels.
+    /// Its colours on three channels.
     own: OwnColors,
-    /// Those of a ramp that is taken over.
+    /// The colours of a ramp that is taken over.
     along: Option<Vec<Rgb>>,
     color: Rgb,
     highlight: Option<Rgb>,
-    /// Its texture, or what it mirrors, in its colour.
+    /// Its texture or environment map, in its colour.
     image: Option<Shared<Texture>>,
 }
 
@@ -227,7 +228,7 @@ fn colors_of_ramp(material: &Material, palette: &Palette) -> Option<Vec<Rgb>> {
     (is_named && material.ramp != RampChoice::Nearest && has_color && colors.len() > 1).then_some(colors)
 }
 
-/// What stands for the colours of a ramp where light is mixed: that in full light, and what the highlight adds to it.
+/// The two colours that stand for a ramp where light is mixed: that in full light, and what the highlight adds to it.
 fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
     let shown = |intensity: f32| {
         // From the first to the last.

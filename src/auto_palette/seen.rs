@@ -1,9 +1,9 @@
-//! What is seen of each material of a scene.
+//! Area and brightness of each material of a scene, as they are seen.
 //!
 //! Each moment is drawn once with shades that are intensities, and once with the materials' numbers in place of shades,
 //! one byte of the number after the other: so visibility is the renderer's own. Adding up projected areas would be
-//! cheaper, and count what other faces hide. Where bodies shine through, what is behind them is seen as well: it is
-//! drawn again with them left out.
+//! cheaper, but would count hidden areas too. Behind bodies that shine through, materials are seen as well: the scene
+//! is drawn again without those bodies.
 
 use alloc::boxed::Box;
 use alloc::vec;
@@ -18,24 +18,24 @@ use crate::vga::Vga;
 /// Pictures over one round.
 const POSES: u32 = 16;
 
-/// What is seen of a material over a round.
+/// The pixels that show a material, over one round of the scene.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[doc(hidden)]
 pub struct Seen {
-    /// Its pixels among all that are covered, 0 to 1.
+    /// The share of its pixels among all that are covered, 0 to 1.
     pub area: f32,
     /// The least intensity of ambient and diffuse light that it shows there, 0 to 1, full light being 1; 0 if it is
     /// never in sight.
     pub darkest: f32,
-    /// The greatest.
+    /// The greatest such intensity.
     pub brightest: f32,
 }
 
-/// What is seen of each material of each object: in pictures of 320 × 200 at 16 moments of a round of the scene, or in
-/// one if nothing in it moves.
+/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a round of the scene, or in one if
+/// nothing in it moves.
 ///
 /// # Errors
-/// As [`Renderer::draw`].
+/// Those of [`Renderer::draw`].
 #[doc(hidden)]
 pub fn seen(scene: &Scene) -> Result<Vec<Vec<Seen>>, RenderError> {
     let materials = || scene.objects().iter().flat_map(|object| &object.materials);
@@ -54,14 +54,14 @@ pub fn seen(scene: &Scene) -> Result<Vec<Vec<Seen>>, RenderError> {
     Ok(scene.objects().iter().map(|object| each.by_ref().take(object.materials.len()).collect()).collect())
 }
 
-/// The moments of a round that are looked at, in seconds.
+/// The moments of a round that are drawn, in seconds.
 pub(super) fn moments(scene: &Scene) -> impl Iterator<Item = f64> {
     let (poses, from) = if scene.motions.is_empty() { (1, scene.time()) } else { (POSES, 0.0) };
     let duration = scene.duration;
     (0..poses).map(move |pose| from + duration * f64::from(pose) / f64::from(POSES))
 }
 
-/// A scene as it is looked at, and what draws it.
+/// A scene as it is measured, and the renderer that draws it.
 pub(super) struct Picture {
     scene: Scene,
     renderer: Renderer,
@@ -69,8 +69,8 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// A picture of `scene` on one channel, without what does something to its pixels. `change` changes the materials;
-    /// it is given their numbers from 0.
+    /// A picture of `scene` on one channel, without effects on its pixels. `change` changes the materials; it is given
+    /// their numbers from 0.
     pub(super) fn new(scene: &Scene, mut change: impl FnMut(usize, &mut Material)) -> Self {
         let mut scene = scene.clone();
         scene.palette = None;
@@ -92,7 +92,7 @@ impl Picture {
         &mut self.scene
     }
 
-    /// Its pixels at a time, in seconds.
+    /// Draws the scene at a time, in seconds, and returns its pixels.
     pub(super) fn at(&mut self, seconds: f64) -> Result<&[u8], RenderError> {
         self.scene.set_time(seconds);
         self.renderer.draw(&self.scene, &mut self.vga)?;
@@ -100,7 +100,7 @@ impl Picture {
     }
 }
 
-/// What is seen if bodies that shine through hide what is behind them, or if they are not there.
+/// Intensities and material numbers, with the bodies that shine through drawn as opaque, or left out.
 struct Layer {
     intensities: Picture,
     numbers: Numbers,
@@ -140,9 +140,9 @@ fn become_plain(material: &mut Material, through: bool) {
     material.blend = if is_left_out { Blend::Mix(0) } else { Blend::Opaque };
 }
 
-/// Which material every pixel shows.
+/// The number of the material that every pixel shows.
 pub(super) struct Numbers {
-    /// One for each byte of the number. Numbers are counted from 1 in there, as the background is 0.
+    /// One picture for each byte of the number. Numbers are counted from 1 in there, as the background is 0.
     bytes: Vec<Picture>,
     found: Vec<Option<usize>>,
 }
@@ -208,8 +208,8 @@ impl Tally {
     }
 }
 
-/// What a material gives back of ambient and diffuse light in full light. At most 1, as no more is shown, and 1 where it
-/// gives nothing back.
+/// The share of full light that a material gives back, ambient and diffuse together. It is at most 1, as no more is
+/// shown, and 1 for a material that gives nothing back.
 pub(super) fn full_light(material: &Material, ambient: f32) -> f32 {
     let full = material.ambient * ambient + material.diffuse;
     if full > 0.0 { full.min(1.0) } else { 1.0 }

@@ -1,8 +1,8 @@
 //! Animated PNG films, written frame by frame: each frame cropped to what it changes, with transparent pixels where that
 //! is shorter, and with a delay that is the exact fraction of a second.
 //!
-//! The file says up front how many frames there are, and which colours: a frame that changes nothing is a pixel as it
-//! was, and a film whose palette changes is written in true colour.
+//! The file says up front how many frames there are, and which colours. So a frame that changes nothing is one
+//! unchanged pixel, and a film whose palette changes is written in true colour.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -21,13 +21,13 @@ use crate::palette::Rgb;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[doc(hidden)]
 pub enum FilmColors {
-    /// Those of a palette that does not change: a byte a pixel.
+    /// The colours of a palette that does not change: a byte a pixel.
     Palette(Box<[Rgb; 256]>),
-    /// Any: red, green and blue of each pixel.
+    /// Any colours: red, green and blue of each pixel.
     True,
 }
 
-/// A frame of an [`ApngFile`], ready to be written. It is made from the frame and the one before it alone, so several can
+/// A frame of an [`ApngFile`], ready to be written. It depends only on the frame and the one before it, so several can
 /// be made at a time, on any threads, and then be added in their order.
 #[doc(hidden)]
 pub struct ApngFrame {
@@ -36,14 +36,14 @@ pub struct ApngFrame {
     density: (u32, u32),
     colors: FilmColors,
     area: Area,
-    /// Whether transparent pixels let through what stood there.
+    /// Transparent pixels let through what stood there.
     blends: bool,
     /// The compressed rows.
     data: Vec<u8>,
 }
 
 impl ApngFrame {
-    /// A frame that follows `before`, or the first of its film: what it shows otherwise is written.
+    /// Makes a frame that follows `before`, or the first of its film. Only its differences are written.
     ///
     /// # Errors
     ///
@@ -103,7 +103,7 @@ impl ApngFrame {
     }
 }
 
-/// The rows of a picture, filtered and compressed as PNG has it: what its data chunks hold.
+/// The rows of a picture, filtered and compressed as in PNG: the contents of its data chunks.
 fn compressed(
     (width, height): (u32, u32),
     color: ColorType,
@@ -154,7 +154,7 @@ pub struct ApngFile {
 }
 
 impl ApngFile {
-    /// A film of so many frames, to stand under `path`.
+    /// Begins a film of so many frames, to stand under `path`.
     ///
     /// # Errors
     ///
@@ -190,7 +190,7 @@ impl ApngFile {
     }
 }
 
-/// What writes the chunks.
+/// The writer of the film's chunks.
 struct Writer<W> {
     out: W,
     rate: FrameRate,
@@ -202,7 +202,7 @@ struct Writer<W> {
     /// The first frame's size and colours.
     first: Option<((u32, u32), FilmColors)>,
     bytes: u64,
-    /// Writing failed so, perhaps amid a chunk: nothing may follow.
+    /// Writing failed, perhaps amid a chunk: nothing may follow.
     failed: Option<io::ErrorKind>,
 }
 
@@ -256,7 +256,7 @@ impl<W: Write> Writer<W> {
         Ok(())
     }
 
-    /// What stands before the first frame.
+    /// Writes the chunks before the first frame.
     fn write_head(&mut self, first: &ApngFrame) -> io::Result<()> {
         const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
         self.out.write_all(SIGNATURE)?;

@@ -8,7 +8,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Why a file was not written. What stood under its name before is untouched.
+/// An error of a file that was not written. The file that stood under its name before is untouched.
 #[derive(Debug)]
 pub struct ExportError {
     path: PathBuf,
@@ -25,21 +25,21 @@ impl ExportError {
         &self.path
     }
 
-    /// What went wrong.
+    /// The kind of the error.
     pub fn kind(&self) -> &ExportErrorKind {
         &self.kind
     }
 }
 
-/// What went wrong while a file was written.
+/// The kinds of error that can occur while a file is written.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ExportErrorKind {
     /// The directory that the file was to stand in does not exist.
     MissingDirectory,
-    /// What was named as a directory is a file.
+    /// A path that was named as a directory is a file.
     NotADirectory,
-    /// The directory exists, and no file can be made in it: the system makes those that it has.
+    /// The directory exists, but no file can be made in it: only the system makes files there.
     NoNewFiles,
     /// The name is that of a directory, or ends like one.
     IsDirectory,
@@ -66,7 +66,7 @@ pub enum ExportErrorKind {
 }
 
 impl ExportErrorKind {
-    /// From opening or renaming a file of this name.
+    /// Makes an error of opening or renaming a file of this name.
     fn from_opening(path: &Path, error: io::Error) -> ExportErrorKind {
         match error.kind() {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => match fs::metadata(directory_of(path)) {
@@ -80,7 +80,8 @@ impl ExportErrorKind {
         }
     }
 
-    /// From writing into an open file. That something does not exist is then no word about the directory.
+    /// Makes an error of writing into an open file. That something does not exist then says nothing about the
+    /// directory.
     pub(super) fn from_writing(error: io::Error) -> ExportErrorKind {
         match error.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ExportErrorKind::DiskFull,
@@ -160,8 +161,8 @@ pub fn write_atomically(
     }
 }
 
-/// Finds out whether [`write_atomically`] could write a file under this name, short of a disk that is full: a temporary
-/// file is made and removed. What stands under the name is left alone.
+/// Tests whether [`write_atomically`] could write a file under this name, short of a disk that is full: a temporary
+/// file is made and removed. A file that stands under the name is left alone.
 ///
 /// # Errors
 ///
@@ -171,17 +172,17 @@ pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ExportError> {
     AtomicFile::create(path.as_ref()).map(drop)
 }
 
-/// A file in the making, as [`write_atomically`] has it: there under its name once it is committed, and removed if it is
+/// A file in the making, as [`write_atomically`] has it. It gets its name once it is committed, and is removed if it is
 /// dropped before.
 pub(super) struct AtomicFile {
     /// The path as the caller named it, for errors.
     path: PathBuf,
-    /// Where it is to stand.
+    /// The path that the file is renamed to.
     target: PathBuf,
     out: BufWriter<File>,
-    /// Nothing for a device or a pipe.
+    /// The temporary file; none for a device or a pipe.
     temporary: Option<Temporary>,
-    /// Those of the file that is replaced.
+    /// The permissions of the file that is replaced.
     permissions: Option<Permissions>,
 }
 
@@ -236,7 +237,7 @@ impl AtomicFile {
         temporary.rename(&target).map_err(fail)
     }
 
-    /// What to report of an error that writing into it gave.
+    /// Makes the error to report from one that writing into the file gave.
     fn failed(&self, error: io::Error) -> ExportError {
         ExportError::new(&self.path, ExportErrorKind::from_writing(error))
     }

@@ -45,19 +45,19 @@ impl ColorTable {
         Some(places)
     }
 
-    /// The first index of the table that none of these is, for pixels without a colour.
+    /// The first index of the table that none of these uses, for pixels without a colour.
     #[cfg(any(feature = "gif", test))]
     pub(super) fn free(&self, indices: &[u8]) -> Option<u8> {
         used(indices).iter().take(self.entries()).position(|used| !used).map(|free| free as u8)
     }
 
-    /// The entry behind the colours, where there is room for one: no pixel of any frame has it.
+    /// The entry behind the colours, if there is room for one: no pixel of any frame has it.
     #[cfg(feature = "png")]
     pub(super) fn spare(&self) -> Option<u8> {
         u8::try_from(self.colors.len()).ok()
     }
 
-    /// Red, green and blue of each entry: the colours, and one more where there is room.
+    /// Red, green and blue of each entry: the colours, and one more if there is room.
     pub(super) fn bytes(&self) -> Vec<u8> {
         let spare = [Rgb::BLACK];
         let entries = self.colors.iter().chain(&spare).take(self.entries());
@@ -69,7 +69,7 @@ impl ColorTable {
     }
 }
 
-/// Which indices there are.
+/// Marks the indices that occur.
 fn used(indices: &[u8]) -> [bool; 256] {
     let mut used = [false; 256];
     indices.iter().for_each(|&index| used[usize::from(index)] = true);

@@ -1,4 +1,4 @@
-//! What a frame of a film shows otherwise than the one before it.
+//! Differences between a frame of a film and the one before it.
 
 use super::scale::Scaled;
 use super::{Picture, PictureError};
@@ -19,13 +19,13 @@ impl Area {
         Area { left: 0, top: 0, right: scaled.width as usize, bottom: scaled.height as usize }
     }
 
-    /// How many pixels it has.
+    /// Counts the area's pixels.
     #[cfg(feature = "gif")]
     pub(super) fn pixels(self) -> usize {
         (self.right - self.left) * (self.bottom - self.top)
     }
 
-    /// The least that holds this one, if there is one, and a row from `left` to before `right`.
+    /// The least area that holds this one, if there is one, and a row from `left` to before `right`.
     fn with_row(area: Option<Area>, y: usize, left: usize, right: usize) -> Area {
         match area {
             Some(area) => {
@@ -36,9 +36,8 @@ impl Area {
     }
 }
 
-/// What the frame `now` shows otherwise than `before`: the least rectangle with all pixels that it shows in another colour,
-/// whether the index or the palette is the reason; nothing if there is none. An index that stands for the same
-/// colour as before changes nothing.
+/// Finds the least rectangle with all pixels that `now` shows in another colour than `before`, whether the index or the
+/// palette is the reason. Returns `None` if there is none. An index that stands for an equal colour changes nothing.
 pub(super) fn changed(before: &Picture<'_>, now: &Scaled<'_>) -> Result<Option<Area>, PictureError> {
     let (picture, columns, rows) = now.sources();
     let (first, size) = ((before.width, before.height), (picture.width, picture.height));
@@ -72,8 +71,8 @@ pub(super) fn changed(before: &Picture<'_>, now: &Scaled<'_>) -> Result<Option<A
     Ok(area)
 }
 
-/// For each pixel of a part of the film, row by row, whether `now` shows it in the colour that `before` did. `was` and
-/// `is` are the part's palette indices in the two.
+/// Yields for each pixel of a part of the film, row by row, whether `now` shows it in the colour that `before` did.
+/// `was` and `is` are the part's palette indices in the two.
 pub(super) fn kept<'a>(
     before: &'a Picture<'_>,
     was: &'a [u8],

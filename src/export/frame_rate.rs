@@ -3,10 +3,10 @@
 use std::error::Error;
 use std::fmt;
 
-/// How many frames of a film are shown a second, 0.1 to 50.
+/// A film's frames per second, 0.1 to 50.
 ///
-/// Browsers show a frame that is to stay for less than 2/100 s for 10/100 s instead: 50 frames a second is the most
-/// that they keep to. 35, the default, is every second retrace of the machine.
+/// Browsers keep to at most 50 frames a second: a frame that is to stay for less than 2/100 s they show for 10/100 s
+/// instead. 35, the default, is every second retrace of the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameRate(f64);
 
@@ -18,7 +18,7 @@ impl FrameRate {
     #[doc(hidden)]
     pub const HIGHEST: FrameRate = FrameRate(50.0);
 
-    /// So many frames a second.
+    /// Makes a rate of so many frames a second.
     ///
     /// # Errors
     ///
@@ -31,7 +31,7 @@ impl FrameRate {
         }
     }
 
-    /// Frames a second.
+    /// Returns the rate in frames a second.
     pub fn frames_per_second(self) -> f64 {
         self.0
     }
@@ -49,8 +49,8 @@ impl FrameRate {
         fraction(self.0)
     }
 
-    /// How long frame `number` stays, counted from 0, in 1/100 s: 2 to 1,000. A frame begins at the first hundredth that
-    /// is not before its time, ⌈100·number / rate⌉, whatever the frames before it: nothing adds up.
+    /// The time that frame `number`, counted from 0, stays, in 1/100 s: 2 to 1,000. A frame begins at the first
+    /// hundredth that is not before its time, ⌈100·number / rate⌉, whatever the frames before it: nothing adds up.
     ///
     /// ```
     /// use mode13h::export::FrameRate;
@@ -96,7 +96,7 @@ fn fraction(number: f64) -> (u16, u16) {
     }
 }
 
-/// A rate that is no [`FrameRate`].
+/// The error of a rate that is no [`FrameRate`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameRateError {
     frames_per_second: f64,

@@ -1,12 +1,12 @@
 //! GIF films, written frame by frame: each frame cropped to what it changes, with transparent pixels where that is
-//! shorter, and with a palette of its own only where the first frame's lacks a colour that it uses. Indices of one colour
-//! are made one.
+//! shorter. A frame has a palette of its own only if the first frame's lacks a colour that it uses. Indices of one
+//! colour are made one.
 //!
 //! A frame that changes nothing is not written: the one before it stays longer. (A frame of one pixel would keep the time
 //! as well, at 25 bytes and one more image for every reader.) How long a frame stays is therefore known only when the next
 //! change comes, so the last one is held back until then.
 //!
-//! Nearly all the time goes into [`GifFrame`], what is made of a frame beside the one before it: several can be made at a time.
+//! Nearly all the time goes into making each [`GifFrame`] beside the one before it: several can be made at a time.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -22,7 +22,7 @@ use crate::palette::Rgb;
 
 /// A film that goes round for ever, as a GIF, written to `W` while its frames are given.
 ///
-/// It keeps one frame, and what of it is to be written, and the same of the next while that is added: a film may be of
+/// The writer keeps one frame and its compressed image, and those of the next while it is added, so a film may be of
 /// any length. GIF knows square pixels only: a mode 13h frame has its shape at [`Scale::FiveBySix`] or 640 × 480.
 ///
 /// ```
@@ -51,26 +51,26 @@ pub struct GifWriter<W: Write> {
     film: Film,
 }
 
-/// What was written of a film.
+/// The counts of a film that was written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Film {
-    /// Pixels in a row.
+    /// The width in pixels.
     pub width: u16,
-    /// Rows.
+    /// The height in pixels.
     pub height: u16,
-    /// The frames that were given.
+    /// The number of frames that were given.
     pub frames: u64,
-    /// The images in the file: the frames but those that change nothing.
+    /// The number of images in the file: the frames without those that change nothing.
     pub images: u64,
-    /// How many images stay for so many hundredths of a second.
+    /// The number of images for each delay, in hundredths of a second.
     pub delays: BTreeMap<u16, u64>,
     /// The length of the file, in bytes.
     pub bytes: u64,
 }
 
 impl Film {
-    /// How long one round of the film takes, in seconds.
+    /// The length of one round of the film, in seconds.
     #[doc(hidden)]
     pub fn seconds(&self) -> f64 {
         let hundredths: u64 = self.delays.iter().map(|(&delay, &images)| u64::from(delay) * images).sum();
@@ -79,13 +79,13 @@ impl Film {
 }
 
 impl<W: Write> GifWriter<W> {
-    /// A film of no frames yet. Nothing is written before the second frame or [`finish`](Self::finish).
+    /// Begins a film of no frames yet. Nothing is written before the second frame or [`finish`](Self::finish).
     pub fn new(out: W, scale: Scale, rate: FrameRate) -> GifWriter<W> {
         let palette = Box::new([Rgb::BLACK; 256]);
         GifWriter { scale, rate, out: Out::Unopened(out), palette, held: None, film: Film::default() }
     }
 
-    /// Adds a frame. Its bytes and colours are what it shows: the shape of its pixels is not heeded.
+    /// Adds a frame by its bytes and colours. The shape of its pixels is ignored.
     ///
     /// # Errors
     ///
@@ -100,13 +100,13 @@ impl<W: Write> GifWriter<W> {
         self.add_frame(frame)
     }
 
-    /// Adds a frame that was made ready: the first by [`GifFrame::first`], each other by [`GifFrame::after`] beside the
-    /// frame that was added before it, in this film's scale and with the colours of its first frame. Beside another, it
-    /// shows what that other would have left.
+    /// Adds a frame that was made ready: the first by [`GifFrame::first`], each other by [`GifFrame::after`]. Each must
+    /// be made beside the frame that was added before it, in this film's scale and with the colours of its first frame.
+    /// Made beside another, it shows what that other would have left.
     ///
     /// # Errors
     ///
-    /// As [`add`](Self::add); [`GifError::Picture`] too where it was enlarged to another size than the first.
+    /// Those of [`add`](Self::add); [`GifError::Picture`] too if it was enlarged to another size than the first.
     pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), GifError> {
         self.out.check()?;
         // Nothing stands before it.
@@ -145,7 +145,7 @@ impl<W: Write> GifWriter<W> {
         Ok(())
     }
 
-    /// Writes what is left, and gives back what was written to, not flushed, and how much it was.
+    /// Writes the rest, and returns the writer, not flushed, and the film's counts.
     ///
     /// # Errors
     ///
@@ -188,21 +188,21 @@ impl<W: Write> GifWriter<W> {
     }
 }
 
-/// The last frame that changed something. It is what the film shows.
+/// The last frame that changed something. The film shows it now.
 struct Held {
     frame: GifFrame,
-    /// What is written of it, where that is not its own image.
+    /// The image to write for it, if that is not its own.
     image: Option<Image>,
-    /// In 1/100 s, so far.
+    /// Its delay so far, in 1/100 s.
     delay: u16,
 }
 
-/// What the film is written to.
+/// The destination of the film, by its state.
 enum Out<W: Write> {
-    /// Nothing is written yet: the first frame says how large the film is, and its colours are the film's.
+    /// Nothing is written yet: the first frame gives the film its size and its colours.
     Unopened(W),
     Open(Encoder<Counted<W>>),
-    /// Writing failed so.
+    /// Writing failed with this error.
     Failed(io::ErrorKind),
 }
 
@@ -214,7 +214,7 @@ impl<W: Write> Out<W> {
         }
     }
 
-    /// Writes an image that is compressed; what stands before the first, too.
+    /// Writes an image that is compressed, and the file's head before the first.
     fn write(&mut self, size: (u16, u16), palette: &[Rgb; 256], image: &Frame<'_>) -> Result<(), GifError> {
         // Should this fail, the file ends amid an image, and nothing may follow.
         let out = std::mem::replace(self, Out::Failed(io::ErrorKind::Other));
@@ -248,7 +248,7 @@ impl<W: Write> Out<W> {
     }
 }
 
-/// Counts the bytes.
+/// A writer that counts the bytes.
 struct Counted<W: Write> {
     out: W,
     bytes: u64,
@@ -266,8 +266,8 @@ impl<W: Write> Write for Counted<W> {
     }
 }
 
-/// What the disk said. All else that the encoder refuses, a palette of no or too many colours or a frame that is too
-/// short, is not given to it.
+/// The disk's error. The encoder refuses nothing else: it is never given a palette of no or too many colours, or a
+/// frame that is too short.
 fn reason(error: EncodingError) -> io::Error {
     match error {
         EncodingError::Io(error) => error,
@@ -275,7 +275,7 @@ fn reason(error: EncodingError) -> io::Error {
     }
 }
 
-/// Why a film was not written.
+/// An error of a film that was not written.
 #[derive(Debug)]
 #[non_exhaustive]
 #[doc(hidden)]

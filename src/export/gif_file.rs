@@ -7,8 +7,8 @@ use super::{ExportError, ExportErrorKind, Film, FrameRate, GifError, GifFrame, G
 
 /// A film that goes round for ever, written to a file frame by frame as [`GifWriter`] does.
 ///
-/// The file is written beside its name and gets it when the film is finished; dropped before, it is removed, and what
-/// stood under the name is as it was.
+/// The file is written beside its name and gets it when the film is finished. If it is dropped before, it is removed,
+/// and the file that stood under the name is as it was.
 ///
 /// ```
 /// use mode13h::export::{FrameRate, GifFile, Picture, Scale};
@@ -33,7 +33,7 @@ pub struct GifFile {
 }
 
 impl GifFile {
-    /// A film of no frames yet, to stand under `path`.
+    /// Begins a film of no frames yet, to stand under `path`.
     ///
     /// # Errors
     ///
@@ -58,7 +58,7 @@ impl GifFile {
     ///
     /// # Errors
     ///
-    /// As [`add`](Self::add).
+    /// Those of [`add`](Self::add).
     #[doc(hidden)]
     pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), ExportError> {
         self.writer.add_frame(frame).map_err(|error| failed(&self.path, error))

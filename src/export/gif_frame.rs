@@ -8,7 +8,7 @@ use super::scale::Scaled;
 use super::{Picture, PictureError, PixelShape, Scale};
 use crate::palette::Rgb;
 
-/// A frame of a [film](super::GifWriter) and what of it is written. It is made from the frame and the one before it alone,
+/// A frame of a [film](super::GifWriter) and its compressed image. It depends only on the frame and the one before it,
 /// so several can be made at a time, on any threads, and then be [added](super::GifWriter::add_frame) in their order.
 ///
 /// ```
@@ -34,14 +34,14 @@ pub struct GifFrame {
     palette: Box<[Rgb; 256]>,
     /// The film's size in pixels: width and height.
     size: (u16, u16),
-    /// Nothing where it changes nothing.
+    /// The image to write; none if the frame changes nothing.
     image: Option<Image>,
 }
 
-/// What is written of a frame.
+/// The image that is written for a frame.
 pub(super) struct Image {
     pub(super) area: Area,
-    /// A palette of its own, where it shows a colour that the film's has otherwise.
+    /// A palette of its own, if it shows a colour that the film's palette lacks.
     pub(super) palette: Option<Vec<u8>>,
     /// The index of pixels that stay as they were.
     pub(super) transparent: Option<u8>,
@@ -50,7 +50,7 @@ pub(super) struct Image {
 }
 
 impl GifFrame {
-    /// The first frame of a film: all of it is written, and its colours are the film's.
+    /// Makes the first frame of a film: all of it is written, and its colours are the film's.
     ///
     /// # Errors
     ///
@@ -61,11 +61,11 @@ impl GifFrame {
         GifFrame::new(&scaled, Some(image))
     }
 
-    /// A frame that follows `before`: what it shows otherwise is written. `film`: the colours of the first frame.
+    /// Makes a frame that follows `before`: its differences are written. `film`: the colours of the first frame.
     ///
     /// # Errors
     ///
-    /// As [`first`](Self::first); another size than that of `before`.
+    /// Those of [`first`](Self::first); another size than that of `before`.
     pub fn after(
         before: &Picture<'_>,
         picture: &Picture<'_>,
@@ -94,7 +94,7 @@ impl GifFrame {
         Ok(GifFrame { pixels, width, height, palette: Box::new(*palette), size, image })
     }
 
-    /// What it shows.
+    /// The frame as a picture.
     pub(super) fn picture(&self) -> Picture<'_> {
         let GifFrame { pixels, width, height, palette, .. } = self;
         Picture { pixels, width: *width, height: *height, pitch: *width, palette, shape: PixelShape::SQUARE }
@@ -109,12 +109,12 @@ impl GifFrame {
         self.size
     }
 
-    /// Whether it shows anything otherwise than the frame before it.
+    /// Returns whether the frame differs from the one before it.
     pub(super) fn changes(&self) -> bool {
         self.image.is_some()
     }
 
-    /// Whether all of it is written, whatever the frame before it showed.
+    /// Returns whether all of it is written, whatever the frame before it showed.
     pub(super) fn is_whole(&self) -> bool {
         let pixels = usize::from(self.size.0) * usize::from(self.size.1);
         self.image.as_ref().is_some_and(|image| image.area.pixels() == pixels && image.transparent.is_none())
@@ -130,7 +130,7 @@ impl GifFrame {
     }
 }
 
-/// Pixels that stay as they were are left transparent in rows of so many at least. Fewer of them would break up what is
+/// The least length of a row of unchanged pixels that are left transparent. Shorter ones would break up the pixels
 /// around them, which costs more than it saves: on the torus 16 came to less than 1, 4, 8 and 32.
 const TRANSPARENT_RUN: usize = 16;
 
@@ -199,7 +199,7 @@ fn leave_out(indices: &mut [u8], kept: &[bool], width: usize, transparent: u8) -
     any
 }
 
-/// Indices compressed as GIF has it.
+/// Compresses indices as in GIF.
 fn compressed(indices: &[u8]) -> Result<Vec<u8>, PictureError> {
     // The compressor asks for this much at first, and for an image larger than memory says so by a panic.
     let bytes = indices.len() / 2;

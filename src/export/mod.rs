@@ -1,7 +1,7 @@
 //! Pictures on disk: the frame as an indexed PNG, true colour, films, and files that are never half-written.
 //!
-//! Every file goes through [`write_atomically`]: it is written beside its name and then renamed, so that whatever
-//! stood under the name before is whole until the new file is.
+//! Every file goes through [`write_atomically`]: it is written beside its name and then renamed, so a file that stood
+//! under the name before is whole until the new one is.
 
 #[cfg(feature = "png")]
 mod apng;

@@ -1,4 +1,4 @@
-//! What an exporter needs to know of a frame: bytes, size, palette, and the shape of a pixel.
+//! A frame as an exporter takes it: bytes, size, palette, and the shape of a pixel.
 
 use std::error::Error;
 use std::fmt;
@@ -49,7 +49,7 @@ impl<'a> Picture<'a> {
         Picture { pixels, width: 320, height: 200, pitch: 320, palette: palette.colors(), shape: PixelShape::MODE_13H }
     }
 
-    /// That the sizes agree with each other and with the bytes there are.
+    /// Checks that the sizes agree with each other and with the number of bytes.
     pub(super) fn check(&self) -> Result<(), PictureError> {
         let limit = 1..=MAX_SIDE as usize;
         let shape = self.shape;
@@ -70,7 +70,7 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// Why a picture cannot be exported.
+/// The errors of a picture that cannot be exported.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PictureError {
@@ -83,14 +83,14 @@ pub enum PictureError {
     },
     /// The bytes are fewer than the rows need, or the rows overlap.
     Bytes {
-        /// The bytes there are.
+        /// The number of bytes.
         bytes: usize,
         /// The pitch that was given.
         pitch: usize,
     },
-    /// A frame of a film of fixed colours that shows another.
+    /// A frame shows another colour than the film's fixed ones.
     OtherColors,
-    /// A frame of a film that has not the size of the film's first.
+    /// A frame has another size than the film's first.
     OtherSize {
         /// Pixels in a row, and rows, of the first frame.
         first: (usize, usize),
@@ -99,7 +99,7 @@ pub enum PictureError {
     },
     /// The picture does not fit in memory.
     Memory {
-        /// The bytes that were asked for.
+        /// The number of bytes that were requested.
         bytes: usize,
     },
 }

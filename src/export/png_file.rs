@@ -9,13 +9,13 @@ use super::scale::Scaled;
 use super::{ExportError, ExportErrorKind, Picture, PictureError, Scale, write_atomically};
 use crate::vga::Vga;
 
-/// Writes what `vga` shows as an indexed PNG of 320 × 200 pixels: the 64,000 bytes as they are, the DAC's palette in
-/// 8-bit colours, and `pHYs` 6:5 (6 pixels across are as long as 5 down), so that viewers which heed it show 4:3.
-/// [`Png`] has other sizes and RGB.
+/// Writes the picture that `vga` shows as an indexed PNG of 320 × 200 pixels: the 64,000 bytes as they are, the DAC's
+/// palette in 8-bit colours, and `pHYs` 6:5 (6 pixels across are as long as 5 down), so that viewers which heed it show
+/// 4:3. [`Png`] has other sizes and RGB.
 ///
 /// # Errors
 ///
-/// [`ExportError`] if the file cannot be written; what stood there before is then whole.
+/// [`ExportError`] if the file cannot be written; a file that stood there before is then whole.
 ///
 /// ```
 /// use mode13h::{export, vga::Vga};
@@ -31,7 +31,7 @@ pub fn png(vga: &Vga, path: impl AsRef<Path>) -> Result<(), ExportError> {
     Png::INDEXED.save(&Picture::mode_13h(vga.pixels(), &palette), path)
 }
 
-/// How a [`Picture`] becomes a PNG file.
+/// The form in which a [`Picture`] becomes a PNG file.
 ///
 /// ```
 /// use mode13h::export::{Picture, Png, Scale};
@@ -46,8 +46,8 @@ pub fn png(vga: &Vga, path: impl AsRef<Path>) -> Result<(), ExportError> {
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Png {
-    /// How far the picture is enlarged. `pHYs` has the shape that its pixels then have: 6:5 for a mode 13h frame at
-    /// [`Scale::One`] and [`Scale::Double`], 1:1 at [`Scale::FiveBySix`] and 640 × 480.
+    /// The enlargement. `pHYs` has the shape that the pixels then have: 6:5 for a mode 13h frame at [`Scale::One`] and
+    /// [`Scale::Double`], 1:1 at [`Scale::FiveBySix`] and 640 × 480.
     pub scale: Scale,
     /// Colours in place of indices, for programs that know no palettes.
     pub rgb: bool,
@@ -61,8 +61,8 @@ impl Png {
     ///
     /// # Errors
     ///
-    /// [`ExportError`] if the picture's sizes do not fit its bytes, or if the file cannot be written; what stood there
-    /// before is then whole.
+    /// [`ExportError`] if the picture's sizes do not fit its bytes, or if the file cannot be written; a file that stood
+    /// there before is then whole.
     pub fn save(self, picture: &Picture<'_>, path: impl AsRef<Path>) -> Result<(), ExportError> {
         let path = path.as_ref();
         let scaled = Scaled::new(picture, self.scale)
@@ -121,8 +121,8 @@ impl Png {
     }
 }
 
-/// A writer that keeps its first error: of those that arise amid a picture's data the encoder passes on the words alone,
-/// and a full disk would be an error like any other.
+/// A writer that keeps its first error. The encoder passes on only the words of an error amid a picture's data, so a
+/// full disk would be an error like any other.
 struct Remembered<'a> {
     out: &'a mut dyn Write,
     error: Option<io::Error>,
@@ -153,7 +153,7 @@ impl Write for Remembered<'_> {
     }
 }
 
-/// What the disk said. (The encoder's own conversion hides the kind of an error.)
+/// The disk's error. (The encoder's own conversion hides the kind of an error.)
 fn reason(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(error) => error,

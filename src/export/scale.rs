@@ -8,8 +8,8 @@ use std::str::FromStr;
 
 use super::{MAX_SIDE, Picture, PixelShape};
 
-/// How a picture is enlarged when it is exported. Each pixel of the result is one pixel of the frame, never a mixture,
-/// so that an indexed picture stays indexed.
+/// The enlargement of a picture when it is exported. Each pixel of the result is one pixel of the frame, never a
+/// mixture, so an indexed picture stays indexed.
 #[derive(Clone, Copy, Hash, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Scale {
@@ -76,7 +76,7 @@ impl fmt::Display for Scale {
     }
 }
 
-/// Words that are no [`Scale`].
+/// The error of a word that is no [`Scale`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScaleError;
 
@@ -88,7 +88,7 @@ impl fmt::Display for ScaleError {
 
 impl Error for ScaleError {}
 
-/// A picture and the size that it is exported at: for each pixel of the result, where in the frame it comes from.
+/// A picture and the size that it is exported at, with the source of each pixel of the result.
 pub(super) struct Scaled<'a> {
     picture: Picture<'a>,
     /// The width of the result, in pixels.
@@ -138,14 +138,14 @@ impl<'a> Scaled<'a> {
         Ok(part)
     }
 
-    /// The picture itself, and which of its columns and rows the columns and rows of the result are.
+    /// The picture itself, and the columns and rows of it that the columns and rows of the result show.
     #[cfg(any(feature = "gif", feature = "png"))]
     pub(super) fn sources(&self) -> (&Picture<'a>, &[usize], &[usize]) {
         (&self.picture, &self.columns, &self.rows)
     }
 
-    /// Pixels per unit of length, across and down, in lowest terms: what `pHYs` says. The picture keeps its shape
-    /// whatever its size, so that 320 × 200 pixels of 5:6 are 6 across to 5 down, and 1600 × 1200 are square.
+    /// Pixels per unit of length, across and down, in lowest terms, for `pHYs`. The picture keeps its shape whatever
+    /// its size: 320 × 200 pixels of 5:6 are 6 across to 5 down, and 1600 × 1200 are square.
     pub(super) fn density(&self) -> (u32, u32) {
         let PixelShape { width: across, height: down } = self.picture.shape;
         let x = u64::from(self.width) * u64::from(down) * self.picture.height as u64;

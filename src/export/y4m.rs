@@ -31,7 +31,7 @@ pub fn y4m_header(picture: &Picture<'_>, scale: Scale, rate: (u16, u16)) -> Resu
 ///
 /// # Errors
 ///
-/// As [`y4m_header`]; no memory.
+/// Those of [`y4m_header`]; no memory.
 #[doc(hidden)]
 pub fn y4m_frame(picture: &Picture<'_>, scale: Scale) -> Result<Vec<u8>, PictureError> {
     const HEADING: &[u8] = b"FRAME\n";

@@ -23,9 +23,9 @@ pub(super) const SINE_BITS: u32 = 30;
 /// ⌊π · 2⁶⁰⌋.
 const PI_Q60: i128 = 3_622_009_729_038_561_421;
 
-/// Coarse steps in a quarter turn.
+/// The number of coarse steps in a quarter turn.
 const COARSE: usize = 128;
-/// Fine steps, of one binary angle each, in a coarse one.
+/// The number of fine steps, of one binary angle each, in a coarse one.
 const FINE: usize = 128;
 
 /// sin x with 30 bits behind the point, to the nearest, by Taylor's series; x with 60 bits, 0 to π/2.
@@ -83,19 +83,19 @@ impl BinaryAngle {
     #[doc(hidden)]
     pub const HALF: Self = Self(0x8000);
 
-    /// From 65,536ths of a turn.
+    /// Makes an angle from 65,536ths of a turn.
     #[must_use]
     pub const fn from_bits(steps: u16) -> Self {
         Self(steps)
     }
 
-    /// In 65,536ths of a turn.
+    /// Returns the angle in 65,536ths of a turn.
     #[must_use]
     pub const fn to_bits(self) -> u16 {
         self.0
     }
 
-    /// The nearest to so many whole degrees, any number of turns in either direction.
+    /// The angle nearest to so many whole degrees, any number of turns in either direction.
     #[must_use]
     pub const fn from_degrees(degrees: i32) -> Self {
         // At most 359 · 65,536 + 180. The result is 0 to 65,536, and a full turn wraps to 0.
@@ -141,7 +141,7 @@ impl BinaryAngle {
     }
 }
 
-/// The sum, counted round.
+/// The sum, which wraps at a full turn.
 impl Add for BinaryAngle {
     type Output = Self;
 
@@ -150,7 +150,7 @@ impl Add for BinaryAngle {
     }
 }
 
-/// The nearest binary angle. Of angles so large that their f64 no longer counts turns, some angle.
+/// The nearest binary angle. An angle so large that its f64 no longer counts turns gives some angle.
 #[cfg(feature = "alloc")]
 impl From<Angle> for BinaryAngle {
     fn from(angle: Angle) -> Self {

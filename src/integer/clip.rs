@@ -3,9 +3,9 @@
 //! Corners get 12 bits more behind their point than vertices have: a cut is rounded, and one on the
 //! guard band's edge, 4,095 pixels away, leads through the whole picture.
 //!
-//! **Why nothing overflows i128.** Coordinates are at most 2³² · 2¹² = 2⁴⁴. A distance from a plane of the
-//! guard band is `a·W ± b·X` with a at most 2³¹ and b at most 2³¹: below 2⁷⁶. A cut multiplies it by a
-//! difference of coordinates: 2⁷⁶ · 2⁴⁵ = 2¹²¹.
+//! **Why nothing overflows i128.** Coordinates are at most 2³² · 2¹² = 2⁴⁴. A distance from a plane of the guard band
+//! is `a·W ± b·X` with a at most 2³¹ and b at most 2³¹: below 2⁷⁶. A cut multiplies it by a difference of coordinates:
+//! 2⁷⁶ · 2⁴⁵ = 2¹²¹.
 
 use super::view::{Homogeneous, ObjectView, vertex};
 use crate::fixed::U8F8;
@@ -25,8 +25,8 @@ pub(super) struct Corner {
     w: i128,
     /// In 2⁻⁴⁰ shade.
     shade: i64,
-    /// The projected vertex, of a corner of the mesh that needs no clipping. It is kept as it is,
-    /// because a neighbour that needs none either draws with it.
+    /// The projected vertex, for a corner of the mesh that needs no clipping. It is kept as it is, because a neighbour
+    /// that needs none either draws with it.
     vertex: Option<Vertex>,
 }
 
@@ -55,8 +55,8 @@ impl Corner {
     }
 }
 
-/// The distance of a corner from a plane, 0 or more inside; for the guard band twice that times
-/// focal lengths, in 1/65,536.
+/// The distance of a corner from a plane, 0 or more inside. For the guard band it is twice that times focal lengths, in
+/// 1/65,536.
 fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> i128 {
     let Corner { x, y, w, .. } = *corner;
     let limit = 2 * i128::from(ObjectView::LIMIT);

@@ -22,7 +22,7 @@ pub struct Sun {
 }
 
 impl Sun {
-    /// The most suns of a scene: so many of the greatest intensity stay below 2⁶⁰ in sum.
+    /// The max number of suns in a scene: so many of the greatest intensity stay below 2⁶⁰ in sum.
     pub const MAX_COUNT: usize = 4096;
 
     pub(super) fn beam(&self, view: &ObjectView) -> Result<Beam, IntegerError> {
@@ -39,19 +39,19 @@ pub struct Beam {
     intensity: I16F16,
 }
 
-/// How a surface answers light, and where its shades lie in the palette.
+/// A surface's response to light, and its ramp in the palette.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Paint {
-    /// ka·Ia: what it gives back of the scene's ambient light.
+    /// ka·Ia: the scene's ambient light that the surface gives back.
     pub ambient: I16F16,
     /// kd: the share of a light that it gives back in all directions.
     pub diffuse: I16F16,
-    /// Its entries of the palette.
+    /// The entries of the palette.
     pub ramp: Ramp,
 }
 
 impl Paint {
-    /// The shades of the side that `normal` (unit) points away from, and of the other.
+    /// The shades of both sides: first that of the side that `normal` (unit) points away from.
     #[inline]
     pub(super) fn shades(&self, beams: &[Beam], normal: Vector) -> (U8F8, U8F8) {
         let normal = widen(normal);

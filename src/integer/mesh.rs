@@ -13,7 +13,7 @@ mod sealed {
 
 /// The number of a vertex: `u16`, or `u32` for more than 65,536 vertices.
 pub trait Index: Copy + sealed::Sealed {
-    /// Its place in the slices.
+    /// The index as a `usize`, for the slices.
     #[doc(hidden)]
     fn place(self) -> usize;
 }
@@ -33,17 +33,17 @@ impl Index for u32 {
     }
 }
 
-/// Why slices can't serve as a mesh.
+/// The errors of slices that cannot serve as a mesh.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum FixedMeshError {
-    /// There are not as many of these as there must be.
+    /// A slice has a wrong length.
     Count {
         /// The name of what was counted.
         what: &'static str,
-        /// How many there are.
+        /// The number given.
         given: usize,
-        /// How many there must be.
+        /// The number needed.
         needed: usize,
     },
     /// A coordinate lies outside ±32,767.
@@ -56,7 +56,7 @@ pub enum FixedMeshError {
         /// The vertex.
         vertex: usize,
     },
-    /// A triangle names a vertex that there is not.
+    /// A triangle names a vertex that does not exist.
     IndexOutOfRange {
         /// The triangle.
         triangle: usize,
@@ -76,7 +76,7 @@ impl fmt::Display for FixedMeshError {
 
 impl core::error::Error for FixedMeshError {}
 
-/// A mesh in 16.16, borrowed. One that exists is sound.
+/// A mesh in 16.16, borrowed and checked: one that exists is sound.
 #[derive(Clone, Copy, Debug)]
 pub struct FixedMesh<'a, I: Index = u16> {
     pub(crate) positions: &'a [Vector],
@@ -86,12 +86,12 @@ pub struct FixedMesh<'a, I: Index = u16> {
     /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does.
     pub(crate) twins: &'a [u64],
     pub(crate) exponent: i32,
-    /// No vertex is farther from the origin, in 1/65,536 of the mesh's own unit.
+    /// The greatest distance of a vertex from the origin, in 1/65,536 of the mesh's own unit.
     pub(crate) radius: u64,
-    /// Empty where all are of surface 0.
+    /// The surface of each vertex. Empty if all are of surface 0.
     pub(crate) vertex_surfaces: &'a [u16],
     pub(crate) triangle_surfaces: &'a [u16],
-    /// How many surfaces the two slices name.
+    /// The number of surfaces that the two slices name.
     pub(crate) surfaces: usize,
 }
 
@@ -99,12 +99,12 @@ impl<'a, I: Index> FixedMesh<'a, I> {
     /// The largest coordinate, either way.
     pub(crate) const REACH: I16F16 = I16F16::from_int(i16::MAX);
 
-    /// Vertices with positions and unit normals, and triangles, counter-clockwise seen from
-    /// outside, in a right-handed system whose y is up. `closed` says that the triangles enclose a
-    /// body without a gap, so that those turned away need not be drawn.
+    /// Makes a mesh of vertices with positions and unit normals, and of triangles. Triangles are counter-clockwise seen
+    /// from outside, in a right-handed system whose y is up. `closed` says that they enclose a body without a gap, so
+    /// that those turned away need not be drawn.
     ///
     /// # Errors
-    /// Not one normal for each position; a coordinate outside ±32,767; a normal whose length is not
+    /// A number of normals other than that of the positions; a coordinate outside ±32,767; a normal whose length is not
     /// within 2⁻¹⁴ of 1; an index out of range.
     pub fn new(
         positions: &'a [Vector],
@@ -144,8 +144,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
 
     /// Makes the mesh 2^`exponent` times as large.
     ///
-    /// Its coordinates then count 2^`exponent` units of the scene. So a mesh may use all of its 32 bits whatever its
-    /// size.
+    /// Its coordinates then count 2^`exponent` units of the scene, so a mesh of any size may use all of its 32 bits.
     #[must_use]
     #[doc(hidden)]
     pub fn with_exponent(mut self, exponent: i8) -> Self {
@@ -158,7 +157,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
     /// A surface's number is the index of its [`Paint`](super::Paint).
     ///
     /// # Errors
-    /// Not as many numbers as vertices, or as triangles.
+    /// A number of entries other than that of the vertices, or of the triangles.
     pub fn with_surfaces(
         mut self,
         vertex_surfaces: &'a [u16],
@@ -172,13 +171,14 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         Ok(self)
     }
 
-    /// How many vertices it has: as many a stage needs room for.
+    /// Counts the vertices: a stage needs room for so many.
     #[must_use]
     pub fn vertices(&self) -> usize {
         self.positions.len()
     }
 
-    /// Whether a triangle is left out where it is turned away: in a closed mesh, and in a pair that lies back to back.
+    /// Returns whether a triangle is left out if it is turned away: in a closed mesh, and in a pair that lies back to
+    /// back.
     #[inline]
     pub(super) fn hides_back(&self, triangle: usize) -> bool {
         self.closed || self.twins.get(triangle / 64).is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
@@ -222,14 +222,14 @@ pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
     narrow_unit(cross(from_a(b), from_a(c)))
 }
 
-/// Averages the unit normals of the faces around each vertex, and makes the sum unit again: without that a corner is
-/// the darker the rounder it is (the Hungarian tutorial's slip). Its length is within 2⁻¹⁶ of 1.
+/// Averages the unit normals of the faces around each vertex, and makes the sum unit again. Without that a corner is
+/// the darker the rounder it is (the Hungarian tutorial's slip). A normal's length is within 2⁻¹⁶ of 1.
 ///
-/// Where the faces' normals cancel the vertex gets that of its first face; where it has no face with
-/// an area, +z. Faces beyond the 32,767th around one vertex may no longer count.
+/// A vertex whose faces' normals cancel gets that of its first face; one that has no face with an area gets +z. Faces
+/// beyond the 32,767th around one vertex may no longer count.
 ///
 /// # Errors
-/// Not as much room for normals as there are positions; an index out of range.
+/// Less room for normals than there are positions; an index out of range.
 pub fn average_normals<I: Index>(
     positions: &[Vector],
     triangles: &[[I; 3]],

@@ -1,10 +1,10 @@
 //! The integer vertex path: from a mesh in 16.16 to the raster without a float.
 //!
-//! The Hungarian tutorial keeps everything in fixed point, unit vectors of length 65,536. Here the whole way of a frame
-//! is made so: turn, projection, normals, light, clipping. It needs neither `std` nor an allocator, and
-//! nothing of it links a soft-float routine: meshes, paints and suns are borrowed slices, room for
-//! vertices is the caller's, triangles go to a closure. So a chip that has no floating point unit
-//! draws what the f32 path of `render` draws, by the same stages and with the same conventions.
+//! The Hungarian tutorial keeps everything in fixed point, unit vectors of length 65,536. Here a whole frame is made
+//! so: turn, projection, normals, light, clipping. The path needs neither `std` nor an allocator, and links no
+//! soft-float routine: meshes, paints and suns are borrowed slices, room for vertices is the caller's, triangles go to
+//! a closure. So a chip that has no floating point unit draws what the f32 path of `render` draws, by the same stages
+//! and with the same conventions.
 //!
 //! | file | what |
 //! |---|---|
@@ -67,7 +67,7 @@ pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};
 pub use view::{Camera, Lens, Placement, View};
 
-/// What the integer path refuses.
+/// The errors of the integer path.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum IntegerError {
@@ -82,24 +82,24 @@ pub enum IntegerError {
     Direction,
     /// A scale below 0.
     Scale,
-    /// An object of which a part may be more than 65,535 units from the eye.
+    /// A part of an object may be more than 65,535 units from the eye.
     TooFar,
     /// More than [`Sun::MAX_COUNT`] suns, or one without direction.
     Light,
     /// There are fewer paints than the mesh has surfaces.
     Paints {
-        /// How many there must be.
+        /// The number needed.
         needed: usize,
     },
     /// There is too little room for vertices or beams.
     Room {
-        /// For how many there must be room.
+        /// The number that there must be room for.
         needed: usize,
     },
 }
 
 impl IntegerError {
-    /// What is wrong, without its numbers.
+    /// The error in words, without its numbers.
     pub(crate) const fn what(&self) -> &'static str {
         match self {
             Self::Size => "each side of the picture must be 1 to 4,096 pixels",

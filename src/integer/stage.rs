@@ -16,23 +16,23 @@ use crate::shading::Shading;
 pub struct Object<'a, I: Index = u16> {
     /// The mesh.
     pub mesh: FixedMesh<'a, I>,
-    /// Where it is.
+    /// Its place in the scene.
     pub placement: Placement,
-    /// One for each surface.
+    /// The paints, one for each surface.
     pub paints: &'a [Paint],
 }
 
 /// Room for a vertex, lit and projected.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LitVertex {
-    /// Its shade is that of the front: the side that the normal points away from. Only the
-    /// shade counts in a vertex that needs clipping.
+    /// The vertex. Its shade is that of the front: the side that the normal points away from. Only the shade counts in
+    /// a vertex that needs clipping.
     vertex: Vertex,
     back: U8F8,
     needs_clipping: bool,
 }
 
-/// What the faces of an object came to, in counts.
+/// Counts of the faces of an object, by what became of them.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[non_exhaustive]
 pub struct Faces {
@@ -49,7 +49,7 @@ pub struct Faces {
 /// An object whose vertices are ready: its faces can be drawn, as often as there are bands.
 #[derive(Clone, Copy, Debug)]
 pub struct VertexStage<'a, I: Index = u16> {
-    /// One that is drawn from its vertices alone.
+    /// A shading that is drawn from the vertices alone.
     shading: Shading,
     object: Object<'a, I>,
     view: ObjectView,
@@ -58,13 +58,13 @@ pub struct VertexStage<'a, I: Index = u16> {
 }
 
 impl<'a, I: Index> VertexStage<'a, I> {
-    /// Lights and projects every vertex of the mesh. `lit` is room for at least as many vertices as
-    /// the mesh has, `beams` for as many beams as there are suns. A shading that this path lacks counts as the default:
-    /// those that light pixels, split faces or need floats.
+    /// Lights and projects every vertex of the mesh. `lit` is room for at least as many vertices as the mesh has,
+    /// `beams` for as many beams as there are suns. A shading that this path lacks counts as the default: those that
+    /// light pixels, split faces or need floats.
     ///
     /// # Errors
-    /// Too little room; a surface without a paint; a scale below 0; an object of which a part may be
-    /// more than 65,535 units away; more than 4,096 suns, or one without direction.
+    /// Too little room; a surface without a paint; a scale below 0; an object that may reach farther than 65,535 units
+    /// away; more than 4,096 suns, or one without direction.
     pub fn new(
         view: &View,
         object: Object<'a, I>,
@@ -103,8 +103,8 @@ impl<'a, I: Index> VertexStage<'a, I> {
         Ok(Self { shading: shading.in_integers(), object, view, beams, lit })
     }
 
-    /// Hands the faces that are to be drawn to `triangle`, clipped where they must be. Those of a
-    /// closed mesh that are turned away are left out, and of two that lie back to back; others show their back.
+    /// Hands the faces that are drawn to `triangle`, clipped where they must be. Faces that are turned away are left
+    /// out in a closed mesh and in pairs that lie back to back; others show their back.
     pub fn faces(&self, mut triangle: impl FnMut(&[Vertex; 3], Interpolation)) -> Faces {
         let mut counts = Faces::default();
         let mesh = &self.object.mesh;
@@ -134,7 +134,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
         counts
     }
 
-    /// A face that reaches beyond the near plane or the guard band. Kept apart: it is rare.
+    /// Clips a face that reaches beyond the near plane or the guard band. Kept apart, because it is rare.
     #[cold]
     fn clipped(
         &self,
@@ -164,7 +164,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
         }
     }
 
-    /// How a face is shaded; its one shade, where it has but one, is worked out here.
+    /// The interpolation of a face's shades. If it has only one shade, that is computed here.
     #[inline]
     fn interpolation(&self, face: usize, indices: [usize; 3], turned: bool, counts: &mut Faces) -> Interpolation {
         match self.shading {
@@ -188,8 +188,8 @@ impl<'a, I: Index> VertexStage<'a, I> {
     }
 }
 
-/// Whether the eye is behind the face, wherever its corners are: the sign of the volume between
-/// the eye and the three corners.
+/// Returns whether the eye is behind the face, wherever its corners are: the sign of the volume between the eye and the
+/// three corners.
 fn is_turned_away(at: &[Homogeneous; 3]) -> bool {
     let [[ax, ay, aw], [bx, by, bw], [cx, cy, cw]] = at.map(|corner| corner.map(i128::from));
     // Coordinates are at most 2³²: below 6 · 2⁹⁶.

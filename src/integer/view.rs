@@ -89,16 +89,16 @@ impl Lens {
     }
 }
 
-/// The eye.
+/// The eye: a perspective camera in 16.16.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Camera {
-    /// Where it is, in units of the scene.
+    /// The position of the eye, in units of the scene.
     pub eye: Vector,
-    /// What it looks at: the middle of the picture.
+    /// The point that it looks at: the middle of the picture.
     pub target: Vector,
-    /// What is up in the picture; any length. Where it points along the view, another axis is taken.
+    /// The direction that is up in the picture; any length. If it lies along the view, another axis is taken.
     pub up: Vector,
-    /// Nothing nearer than this is drawn; above 0. It also sets the unit of depth.
+    /// The near distance, above 0: nothing nearer is drawn. It also sets the unit of depth.
     pub near: I16F16,
 }
 
@@ -113,7 +113,7 @@ pub struct View {
 }
 
 impl View {
-    /// What `camera` sees through `lens`.
+    /// Makes the view of `camera` through `lens`.
     ///
     /// # Errors
     /// A camera that looks at the point where it is; a near distance that is not above 0.
@@ -130,18 +130,18 @@ impl View {
         Ok(Self { eye, axes: [right, up.map(|c| -c), forward], lens, near })
     }
 
-    /// Whether `mesh` can be drawn there.
+    /// Checks that `mesh` can be drawn there.
     ///
     /// # Errors
-    /// A scale below 0; a mesh of which a part may be more than 65,535 units from the eye.
+    /// A scale below 0; a mesh that may reach farther than 65,535 units from the eye.
     #[doc(hidden)]
     pub fn check<I: Index>(&self, placement: &Placement, mesh: &FixedMesh<'_, I>) -> Result<(), IntegerError> {
         ObjectView::new(self, placement, mesh).map(|_| ())
     }
 }
 
-/// The unit vector to the right of `forward`. Where `up` lies within 10⁻⁶ of the view, the axis that is
-/// farthest from the view serves, as in the f32 path.
+/// The unit vector to the right of `forward`. If `up` lies within 10⁻⁶ of the view, the axis that is farthest from the
+/// view serves, as in the f32 path.
 fn right_of(forward: Wide, up: Vector) -> Option<Wide> {
     let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
     let mut axis = [0; 3];
@@ -152,21 +152,21 @@ fn right_of(forward: Wide, up: Vector) -> Option<Wide> {
     by_up.filter(is_aslant).and_then(|right| unit(right, SINE_BITS)).or_else(|| unit(cross(forward, axis), SINE_BITS))
 }
 
-/// Where an object is and how it is turned.
+/// An object's position, turn and scale.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Placement {
-    /// Where the pivot is, in units of the scene.
+    /// The position of the pivot, in units of the scene.
     pub position: Vector,
     /// The point that it turns about, in the mesh's own coordinates.
     pub pivot: Vector,
-    /// About x, y and z: the turn about z comes first, then y, then x.
+    /// The angles about x, y and z: the turn about z comes first, then y, then x.
     pub angles: [BinaryAngle; 3],
-    /// How many times as large as the mesh it is; not negative.
+    /// The object's size in units of the mesh's; not negative.
     pub scale: I16F16,
 }
 
 impl Default for Placement {
-    /// At the origin, as large as the mesh, not turned.
+    /// The placement at the origin, as large as the mesh, not turned.
     fn default() -> Self {
         Self {
             position: Vector::default(),
@@ -198,12 +198,11 @@ pub(super) struct ObjectView {
 }
 
 impl ObjectView {
-    /// No point of an object is farther from the eye than this along an axis of the view, in
-    /// 1/65,536: 65,536 units.
+    /// The max distance of an object's point from the eye along an axis of the view, in 1/65,536: 65,536 units.
     pub(super) const REACH: i64 = 1 << 32;
 
-    /// What is projected beyond this, in pixels either way, is clipped: inside the raster's guard
-    /// band by a whole pixel, more than all rounding of a clipped point comes to.
+    /// The limit of projected coordinates, in pixels either way; points beyond it are clipped. It lies inside the
+    /// raster's guard band by a whole pixel, more than all rounding of a clipped point comes to.
     pub(super) const LIMIT: i64 = 4095;
 
     pub(super) fn new<I: Index>(
@@ -275,8 +274,8 @@ impl ObjectView {
     }
 }
 
-/// A vertex from coordinates in 1/256 pixel; `None` if they lie beyond the limit. Half a pixel of room
-/// is for what a clipped point is off the limit by rounding.
+/// A vertex from coordinates in 1/256 pixel; `None` if they lie beyond the limit. Half a pixel of room is left, because
+/// rounding may take a clipped point off the limit.
 #[inline]
 pub(super) fn vertex(x: i128, y: i128, shade: U8F8, depth: u32) -> Option<Vertex> {
     let limit = i128::from(ObjectView::LIMIT * 256 + 128);
@@ -284,7 +283,7 @@ pub(super) fn vertex(x: i128, y: i128, shade: U8F8, depth: u32) -> Option<Vertex
     Vertex::new(within(x)?, within(y)?, shade, depth).ok()
 }
 
-/// A scale as mantissa, 65,536 to 131,071, and exponent; of 0 the mantissa is 0.
+/// A scale as mantissa, 65,536 to 131,071, and exponent; for 0 the mantissa is 0.
 fn normalised(scale: I16F16) -> Result<(i64, i32), IntegerError> {
     let bits = scale.to_bits();
     if bits < 0 {

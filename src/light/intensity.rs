@@ -10,11 +10,11 @@ pub(super) type Wide = [f64; 3];
 /// A sun as an object sees it: its direction turned into the object's own space.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Beam {
-    /// Unit, towards the light.
+    /// The unit direction towards the light.
     pub(crate) towards: Vec3,
-    /// On one channel.
+    /// The intensity on one channel.
     pub(crate) intensity: f32,
-    /// On three.
+    /// The intensities on three channels.
     pub(crate) channels: [f32; 3],
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct LampBeam {
     pub(crate) inverse_square: f64,
 }
 
-/// Whether a lamp reaches anything within `bounds`.
+/// Returns whether a lamp reaches anything within `bounds`.
 pub(crate) fn lamp_reaches(lamp: &LampBeam, bounds: Bounds) -> bool {
     let (min, max) = (widen(bounds.min), widen(bounds.max));
     // From the lamp to the nearest point of the box.
@@ -41,11 +41,11 @@ pub(crate) fn lamp_reaches(lamp: &LampBeam, bounds: Bounds) -> bool {
 pub(crate) struct Lights<'a> {
     pub(crate) suns: &'a [Beam],
     pub(crate) lamps: &'a [LampBeam],
-    /// Where the eye is, in the object's own space.
+    /// The eye's position, in the object's own space.
     pub(crate) eye: Wide,
 }
 
-/// What a material answers, in f64.
+/// A material's response to light, in f64.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Reflectance {
     /// ka·Ia.
@@ -53,14 +53,14 @@ pub(crate) struct Reflectance {
     pub(crate) diffuse: f64,
     pub(crate) specular: f64,
     pub(crate) shininess: f64,
-    /// On three channels, what the body gives back is multiplied with this,
+    /// The factors of the body's light, on three channels.
     pub(crate) color: Wide,
-    /// and its highlight with this.
+    /// The factors of the highlight, on three channels.
     pub(crate) highlight: Wide,
 }
 
 impl Reflectance {
-    /// Whether it has highlights. A build that leaves them out (`plan::Effect::is_left_out`) has none.
+    /// Returns whether it has highlights. A build that leaves them out (`plan::Effect::is_left_out`) has none.
     #[inline(always)]
     pub(super) fn shines(&self) -> bool {
         !cfg!(mode13h_leave_out = "specular") && self.specular != 0.0
@@ -77,7 +77,7 @@ pub(crate) fn both_sides(ambient: f64, diffuse: f64, suns: &[Beam], normal: Vec3
     let (mut front, mut back) = (0.0, 0.0);
     for sun in suns {
         let cosine = normal.dot(sun.towards);
-        // Of −0.0 and NaN neither side has any.
+        // −0.0 and NaN light neither side.
         if cosine > 0.0 {
             front += f64::from(sun.intensity) * f64::from(cosine);
         } else if cosine < 0.0 {
@@ -104,7 +104,7 @@ impl<const N: usize> Side<N> {
         }
     }
 
-    /// What the body gives back, and its highlight.
+    /// The light that the body gives back, and its highlight.
     fn answer(&self, answer: &Reflectance) -> ([f64; N], [f64; N]) {
         let body = self.diffuse.map(|light| answer.ambient + answer.diffuse * light);
         (body, self.specular.map(|light| answer.specular * light))
@@ -112,9 +112,9 @@ impl<const N: usize> Side<N> {
 }
 
 impl Lights<'_> {
-    /// The whole sum on one channel, not yet clamped, for the side that `normal` (unit) points away
-    /// from and for the other: first the suns, then the lamps, each in their order. Where there are no
-    /// lamps and no highlight these are the numbers of [`both_sides`].
+    /// Sums all light on one channel, not yet clamped, for the side that `normal` (unit) points away from and for the
+    /// other: first the suns, then the lamps, each in their order. Without lamps and highlight these are the numbers of
+    /// [`both_sides`].
     #[inline(never)]
     pub(crate) fn one_channel(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (f64, f64) {
         let of_sun = |sun: &Beam| [f64::from(sun.intensity)];
@@ -140,7 +140,7 @@ impl Lights<'_> {
         (front, back)
     }
 
-    /// What falls on the front and on the back.
+    /// Sums the light that falls on the front and on the back.
     #[inline]
     fn sum<const N: usize>(
         &self,
@@ -157,7 +157,7 @@ impl Lights<'_> {
         }
     }
 
-    /// Without highlights, `SHINES`, the eye is not looked at, and nothing is specular.
+    /// Sums the light. Without highlights, `SHINES`, the eye is not looked at, and nothing is specular.
     #[inline]
     fn sum_by<const N: usize, const SHINES: bool>(
         &self,
@@ -206,7 +206,7 @@ impl Lights<'_> {
     }
 }
 
-/// max(0, r·v)^s, r being the light's direction mirrored at the surface; 0 where nobody asks.
+/// max(0, r·v)^s, r being the light's direction mirrored at the surface; 0 if no highlight is requested.
 ///
 /// The normal comes in twice, so both sides of a surface have the same.
 #[inline]

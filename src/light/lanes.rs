@@ -1,9 +1,8 @@
 //! The sum of all light at eight points of a surface at a time, in plain arrays that the compiler vectorises.
 //!
-//! The same numbers as [`Lights::one_channel`] and [`Lights::three_channels`] give for each point: the
-//! same operations in the same order, and each of them (sum, product, quotient, square root) rounds alike in a vector
-//! and alone. Where a point has no part in a light, zero is added, which changes no sum: none is −0, as each
-//! begins at +0.
+//! Each point gets the numbers that [`Lights::one_channel`] and [`Lights::three_channels`] give: the operations and
+//! their order are the same, and each of them (sum, product, quotient, square root) rounds alike in a vector and alone.
+//! If a point has no part in a light, zero is added, which changes no sum: none is −0, as each begins at +0.
 
 use super::intensity::{Lights, Reflectance, Wide};
 use super::power::Shininess;
@@ -19,7 +18,7 @@ type Vectors = [Wides; 3];
 
 const NOUGHT: Wides = [0.0; LANES];
 
-/// What falls on the points, for each channel.
+/// The light that falls on the points, for each channel.
 struct Front<const N: usize> {
     diffuse: [Wides; N],
     specular: [Wides; N],
@@ -52,7 +51,7 @@ fn normals_of<const UNIT: bool>(points: &Points) -> [Lanes<f32>; 3] {
     if UNIT { [points[0], points[1], points[2]] } else { unit_normals(points) }
 }
 
-/// The normals at the points, made unit and rounded to f32; 0 where there are none, as their ends cancel.
+/// The normals at the points, made unit and rounded to f32; 0 for those that vanish because their ends cancel.
 #[inline(always)]
 fn unit_normals(points: &Points) -> [Lanes<f32>; 3] {
     let wide = [0, 1, 2].map(|axis| widen(&points[axis]));
@@ -73,8 +72,8 @@ fn unit_normals(points: &Points) -> [Lanes<f32>; 3] {
 }
 
 impl Lights<'_> {
-    /// The whole sum on one channel, not yet clamped, for the side that the points' normals, of any length, point
-    /// away from.
+    /// Sums all light on one channel, not yet clamped, for the side that the points' normals, of any length, point away
+    /// from.
     pub(crate) fn front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if let Some(avx2) = kernel.avx2() {
@@ -132,7 +131,7 @@ impl Lights<'_> {
         self.three_channels_of_eight::<UNIT, true>(answer, points)
     }
 
-    /// Inlined where it is compiled for a processor, and all that it calls; but with highlights `APART`.
+    /// Inlined, with all that it calls, into code that is compiled for a processor; but with highlights `APART`.
     #[inline(always)]
     fn one_channel_of_eight<const UNIT: bool, const APART: bool>(
         &self,
@@ -184,7 +183,8 @@ impl Lights<'_> {
         channels
     }
 
-    /// What falls on the points. Without highlights, `SHINES`, the eye is not looked at, and nothing is specular.
+    /// Sums the light that falls on the points. Without highlights, `SHINES`, the eye is not looked at, and nothing is
+    /// specular.
     #[inline(always)]
     fn front<const N: usize, const APART: bool, const SHINES: bool>(
         &self,
@@ -264,7 +264,7 @@ compiled_for_avx2! {
 
 /// The eye, for highlights.
 struct Eye {
-    /// Unit; not a number where the eye is at the point itself.
+    /// The unit direction towards the eye; not a number if the eye is at the point itself.
     towards: Vectors,
     /// Its cosine with the normal.
     cosines: Wides,
@@ -291,7 +291,7 @@ impl Eye {
         self.highlights(towards, cosines, shininess)
     }
 
-    /// max(0, r·v)^s; 0 where the light's own cosine is.
+    /// max(0, r·v)^s; 0 if the light's own cosine is.
     #[inline(always)]
     fn highlights(&self, towards: &Vectors, cosines: &Wides, shininess: Shininess) -> Wides {
         let mut along = dot(towards, &self.towards);
@@ -304,7 +304,7 @@ impl Eye {
     }
 }
 
-/// What is above 0; zero for the rest, and for what is no number.
+/// Replaces values that are not above 0, or not numbers, by zero.
 #[inline(always)]
 fn positive(values: &Wides) -> Wides {
     let mut positive = NOUGHT;
@@ -323,7 +323,7 @@ fn widen(values: &Lanes<f32>) -> Wides {
     wide
 }
 
-/// From the points to `to`.
+/// The vectors from the points to `to`.
 #[inline(always)]
 fn from(to: &Wide, points: &Vectors) -> Vectors {
     let mut vectors = *points;
@@ -344,7 +344,7 @@ fn dot(a: &Vectors, b: &Vectors) -> Wides {
     sums
 }
 
-/// Not a number where there is no direction.
+/// The vectors made unit; not a number if there is no direction.
 #[inline(always)]
 fn unit(vectors: &Vectors) -> Vectors {
     let squares = dot(vectors, vectors);

@@ -1,4 +1,4 @@
-//! How a surface answers light.
+//! Materials: a surface's response to light.
 
 use alloc::string::String;
 
@@ -9,22 +9,22 @@ use crate::palette::{Palette, Ramp, Rgb};
 use crate::shared::Shared;
 use crate::texture::Texture;
 
-/// Where a material's shades lie in the palette.
+/// The place of a material's shades in the palette.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum RampChoice {
-    /// The palette's ramp of this number, counted round: of a palette with one ramp always that.
+    /// The palette's ramp of this number, counted round. A palette with one ramp always gives that.
     Number(u16),
     /// These entries, whatever the palette.
     Entries(Ramp),
-    /// None: whatever the palette, it is lit on three channels in its own colour, grey or not, and drawn in the
-    /// nearest entries.
+    /// No ramp: whatever the palette, the material is lit on three channels in its own colour, grey or not, and drawn
+    /// in the nearest entries.
     Nearest,
 }
 
 impl RampChoice {
-    /// The entries in `palette`. A palette without ramps, or none at all, counts as one ramp of 256, and so does what
-    /// needs no ramp.
+    /// The entries in `palette`. A palette without ramps, or none at all, counts as one ramp of 256, and so does a
+    /// material that needs no ramp.
     #[must_use]
     #[doc(hidden)]
     pub fn in_palette(self, palette: Option<&Palette>) -> Ramp {
@@ -38,7 +38,7 @@ impl RampChoice {
     }
 }
 
-/// How a surface answers light.
+/// A material: a surface's response to light.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Material {
     /// A name for people.
@@ -49,36 +49,36 @@ pub struct Material {
     pub diffuse: f32,
     /// ks: the share of a light that it mirrors; with 0 there is no highlight.
     pub specular: f32,
-    /// s: how narrow the highlight is, above 0; 1 is broad, 100 a point.
+    /// s: the shininess, above 0; 1 is a broad highlight, 100 a point.
     pub shininess: f32,
-    /// Its entries of the palette, of a material that is lit on one channel and has no texture.
+    /// The entries of the palette, for a material that is lit on one channel and has no texture.
     pub ramp: RampChoice,
-    /// Its own red, green and blue. Where the three differ it is lit on three channels, its ambient and diffuse light
-    /// multiplied with its own on each, and drawn in the palette's nearest colours.
+    /// Red, green and blue of the material. If the three differ it is lit on three channels: its ambient and diffuse
+    /// light are multiplied with them, and it is drawn in the palette's nearest colours.
     pub color: [f32; 3],
-    /// Red, green and blue of its highlight, on three channels: white, as a rule, and so of the light's colour.
+    /// Red, green and blue of its highlight, on three channels: white, as a rule, so that it has the light's colour.
     pub highlight: [f32; 3],
     /// An image on it, by the mesh's texture coordinates; its shades are those of the image.
     pub texture: Option<Shared<Texture>>,
-    /// An image of what is around it: where its normal points, as the eye sees it, that is mirrored.
-    /// Only where it has no texture.
+    /// An environment map: an image of the surroundings, mirrored by the normal as the eye sees it. Used only without a
+    /// texture.
     pub environment: Option<Shared<Texture>>,
-    /// How it lies over what is behind it.
+    /// The way in which it covers what is behind it.
     pub blend: Blend,
-    /// Its own answer to light, in place of the lighting model's intensity. The 16.16 path leaves it out.
+    /// The material's own response to light, in place of the lighting model's intensity. The 16.16 path leaves it out.
     pub response: Option<LightResponse>,
 }
 
-/// How a body lies over what is behind it, by a table of 256 × 256 colours.
+/// The way in which a body covers what is behind it, by a table of 256 × 256 colours.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub enum Blend {
-    /// It hides it.
+    /// The body hides what is behind it.
     #[default]
     Opaque,
-    /// So many 255ths of its own colour, the rest of what is behind.
+    /// So many 255ths of its own colour, and the rest of the colour behind it.
     Mix(u8),
-    /// Its colour is added to what is behind: the glenz of the demos.
+    /// Its colour is added to the one behind it: the glenz of the demos.
     Add,
 }
 
@@ -92,9 +92,8 @@ impl Material {
         Self::from_surface(&Surface::default(), 0)
     }
 
-    /// What an MTL file says, on one channel: Kd's and Ks's luminance; a seventh of Kd's ambient.
-    /// `number` chooses the ramp. The texture is left to the caller, who can read files:
-    /// [`with_map`](Self::with_map).
+    /// Makes a material from an MTL file's, on one channel: Kd's and Ks's luminance, and a seventh of Kd's as ambient.
+    /// `number` chooses the ramp. The texture is left to the caller, who can read files: [`with_map`](Self::with_map).
     #[must_use]
     pub(crate) fn from_surface(surface: &Surface, number: u16) -> Self {
         let diffuse = luminance(surface.diffuse);
@@ -132,9 +131,9 @@ impl Material {
         }
     }
 
-    /// Its own colour and its highlight's, on three channels. Where the material says none, they are those of the
-    /// surface that it was made from: Kd and Ks without their luminance, which the material's shares of light have. A
-    /// texture has its colours itself.
+    /// The colours of the material and of its highlight, on three channels. If the material has none, they are those of
+    /// the surface that it was made from: Kd and Ks without their luminance, which the material's shares of light have.
+    /// A texture has its colours itself.
     #[must_use]
     #[doc(hidden)]
     pub fn own_colors(&self, surface: &Surface) -> ([f32; 3], [f32; 3]) {
@@ -155,14 +154,14 @@ impl Material {
         Self { ramp: RampChoice::Nearest, color, highlight, ..self.clone() }
     }
 
-    /// Whether its three channels differ.
+    /// Returns whether its three channels differ.
     #[must_use]
     #[doc(hidden)]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color) || (self.is_specular() && is_colored(self.highlight))
     }
 
-    /// Whether it takes three channels to light it: whether it is coloured, or drawn in the nearest entries. An image
+    /// Returns whether lighting it takes three channels: it is coloured, or drawn in the nearest entries. An image
     /// alone takes but one.
     #[must_use]
     #[doc(hidden)]
@@ -171,7 +170,7 @@ impl Material {
         self.is_colored() || (self.ramp == RampChoice::Nearest && !has_image)
     }
 
-    /// Whether it has a highlight.
+    /// Returns whether it has a highlight.
     #[must_use]
     #[doc(hidden)]
     pub fn is_specular(&self) -> bool {
@@ -185,7 +184,7 @@ impl Material {
     }
 }
 
-/// A colour without its luminance; of a grey, of what has none, and of what is beyond f32, white.
+/// A colour without its luminance; white for a grey, for a colour without luminance, and beyond f32.
 fn hue(color: [f32; 3]) -> [f32; 3] {
     let hue = color.map(|channel| channel / luminance(color));
     if is_colored(color) && luminance(color) > 0.0 && hue.iter().all(|channel| channel.is_finite()) {

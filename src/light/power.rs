@@ -2,20 +2,20 @@
 
 use crate::lanes::{LANES, Lanes};
 
-/// The greatest whole shininess that is raised to by products.
+/// The max whole shininess that is raised to by products.
 const MOST: f64 = 1_024.0;
 
-/// How narrow a highlight is: an exponent, at least 0.
+/// The shininess of a highlight: an exponent, at least 0.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Shininess {
-    /// A whole number up to 1,024: as nearly all are. By products, from the lowest bit of the exponent up,
+    /// A whole number up to 1,024, as nearly all are. Computed by products, from the lowest bit of the exponent up,
     ///
     /// ```text
     /// result = 1;  for every bit:  if it is set, result = result·square;  square = square·square
     /// ```
     ///
-    /// each rounded once. Of s − 1 roundings at most in any factor, it is right to s parts in 2⁵³, and takes a fifth
-    /// of the time; several at once less.
+    /// each rounded once. No factor has more than s − 1 roundings, so the power is right to s parts in 2⁵³. It takes a
+    /// fifth of the time; several at once less.
     Whole(u32),
     /// Any other: `pow` of the `libm` crate.
     Other(f64),
@@ -30,7 +30,7 @@ impl Shininess {
         if f64::from(whole) == exponent { Self::Whole(whole) } else { Self::Other(exponent) }
     }
 
-    /// base ^ exponent of a base above 0; 0 of any other.
+    /// base ^ exponent for a base above 0; 0 for any other.
     #[inline(never)]
     pub(crate) fn of(self, base: f64) -> f64 {
         if base > 0.0 { self.raise([base])[0] } else { 0.0 }
@@ -41,7 +41,7 @@ impl Shininess {
     pub(crate) fn of_lanes(self, bases: &Lanes<f64>) -> Lanes<f64> {
         let mut positive = [0.0; LANES];
         for (positive, base) in positive.iter_mut().zip(bases) {
-            // Of what is no number, too.
+            // NaN becomes 0, too.
             *positive = if *base > 0.0 { *base } else { 0.0 };
         }
         let mut powers = self.raise(positive);

@@ -23,7 +23,7 @@ use crate::shared::Shared;
 pub struct LightResponse(Shared<dyn Fn(f32) -> f32 + Send + Sync>);
 
 impl LightResponse {
-    /// Any function. What it returns is clamped to 0 to 1; what is not a number is 0.
+    /// Makes a response of any function. Its result is clamped to 0 to 1, and counts as 0 if it is not a number.
     #[must_use]
     pub fn new(respond: impl Fn(f32) -> f32 + Send + Sync + 'static) -> Self {
         Self(Shared::new(respond))

@@ -6,7 +6,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Light {
-    /// So far away that it comes from one direction everywhere.
+    /// A sun, so far away that its light comes from one direction everywhere.
     Sun {
         /// Towards the light, in the world; any length but zero.
         direction: Vec3,
@@ -15,16 +15,16 @@ pub enum Light {
         /// Red, green, blue, as a rule 0 to 1.
         color: [f32; 3],
     },
-    /// At a place, falling off with the distance (the Russian textbook: the flash of a shot on a wall).
+    /// A lamp: a light at a place, falling off with the distance (the Russian textbook: the flash of a shot on a wall).
     ///
-    /// At a distance d below `range` it has (1 − d²/range²)² of its intensity, beyond it nothing: all
-    /// of it at the lamp itself, 9/16 at half the range, and it ends without an edge.
+    /// At a distance d below `range` it has (1 − d²/range²)² of its intensity, and nothing beyond: all of it at the
+    /// lamp itself, 9/16 at half the range. It ends without an edge.
     Lamp {
-        /// Where it is, in the world.
+        /// The lamp's position, in the world.
         position: Vec3,
         /// Id at the lamp itself.
         intensity: f32,
-        /// How far it reaches, in the world's units; above 0.
+        /// The distance that it reaches, in the world's units; above 0.
         range: f32,
         /// Red, green, blue, as a rule 0 to 1.
         color: [f32; 3],
@@ -65,7 +65,7 @@ impl Light {
         self
     }
 
-    /// Its intensity.
+    /// Returns the light's intensity.
     #[must_use]
     pub fn intensity(&self) -> f32 {
         match *self {
@@ -73,7 +73,7 @@ impl Light {
         }
     }
 
-    /// Its red, green and blue.
+    /// Returns the light's red, green and blue.
     #[must_use]
     pub fn color(&self) -> [f32; 3] {
         match *self {
@@ -81,7 +81,7 @@ impl Light {
         }
     }
 
-    /// Its intensity on one channel: of a coloured light the luminance after ITU-R BT.601.
+    /// Returns the intensity on one channel: for a coloured light, the luminance after ITU-R BT.601.
     #[must_use]
     #[doc(hidden)]
     pub fn brightness(&self) -> f32 {
@@ -90,14 +90,14 @@ impl Light {
         share * self.intensity()
     }
 
-    /// Whether its three channels differ: whether it takes three to light by it.
+    /// Returns whether its three channels differ, so that lighting by it takes three.
     #[must_use]
     #[doc(hidden)]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color())
     }
 
-    /// What is wrong with it, if anything.
+    /// Checks the light; the error says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         if !(self.intensity().is_finite() && self.color().iter().all(|c| c.is_finite())) {
             return Err(match self {
@@ -124,12 +124,12 @@ impl Light {
     }
 }
 
-/// After ITU-R BT.601, the weights of a television of the time.
+/// The luminance after ITU-R BT.601, the weights of a television of the time.
 pub(super) fn luminance([red, green, blue]: [f32; 3]) -> f32 {
     0.299 * red + 0.587 * green + 0.114 * blue
 }
 
-/// Whether the three channels differ.
+/// Returns whether the three channels differ.
 pub(super) fn is_colored([red, green, blue]: [f32; 3]) -> bool {
     red != green || green != blue
 }

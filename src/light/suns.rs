@@ -1,12 +1,13 @@
-//! What suns give eight vertices of a matt surface, in plain arrays that the compiler vectorises.
+//! The light of suns at eight vertices of a matt surface, in plain arrays that the compiler vectorises.
 
 use glam::Vec3;
 
 use super::Beam;
 use crate::lanes::{LANES, Lanes};
 
-/// [`both_sides`](super::both_sides) of eight normals, or of the front alone, and anything of the back: the same operations in the same order. Where it adds nothing,
-/// zero is added, which changes no sum: none is −0, as each begins at +0.
+/// [`both_sides`](super::both_sides) of eight normals, or of the front alone, and anything of the back. The operations
+/// and their order are the same. A light without effect adds zero, which changes no sum: none is −0, as each begins at
+/// +0.
 #[inline(always)]
 pub(crate) fn both_sides_of_eight<const BOTH: bool>(
     ambient: f64,

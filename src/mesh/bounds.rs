@@ -1,4 +1,4 @@
-//! How far a mesh reaches.
+//! Bounds of a mesh.
 
 use glam::Vec3;
 
@@ -14,14 +14,13 @@ pub struct Bounds {
     pub max: Vec3,
     /// The middle of the box.
     pub centre: Vec3,
-    /// From the centre to the farthest vertex, rounded up. No more than `f32::MAX`: of a mesh that
-    /// reaches farther, up to √3 times that, it is `f32::MAX`.
+    /// The distance from the centre to the farthest vertex, rounded up. A mesh that reaches farther than `f32::MAX`, up
+    /// to √3 times that, has `f32::MAX`.
     pub radius: f32,
 }
 
 impl Bounds {
-    /// Around the vertices that the triangles use. There is at least one triangle; indices are in
-    /// range.
+    /// The bounds of the vertices that the triangles use. There is at least one triangle; indices are in range.
     pub(super) fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let used = || triangles.iter().flatten().map(|&i| positions[i as usize]);
         let mut min = Vec3::MAX;
@@ -38,12 +37,12 @@ impl Bounds {
             let away = sub(widen(p), widen(centre));
             square = square.max(dot(away, away));
         }
-        // Of the greatest square alone: a root keeps the order.
+        // The root of the greatest square alone: a root keeps the order.
         Self { min, max, centre, radius: round_up(libm::sqrt(square)) }
     }
 }
 
-/// To the next f32 that is not less, or `f32::MAX`. `value` ≥ 0.
+/// Rounds to the next f32 that is not less, or to `f32::MAX`. `value` ≥ 0.
 fn round_up(value: f64) -> f32 {
     // To the nearest; beyond the range to infinity.
     let nearest = value as f32;

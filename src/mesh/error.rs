@@ -1,50 +1,50 @@
-//! Why a mesh is refused.
+//! The errors of a mesh that is refused.
 
 use core::fmt;
 
-/// Why a mesh is refused. Vertices and triangles are counted from 0.
+/// An error of a mesh that is refused. Vertices and triangles are counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MeshError {
     /// There is nothing to draw.
     NoTriangles,
-    /// More than [`Mesh::MAX_COUNT`](super::Mesh::MAX_COUNT) vertices or triangles.
+    /// The mesh has more than [`Mesh::MAX_COUNT`](super::Mesh::MAX_COUNT) vertices or triangles.
     TooLarge,
     /// A position has a NaN or an infinity.
     PositionNotFinite {
-        /// Whose.
+        /// The vertex.
         vertex: usize,
     },
     /// A normal has a NaN or an infinity.
     NormalNotFinite {
-        /// Whose.
+        /// The vertex.
         vertex: usize,
     },
     /// A normal has length 0, so no direction.
     NormalZero {
-        /// Whose.
+        /// The vertex.
         vertex: usize,
     },
     /// A texture coordinate is a NaN or an infinity.
     TexcoordNotFinite {
-        /// Whose.
+        /// The vertex.
         vertex: usize,
     },
-    /// A triangle names a vertex that there is not.
+    /// A triangle names a vertex that does not exist.
     IndexOutOfRange {
-        /// Which.
+        /// The triangle.
         triangle: usize,
     },
-    /// A triangle names a surface that there is not.
+    /// A triangle names a surface that does not exist.
     SurfaceOutOfRange {
-        /// Which.
+        /// The triangle.
         triangle: usize,
     },
-    /// A factor to stretch by that is not finite or not above 0.
+    /// A factor to stretch by is not finite or not above 0.
     Factors,
     /// Two lists that belong together are of different lengths.
     Count {
-        /// What the list that was given holds.
+        /// The elements of the list that was given.
         what: &'static str,
         /// Its length.
         given: usize,

@@ -1,4 +1,4 @@
-//! What holds of a mesh whoever draws it: found out once, when it is made, and shared by all objects that show it.
+//! Facts of a mesh that hold whoever draws it: found once, when it is made, and shared by all objects that show it.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -6,12 +6,12 @@ use alloc::vec::Vec;
 use super::Mesh;
 use super::normals::face_normal;
 
-/// What is found out about a mesh.
+/// The facts of a mesh.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Facts {
     /// The index of each vertex's surface.
     vertex_surfaces: Vec<u16>,
-    /// In space and in texture coordinates.
+    /// The longest edges in space and in texture coordinates.
     longest_edges: (f32, f32),
     steepest_texcoords: Vec<f64>,
     is_faceted: bool,
@@ -25,13 +25,13 @@ impl PartialEq for Facts {
 }
 
 impl Mesh {
-    /// The mesh with what holds of it, as it is now.
+    /// The mesh with the facts that hold of it as it is now.
     pub(super) fn with_facts(mut self) -> Self {
         self.find_facts();
         self
     }
 
-    /// Finds out what holds of the mesh as it is now. Whatever changes a mesh ends so.
+    /// Finds the facts of the mesh as it is now. Every change of a mesh ends so.
     pub(super) fn find_facts(&mut self) {
         self.facts = Facts {
             vertex_surfaces: vertex_surfaces(self),
@@ -41,8 +41,8 @@ impl Mesh {
         };
     }
 
-    /// For each vertex the number of its surface; 0 where no triangle uses it. Of a mesh without
-    /// [one surface a vertex](Self::has_one_surface_a_vertex), that of the last triangle.
+    /// The index of each vertex's surface; 0 if no triangle uses it. In a mesh without [one surface a
+    /// vertex](Self::has_one_surface_a_vertex), that of the last triangle.
     #[must_use]
     pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         &self.facts.vertex_surfaces
@@ -58,7 +58,7 @@ impl Mesh {
         &self.facts.steepest_texcoords
     }
 
-    /// Whether the normals of every face are its own: what is far away lights each of its points alike.
+    /// Returns whether every face has normals of its own, so that a distant light is equal at all its points.
     pub(crate) fn is_faceted(&self) -> bool {
         self.facts.is_faceted
     }
@@ -91,7 +91,7 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
             }
         }
     }
-    // Of the greatest square alone: a root keeps the order.
+    // The roots of the greatest squares alone: a root keeps the order.
     (libm::sqrtf(edge), libm::sqrtf(texture_edge))
 }
 
@@ -125,11 +125,11 @@ fn steepest_texcoords(mesh: &Mesh) -> Vec<f64> {
     steepest
 }
 
-/// Whether the three normals of every face are that of its plane, to some 10⁻⁵ of an angle: a 400th of a shade.
+/// Returns whether the three normals of every face are that of its plane, to some 10⁻⁵ of an angle: a 400th of a shade.
 fn is_faceted(mesh: &Mesh) -> bool {
     mesh.triangles.iter().all(|corners| {
         let [a, b, c] = corners.map(|i| mesh.positions[i as usize]);
-        // What has no area shows no shade.
+        // A face without area shows no shade.
         let Some(normal) = face_normal(a, b, c) else { return true };
         corners.iter().all(|&i| mesh.normals[i as usize].distance_squared(normal) < 1e-10)
     })
@@ -144,7 +144,7 @@ mod tests {
     use super::super::{Mesh, Surface, Weight, shapes};
     use super::*;
 
-    /// What is kept of a mesh is what is found out about it anew, bit for bit.
+    /// Checks that the facts kept of a mesh equal those found anew, bit for bit.
     fn check(what: &str, mesh: &Mesh) {
         let anew = mesh.clone().with_facts().facts;
         let Facts { vertex_surfaces, longest_edges: (edge, of_texture), steepest_texcoords, is_faceted } = &mesh.facts;

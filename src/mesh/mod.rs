@@ -1,9 +1,8 @@
-//! Triangle meshes: vertices with normals, triangles, surfaces; what holds of them as a whole.
+//! Triangle meshes: vertices with normals, triangles, surfaces; and facts of the whole.
 //!
-//! A [`Mesh`] comes from one of the [`shapes`], from an OBJ file (`obj`, with the feature of that
-//! name) or from the caller's own vertices ([`Mesh::new`], [`Mesh::with_normals`]). Once made it is
-//! sound: every position and normal is finite, every index in range, there is at least one triangle.
-//! Whatever would not be is refused with a [`MeshError`].
+//! A [`Mesh`] comes from one of the [`shapes`], from an OBJ file (`obj`, with the feature of that name) or from the
+//! caller's own vertices ([`Mesh::new`], [`Mesh::with_normals`]). Once made it is sound: every position and normal is
+//! finite, every index in range, there is at least one triangle. Anything else is refused with a [`MeshError`].
 //!
 //! Triangles are counter-clockwise seen from outside, in a right-handed system; y is up.
 
@@ -66,15 +65,15 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The most vertices, and the most triangles, of a mesh: a third of 2³², so that the corners of
-    /// all triangles can be counted in 32 bits.
+    /// The max number of vertices, and of triangles, of a mesh: a third of 2³², so that the corners of all triangles
+    /// can be counted in 32 bits.
     pub const MAX_COUNT: usize = (u32::MAX / 3) as usize;
 
-    /// A mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share
-    /// a vertex: a vertex that is listed twice is a crease.
+    /// Makes a mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share a vertex. A
+    /// vertex that is listed twice is a crease.
     ///
-    /// Vertices keep their numbers. Where the normals of a vertex's faces cancel, it is split, and
-    /// the new vertices come at the end (see [`normals`]).
+    /// Vertices keep their numbers. A vertex whose faces' normals cancel is split, and the new vertices come at the end
+    /// (see [`normals`]).
     ///
     /// # Errors
     /// A position that is not finite, an index out of range, no triangle, or more than
@@ -92,11 +91,11 @@ impl Mesh {
         Ok(mesh.with_facts())
     }
 
-    /// A mesh with one plain [`Surface`] and the caller's normals, one for each vertex. They are made
-    /// unit here.
+    /// Makes a mesh with one plain [`Surface`] and the caller's normals, one for each vertex. They are made unit here.
     ///
     /// # Errors
-    /// As [`new`](Self::new); as many normals as vertices, each finite and none zero.
+    /// Those of [`new`](Self::new); a number of normals other than that of the vertices; a normal that is not finite,
+    /// or zero.
     pub fn with_normals(
         positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
@@ -148,15 +147,15 @@ impl Mesh {
         Ok(self.with_facts())
     }
 
-    /// Finite positions, unit normals, indices in range: a shape, or input that was checked.
+    /// Makes a mesh of finite positions, unit normals, indices in range: a shape, or input that was checked.
     pub(in crate::mesh) fn assemble(positions: Vec<Vec3>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let points = topology::weld(&positions);
         let edges = topology::Edges::new(&triangles, &points);
         Self::assemble_welded(positions, normals, triangles, &points, &edges).with_facts()
     }
 
-    /// [`assemble`](Self::assemble), where the points of the vertices and the edges are known, and what else holds of the mesh
-    /// is still to be found out.
+    /// Does what [`assemble`](Self::assemble) does, if the points of the vertices and the edges are known, and the
+    /// other facts are still to be found.
     fn assemble_welded(
         mut positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
@@ -190,7 +189,7 @@ impl Mesh {
         }
     }
 
-    /// Where each vertex is.
+    /// The position of each vertex.
     #[must_use]
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
@@ -208,25 +207,25 @@ impl Mesh {
         self.texcoords.as_deref()
     }
 
-    /// Three vertices each, counter-clockwise seen from outside; at least one triangle.
+    /// The triangles: three vertices each, counter-clockwise seen from outside; at least one triangle.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// For each triangle the number of its surface.
+    /// The index of each triangle's surface.
     #[must_use]
     pub fn triangle_surfaces(&self) -> &[u16] {
         &self.triangle_surfaces
     }
 
-    /// The surfaces that [`triangle_surfaces`](Self::triangle_surfaces) counts.
+    /// The surfaces that [`triangle_surfaces`](Self::triangle_surfaces) indexes.
     #[must_use]
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces
     }
 
-    /// For each vertex the number of its point: vertices in one place have the same.
+    /// The index of each vertex's point: vertices in one place share it.
     pub(crate) fn points(&self) -> Vec<u32> {
         topology::weld(&self.positions)
     }
@@ -237,36 +236,37 @@ impl Mesh {
         self.bounds
     }
 
-    /// Do as many triangles run through every edge in one direction as in the other? Then the mesh bounds a body, or
-    /// several that may share edges and points. Vertices at the same position count as one, and triangles with two
-    /// corners in one point do not count.
+    /// Returns whether as many triangles run through every edge in one direction as in the other. Then the mesh bounds
+    /// a body, or several that may share edges and points. Vertices at the same position count as one, and triangles
+    /// with two corners in one point do not count.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// Is the mesh closed, and does it look outward everywhere? Then no back face of it can be seen from outside.
+    /// Returns whether the mesh is closed and looks outward everywhere. Then no back face of it can be seen from
+    /// outside.
     ///
-    /// That is so where the mesh winds round no point of space a negative number of times, which is tried along 64 × 64
-    /// rays of each axis. A region that is turned the wrong way counts if some ray is in it for more than 1/32 of the
-    /// longest side of the mesh's box: thinner ones are the folds of scans.
+    /// The mesh must wind round no point of space a negative number of times, which is tested along 64 × 64 rays of
+    /// each axis. A region that is turned the wrong way counts if some ray is in it for more than 1/32 of the longest
+    /// side of the mesh's box: thinner ones are the folds of scans.
     #[must_use]
     #[doc(hidden)]
     pub fn is_outward(&self) -> bool {
         self.outward
     }
 
-    /// Is the mesh certainly closed, convex and wound outward? Then its front faces never hide each
-    /// other. Exact: coordinates that were rounded so that a face has the slightest dent make it
-    /// `false`, which costs time, never correctness.
+    /// Returns whether the mesh is certainly closed, convex and wound outward. Then its front faces never hide each
+    /// other. The test is exact: if rounding gave a face the slightest dent, the result is `false`, which costs time,
+    /// never correctness.
     #[must_use]
     pub fn is_convex(&self) -> bool {
         self.convex
     }
 
-    /// The volume inside a closed mesh, by the divergence theorem: the sum of the tetrahedra between
-    /// the box's centre and each triangle. Negative if the triangles are wound inward; of no meaning
-    /// if the mesh is not closed.
+    /// The volume inside a closed mesh, by the divergence theorem: the sum of the tetrahedra between the box's centre
+    /// and each triangle. It is negative if the triangles are wound inward, and means nothing if the mesh is not
+    /// closed.
     #[must_use]
     #[doc(hidden)]
     pub fn volume(&self) -> f64 {
@@ -280,7 +280,7 @@ impl Mesh {
     }
 }
 
-/// What every mesh must keep to.
+/// Checks what every mesh must fulfil.
 fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     if triangles.is_empty() {
         return Err(MeshError::NoTriangles);

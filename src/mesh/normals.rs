@@ -2,9 +2,9 @@
 //!
 //! A face's normal is n = (p1 − p2) × (p1 − p3) (the Russian textbook, the Hungarian tutorial): outward for
 //! counter-clockwise corners. A vertex's is the **normalised**, weighted sum of the normals of the faces around it
-//! (the Russian textbook, the Russian article, the Polish lecture). The Hungarian tutorial divides by their number
-//! instead and leaves it at that, which darkens a vertex the more the rounder the corner is: at a cube's corner the
-//! mean of three unit normals is 0.58 long.
+//! (the Russian textbook, the Russian article, the Polish lecture). The Hungarian tutorial only divides by their
+//! number, which darkens a vertex the more the rounder the corner is: at a cube's corner the mean of three unit normals
+//! is 0.58 long.
 //!
 //! All is computed in f64 and rounded once, so a normal's length is 1 within 2⁻²³ for any finite
 //! positions, denormals and `f32::MAX` among them. Sums run in the order of the triangles.
@@ -26,14 +26,14 @@ use super::wide::{Wide, add, cross, dot, length, narrow, scale, sub, widen};
 use super::{Mesh, topology};
 use crate::angle::Angle;
 
-/// How much each face counts in the normal of a vertex.
+/// The weight of each face in the normal of a vertex.
 #[derive(Clone, Copy, Hash, Debug, PartialEq, Eq, Default)]
 pub enum Weight {
-    /// All alike, as in the source texts. The normal depends on how the faces are cut into triangles.
+    /// Equal weights, as in the source texts. The normal depends on how the faces are cut into triangles.
     Count,
-    /// By area.
+    /// Weights by area.
     Area,
-    /// By the angle of the face at the vertex. Does not depend on how the faces are cut.
+    /// Weights by the angle of the face at the vertex. The normal does not depend on how the faces are cut.
     #[default]
     Angle,
 }
@@ -56,7 +56,7 @@ pub fn face_normal(p1: Vec3, p2: Vec3, p3: Vec3) -> Option<Vec3> {
     (face.double_area > 0.0).then(|| narrow(face.normal))
 }
 
-/// Any finite vector but zero, made unit; `None` for others.
+/// Makes any finite vector but zero unit; `None` for others.
 pub(crate) fn unit(v: Vec3) -> Option<Vec3> {
     let wide = widen(v);
     let length = length(wide);
@@ -64,7 +64,7 @@ pub(crate) fn unit(v: Vec3) -> Option<Vec3> {
 }
 
 struct Face {
-    /// Unit, or zero if the face has no area.
+    /// The unit normal, or zero if the face has no area.
     normal: Wide,
     double_area: f64,
 }
@@ -103,24 +103,24 @@ fn angles(corners: [Vec3; 3]) -> [f64; 3] {
     })
 }
 
-/// Which faces at one position count together in a normal.
+/// The rule for which faces at one position count together in a normal.
 pub(super) struct Together<'a> {
     /// The cosine of the greatest angle between two faces of no group that count together.
     least: f64,
-    /// For each triangle the number of its smoothing group, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Empty
-    /// if none has one.
+    /// The index of each triangle's smoothing group, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Empty if
+    /// none has one.
     groups: &'a [u32],
     /// The edges of a mesh that may be a scan; otherwise `None`.
     edges: Option<topology::Edges>,
 }
 
 impl<'a> Together<'a> {
-    /// Faces that count with no other.
+    /// The group of faces that count with no other.
     pub(super) const FLAT: u32 = 0;
-    /// Faces of which no group is known: the angle decides.
+    /// The group of faces whose group is unknown: the angle decides.
     pub(super) const NO_GROUP: u32 = u32::MAX;
 
-    /// By the angle between faces, and by groups where there are any.
+    /// Makes a rule by the angle between faces, and by groups if there are any.
     pub(super) fn new(crease: Angle, groups: &'a [u32]) -> Self {
         // 2⁻⁴⁰ for rounding: faces at exactly the crease angle are smooth. No number at all leaves all faces flat.
         let least = libm::cos(crease.to_radians().clamp(0.0, core::f64::consts::PI)) - 1.0 / 1_099_511_627_776.0;
@@ -136,9 +136,9 @@ impl<'a> Together<'a> {
         Self { edges: Some(edges), ..self }
     }
 
-    /// Whether sharp edges end anywhere, as noise makes them. Those of a model that was designed run on until they meet
-    /// others or the mesh's rim: nearly all of its points that have one sharp edge have two. On scans a third of these
-    /// points and more are ends; from an eighth on they count as scattered.
+    /// Returns whether sharp edges end anywhere, as noise makes them. Those of a model that was designed run on until
+    /// they meet others or the mesh's rim: nearly all of its points that have one sharp edge have two. On scans a third
+    /// of these points and more are ends; from an eighth on they count as scattered.
     fn is_scattered(&self, edges: &topology::Edges, faces: &[Face], count: usize) -> bool {
         const RIM: u8 = u8::MAX;
         let mut sharp = vec![0_u8; count];
@@ -171,12 +171,12 @@ impl<'a> Together<'a> {
 }
 
 impl Mesh {
-    /// Gives every vertex the weighted mean of the normals of the faces around its position; vertices
-    /// at the same position count as one. With a crease angle two faces count together if the
-    /// angle between their normals is no greater, or if other faces at this position link them so; vertices
-    /// are split where they must be. The angle is 0 where two faces lie in one plane.
+    /// Gives every vertex the weighted mean of the normals of the faces around its position; vertices at the same
+    /// position count as one. With a crease angle two faces count together if the angle between their normals is no
+    /// greater, or if other faces at this position link them so. Vertices are split where they must be. The angle is 0
+    /// if two faces lie in one plane.
     ///
-    /// Vertices keep their numbers; new ones come at the end. Of more than 64 faces at one position not all are
+    /// Vertices keep their numbers; new ones come at the end. If more than 64 faces share a position, not all are
     /// compared with each other.
     pub fn smooth(&mut self, weight: Weight, crease: Option<Angle>) {
         let points = topology::weld(&self.positions);
@@ -205,9 +205,9 @@ impl Mesh {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
-    /// Gives normals as [`smooth`](Self::smooth) does, where `points` says which vertices count as one (points are
-    /// numbered below the number of vertices), and `known` which of them keep the normal that it gives. Without
-    /// `together` all faces at a position count together.
+    /// Gives normals as [`smooth`](Self::smooth) does. `points` says which vertices count as one (points are numbered
+    /// below the number of vertices); `known` says which of them keep the normal that it gives. Without `together` all
+    /// faces at a position count together.
     pub(super) fn average(
         &mut self,
         points: &[u32],
@@ -270,13 +270,13 @@ impl Mesh {
         self.give(normal, known);
     }
 
-    /// For each corner the class of faces that share a normal there: the number of its point, or where the faces at a
-    /// point do not all count together, a number beyond those of all points. `None` if there is no such point.
+    /// The class of faces that share a normal, for each corner: the index of its point, or, if the faces at a point do
+    /// not all count together, a number beyond those of all points. `None` if there is no such point.
     fn classes(&self, points: &[u32], faces: &[Face], together: &Together<'_>) -> Option<Vec<u32>> {
         const NONE: u32 = u32::MAX;
         let count = points.iter().max().map_or(0, |&greatest| greatest as usize + 1);
         let takes_part = |t: usize| faces[t].has_area() && together.group(t) != Together::FLAT;
-        // Where all faces count together with the first one there is nothing to find out: nearly everywhere on a scan.
+        // If all faces count together with the first one there is nothing to find out: nearly everywhere on a scan.
         let mut first = vec![NONE; count];
         let mut is_divided = vec![false; count];
         let mut any = false;
@@ -320,8 +320,8 @@ impl Mesh {
         Some(classes)
     }
 
-    /// A normal for each corner of a vertex; `None`: any will do. Splits the vertices whose corners want more
-    /// than one. `given`: what vertices have already.
+    /// Gives the corners of each vertex their normals; `None`: any will do. Splits the vertices whose corners need more
+    /// than one. `given`: the normals that vertices have already.
     fn give(&mut self, normal: impl Fn(usize, u32) -> Option<Vec3>, mut given: Vec<Option<Vec3>>) {
         let bits = |n: Vec3| [n.x, n.y, n.z].map(f32::to_bits);
         let mut splits: Vec<(u32, [u32; 3], u32)> = Vec::new();
@@ -359,8 +359,9 @@ struct Parts {
 }
 
 impl Parts {
-    /// Up to so many faces are all compared; beyond them, with these, with the last eight, and with those that were linked
-    /// with none of these, so that a point takes no time by the square of its faces.
+    /// The number of faces at a point that are all compared. Beyond them, faces are compared with these, with the last
+    /// eight, and with those that were linked with none of these: so the time of a point does not grow by the square of
+    /// its faces.
     const COMPARED: usize = 64;
 
     fn find(&mut self, count: u32, linked: impl Fn(u32, u32) -> bool) {

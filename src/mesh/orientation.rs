@@ -1,4 +1,4 @@
-//! On which side of a face does a point lie? Exactly.
+//! The side of a face that a point lies on, exactly.
 //!
 //! A determinant of differences, first in f64 with an error bound; where that cannot tell, in exact
 //! expansions after J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
@@ -127,7 +127,7 @@ impl Expansion {
         self.len = kept;
     }
 
-    /// That of the greatest component, which outweighs all others.
+    /// The sign of the greatest component, which outweighs all others.
     fn sign(&self) -> Ordering {
         match self.components[..self.len].last() {
             Some(greatest) => greatest.total_cmp(&0.0),

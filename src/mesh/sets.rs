@@ -1,4 +1,4 @@
-//! Disjoint sets of numbers, which are joined.
+//! Disjoint sets of numbers, which can be joined.
 
 use alloc::vec::Vec;
 
@@ -32,7 +32,7 @@ impl Sets {
         number
     }
 
-    /// Makes one set of those of two numbers.
+    /// Joins the sets of two numbers.
     pub(super) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.of(a), self.of(b));
         self.parents[a.max(b) as usize] = a.min(b);

@@ -1,12 +1,12 @@
-//! The bodies that a closed mesh is made of, and which of them are inside out.
+//! The bodies of a closed mesh, and those of them that are inside out.
 //!
-//! A **shell** is a part of the surface that is closed by itself: faces are joined over edges of two faces; and at edges of
-//! more, those parts are joined of which more faces run through the edge in one direction than in the other. So two boxes
-//! that touch along an edge are two shells.
+//! A **shell** is a part of the surface that is closed by itself. Faces are joined over edges of two faces. At edges of
+//! more, those parts are joined of which more faces run through the edge in one direction than in the other. So two
+//! boxes that touch along an edge are two shells.
 //!
-//! A shell whose volume is negative is inside out, unless it is a **cavity**: unless the larger shells, once they are
-//! turned themselves, wind at least once round the place where it is. The place is a point of one of its faces, and what
-//! winds round it is counted along a ray from outside.
+//! A shell whose volume is negative is inside out, unless it is a **cavity**: the larger shells, once they are turned
+//! themselves, wind at least once round its place. The place is a point of one of its faces, and the winding round it
+//! is counted along a ray from outside.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -20,25 +20,25 @@ use super::winding::{between, cross_row};
 
 /// The shells that are inside out.
 pub(super) struct InsideOut {
-    /// For each triangle its shell.
+    /// The shell of each triangle.
     shell_of: Vec<u32>,
-    /// For each shell whether it is to be turned.
+    /// Marks each shell that is to be turned.
     turned: Vec<bool>,
 }
 
 impl InsideOut {
-    /// The shell of a triangle, if that is to be turned.
+    /// The shell of a triangle, if it is to be turned.
     pub(super) fn shell(&self, triangle: usize) -> Option<usize> {
         let shell = self.shell_of[triangle] as usize;
         self.turned[shell].then_some(shell)
     }
 
-    /// How many shells there are, to be turned or not.
+    /// Counts the shells, to be turned or not.
     pub(super) fn shells(&self) -> usize {
         self.turned.len()
     }
 
-    /// How many shells are to be turned.
+    /// Counts the shells to be turned.
     pub(super) fn count(&self) -> usize {
         self.turned.iter().filter(|&&turned| turned).count()
     }
@@ -71,7 +71,7 @@ pub(super) fn inside_out(positions: &[Vec3], triangles: &[[u32; 3]], edges: &Edg
     (found.count() > 0).then_some(found)
 }
 
-/// For each triangle its shell, and how many shells there are.
+/// The shell of each triangle, and the number of shells.
 fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
     // Triangles are counted in 32 bits, see `Mesh::MAX_COUNT`.
     let mut sets = Sets::new(triangles as u32);
@@ -112,7 +112,7 @@ fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
     (numbers, count as usize)
 }
 
-/// The volume of each shell; 0 of one that encloses none but for rounding.
+/// The volume of each shell; 0 if it encloses none but for rounding.
 fn volumes(positions: &[Vec3], triangles: &[[u32; 3]], shell_of: &[u32], count: usize) -> Vec<f64> {
     // Six volumes of the tetrahedra from the first vertex of each shell, their sum and that of their sizes.
     let mut sums: Vec<(Option<Wide>, f64, f64)> = vec![(None, 0.0, 0.0); count];
@@ -129,8 +129,8 @@ fn volumes(positions: &[Vec3], triangles: &[[u32; 3]], shell_of: &[u32], count: 
     sums.into_iter().map(|(_, sum, size)| if sum.abs() > size * (1.0 / 4_194_304.0) { sum } else { 0.0 }).collect()
 }
 
-/// What winds round a place of each of the shells of `wanted`: other shells, with what their winding numbers there are
-/// made from, -1 or 1 for each of their faces before it along a ray.
+/// The shells that wind round a place of each shell of `wanted`: other shells, with the parts of their winding numbers
+/// there, -1 or 1 for each of their faces before it along a ray.
 fn enclosing(
     positions: &[Vec3],
     triangles: &[[u32; 3]],

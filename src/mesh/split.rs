@@ -1,5 +1,4 @@
-//! One surface a vertex: a vertex is lit once, with one material, so where two surfaces meet they
-//! each need their own.
+//! One surface a vertex. A vertex is lit once, with one material, so two surfaces that meet need a vertex each.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -10,7 +9,7 @@ use super::Mesh;
 const NONE: u32 = u32::MAX;
 
 impl Mesh {
-    /// Whether no vertex is used by triangles of two surfaces.
+    /// Returns whether each vertex is used by triangles of one surface only.
     #[must_use]
     #[doc(hidden)]
     pub fn has_one_surface_a_vertex(&self) -> bool {
@@ -30,8 +29,7 @@ impl Mesh {
         })
     }
 
-    /// A copy of the mesh with every vertex that lies between surfaces split, one for each. New vertices come at the
-    /// end.
+    /// Copies the mesh, with every vertex that lies between surfaces split, one for each. New vertices come at the end.
     #[must_use]
     #[doc(hidden)]
     pub fn with_one_surface_a_vertex(&self) -> Self {

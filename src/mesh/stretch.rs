@@ -6,9 +6,9 @@ use super::wide::{narrow, widen};
 use super::{Mesh, MeshError, normals};
 
 impl Mesh {
-    /// A copy of the mesh with every x, y and z multiplied with its factor, each finite and above 0. Normals are
-    /// divided by the factors and made unit again, so that they stay upright on their faces. If the factors are powers
-    /// of two, the copy is exact, and what was [convex](Self::is_convex) stays so.
+    /// Copies the mesh with every x, y and z multiplied with its factor, each finite and above 0. Normals are divided
+    /// by the factors and made unit again, so that they stay upright on their faces. If the factors are powers of two,
+    /// the copy is exact, and a mesh that was [convex](Self::is_convex) stays so.
     ///
     /// # Errors
     /// A factor that is not finite or not above 0; a position that is then beyond the range of f32.

@@ -1,10 +1,10 @@
-//! What a face is made of, as an MTL file says it.
+//! Surfaces of faces, as an MTL file describes them.
 
 use alloc::string::String;
 
 use crate::palette::Rgb;
 
-/// What a face is made of, in the terms of an MTL file. The default is white and matt.
+/// A face's surface, in the terms of an MTL file. The default is white and matt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// `newmtl`; empty if the mesh does not come from a file.
@@ -26,16 +26,15 @@ impl Default for Surface {
 }
 
 impl Surface {
-    /// Its colour in full light: `Kd`, each channel to the nearest of 0 to 255. What is below 0 or NaN
-    /// counts as 0, what is above 1 as 1.
+    /// The colour in full light: `Kd`, each channel to the nearest of 0 to 255. Values below 0 and NaN count as 0,
+    /// values above 1 as 1.
     #[must_use]
     pub fn color(&self) -> Rgb {
         Rgb::from_intensities(self.diffuse)
     }
 
-    /// The colour in the middle of a highlight: `Kd` and `Ks` together, each channel at most 255. `None`
-    /// for a matt surface: if `Ks` is black, or if `Ns`, the exponent, is not above 0, with which a
-    /// highlight would be everywhere.
+    /// The colour in the middle of a highlight: `Kd` and `Ks` together, each channel at most 255. `None` for a matt
+    /// surface: `Ks` is black, or `Ns`, the exponent, is not above 0, with which a highlight would be everywhere.
     ///
     /// ```
     /// use mode13h::mesh::Surface;

@@ -1,6 +1,5 @@
-//! What holds of a mesh as a surface: which vertices are the same point, whether it is closed,
-//! whether it is convex. The plan decides by these which work can be left out, so all of them are
-//! exact, and "no" where it is not certain.
+//! Facts of a mesh as a surface: which vertices are the same point, whether it is closed, whether it is convex. The
+//! plan decides by them which work can be left out, so they are exact, and "no" if that is not certain.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -12,15 +11,15 @@ use glam::Vec3;
 use super::orientation::side;
 use super::wide::{add, cross, dot, length, scale, sub, widen};
 
-/// For each vertex the number of its point; vertices at the same position have the same. 0 and −0
-/// are the same position. Points are numbered from 0 in no particular order.
+/// The index of each vertex's point; vertices at the same position share it. 0 and −0 are the same position. Points are
+/// numbered from 0 in no particular order.
 pub(super) fn weld(positions: &[Vec3]) -> Vec<u32> {
     let keys = || positions.iter().map(|p| [(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits(), (p.z + 0.0).to_bits()]);
     weld_by_hash(positions.len(), keys).unwrap_or_else(|| weld_by_sorting(keys()))
 }
 
-/// A table with open addressing, half full at most. `None` if far more places are looked at than chance would have it: of
-/// positions that were made to collide.
+/// Welds by a table with open addressing, half full at most. Returns `None` if far more places are looked at than by
+/// chance: positions were made to collide.
 fn weld_by_hash<K: Iterator<Item = [u32; 3]>>(count: usize, keys: impl Fn() -> K) -> Option<Vec<u32>> {
     const FREE: u32 = u32::MAX;
     let size = (2 * count).next_power_of_two();
@@ -71,8 +70,8 @@ fn weld_by_sorting(keys: impl Iterator<Item = [u32; 3]>) -> Vec<u32> {
     points
 }
 
-/// A triangle with two corners in one point is a line: it draws nothing, and its two edges undo each
-/// other. It is no part of the surface.
+/// Returns whether a triangle has two corners in one point. Such a line draws nothing, its two edges undo each other,
+/// and it is no part of the surface.
 pub(super) fn is_line(triangle: [u32; 3]) -> bool {
     triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]
 }
@@ -88,10 +87,10 @@ fn welded(triangle: [u32; 3], points: &[u32]) -> [u32; 3] {
 
 /// The edges of a mesh from point to point, gathered by the lower of their two points.
 pub(super) struct Edges {
-    /// Where each point's edges begin, and where the last one's end.
+    /// The place where each point's edges begin, and where the last one's end.
     starts: Vec<u32>,
-    /// The edge's higher point, twice, and 1 more where it runs downward; and the corner that it comes from, counted
-    /// through all triangles. Of each point in order.
+    /// The edges, of each point in order. First the edge's higher point, twice, and 1 more if it runs downward; then
+    /// the corner that it comes from, counted through all triangles.
     edges: Vec<(u32, u32)>,
 }
 
@@ -127,12 +126,12 @@ impl Edges {
         edges
     }
 
-    /// Where those stand whose lower point this is.
+    /// The places of the edges whose lower point this is.
     fn of(&self, point: usize) -> Range<usize> {
         self.starts[point] as usize..self.starts[point + 1] as usize
     }
 
-    /// The faces at each edge, one edge after the other: its two points, the lower first, and for each face whether it
+    /// The faces at each edge, one edge after the other: its two points, the lower first; and for each face whether it
     /// runs downward, and the corner that it comes from.
     pub(super) fn each(&self) -> impl Iterator<Item = ((u32, u32), &[(u32, u32)])> {
         (0..self.starts.len() - 2).flat_map(|point| {
@@ -142,8 +141,8 @@ impl Edges {
         })
     }
 
-    /// Whether every edge is run through as often in one direction as in the other: the surface bounds a body, or
-    /// several.
+    /// Returns whether every edge is run through as often in one direction as in the other: the surface bounds a body,
+    /// or several.
     pub(super) fn balance(&self) -> bool {
         // Nearly all edges have two faces, and need no count.
         let balances = |faces: &[(u32, u32)]| match faces {
@@ -153,7 +152,7 @@ impl Edges {
         !self.edges.is_empty() && self.each().all(|(_, faces)| balances(faces))
     }
 
-    /// Whether every edge has exactly two faces, which run through it in opposite directions.
+    /// Returns whether every edge has exactly two faces, which run through it in opposite directions.
     fn are_pairs(&self) -> bool {
         // In order, such a mesh reads: edge upward, edge downward, next edge upward … An edge with four faces reads
         // upward, upward, downward, downward.
@@ -164,7 +163,7 @@ impl Edges {
         !self.edges.is_empty() && (0..self.starts.len() - 2).all(|point| paired(&self.edges[self.of(point)]))
     }
 
-    /// Both corners that the two faces of each edge come to it from, if [all are pairs](Self::are_pairs).
+    /// The two corners that the two faces of each edge come to it from, if [all are pairs](Self::are_pairs).
     fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
         self.edges.as_chunks::<2>().0.iter().map(|pair| pair.map(|(_, corner)| corner as usize))
     }
@@ -177,7 +176,7 @@ impl Edges {
     }
 
     /// Hands on the triangles that lie back to back with others, of the same three points and wound the other way:
-    /// those wound one way, and those wound the other way, neither list empty and each in ascending order.
+    /// those wound one way, and those wound the other. Neither list is empty; each is in ascending order.
     pub(super) fn opposites(&self, triangles: &[[u32; 3]], points: &[u32], mut found: impl FnMut(&[u32], &[u32])) {
         let (mut ups, mut downs) = (Vec::new(), Vec::new());
         let third = |corner: u32| points[triangles[corner as usize / 3][(corner as usize + 2) % 3] as usize];
@@ -206,7 +205,7 @@ impl Edges {
     }
 }
 
-/// Is a mesh closed and convex, wound so that its faces look outward?
+/// Returns whether a mesh is closed and convex, wound so that its faces look outward.
 ///
 /// Each edge has exactly two faces, which run through it in opposite directions. Three more things are asked for, which
 /// together suffice. (1) The mean of the vertices lies behind every

@@ -1,8 +1,8 @@
 //! Triangles that lie back to back: of the same three points, and wound in opposite ways.
 //!
-//! Both have the same depth at every pixel. The one that looks toward the eye is the one that is seen, so the renderer
-//! leaves out the other. Leaves are made so, each side with a normal and a surface of its own. Scans have such
-//! triangles by mistake.
+//! Both have the same depth at every pixel. Only the one that looks toward the eye is seen, so the renderer leaves out
+//! the other. Leaves are made so, each side with a normal and a surface of its own. Scans have such triangles by
+//! mistake.
 
 #[cfg(feature = "obj")]
 use alloc::vec;
@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use super::Mesh;
 use super::topology::Edges;
 
-/// A bit for each triangle, 64 in a word: whether it lies back to back with another. Empty if none does.
+/// Marks the triangles that lie back to back with another, by a bit each, 64 in a word. Empty if none does.
 pub(super) fn mark(edges: &Edges, triangles: &[[u32; 3]], points: &[u32]) -> Vec<u64> {
     let mut twins = Vec::new();
     edges.opposites(triangles, points, |ups, downs| {
@@ -22,8 +22,8 @@ pub(super) fn mark(edges: &Edges, triangles: &[[u32; 3]], points: &[u32]) -> Vec
 }
 
 impl Mesh {
-    /// Whether a triangle lies back to back with another one: with the same three points, wound the other way. Of such
-    /// triangles the one that looks toward the eye is drawn.
+    /// Returns whether a triangle lies back to back with another one: with the same three points, wound the other way.
+    /// The one of them that looks toward the eye is drawn.
     #[must_use]
     #[doc(hidden)]
     pub fn has_twin(&self, triangle: usize) -> bool {
@@ -39,9 +39,9 @@ impl Mesh {
 /// The pairs of triangles back to back that a closed mesh has by mistake, in a list of both: membranes between faces
 /// that are there without them, and faces that are there once more and once the other way round.
 ///
-/// A **sheet** is no mistake: pairs that are joined at edges where no other face is, and that have a free rim, an edge of
-/// one pair alone, as a leaf or a fin has; or that touch nothing else, as a body whose faces are all there both ways. Nor
-/// are two sides of different surfaces. Leaving out pairs changes no winding number.
+/// A **sheet** is no mistake. Its pairs are joined at edges where no other face is, and have a free rim, an edge of one
+/// pair alone, as a leaf or a fin has; or they touch nothing else, as a body whose faces are all there both ways. Two
+/// sides of different surfaces are no mistake either. Leaving out pairs changes no winding number.
 #[cfg(feature = "obj")]
 pub(super) fn mistaken(
     edges: &Edges,

@@ -13,7 +13,7 @@ pub(super) fn widen(v: Vec3) -> Wide {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
-/// Each component rounded to the nearest f32, and −0 made 0, so that equal vectors have equal bits.
+/// Rounds each component to the nearest f32, and makes −0 0, so that equal vectors have equal bits.
 pub(super) fn narrow(v: Wide) -> Vec3 {
     Vec3::new(v[0] as f32, v[1] as f32, v[2] as f32) + Vec3::ZERO
 }

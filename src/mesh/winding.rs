@@ -1,11 +1,11 @@
-//! How often a closed surface winds round the points of space, along rays.
+//! Winding numbers of a closed surface about the points of space, along rays.
 //!
 //! The **winding number** of a point counts how often the surface encloses it: 0 outside, 1 inside a body, 2 where two
 //! bodies overlap, −1 inside a body whose faces look inward. Along a ray it grows by one at a face that looks back along
 //! the ray, and falls by one at a face that looks forward. Where no number is below 0, an eye outside (at 0) sees no face
 //! from behind: the first face of each ray must raise the number.
 //!
-//! Rays run along the three axes, 64 × 64 along each. What is narrower is not found. A ray passes each edge on one side
+//! Rays run along the three axes, 64 × 64 along each. Narrower parts are not found. A ray passes each edge on one side
 //! that both faces of the edge agree on: the place where an edge crosses a row of rays is computed from its two ends in
 //! one order, so the numbers along a ray always come back to 0.
 
@@ -21,9 +21,9 @@ use super::wide::{Wide, widen};
 /// Rays along each side of the box.
 const RAYS: u32 = 64;
 
-/// How far a negative region reaches along a ray at least, in parts of the longest side of the box, that makes a mesh
-/// turned in part. Scans have folds, a few faces thin, and of these an eye outside does not miss the side that is turned
-/// away: another face lies a fold's width behind it.
+/// The least length of a negative region along a ray, in parts of the longest side of the box, that makes a mesh turned
+/// in part. Scans have folds, a few faces thin. An eye outside does not miss the side of a fold that is turned away:
+/// another face lies a fold's width behind it.
 const THINNEST: f64 = 1.0 / 32.0;
 
 /// A ray's meeting with a face.
@@ -31,22 +31,22 @@ const THINNEST: f64 = 1.0 / 32.0;
 struct Meeting {
     ray: u32,
     at: f64,
-    /// What the winding number grows by.
+    /// The change of the winding number.
     step: i32,
 }
 
-/// More meetings than so many for each face, and [`MAX_MEETINGS`] beside, are not looked at: the mesh then counts as turned
-/// in part. A surface of many faces has one or two for each; to have more it must cross the whole box again and again.
+/// The max number of meetings for each face, with [`MAX_MEETINGS`] beside. A mesh with more counts as turned in part. A
+/// surface of many faces has one or two for each; to have more it must cross the whole box again and again.
 const MEETINGS_PER_FACE: u64 = 64;
-/// A surface that crosses the box 64 times along each ray.
+/// The meetings of a surface that crosses the box 64 times along each ray.
 const MAX_MEETINGS: u64 = 64 * RAYS as u64 * RAYS as u64;
 
 /// Meetings that are held at a time, for each face; and beside.
 const HELD_PER_FACE: u64 = 2;
 const HELD: u64 = 256;
 
-/// Whether no point has a negative winding number, folds aside: then no back face of a closed mesh is seen from
-/// outside. Takes memory in proportion to the faces, and says no where that would take too long to find out.
+/// Returns whether no point has a negative winding number, folds aside: then no back face of a closed mesh is seen from
+/// outside. Takes memory in proportion to the faces, and says no if it would take too long to find out.
 pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bounds) -> bool {
     let (min, max) = (widen(bounds.min), widen(bounds.max));
     let sides = [0, 1, 2].map(|axis| max[axis] - min[axis]);
@@ -105,7 +105,7 @@ pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bo
     })
 }
 
-/// Whether no ray's winding number is below 0 for longer than `thinnest`.
+/// Returns whether no ray's winding number is below 0 for longer than `thinnest`.
 fn never_below(meetings: &mut [Meeting], thinnest: f64) -> bool {
     meetings.sort_unstable_by(|a, b| a.ray.cmp(&b.ray).then(a.at.total_cmp(&b.at)));
     meetings.chunk_by(|a, b| a.ray == b.ray).all(|ray| {
@@ -142,9 +142,9 @@ fn meet_all(corners: [Wide; 3], rays: &Range<u32>, mut visit: impl FnMut(Meeting
     }
 }
 
-/// Where a triangle crosses the plane of a row of rays: place in the row and along the rays where that begins and where
-/// it ends, and what the winding number grows by from one side to the other. `None` if it does not cross it. Corners on
-/// the plane count as above it.
+/// Crosses a triangle with the plane of a row of rays. Returns the place in the row and along the rays where that
+/// begins and where it ends, and the change of the winding number from one side to the other. `None` if it does not
+/// cross it. Corners on the plane count as above it.
 pub(super) fn cross_row(corners: &[Wide; 3], row: f64) -> Option<([f64; 2], [f64; 2], i32)> {
     let (mut rising, mut falling) = (None, None);
     for i in 0..3 {
@@ -160,14 +160,14 @@ pub(super) fn cross_row(corners: &[Wide; 3], row: f64) -> Option<([f64; 2], [f64
     if falling[0] < rising[0] { Some((falling, rising, -1)) } else { Some((rising, falling, 1)) }
 }
 
-/// Where an edge, from its lower end, crosses a row. No rounding takes it beyond the ends.
+/// The point where an edge, from its lower end, crosses a row. No rounding takes it beyond the ends.
 fn on_edge(low: Wide, high: Wide, row: f64) -> [f64; 2] {
     let part = (row - low[1]) / (high[1] - low[1]);
     let column = low[0] + part * (high[0] - low[0]);
     [column.clamp(low[0].min(high[0]), low[0].max(high[0])), low[2] + part * (high[2] - low[2])]
 }
 
-/// How far along a ray lies what is met between two places of its row.
+/// The distance along a ray of a meeting between two places of its row.
 pub(super) fn between(from: [f64; 2], to: [f64; 2], column: f64) -> f64 {
     let wide = to[0] - from[0];
     if wide > 0.0 { from[1] + (column - from[0]) / wide * (to[1] - from[1]) } else { from[1] }

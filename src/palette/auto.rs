@@ -1,4 +1,4 @@
-//! A palette made for what is to be seen: a ramp for each material, a block for the textures.
+//! A palette made for the surfaces in sight: a ramp for each material, a block for the textures.
 //!
 //! Entry 0 is black, for the background, and entry 255 white, for what a program writes on the
 //! picture. The 254 between are shared out so that the sum, over all visible pixels, of the squared
@@ -7,9 +7,9 @@
 //! - A ramp of n entries has n − 1 steps. Rounding to its entries is off by a twelfth of the square of
 //!   a step on average, so with a share `area` of the pixels, and colours `length` apart between the
 //!   darkest and the brightest that is seen, it costs `area·length²/(12·(n − 1)²)`.
-//! - The textures' colours at all brightnesses seen are reduced by median cut, in which each cut says
-//!   what it wins. All textures share one block: their shades look for the nearest entry of the whole
-//!   palette ([`Table::shades`](super::Table::shades)), and so use the ramps' entries too.
+//! - The textures' colours at all brightnesses seen are reduced by median cut, whose cuts have known gains. All
+//! textures share one block: their shades look for the nearest entry of the whole palette
+//! ([`Table::shades`](super::Table::shades)), and so use the ramps' entries too.
 //!
 //! - Colours that are mixed on the screen and lie on no ramp (in fog, behind glass, under coloured light) are points of
 //!   the same cloud, as they are.
@@ -24,10 +24,9 @@
 //! highlight's. The two share the ramp in proportion to their lengths, so that all its steps are
 //! equally wide: [`Entries::Ramp`] says where they meet.
 //!
-//! **More materials than room.** 63 ramps of 4 entries fill the palette. Those materials get one that
-//! lose most without: first the one with the largest area; then always the one for which area × squared
-//! distance to the nearest colour chosen so far is largest. All others share the ramp that is nearest;
-//! two of the same colour always do.
+//! **More materials than room.** 63 ramps of 4 entries fill the palette. The materials that lose most without a ramp
+//! get one: first the one with the largest area; then always the one for which area × squared distance to the nearest
+//! colour chosen so far is largest. All others share the ramp that is nearest; two of one colour always share it.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -36,35 +35,35 @@ use super::gradient::{Stop, color_at, fill};
 use super::median_cut::MedianCut;
 use super::{Palette, Ramp, Rgb};
 
-/// What a surface asks of a palette.
+/// A surface's demands on a palette.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Use<'a> {
-    /// Its colour in full light.
+    /// The colour in full light.
     pub color: Rgb,
     /// The colour in the middle of a highlight in full light; `None` if it is matt.
     pub highlight: Option<Rgb>,
-    /// Its share of the visible pixels: any unit, not negative. What is never in sight counts as a
-    /// millionth of all, so that it has a colour when it does come into sight.
+    /// The share of the visible pixels: any unit, not negative. A surface that is never in sight counts as a millionth
+    /// of all, so that it has a colour when it does come into sight.
     pub area: f32,
     /// The least intensity at which it is seen, 0 to 1, highlights left out.
     pub darkest: f32,
     /// The greatest intensity at which it is seen, 0 to 1, highlights left out.
     pub brightest: f32,
-    /// If it has a texture, the colours of that in full light, each with the number of its texels. Then
-    /// `color` and `highlight` do not count.
+    /// The colours of its texture in full light, if it has one, each with the number of its texels. Then `color` and
+    /// `highlight` do not count.
     pub texels: Option<&'a [(Rgb, u32)]>,
-    /// If its colours do not lie on a straight line: those at equal steps of intensity from none to 1, at least two and at
-    /// most 256. Then the ramp runs through them, full light is 1, and `color` does not count.
+    /// The colours at equal steps of intensity from 0 to 1, at least two and at most 256, if they do not lie on a
+    /// straight line. Then the ramp runs through them, full light is 1, and `color` does not count.
     pub along: Option<&'a [Rgb]>,
 }
 
-/// What a surface gets.
+/// The entries that a surface gets.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Entries {
     /// A ramp, perhaps with others. No two ramps have an entry in common.
     Ramp {
-        /// From black by its colour in full light to that of its highlight.
+        /// The ramp, from black by the surface's colour in full light to that of its highlight.
         ramp: Ramp,
         /// The intensity, 0 to 1, whose entry is the colour in full light. A material's ambient and
         /// diffuse light add up to this, and its highlight to the rest; for a matt one it is 1.
@@ -73,38 +72,38 @@ pub enum Entries {
     /// The block of entries that all textures share. Shades go through a table, which may find other
     /// entries that are nearer.
     Textures {
-        /// Its entries, in no order.
+        /// The block's entries, in no order.
         block: Ramp,
     },
 }
 
-/// A palette, and what each surface names in it.
+/// A palette, and the entries of each surface in it.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Automatic {
-    /// The colours, all such as the card shows exactly. It is said to have no ramps: they are not
-    /// equal, so materials name their entries.
+    /// The colours, all of which the card shows exactly. The palette is marked as without ramps: they are not equal, so
+    /// materials name their entries.
     pub palette: Palette,
-    /// For each use its entries.
+    /// The entries of each use.
     pub entries: Vec<Entries>,
 }
 
-/// Entries to be shared out: all but the first and the last.
+/// The number of entries to be shared out: all but the first and the last.
 const CAPACITY: usize = 254;
-/// The least that a ramp has, unless there are fewer colours on it.
+/// The min length of a ramp, unless there are fewer colours on it.
 const LEAST: usize = 4;
-/// What is kept for textures before the ramps have theirs.
+/// The number of entries kept for textures before the ramps have theirs.
 const MIN_FOR_TEXTURES: usize = 16;
-/// A share of the area for what is never in sight.
+/// The share of the area that a surface has if it is never in sight.
 const UNSEEN: f64 = 1e-6;
 /// The narrowest range of intensities that entries are made for: a light may move.
 const NARROWEST: f64 = 0.25;
-/// How many brightnesses of a texture's colours are looked at.
+/// The number of brightnesses of a texture's colours that are tried.
 const LEVELS: u8 = 16;
-/// How many textured uses are looked at: those with the largest areas.
+/// The max number of textured uses that are read: those with the largest areas.
 const MAX_TEXTURED: usize = 64;
 /// The weight of the whole area in median cut.
 const WHOLE: f64 = 16_777_216.0;
-/// More than any squared distance between two colours and two highlights: 2 · 195,075.
+/// A distance above any squared distance between two colours and two highlights: 2 · 195,075.
 const FARTHER_THAN_ANY: u32 = 400_000;
 
 /// Shares the palette out.
@@ -128,8 +127,8 @@ pub fn share(uses: &[Use<'_>]) -> Automatic {
     share_beside(uses, &[])
 }
 
-/// Shares the palette out with room for colours that stand on the screen as they are, each with the area that it covers
-/// there, in the unit of [`Use::area`]: mixtures, which lie on no ramp. They go into the block of the textures.
+/// Shares the palette out with room for mixtures: colours that lie on no ramp and stand on the screen as they are, each
+/// with the area that it covers there, in the unit of [`Use::area`]. They go into the block of the textures.
 ///
 /// ```
 /// use mode13h::palette::{Rgb, auto};
@@ -174,7 +173,7 @@ fn entries(first: usize, count: usize) -> Ramp {
     ramp.and_then(|(first, count)| Ramp::new(first, count)).unwrap_or(Ramp::WHOLE)
 }
 
-/// Gives away the room: an entry at a time to who gains most by it.
+/// Gives away the room: an entry at a time to the ramp or block that gains most by it.
 fn give(ramps: &mut [Wanted], textures: &mut MedianCut) {
     let mut room = CAPACITY.saturating_sub(ramps.iter().map(|ramp| ramp.entries).sum::<usize>() + textures.len());
     while room > 0 {
@@ -205,8 +204,8 @@ fn best(ramps: &[Wanted], gain: impl Fn(&Wanted) -> f64) -> Option<usize> {
     (0..ramps.len()).reduce(|best, next| if gain(&ramps[next]) > gain(&ramps[best]) { next } else { best })
 }
 
-/// Finds one colour for each box, as far as there are enough colours.
-/// None comes twice, and none is one of `beside`. For each that is left out another box is cut.
+/// Finds one colour for each box, as far as there are enough colours. No colour comes twice, and none is one of
+/// `beside`. For each that is left out another box is cut.
 fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
     let wanted = textures.len();
     let mut found = Vec::new();
@@ -226,18 +225,18 @@ fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
     }
 }
 
-/// A ramp that is wanted, and how many entries it has so far.
+/// A ramp that is wanted, and the number of its entries so far.
 struct Wanted {
     keys: Vec<Stop>,
-    /// Where on the ramp the colour in full light stands, in 255ths.
+    /// The place on the ramp of the colour in full light, in 255ths.
     full_light: u8,
-    /// From key to key, in 255ths of a channel.
+    /// The length from key to key, in 255ths of a channel.
     length: f64,
     area: f64,
     /// The part of the ramp that is seen, 0 to 1.
     darkest: f64,
     brightest: f64,
-    /// How many colours on it the card can show.
+    /// The number of colours on it that the card can show.
     colors: usize,
     entries: usize,
 }
@@ -280,7 +279,7 @@ impl Wanted {
         ramp
     }
 
-    /// Counts a use in.
+    /// Counts a use as part of the ramp.
     fn add(&mut self, of: &Use<'_>, area: f64) {
         let (darkest, brightest) = of.range();
         let full_light = f64::from(self.full_light) / 255.0;
@@ -297,12 +296,12 @@ impl Wanted {
         }
     }
 
-    /// What one more entry wins; nothing if there are as many as colours that the card can show.
+    /// The gain of one more entry; none if there are as many as colours that the card can show.
     fn gain(&self) -> f64 {
         if self.entries < self.colors { self.gain_unbounded() } else { 0.0 }
     }
 
-    /// area·length²/12 · (1/(n − 1)² − 1/n²).
+    /// The gain without that limit: area·length²/12 · (1/(n − 1)² − 1/n²).
     fn gain_unbounded(&self) -> f64 {
         let length = (self.brightest - self.darkest).max(0.0) * self.length;
         // A ramp of one entry has one colour, black.
@@ -335,7 +334,7 @@ impl Use<'_> {
     }
 }
 
-/// NaN counts as 0.
+/// The value, at least 0; NaN counts as 0.
 fn not_negative(v: f32) -> f64 {
     f64::from(v.max(0.0))
 }
@@ -351,7 +350,7 @@ fn areas(uses: &[Use<'_>], mixtures: &[(Rgb, f32)]) -> (Vec<f64>, Vec<(Rgb, f64)
     (uses.iter().map(|of| share(of.area)).collect(), mixed)
 }
 
-/// At most `most` ramps, and for each use without a texture which one it has.
+/// Chooses at most `most` ramps, and for each use without a texture one of them.
 fn choose(uses: &[Use<'_>], areas: &[f64], most: usize) -> (Vec<Wanted>, Vec<Option<usize>>) {
     let plain: Vec<usize> = (0..uses.len()).filter(|&i| uses[i].texels.is_none()).collect();
     let colors: Vec<(Rgb, Rgb)> = uses.iter().map(Use::shown).collect();

@@ -7,7 +7,7 @@
 
 use super::Palette;
 
-/// The colours of mode 13h after the BIOS has set it. Every channel is a 6-bit value, expanded. No
+/// The colours of mode 13h after the BIOS has set it. Every channel is a 6-bit value, expanded. The palette has no
 /// ramps.
 pub const BIOS: Palette = Palette::from_dac(&entries());
 
@@ -53,8 +53,8 @@ const fn entries() -> [[u8; 3]; 256] {
     table
 }
 
-/// From blue by magenta, red, yellow, green and cyan back towards blue, four steps each: one channel
-/// moves while the two others stand at the ends.
+/// A colour of a hue circle: from blue by magenta, red, yellow, green and cyan back towards blue, four steps each. One
+/// channel moves while the two others stand at the ends.
 const fn color_of(levels: &[u8; 5], hue: usize) -> [u8; 3] {
     let (low, high) = (levels[0], levels[4]);
     let (rising, falling) = (levels[hue % 4], levels[4 - hue % 4]);

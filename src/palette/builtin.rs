@@ -8,19 +8,19 @@
 use super::gradient::{Stop, fill};
 use super::{BIOS, Palette, Ramp, Rgb, cube};
 
-/// A palette with its name and where it comes from.
+/// A palette with its name and origin.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Builtin {
-    /// What a program calls it.
+    /// Its name on the command line.
     pub name: &'static str,
     /// The colours.
     pub palette: &'static Palette,
-    /// What it is and where it comes from, in one line.
+    /// Its description and origin, in one line.
     pub provenance: &'static str,
 }
 
-/// All of them.
+/// All palettes that are compiled in.
 pub static ALL: [Builtin; 9] = [
     Builtin { name: "grey", palette: &GREY, provenance: "256 even greys; the DAC shows 64 of them. Made here." },
     Builtin {
@@ -141,8 +141,8 @@ pub static MATERIALS_16X16: Palette = of_ramps(&[
     &material(0xd0607c),
 ]);
 
-/// From a sixteenth of a colour by the colour itself at three fifths of the way, to a highlight: nine
-/// tenths of the way from it to white. No channel ever falls.
+/// The keys of a material's ramp: from a sixteenth of a colour by the colour itself at three fifths of the way, to a
+/// highlight, nine tenths of the way from it to white. No channel ever falls.
 const fn material(rgb: u32) -> [Stop; 3] {
     let base = Rgb::from_u32(rgb);
     let dark = Rgb::new(base.r / 16, base.g / 16, base.b / 16);

@@ -15,7 +15,7 @@ const FIRST_GREY: usize = 216;
 /// The cube with its greys. It has no ramps.
 pub const CUBE: Palette = Palette::from_parts(colors(), 0);
 
-/// By reference: a `const` palette would be copied wherever it is used.
+/// The colours, by reference: a `const` palette would be copied wherever it is used.
 const COLORS: &[Rgb; 256] = CUBE.colors();
 
 /// The 6-bit level of grey `k`, 0 to 39, of the entries from 216 on. 58 of the DAC's 64 levels are no
@@ -87,11 +87,11 @@ pub const fn nearest_mixture(color: Rgb) -> u8 {
     36 * LEVEL_OF[color.r as usize] + 6 * LEVEL_OF[color.g as usize] + LEVEL_OF[color.b as usize]
 }
 
-/// The entry of [`CUBE`] nearest to a colour: what [`Palette::nearest`] finds, without its search.
+/// The entry of [`CUBE`] nearest to a colour: the one of [`Palette::nearest`], without its search.
 ///
-/// The squared distance to a grey v is 3·(v − m)² plus something that is the same for all greys, m
-/// being the mean of the three channels. So only the grey nearest to m has to be looked at, or, as m
-/// is a number of thirds, the two around it.
+/// The squared distance to a grey v is 3·(v − m)² plus a term that is equal for all greys, m being the mean of the
+/// three channels. So only the grey nearest to m has to be looked at, or, because m is a number of thirds, the two
+/// around it.
 #[must_use]
 #[inline]
 #[doc(hidden)]

@@ -5,7 +5,7 @@ use super::{Ramp, Rgb};
 /// A colour at a place on a ramp.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Stop {
-    /// Where: 0 is the ramp's first entry, 255 its last.
+    /// The place: 0 is the ramp's first entry, 255 its last.
     pub at: u8,
     /// The colour there.
     pub color: Rgb,
@@ -21,11 +21,10 @@ impl Stop {
 
 /// Fills the entries of `ramp` by straight lines between keys, channel by channel.
 ///
-/// Entry `i` of `n` lies at `255·i/(n − 1)`, the only entry of a ramp of one at 255. A channel's
-/// value is rounded to the nearest of 0 to 255, halves upward, from the exact fraction. Before the
-/// first key and behind the last their colours go on. The keys must stand in rising order of
-/// [`Stop::at`]; a key that does not rise above the one before it counts for nothing. With no keys
-/// nothing changes.
+/// Entry `i` of `n` lies at `255·i/(n − 1)`, the only entry of a ramp of one at 255. A channel's value is rounded to
+/// the nearest of 0 to 255, halves upward, from the exact fraction. Before the first key and behind the last their
+/// colours go on. The keys must stand in rising order of [`Stop::at`]; a key that does not rise above the one before it
+/// is ignored. Without keys nothing changes.
 ///
 /// ```
 /// use mode13h::palette::{Ramp, Rgb, gradient::{Stop, fill}};
@@ -76,8 +75,8 @@ pub(super) const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb>
     ))
 }
 
-/// `a + (b − a)·along/length`, to the nearest, halves upward. `length` is at most 255·1,024, so that
-/// all products stay below 2²⁸; the result lies between `a` and `b`.
+/// `a + (b − a)·along/length`, to the nearest, halves upward. `length` is at most 255·1,024, so all products stay below
+/// 2²⁸; the result lies between `a` and `b`.
 const fn between(a: u8, b: u8, along: i32, length: i32) -> u8 {
     let twice = 2 * (a as i32 * length + (b as i32 - a as i32) * along) + length;
     (twice / (2 * length)) as u8

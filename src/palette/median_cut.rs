@@ -1,13 +1,13 @@
-//! A few colours for many.
+//! Median cut: reduces many colours to a few.
 //!
-//! Median cut after Heckbert ("Color image quantization for frame buffer display", SIGGRAPH 1982): a
-//! box around all colours is cut in two, then one of the two, and so on; each box becomes the mean of
-//! its colours. Where Heckbert cuts the longest side of the fullest box at the median, here that cut
-//! is made, of all boxes, sides and places, which lowers the sum of the squared distances most (after
-//! Wu, "Efficient statistical computations for optimal color quantization", Graphics Gems II, 1991).
+//! Median cut after Heckbert ("Color image quantization for frame buffer display", SIGGRAPH 1982): a box around all
+//! colours is cut in two, then one of the two, and so on; each box becomes the mean of its colours. Heckbert cuts the
+//! longest side of the fullest box at the median. Here, of all boxes, sides and places, the cut is made which lowers
+//! the sum of the squared distances most (after Wu, "Efficient statistical computations for optimal color
+//! quantization", Graphics Gems II, 1991).
 //!
-//! Crates that do this (`quantette`, `imagequant`, `color_quant`) need `std`, choose by chance or do
-//! not say what the next colour would win, which is what [`auto`](super::auto) asks.
+//! Crates for this (`quantette`, `imagequant`, `color_quant`) need `std`, choose by chance or do not tell the gain of
+//! the next colour, which [`auto`](super::auto) needs.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -28,7 +28,7 @@ struct ColorBox {
     range: Range<usize>,
     /// All weights, and the weighted sums of red, green and blue.
     moments: Moments,
-    /// `None` if there is but one colour.
+    /// The best cut; `None` if there is only one colour.
     cut: Option<Cut>,
 }
 
@@ -38,7 +38,7 @@ struct Cut {
     channel: usize,
     /// The least value of the upper part.
     from: u8,
-    /// By how much the sum of the weighted squares of the distances falls.
+    /// The decrease of the sum of the weighted squares of the distances.
     gain: f64,
 }
 
@@ -49,8 +49,8 @@ struct Moments {
 }
 
 impl MedianCut {
-    /// One box around colours with their weights; what weighs nothing is left out. At most 2²⁴ of them,
-    /// so that no sum passes 2⁶⁴.
+    /// Makes one box around colours with their weights; colours without weight are left out. At most 2²⁴ of them, so
+    /// that no sum passes 2⁶⁴.
     pub(crate) fn new(mut colors: Vec<(Rgb, u32)>) -> Self {
         colors.retain(|&(_, weight)| weight > 0);
         debug_assert!(colors.len() <= 1 << 24, "a texture has 65,536 at most");
@@ -59,14 +59,14 @@ impl MedianCut {
         Self { colors, boxes }
     }
 
-    /// The box with the best cut; of equally good ones the first.
+    /// The box with the best cut; the first of equally good ones.
     fn best(&self) -> Option<(usize, Cut)> {
         let cuts = self.boxes.iter().enumerate().filter_map(|(i, b)| Some((i, b.cut?)));
         cuts.reduce(|best, next| if next.1.gain > best.1.gain { next } else { best })
     }
 
-    /// By how much the next cut lowers the sum of weight × squared distance to the mean. `None` if every
-    /// colour has a box of its own.
+    /// The decrease of the sum of weight × squared distance to the mean by the next cut. `None` if every colour has a
+    /// box of its own.
     pub(crate) fn gain(&self) -> Option<f64> {
         self.best().map(|(_, cut)| cut.gain)
     }
@@ -88,12 +88,12 @@ impl MedianCut {
         while self.boxes.len() < boxes && self.cut() {}
     }
 
-    /// How many boxes there are.
+    /// Counts the boxes.
     pub(crate) fn len(&self) -> usize {
         self.boxes.len()
     }
 
-    /// The mean colour of each box, each channel to the nearest; a box of one colour gives that.
+    /// The mean colour of each box, each channel to the nearest; the colour itself for a box of one colour.
     pub(crate) fn means(&self) -> impl Iterator<Item = Rgb> + '_ {
         self.boxes.iter().map(|b| b.moments.mean())
     }
@@ -136,8 +136,8 @@ impl Moments {
         Self { weight, sums: channels(color).map(|v| weight * u64::from(v)) }
     }
 
-    /// By how much the squares about two means are less than about the one of both together:
-    /// W₁·W₂/(W₁ + W₂) times the square of the distance between the two.
+    /// The difference between the squares about the one mean of both together and those about two means: W₁·W₂/(W₁ +
+    /// W₂) times the square of the distance between the two.
     fn gain_beside(self, other: Self) -> f64 {
         let (w1, w2) = (self.weight as f64, other.weight as f64);
         let d = [0, 1, 2].map(|i| self.sums[i] as f64 / w1 - other.sums[i] as f64 / w2);

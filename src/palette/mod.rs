@@ -14,9 +14,9 @@
 //! | [`auto`] | a palette made for the materials of a model (`alloc`) |
 //! | [`mod@file`] | JASC, GIMP, Adobe, Lospec and raw VGA files |
 //!
-//! A palette has 8 bits a channel, the card 6. A palette keeps the 8 bits it was given, so that a
-//! file is written as it was read; [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down
-//! to 6, and the scan-out expands to 8 again. [`Palette::on_dac`] shows what comes out.
+//! A palette has 8 bits a channel, the card 6. A palette keeps the 8 bits it was given, so a file is written as it was
+//! read. [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down to 6, and the scan-out expands to 8 again.
+//! [`Palette::on_dac`] shows the result.
 
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
@@ -48,7 +48,7 @@ pub use search::Search;
 #[cfg(feature = "alloc")]
 pub use table::Table;
 
-/// 256 colours, and into how many equal shade ramps they fall.
+/// 256 colours, and the number of equal shade ramps that they form.
 ///
 /// ```
 /// use mode13h::palette::{Palette, Rgb, builtin};
@@ -68,13 +68,12 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// The most ramps that [`from_colors`](Self::from_colors) looks for: ramps of 8 entries.
+    /// The max number of ramps that [`from_colors`](Self::from_colors) looks for: ramps of 8 entries.
     const MAX_RAMPS_FOUND: u16 = 32;
 
-    /// From 256 colours. The ramps are found by looking: of 1, 2, 4, 8, 16 and 32 equal ramps the
-    /// fewest such that within each no entry is darker than the one before it, and the last is
-    /// brighter than the first ([`Rgb::brightness`]); 0 if there is no such number.
-    /// [`with_ramps`](Self::with_ramps) overrides it.
+    /// Makes a palette of 256 colours, and finds its ramps: of 1, 2, 4, 8, 16 and 32 equal ramps the fewest such that
+    /// within each no entry is darker than the one before it, and the last is brighter than the first
+    /// ([`Rgb::brightness`]); 0 if there is no such number. [`with_ramps`](Self::with_ramps) overrides it.
     #[must_use]
     pub const fn from_colors(colors: [Rgb; 256]) -> Self {
         let mut ramps = 1;
@@ -87,7 +86,7 @@ impl Palette {
         Self { colors, ramps: 0 }
     }
 
-    /// From 256 DAC colours, 0 to 63 a channel.
+    /// Makes a palette of 256 DAC colours, 0 to 63 a channel.
     #[must_use]
     #[doc(hidden)]
     pub const fn from_dac(six: &[[u8; 3]; 256]) -> Self {
@@ -126,7 +125,7 @@ impl Palette {
         self.colors[index as usize]
     }
 
-    /// How many equal ramps the entries fall into; 0 if they are no ramps.
+    /// The number of equal ramps that the entries form; 0 if they are no ramps.
     #[must_use]
     #[inline]
     pub const fn ramps(&self) -> usize {
@@ -145,8 +144,8 @@ impl Palette {
         Ramp::new((i as u16 * entries) as u8, entries)
     }
 
-    /// The entry nearest to a colour, by the square of the distance in the RGB cube; of entries
-    /// equally near, the first. Looks at all 256; for the cube palette there is [`cube::nearest`].
+    /// The entry nearest to a colour, by the square of the distance in the RGB cube; the first of entries equally near.
+    /// Looks at all 256; for the cube palette there is [`cube::nearest`].
     #[must_use]
     pub const fn nearest(&self, color: Rgb) -> u8 {
         let (mut best, mut best_distance, mut i) = (0, u32::MAX, 0);

@@ -1,15 +1,14 @@
-//! A map from 5 bits a channel to the nearest entry of a palette, and how far dither must reach in it.
+//! A map from 5 bits a channel to the nearest entry of a palette, and the reach of dither in it.
 
 use alloc::boxed::Box;
 use core::fmt;
 
 use super::{Palette, Rgb, Search};
 
-/// For every colour of 5 bits a channel the nearest entry of a palette.
+/// The nearest entry of a palette for every colour of 5 bits a channel.
 ///
-/// Entry `red << 10 | green << 5 | blue` is that of the colour `(v << 3) | (v >> 2)` a channel, in
-/// which 0 stays 0 and 31 becomes 255; nearest by the colours that the card shows, of those equally
-/// near the first.
+/// Entry `red << 10 | green << 5 | blue` is that of the colour `(v << 3) | (v >> 2)` a channel, in which 0 stays 0 and
+/// 31 becomes 255. The nearest is that by the colours that the card shows; the first of those equally near.
 ///
 /// ```
 /// use mode13h::palette::{Nearest, Rgb, builtin};
@@ -24,10 +23,10 @@ pub struct Nearest {
 }
 
 impl Nearest {
-    /// 32 KiB.
+    /// The size of the map: 32 KiB.
     pub const BYTES: usize = 32_768;
 
-    /// The map of a palette.
+    /// Makes the map of a palette.
     #[must_use]
     pub fn new(palette: &Palette) -> Self {
         let search = Search::of_shown(palette);
@@ -47,7 +46,7 @@ impl Nearest {
         &self.entries
     }
 
-    /// The entry for a colour, of which the upper 5 bits a channel count.
+    /// The entry for a colour, by the upper 5 bits of each channel.
     #[must_use]
     #[inline]
     pub fn get(&self, color: Rgb) -> u8 {
@@ -55,10 +54,10 @@ impl Nearest {
         self.entries[five(color.r) << 10 | five(color.g) << 5 | five(color.b)]
     }
 
-    /// How far ordered dither should move every channel, from its lowest threshold to its highest, to
-    /// reach from a colour of the palette to its neighbours: the median, over the different colours that
-    /// the card shows, of the distance to the nearest other one. In 1/255 of full intensity, at most
-    /// 255; 0 if there are no two different colours.
+    /// The distance that ordered dither should move every channel, from its lowest threshold to its highest, to reach
+    /// from a colour of the palette to its neighbours: the median, over the different colours that the card shows, of
+    /// the distance to the nearest other one. In 1/255 of full intensity, at most 255; 0 if there are no two different
+    /// colours.
     ///
     /// In the colour cube this is the distance between two levels, as ordered dither needs it there. In a
     /// palette of ramps it is a step along a ramp.

@@ -4,8 +4,8 @@ use core::ops::RangeInclusive;
 
 /// A run of palette entries that hold one colour from dark to light.
 ///
-/// A material names a ramp; a shade is an index into it, 0 to `entries − 1`. No way leads from here
-/// to an entry of a neighbouring ramp.
+/// A material names a ramp; a shade is an index into it, 0 to `entries − 1`, and can never reach an entry of a
+/// neighbouring ramp.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Ramp {
     first: u8,
@@ -30,7 +30,7 @@ impl Ramp {
         Some(Self { first, entries })
     }
 
-    /// The ramp of one entry: whatever the shade, that.
+    /// The ramp of one entry, which is the index of every shade.
     #[must_use]
     #[inline]
     #[doc(hidden)]
@@ -54,7 +54,7 @@ impl Ramp {
         (self.first as u16 + self.entries - 1) as u8
     }
 
-    /// How many entries, 1 to 256.
+    /// The number of entries, 1 to 256.
     #[must_use]
     #[inline]
     pub const fn entries(self) -> u16 {
@@ -74,7 +74,7 @@ impl Ramp {
         if shade < self.entries { (self.first as u16 + shade) as u8 } else { self.last() }
     }
 
-    /// Whether a palette index belongs to the ramp.
+    /// Returns whether a palette index belongs to the ramp.
     #[must_use]
     #[inline]
     #[doc(hidden)]
@@ -82,7 +82,7 @@ impl Ramp {
         self.first <= index && index <= self.last()
     }
 
-    /// The palette indices, first to last; as [`Vga::cycle`](crate::vga::Vga::cycle) takes them.
+    /// The palette indices, first to last, in the form that [`Vga::cycle`](crate::vga::Vga::cycle) takes.
     #[must_use]
     #[inline]
     #[doc(hidden)]

@@ -47,15 +47,15 @@ impl Rgb {
     /// 255, 255, 255.
     pub const WHITE: Self = Self::new(255, 255, 255);
 
-    /// From red, green and blue, 0 to 255 each.
+    /// Makes a colour from red, green and blue, 0 to 255 each.
     #[must_use]
     #[inline]
     pub const fn new(r: u8, g: u8, b: u8) -> Self {
         Self { r, g, b }
     }
 
-    /// From intensities, as a rule 0 to 1: each channel to the nearest of 0 to 255. What is below 0 or NaN counts as
-    /// 0, what is above 1 as 1.
+    /// Makes a colour from intensities, as a rule 0 to 1: each channel to the nearest of 0 to 255. Values below 0 and
+    /// NaN count as 0, values above 1 as 1.
     #[must_use]
     #[doc(hidden)]
     pub const fn from_intensities(intensities: [f32; 3]) -> Self {
@@ -64,7 +64,7 @@ impl Rgb {
         Self::new((r * 255.0 + 0.5) as u8, (g * 255.0 + 0.5) as u8, (b * 255.0 + 0.5) as u8)
     }
 
-    /// From the DAC's red, green and blue, 0 to 63 each; higher bits are dropped.
+    /// Makes a colour from the DAC's red, green and blue, 0 to 63 each; higher bits are dropped.
     #[must_use]
     #[inline]
     #[doc(hidden)]
@@ -93,8 +93,8 @@ impl Rgb {
         Self::from_dac(self.to_dac())
     }
 
-    /// The colour nearest to this one that the card can show. [`on_dac`](Self::on_dac) is what it
-    /// shows when it is given this one, which may be a step darker.
+    /// The colour nearest to this one that the card can show. Given this one, the card shows [`on_dac`](Self::on_dac),
+    /// which may be a step darker.
     ///
     /// ```
     /// use mode13h::palette::Rgb;
@@ -108,8 +108,8 @@ impl Rgb {
         Self::from_dac([nearest_six(self.r), nearest_six(self.g), nearest_six(self.b)])
     }
 
-    /// What lies on the way to `other`: 0 is this colour, 255 the other. Each channel is
-    /// `(a·(255 − share) + b·share) / 255`, to the nearest; a sum of 255ths is never half way.
+    /// The colour on the way to `other`: 0 is this colour, 255 the other. Each channel is `(a·(255 − share) + b·share)
+    /// / 255`, to the nearest; a sum of 255ths is never half way.
     ///
     /// ```
     /// use mode13h::palette::Rgb;
@@ -137,7 +137,7 @@ impl Rgb {
         Self::new(self.r.saturating_add(other.r), self.g.saturating_add(other.g), self.b.saturating_add(other.b))
     }
 
-    /// From `0x00RRGGBB`; the top byte is dropped.
+    /// Makes a colour from `0x00RRGGBB`; the top byte is dropped.
     #[must_use]
     #[inline]
     pub const fn from_u32(rgb: u32) -> Self {

@@ -1,10 +1,9 @@
 //! The nearest of up to 256 colours, exactly, without looking at all of them.
 //!
-//! The RGB cube is cut into 8 × 8 × 8 boxes. Somewhere among the colours is one whose *farthest*
-//! point of a box is nearest; whatever lies in the box has a colour at most that far away. So a
-//! colour whose *nearest* point of the box is farther than that is nearest to nothing in it. Each
-//! box lists the colours that remain, a tenth or so, in their order: the first of those equally near
-//! remains the first.
+//! The RGB cube is cut into 8 × 8 × 8 boxes. Among the colours there is one whose *farthest* point of a box is nearest;
+//! every point of the box has a colour at most that far away. So a colour whose *nearest* point of the box is farther
+//! than that is nearest to no point of it. Each box lists the colours that remain, a tenth or so, in their order: the
+//! first of those equally near remains the first.
 //!
 //! Making the lists takes 0.3 ms for 256 colours, and a table of 65,536 searches 2 to 6 ms in all. With
 //! 16 boxes a side the lists take 2.3 ms, and the searches save less than that.
@@ -13,10 +12,10 @@ use alloc::vec::Vec;
 
 use super::{Palette, Rgb};
 
-/// Boxes a side.
+/// The number of boxes a side.
 const SIDE: usize = 8;
 
-/// Values of a channel in a box.
+/// The number of a channel's values in a box.
 const WIDTH: u8 = 32;
 
 /// A search for the nearest of some colours.
@@ -48,7 +47,7 @@ struct Reach {
 }
 
 impl Search {
-    /// Among `colors`, of which the first 256 count.
+    /// Makes a search among `colors`, of which the first 256 count.
     #[must_use]
     pub fn new(colors: &[Rgb]) -> Self {
         let mut distinct: Vec<Candidate> = Vec::new();
@@ -73,8 +72,7 @@ impl Search {
         search
     }
 
-    /// Among the colours that the card shows for a palette's: what is nearest is nearest on the
-    /// screen.
+    /// Makes a search among the colours that the card shows for a palette's: the nearest is nearest on the screen.
     #[must_use]
     pub fn of_shown(palette: &Palette) -> Self {
         Self::new(palette.on_dac().colors())
@@ -89,7 +87,7 @@ impl Search {
         self.starts.push(self.candidates.len());
     }
 
-    /// The nearest to `color` by [`Rgb::distance_squared`]; of those equally near, the first. 0 if
+    /// The index of the colour nearest to `color` by [`Rgb::distance_squared`]; the first of those equally near. 0 if
     /// there are none.
     #[must_use]
     #[inline]
@@ -105,7 +103,7 @@ impl Search {
 }
 
 impl Reach {
-    /// With one side more: the values from `low` on, where the colour has `v`.
+    /// The reach with one side more: the values from `low` on, if the colour has `v`.
     fn and(self, v: u8, low: u8) -> Self {
         // At most 255: the last box begins at 224.
         let high = low + (WIDTH - 1);

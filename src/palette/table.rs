@@ -1,10 +1,9 @@
 //! Tables of 64 KiB: from two bytes to a third, as the pixel effects look them up.
 //!
-//! A row holds 256 bytes; `high` chooses the row, `low` the column, and the byte stands at
-//! `high << 8 | low`. Every colour in a table made from a palette is the nearest entry to an exact
-//! mixture rounded once, by the colours that the card shows ([`Palette::on_dac`]): what is nearest is
-//! nearest on the screen, and of entries equally near the first is taken. Where a mixture is one of
-//! its two parts, the table gives that part's own byte, whatever other entries look the same.
+//! A row holds 256 bytes; `high` chooses the row, `low` the column, and the byte stands at `high << 8 | low`. Every
+//! colour in a table made from a palette is the nearest entry to an exact mixture rounded once, by the colours that the
+//! card shows ([`Palette::on_dac`]). So it is nearest on the screen; the first of entries equally near is taken. If a
+//! mixture is one of its two parts, the table gives that part's own byte, even if other entries look alike.
 
 use alloc::boxed::Box;
 use core::fmt;
@@ -28,7 +27,7 @@ impl Table {
     /// 64 KiB.
     pub(crate) const BYTES: usize = 65_536;
 
-    /// From a byte for every row and column: `byte(high, low)`. For one, Phong's table of shades.
+    /// Makes a table of a byte for every row and column: `byte(high, low)`. Phong's table of shades is one.
     #[must_use]
     #[doc(hidden)]
     pub fn from_fn(byte: impl FnMut(u8, u8) -> u8) -> Self {
@@ -37,7 +36,7 @@ impl Table {
         table
     }
 
-    /// Makes this one anew, as [`from_fn`](Self::from_fn) would.
+    /// Fills this table anew, as [`from_fn`](Self::from_fn) would.
     pub(crate) fn fill(&mut self, mut byte: impl FnMut(u8, u8) -> u8) {
         for (high, row) in (0..=255).zip(self.0.chunks_exact_mut(256)) {
             for (low, entry) in (0..=255).zip(row) {
@@ -46,7 +45,7 @@ impl Table {
         }
     }
 
-    /// Shaded texels. Row: a shade, of 255 the full light; column: a texel. The entry is the nearest to
+    /// A table of shaded texels. Row: a shade, of 255 the full light; column: a texel. The entry is the nearest to
     /// `colors[texel]·shade/255`.
     #[must_use]
     pub fn shades(palette: &Palette, colors: &[Rgb; 256]) -> Self {
@@ -54,9 +53,8 @@ impl Table {
         Self::from_fn(|shade, texel| search.nearest(Rgb::BLACK.mix(colors[usize::from(texel)], shade)))
     }
 
-    /// Fog. Row: how much of it, 0 none and 255 nothing else; column: the byte without fog. The entry
-    /// is the nearest to the mixture of what that byte shows with `fog`. Row 0 leaves every byte as it
-    /// is.
+    /// A table of fog. Row: the share of fog, 0 none and 255 nothing else; column: the byte without fog. The entry is
+    /// the nearest to the mixture of that byte's colour with `fog`. Row 0 leaves every byte as it is.
     #[must_use]
     pub fn fog(palette: &Palette, fog: Rgb) -> Self {
         let shown = palette.on_dac();
@@ -67,9 +65,9 @@ impl Table {
         })
     }
 
-    /// Glass. Row: the new byte; column: the byte that is there. The entry is the nearest to the
-    /// mixture in which the new one has `opacity`, 0 to 255: at 255 it is the new byte itself, at 0 the
-    /// old one. A byte over itself stays.
+    /// A table of glass. Row: the new byte; column: the byte that is there. The entry is the nearest to the mixture in
+    /// which the new one has `opacity`, 0 to 255: at 255 it is the new byte itself, at 0 the old one. A byte over
+    /// itself stays.
     #[must_use]
     pub fn blend(palette: &Palette, opacity: u8) -> Self {
         let shown = palette.on_dac();
@@ -82,9 +80,9 @@ impl Table {
         })
     }
 
-    /// Glenz, glass that shines: the entry nearest to the sum of both, each channel at most 255. Row and
-    /// column as in [`blend`](Self::blend), but which is which makes no difference to what shows. What
-    /// shows black adds nothing: the other byte stays, of two such the old one.
+    /// A table of glenz, glass that shines: the entry nearest to the sum of both, each channel at most 255. Row and
+    /// column as in [`blend`](Self::blend), but exchanging them does not change the picture. A byte that shows black
+    /// adds nothing: the other byte stays, of two such the old one.
     #[must_use]
     pub fn add(palette: &Palette) -> Self {
         let shown = palette.on_dac();
@@ -96,7 +94,7 @@ impl Table {
         })
     }
 
-    /// All of it: the byte of row `high` and column `low` at `high << 8 | low`.
+    /// All bytes of the table: that of row `high` and column `low` at `high << 8 | low`.
     #[must_use]
     #[inline]
     pub fn as_array(&self) -> &[u8; Self::BYTES] {

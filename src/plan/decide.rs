@@ -1,4 +1,4 @@
-//! The rules: for every effect a function that says whether an object calls for it, and why.
+//! The rules: a function for every effect that decides whether an object calls for it, with the reason.
 
 use super::hidden;
 use super::reason::Reason;
@@ -9,41 +9,41 @@ use crate::raster::Rect;
 use crate::scene::{HiddenSurfaces, Mapping, Object, Scene, Shading};
 use crate::view::{ObjectView, ScreenBounds};
 
-/// How far an affine mapping may be off before it is given up, in texels: half of one.
+/// The max error of an affine mapping, in texels: half of one.
 const AFFINE_TOLERANCE: f64 = 0.5;
 
-/// The texels to a pixel, seen straight on, above which an object has mipmaps: half of the √2 up to which level 0 is shown.
-/// A face that is tilted by 60° has twice as many.
+/// The number of texels to a pixel, seen straight on, above which an object has mipmaps: half of the √2 up to which
+/// level 0 is shown. A face that is tilted by 60° has twice as many.
 const MIN_TEXELS: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// What decisions are made from.
+/// The inputs of decisions.
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: &'a Scene,
-    /// One for each object.
+    /// The views, one for each object.
     pub(crate) views: &'a [ObjectView],
-    /// One for each object: whether it was drawn before, and is as it was.
+    /// The changes, one for each object: whether it was drawn before, and is as it was.
     pub(crate) change: &'a [Change],
     pub(crate) forced: &'a Overrides,
-    /// On the 16.16 path one that it has.
+    /// The shading; on the 16.16 path one that it has.
     pub(crate) shading: Shading,
     /// The budget; then the shading is the default. None on the 16.16 path.
     pub(crate) max_error: Option<f32>,
-    /// Whether faces are to be split.
+    /// Faces are to be split.
     pub(crate) tessellates: bool,
-    /// Whether shades between two entries are to be shown as a pattern of both.
+    /// Shades between two entries are to be shown as a pattern of both.
     pub(crate) dithers: bool,
     pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
     pub(crate) mapping: Option<Mapping>,
     pub(crate) mipmaps: Option<bool>,
-    /// Whether the frame holds the whole screen.
+    /// The frame holds the whole screen.
     pub(crate) whole: bool,
-    /// Whether vertices are made in 16.16.
+    /// Vertices are made in 16.16.
     pub(crate) integer: bool,
-    /// Whether an object may keep what was made of its vertices.
+    /// An object may keep the results of its vertices.
     pub(crate) keeps: bool,
 }
 
-/// What became of an object since the last frame.
+/// The change of an object since the last frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Change {
     New,
@@ -85,12 +85,12 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     }
 }
 
-/// Whether any of its materials has an own answer to light, which no bound is known for.
+/// Returns whether any of its materials has an own response to light, for which no bound is known.
 pub(crate) fn answers_itself(object: &Object) -> bool {
     object.materials.iter().any(|material| material.response.is_some())
 }
 
-/// Whether the 16.16 path knows an effect.
+/// Returns whether the 16.16 path knows an effect.
 const fn in_integers(effect: Effect) -> bool {
     matches!(
         effect,
@@ -105,7 +105,7 @@ const fn in_integers(effect: Effect) -> bool {
     )
 }
 
-/// One object, and what the rules look at.
+/// One object, and the facts that the rules look at.
 struct Rules<'a> {
     scene: &'a Scene,
     place: usize,
@@ -114,7 +114,7 @@ struct Rules<'a> {
     reach: ScreenBounds,
     change: Change,
     inputs: &'a Inputs<'a>,
-    /// That of the inputs; of an object that no bound holds for, light at every pixel in place of a budget.
+    /// The shading of the inputs; for an object without a bound, light at every pixel in place of a budget.
     shading: Shading,
     way: (HiddenSurfaces, Reason),
 }
@@ -149,7 +149,7 @@ impl Rules<'_> {
         plan
     }
 
-    /// What is done for the object, by what is decided; `forced`: whether an effect is on by hand alone.
+    /// The stages of the object, by its decisions; `forced`: whether an effect is on by hand alone.
     fn stages(&self, plan: &ObjectPlan, forced: impl Fn(Effect) -> bool) -> Stages {
         let is_on = |effect| plan.is_on(effect);
         let channels = is_on(Effect::RgbChannels);
@@ -189,7 +189,7 @@ impl Rules<'_> {
         }
     }
 
-    /// Leaves it to a budget how faces are shaded, where that is not known for all of them.
+    /// Leaves the shading of faces to a budget, unless one shading is known to be right for all of them.
     fn keep_within(&self, max_error: f32, plan: &mut ObjectPlan) {
         if !plan.is_on(Effect::Lighting) || answers_itself(self.object) {
             return;
@@ -201,12 +201,12 @@ impl Rules<'_> {
         }
     }
 
-    /// Whether light at every pixel would give each face one shade, that of its own normal.
+    /// Returns whether light at every pixel would give each face one shade, that of its own normal.
     fn is_lit_by_face(&self, before: &ObjectPlan) -> bool {
         self.object.mesh().is_faceted() && !before.is_on(Effect::PositionalLights) && !before.is_on(Effect::Specular)
     }
 
-    /// `before`: what has been decided so far, in the order of [`Effect::ALL`].
+    /// Decides on an effect. `before`: the decisions so far, in the order of [`Effect::ALL`].
     fn decision(&self, effect: Effect, lamps_in_range: usize, before: &ObjectPlan) -> Decision {
         match effect {
             Effect::Transform => self.transform(),
@@ -384,7 +384,7 @@ impl Rules<'_> {
         }
     }
 
-    /// No triangle's texture is off by more than this if it is mapped linearly on the screen, in texels.
+    /// The bound of the error of any triangle's texture if it is mapped linearly on the screen, in texels.
     ///
     /// Linear on the screen and linear on the face weigh the three corners differently: one with a, the
     /// other with a/w, made to add up to 1. The weights that go to the wrong corners are at most
@@ -457,7 +457,7 @@ impl Rules<'_> {
     }
 }
 
-/// What is chosen of an effect that is switched by hand. Where the plan would have textures affine, perspective that is
+/// The choice for an effect that is switched by hand. If the plan would have textures affine, perspective that is
 /// switched on is exact at every pixel.
 fn forced_choice(on: bool, planned: Choice) -> Choice {
     match planned {
@@ -467,7 +467,7 @@ fn forced_choice(on: bool, planned: Choice) -> Choice {
     }
 }
 
-/// How texture coordinates run.
+/// The mapping of texture coordinates.
 fn mapping(plan: &ObjectPlan) -> Mapping {
     match plan.decision(Effect::Perspective).choice {
         _ if !plan.is_on(Effect::Perspective) => Mapping::Affine,
@@ -476,9 +476,9 @@ fn mapping(plan: &ObjectPlan) -> Mapping {
     }
 }
 
-/// How many texels of an object's images go to a pixel at most, counted along a side of the pixel, where a face is parallel
-/// to the screen and at most `farthest` away along the view: so many as an image's longer side has, times what texture
-/// coordinates change by over a unit, times a pixel's longer side.
+/// The max number of texels of an object's images to a pixel, counted along a side of the pixel, for a face parallel to
+/// the screen and at most `farthest` away along the view: the texels of an image's longer side, times the change of
+/// texture coordinates over a unit, times a pixel's longer side.
 fn texels_to_pixel(object: &Object, view: &ObjectView, farthest: f64) -> f64 {
     let images = object.materials.iter().zip(object.mesh().steepest_texcoords());
     let steepest = images.filter_map(|(material, change)| {

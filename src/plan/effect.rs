@@ -1,4 +1,4 @@
-//! The effects, and what each of them may change.
+//! The effects, and the changes that each of them may make.
 
 use crate::names::named;
 
@@ -13,7 +13,7 @@ named! {
         ScreenClipping = "screen-clipping",
         /// Faces turned away are left out; else both sides are drawn.
         BackFaceCulling = "back-face-culling",
-        /// How hidden surfaces are left out, beyond back faces.
+        /// Hidden surfaces are left out in some way, beyond back faces.
         HiddenSurfaces = "hidden-surfaces",
         /// Vertices are lit; else the shade is constant, and no normal is looked at.
         Lighting = "lighting",
@@ -23,7 +23,7 @@ named! {
         Specular = "specular",
         /// Shades run over the faces; else each is one plain fill.
         Gouraud = "gouraud",
-        /// What is far away fades, by a table.
+        /// Distant surfaces fade, by a table.
         Fog = "fog",
         /// Light at every pixel.
         Phong = "phong",
@@ -35,11 +35,11 @@ named! {
         RgbChannels = "rgb-channels",
         /// An image on the surface.
         Texture = "texture",
-        /// An image of what the surface mirrors.
+        /// An image of the surroundings that the surface mirrors.
         EnvironmentMap = "environment-map",
-        /// Where an image is far away, a smaller copy of it; else its own texels everywhere.
+        /// A distant image is drawn from a smaller copy of it; else its own texels everywhere.
         Mipmaps = "mipmaps",
-        /// What is behind shines through, by a table.
+        /// Surfaces behind shine through, by a table.
         Transparency = "transparency",
         /// Shades between two entries become a pattern of both.
         Dither = "dither",
@@ -48,7 +48,7 @@ named! {
     }
 }
 
-/// What leaving an effect out may change.
+/// The possible change by leaving an effect out.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[doc(hidden)]
 pub enum Class {
@@ -59,16 +59,17 @@ pub enum Class {
 }
 
 impl Effect {
-    /// Whether it keeps triangles inside what the raster can draw: where it is called for, it cannot be switched off.
+    /// Returns whether it keeps triangles inside what the raster can draw: if it is called for, it cannot be switched
+    /// off.
     pub(super) const fn keeps_inside(self) -> bool {
         matches!(self, Self::NearClipping | Self::ScreenClipping)
     }
 
-    /// How many there are.
+    /// The number of effects.
     #[doc(hidden)]
     pub const COUNT: usize = Self::ALL.len();
 
-    /// What leaving it out may change.
+    /// The possible change by leaving it out.
     #[must_use]
     #[doc(hidden)]
     pub const fn class(self) -> Class {
@@ -96,8 +97,9 @@ impl Effect {
         }
     }
 
-    /// Whether this build leaves it out: then it is off, whatever a scene calls for, and the compiler drops its stages.
-    /// For the proof that what is off costs nothing (`.ci/off_is_free`); no feature of this crate does that.
+    /// Returns whether this build leaves it out: then it is off, whatever a scene calls for, and the compiler drops its
+    /// stages. It serves the proof that an effect which is off costs nothing (`.ci/off_is_free`); no feature of this
+    /// crate does that.
     #[inline]
     pub(crate) const fn is_left_out(self) -> bool {
         match self {
@@ -124,7 +126,7 @@ impl Effect {
         }
     }
 
-    /// Its place among all.
+    /// Its index in the list.
     #[must_use]
     pub(crate) const fn index(self) -> usize {
         self as usize

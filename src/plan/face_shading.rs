@@ -1,4 +1,4 @@
-//! How a face is shaded: what a budget chooses from, and what is counted.
+//! The shading of a face: the choices of a budget, and the keys of its counts.
 
 use core::fmt;
 
@@ -6,12 +6,12 @@ use crate::raster::Interpolation;
 use crate::raster::effects::SampleSpacing;
 use crate::scene::Shading;
 
-/// How a face is shaded: by one of the [`Shading`]s, or by an approximation of light at every pixel that only an error budget
-/// chooses.
+/// The shading of a face: one of the [`Shading`]s, or an approximation of light at every pixel that only an error
+/// budget chooses.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum FaceShading {
-    /// By a shading that may be asked for.
+    /// One of the shadings that may be requested.
     By(Shading),
     /// Quadratic on the screen, through light at six points of the face: its corners and the middles of its edges.
     Quadratic,
@@ -20,7 +20,7 @@ pub enum FaceShading {
 }
 
 impl FaceShading {
-    /// All of them, from cheap to exact.
+    /// All shadings of a face, from cheap to exact.
     #[doc(hidden)]
     pub const ALL: [Self; Shading::ALL.len() + 4] = [
         Self::By(Shading::Flat),
@@ -39,7 +39,7 @@ impl FaceShading {
         Self::By(Shading::Phong),
     ];
 
-    /// Its name.
+    /// The shading's name.
     #[must_use]
     #[doc(hidden)]
     pub const fn name(self) -> &'static str {
@@ -52,7 +52,7 @@ impl FaceShading {
         }
     }
 
-    /// Whether light beyond that of the corners is worked out for the face.
+    /// Returns whether light beyond that of the corners is computed for the face.
     #[must_use]
     #[doc(hidden)]
     pub const fn lights_pixels(self) -> bool {
@@ -62,7 +62,7 @@ impl FaceShading {
         }
     }
 
-    /// How the raster runs the corners' shades, if these are what is shown.
+    /// The raster's interpolation of the corners' shades, if these are shown.
     pub(crate) const fn interpolation(self) -> Interpolation {
         match self {
             Self::By(shading) => shading.interpolation(),

@@ -1,4 +1,4 @@
-//! What drawing finds out about an object beyond its plan, and how that is said.
+//! Facts about an object that drawing finds beyond its plan, and their words.
 
 use alloc::format;
 use alloc::string::String;
@@ -9,17 +9,18 @@ use super::{Effect, FaceShading};
 use crate::raster::effects::SampleSpacing;
 use crate::scene::Shading;
 
-/// What drawing found out about an object.
+/// Facts that drawing found about an object.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Findings {
-    /// How its faces were shaded, if an error budget chose that.
+    /// Counts of its faces by shading, if an error budget chose that.
     pub face_counts: Option<FaceCounts>,
-    /// How far linear shades may be from light at every pixel, in shades of 1/255 of full intensity, if that is known.
+    /// The max distance of linear shades from light at every pixel, in shades of 1/255 of full intensity, if it is
+    /// known.
     pub linear_error: Option<f64>,
 }
 
 impl Findings {
-    /// What is said beside the reason for an effect, if anything.
+    /// The words beside the reason for an effect, if there are any.
     pub(super) fn words(&self, effect: Effect, on: bool) -> String {
         match (effect, &self.face_counts, self.linear_error) {
             (Effect::Gouraud, Some(counts), _) => format!(": {counts}"),
@@ -31,12 +32,12 @@ impl Findings {
     }
 }
 
-/// How many faces of an object an error budget had shaded in which way.
+/// Counts of an object's faces by the shading that an error budget gave them.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct FaceCounts {
-    /// Each way that any face was shaded in, from cheap to exact.
+    /// Each shading that any face had, from cheap to exact, with the number of its faces.
     pub drawn: Vec<(FaceShading, usize)>,
-    /// Faces on which nothing had to be decided, as they are not seen.
+    /// The number of faces without a decision, because they are not seen.
     pub not_drawn: usize,
 }
 
@@ -50,7 +51,7 @@ impl fmt::Display for FaceCounts {
     }
 }
 
-/// Why a budget chooses it.
+/// The budget's reason for choosing it.
 fn why(shading: FaceShading) -> &'static str {
     match shading {
         FaceShading::By(Shading::Flat) => "one shade at their corners, or near enough",

@@ -1,8 +1,8 @@
-//! Which way to leave out hidden surfaces a scene calls for: the cheapest that is right.
+//! The way to leave out hidden surfaces that a scene calls for: the cheapest that is right.
 //!
-//! One convex object hides nothing but its own back faces. Of several that are convex and whose depths
-//! are apart, the nearer hides the farther, whole. All else needs a depth for every pixel. Bodies that
-//! shine through are drawn last, far to near, over the others, where these do not hide them.
+//! One convex object hides nothing but its own back faces. Among several that are convex and whose depths are apart,
+//! the nearer hides the farther, whole. Any other scene needs a depth for every pixel. Bodies that shine through are
+//! drawn last, far to near, over the others, unless these hide them.
 
 use alloc::vec::Vec;
 
@@ -11,12 +11,12 @@ use crate::light::{Blend, Material};
 use crate::scene::{HiddenSurfaces, Object, Scene};
 use crate::view::ObjectView;
 
-/// Whether any of an object's materials shines through.
+/// Returns whether any of an object's materials shines through.
 pub(super) fn is_transparent(object: &Object) -> bool {
     object.materials.iter().any(|Material { blend, .. }| *blend != Blend::Opaque)
 }
 
-/// The way for `scene`, and why. The objects' places are put in `order` as they are to be drawn.
+/// Chooses the way for `scene`, with the reason. Puts the objects' places in `order` as they are to be drawn.
 pub(super) fn choose(
     scene: &Scene,
     views: &[ObjectView],
@@ -66,8 +66,8 @@ fn objects_far_to_near(objects: &[Object], views: &[ObjectView], order: &mut [us
     apart
 }
 
-/// Puts faces far to near by the sum of the depths of their three vertices, which orders as the mean
-/// does; of equal ones the first submitted is painted first. `order` then holds that sum and the place of each.
+/// Puts faces far to near by the sum of the depths of their three vertices, which orders as the mean does; among equal
+/// ones the first submitted is painted first. `order` then holds that sum and the place of each.
 pub(crate) fn far_to_near(depths: impl Iterator<Item = u64>, order: &mut Vec<(u64, usize)>) {
     order.clear();
     order.extend(depths.zip(0..));

@@ -10,10 +10,9 @@
 //! | `decide` | the rules, a function an effect |
 //! | `hidden` | which way to leave out hidden surfaces |
 //!
-//! A plan is made once a frame: some comparisons and a few products an object, nothing for a vertex.
-//! [`Plan::is_on`] is what the renderer goes by; [`Plan::rows`] is the same for people. An effect that
-//! is off costs nothing per vertex, triangle, span or pixel, and no memory; that of one which was on is kept for when it is
-//! on again.
+//! A plan is made once a frame: some comparisons and a few products an object, nothing for a vertex. The renderer goes
+//! by [`Plan::is_on`]; [`Plan::rows`] tells people the decisions. An effect that is off costs nothing per vertex,
+//! triangle, span or pixel, and no memory; that of one which was on is kept for when it is on again.
 
 mod decide;
 mod effect;
@@ -40,15 +39,15 @@ use self::stages::{Dither, Lamps, Lighting, LitAt, Stages, VertexStage};
 use crate::raster::Rect;
 use crate::scene::{HiddenSurfaces, Mapping, Scene, Shading};
 
-/// One decision.
+/// A decision on an effect.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Decision {
-    /// Whether the effect is on.
+    /// The effect is on.
     pub on: bool,
     /// The way in which the effect is done, of several.
     pub choice: Choice,
-    /// Why.
+    /// The reason.
     pub reason: Reason,
 }
 
@@ -66,7 +65,7 @@ impl Decision {
     }
 }
 
-/// What is decided for one object.
+/// The decisions for one object.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ObjectPlan {
     decisions: [Decision; Effect::COUNT],
@@ -76,7 +75,7 @@ pub struct ObjectPlan {
 }
 
 impl ObjectPlan {
-    /// Nothing is decided yet; an object that is not drawn.
+    /// A plan without decisions yet, for an object that is not drawn.
     fn new(shading: Shading) -> Self {
         let stages = Stages {
             vertices: VertexStage::MakeAnew,
@@ -93,7 +92,7 @@ impl ObjectPlan {
         Self { decisions, shading, max_error: None, stages }
     }
 
-    /// What is done for the object.
+    /// The stages that the object goes through.
     pub(crate) fn stages(&self) -> &Stages {
         &self.stages
     }
@@ -105,22 +104,22 @@ impl ObjectPlan {
         &self.decisions[effect.index()]
     }
 
-    /// Whether an effect is on.
+    /// Returns whether an effect is on.
     #[inline]
     #[must_use]
     pub fn is_on(&self, effect: Effect) -> bool {
         !effect.is_left_out() && self.decision(effect).on
     }
 
-    /// How it is shaded.
+    /// The shading of the object.
     #[must_use]
     #[doc(hidden)]
     pub fn shading(&self) -> Shading {
         self.shading
     }
 
-    /// The budget that its triangles are shaded by, each as is cheapest: how many shades of error are accepted.
-    /// `None` where there is none, or one shading is known to be the cheapest for all.
+    /// The budget that its triangles are shaded by, each as is cheapest: the number of shades of error that are
+    /// accepted. `None` if there is none, or one shading is known to be the cheapest for all.
     #[must_use]
     #[doc(hidden)]
     pub fn max_error(&self) -> Option<f32> {
@@ -132,7 +131,7 @@ impl ObjectPlan {
     }
 }
 
-/// What is switched by hand: `None` leaves it to the plan.
+/// Effects that are switched by hand: `None` leaves one to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 #[doc(hidden)]
 pub struct Overrides {
@@ -147,7 +146,7 @@ impl Overrides {
         self.everywhere[effect.index()] = on;
     }
 
-    /// How an effect is switched for every object.
+    /// Returns how an effect is switched for every object.
     #[must_use]
     pub(crate) fn get(&self, effect: Effect) -> Option<bool> {
         self.everywhere[effect.index()]
@@ -160,7 +159,7 @@ impl Overrides {
         self.single.extend(on.map(|on| (object, effect, on)));
     }
 
-    /// How an effect is switched for an object.
+    /// Returns how an effect is switched for an object.
     #[must_use]
     pub(crate) fn get_for(&self, object: usize, effect: Effect) -> Option<bool> {
         let single = self.single.iter().find(|(place, of, _)| (*place, *of) == (object, effect));
@@ -171,14 +170,14 @@ impl Overrides {
 /// The decisions for a frame of a scene.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Plan {
-    /// How hidden surfaces are left out.
+    /// The way to leave out hidden surfaces.
     pub(crate) hidden_surfaces: HiddenSurfaces,
-    /// Whether that was chosen, not asked for.
+    /// The plan chose it: it was not requested.
     pub(crate) chosen: bool,
     pub(crate) objects: Vec<ObjectPlan>,
     /// The objects as they are drawn.
     pub(crate) order: Vec<usize>,
-    /// The part of the screen where any of them may be.
+    /// The part of the screen that may show any of them.
     pub(crate) seen: Rect,
 }
 
@@ -193,33 +192,33 @@ impl Plan {
         }
     }
 
-    /// How hidden surfaces are left out.
+    /// The way to leave out hidden surfaces.
     #[must_use]
     pub fn hidden_surfaces(&self) -> HiddenSurfaces {
         if Effect::HiddenSurfaces.is_left_out() { HiddenSurfaces::BackFaces } else { self.hidden_surfaces }
     }
 
-    /// Whether the plan chose how hidden surfaces are left out, and nobody asked for it. Then an object that is painted far
-    /// to near is convex, and its faces are drawn in any order.
+    /// Returns whether the plan chose the way to leave out hidden surfaces, without a request. Then an object that is
+    /// painted far to near is convex, and its faces are drawn in any order.
     #[must_use]
     #[doc(hidden)]
     pub fn is_chosen(&self) -> bool {
         self.chosen
     }
 
-    /// What is decided for each object of the scene, in its order.
+    /// The decisions for each object of the scene, in its order.
     #[must_use]
     pub fn objects(&self) -> &[ObjectPlan] {
         &self.objects
     }
 
-    /// Whether an effect is on for an object, by its place; off for one that is not there.
+    /// Returns whether an effect is on for an object, by its place; `false` for one that does not exist.
     #[must_use]
     pub fn is_on(&self, object: usize, effect: Effect) -> bool {
         self.objects.get(object).is_some_and(|plan| plan.is_on(effect))
     }
 
-    /// Whether an effect is on for any object.
+    /// Returns whether an effect is on for any object.
     #[must_use]
     pub fn is_on_anywhere(&self, effect: Effect) -> bool {
         self.objects.iter().any(|plan| plan.is_on(effect))
@@ -232,7 +231,7 @@ impl Plan {
         self.rows_with(scene, |_| Findings::default())
     }
 
-    /// Every decision in words, and what drawing found out about each object.
+    /// Every decision in words, with the findings of drawing about each object.
     #[must_use]
     pub(crate) fn rows_with(&self, scene: &Scene, findings: impl Fn(usize) -> Findings) -> Vec<Row> {
         let mut rows = Vec::with_capacity(self.objects.len() * Effect::COUNT);
@@ -261,14 +260,14 @@ impl Plan {
 pub struct Row {
     /// The object's place in the scene.
     pub place: usize,
-    /// Its name.
+    /// The object's name.
     pub object: String,
     /// The effect.
     pub effect: Effect,
-    /// Whether it is on.
+    /// The effect is on.
     pub on: bool,
     /// The way in which the effect is done, of several; empty if there is but one.
     pub choice: &'static str,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }

@@ -5,7 +5,7 @@ use alloc::string::{String, ToString};
 
 use crate::scene::{Object, Scene};
 
-/// Why an effect is on or off for an object.
+/// The reason for an effect to be on or off for an object.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Reason {
@@ -13,7 +13,7 @@ pub enum Reason {
     Overrides,
     /// The first frame.
     FirstFrame,
-    /// The object, the camera or what lights it changed since the last frame.
+    /// The object, the camera or its light changed since the last frame.
     Changed,
     /// Nothing that it depends on changed since the last frame.
     Unchanged,
@@ -21,11 +21,11 @@ pub enum Reason {
     NotKept,
     /// This build has no such effect.
     LeftOut,
-    /// How near the object comes, and where the near plane is.
+    /// The distances of the object and of the near plane.
     Nearest {
         /// The least distance of its bounds along the view.
         nearest: f64,
-        /// The near plane's.
+        /// The near plane's distance.
         near: f64,
     },
     /// Its bounds reach the near plane, so they may lie anywhere on the screen.
@@ -42,7 +42,7 @@ pub enum Reason {
     Open,
     /// The mesh is closed, but parts of it are inside out: their back faces may be seen.
     InsideOut,
-    /// What shines through shows its own far side too.
+    /// A body that shines through shows its own far side too.
     SeenThrough,
     /// The scene's only object is convex.
     OneConvex,
@@ -61,15 +61,15 @@ pub enum Reason {
     TransparentLast,
     /// Every body shines through, so all are drawn far to near.
     AllTransparent,
-    /// Asked for, by the scene or by hand.
+    /// It was requested, by the scene or by hand.
     Asked,
-    /// Nobody asked for it.
+    /// It was not requested.
     NotAsked,
-    /// Asked for was the scan-line method, which knows one face a pixel; something shines through.
+    /// The scan-line method was requested, which knows one face a pixel; something shines through.
     ScanLineShowsOneFace,
     /// Lights of an intensity that is not 0.
     Lights {
-        /// How many.
+        /// The number of lights.
         count: usize,
     },
     /// There is no light, or none that is not dark.
@@ -78,14 +78,14 @@ pub enum Reason {
     NoResponse,
     /// Lamps in range.
     LampsInRange {
-        /// How many.
+        /// The number of lamps.
         count: usize,
     },
     /// No lamp.
     NoLamp,
     /// Lamps, none of which reaches the object.
     LampsOutOfRange {
-        /// How many.
+        /// The number of lamps.
         count: usize,
     },
     /// A material has it.
@@ -99,45 +99,45 @@ pub enum Reason {
     ShadesDiffer,
     /// An error budget is kept to, face by face.
     Budget {
-        /// How many shades of error are accepted.
+        /// The number of shades of error that are accepted.
         max_error: f32,
     },
     /// An error budget sees to it that shades follow the light, face by face.
     LeftToBudget,
-    /// Every normal is that of its face, and what lights it is far away: one shade for a face is right.
+    /// Every normal is that of its face, and the lights are far away: one shade for a face is right.
     Faceted,
-    /// One shade for a face was asked for.
+    /// One shade for a face was requested.
     FlatAsked,
     /// Every vertex has the same shade.
     OneShade,
     /// The scene has none.
     SceneHasNone,
-    /// It reaches into it.
+    /// The object reaches into the fog.
     ReachesInto {
-        /// How far the object reaches along the view.
+        /// The distance that the object reaches along the view.
         farthest: f64,
-        /// Where it begins.
+        /// The distance at which the fog begins.
         start: f64,
     },
-    /// It lies nearer.
+    /// The object lies nearer than the fog.
     NearerThan {
-        /// How far the object reaches along the view.
+        /// The distance that the object reaches along the view.
         farthest: f64,
-        /// Where it begins.
+        /// The distance at which the fog begins.
         start: f64,
     },
     /// The affine mapping's error, in texels, over any triangle is at most this.
     AffineError {
-        /// In texels.
+        /// The error in texels.
         texels: f64,
     },
-    /// There is nothing that follows the perspective.
+    /// There are no texture coordinates that would follow the perspective.
     NoTexture,
     /// No material has a texture.
     NoImage,
-    /// How many texels go to a pixel at most, where a face is parallel to the screen.
+    /// The max number of texels to a pixel, on a face parallel to the screen.
     TexelsToPixel {
-        /// Along a pixel's side.
+        /// The number along a pixel's side.
         texels: f64,
     },
     /// A light is coloured.
@@ -159,7 +159,7 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// In words, for `object` of `scene`.
+    /// The reason in words, for `object` of `scene`.
     #[must_use]
     #[doc(hidden)]
     pub fn words(&self, scene: &Scene, object: usize) -> String {

@@ -1,4 +1,4 @@
-//! The stages that an object goes through, as values: what the renderer goes by. Words and reasons are for people alone.
+//! The stages that an object goes through, as values for the renderer. Words and reasons are for people alone.
 
 use crate::scene::{HiddenSurfaces, Mapping, Shading};
 
@@ -6,12 +6,12 @@ use crate::scene::{HiddenSurfaces, Mapping, Shading};
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub enum Choice {
-    /// There is but one way.
+    /// There is only one way.
     #[default]
     Only,
-    /// By this shading.
+    /// Shading by this technique.
     Shading(Shading),
-    /// By what an error budget chooses for each face.
+    /// Shading that an error budget chooses for each face.
     Budget,
     /// Hidden surfaces are left out in this way.
     HiddenSurfaces(HiddenSurfaces),
@@ -26,7 +26,7 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// Its name; empty where there is but one way.
+    /// The choice's name; empty if there is only one way.
     #[must_use]
     #[doc(hidden)]
     pub const fn name(self) -> &'static str {
@@ -43,18 +43,18 @@ impl Choice {
     }
 }
 
-/// What becomes of an object's vertices.
+/// The work on an object's vertices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum VertexStage {
     /// Those of last frame are kept.
     Keep,
     /// They are made.
     Make,
-    /// They are made, and with them all that is kept beside them: by force, or as nothing is kept.
+    /// They are made, and with them all that is kept beside them: by force, or because nothing is kept.
     MakeAnew,
 }
 
-/// What light is worked out for shades.
+/// The light that is computed for shades.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Lighting {
     /// None: each surface has one shade.
@@ -67,7 +67,7 @@ pub(crate) enum Lighting {
     Channels,
 }
 
-/// Where light is worked out.
+/// The points at which light is computed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum LitAt {
     Vertices,
@@ -77,16 +77,16 @@ pub(crate) enum LitAt {
     Pixels,
 }
 
-/// Which lamps fall on an object.
+/// The lamps that fall on an object.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Lamps {
     None,
     InRange,
-    /// In range or not: by force.
+    /// All lamps, in range or not: by force.
     All,
 }
 
-/// What takes the place of the half that is else added to a shade.
+/// The dither that replaces the half that is otherwise added to a shade.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Dither {
     None,
@@ -95,20 +95,20 @@ pub(crate) enum Dither {
     Neutral,
 }
 
-/// What is done for one object.
+/// The stages of one object.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Stages {
     pub(crate) vertices: VertexStage,
-    /// How near the object's bounds come, along the view.
+    /// The least distance of the object's bounds, along the view.
     pub(crate) nearest: f64,
     pub(crate) lighting: Lighting,
     pub(crate) lit_at: LitAt,
     pub(crate) lamps: Lamps,
-    /// How texture coordinates run.
+    /// The mapping of texture coordinates.
     pub(crate) mapping: Mapping,
     pub(crate) dither: Dither,
-    /// Whether surfaces without an image get one that changes nothing: by force.
+    /// Surfaces without an image get one that changes nothing: by force.
     pub(crate) neutral_image: bool,
-    /// Whether surfaces that hide what is behind them pass through a table that changes nothing: by force.
+    /// Opaque surfaces pass through a table that changes nothing: by force.
     pub(crate) neutral_blend: bool,
 }

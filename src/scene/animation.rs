@@ -6,29 +6,29 @@ use super::motion::part;
 use crate::palette::Palette;
 use crate::vga::Vga;
 
-/// What happens to the palette as time passes.
+/// A change of the palette as time passes.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 #[expect(clippy::large_enum_variant, reason = "a scene has one at most")]
 pub enum PaletteAnimation {
-    /// To another palette and back.
+    /// A fade to another palette and back.
     Fade {
         /// The other one.
         to: Palette,
-        /// How long both ways take together, in seconds; above 0.
+        /// The time of both ways together, in seconds; above 0.
         period: f64,
     },
     /// Entries move up, round and round.
     Cycle {
-        /// Which.
+        /// The entries that move.
         range: RangeInclusive<u8>,
-        /// How long one round takes, in seconds; above 0.
+        /// The time of one round, in seconds; above 0.
         period: f64,
     },
 }
 
 impl PaletteAnimation {
-    /// Loads the DAC with what `palette` has become.
+    /// Loads the DAC with the state of `palette` at a time.
     pub(crate) fn load(&self, palette: &Palette, seconds: f64, vga: &mut Vga) {
         match self {
             Self::Fade { to, period } => {
@@ -46,7 +46,7 @@ impl PaletteAnimation {
         }
     }
 
-    /// What is wrong with it, if anything.
+    /// Checks the animation; the error says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         match self {
             Self::Fade { period, .. } | Self::Cycle { period, .. } if !(*period > 0.0 && period.is_finite()) => {

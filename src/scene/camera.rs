@@ -7,16 +7,16 @@ use crate::angle::Angle;
 /// The eye: a perspective camera.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Camera {
-    /// Where the eye is.
+    /// The position of the eye.
     pub eye: Vec3,
-    /// What it looks at: the middle of the picture.
+    /// The point that it looks at: the middle of the picture.
     pub target: Vec3,
-    /// What is up in the picture. Where it points along the view, another axis is taken.
+    /// The direction that is up in the picture. If it lies along the view, another axis is taken.
     pub up: Vec3,
     /// The angle between the upper and the lower edge of the picture; above 0, below 180°.
     pub field_of_view: Angle,
-    /// Nothing nearer than this is drawn; in the scene's units, above 0. It also sets the unit of
-    /// depth, so it is best not much smaller than needed.
+    /// The near distance, in the scene's units, above 0: nothing nearer is drawn. It also sets the unit of depth, so it
+    /// is best not much smaller than needed.
     pub near: f32,
 }
 
@@ -27,7 +27,7 @@ impl Camera {
     /// The share of the picture's height that a framed sphere fills.
     const FILL: f32 = 15.0 / 16.0;
 
-    /// Looks along −z at a sphere, from where it fills fifteen sixteenths of the picture's height.
+    /// Makes a camera that looks along −z at a sphere, which fills fifteen sixteenths of the picture's height.
     #[must_use]
     pub fn framing(centre: Vec3, radius: f32) -> Self {
         // Half the angle under which the sphere is seen, and the distance at which its sine is that.
@@ -45,7 +45,7 @@ impl Camera {
         }
     }
 
-    /// How near is as near as need be, where what is looked at is at a distance: a 128th of it.
+    /// The near distance that suffices for a target at a distance: a 128th of it.
     #[must_use]
     #[doc(hidden)]
     pub fn near_for(distance: f32) -> f32 {
@@ -54,7 +54,7 @@ impl Camera {
 }
 
 impl Default for Camera {
-    /// Looks along −z at the unit sphere round the origin, in which every shape lies.
+    /// The camera that looks along −z at the unit sphere round the origin, in which every shape lies.
     fn default() -> Self {
         Self::framing(Vec3::ZERO, 1.0)
     }

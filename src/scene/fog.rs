@@ -1,20 +1,20 @@
-//! Fog: what is far away fades into one colour (the Russian textbook).
+//! Fog: distant surfaces fade into one colour (the Russian textbook).
 
 use crate::palette::Rgb;
 
 /// Fog, by distance along the view.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Fog {
-    /// What everything fades into.
+    /// The colour that everything fades into.
     pub color: Rgb,
-    /// Nearer than this there is none, in the scene's units.
+    /// The distance at which fog begins, in the scene's units.
     pub start: f32,
-    /// Farther than this there is nothing else; above `start`.
+    /// The distance beyond which fog hides everything; above `start`.
     pub end: f32,
 }
 
 impl Fog {
-    /// What is wrong with it, if anything.
+    /// Checks the fog; the error says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         if !(self.start.is_finite() && self.end.is_finite()) {
             return Err("its start and end must be finite");
@@ -25,7 +25,7 @@ impl Fog {
         Ok(())
     }
 
-    /// How thick it is at a distance: 0, none, to 1, nothing else.
+    /// The share of fog at a distance: 0, none, to 1, nothing else.
     #[must_use]
     #[doc(hidden)]
     pub fn level(&self, distance: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! From where a picture holds everything, by hulls: no sphere about a body, and no trial pictures.
+//! Cameras whose picture holds everything, by hulls: no sphere about a body, and no trial pictures.
 //!
 //! The eye looks along −z from the depth d and the height c. A view whose half height is k at the distance 1 holds the
 //! point (x, y, z) if −k·(d − z) ≤ y − c ≤ k·(d − z). That is so for every point of a body if and only if
@@ -10,8 +10,8 @@
 //! Some c fits if d ≥ (max(y + k·z) + max(−y + k·z)) / 2k. The width has the same inequality. So the least distance
 //! comes from the body's farthest points in four directions, in one pass over its vertices.
 //!
-//! A vertex of a body that turns about an axis sweeps a ring: of all its points that with the greatest product with n
-//! lies in the plane of n and the axis. It is r·|n⊥| + h·n∥, for the ring's radius r and its height h.
+//! A vertex of a body that turns about an axis sweeps a ring. Its point with the greatest product with n lies in the
+//! plane of n and the axis: r·|n⊥| + h·n∥, for the ring's radius r and its height h.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -21,47 +21,47 @@ use glam::Vec3;
 use super::{Camera, Object, Path, object};
 use crate::angle::Angle;
 
-/// How much of the picture's width or height is filled, whichever is filled more.
+/// The share of the picture's width or height that is filled, whichever is filled more.
 const FILL: f64 = 0.9;
 /// The picture's width to its height: that of the screens of 1994.
 const ASPECT: f64 = 4.0 / 3.0;
-/// The eye stays clear of what is nearest by at least so much of the depth of everything.
+/// The min distance of the eye from the nearest point, in parts of the depth of everything.
 const CLEARANCE: f64 = 1.0 / 64.0;
 /// Rounds until the picture is centred. Each comes closer quadratically; two or three are enough.
 const ROUNDS: usize = 8;
 
 type Row = [f64; 3];
 
-/// How an object turns.
+/// The way in which an object turns.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(
     not(any(feature = "scene-files", test)),
     expect(dead_code, reason = "only scene files have what does not turn, or turns in any way")
 )]
 pub(super) enum Turning {
-    /// It does not.
+    /// It does not turn.
     Still,
-    /// About its own upward axis, which may be tilted.
+    /// It turns about its own upward axis, which may be tilted.
     Upright,
-    /// In another way: any direction may come to the front.
+    /// It turns in another way: any direction may come to the front.
     Anyhow,
 }
 
-/// What an object covers as it moves.
+/// The space that an object covers as it moves.
 pub(super) struct Swept {
     path: Places,
     shape: Shape,
 }
 
-/// Where the pivot goes.
+/// The places that the pivot goes to.
 enum Places {
-    /// There, or between any two of these.
+    /// One point, or any place between two of these.
     Points(Vec<Row>),
-    /// Round a centre, by way of two radii.
+    /// A circle round a centre, by two radii.
     Round(Row, [Row; 2]),
 }
 
-/// What is covered about the pivot.
+/// The shape that is covered about the pivot.
 enum Shape {
     Points(Vec<Row>),
     /// Rings about an axis: radius and height.
@@ -71,7 +71,7 @@ enum Shape {
 }
 
 impl Swept {
-    /// What `object` covers, turning so, and going along `path` if there is one.
+    /// The space that `object` covers, turning so, and going along `path` if there is one.
     pub(super) fn new(object: &Object, turning: Turning, path: Option<&Path>) -> Self {
         let shape = match turning {
             Turning::Still => Shape::Points(points(object, object.angles())),
@@ -96,7 +96,7 @@ impl Swept {
         Self { path, shape }
     }
 
-    /// For each direction the point that is farthest in it.
+    /// The point that is farthest in each direction.
     fn farthest<const N: usize>(&self, directions: &[Row; N]) -> [Row; N] {
         let offsets: [Row; N] = match &self.shape {
             Shape::Points(points) => best(points, |point, i| dot(*point, directions[i])),
@@ -127,19 +127,19 @@ impl Swept {
     }
 }
 
-/// From which side, and how wide, everything is looked at.
+/// The side and the angle from which everything is looked at.
 pub(super) struct Viewpoint {
-    /// Towards the eye, of any length but zero.
+    /// The direction towards the eye, of any length but zero.
     pub(super) direction: Vec3,
     pub(super) up: Vec3,
-    /// From the picture's upper to its lower edge.
+    /// The angle from the picture's upper to its lower edge.
     pub(super) field_of_view: Angle,
     /// The middle of the picture, if it is given.
     pub(super) target: Option<Vec3>,
 }
 
 impl Viewpoint {
-    /// The nearest camera that has everything within [`FILL`] of its picture. Returns `None` if there is nothing, or if
+    /// Returns the nearest camera that has everything within [`FILL`] of its picture; `None` if there is nothing, or if
     /// it reaches farther than f32.
     pub(super) fn camera(&self, everything: &[Swept]) -> Option<Camera> {
         let towards = unit(widen(self.direction)).unwrap_or([0.0, 0.0, 1.0]);
@@ -187,11 +187,11 @@ impl Viewpoint {
     }
 }
 
-/// Where the middle of the picture lies to the right and up, for an eye at this depth: as much is seen to either side of
-/// it.
+/// The middle of the picture to the right and up, for an eye at this depth, such that equally much is seen to either
+/// side of it.
 ///
-/// A view of half height k that touches an upper and a lower point has its middle between them. Of the points that are
-/// farthest for it, that k is taken next: Newton's method on a convex function, which the true k makes zero.
+/// A view of half height k that touches an upper and a lower point has its middle between them. The points that are
+/// farthest for it give the next k: Newton's method on a convex function, which the true k makes zero.
 fn middle(everything: &[Swept], towards: Row, edges: [(Row, f64); 2], depth: f64) -> Option<[f64; 2]> {
     let (mut edges, mut middles) = (edges, [0.0; 2]);
     for _ in 0..ROUNDS {
@@ -217,7 +217,7 @@ fn sides(towards: Row, [(right, wide), (up, high)]: [(Row, f64); 2]) -> [Row; 4]
     [side(right, wide, 1.0), side(right, wide, -1.0), side(up, high, 1.0), side(up, high, -1.0)]
 }
 
-/// For each direction the farthest point of everything.
+/// The farthest point of everything in each direction.
 fn farthest<const N: usize>(everything: &[Swept], directions: &[Row; N]) -> Option<[Row; N]> {
     let each: Vec<[Row; N]> = everything.iter().map(|swept| swept.farthest(directions)).collect();
     (!each.is_empty()).then(|| {
@@ -226,7 +226,7 @@ fn farthest<const N: usize>(everything: &[Swept], directions: &[Row; N]) -> Opti
     })
 }
 
-/// For each of N the entry of a list, which is not empty, with the greatest value; of equals the first.
+/// The entry of a list, which is not empty, with the greatest of each of N values; of equals the first.
 fn best<T: Copy, const N: usize>(list: &[T], value: impl Fn(&T, usize) -> f64) -> [T; N] {
     let mut best = [(list[0], f64::NEG_INFINITY); N];
     for entry in list {
@@ -252,8 +252,8 @@ fn points(object: &Object, angles: [Angle; 3]) -> Vec<Row> {
     places.map(|(p, _)| turn.map(|row| dot(row, added(widen(*p), pivot, -1.0)))).collect()
 }
 
-/// Right, up and backwards, unit, of who looks in the unit direction `forward`. Returns `None` only if that is no
-/// direction.
+/// The unit directions right, up and backwards, for a view in the unit direction `forward`. Returns `None` only if that
+/// is no direction.
 pub(crate) fn axes(forward: Row, up: Row) -> Option<[Row; 3]> {
     // The axis that is farthest from the view serves where `up` lies along it. Within 10⁻⁶ of it the direction of the
     // product is mostly rounding of the f32 that made it.
@@ -298,12 +298,12 @@ fn narrow(v: Row) -> Vec3 {
 }
 
 impl Camera {
-    /// Looks along −z at an object that turns about its own upward axis: its `angles` about x and z stay, the one about y
-    /// goes round. Over the whole turn it fills nine tenths of a 4:3 picture's width or height, whichever it fills more,
-    /// and stays in the middle.
+    /// Makes a camera that looks along −z at an object that turns about its own upward axis: its `angles` about x and z
+    /// stay, the one about y goes round. Over the whole turn it fills nine tenths of a 4:3 picture's width or height,
+    /// whichever it fills more, and stays in the middle.
     ///
-    /// The hull counts, not a sphere about it, and of the hull what it sweeps over. That takes a few passes over the
-    /// vertices.
+    /// The hull counts, not a sphere about it, and the space that the hull sweeps over. That takes a few passes over
+    /// the vertices.
     ///
     /// ```
     /// use mode13h::Angle;
@@ -321,7 +321,7 @@ impl Camera {
     pub fn framing_turn(object: &Object) -> Self {
         let from = Viewpoint { direction: Vec3::Z, up: Vec3::Y, field_of_view: Self::FIELD_OF_VIEW, target: None };
         let swept = Swept::new(object, Turning::Upright, None);
-        // What reaches farther than f32 is no more to be framed exactly.
+        // A body that reaches farther than f32 cannot be framed exactly.
         from.camera(&[swept]).unwrap_or_else(|| {
             let bounds = object.mesh().bounds();
             let radius = (bounds.radius + bounds.centre.distance(object.pivot)) * object.scale;
@@ -337,7 +337,7 @@ mod tests {
     use crate::scene::{Scene, UpAxis};
     use core::f64::consts::TAU;
 
-    /// How many angles of a turn are looked at.
+    /// The number of angles of a turn that are tried.
     const ANGLES: u32 = 720;
     /// Between two of them a vertex comes nearer to where it is farthest by at most 1 − cos(π / 720) of its radius,
     /// 9.5·10⁻⁶; perspective makes up to 1.2 times that of it, as the eye is at least 2.3 radii away. The camera's numbers
@@ -436,7 +436,7 @@ mod tests {
         }
     }
 
-    /// What triangles do not use is not seen.
+    /// A vertex that triangles do not use is not seen.
     #[test]
     fn a_vertex_that_no_triangle_uses_does_not_count() {
         let corners = vec![Vec3::X, Vec3::Y, Vec3::Z];
@@ -476,8 +476,8 @@ mod tests {
         }
     }
 
-    /// What stands still is held by its points, whatever side it is seen from, and what turns anyhow by its sphere; along
-    /// paths, too.
+    /// A still object is held by its points, whatever side it is seen from, and one that turns anyhow by its sphere;
+    /// along paths, too.
     #[test]
     fn everything_is_in_the_picture_wherever_it_moves() {
         let mut random = Random(2);

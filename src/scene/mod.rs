@@ -1,8 +1,7 @@
-//! What is to be drawn: objects, a camera, lights, fog, a palette; how they move; what is asked for.
+//! Scenes: objects, a camera, lights, fog, a palette; their motions; rendering preferences.
 //!
-//! A scene is plain data. Nothing in it is borrowed between frames: change it, draw it, change it
-//! again. What is wrong in it (a position that is not finite, a camera that looks nowhere) is
-//! refused when it is drawn.
+//! A scene is plain data. Nothing in it is borrowed between frames: change it, draw it, change it again. Errors in it
+//! (a position that is not finite, a camera that looks nowhere) are refused when it is drawn.
 //!
 //! | file | what |
 //! |---|---|
@@ -56,51 +55,52 @@ pub struct ObjectId(u32);
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct LightId(u32);
 
-/// Everything that is drawn.
+/// A scene: everything that is drawn.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// A name for people.
     pub name: String,
     /// The eye.
     pub camera: Camera,
-    /// Ia: how much ambient light there is.
+    /// Ia: the intensity of ambient light.
     pub ambient: f32,
     /// The index that the frame is cleared to.
     pub background: u8,
-    /// The colour that [`background`](Self::background) was chosen for, if it was: with another palette another entry
-    /// is nearest to it.
+    /// The colour that [`background`](Self::background) was chosen for, if it was: another palette has another nearest
+    /// entry.
     pub background_color: Option<Rgb>,
-    /// What the DAC is set to when the scene is drawn; with `None` it is left alone.
+    /// The palette that the DAC is loaded with when the scene is drawn; with `None` it is left alone.
     pub palette: Option<Palette>,
-    /// What happens to the palette as time passes.
+    /// The change of the palette as time passes.
     pub palette_animation: Option<PaletteAnimation>,
-    /// What lies between the eye and what is far away.
+    /// The fog between the eye and distant surfaces.
     pub fog: Option<Fog>,
-    /// What is asked for.
+    /// The rendering preferences.
     pub preferences: Preferences,
-    /// How things move; [`set_time`](Self::set_time) puts them where they are.
+    /// The motions; [`set_time`](Self::set_time) puts objects, lights and camera in their places.
     pub motions: Vec<Motion>,
-    /// How long one round of it takes, in seconds; above 0. A film of that length that is played again and again has
-    /// no seam, if its motions take whole parts of it.
+    /// The duration of one round, in seconds; above 0. A film of that length that is played again and again has no
+    /// seam, if its motions take whole parts of it.
     pub duration: f64,
-    /// The moment that shows best what it is about, in seconds: of a single picture.
+    /// The moment of a single picture, in seconds: that which shows the scene's subject best.
     pub picture: f64,
     time: f64,
     objects: Vec<Object>,
-    /// One for each object, ascending.
+    /// The ids, one for each object, ascending.
     object_ids: Vec<ObjectId>,
     lights: Vec<Light>,
-    /// One for each light, ascending.
+    /// The ids, one for each light, ascending.
     light_ids: Vec<LightId>,
     /// The id that is given next.
     next_id: u32,
 }
 
 impl Scene {
-    /// How far the upper end of what is [shown](Self::showing) is tilted towards the eye.
+    /// The tilt of the upper end of a [shown](Self::showing) object towards the eye.
     const TILT: Angle = Angle::from_radians(0.35);
 
-    /// An empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four seconds.
+    /// Makes an empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four
+    /// seconds.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -125,12 +125,12 @@ impl Scene {
         }
     }
 
-    /// A mesh, or an object with materials and an upward axis of its own, to look at: in the middle, filling the picture,
-    /// turning about its middle, one sun from the upper right behind the eye.
+    /// Makes a scene that shows a mesh, or an object with materials and an upward axis of its own: in the middle,
+    /// filling the picture, turning about its middle, one sun from the upper right behind the eye.
     ///
-    /// It is tilted a little towards the eye, so that a flat one is not a line, and turns once in a
-    /// [round](Self::duration): [`set_time`](Self::set_time) puts it where it is. Over the whole turn it fills nine tenths
-    /// of the picture's width or height ([`Camera::framing_turn`]).
+    /// The object is tilted a little towards the eye, so that a flat one is not a line, and turns once in a
+    /// [round](Self::duration): [`set_time`](Self::set_time) puts it in its place. Over the whole turn it fills nine
+    /// tenths of the picture's width or height ([`Camera::framing_turn`]).
     ///
     /// ```
     /// use mode13h::mesh::shapes;
@@ -236,7 +236,7 @@ impl Scene {
         self.lights.get_mut(index)
     }
 
-    /// Ids ascend, and none is given twice within 2³².
+    /// Makes an id. Ids ascend, and none is given twice within 2³².
     fn new_id(&mut self) -> u32 {
         let id = self.next_id;
         self.next_id = self.next_id.wrapping_add(1);
@@ -254,7 +254,7 @@ impl Scene {
         &mut self.objects
     }
 
-    /// The lights, in the order in which they were put in: that of their sum.
+    /// The lights, in the order in which they were put in and are summed.
     #[must_use]
     pub fn lights(&self) -> &[Light] {
         &self.lights
@@ -265,8 +265,8 @@ impl Scene {
         &mut self.lights
     }
 
-    /// Puts everything that moves where it is at a time, in seconds. Motions that name what is not
-    /// there move nothing.
+    /// Puts everything that moves in its place at a time, in seconds. Motions that name a missing object or light move
+    /// nothing.
     pub fn set_time(&mut self, seconds: f64) {
         self.time = seconds;
         for i in 0..self.motions.len() {

@@ -1,7 +1,7 @@
-//! How a scene moves: from absolute time, never by adding up small steps.
+//! Motions of a scene: from absolute time, never by adding up small steps.
 //!
-//! Frame n is the same whether or not the frames before it were drawn; a step of an hour, or back,
-//! is a step like any other.
+//! Frame n does not depend on whether the frames before it were drawn; a step of an hour, or back, is a step like any
+//! other.
 
 use core::f64::consts::TAU;
 
@@ -25,14 +25,14 @@ pub enum Motion {
     },
     /// Something goes along a path.
     Path {
-        /// What goes.
+        /// The thing that moves.
         what: Moving,
-        /// Where it goes.
+        /// The path that it moves along.
         path: Path,
     },
 }
 
-/// What can go along a path.
+/// A thing that can move along a path.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum Moving {
@@ -42,41 +42,41 @@ pub enum Moving {
     Light(LightId),
     /// The camera's eye.
     Eye,
-    /// What the camera looks at.
+    /// The point that the camera looks at.
     Target,
 }
 
-/// A path, and how long it takes.
+/// A path, and the time that it takes.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Path {
     /// Straight from one point to another, then again from the first.
     Line {
-        /// Where it begins.
+        /// The point where it begins.
         from: Vec3,
-        /// Where it ends.
+        /// The point where it ends.
         to: Vec3,
-        /// How long it takes, in seconds; above 0.
+        /// The time that it takes, in seconds; above 0.
         period: f64,
-        /// Whether it comes back the same way; both ways together then take the period.
+        /// The path comes back the same way; both ways together then take the period.
         back: bool,
     },
     /// Round an axis through a point.
     Circle {
         /// The middle.
         centre: Vec3,
-        /// From the middle to where it begins; it turns from there towards `towards`.
+        /// The radius to the point where it begins; it turns from there towards `towards`.
         from: Vec3,
-        /// From the middle to where it is a quarter of the way on.
+        /// The radius to the point a quarter of the way on.
         towards: Vec3,
-        /// How long a round takes, in seconds; above 0.
+        /// The time that a round takes, in seconds; above 0.
         period: f64,
     },
 }
 
 impl Path {
-    /// Where it is at a time in seconds. Of a period that is not above 0, or of a time that is not
-    /// finite, where it begins.
+    /// The point at a time in seconds. With a period that is not above 0, or a time that is not finite, the point where
+    /// the path begins.
     #[must_use]
     #[doc(hidden)]
     pub fn at(&self, seconds: f64) -> Vec3 {
@@ -105,11 +105,11 @@ impl Path {
     }
 }
 
-/// How much of a period has passed since it last began: 0 to 1, below 1.
+/// The part of a period that has passed since it last began: 0 to 1, below 1.
 pub(super) fn part(seconds: f64, period: f64) -> f64 {
     let periods = seconds / period;
     let part = periods - libm::floor(periods);
-    // Of what is not finite, and where rounding makes it 1, the beginning.
+    // The beginning, for a value that is not finite, and if rounding makes it 1.
     if part < 1.0 { part } else { 0.0 }
 }
 

@@ -1,4 +1,4 @@
-//! A mesh in a scene: where it is, how it is turned, what it is made of.
+//! A mesh in a scene: its place, its turn, its materials.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -10,7 +10,7 @@ use crate::angle::Angle;
 use crate::light::Material;
 use crate::mesh::Mesh;
 
-/// Which axis of a mesh points up.
+/// The axis of a mesh that points up.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum UpAxis {
     /// y, as in the scene.
@@ -20,32 +20,32 @@ pub enum UpAxis {
     Z,
 }
 
-/// A mesh in the scene: where it is, how it is turned, what it is made of.
+/// A mesh in the scene: its place, its turn, its materials.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// A name for people.
     pub name: String,
     mesh: Shared<Mesh>,
-    /// One for each surface of the mesh.
+    /// The materials, one for each surface of the mesh.
     pub materials: Vec<Material>,
     /// The point of the mesh, in its own coordinates, that it turns about.
     pub pivot: Vec3,
-    /// Where the pivot is in the scene, or in the parent's own coordinates.
+    /// The position of the pivot in the scene, or in the parent's own coordinates.
     pub position: Vec3,
-    /// How many times as large as the mesh it is; not negative.
+    /// The size in units of the mesh's; not negative.
     pub scale: f32,
-    /// Which axis of the mesh points up.
+    /// The axis of the mesh that points up.
     pub up_axis: UpAxis,
-    /// Whether it is drawn. The children of an object that is not are not drawn either.
+    /// The object is drawn. The children of an object that is not drawn are not drawn either.
     pub visible: bool,
     /// The object that it moves, turns and grows with; its position is then in that object's own coordinates, those of
-    /// its mesh. A parent that was removed counts as none.
+    /// the parent's mesh. A parent that was removed counts as none.
     pub parent: Option<ObjectId>,
     angles: [Angle; 3],
 }
 
 impl Object {
-    /// The mesh at the origin, not turned, in materials made from its surfaces: the first in the
+    /// Makes an object of the mesh at the origin, not turned, in materials made from its surfaces: the first in the
     /// palette's first ramp, the second in its second, and so on round.
     #[must_use]
     pub fn new(mesh: impl Into<Shared<Mesh>>) -> Self {
@@ -99,7 +99,7 @@ impl Object {
         self.mesh.vertex_surfaces()
     }
 
-    /// What is wrong with it, if anything.
+    /// Checks the object; the error says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         if !(self.position.is_finite() && self.pivot.is_finite() && self.scale.is_finite()) {
             return Err("its position, pivot and scale must be finite");
@@ -119,30 +119,30 @@ impl Object {
         Ok(())
     }
 
-    /// Turns it further about the x axis.
+    /// Turns the object further about the x axis.
     pub fn rotate_x(&mut self, angle: Angle) {
         self.angles[0] += angle;
     }
 
-    /// Turns it further about the y axis.
+    /// Turns the object further about the y axis.
     pub fn rotate_y(&mut self, angle: Angle) {
         self.angles[1] += angle;
     }
 
-    /// Turns it further about the z axis.
+    /// Turns the object further about the z axis.
     pub fn rotate_z(&mut self, angle: Angle) {
         self.angles[2] += angle;
     }
 
-    /// Its angles about x, y and z. The turn about z comes first, then y, then x: y
-    /// spins it like a turntable, x tilts the table.
+    /// The angles about x, y and z. The turn about z comes first, then y, then x: y spins the object like a turntable,
+    /// x tilts the table.
     #[must_use]
     pub fn angles(&self) -> [Angle; 3] {
         self.angles
     }
 
-    /// Sets its angles about x, y and z. Set from the time, frame n is the same
-    /// whether or not the frames before it were drawn.
+    /// Sets the angles about x, y and z. Set from the time, frame n does not depend on whether the frames before it
+    /// were drawn.
     ///
     /// The matrix is made anew from the angles for every frame, never from a product of small
     /// steps, so it stays a rotation for ever.
@@ -163,7 +163,7 @@ impl Object {
         self.turned_by(self.angles)
     }
 
-    /// What [`turn`](Self::turn) would be with other angles.
+    /// The matrix of [`turn`](Self::turn) with other angles.
     pub(super) fn turned_by(&self, angles: [Angle; 3]) -> [[f64; 3]; 3] {
         match self.up_axis {
             UpAxis::Y => turn(angles),
@@ -173,10 +173,10 @@ impl Object {
     }
 }
 
-/// Where an object stands in the world, its parents included: world = position + scale · turn · (point − pivot).
+/// An object's place in the world, its parents included: world = position + scale · turn · (point − pivot).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Placement {
-    /// By rows.
+    /// The turn, by rows.
     pub(crate) turn: [[f64; 3]; 3],
     pub(crate) scale: f64,
     /// The position of its pivot.
@@ -184,13 +184,13 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// An object without a parent.
+    /// The place of an object without a parent.
     pub(crate) fn of(object: &Object) -> Self {
         let position = object.position.to_array().map(f64::from);
         Self { turn: object.turn(), scale: f64::from(object.scale), position }
     }
 
-    /// Stands in the coordinates of `parent`.
+    /// The place in the coordinates of `parent`.
     fn within(self, parent: &Object) -> Self {
         let above = Self::of(parent);
         let pivot = parent.pivot.to_array().map(f64::from);
@@ -215,19 +215,19 @@ impl Scene {
         core::iter::successors(first, move |object| parent(object)).take(self.objects().len())
     }
 
-    /// Where an object stands, by its index.
+    /// The place of an object, by its index.
     pub(crate) fn placement(&self, index: usize) -> Placement {
         self.ancestors(index).fold(Placement::of(&self.objects()[index]), Placement::within)
     }
 
-    /// Whether an object is drawn, by its index: whether it and all that it hangs from are visible.
+    /// Returns whether an object is drawn, by its index: it and all that it hangs from are visible.
     #[must_use]
     pub fn is_visible(&self, index: usize) -> bool {
         self.objects().get(index).is_some_and(|object| object.visible)
             && self.ancestors(index).all(|above| above.visible)
     }
 
-    /// What is wrong with an object's parents, if anything.
+    /// Checks an object's parents; the error says what is wrong.
     pub(crate) fn check_parents(&self, index: usize) -> Result<(), &'static str> {
         if self.objects()[index].parent.is_none() {
             return Ok(());

@@ -4,24 +4,24 @@ use crate::names::named;
 use crate::shading::Shading;
 
 named! {
-    /// How hidden surfaces are left out.
+    /// The way to leave out hidden surfaces.
     pub enum HiddenSurfaces, "way to hidden surfaces" {
         /// Faces turned away are not drawn; that is enough for one convex object.
         BackFaces = "back-faces",
-        /// Far to near, each over what is there. Right for convex objects that lie one behind the other,
-        /// drawn object by object. Asked for, it is the painter's algorithm face by face, by the mean
-        /// depth of a face's vertices: wrong where faces overlap in a circle or pass through each other.
+        /// Far to near, each over those before it. Right for convex objects that lie one behind the other, drawn object
+        /// by object. On request it is the painter's algorithm face by face, by the mean depth of a face's vertices:
+        /// wrong where faces overlap in a circle or pass through each other.
         PainterOrder = "painter",
         /// A depth for every pixel.
         DepthBuffer = "depth-buffer",
         /// All faces of the frame at once, row by row, each pixel written once
-        /// ([`raster::scan_line`](crate::raster::scan_line)). The same bytes as with the depth buffer.
+        /// ([`raster::scan_line`](crate::raster::scan_line)). The bytes equal those with the depth buffer.
         ScanLine = "scan-line",
     }
 }
 
 named! {
-    /// How a texture's coordinates run over a face.
+    /// The interpolation of a texture's coordinates over a face.
     #[derive(Default)]
     pub enum Mapping, "mapping" {
         /// Linear on the screen, as for a face that is seen straight on.
@@ -34,32 +34,31 @@ named! {
     }
 }
 
-/// What a scene asks for. The default asks for nothing: the plan then chooses the cheapest that is
-/// right.
+/// Rendering preferences of a scene. The default has none: the plan then chooses the cheapest that is right.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Preferences {
     /// The technique of shading.
     pub shading: Option<Shading>,
-    /// How hidden surfaces are left out, right or wrong.
+    /// The way to leave out hidden surfaces, right or wrong.
     pub hidden_surfaces: Option<HiddenSurfaces>,
-    /// How textures are mapped.
+    /// The mapping of textures.
     pub mapping: Option<Mapping>,
-    /// Whether textures have mipmaps.
+    /// Textures have mipmaps.
     pub mipmaps: Option<bool>,
-    /// Faces are split until the shades on their edges are linear to so many shades of 1/255 of
-    /// full intensity; above 0. [`Shading::GouraudTessellated`] asks for one shade.
+    /// The tessellation error, in shades of 1/255 of full intensity, above 0: faces are split until the shades on their
+    /// edges are linear to this. [`Shading::GouraudTessellated`] uses one shade.
     pub tessellation: Option<f32>,
     /// Shades between two entries of a ramp are shown as a pattern of both.
     pub dither: bool,
-    /// How many shades of error are accepted, of 1/255 of full intensity; above 0. Each triangle then gets the
-    /// cheapest shading that is known to keep within, whatever `shading` says.
+    /// The max error of shades, in 1/255 of full intensity; above 0. Each triangle then gets the cheapest shading that
+    /// is known to keep within, whatever `shading` says.
     pub max_error: Option<f32>,
     /// The palette is to be made from the scene's materials.
     pub auto_palette: bool,
 }
 
 impl Preferences {
-    /// What is wrong with them, if anything.
+    /// Checks the preferences; the error says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         let legal = |number: Option<f32>| number.is_none_or(|n| n > 0.0 && n.is_finite());
         if legal(self.tessellation) && legal(self.max_error) {

@@ -1,5 +1,5 @@
-//! The scenes that are compiled in, by name. Their files are in `scenes/`, and name no file: palettes and textures are
-//! those that are compiled in, too.
+//! The scenes that are compiled in, by name. Their files are in `scenes/`, and name no file: their palettes and
+//! textures are compiled in, too.
 
 use std::io;
 use std::path::Path;
@@ -11,20 +11,20 @@ use super::file::{Loaded, SceneError};
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Shipped {
-    /// What a program calls it.
+    /// Its name on the command line.
     pub name: &'static str,
-    /// Its file.
+    /// The text of its file.
     pub text: &'static str,
 }
 
-/// A row a scene: its file's name without the extension.
+/// The table of scenes, a row each: its file's name without the extension.
 macro_rules! shipped {
     ($($name:literal)*) => {
         [$(Shipped { name: $name, text: include_str!(concat!("../../scenes/", $name, ".toml")) }),*]
     };
 }
 
-/// All of them, in the order in which they are best looked at.
+/// All scenes that are compiled in, in the order in which they are best looked at.
 pub static ALL: [Shipped; 18] = shipped! {
     "torus" "cube" "teapot" "cone" "phong" "phong-table" "flash" "flash-tessellated" "two-lights" "fog" "rgb" "crate"
     "mirror" "interlock" "glenz" "fade" "cycle" "still"
@@ -44,7 +44,7 @@ pub fn by_name(name: &str) -> Option<&'static Shipped> {
 }
 
 impl Shipped {
-    /// What it shows, in one line: the first of its file.
+    /// The scene's subject, in one line: the first of its file.
     #[must_use]
     #[doc(hidden)]
     pub fn shows(&self) -> &'static str {

@@ -59,7 +59,7 @@ fn entry(first: i32, entries: i32, shade: i32) -> u8 {
     (first + shade.clamp(0, entries - 1)) as u8
 }
 
-/// 0 to 255, as if by chance.
+/// A hash, 0 to 255, that looks random.
 fn hash(x: i32, y: i32, seed: u32) -> i32 {
     // The mixing step of MurmurHash3, on two coordinates; the signs do not matter.
     let mut h =
@@ -152,7 +152,7 @@ fn wooden_crate() -> Texture {
     })
 }
 
-/// How much darker it is so many texels from what casts a shadow.
+/// The darkness so many texels from an edge that casts a shadow.
 fn shadow(distance: i32) -> i32 {
     (26 - 6 * distance).max(0)
 }
@@ -194,10 +194,9 @@ fn bricks() -> Texture {
     })
 }
 
-/// A sphere map: the texel at (u, v) is what a mirror shows whose normal, seen by the eye, is
-/// n = (2u − 1, 2v − 1, nz). The ray back along the view is r = (2·nz·nx, 2·nz·ny, 2·nz² − 1): straight
-/// up half way from the middle to the top, and the horizon across the middle and all round the rim,
-/// beyond which it goes on.
+/// A sphere map. The texel at (u, v) is the reflection in a mirror whose normal, seen by the eye, is n = (2u − 1, 2v −
+/// 1, nz). The ray back along the view is r = (2·nz·nx, 2·nz·ny, 2·nz² − 1): straight up half way from the middle to
+/// the top. The horizon runs across the middle and all round the rim, beyond which it goes on.
 fn sky() -> Texture {
     const SKIES: i32 = 96;
     const GROUNDS: i32 = 64;

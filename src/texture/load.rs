@@ -13,28 +13,28 @@ use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
 use super::{Texture, TextureError};
 use crate::palette::Rgb;
 
-/// What a picture may take in memory while it is read: 4,096 × 4,096 pixels of four samples of 16 bits.
+/// The max memory of a picture while it is read: 4,096 × 4,096 pixels of four samples of 16 bits.
 const MAX_BYTES: usize = 4_096 * 4_096 * 8;
 
-/// Why a file gave no texture.
+/// An error of a file that gave no texture.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct LoadError {
     /// The file.
     pub path: PathBuf,
-    /// What is wrong with it.
+    /// The kind of the error.
     pub kind: LoadErrorKind,
 }
 
-/// What is wrong with a texture's file.
+/// The kinds of errors of a texture's file.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum LoadErrorKind {
-    /// It cannot be read.
+    /// The file cannot be read.
     Read(io::Error),
-    /// It is a directory, a device or the like.
+    /// The path is that of a directory, a device or the like.
     NotAFile,
-    /// It is no picture of a kind that is read, or a broken one.
+    /// The file is no picture of a kind that is read, or a broken one.
     Picture(String),
     /// The picture is too large.
     Texture(TextureError),
@@ -67,9 +67,8 @@ impl core::error::Error for LoadError {
     }
 }
 
-/// Reads a PNG, which is told by what the file holds, not by its name, and makes a texture of it as
-/// [`Texture::from_rgb`] does. Grey and indexed pictures become RGB, 16 bits become 8, and transparency
-/// is left out.
+/// Reads a PNG, recognised by its contents, not by its name, and makes a texture of it as [`Texture::from_rgb`] does.
+/// Grey and indexed pictures become RGB, 16 bits become 8, and transparency is left out.
 ///
 /// # Errors
 /// A file that cannot be read, that is no PNG or a broken one, or with a side above 4,096.

@@ -11,9 +11,9 @@ use crate::span::texture::Levels;
 /// The smaller copies of a texture, level 1 and up, and the colours that all its levels share.
 ///
 /// Means are taken of colours, as values of the DAC with no gamma, in whole sums rounded once; a side of one texel is
-/// not halved. Means that are no colour of the texture get the entries that none of its texels has: all of them if there
-/// is room, otherwise as many as there is room for, by median cut; each texel then has the nearest. The texture's own
-/// texels keep their entries and their colours, so one table of shades serves every level.
+/// not halved. Means that are no colour of the texture get the entries that none of its texels has. If there is too
+/// little room for all of them, they are reduced to the room by median cut, and each texel then has the nearest. The
+/// texture's own texels keep their entries and their colours, so one table of shades serves every level.
 ///
 /// ```
 /// use mode13h::palette::Rgb;
@@ -27,7 +27,7 @@ use crate::span::texture::Levels;
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[doc(hidden)]
 pub struct Mipmap {
-    /// Level after level, from 1 on.
+    /// The texels, level after level, from 1 on.
     texels: Vec<u8>,
     colors: [Rgb; 256],
     width_bits: u32,
@@ -35,7 +35,7 @@ pub struct Mipmap {
 }
 
 impl Mipmap {
-    /// The smaller copies of a texture.
+    /// Makes the smaller copies of a texture.
     #[must_use]
     pub fn new(texture: &Texture) -> Self {
         let (width_bits, height_bits) = (texture.width_bits(), texture.height_bits());
@@ -62,7 +62,7 @@ impl Mipmap {
         Self { texels, colors, width_bits, height_bits }
     }
 
-    /// The colours of the texels of all levels, level 0 among them. Those that no texel has may be anything.
+    /// The colours of the texels of all levels, level 0 among them. Entries without a texel may be anything.
     #[must_use]
     pub fn colors(&self) -> &[Rgb; 256] {
         &self.colors
@@ -77,8 +77,8 @@ impl Mipmap {
         }
     }
 
-    /// The colours of all levels and how much they count: each level's together half as much as the one before's.
-    /// `texture` is the one that it was made from.
+    /// The colours of all levels with their weights: each level's together half as much as the one before's. `texture`
+    /// is the one that it was made from.
     pub(crate) fn weights(&self, texture: &Texture) -> Vec<(Rgb, u32)> {
         // In 256ths of a texel of level 0.
         let mut weights = texture.histogram().map(|count| count << 8);
@@ -93,14 +93,14 @@ impl Mipmap {
         self.colors.into_iter().zip(weights).collect()
     }
 
-    /// Bytes that it holds beside those of its texture.
+    /// The number of bytes that it holds beside those of its texture.
     #[must_use]
     pub(crate) fn bytes(&self) -> usize {
         self.texels.capacity() + size_of::<Self>()
     }
 }
 
-/// The mean colour of every texel of the levels from 1 on, and how many texels of level 0 it stands for.
+/// The mean colour of every texel of the levels from 1 on, and the number of texels of level 0 that it stands for.
 fn means(texture: &Texture) -> Vec<(Rgb, u32)> {
     let (width_bits, height_bits) = (texture.width_bits(), texture.height_bits());
     let mut means = Vec::with_capacity(Levels::length(width_bits, height_bits));

@@ -27,29 +27,29 @@ use crate::palette::{Rgb, Search};
 pub use load::{LoadError, LoadErrorKind, decode, load};
 pub use mipmap::Mipmap;
 
-/// Why texels, or pixels, are no texture.
+/// The errors of texels, or pixels, that are no texture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum TextureError {
-    /// A side of an indexed texture that is no power of two up to 256.
+    /// A side of an indexed texture is no power of two up to 256.
     Side {
         /// Texels in a row.
         width: u32,
         /// Rows.
         height: u32,
     },
-    /// A side of a picture that is 0 or above 4,096.
+    /// A side of a picture is 0 or above 4,096.
     Size {
         /// Pixels in a row.
         width: u32,
         /// Rows.
         height: u32,
     },
-    /// There are not as many texels or pixels as width and height say.
+    /// The number of texels or pixels is not width times height.
     Count {
-        /// How many there are.
+        /// The number given.
         given: usize,
-        /// How many there must be.
+        /// The number needed.
         needed: usize,
     },
 }
@@ -74,10 +74,10 @@ impl core::error::Error for TextureError {}
 
 /// A rectangle of texels, each an index into the texture's own colours.
 ///
-/// Width and height are powers of two from 1 to 256, so that a texture repeats by leaving out bits:
-/// texel (x, y) stands at `(y mod height) << width_bits | (x mod width)`. Row 0 is at v = 0 and v
-/// runs up, as in OBJ files: row 0 is a picture's *bottom* row. Texel (x, y) covers u from x/width up
-/// to (x + 1)/width, v from y/height up to (y + 1)/height.
+/// Width and height are powers of two from 1 to 256, so a texture repeats by leaving out bits: texel (x, y) stands at
+/// `(y mod height) << width_bits | (x mod width)`. Row 0 is at v = 0 and v runs up, as in OBJ files: row 0 is a
+/// picture's *bottom* row. Texel (x, y) covers u from x/width up to (x + 1)/width, v from y/height up to (y +
+/// 1)/height.
 ///
 /// ```
 /// use mode13h::palette::Rgb;
@@ -97,17 +97,17 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// The most texels in a row, and the most rows.
+    /// The max number of texels in a row, and of rows.
     #[doc(hidden)]
     pub const MAX_SIDE: u32 = 256;
 
-    /// The most pixels in a row, and the most rows, of a picture that becomes a texture.
+    /// The max number of pixels in a row, and of rows, of a picture that becomes a texture.
     pub(crate) const MAX_PICTURE_SIDE: u32 = 4096;
 
-    /// From texels, row after row from v = 0 up, and their colours.
+    /// Makes a texture of texels, row after row from v = 0 up, and their colours.
     ///
     /// # Errors
-    /// A side that is no power of two from 1 to 256; texels that are not `width·height`.
+    /// A side that is no power of two from 1 to 256; a number of texels other than `width·height`.
     pub fn new(width: u32, height: u32, texels: Vec<u8>, colors: [Rgb; 256]) -> Result<Self, TextureError> {
         let is_side = |side: u32| side.is_power_of_two() && side <= Self::MAX_SIDE;
         if !is_side(width) || !is_side(height) {
@@ -121,13 +121,13 @@ impl Texture {
         Ok(Self { texels, colors, width_bits: width.ilog2(), height_bits: height.ilog2() })
     }
 
-    /// One texel of one colour: what leaves a surface as plain as it was without.
+    /// Makes a texture of one texel of one colour, which leaves a surface as plain as without it.
     #[must_use]
     pub fn plain(color: Rgb) -> Self {
         Self { texels: vec![0], colors: [color; 256], width_bits: 0, height_bits: 0 }
     }
 
-    /// From a picture's pixels, row after row from its top row down.
+    /// Makes a texture of a picture's pixels, row after row from its top row down.
     ///
     /// Each side becomes the power of two up to 256 whose ratio to it is nearest to 1, by averaging
     /// over the area that a texel covers, in exact fractions rounded once. (Values of the DAC are
@@ -135,7 +135,7 @@ impl Texture {
     /// pixel gets the nearest that is left; up to 256 stay what they are.
     ///
     /// # Errors
-    /// A side of 0 or above 4,096; pixels that are not `width·height`.
+    /// A side of 0 or above 4,096; a number of pixels other than `width·height`.
     pub fn from_rgb(width: u32, height: u32, pixels: &[Rgb]) -> Result<Self, TextureError> {
         let is_side = |side: u32| (1..=Self::MAX_PICTURE_SIDE).contains(&side);
         if !is_side(width) || !is_side(height) {
@@ -173,15 +173,15 @@ impl Texture {
         &self.texels
     }
 
-    /// The colours of the texels. Those that no texel has may be anything.
+    /// The colours of the texels. Entries without a texel may be anything.
     #[must_use]
     #[inline]
     pub fn colors(&self) -> &[Rgb; 256] {
         &self.colors
     }
 
-    /// Its colours on a surface of another: [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White
-    /// leaves them as they are.
+    /// The texture's colours on a surface of another: [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White leaves
+    /// them as they are.
     #[must_use]
     #[doc(hidden)]
     pub fn tinted(&self, tint: Rgb) -> [Rgb; 256] {
@@ -239,7 +239,7 @@ impl Texture {
         self.colors[usize::from(self.texels[(y << self.width_bits | x) as usize])]
     }
 
-    /// How many texels have each of the colours.
+    /// Counts the texels of each colour.
     #[must_use]
     #[doc(hidden)]
     pub fn histogram(&self) -> [u32; 256] {
@@ -258,7 +258,8 @@ impl fmt::Debug for Texture {
     }
 }
 
-/// At most `most` colours for the pixels, darkest first, and for each pixel the index of the nearest.
+/// Reduces the pixels to at most `most` colours, darkest first. Returns them and for each pixel the index of the
+/// nearest.
 fn reduced(pixels: &[Rgb], most: u16) -> (Vec<u8>, [Rgb; 256]) {
     let mut sorted = pixels.to_vec();
     sorted.sort_unstable();

@@ -1,4 +1,4 @@
-//! From a picture of any size to one whose sides are powers of two, by area.
+//! Resamples a picture of any size by area to one whose sides are powers of two.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -6,8 +6,8 @@ use alloc::vec::Vec;
 use super::Texture;
 use crate::palette::Rgb;
 
-/// The logarithm of the power of two up to 256 whose ratio to `side` is nearest to 1; the larger of
-/// two equally near, which no whole number has.
+/// The logarithm of the power of two up to 256 whose ratio to `side` is nearest to 1. Two equally near, which no whole
+/// number has, would give the larger.
 pub(super) fn nearest_power_of_two(side: u32) -> u32 {
     let lower = side.ilog2();
     // 2ˡ and 2ˡ⁺¹ are equally near at their geometric mean, whose square is 2²ˡ⁺¹. At most 2²⁴.
@@ -15,8 +15,8 @@ pub(super) fn nearest_power_of_two(side: u32) -> u32 {
     bits.min(Texture::MAX_SIDE.ilog2())
 }
 
-/// The parts of a row's pixels that lie in texel `i` of `to`: which pixels, and how much of each. A
-/// pixel counts `to` and a texel `from` units, so that both rows are `from·to` long.
+/// The parts of a row's pixels that lie in texel `i` of `to`: the pixels, and the share of each. A pixel counts `to`
+/// and a texel `from` units, so both rows are `from·to` long.
 fn parts(i: usize, from: usize, to: usize) -> impl Iterator<Item = (usize, u32)> {
     let (start, end) = (i * from, (i + 1) * from);
     (start / to..end.div_ceil(to)).map(move |pixel| {
@@ -26,8 +26,8 @@ fn parts(i: usize, from: usize, to: usize) -> impl Iterator<Item = (usize, u32)>
     })
 }
 
-/// Rows of `width` pixels, averaged over the areas of `to_width` × `to_height` texels. The weights of a
-/// texel's pixels add up to width × height, which is at most 2²⁴: the sums stay below 2³².
+/// Averages rows of `width` pixels over the areas of `to_width` × `to_height` texels. The weights of a texel's pixels
+/// add up to width × height, which is at most 2²⁴: the sums stay below 2³².
 pub(super) fn by_area(pixels: &[Rgb], width: usize, to_width: usize, to_height: usize) -> Vec<Rgb> {
     let height = pixels.len() / width;
     let whole = (width * height) as u32;

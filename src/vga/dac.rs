@@ -7,10 +7,9 @@
 //! | 3C8h | index to write to | the index that the next third write would change |
 //! | 3C9h | red, green, blue in turn | red, green, blue in turn |
 //!
-//! There is one address register and one count of three for both directions, as in the chip that IBM
-//! took (Inmos IMS G171); setting a read index leaves the address one further, so that 3C8h
-//! then reads one more. Sources: IBM PS/2 technical reference, video subsystem; FreeVGA; DOSBox
-//! `vga_dac.cpp`, which does the same.
+//! There is one address register and one count of three for both directions, as in the chip that IBM took (Inmos IMS
+//! G171). Setting a read index leaves the address one further, so 3C8h then reads one more. Sources: IBM PS/2 technical
+//! reference, video subsystem; FreeVGA; DOSBox `vga_dac.cpp`, which does so too.
 
 use core::ops::{Bound, RangeBounds};
 
@@ -21,11 +20,11 @@ use crate::palette::{BIOS, Palette, Rgb};
 pub struct Dac {
     /// 0x00RRGGBB, each channel an expanded 6-bit value: the form that the scan-out looks up.
     pub(super) shown: [u32; 256],
-    /// Every pixel's byte is ANDed with this on its way to the table.
+    /// The pixel mask: every pixel's byte is ANDed with it on its way to the table.
     pub(super) mask: u8,
     address: u8,
     reading: bool,
-    /// Which channel comes next: 0 red, 1 green, 2 blue.
+    /// The channel that comes next: 0 red, 1 green, 2 blue.
     channel: u8,
     /// The colour on its way, in 6 bits.
     latch: [u8; 3],
@@ -64,7 +63,7 @@ impl Dac {
         self.mask
     }
 
-    /// The colour that a pixel's byte shows as: looked up through the pixel mask, in 8 bits.
+    /// The colour that a pixel's byte shows: looked up through the pixel mask, in 8 bits.
     #[must_use]
     #[doc(hidden)]
     pub const fn color_of(&self, pixel: u8) -> Rgb {

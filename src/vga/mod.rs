@@ -165,7 +165,7 @@ impl Vga {
         self.beam.advance(nanoseconds);
     }
 
-    /// Where the beam is.
+    /// The position of the beam.
     #[must_use]
     pub const fn beam(&self) -> Beam {
         self.beam
@@ -177,8 +177,8 @@ impl Vga {
         &self.dac
     }
 
-    /// Loads all 256 entries, rounded down to 6 bits. Neither the memory nor the ports' index and
-    /// count take notice; the same holds for [`fade`](Self::fade) and [`cycle`](Self::cycle).
+    /// Loads all 256 entries, rounded down to 6 bits. The memory and the ports' index and count stay as they are; this
+    /// also holds for [`fade`](Self::fade) and [`cycle`](Self::cycle).
     pub fn set_palette(&mut self, palette: &Palette) {
         self.fade(palette, palette, 0);
     }

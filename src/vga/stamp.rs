@@ -1,19 +1,18 @@
-//! A number that tells whether anyone touched the frame.
+//! A number that tells whether the frame's memory was accessed.
 
 #[cfg(target_has_atomic = "ptr")]
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-/// How many stamps a machine takes from the common store at once: one atomic addition in so many
-/// accesses.
+/// The number of stamps that a machine takes from the common store at once: one atomic addition in so many accesses.
 const BLOCK: u64 = 1 << 20;
 
-/// Blocks given out so far. Block 0 is for memory that was never touched: all of it is alike.
+/// The number of blocks given out so far. Block 0 is for memory that was never touched: all of it is alike.
 #[cfg(target_has_atomic = "ptr")]
 static BLOCKS: AtomicUsize = AtomicUsize::new(1);
 
-/// Equal stamps mean equal memory, also between two machines: a renderer that drew into one would
-/// otherwise take the other's untouched frame for its own. (On a processor without atomic
-/// additions the stamps of two machines can meet; there a stamp speaks for one machine alone.)
+/// A stamp. Equal stamps mean equal memory, also between two machines: a renderer that drew into one would otherwise
+/// take the other's untouched frame for its own. (On a processor without atomic additions the stamps of two machines
+/// can meet; there a stamp speaks for one machine alone.)
 #[derive(Debug)]
 pub(super) struct Stamp {
     value: u64,
@@ -42,7 +41,7 @@ impl Stamp {
 }
 
 impl Clone for Stamp {
-    /// The copy's memory is the same, so its stamp is; its next one comes from a block of its own.
+    /// The stamp of a copy. The copy's memory is equal, so its stamp is; its next one comes from a block of its own.
     fn clone(&self) -> Self {
         Self { value: self.value, last: self.value }
     }

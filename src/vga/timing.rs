@@ -1,4 +1,4 @@
-//! When the beam is where: the clock behind port 3DAh.
+//! The position of the beam over time: the clock behind port 3DAh.
 //!
 //! Mode 13h has the timing of the 400-line text mode, scanned twice a row. Its CRTC registers, as
 //! every VGA BIOS loads them (5F 4F 50 82 54 80 BF 1F 00 41 … 9C 8E 8F 28 40 96 B9 A3), say:
@@ -54,10 +54,10 @@ const RETRACE_STARTS_AT: u64 = UNITS_PER_LINE * RETRACE_START as u64;
 
 const _: () = assert!(DOT_CLOCK as u64 * UNITS_PER_DOT == UNITS_PER_NANOSECOND * 1_000_000_000);
 
-/// Where the beam is. It starts at the first dot of the first line and moves when told to.
+/// The position of the beam. It starts at the first dot of the first line and moves when told to.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Beam {
-    /// Since the frame began, below `UNITS_PER_FRAME`.
+    /// The time since the frame began, below `UNITS_PER_FRAME`.
     units: u64,
 }
 
@@ -87,19 +87,19 @@ impl Beam {
         (self.units % UNITS_PER_LINE / UNITS_PER_DOT) as u32
     }
 
-    /// Whether a pixel is being shown.
+    /// Returns whether a pixel is being shown.
     #[must_use]
     pub const fn is_displaying(self) -> bool {
         self.line() < LINES_SHOWN && self.dot() < DOTS_SHOWN
     }
 
-    /// Whether the beam is on its way back up.
+    /// Returns whether the beam is on its way back up.
     #[must_use]
     pub const fn is_in_retrace(self) -> bool {
         RETRACE_START <= self.line() && self.line() < RETRACE_END
     }
 
-    /// What port 3DAh reads: [`NOT_DISPLAYING`] and [`VERTICAL_RETRACE`], all other bits 0.
+    /// The value that port 3DAh reads: [`NOT_DISPLAYING`] and [`VERTICAL_RETRACE`], all other bits 0.
     #[must_use]
     #[doc(hidden)]
     pub const fn status(self) -> u8 {
@@ -108,8 +108,8 @@ impl Beam {
         blank | retrace
     }
 
-    /// Nanoseconds until the next vertical retrace begins, rounded up; 1 to 14,268,124. During a
-    /// retrace it is the following one that counts.
+    /// Nanoseconds until the next vertical retrace begins, rounded up; 1 to 14,268,124. During a retrace the following
+    /// one counts.
     #[must_use]
     pub const fn nanoseconds_to_retrace(self) -> u64 {
         let ahead = (RETRACE_STARTS_AT + UNITS_PER_FRAME - self.units - 1) % UNITS_PER_FRAME + 1;

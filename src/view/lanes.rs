@@ -1,7 +1,7 @@
 //! Eight vertices at a time on the screen, in plain arrays that the compiler vectorises.
 //!
-//! The same numbers as [`ObjectView::project`] and [`ObjectView::project_inside`] give for each vertex: the same
-//! operations in the same order, and each of them (sum, product, quotient) rounds alike in a vector and alone. The
+//! Each vertex gets the numbers that [`ObjectView::project`] and [`ObjectView::project_inside`] give: the operations
+//! and their order are the same, and each of them (sum, product, quotient) rounds alike in a vector and alone. The
 //! rounding to 1/256 pixel stays in f32, where a coordinate within the limit is exact, and so is 256 times that:
 //!
 //! ```text
@@ -32,9 +32,10 @@ pub(crate) struct Narrow {
 /// Eight vertices on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Eight {
-    /// −1 if it is in front of the near plane and within the limit, else 0. Of others the numbers below mean nothing.
+    /// −1 for a vertex in front of the near plane and within the limit, else 0. For others the numbers below mean
+    /// nothing.
     pub(crate) within: [i32; LANES],
-    /// In 1/256 pixel.
+    /// The coordinates in 1/256 pixel.
     pub(crate) x: [i32; LANES],
     pub(crate) y: [i32; LANES],
     pub(crate) depth: [i32; LANES],
@@ -49,10 +50,10 @@ impl ObjectView {
 }
 
 impl Narrow {
-    /// The most that a coordinate is, in pixels.
+    /// The max coordinate, in pixels.
     pub(crate) const LIMIT: f32 = ObjectView::LIMIT as f32 + 0.5;
 
-    /// Eight vertices, for all of which [`ObjectView::project`] gives what is within, and nothing for what is not.
+    /// Projects eight vertices: those for which [`ObjectView::project`] gives a vertex are within, the others are not.
     #[inline(always)]
     pub(crate) fn project(&self, points: &[Vec3; LANES]) -> Eight {
         const { assert!(Vertex::GUARD_BAND as f32 >= Self::LIMIT * 256.0) };
@@ -72,7 +73,7 @@ impl Narrow {
         }
         let mut eight = Eight { within: [0; LANES], x: [0; LANES], y: [0; LANES], depth: [0; LANES] };
         for i in 0..LANES {
-            // What is no number fails it.
+            // NaN fails it.
             let is_within = (w[i] >= *near) & (x[i].abs() <= Self::LIMIT) & (y[i].abs() <= Self::LIMIT);
             eight.within[i] = -i32::from(is_within);
         }
@@ -91,7 +92,7 @@ impl Narrow {
     }
 }
 
-/// `floor(256·pixels + ½)` of a coordinate within the limit; of others some number.
+/// `floor(256·pixels + ½)` for a coordinate within the limit; some number for others.
 #[inline(always)]
 fn units(pixels: f32) -> i32 {
     const MAGIC: f32 = 12_582_912.0;

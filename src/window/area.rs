@@ -13,15 +13,15 @@ pub struct Area {
     pub left: usize,
     /// Rows of the window above it.
     pub top: usize,
-    /// Its columns.
+    /// The number of columns.
     pub width: usize,
-    /// Its rows.
+    /// The number of rows.
     pub height: usize,
 }
 
 impl Area {
-    /// Where the picture stands in a window: the largest 4:3 rectangle in the middle. Both its sides may be a part of a
-    /// pixel too short.
+    /// The picture's rectangle in a window: the largest of 4:3 in the middle. Both its sides may be a part of a pixel
+    /// too short.
     pub fn within(width: usize, height: usize) -> Area {
         let (w, h) = if width * 3 <= height * 4 { (width, width * 3 / 4) } else { (height * 4 / 3, height) };
         Area { left: (width - w) / 2, top: (height - h) / 2, width: w, height: h }

@@ -7,7 +7,7 @@ use crate::palette::Rgb;
 /// one.
 ///
 /// With the feature `embedded-graphics` it is a `DrawTarget` of `Rgb888`: text, lines and shapes at the window's own
-/// resolution. What reaches beyond the window is left out.
+/// resolution. Parts beyond the window are left out.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct Canvas<'a> {
@@ -34,17 +34,17 @@ impl<'a> Canvas<'a> {
         Canvas { pixels, width, height, picture }
     }
 
-    /// Its columns.
+    /// The number of columns.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Its rows.
+    /// The number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// Where the picture stands on it.
+    /// The rectangle that the picture covers.
     pub fn picture(&self) -> Area {
         self.picture
     }
@@ -54,8 +54,8 @@ impl<'a> Canvas<'a> {
         self.pixels
     }
 
-    /// The pixels of a rectangle, as far as it lies on the canvas: of each row its number, counted from the rectangle's
-    /// top, and its pixels.
+    /// The rows of a rectangle, as far as it lies on the canvas: for each its number, counted from the rectangle's top,
+    /// and its pixels.
     fn rows_mut(&mut self, area: Area) -> impl Iterator<Item = (usize, &mut [u32])> {
         let across = area.left.min(self.width)..area.left.saturating_add(area.width).min(self.width);
         let rows = self.pixels.chunks_exact_mut(self.width.max(1)).skip(area.top).take(area.height);
@@ -67,7 +67,7 @@ impl<'a> Canvas<'a> {
         self.rows_mut(area).for_each(|(_, row)| row.fill(color.to_u32()));
     }
 
-    /// Fills a rectangle so that what is under it shines through: `share` of 255 is the new colour.
+    /// Fills a rectangle so that the pixels under it shine through: `share` of 255 is the new colour.
     pub fn blend(&mut self, area: Area, color: Rgb, share: u8) {
         for pixel in self.rows_mut(area).flat_map(|(_, row)| row) {
             *pixel = Rgb::from_u32(*pixel).mix(color, share).to_u32();
@@ -147,7 +147,7 @@ mod tests {
 
     const SIZE: (usize, usize) = (7, 5);
 
-    /// What `draw` makes of a canvas of one colour, pixel by pixel.
+    /// Draws on a canvas of one colour and returns its pixels.
     fn drawn(draw: impl FnOnce(&mut Canvas<'_>)) -> Vec<u32> {
         let mut pixels = vec![0x102030; SIZE.0 * SIZE.1];
         draw(&mut Canvas::new(&mut pixels, SIZE.0, SIZE.1).expect("the right number of pixels"));

@@ -15,7 +15,7 @@ pub(super) struct Picture {
     columns: Vec<usize>,
     frame: Vec<u32>,
     stretched: Vec<u32>,
-    /// Whether something may be drawn beside the picture.
+    /// Something may be drawn beside the picture.
     is_drawn_over: bool,
 }
 
@@ -24,8 +24,8 @@ impl Picture {
         self.place
     }
 
-    /// What `vga` displays, at `width` × `height` pixels of the window: 0x00RRGGBB, row by row, black beside the
-    /// picture. Each pixel shows the one of the frame that its centre falls in.
+    /// Stretches the picture that `vga` displays to `width` × `height` pixels of the window: 0x00RRGGBB, row by row,
+    /// black beside the picture. Each pixel shows the one of the frame that its centre falls in.
     pub(super) fn stretch(&mut self, vga: &Vga, width: usize, height: usize) -> &[u32] {
         if mem::take(&mut self.is_drawn_over) {
             self.stretched.fill(0);
@@ -59,13 +59,13 @@ impl Picture {
         &self.stretched
     }
 
-    /// What was stretched last, to be drawn over.
+    /// The last stretched picture, to be drawn over.
     pub(super) fn canvas(&mut self) -> Canvas<'_> {
         self.is_drawn_over = true;
         Canvas::over(&mut self.stretched, self.size, self.place)
     }
 
-    /// What was stretched last, with what was drawn over it, if it has this size.
+    /// The last stretched picture, with anything drawn over it, if it has this size.
     pub(super) fn last(&self, width: usize, height: usize) -> Option<&[u32]> {
         (self.size == (width, height) && !self.stretched.is_empty()).then_some(&self.stretched)
     }

@@ -1,4 +1,4 @@
-//! What the user did between two frames.
+//! The user's input between two frames.
 
 use std::cell::RefCell;
 use std::mem;
@@ -23,7 +23,7 @@ pub struct Buttons {
     pub right: bool,
 }
 
-/// What the user did since the last frame, and what they hold.
+/// The user's input since the last frame, and the keys and buttons that are held.
 #[derive(Clone, Debug, Default)]
 pub struct Input {
     pressed: Vec<Key>,
@@ -38,18 +38,18 @@ pub struct Input {
 }
 
 impl Input {
-    /// Whether the key went down since the last frame, however short it was.
+    /// Returns whether the key went down since the last frame, however short it was.
     pub fn pressed(&self, key: Key) -> bool {
         self.pressed.contains(&key)
     }
 
-    /// Whether the key went down since the last frame while Shift was down, however short both were.
+    /// Returns whether the key went down since the last frame while Shift was down, however short both were.
     #[doc(hidden)]
     pub fn pressed_with_shift(&self, key: Key) -> bool {
         self.shifted.contains(&key)
     }
 
-    /// Whether the key is down.
+    /// Returns whether the key is down.
     pub fn held(&self, key: Key) -> bool {
         self.held.contains(&key)
     }
@@ -60,8 +60,8 @@ impl Input {
         &self.typed
     }
 
-    /// Where the mouse is, in pixels of the frame, from the top left corner: 0 to 320 across and 0 to 200 down while
-    /// it is on the picture, `None` while it is outside of the window.
+    /// The position of the mouse, in pixels of the frame, from the top left corner: 0 to 320 across and 0 to 200 down
+    /// while it is on the picture, `None` while it is outside of the window.
     pub fn mouse(&self) -> Option<(f32, f32)> {
         self.mouse
     }
@@ -71,18 +71,18 @@ impl Input {
         self.buttons
     }
 
-    /// How far the mouse was drawn with its left button down since the last frame, in pixels of the frame: to the
-    /// right and down.
+    /// The distance that the mouse was drawn with its left button down since the last frame, in pixels of the frame: to
+    /// the right and down.
     pub fn drag(&self) -> (f32, f32) {
         self.drag
     }
 
-    /// By how many notches the wheel was turned since the last frame; away from the user is positive.
+    /// The number of notches that the wheel was turned since the last frame; away from the user is positive.
     pub fn wheel(&self) -> f32 {
         self.wheel
     }
 
-    /// Whether the user did anything, or holds anything, after `before`.
+    /// Returns whether the user did anything, or holds anything, after `before`.
     pub(super) fn differs(&self, before: &Input) -> bool {
         let Input { pressed, shifted: _, held, typed, mouse, buttons, drag, wheel } = self;
         !(pressed.is_empty() && held.is_empty() && typed.is_empty())
@@ -112,7 +112,7 @@ pub(super) struct Events {
     queue: Rc<RefCell<Queue>>,
     held: Vec<Key>,
     active: bool,
-    /// Where the mouse was while its left button was down, in pixels of the frame.
+    /// The position of the mouse while its left button was down, in pixels of the frame.
     drawn_from: Option<(f32, f32)>,
 }
 
@@ -127,7 +127,7 @@ impl InputCallback for Events {
 }
 
 impl Events {
-    /// What happened since the last call.
+    /// Collects the input since the last call.
     pub(super) fn collect(&mut self, window: &Window, place: Area) -> Input {
         let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
         let Pressed { pressed, shifted } = self.follow(&keys);
@@ -170,7 +170,7 @@ impl Events {
         keys
     }
 
-    /// How far the mouse came since the last call, if its button is and was down.
+    /// The distance that the mouse moved since the last call, if its button is and was down.
     fn draw(&mut self, at: Option<(f32, f32)>) -> (f32, f32) {
         let from = mem::replace(&mut self.drawn_from, at);
         match (from, at) {

@@ -1,4 +1,4 @@
-//! A window that shows a [`Vga`], and what the user does in it.
+//! A window that shows a [`Vga`], and the user's input in it.
 //!
 //! [`run`] is a whole game's frame; [`Window`] is the same for programs that keep their own loop. Without a display
 //! both give a [`WindowError`] and no panic.
@@ -26,12 +26,12 @@ use input::Events;
 /// A frame of the VGA: 800 clocks × 449 lines at 25.175 MHz, 70.086 Hz.
 const FRAME: Duration = Duration::from_nanos(800 * 449 * 1_000_000 / 25_175);
 
-/// How often [`Window::rest`] looks for input: a key is answered within a twentieth of a second.
+/// The interval in which [`Window::rest`] looks for input: a key is answered within a twentieth of a second.
 const LOOK: Duration = Duration::from_millis(25);
-/// After how long [`Window::rest`] sends the picture again.
+/// The interval in which [`Window::rest`] sends the picture again.
 const RESEND: Duration = Duration::from_millis(500);
 
-/// Whether the window stays open after a frame.
+/// The decision whether the window stays open after a frame.
 #[derive(Clone, Copy, Hash, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// The next frame follows.
@@ -40,13 +40,13 @@ pub enum Flow {
     Close,
 }
 
-/// What a frame function of [`run`] may return: nothing (the window stays open), a [`Flow`], or a `Result` with either
-/// in it, whose error ends the run and is returned by it.
+/// The result of a frame function of [`run`]: nothing (the window stays open), a [`Flow`], or a `Result` with either in
+/// it, whose error ends the run and is returned by it.
 pub trait FrameResult {
-    /// What [`run`] fails with.
+    /// The error that [`run`] fails with.
     type Error: From<WindowError>;
 
-    /// Whether the window stays open.
+    /// Returns whether the window stays open.
     ///
     /// # Errors
     ///
@@ -90,9 +90,9 @@ impl<E: From<WindowError>> FrameResult for Result<Flow, E> {
 /// Opens a window and calls `frame` for every frame, at most 70 times a second, until it returns [`Flow::Close`] or an
 /// error, or the user closes the window.
 ///
-/// `frame` is given the machine to draw on, what the user did since the last frame, and the seconds since the window
-/// opened. These are absolute: after a pause the next frame is drawn for the time that it is then, and none is made
-/// up for. The machine's own clock, which port 3DAh shows, moves with them.
+/// `frame` is given the machine to draw on, the user's input since the last frame, and the seconds since the window
+/// opened. These are absolute: after a pause the next frame is drawn for the time that it is then, and no missed frame
+/// is made up for. The machine's own clock, which port 3DAh shows, moves with them.
 ///
 /// # Errors
 ///
@@ -127,20 +127,20 @@ pub fn run<R: FrameResult>(title: &str, mut frame: impl FnMut(&mut Vga, &Input, 
     }
 }
 
-/// An open window. [`run`] is all that most programs need of it.
+/// An open window. Most programs need only [`run`].
 pub struct Window {
     window: minifb::Window,
     events: Events,
     input: Input,
-    /// Whether the user did something in the time that the input is of.
+    /// The user did something in the time of the input.
     has_input: bool,
     picture: Picture,
     opened: Instant,
     /// The time that the current frame is drawn for.
     now: Instant,
-    /// When the last frame was due, or came if it was late.
+    /// The time when the last frame was due, or when it came if it was late.
     begun: Instant,
-    /// When the picture was last sent to the display.
+    /// The time when the picture was last sent to the display.
     sent: Instant,
 }
 
@@ -169,7 +169,7 @@ impl Window {
         self.window.set_title(&printable(title));
     }
 
-    /// What the user did between the last two frames.
+    /// The user's input between the last two frames.
     pub fn input(&self) -> &Input {
         &self.input
     }
@@ -179,8 +179,8 @@ impl Window {
         self.now.duration_since(self.opened).as_secs_f64()
     }
 
-    /// Shows what `vga` displays, waits until the next frame is due, and collects what the user did in the meantime.
-    /// [`Flow::Close`] if the user has closed the window.
+    /// Shows the picture of `vga`, waits until the next frame is due, and collects the user's input in the meantime.
+    /// Returns [`Flow::Close`] if the user has closed the window.
     ///
     /// # Errors
     ///
@@ -192,8 +192,8 @@ impl Window {
         self.send()
     }
 
-    /// [`show`](Self::show), with what `over` draws over the stretched picture, at the window's own resolution: text that
-    /// stays readable, panels that leave the picture as it is.
+    /// Shows the picture as [`show`](Self::show) does, and what `over` draws over it, at the window's own resolution:
+    /// text that stays readable, panels that leave the picture as it is.
     ///
     /// # Errors
     ///
@@ -207,8 +207,8 @@ impl Window {
         self.send()
     }
 
-    /// Leaves what was shown last as it is, and waits until the user does something, at most for `longest`: for a picture
-    /// that stands still, next to no work. It is looked for input every 25 ms.
+    /// Leaves the last picture as it is, and waits until the user does something, at most for `longest`: next to no
+    /// work for a picture that stands still. Input is looked for every 25 ms.
     ///
     /// A display may forget what a window shows while it is covered. So the picture is sent again twice a second.
     ///
@@ -236,7 +236,7 @@ impl Window {
         self.window.get_size()
     }
 
-    /// Sends what was stretched last to the display.
+    /// Sends the last stretched picture to the display.
     fn send(&mut self) -> Result<Flow, WindowError> {
         let (width, height) = self.size();
         match self.picture.last(width, height) {
@@ -256,7 +256,8 @@ impl Window {
         if self.window.is_open() { Flow::Continue } else { Flow::Close }
     }
 
-    /// Waits until so long after the last frame began. A late frame puts off those that follow: none is made up for.
+    /// Waits until so long after the last frame began. A late frame puts off those that follow: no missed frame is made
+    /// up for.
     fn wait(&mut self, period: Duration) {
         let (now, due) = (Instant::now(), self.begun + period);
         self.begun = due.max(now);
@@ -269,7 +270,7 @@ fn printable(title: &str) -> String {
     title.replace('\0', " ")
 }
 
-/// That there is no display, or that it went away.
+/// The error of a display that does not exist, or that went away.
 #[derive(Debug)]
 pub struct WindowError {
     reason: minifb::Error,

@@ -61,7 +61,7 @@ fn written<W: Write>(frames: &Frames, scale: Scale, colors: &FilmColors, out: W)
 /// The red, green and blue of each pixel.
 type Colors = Vec<[u8; 3]>;
 
-/// What a reader shows of each frame, how many frames blend, and how long each stays.
+/// The pictures that a reader shows, one for each frame; how many frames blend, and how long each stays.
 fn shown(file: &[u8]) -> (Vec<Colors>, usize, Vec<(u16, u16)>) {
     let mut decoder = Decoder::new(Cursor::new(file));
     decoder.set_transformations(Transformations::EXPAND);
@@ -122,7 +122,7 @@ fn a_film_shows_what_was_given() {
                 let expected: Vec<_> = frames.iter().map(|frame| given(frame, across, down)).collect();
                 assert!(shown == expected, "{colors:?} at {scale}");
                 assert_eq!(delays, [(1, 35); 40]);
-                // Where no entry is free, nothing is transparent.
+                // Without a free entry, nothing is transparent.
                 assert!(blending == 0 || (colors != FilmColors::True && palette != distinct));
                 blended += blending;
             }

@@ -1,32 +1,32 @@
-//! Why a model is refused, and where in the file.
+//! The errors of a model that is refused, with their place in the file.
 
 use std::path::{Path, PathBuf};
 use std::string::String;
 use std::{error, fmt, io};
 
-/// Why a model is refused. Displayed as `path:line: what`, on one line.
+/// An error of a model that is refused. Displayed as `path:line: what`, on one line.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ObjError {
     /// The file, as the caller or `mtllib` named it.
     pub path: PathBuf,
-    /// Counted from 1. `None` where no one line is at fault.
+    /// The line, counted from 1. `None` if no one line is at fault.
     pub line: Option<u64>,
-    /// What is wrong.
+    /// The kind of the error.
     pub kind: ObjErrorKind,
 }
 
-/// What is wrong with a model.
+/// The kinds of errors of a model.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ObjErrorKind {
-    /// The file is not there or cannot be read.
+    /// The file does not exist or cannot be read.
     Read(io::Error),
     /// The path is that of a directory.
     Directory,
     /// Not a text file.
     NotText,
-    /// Fewer numbers than the statement needs.
+    /// The statement needs more numbers.
     Missing(&'static str),
     /// This should be a number.
     NotNumber(String),
@@ -42,7 +42,7 @@ pub enum ObjErrorKind {
         what: &'static str,
         /// The index as it stands in the file.
         index: i64,
-        /// How many there are: in the file, or for a negative index up to this line.
+        /// The number of entries: in the file, or for a negative index up to this line.
         count: usize,
     },
     /// A face of one or two corners.

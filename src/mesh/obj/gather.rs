@@ -14,19 +14,19 @@ use crate::mesh::shells::{self, InsideOut};
 use crate::mesh::topology::Edges;
 use crate::mesh::{Mesh, Surface, Weight, normals, topology, twins};
 
-/// What a model's faces were found to have wrong, and was mended.
+/// Counts of a model's faces that were wrong and were mended.
 #[derive(Default)]
 pub(super) struct Mended {
-    /// Pairs of faces back to back that were left out.
+    /// The number of pairs of faces back to back that were left out.
     pub(super) pairs: usize,
-    /// Bodies that were turned, being inside out.
+    /// The number of bodies that were turned, being inside out.
     pub(super) turned: usize,
 }
 
-/// The mesh. `surfaces` are those of `model.names`; those that no face uses are dropped.
+/// Makes the mesh. `surfaces` are those of `model.names`; those that no face uses are dropped.
 ///
 /// # Errors
-/// What is wrong, and in which line if one is at fault.
+/// The error, with the line if one is at fault.
 pub(super) fn mesh(
     model: Model,
     surfaces: Vec<Surface>,
@@ -93,14 +93,14 @@ pub(super) fn mesh(
     Ok((mesh.with_facts(), mended))
 }
 
-/// Keeps what is to be kept, of a list that has one for each, or none at all.
+/// Removes the entries that are not to be kept from a list with one for each, or none at all.
 fn retain<T>(list: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     list.retain(|_| keep.next().is_none_or(|&keep| keep));
 }
 
 /// Turns faces round that are inside out, and with them their given normals, if more of these then look inward than
-/// outward in a body. Returns the vertices of which a copy is needed, for such a face beside one that keeps its normal; the
+/// outward in a body. Returns the vertices that need a copy, for such a face beside one that keeps its normal; the
 /// copies come at the end.
 fn turn(
     inside_out: &InsideOut,
@@ -124,7 +124,7 @@ fn turn(
             triangle.iter().for_each(|&vertex| is_shared[vertex as usize] = true);
         }
     }
-    // Of each vertex of a turned face the vertex that has the turned normal.
+    // For each vertex of a turned face, the vertex that has the turned normal.
     let mut turned: HashMap<u32, u32> = HashMap::new();
     let mut copies = Vec::new();
     for (number, triangle) in triangles.iter_mut().enumerate() {
@@ -148,14 +148,14 @@ fn turn(
     copies
 }
 
-/// What the faces of a file come to.
+/// The triangles that the faces of a file are split into.
 struct Split {
-    /// Three corners each, by their numbers in the file.
+    /// The triangles: three corners each, by their numbers in the file.
     triangles: Vec<[u32; 3]>,
     triangle_surfaces: Vec<u16>,
-    /// For each triangle its smoothing group; empty if the file has none.
+    /// The smoothing group of each triangle; empty if the file has none.
     groups: Vec<u32>,
-    /// Those that are used.
+    /// The surfaces that are used.
     surfaces: Vec<Surface>,
 }
 

@@ -50,7 +50,7 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// Appends a line of the file to the buffer, without its end. `false`: there is none.
+    /// Appends a line of the file to the buffer, without its end. Returns `false` if there is none.
     fn append_line(&mut self) -> io::Result<bool> {
         let mut begun = false;
         loop {

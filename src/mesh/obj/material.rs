@@ -1,4 +1,4 @@
-//! MTL files, and which of their materials a model uses.
+//! MTL files, and the materials of them that a model uses.
 
 use core::iter;
 use std::collections::HashMap;
@@ -64,11 +64,11 @@ pub(super) fn surfaces(
     Ok(surfaces)
 }
 
-/// The MTL files that were asked for. Each is read once, however often it is named.
+/// The MTL files that a model names. Each is read once, however often it is named.
 struct Files<'a, L> {
     folder: &'a Path,
     library: L,
-    /// What a file holds; `None` when its materials have been taken.
+    /// The bytes of each file; `None` when its materials have been taken.
     read: HashMap<PathBuf, Option<Vec<u8>>>,
 }
 
@@ -88,7 +88,7 @@ impl<L: FnMut(&Path) -> io::Result<Vec<u8>>> Files<'_, L> {
     }
 }
 
-/// The materials of one file; of two with the same name the later one holds.
+/// Reads the materials of one file; of two with the same name the later one holds.
 fn read(
     bytes: &[u8],
     path: &Path,

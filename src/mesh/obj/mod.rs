@@ -9,12 +9,12 @@
 //! | `mtllib`, `usemtl` | surfaces: `Kd`, `Ks`, `Ns`, `map_Kd` of the MTL file |
 //! | all others, `l` and `p` among them | left alone |
 //!
-//! A backslash at the end of a line joins it to the next. LF, CR LF and CR end a line, which need not be
-//! UTF-8 and may be of any length. Each different triple of position, texture coordinates and normal becomes a vertex; what
-//! no face uses does not. A face of n corners becomes n − 2 triangles, those without area among them.
+//! A backslash at the end of a line joins it to the next. LF, CR LF and CR end a line, which need not be UTF-8 and may
+//! be of any length. Each different triple of position, texture coordinates and normal that a face uses becomes a
+//! vertex. A face of n corners becomes n − 2 triangles, those without area among them.
 //!
-//! Corners without a normal, or with one of length 0, get the mean by angle over faces at that position: those of the
-//! same smoothing group; where the file names no group, those that meet at no more than the crease angle
+//! A corner without a normal, or with one of length 0, gets the mean by angle over faces at that position: those of the
+//! same smoothing group; or, if the file names no group, those that meet at no more than the crease angle
 //! ([`Options::crease`]).
 //!
 //! Two faults of scans are mended in a model that is closed, each with a warning. Pairs of triangles back to back, of the
@@ -51,33 +51,34 @@ pub use error::{ObjError, ObjErrorKind};
 use progress::Counted;
 use warnings::Warnings;
 
-/// A model and what was found wanting while it was read.
+/// A model and the warnings of its reading.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Loaded {
     /// The model.
     pub mesh: Mesh,
-    /// One line each, with the file and the line in it: the first hundred, and how many more there are.
+    /// The warnings, one line each, with the file and the line in it: the first hundred, and the number of further
+    /// ones.
     pub warnings: Vec<String>,
-    /// The files that were read or looked for: the model's own where it was loaded from one, MTL files, and textures
-    /// that the materials name. Some may not exist.
+    /// The files that were read or looked for: the model's own if it was loaded from one, MTL files, and textures that
+    /// the materials name. Some may not exist.
     pub files: Vec<PathBuf>,
 }
 
-/// The crease angle of models that ask for none.
+/// The crease angle of models without one.
 const CREASE: Angle = Angle::from_degrees(40.0);
 
-/// How a model is read.
+/// The options for reading a model.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[doc(hidden)]
 pub struct Options {
-    /// The crease angle for corners without a normal: faces whose normals differ by more have an edge between
-    /// them. 180° is smooth everywhere, 0 flat; what is beyond counts as these. With `None` the smoothing groups of the
-    /// file hold, and where it has none, 40°; but a scan, whose sharp edges end anywhere, is smooth everywhere.
+    /// The crease angle for corners without a normal: faces whose normals differ by more have an edge between them.
+    /// 180° is smooth everywhere, 0 flat; values beyond count as these. With `None` the smoothing groups of the file
+    /// hold, and without groups 40°; but a scan, whose sharp edges end anywhere, is smooth everywhere.
     pub crease: Option<Angle>,
 }
 
-/// Reads an OBJ file and the MTL files that it names. Of textures it only looks whether they exist.
+/// Reads an OBJ file and the MTL files that it names. Textures are only tested for existence.
 ///
 /// # Errors
 /// A file that cannot be read, or that is broken: see [`ObjErrorKind`].
@@ -85,13 +86,12 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, ObjError> {
     load_with(path, &Options::default(), |_, _| {})
 }
 
-/// Reads a file as [`load`] does, as `options` say, and tells `progress` how much of the OBJ file has been read, in bytes,
-/// and how long the file is: after every 64 KiB or so, and at the end. What remains then, making a mesh of it, takes about
-/// as long again. Of a pipe or a device the length is 0; a file that grows meanwhile may be read beyond the length that it
-/// had.
+/// Reads a file with `options`, as [`load`] does. It tells `progress` how many bytes of the OBJ file have been read,
+/// and how long the file is: after every 64 KiB or so, and at the end. Making a mesh of it then takes about as long
+/// again. A pipe or a device has the length 0; a file that grows meanwhile may be read beyond the length that it had.
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 #[doc(hidden)]
 pub fn load_with(
     path: impl AsRef<Path>,
@@ -123,7 +123,7 @@ fn textures(mesh: &Mesh) -> impl Iterator<Item = PathBuf> {
     mesh.surfaces().iter().filter_map(|surface| surface.texture.as_ref().map(PathBuf::from))
 }
 
-/// The bytes of an MTL file. What is no ordinary file is refused: a model may name a device that never ends.
+/// Reads the bytes of an MTL file. Only ordinary files are accepted: a model may name a device that never ends.
 fn library_file(path: &Path) -> io::Result<Vec<u8>> {
     match fs::metadata(path)?.is_file() {
         true => fs::read(path),
@@ -131,8 +131,8 @@ fn library_file(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
-/// Reads a model from `reader`. `path` is what errors call it, and MTL files are looked for beside it:
-/// `library` is given their paths and returns their bytes. Textures are not looked for.
+/// Reads a model from `reader`. Errors call it `path`, and MTL files are looked for beside that: `library` is given
+/// their paths and returns their bytes. Textures are not looked for.
 ///
 /// ```
 /// use mode13h::mesh::obj;
@@ -147,7 +147,7 @@ fn library_file(path: &Path) -> io::Result<Vec<u8>> {
 /// ```
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 pub fn parse(
     reader: impl BufRead,
     path: impl AsRef<Path>,
@@ -156,10 +156,10 @@ pub fn parse(
     parse_with(reader, path, library, &Options::default())
 }
 
-/// Reads a model as [`parse`] does, as `options` say.
+/// Reads a model with `options`, as [`parse`] does.
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 #[doc(hidden)]
 pub fn parse_with(
     reader: impl BufRead,

@@ -1,5 +1,5 @@
-//! A face of more than three corners, into triangles: a fan if it is convex, ears cut off if not; a large one that is
-//! monotone, as a convex one whose corners were rounded, from side to side.
+//! Splits a face of more than three corners into triangles: by a fan if it is convex, otherwise by cutting ears. A
+//! large face that is monotone, such as a convex one whose corners were rounded, is split from side to side.
 
 use core::mem;
 use std::vec::Vec;
@@ -10,9 +10,10 @@ use glam::Vec3;
 use super::ObjErrorKind;
 use crate::mesh::wide::{Wide, add, cross, sub, widen};
 
-/// The most corners of a concave face, unless it is monotone. Cutting ears takes time by the square of their number when corners are spread
-/// unevenly or edges cross: 20,000 take 0.1 s in the shape of a star, 4 s in the shape of many crossing pentagrams, and
-/// 64,000 already 10 s and more. So no corner of a file costs more than 20,000 steps.
+/// The max number of corners of a concave face, unless it is monotone. The time of cutting ears grows by the square of
+/// their number if corners are spread unevenly or edges cross: 20,000 take 0.1 s in the shape of a star, 4 s in the
+/// shape of many crossing pentagrams, and 64,000 already 10 s and more. So no corner of a file costs more than 20,000
+/// steps.
 pub(super) const MAX_CONCAVE: usize = 20_000;
 
 /// Buffers that one face after the other uses.
@@ -37,9 +38,9 @@ impl Splitter {
         }
     }
 
-    /// n − 2 triangles for a face of n corners, as numbers of its corners, in the face's winding. Each
-    /// edge of the face is an edge of one of them, so that no gap opens to its neighbours; a corner in
-    /// the middle of a straight edge is therefore kept, if need be by a triangle of no area.
+    /// Splits a face of n corners into n − 2 triangles, as numbers of its corners, in the face's winding. Each edge of
+    /// the face is an edge of one of them, so no gap opens to its neighbours. A corner in the middle of a straight edge
+    /// is therefore kept, if need be by a triangle of no area.
     pub(super) fn split(&mut self, corners: &[Vec3]) -> Result<&[[u32; 3]], ObjErrorKind> {
         self.triangles.clear();
         if corners.len() > 3 && self.flatten(corners) && !self.is_convex() {
@@ -60,18 +61,18 @@ impl Splitter {
         Ok(&self.triangles)
     }
 
-    /// Triangles for a face that is **monotone**: along one axis (0 or 1) its outline goes forth once and back once, so that
-    /// a line across the axis meets it twice. `false` if it is not. It takes time by the number of corners (M. Garey and
-    /// others, "Triangulating a simple polygon", 1978).
+    /// Splits a face that is **monotone**: along one axis (0 or 1) its outline goes forth once and back once, so that a
+    /// line across the axis meets it twice. Returns `false` if it is not. The time grows with the number of corners (M.
+    /// Garey and others, "Triangulating a simple polygon", 1978).
     ///
-    /// Convex faces are so, and stay so when their corners are rounded, which keeps the order of coordinates; convex they
-    /// do not stay: a corner of a ring of 30,000 rises over its neighbours by less than f32 holds.
+    /// Convex faces are monotone, and stay so when their corners are rounded, which keeps the order of coordinates.
+    /// They do not stay convex: a corner of a ring of 30,000 rises over its neighbours by less than f32 holds.
     fn sweep(&mut self, axis: usize) -> bool {
         let n = self.flat.len();
         let at = |i: u32| self.flat[i as usize % n][axis];
         // Fewer than 2³² corners, see `statement`.
         let count = n as u32;
-        // Where the least coordinate is left for good, and where the greatest is reached.
+        // The corners where the least coordinate is left for good, and where the greatest is reached.
         let least = (0..count).fold(0, |best, i| if at(i) < at(best) { i } else { best });
         let Some(first) = (least..least + count).find(|&i| at(i + 1) > at(i)) else { return false };
         let turn = (first..first + count).find(|&i| at(i + 1) < at(i)).unwrap_or(first);
@@ -126,8 +127,9 @@ impl Splitter {
         }
     }
 
-    /// Runs along the same edge twice in the same direction, as no outline does, not even one that is cut open to a
-    /// hole. Ear cutting would find that out by the cube of the corners: a triangle gone round 1,300 times took 15 s.
+    /// Returns whether the face runs along an edge twice in the same direction, as no outline does, not even one that
+    /// is cut open to a hole. Ear cutting would find that out by the cube of the corners: a triangle gone round 1,300
+    /// times took 15 s.
     fn repeats_an_edge(&self) -> bool {
         let next = self.flat.iter().cycle().skip(1);
         // 0 and −0 are the same place.
@@ -138,8 +140,8 @@ impl Splitter {
         edges.windows(2).any(|pair| pair[0] == pair[1])
     }
 
-    /// Onto the plane of two axes that the face is most nearly parallel to, so that it is
-    /// counter-clockwise there. `false` if it has no area.
+    /// Projects the face onto the plane of two axes that it is most nearly parallel to, so that it is counter-clockwise
+    /// there. Returns `false` if it has no area.
     fn flatten(&mut self, corners: &[Vec3]) -> bool {
         let origin = widen(corners[0]);
         let from_first = |p: Vec3| sub(widen(p), origin);
@@ -171,7 +173,7 @@ impl Splitter {
         true
     }
 
-    /// Turns left or not at all at each corner, and goes round once in all.
+    /// Returns whether the face turns left or not at all at each corner, and goes round once in all.
     fn is_convex(&self) -> bool {
         let n = self.flat.len();
         let edge = |i: usize| {
@@ -226,7 +228,7 @@ impl Splitter {
     }
 }
 
-/// In the order of the face.
+/// The triangle's corners in the order of the face.
 fn ascending(mut triangle: [u32; 3]) -> [u32; 3] {
     triangle.sort_unstable();
     triangle

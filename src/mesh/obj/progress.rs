@@ -1,4 +1,4 @@
-//! How far a file has been read.
+//! The progress of reading a file.
 
 use std::io::{self, Read};
 

@@ -1,4 +1,4 @@
-//! The statements of an OBJ file, into lists as they stand there.
+//! The statements of an OBJ file, read into lists in their order.
 
 use std::io::BufRead;
 use std::path::Path;
@@ -23,7 +23,7 @@ impl Corner {
     pub(super) const NONE: u32 = u32::MAX;
 }
 
-/// What an OBJ file says.
+/// The statements of an OBJ file.
 #[derive(Default)]
 pub(super) struct Model {
     pub(super) positions: Vec<Vec3>,
@@ -31,13 +31,14 @@ pub(super) struct Model {
     pub(super) normals: Vec<Vec3>,
     /// The corners of all faces in turn.
     pub(super) corners: Vec<Corner>,
-    /// How many of them each face has, three or more.
+    /// The number of corners of each face, three or more.
     pub(super) sizes: Vec<u32>,
-    /// Place in `sizes` and line of each face that is too large if it is neither convex nor monotone.
+    /// The place in `sizes` and the line of each face that is too large if it is neither convex nor monotone.
     pub(super) large: Vec<(usize, u64)>,
-    /// From which face on which material, by its place in `names`.
+    /// The first face of each run of one material, and the material's place in `names`.
     pub(super) runs: Vec<(usize, usize)>,
-    /// From which face on which smoothing group: its number, or 0 for none. Before the first none is known.
+    /// The first face of each run of one smoothing group, and the group's number, or 0 for none. Before the first run
+    /// the group is unknown.
     pub(super) smoothing: Vec<(usize, u32)>,
     /// The names of `usemtl`, each once, in order. The first is empty: that of faces before any `usemtl`.
     pub(super) names: Vec<String>,
@@ -115,7 +116,7 @@ fn normal(model: &mut Model, rest: &[u8]) -> Result<(), ObjErrorKind> {
     push(&mut model.normals, Vec3::from_array(numbers(&mut words(rest), "a normal (3)")?))
 }
 
-/// The number of a smoothing group: 0 for `off`, 1 for `on`. What is no group is left alone.
+/// The number of a smoothing group: 0 for `off`, 1 for `on`. Anything else is left alone.
 fn group(rest: &[u8]) -> Option<u32> {
     match words(rest).next()? {
         b"off" => Some(0),

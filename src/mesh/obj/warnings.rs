@@ -1,4 +1,4 @@
-//! What was found wanting, as far as anyone would read it.
+//! Warnings of a model, as many as anyone would read.
 
 use std::string::String;
 use std::vec::Vec;

@@ -35,10 +35,10 @@ pub use revolution::{cone, cylinder, sphere, torus};
 pub use teapot::teapot;
 pub use wall::wall;
 
-/// The most slices, stacks or segments.
+/// The max number of slices, stacks or segments.
 const MOST: u32 = 4096;
 
-/// Name, and how it is made when nothing is said about its subdivision.
+/// A name, and the shape in its usual subdivision.
 type Row = (&'static str, fn() -> Mesh);
 
 const TABLE: [Row; 7] = [
@@ -76,7 +76,7 @@ pub fn by_name(name: &str) -> Option<Mesh> {
     TABLE.iter().find(|row| row.0 == name).map(|row| row.1())
 }
 
-/// To the f32 next to `value` on the side of zero.
+/// Rounds to the f32 next to `value` on the side of zero.
 fn toward_zero(value: f64) -> f32 {
     // To the nearest.
     let nearest = value as f32;
@@ -88,8 +88,8 @@ fn toward_zero(value: f64) -> f32 {
     }
 }
 
-/// Two triangles for the quad `a`, `b`, `c`, `d`, counter-clockwise; along a–c unless b–d makes them
-/// convex and a–c does not.
+/// Splits the quad `a`, `b`, `c`, `d`, counter-clockwise, into two triangles: along a–c, unless b–d makes them convex
+/// and a–c does not.
 fn quad(positions: &[Vec3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     let [pa, pb, pc, pd] = [a, b, c, d].map(|i| positions[i as usize]);
     if side(pa, pb, pc, pd) == Ordering::Greater { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }

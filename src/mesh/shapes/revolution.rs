@@ -14,7 +14,7 @@ fn turn(i: f64, of: u32) -> (f64, f64) {
     (libm::cos(angle), libm::sin(angle))
 }
 
-/// In the order in which the slices follow each other, counter-clockwise seen from +y.
+/// A point about the y axis: slices follow each other counter-clockwise seen from +y.
 fn around_y(radius: f64, y: f64, (cos, sin): (f64, f64)) -> Vec3 {
     Vec3::new(toward_zero(radius * cos), toward_zero(y), toward_zero(-radius * sin))
 }

@@ -1,5 +1,5 @@
-//! Adobe `.act`: 256 times red, green, blue in 8 bits, or the same with 4 bytes behind it: how many
-//! of the colours count, and which is transparent (FFFFh for none), each 16 bits, high byte first.
+//! Adobe `.act`: 256 times red, green, blue in 8 bits. A longer form has 4 bytes behind it: the number of colours that
+//! count, and the transparent one (FFFFh for none), each 16 bits, high byte first.
 //!
 //! Source: Adobe Photoshop File Formats Specification, "Color Table". The colours that do not count
 //! are read as black; the transparent one is a colour like any other here.

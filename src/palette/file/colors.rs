@@ -9,7 +9,7 @@ pub(super) struct Colors {
     count: usize,
 }
 
-/// A 257th colour was pushed.
+/// The error of a 257th colour.
 pub(super) struct Full;
 
 impl Colors {

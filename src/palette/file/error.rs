@@ -1,78 +1,78 @@
-//! What is wrong with a palette file, and where.
+//! The errors of a palette file, with their place.
 
 use core::fmt;
 
-/// Why a palette file was refused. Nothing of it is used.
+/// An error of a palette file, with its place. Nothing of the file is used.
 ///
 /// Displays as `line 7: expected three numbers 0 to 255, found "red"`, to stand behind the file's
 /// name and a colon.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct PaletteError {
-    /// What is wrong.
+    /// The kind of the error.
     pub kind: PaletteErrorKind,
-    /// Where.
+    /// The place of the error.
     pub place: Place,
 }
 
 /// A place in a file.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Place {
-    /// A line of text, counted from 1. One more than there are lines: where one is missing.
+    /// A line of text, counted from 1. If one is missing, one more than the number of lines.
     Line(usize),
-    /// A byte, counted from 0. As many as there are bytes: where one is missing.
+    /// A byte, counted from 0. If one is missing, the number of bytes.
     Offset(usize),
 }
 
-/// What can be wrong with a palette file.
+/// The kinds of errors of a palette file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum PaletteErrorKind {
-    /// No bytes at all.
+    /// The file has no bytes at all.
     Empty,
-    /// Like none of the formats.
+    /// The file is like none of the formats.
     UnknownFormat,
     /// A line that must read one way reads another.
     Expected {
-        /// How it must read.
+        /// The text that must stand there.
         expected: &'static str,
-        /// How it reads.
+        /// The text that stands there.
         found: Excerpt,
     },
     /// The number of colours is no number from 1 to 256.
     Count {
-        /// What stands there.
+        /// The text that stands there.
         found: Excerpt,
     },
     /// A line is not three numbers from 0 to 255.
     NotThreeNumbers {
-        /// What stands there.
+        /// The text that stands there.
         found: Excerpt,
     },
     /// A line is not six hexadecimal digits.
     NotSixHexDigits {
-        /// What stands there.
+        /// The text that stands there.
         found: Excerpt,
     },
-    /// A 257th colour.
+    /// The file has a 257th colour.
     TooManyColors,
     /// A colour, or something else, behind the last one that the file announces.
     MoreThanAnnounced {
-        /// How many it announces.
+        /// The number that it announces.
         announced: usize,
     },
     /// The file ends too soon.
     TooFewColors {
-        /// How many there are.
+        /// The number of colours in the file.
         found: usize,
-        /// How many it announces, or at least 1.
+        /// The number that it announces, or at least 1.
         expected: usize,
     },
-    /// The file's length is not one that the format has.
+    /// The file's length is none of the format's.
     Length {
-        /// The lengths that it has.
+        /// The lengths of the format.
         expected: &'static str,
-        /// The file's.
+        /// The length of the file.
         found: usize,
     },
 }
@@ -125,9 +125,9 @@ impl fmt::Display for PaletteErrorKind {
     }
 }
 
-/// What was found where something else was expected: the beginning of it, without an allocator.
+/// The beginning of a text that was found where another was expected, without an allocator.
 ///
-/// Displays in quotes, with three dots if there was more; what is not printable ASCII as `?`.
+/// Displays in quotes, with three dots if there was more; other characters than printable ASCII as `?`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Excerpt {
     bytes: [u8; Self::LONGEST],
@@ -150,7 +150,7 @@ impl Excerpt {
         Self { bytes, length, cut: found.len() > Self::LONGEST }
     }
 
-    /// The beginning of what was found, up to 32 characters of ASCII.
+    /// The beginning of the text, up to 32 characters of ASCII.
     #[must_use]
     pub(crate) fn as_str(&self) -> &str {
         // Only ASCII was stored, so the default is never taken.

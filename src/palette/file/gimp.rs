@@ -1,7 +1,7 @@
 //! GIMP `.gpl`: `GIMP Palette`, headers, comments, and a colour a line, with a name behind it.
 //!
-//! Source: `app/core/gimppalette-load.c` of GIMP, by what it accepts. Unlike GIMP, which leaves a
-//! line it cannot read out with a warning, a broken line is an error.
+//! Source: `app/core/gimppalette-load.c` of GIMP, by the files that it accepts. Unlike GIMP, which leaves a line it
+//! cannot read out with a warning, a broken line is an error.
 
 #[cfg(feature = "alloc")]
 use alloc::{format, vec::Vec};

@@ -12,10 +12,9 @@
 //! Also read as `vga` are `.raw`, `.col` (Autodesk Animator), `.lmp` (Quake) and a `.pal` of 768
 //! bytes that does not begin as JASC does. A raw file in which some value is over 63 has 8 bits.
 //!
-//! Text may end its lines with LF, CR LF or CR, and may begin with a UTF-8 byte order mark; empty
-//! lines among the colours are skipped. Fewer than 256 colours are fine where the format can say so; the other
-//! entries are black. More are an error. A palette has no ramps in a file: they are found as
-//! [`Palette::from_colors`] finds them.
+//! Text may end its lines with LF, CR LF or CR, and may begin with a UTF-8 byte order mark; empty lines among the
+//! colours are skipped. Fewer than 256 colours are fine if the format can say so; the other entries are black. More are
+//! an error. A palette has no ramps in a file: [`Palette::from_colors`] finds them.
 //!
 //! Reading needs no allocator, writing does.
 //!
@@ -49,21 +48,21 @@ use super::Palette;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Format {
-    /// What a program calls it.
+    /// Its name on the command line.
     pub name: &'static str,
-    /// Whose it is, for people.
+    /// The programs that use it, for people.
     pub description: &'static str,
     /// The extensions, in lower case without a dot; the first is the usual one.
     pub extensions: &'static [&'static str],
-    /// Whether bytes look like a file of this format.
+    /// Returns whether bytes look like a file of this format.
     recognizes: fn(&[u8]) -> bool,
     read: fn(&[u8]) -> Result<Palette, PaletteError>,
     #[cfg(feature = "alloc")]
     write: fn(&Palette, &str, &mut Vec<u8>),
 }
 
-/// All formats. Bytes belong to the first that recognizes them, an extension to the first that lists
-/// it: a row that is surer of itself stands before one that is less so.
+/// All formats, the surer ones first. Bytes belong to the first that recognizes them, an extension to the first that
+/// lists it.
 pub static FORMATS: [Format; 6] = [
     Format {
         name: "jasc",
@@ -136,7 +135,7 @@ impl Format {
         FORMATS.iter().find(|format| format.extensions.iter().any(|own| own.eq_ignore_ascii_case(extension)))
     }
 
-    /// The format of a file's name, by its extension: what to write such a file as.
+    /// The format of a file's name, by its extension, for writing such a file.
     #[must_use]
     #[doc(hidden)]
     pub fn of_file_name(name: &str) -> Option<&'static Self> {
@@ -157,7 +156,7 @@ impl Format {
     /// Reads a file of this format.
     ///
     /// # Errors
-    /// What is wrong, and in which line or at which offset.
+    /// A `PaletteError` with the line or the offset.
     pub fn read(&self, bytes: &[u8]) -> Result<Palette, PaletteError> {
         if bytes.is_empty() {
             return Err(PaletteError::at_offset(0, PaletteErrorKind::Empty));
@@ -165,8 +164,8 @@ impl Format {
         (self.read)(bytes)
     }
 
-    /// Writes a file of this format, all 256 entries of it. Reading it gives the same colours back,
-    /// but for a `vga` file of colours below 64 that the DAC does not have: see there.
+    /// Writes a file of this format, all 256 entries of it. Reading it gives the colours back unchanged, except for a
+    /// `vga` file of colours below 64 that the DAC does not have: see there.
     ///
     /// `name` is the palette's name, which `gimp` files keep; control characters become blanks.
     ///
@@ -182,11 +181,10 @@ impl Format {
     }
 }
 
-/// Reads a palette file whose name is not known, by what it looks like ([`Format::of_bytes`]).
+/// Reads a palette file whose name is not known, by its contents ([`Format::of_bytes`]).
 ///
 /// # Errors
-/// [`PaletteErrorKind::UnknownFormat`] if it looks like none of [`FORMATS`], else as
-/// [`Format::read`].
+/// [`PaletteErrorKind::UnknownFormat`] if it looks like none of [`FORMATS`], otherwise those of [`Format::read`].
 pub fn parse(bytes: &[u8]) -> Result<Palette, PaletteError> {
     match Format::of_bytes(bytes) {
         Some(format) => format.read(bytes),
@@ -195,9 +193,8 @@ pub fn parse(bytes: &[u8]) -> Result<Palette, PaletteError> {
     }
 }
 
-/// Reads a palette file by its name's extension. An extension that is not known, or none, leaves it
-/// to [`parse`]; so does `.pal`, which is JASC's and the raw files' alike, if the bytes look like
-/// a raw file.
+/// Reads a palette file by its name's extension. Without a known extension [`parse`] decides. It also decides for
+/// `.pal`, which JASC and the raw files share, if the bytes look like a raw file.
 ///
 /// # Errors
 /// Those of [`Format::read`]. The name is not part of the message: the caller has it.

@@ -55,12 +55,12 @@ pub(super) fn expect(lines: &mut Lines<'_>, expected: &'static str) -> Result<()
     Err(PaletteError::at_line(number, PaletteErrorKind::Expected { expected, found: Excerpt::of(found) }))
 }
 
-/// Whether a text's first line is `expected`.
+/// Returns whether a text's first line is `expected`.
 pub(super) fn first_line_is(text: &[u8], expected: &str) -> bool {
     Lines::new(text).next().is_some_and(|(_, line)| line == expected.as_bytes())
 }
 
-/// A number in decimal digits, nothing else: no sign, no blank. `None` if it is more than `most`.
+/// A number in decimal digits, without sign or blank. `None` if it is more than `most`.
 pub(super) fn decimal(digits: &[u8], most: u32) -> Option<u32> {
     if digits.is_empty() {
         return None;
@@ -74,7 +74,7 @@ pub(super) fn decimal(digits: &[u8], most: u32) -> Option<u32> {
     })
 }
 
-/// The three numbers, 0 to 255, that a line begins with, and how many words follow them.
+/// The three numbers, 0 to 255, that a line begins with, and the number of words that follow them.
 pub(super) fn three_numbers(line: &[u8]) -> Option<(Rgb, usize)> {
     let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let mut channel = || words.next().and_then(|word| u8::try_from(decimal(word, 255)?).ok());

@@ -23,7 +23,7 @@ use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Preferences, Scene};
 pub(super) struct Builder<'a> {
     named: Named<'a>,
     scene: Scene,
-    /// What the objects cover as they move, if the camera has no place of its own.
+    /// The space that the objects cover as they move, if the camera has no place of its own.
     swept: Vec<Swept>,
 }
 
@@ -32,7 +32,7 @@ impl<'a> Builder<'a> {
         Self { named: Named::new(path, open), scene: Scene::new(), swept: Vec::new() }
     }
 
-    /// The scene, and what was found wanting.
+    /// Makes the scene, with warnings.
     pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<(Scene, Vec<String>), Fault> {
         if layout.objects.is_empty() {
             return Err(Fault { span: None, kind: SceneErrorKind::NoObject });
@@ -92,8 +92,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Fog hides what is far away only where it ends in the background's colour: so either is the other's, unless
-    /// both are given.
+    /// Sets the background and the fog. Fog hides distant surfaces only if it ends in the background's colour: so
+    /// either is the other's, unless both are given.
     fn background_and_fog(
         &mut self,
         background: Option<Background>,

@@ -9,7 +9,7 @@ use crate::angle::Angle;
 use crate::scene::Camera;
 use crate::scene::framing::{Swept, Viewpoint};
 
-/// The camera that is asked for; `everything` is what the scene's objects cover as they move.
+/// Makes the camera of a layout; `everything` is the space that the scene's objects cover as they move.
 pub(super) fn camera(layout: Option<&Spanned<CameraLayout>>, everything: &[Swept]) -> Result<Camera, Fault> {
     let span = layout.map_or(0..0, Spanned::span);
     let own = layout.map(Spanned::get_ref);

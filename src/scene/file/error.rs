@@ -1,4 +1,4 @@
-//! Why a scene file is refused, and where in it.
+//! The errors of a scene file, with their place.
 
 use core::ops::Range;
 use std::boxed::Box;
@@ -15,7 +15,7 @@ use crate::mesh::obj::ObjError;
 use crate::palette::file::PaletteError;
 use crate::texture::LoadError;
 
-/// Why a scene file is refused. Nothing of it is used.
+/// An error of a scene file. Nothing of the file is used.
 ///
 /// Displayed on one line, as ``scene.toml:9:1: key `objects[0].shap`: unknown key; known are name, shape, …``.
 #[derive(Debug)]
@@ -23,49 +23,49 @@ use crate::texture::LoadError;
 pub struct SceneError {
     /// The file, as the caller named it.
     pub path: PathBuf,
-    /// Where in it. `None` where no one place is at fault.
+    /// The place in the file. `None` if no one place is at fault.
     pub place: Option<Place>,
-    /// The key at fault with those it lies in, as `objects[0].material.ramp`: lists count from 0. `None` where
-    /// none is.
+    /// The key at fault with those it lies in, as `objects[0].material.ramp`: lists count from 0. `None` if no key is
+    /// at fault.
     pub key: Option<String>,
-    /// What is wrong. In a box, because what succeeds would carry its size about too.
+    /// The kind of the error. In a box, because a success would carry its size about too.
     pub kind: Box<SceneErrorKind>,
 }
 
-/// What is wrong with a scene file.
+/// The kinds of errors of a scene file.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum SceneErrorKind {
-    /// The file is not there or cannot be read.
+    /// The file does not exist or cannot be read.
     Read(io::Error),
     /// The path is that of a directory.
     Directory,
-    /// More than [`LONGEST`](super::LONGEST) bytes.
+    /// The file has more than [`LONGEST`](super::LONGEST) bytes.
     TooLong,
-    /// Not text in UTF-8.
+    /// The file is no text in UTF-8.
     NotText,
-    /// Text, but not TOML: what the reader stumbled on.
+    /// The file is text, but not TOML: the words at fault.
     NotToml(String),
     /// There is no such key here.
     UnknownKey {
-        /// Those there are.
+        /// The keys that are known.
         known: String,
     },
     /// The key had this name before.
     Renamed {
-        /// What it is called now.
+        /// The present name.
         new: &'static str,
     },
-    /// A key is needed that is not there.
+    /// A required key is missing.
     MissingKey,
     /// The value is of another type than it must be, out of range, the name of nothing, or does not go with another
-    /// key: what it is, and what it must be.
+    /// key. The text says what it is, and what it must be.
     Value(String),
     /// A file that the scene names cannot be read.
     File {
-        /// Its path, from where the scene's lies.
+        /// Its path, from the folder of the scene's file.
         path: PathBuf,
-        /// Why not.
+        /// The error of the system.
         error: io::Error,
     },
     /// A model that the scene names is broken.
@@ -74,7 +74,7 @@ pub enum SceneErrorKind {
     Palette {
         /// Its path.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The error of the palette file.
         error: PaletteError,
     },
     /// A texture that the scene names is broken.
@@ -83,14 +83,14 @@ pub enum SceneErrorKind {
     NoObject,
 }
 
-/// What is wrong, and the bytes of the text that are, as long as nobody has asked for more.
+/// An error, and the bytes of the text at fault, before its place is computed.
 pub(super) struct Fault {
     pub(super) span: Option<Range<usize>>,
     pub(super) kind: SceneErrorKind,
 }
 
 impl Fault {
-    /// A value that cannot stand where it does.
+    /// Makes the fault of a value that cannot stand where it does.
     pub(super) fn value(span: Range<usize>, what: impl fmt::Display) -> Self {
         Self { span: Some(span), kind: SceneErrorKind::Value(what.to_string()) }
     }
@@ -99,7 +99,7 @@ impl Fault {
         Self { span: Some(span), kind }
     }
 
-    /// With the place and the key that its span means in `text`.
+    /// Adds the place and the key that its span means in `text`.
     pub(super) fn locate(self, path: &Path, text: &str) -> SceneError {
         let Self { span, mut kind } = self;
         let place = span.as_ref().map(|span| Place::of(text, span.start));
@@ -118,7 +118,7 @@ impl Fault {
                     *message = turned;
                 }
             }
-            // Of two keys that are alike the second is the fault, which no table holds.
+            // If two keys are alike the second is the fault, which no table holds.
             SceneErrorKind::NotToml(message) if message == "duplicate key" => {
                 key = span.and_then(|span| text.get(span)).map(String::from);
             }
@@ -128,18 +128,18 @@ impl Fault {
     }
 }
 
-/// Syntax comes first, and has no key.
+/// Makes the fault of broken syntax, which has no key.
 pub(super) fn not_toml(error: &toml::de::Error) -> Fault {
     Fault { span: error.span(), kind: SceneErrorKind::NotToml(error.message().to_string()) }
 }
 
-/// What serde has to say: the words of its own messages are those that [`Fault::locate`] looks for.
+/// Makes the fault of an error of serde: the words of its own messages are those that [`Fault::locate`] looks for.
 pub(super) fn not_a_scene(error: &toml::de::Error) -> Fault {
     Fault { span: error.span(), kind: SceneErrorKind::Value(shortened(error.message())) }
 }
 
-/// Without the middle, if it is long: a message begins with a value out of the file, which may be of any length, and
-/// ends with what it should be.
+/// Shortens a message in its middle, if it is long. It begins with a value out of the file, which may be of any length,
+/// and ends with the value that is expected.
 fn shortened(message: &str) -> String {
     const HEAD: usize = 100;
     const TAIL: usize = 400;
@@ -152,13 +152,13 @@ fn shortened(message: &str) -> String {
     head.chain(['…']).chain(tail).collect()
 }
 
-/// What stands between `before`, with which `text` begins, and `behind`, with which it ends.
+/// The text between `before`, with which `text` begins, and `behind`, with which it ends.
 fn between<'t>(text: &'t str, before: &str, behind: &str) -> Option<&'t str> {
     text.strip_prefix(before)?.strip_suffix(behind)
 }
 
-/// Out of serde's "invalid type: integer `7`, expected a name" makes "expected a name, found integer `7`". What was
-/// found may hold any words, so "expected" is looked for from the end.
+/// Makes "expected a name, found integer `7`" out of serde's "invalid type: integer `7`, expected a name". The value
+/// that was found may hold any words, so "expected" is looked for from the end.
 fn expected_first(message: &str) -> Option<String> {
     let kinds = ["invalid type: ", "invalid value: ", "invalid length "];
     let rest = kinds.iter().find_map(|kind| message.strip_prefix(kind))?;
@@ -166,8 +166,8 @@ fn expected_first(message: &str) -> Option<String> {
     Some(format!("{}, found {}", &rest[at + 2..], &rest[..at]))
 }
 
-/// The keys out of serde's "unknown field `x`, expected one of `a`, `b`", or "expected `a` or `b`". The unknown key
-/// may hold any of these words itself, so they are looked for from the end.
+/// Reads the keys out of serde's "unknown field `x`, expected one of `a`, `b`", or "expected `a` or `b`". The unknown
+/// key may hold any of these words itself, so they are looked for from the end.
 fn known_keys(message: &str) -> String {
     let Some(at) = message.rfind("`, expected ") else { return String::from("none") };
     let list = &message[at + "`, expected ".len()..];
@@ -223,10 +223,10 @@ impl error::Error for SceneError {
     }
 }
 
-/// The max number of characters that are shown of a message, which may quote what stands in a file.
+/// The max number of characters that are shown of a message, which may quote the file.
 const LONGEST_MESSAGE: usize = 2500;
 
-/// Keeps what is written through it on one line, printable, and not too long to be read.
+/// A writer that keeps its text on one line, printable, and not too long to be read.
 struct Line<'a, 'f> {
     f: &'a mut fmt::Formatter<'f>,
     left: usize,

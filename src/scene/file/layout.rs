@@ -1,5 +1,5 @@
-//! What may stand in a scene file: its tables and keys, as serde reads them. `scenes/README.md` says what each means,
-//! in which unit, and what holds where it is left out; a test holds the two lists equal.
+//! The layout of a scene file: its tables and keys, as serde reads them. `scenes/README.md` says what each means, in
+//! which unit, and which default it has; a test holds the two lists equal.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -223,7 +223,7 @@ impl<'de> Deserialize<'de> for RampLayout {
     }
 }
 
-/// `blend`: the name of a way, or how opaque a body is.
+/// `blend`: the name of a way, or a body's opacity.
 pub(super) struct BlendLayout(pub(super) Blend);
 
 impl<'de> Deserialize<'de> for BlendLayout {
@@ -265,7 +265,7 @@ impl<'de> Deserialize<'de> for BlendLayout {
     }
 }
 
-/// What a circle goes round.
+/// The axis of a circle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Axis {
     X,
@@ -286,7 +286,7 @@ impl core::str::FromStr for Axis {
     }
 }
 
-/// Which axis of a mesh points up.
+/// The axis of a mesh that points up.
 pub(super) struct Up(pub(super) UpAxis);
 
 impl core::str::FromStr for Up {

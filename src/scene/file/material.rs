@@ -1,4 +1,4 @@
-//! Materials: what a file says over what a material is without it.
+//! Materials: a file's changes to a default material.
 
 use super::error::Fault;
 use super::layout::{MaterialLayout, RampLayout};
@@ -6,10 +6,10 @@ use super::named::Named;
 use crate::light::{Material, RampChoice};
 use crate::palette::Ramp;
 
-/// Where nothing is said: neither broad nor a point.
+/// The shininess without a word in the file: neither broad nor a point.
 const SHININESS: f32 = 20.0;
 
-/// Changes `material` where the layout has something to say. `has_texcoords`: whether a texture can lie on the mesh.
+/// Changes `material` by the keys of the layout. `has_texcoords`: whether a texture can lie on the mesh.
 pub(super) fn apply(
     layout: &MaterialLayout,
     material: &mut Material,
@@ -21,7 +21,7 @@ pub(super) fn apply(
     set(&mut material.diffuse, layout.diffuse.map(|share| share.0));
     set(&mut material.specular, layout.specular.map(|share| share.0));
     set(&mut material.shininess, layout.shininess.map(|exponent| exponent.0));
-    // What never was shiny has no exponent.
+    // A material that never was shiny has no exponent.
     if material.shininess <= 0.0 {
         material.shininess = SHININESS;
     }

@@ -64,15 +64,15 @@ use layout::SceneLayout;
 pub use limits::{LONGEST, MAX_TRIANGLES};
 pub use place::Place;
 
-/// A scene and what was found wanting while it was read.
+/// A scene and the warnings of its reading.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Loaded {
     /// The scene, at time 0.
     pub scene: Scene,
-    /// One line each, with a file and the place in it.
+    /// The warnings, one line each, with a file and the place in it.
     pub warnings: Vec<String>,
-    /// The files that were read or looked for: the scene's own where it was loaded from one, and the models, MTL files,
+    /// The files that were read or looked for: the scene's own if it was loaded from one, and the models, MTL files,
     /// textures and palettes that it names. Some may not exist.
     pub files: Vec<PathBuf>,
 }
@@ -99,7 +99,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, SceneError> {
     Ok(loaded)
 }
 
-/// A file that a scene names. What is no ordinary file is refused: a scene may name a device that never ends.
+/// Opens a file that a scene names. Only ordinary files are accepted: a scene may name a device that never ends.
 fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
     match fs::metadata(path)?.is_file() {
         true => Ok(Box::new(BufReader::with_capacity(1 << 16, File::open(path)?))),
@@ -108,11 +108,11 @@ fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
 }
 
 impl Scene {
-    /// Makes a scene of the text of a file. `path` is what errors call it; `open` is given the path of each file that
-    /// the scene names, joined to the folder of `path`.
+    /// Makes a scene of the text of a file. Errors call it `path`; `open` is given the path of each file that the scene
+    /// names, joined to the folder of `path`.
     ///
     /// # Errors
-    /// What is wrong, with line, column and key: see [`SceneErrorKind`].
+    /// A `SceneError` with line, column and key: see [`SceneErrorKind`].
     pub fn from_toml(
         text: &str,
         path: impl AsRef<Path>,

@@ -10,7 +10,7 @@ use super::layout::{Axis, CircleLayout, PathLayout};
 use super::value::{List, Name};
 use crate::scene::Path;
 
-/// A path that is gone along in a scene of this duration, in seconds.
+/// Makes a path in a scene of this duration, in seconds.
 pub(super) fn path(layout: &Spanned<PathLayout>, duration: f64) -> Result<Path, Fault> {
     let span = layout.span();
     let PathLayout { line, back, circle, rounds } = layout.get_ref();
@@ -36,7 +36,7 @@ pub(super) fn path(layout: &Spanned<PathLayout>, duration: f64) -> Result<Path, 
     }
 }
 
-/// From the middle to where a circle begins, and to where it is a quarter of the way on.
+/// The radii from the middle to the point where a circle begins, and to the point a quarter of the way on.
 fn radii(circle: &CircleLayout, span: Range<usize>) -> Result<(Vec3, Vec3), Fault> {
     match circle {
         CircleLayout { from: Some(from), towards: Some(towards), radius: None, axis: None, start: None, .. } => {

@@ -17,23 +17,23 @@ use crate::palette::{Palette, builtin, file as palette_file};
 use crate::shared::Shared;
 use crate::texture::{self, LoadError, LoadErrorKind, Texture};
 
-/// How the caller opens a file.
+/// The caller's function that opens a file.
 pub(super) type Open<'a> = dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>> + 'a;
 
-/// What a scene names, found from its folder.
+/// The files that a scene names, found from its folder.
 pub(super) struct Named<'a> {
     folder: &'a Path,
     open: &'a mut Open<'a>,
-    /// By the file, and the bits of the crease angle that was asked for.
+    /// The models, by the file and the bits of the requested crease angle.
     models: BTreeMap<(PathBuf, Option<u64>), Shared<Mesh>>,
     textures: BTreeMap<PathBuf, Shared<Texture>>,
     pub(super) warnings: Vec<String>,
 }
 
-/// No palette file is longer; what is longer is read to here, and refused as what it then is.
+/// The max length of a palette file. A longer one is read to here, and refused for its contents then.
 const LONGEST_PALETTE: u64 = LONGEST as u64;
 
-/// A picture of 4,096 × 4,096 in true colour that cannot be packed.
+/// The max length of a texture file: a picture of 4,096 × 4,096 in true colour that cannot be packed.
 const LONGEST_TEXTURE: u64 = 64 << 20;
 
 impl<'a> Named<'a> {
@@ -42,7 +42,7 @@ impl<'a> Named<'a> {
         Self { folder, open, models: BTreeMap::new(), textures: BTreeMap::new(), warnings: Vec::new() }
     }
 
-    /// A model, with a crease angle if one is asked for.
+    /// Loads a model, with a crease angle if one is requested.
     pub(super) fn model(&mut self, name: &Spanned<FileName>, crease: Option<Angle>) -> Result<Shared<Mesh>, Fault> {
         let path = self.folder.join(&name.get_ref().0);
         let key = (path.clone(), crease.map(|crease| crease.to_radians().to_bits()));
@@ -98,8 +98,8 @@ impl<'a> Named<'a> {
         Ok(texture)
     }
 
-    /// A texture that a model's material names, from where the program runs or from the model's folder, as the MTL
-    /// file has been read. One that is missing or broken is a warning.
+    /// Loads a texture that a model's material names, from where the program runs or from the model's folder, as the
+    /// MTL file has been read. A missing or broken one is a warning.
     pub(super) fn texture_of_model(&mut self, path: &str, material: &str) -> Option<Shared<Texture>> {
         let path = PathBuf::from(path);
         if let Some(known) = self.textures.get(&path) {

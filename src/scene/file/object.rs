@@ -18,19 +18,19 @@ use crate::angle::Angle;
 use crate::mesh::Mesh;
 use crate::scene::{Object, Shared};
 
-/// What is done to a mesh before it is used.
+/// The changes of a mesh before it is used.
 #[derive(Clone, Copy, PartialEq)]
 struct Change {
-    /// How many times as long it becomes along x, y and z.
+    /// The factors of its length along x, y and z.
     stretch: Vec3,
-    /// How often textures repeat over it, along u and v.
+    /// The number of times that textures repeat over it, along u and v.
     repeat: Vec2,
 }
 
 impl Change {
     const NONE: Self = Self { stretch: Vec3::ONE, repeat: Vec2::ONE };
 
-    /// What it is told apart by.
+    /// The key that tells changes apart.
     fn bits(self) -> [u32; 5] {
         let ([x, y, z], [u, v]) = (self.stretch.to_array(), self.repeat.to_array());
         [x, y, z, u, v].map(f32::to_bits)
@@ -40,7 +40,7 @@ impl Change {
 /// A shape by its name, its subdivisions and its change.
 type ShapeKey = (&'static str, Vec<u32>, [u32; 5]);
 
-/// Makes objects. Those of the same shape share its mesh.
+/// The maker of objects. Those of one shape share its mesh.
 #[derive(Default)]
 pub(super) struct Objects {
     shapes: BTreeMap<ShapeKey, Shared<Mesh>>,
@@ -49,7 +49,7 @@ pub(super) struct Objects {
 }
 
 impl Objects {
-    /// The object of a layout, without its motion, as often as the layout has it.
+    /// Makes the object of a layout, without its motion, as often as the layout has it.
     pub(super) fn object(
         &mut self,
         layout: &Spanned<ObjectLayout>,

@@ -1,4 +1,4 @@
-//! From bytes of a text to the line, the column and the key that a person knows them by.
+//! Lines, columns and keys for bytes of a text.
 
 use core::ops::Range;
 use std::format;
@@ -10,9 +10,9 @@ use toml::de::{DeTable, DeValue};
 /// A place in a text.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Place {
-    /// Counted from 1.
+    /// The line, counted from 1.
     pub line: usize,
-    /// In characters, counted from 1.
+    /// The column in characters, counted from 1.
     pub column: usize,
 }
 
@@ -29,13 +29,13 @@ impl Place {
     }
 }
 
-/// The key that stands at these bytes or whose value does, with those it lies in: `objects[0].material.ramp`.
-/// `None` in what is not TOML, and where there is none.
+/// The key that these bytes are a part of, or its value, with those it lies in: `objects[0].material.ramp`. `None` if
+/// the text is not TOML, or has no key there.
 pub(super) fn key_at(text: &str, span: &Range<usize>) -> Option<String> {
     in_table(DeTable::parse(text).ok()?.get_ref(), span, "")
 }
 
-/// The max number of characters that are shown of a key. No key that is known is as long.
+/// The max number of characters that are shown of a key. Every known key is shorter.
 const LONGEST_KEY: usize = 60;
 
 // A table and a list have the bytes of the header that opened them, and so may several, one in the other: the

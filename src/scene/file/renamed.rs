@@ -1,9 +1,9 @@
 //! Keys and values that had other names before. An old name is an error that says the new one.
 
-/// Old keys, with those they lay in, and what each is called now.
+/// Old keys, with those they lay in, and the present name of each.
 const KEYS: [(&str, &str); 2] = [("wishes", "render"), ("render.rung", "shading")];
 
-/// Old values, and what each is called now.
+/// Old values, and the present name of each.
 const VALUES: [(&str, &str); 1] = [("gouraud-period", "gouraud-vintage")];
 
 /// The new name of a key.

@@ -11,13 +11,13 @@ use crate::mesh::{Mesh, shapes};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
     pub(super) name: &'static str,
-    /// What its subdivisions are called, the least and the most of each, and how many there are when nothing is said.
+    /// Its subdivisions: for each the name, the min, the max, and the default.
     subdivisions: &'static [(&'static str, u32, u32, u32)],
     triangles: fn(&[u32]) -> u64,
     make: fn(&[u32]) -> Mesh,
 }
 
-/// Subdivisions come here one for each that the shape has, within their range.
+/// The shapes by name. They are given one subdivision for each that they have, within its range.
 const SHAPES: [Shape; 7] = [
     Shape { name: "cube", subdivisions: &[], triangles: |_| 12, make: |_| shapes::cube() },
     Shape {
@@ -58,7 +58,7 @@ const SHAPES: [Shape; 7] = [
     },
 ];
 
-/// The most that [`shapes`] have of most kinds.
+/// The max number of most kinds of subdivisions.
 const MOST: u32 = 4096;
 
 fn product(subdivisions: &[u32]) -> u64 {
@@ -66,7 +66,7 @@ fn product(subdivisions: &[u32]) -> u64 {
 }
 
 impl Shape {
-    /// All subdivisions of the shape, from those that a scene gives: none, or as many as it has.
+    /// Returns all subdivisions of the shape, from those that a scene gives: none, or as many as it has.
     pub(super) fn subdivided(self, given: &[i64]) -> Result<Vec<u32>, String> {
         if given.len() != self.subdivisions.len() {
             let names: Vec<&str> = self.subdivisions.iter().map(|row| row.0).collect();
@@ -85,12 +85,12 @@ impl Shape {
         Ok(numbers)
     }
 
-    /// Those that it has when nothing is said.
+    /// The default subdivisions.
     pub(super) fn usual(self) -> Vec<u32> {
         self.subdivisions.iter().map(|row| row.3).collect()
     }
 
-    /// No fewer triangles than it has with these subdivisions.
+    /// An upper bound of the number of triangles with these subdivisions.
     pub(super) fn triangles(self, subdivisions: &[u32]) -> u64 {
         (self.triangles)(subdivisions)
     }

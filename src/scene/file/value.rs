@@ -1,4 +1,4 @@
-//! Numbers, vectors, colours and names, each with its range: what cannot be in a scene is refused where it stands.
+//! Numbers, vectors, colours and names, each with its range. Values that no scene can have are refused at their place.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -14,10 +14,10 @@ use crate::palette::Rgb;
 
 /// A kind of number.
 pub(super) trait Number: Sized {
-    /// What it must be, to follow "expected".
+    /// The expected values, in words that follow "expected".
     const WHAT: &'static str;
 
-    /// `None` if it may not be.
+    /// Makes one of a number; `None` if it is out of range.
     fn of(number: f64) -> Option<Self>;
 }
 
@@ -40,7 +40,7 @@ impl<N: Number> Visitor<'_> for NumberVisitor<N> {
     }
 }
 
-/// A number that is not what it must be; great ones are written with an exponent.
+/// Makes the error of a number out of range; great ones are written with an exponent.
 pub(super) fn not_in_range<E: Error>(number: impl fmt::Debug, expected: &dyn Expected) -> E {
     E::invalid_value(Unexpected::Other(&format!("{number:?}")), expected)
 }
@@ -83,19 +83,19 @@ numbers! {
     NotNegative(f32): "a number of at least 0", |x| x >= 0.0;
     /// An exponent.
     Shininess(f32): "a number above 0, at most 1000", |x| x > 0.0 && x <= 1000.0;
-    /// How often in a scene's duration.
+    /// Rounds in a scene's duration.
     Rounds(f64): "a number other than 0, from -1000 to 1000", |x| x != 0.0 && x.abs() <= 1000.0;
-    /// How often in a scene's duration, for what knows no way back.
+    /// Rounds in a scene's duration, for a motion without a way back.
     Times(f64): "a number above 0, at most 1000", |x| x > 0.0 && x <= 1000.0;
     /// A time.
     Seconds(f64): "a number of seconds above 0, at most 3600", |x| x > 0.0 && x <= 3600.0;
-    /// Between the picture's upper and lower edge, in degrees.
+    /// An angle between the picture's upper and lower edge, in degrees.
     FieldOfView(f32): "a number of degrees from 1 to 179", |x| (1.0..=179.0).contains(&x);
-    /// Between two faces, in degrees.
+    /// An angle between two faces, in degrees.
     Crease(f32): "a number of degrees from 0 to 180", |x| (0.0..=180.0).contains(&x);
     /// An entry of the palette.
     Entry(f32): "a palette entry, a whole number from 0 to 255", |x| (0.0..=255.0).contains(&x) && x == libm::truncf(x);
-    /// How many entries of the palette.
+    /// A number of palette entries.
     Entries(f32): "a number of palette entries, from 1 to 256", |x| (1.0..=256.0).contains(&x) && x == libm::truncf(x);
 }
 
@@ -117,7 +117,7 @@ impl Entries {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct List<T, const N: usize>(pub(super) [T; N]);
 
-/// A list, or, where only a list may stand, nothing else.
+/// The visitor of a list, which refuses anything else.
 struct ListVisitor<T, const N: usize>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for ListVisitor<T, N> {
@@ -191,7 +191,7 @@ impl<'de, N: Number + Deserialize<'de>> Deserialize<'de> for OneOrThree<N> {
 pub(super) struct Color(pub(super) [f32; 3]);
 
 impl Color {
-    /// To the nearest of 255ths.
+    /// The colour to the nearest of 255ths.
     pub(super) fn rgb(self) -> Rgb {
         // 0 to 255.5; the cast truncates after the half.
         let [r, g, b] = self.0.map(|share| (share * 255.0 + 0.5) as u8);
@@ -233,7 +233,7 @@ impl<'de> Deserialize<'de> for Color {
     }
 }
 
-/// What the frame is cleared to.
+/// The value that the frame is cleared to.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Background {
     Entry(u8),
