@@ -190,6 +190,8 @@ impl Rgb {
 /// assert_eq!(<[f32; 3]>::from(Rgb::new(255, 51, 0)), [1.0, 0.2, 0.0]);
 /// ```
 impl From<Rgb> for [f32; 3] {
+    // Compiled where it is called: on a processor without floating point nobody else has to pay for it.
+    #[inline]
     fn from(Rgb { r, g, b }: Rgb) -> Self {
         [r, g, b].map(|channel| f32::from(channel) / 255.0)
     }
