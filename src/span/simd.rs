@@ -241,11 +241,11 @@ pub(super) mod sse2 {
     all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"),
     all(target_arch = "wasm32", target_feature = "simd128")
 ))]
-mod halves;
+mod simd128;
 #[cfg(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
-pub(super) use halves::neon;
+pub(super) use simd128::neon;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-pub(super) use halves::wasm;
+pub(super) use simd128::wasm;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod nearer;

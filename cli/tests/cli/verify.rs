@@ -12,13 +12,13 @@ fn run(words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_mode13h")).args(words).output().expect("started")
 }
 
-/// What `mode13h verify` comes to. It takes seconds: it is run once for all tests.
+/// Output of `mode13h verify`. It takes seconds, so one run serves all tests.
 pub(crate) fn verified() -> &'static Output {
     static OUTPUT: OnceLock<Output> = OnceLock::new();
     OUTPUT.get_or_init(|| run(&["verify"]))
 }
 
-/// What `mode13h verify --json --seed 7` comes to, run once as well.
+/// Output of `mode13h verify --json --seed 7`, from one run as well.
 pub(crate) fn verified_as_json() -> &'static Output {
     static OUTPUT: OnceLock<Output> = OnceLock::new();
     OUTPUT.get_or_init(|| run(&["verify", "--json", "--seed", "7"]))

@@ -35,7 +35,7 @@ fn run(directory: &TempDir, words: &str) -> Output {
 /// A study that takes two seconds and writes no file.
 const COST: &str = "cost cube --frames 1 --seconds 0 --shadings flat --json";
 
-/// What [`COST`] comes to, run once for all tests.
+/// Output of [`COST`], from one run for all tests.
 fn cost() -> &'static Output {
     static OUTPUT: OnceLock<Output> = OnceLock::new();
     OUTPUT.get_or_init(|| run(&directory(), COST))

@@ -150,7 +150,7 @@ fn run_all(tried: &mut Tried) -> BTreeMap<&'static str, (u64, u64)> {
 
 #[test]
 fn e1_any_change_in_any_order() {
-    let mut tried = Tried::new("e1_any_change_in_any_order", 16 * STEPS as u64);
+    let mut tried = Tried::new("e1_any_change_in_any_order", 30 * STEPS as u64);
     let counts = run_all(&mut tried);
     assert_eq!(counts.len(), CHANGES.len(), "each is made");
 }

@@ -1,5 +1,5 @@
-//! Sixteen pixels at a time where a vector has 128 bits, as on ARM and in WebAssembly: what `sse2` does, in the operations of
-//! each.
+//! Sixteen pixels at a time with vectors of 128 bits, as ARM and WebAssembly have them: the kernel of `sse2`, in the operations
+//! of each.
 
 /// Even and odd shades of sixteen pixels, as the module `simd` has them.
 pub(super) trait Block: Copy {
