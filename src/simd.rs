@@ -21,6 +21,8 @@ mod portable;
     )
 ))]
 mod quarters;
+#[cfg(test)]
+mod tests;
 
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 mod avx2;
@@ -45,6 +47,23 @@ pub(crate) const NEON: quarters::Quarters<neon::Neon> = quarters::Quarters(neon:
 pub(crate) const SSE2: quarters::Quarters<sse2::Sse2> = quarters::Quarters(sse2::Sse2);
 #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
 pub(crate) const SIMD128: quarters::Quarters<wasm::Simd128> = quarters::Quarters(wasm::Simd128);
+
+#[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+pub(crate) use NEON as BASELINE;
+#[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+pub(crate) use SIMD128 as BASELINE;
+/// What every processor of the target has.
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+pub(crate) use SSE2 as BASELINE;
+#[cfg(not(all(
+    feature = "simd",
+    any(
+        target_arch = "x86_64",
+        all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"),
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )
+)))]
+pub(crate) use portable::Portable as BASELINE;
 
 /// A level that a kernel may use.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -252,21 +271,15 @@ macro_rules! compiled_for_each_level {
                     Level::Avx512(lanes) => return unsafe { avx512::<$($names)*>(lanes, $($argument),*) },
                     // SAFETY: the processor has AVX2, FMA and POPCNT, says the token.
                     Level::Avx2(lanes) => return unsafe { avx2::<$($names)*>(lanes, $($argument),*) },
-                    // Every x86-64 has SSE2.
-                    Level::Portable | Level::Sse2 => return $generic::<_, $($names)*>(crate::simd::SSE2, $($argument),*),
                     _ => {}
                 }
             }
-            #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
-            if matches!(level, crate::simd::Level::Portable | crate::simd::Level::Neon) {
-                return $generic::<_, $($names)*>(crate::simd::NEON, $($argument),*);
+            match level {
+                // To be tried on every machine.
+                #[cfg(feature = "simd")]
+                crate::simd::Level::Arrays => $generic::<_, $($names)*>(crate::simd::Portable, $($argument),*),
+                _ => $generic::<_, $($names)*>(crate::simd::BASELINE, $($argument),*),
             }
-            #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
-            if matches!(level, crate::simd::Level::Portable | crate::simd::Level::Wasm) {
-                return $generic::<_, $($names)*>(crate::simd::SIMD128, $($argument),*);
-            }
-            let _ = level;
-            $generic::<_, $($names)*>(crate::simd::Portable, $($argument),*)
         }
     };
 }

@@ -1,7 +1,6 @@
 //! [`Lanes8`] by AVX2 and FMA: two halves of 64-bit lanes.
 
 use core::arch::x86_64::*;
-use core::mem::MaybeUninit;
 
 use super::{Avx2, Lanes8};
 
@@ -214,7 +213,7 @@ impl Lanes8 for Avx2 {
     }
 
     #[inline(always)]
-    fn compact_i32<const N: usize>(self, mask: __m256i, from: [__m256i; N], to: [&mut [MaybeUninit<u32>; 8]; N]) {
+    fn compact_i32<const N: usize>(self, mask: __m256i, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
         // Eight bits.
         let set = SET_LANES[self.mask_bits(mask) as usize % 256].cast_signed();
         for (from, to) in from.into_iter().zip(to) {
@@ -226,7 +225,7 @@ impl Lanes8 for Avx2 {
         }
     }
     #[inline(always)]
-    fn compact_i64<const N: usize>(self, mask: __m256i, from: [I64; N], to: [&mut [MaybeUninit<i64>; 8]; N]) {
+    fn compact_i64<const N: usize>(self, mask: __m256i, from: [I64; N], to: [&mut [i64; 8]; N]) {
         let bits = self.mask_bits(mask) as usize;
         let set = [bits % 16, bits / 16 % 16].map(|half| SET_PAIRS[half].cast_signed());
         let low = (bits % 16).count_ones() as usize;
@@ -234,7 +233,7 @@ impl Lanes8 for Avx2 {
             // SAFETY: the processor has the instructions, says `self`. The first store goes to the first four of eight, the
             // second to the four that begin behind up to four of them.
             unsafe {
-                let to = to.as_mut_ptr().cast::<i64>();
+                let to = to.as_mut_ptr();
                 for (half, to) in [to, to.add(low)].into_iter().enumerate() {
                     let lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(set[half]));
                     _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(from[half], lanes));

@@ -1,7 +1,6 @@
 //! [`Lanes8`] by AVX-512: 512 bits of 64-bit lanes, 256 of 32-bit ones.
 
 use core::arch::x86_64::*;
-use core::mem::MaybeUninit;
 
 use super::{Avx512, Lanes8};
 
@@ -111,7 +110,7 @@ impl Lanes8 for Avx512 {
     }
 
     #[inline(always)]
-    fn compact_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [MaybeUninit<u32>; 8]; N]) {
+    fn compact_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
         for (from, to) in from.into_iter().zip(to) {
             // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array. (`vpcompressd` to
             // memory is slow on Zen 4.)
@@ -119,7 +118,7 @@ impl Lanes8 for Avx512 {
         }
     }
     #[inline(always)]
-    fn compact_i64<const N: usize>(self, mask: __mmask8, from: [__m512i; N], to: [&mut [MaybeUninit<i64>; 8]; N]) {
+    fn compact_i64<const N: usize>(self, mask: __mmask8, from: [__m512i; N], to: [&mut [i64; 8]; N]) {
         for (from, to) in from.into_iter().zip(to) {
             // SAFETY: likewise.
             unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, from)) }

@@ -3,8 +3,6 @@
 //! A token that implements [`Lanes8`] is the proof that the processor has its level. Each operation works lane by lane.
 //! Lanes 0 to 7 are in the order of the arrays that they come from.
 
-use core::mem::MaybeUninit;
-
 /// Operations on eight lanes of f64, i32 and i64, and on masks of eight lanes.
 ///
 /// All methods are inlined into a function that is compiled for the level: see `compiled_for_each_level!`.
@@ -82,6 +80,7 @@ pub(crate) trait Lanes8: Copy {
     /// The lanes taken as u32.
     fn unsigned_to_i64(self, from: Self::I32) -> Self::I64;
     /// The lower and the upper halves.
+    #[cfg_attr(not(feature = "alloc"), expect(dead_code, reason = "faces are culled with an allocator alone"))]
     fn halves_of_i64(self, from: Self::I64) -> [Self::I32; 2];
     /// Like [`zip_i32`](Self::zip_i32).
     fn zip_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2];
@@ -92,9 +91,10 @@ pub(crate) trait Lanes8: Copy {
     /// A bit for each lane, that of lane 0 lowest.
     fn mask_bits(self, mask: Self::Mask) -> u32;
     /// The mask of such bits.
+    #[cfg_attr(not(feature = "alloc"), expect(dead_code, reason = "faces are culled with an allocator alone"))]
     fn mask_of_bits(self, bits: u8) -> Self::Mask;
     /// Writes the lanes whose mask is set to the front, in order, and anything behind them.
-    fn compact_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [MaybeUninit<u32>; 8]; N]);
+    fn compact_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [u32; 8]; N]);
     /// Likewise.
-    fn compact_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [MaybeUninit<i64>; 8]; N]);
+    fn compact_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [i64; 8]; N]);
 }

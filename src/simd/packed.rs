@@ -1,14 +1,10 @@
 //! Lists of numbers that are put in eight at a time, under a mask.
-#![expect(unsafe_code, reason = "an array that is written before it is read")]
-
-use core::mem::MaybeUninit;
 
 use super::Lanes8;
 
 /// Up to `N` − 8 numbers, one after the other.
 pub(crate) struct Packed<const N: usize> {
-    /// The first `count` have been written.
-    numbers: [MaybeUninit<u32>; N],
+    numbers: [u32; N],
     count: usize,
 }
 
@@ -18,7 +14,7 @@ impl<const N: usize> Packed<N> {
 
     #[inline(always)]
     pub(crate) const fn new() -> Self {
-        Self { numbers: [const { MaybeUninit::uninit() }; N], count: 0 }
+        Self { numbers: [0; N], count: 0 }
     }
 
     /// Puts those of eight numbers whose mask is set behind the others. Those for which there is no room are left out.
@@ -41,8 +37,6 @@ impl<const N: usize> Packed<N> {
 
     #[inline(always)]
     pub(crate) fn as_slice(&self) -> &[u32] {
-        let numbers = &self.numbers[..self.count];
-        // SAFETY: the first `count` have been written; `MaybeUninit<u32>` has the layout of `u32`.
-        unsafe { &*(&raw const *numbers as *const [u32]) }
+        &self.numbers[..self.count]
     }
 }

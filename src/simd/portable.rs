@@ -1,7 +1,5 @@
 //! [`Lanes8`] by plain arrays, for every processor.
 
-use core::mem::MaybeUninit;
-
 use super::Lanes8;
 
 /// The level that every processor has.
@@ -244,22 +242,22 @@ impl Lanes8 for Portable {
         each!(i => -i32::from(bits >> i & 1))
     }
     #[inline(always)]
-    fn compact_i32<const N: usize>(self, mask: I32, from: [I32; N], mut to: [&mut [MaybeUninit<u32>; 8]; N]) {
+    fn compact_i32<const N: usize>(self, mask: I32, from: [I32; N], mut to: [&mut [u32; 8]; N]) {
         let mut count = 0;
         for (lane, set) in mask.into_iter().enumerate() {
             for (from, to) in from.iter().zip(&mut to) {
                 // Fewer than eight come before it.
-                to[count % 8].write(from[lane].cast_unsigned());
+                to[count % 8] = from[lane].cast_unsigned();
             }
             count += (set & 1) as usize;
         }
     }
     #[inline(always)]
-    fn compact_i64<const N: usize>(self, mask: I32, from: [I64; N], mut to: [&mut [MaybeUninit<i64>; 8]; N]) {
+    fn compact_i64<const N: usize>(self, mask: I32, from: [I64; N], mut to: [&mut [i64; 8]; N]) {
         let mut count = 0;
         for (lane, set) in mask.into_iter().enumerate() {
             for (from, to) in from.iter().zip(&mut to) {
-                to[count % 8].write(from[lane]);
+                to[count % 8] = from[lane];
             }
             count += (set & 1) as usize;
         }

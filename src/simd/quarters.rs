@@ -1,7 +1,5 @@
 //! [`Lanes8`] by vectors of 128 bits: four of 64-bit lanes, two of 32-bit ones. One body for SSE2, NEON and wasm.
 
-use core::mem::MaybeUninit;
-
 use super::Lanes8;
 
 /// Vectors of 128 bits: a pair of f64, or four i32, or two i64.
@@ -375,12 +373,7 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
         self.is_equal(self.and_i32(self.all_i32(bits.into()), lanes), lanes)
     }
     #[inline(always)]
-    fn compact_i32<const N: usize>(
-        self,
-        mask: Self::Mask,
-        from: [Self::I32; N],
-        mut to: [&mut [MaybeUninit<u32>; 8]; N],
-    ) {
+    fn compact_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], mut to: [&mut [u32; 8]; N]) {
         // There is no such instruction for all of these levels: lane by lane out of arrays.
         let bits = self.mask_bits(mask);
         let mut lanes = [[0; 8]; N];
@@ -391,18 +384,13 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
         for lane in 0..8 {
             for (lanes, to) in lanes.iter().zip(&mut to) {
                 // Fewer than eight come before it.
-                to[count % 8].write(lanes[lane].cast_unsigned());
+                to[count % 8] = lanes[lane].cast_unsigned();
             }
             count += (bits >> lane & 1) as usize;
         }
     }
     #[inline(always)]
-    fn compact_i64<const N: usize>(
-        self,
-        mask: Self::Mask,
-        from: [Self::I64; N],
-        mut to: [&mut [MaybeUninit<i64>; 8]; N],
-    ) {
+    fn compact_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], mut to: [&mut [i64; 8]; N]) {
         let bits = self.mask_bits(mask);
         let mut lanes = [[0; 8]; N];
         for (from, lanes) in from.into_iter().zip(&mut lanes) {
@@ -411,7 +399,7 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
         let mut count = 0;
         for lane in 0..8 {
             for (lanes, to) in lanes.iter().zip(&mut to) {
-                to[count % 8].write(lanes[lane]);
+                to[count % 8] = lanes[lane];
             }
             count += (bits >> lane & 1) as usize;
         }

@@ -12,15 +12,23 @@ mod sealed {
     pub trait Sealed: Sized {
         /// The cells as `u32`, if they are of 32 bits: those have kernels of their own.
         fn as_u32(cells: &mut [Self]) -> Option<&mut [u32]>;
+        /// The cells as `u16`, if they are of 16 bits.
+        fn as_u16(cells: &mut [Self]) -> Option<&mut [u16]>;
     }
     impl Sealed for u32 {
         fn as_u32(cells: &mut [Self]) -> Option<&mut [u32]> {
             Some(cells)
         }
+        fn as_u16(_: &mut [Self]) -> Option<&mut [u16]> {
+            None
+        }
     }
     impl Sealed for u16 {
         fn as_u32(_: &mut [Self]) -> Option<&mut [u32]> {
             None
+        }
+        fn as_u16(cells: &mut [Self]) -> Option<&mut [u16]> {
+            Some(cells)
         }
     }
 }

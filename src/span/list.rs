@@ -7,10 +7,6 @@
 //! or, with a depth test, `fill_nearer`. The rows of triangles are put in eight at a time; lanes without a pixel, and spans
 //! that do not lie inside the pixels, are left out by compression, so no branch asks how many there are.
 
-#![expect(unsafe_code, reason = "arrays that are written before they are read")]
-
-use core::mem::MaybeUninit;
-
 use super::Kernel;
 use super::depth::{Cell, fill_nearer};
 use crate::simd::{Lanes8, Portable};
@@ -20,8 +16,8 @@ const CAPACITY: usize = 128;
 /// Spans that are written at a time. Those behind the last span are written over.
 const LANES: usize = 8;
 
-type Numbers = [MaybeUninit<u32>; CAPACITY + LANES];
-type Depths = [MaybeUninit<i64>; CAPACITY + LANES];
+type Numbers = [u32; CAPACITY + LANES];
+type Depths = [i64; CAPACITY + LANES];
 
 /// Spans, in arrays. Each lies inside the pixels and, with depths, the cells.
 pub(crate) struct SpanList {
@@ -91,8 +87,8 @@ impl SpanList {
     /// An empty list for these numbers of pixels and cells, and of those from one row to the next.
     #[inline(always)]
     pub(crate) fn new((pixels, pitch): (usize, u32), (cells, width): (usize, u32)) -> Self {
-        const NUMBERS: Numbers = [MaybeUninit::uninit(); CAPACITY + LANES];
-        const DEPTHS: Depths = [MaybeUninit::uninit(); CAPACITY + LANES];
+        const NUMBERS: Numbers = [0; CAPACITY + LANES];
+        const DEPTHS: Depths = [0; CAPACITY + LANES];
         // Offsets beyond are never those of a frame.
         let most = |length: usize| length.min(i32::MAX as usize) as i32;
         Self {
@@ -180,7 +176,7 @@ impl SpanList {
                 }
                 DepthSteps::All(dz) => {
                     s.compact_i64(mask, [z], [eight(&mut self.z, count)]);
-                    *eight(&mut self.dz, count) = [MaybeUninit::new(dz); LANES];
+                    *eight(&mut self.dz, count) = [dz; LANES];
                 }
             }
         }
@@ -206,72 +202,57 @@ impl SpanList {
     }
 
     /// Returns whether all spans lie inside these pixels.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     pub(super) fn are_inside(&self, pixels: &[u8]) -> bool {
         pixels.len() >= self.pixels as usize
     }
 
     /// Returns whether all spans lie inside these cells.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     pub(super) fn are_inside_cells<D>(&self, cells: &[D]) -> bool {
         cells.len() >= self.cells as usize
     }
 
+    /// At most `CAPACITY`.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     pub(super) fn len(&self) -> usize {
-        self.count
+        self.count.min(CAPACITY)
     }
 
-    /// Offset of the first pixel, length and paint of each.
+    /// The spans, in order.
     #[inline(always)]
     pub(super) fn spans(&self) -> impl Iterator<Item = Span> {
-        // SAFETY: `append` has written the first `count` numbers of each array.
-        let [at, length, paint] = unsafe {
-            [written(&self.at, self.count), written(&self.length, self.count), written(&self.paint, self.count)]
-        };
-        let all = at.iter().zip(length).zip(paint);
+        let all = self.at.iter().zip(&self.length).zip(&self.paint).take(self.count);
         all.map(|((&at, &length), &paint)| Span { at, length, paint })
     }
 
-    /// The same with depths.
+    /// Offsets of the spans' first cells.
+    #[inline(always)]
+    fn cell(&self) -> &Numbers {
+        if self.cells_are_pixels() { &self.at } else { &self.cell }
+    }
+
+    /// The spans, in order, with their depths.
     #[inline(always)]
     pub(super) fn tested_spans(&self) -> impl Iterator<Item = (Span, SpanDepth)> {
-        let cell = if self.cells_are_pixels() { &self.at } else { &self.cell };
-        // SAFETY: as above; with depths of these as well.
-        let (cell, z, dz) =
-            unsafe { (written(cell, self.count), written(&self.z, self.count), written(&self.dz, self.count)) };
-        let depths = cell.iter().zip(z).zip(dz).map(|((&cell, &z), &dz)| SpanDepth { cell, z, dz });
-        self.spans().zip(depths)
+        let depths = self.cell().iter().zip(&self.z).zip(&self.dz);
+        self.spans().zip(depths.map(|((&cell, &z), &dz)| SpanDepth { cell, z, dz }))
     }
 
-    /// Span `k`.
-    ///
-    /// # Safety
-    /// `k` is below `len`.
+    /// Span `k`, which is below `len`.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     #[inline(always)]
-    pub(super) unsafe fn span(&self, k: usize) -> Span {
-        // SAFETY: by the caller's promise; `append` has written so many.
-        unsafe {
-            Span {
-                at: self.at.get_unchecked(k).assume_init(),
-                length: self.length.get_unchecked(k).assume_init(),
-                paint: self.paint.get_unchecked(k).assume_init(),
-            }
-        }
+    pub(super) fn span(&self, k: usize) -> Span {
+        let k = k.min(CAPACITY);
+        Span { at: self.at[k], length: self.length[k], paint: self.paint[k] }
     }
 
-    /// The depth of span `k`.
-    ///
-    /// # Safety
-    /// `k` is below `len`, and the spans were put in with depths.
+    /// The depth of span `k`, which is below `len`.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     #[inline(always)]
-    pub(super) unsafe fn depth(&self, k: usize) -> SpanDepth {
-        let cell = if self.cells_are_pixels() { &self.at } else { &self.cell };
-        // SAFETY: by the caller's promise; `append` has written so many.
-        unsafe {
-            SpanDepth {
-                cell: cell.get_unchecked(k).assume_init(),
-                z: self.z.get_unchecked(k).assume_init(),
-                dz: self.dz.get_unchecked(k).assume_init(),
-            }
-        }
+    pub(super) fn depth(&self, k: usize) -> SpanDepth {
+        let k = k.min(CAPACITY);
+        SpanDepth { cell: self.cell()[k], z: self.z[k], dz: self.dz[k] }
     }
 
     /// Fills each by this function.
@@ -322,23 +303,12 @@ pub(super) struct SpanDepth {
 
 /// Eight places from this number on.
 #[inline(always)]
-fn eight<T>(numbers: &mut [MaybeUninit<T>; CAPACITY + LANES], from: usize) -> &mut [MaybeUninit<T>; LANES] {
+fn eight<T>(numbers: &mut [T; CAPACITY + LANES], from: usize) -> &mut [T; LANES] {
     let rest = &mut numbers[from.min(CAPACITY)..];
     match rest.first_chunk_mut() {
         Some(eight) => eight,
         None => unreachable!("eight places are behind the last"),
     }
-}
-
-/// The first of these.
-///
-/// # Safety
-/// So many have been written.
-#[inline(always)]
-unsafe fn written<T>(numbers: &[MaybeUninit<T>; CAPACITY + LANES], count: usize) -> &[T] {
-    let first = &numbers[..count];
-    // SAFETY: by the caller's promise; `MaybeUninit<T>` has the layout of `T`.
-    unsafe { &*(&raw const *first as *const [T]) }
 }
 
 /// A span and where it lies.

@@ -1,6 +1,6 @@
 //! Triangles by their numbers, of vertices that lie in arrays: those that survive culling are put into a batch at once.
 
-use super::Batch;
+use super::triangles::Batch;
 use crate::fixed::U8F8;
 use crate::raster::Interpolation;
 use crate::span::Kernel;

@@ -17,180 +17,32 @@
 //! A triangle larger than 2¹⁸ pixels is drawn by [`Raster::triangle`] when its turn comes. The bytes are those of a call of
 //! it for each triangle in turn.
 
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
 use super::Interpolation;
-use super::depth::{Cell, DepthPlane};
+use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::frame::Rect;
 use super::triangle::Raster;
-use super::vertex::Vertex;
-use crate::fixed::{HAS_F64, I24F8, U8F8};
+use crate::fixed::HAS_F64;
 use crate::raster::shade::RESEED;
-use crate::simd::{Lanes8, compiled_for_each_level};
+use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::list::SpanList;
 
+mod class;
 pub(crate) mod cull;
 #[cfg(feature = "alloc")]
 pub(crate) mod indexed;
 mod rows;
 mod setup;
+mod triangles;
 
-use cull::{ClassedIndex, SizeClass, Survivors};
-use setup::{Corners8, LANES, TriangleSetup8};
+pub use triangles::Batch;
 
-/// The widest that a small triangle is, in pixels: a span of that many has no start but its first.
-const MAX_COLUMNS: i32 = 64;
-/// The highest.
-const MAX_ROWS: i32 = 16;
-/// The widest that the box of a large triangle is, in 1/256 pixel, and the highest.
-const MAX_WIDTH: i32 = 1_024 * 256;
-const MAX_HEIGHT: i32 = 4_096 * 256;
-/// The most squares of four pixels a side that the box has, sides rounded up: 2³⁴ units.
-const MAX_AREA_4X4: i32 = 1 << 14;
-/// Pieces of a row, each of which starts anew.
-const MAX_PIECES: usize = MAX_WIDTH as usize / 256 / RESEED as usize;
-
-/// Where the pixels of a frame lie.
-#[derive(Clone, Copy)]
-struct FrameLayout {
-    /// The row whose pixels come first.
-    first_row: u32,
-    /// Pixels from one row to the next, at most 2¹⁶, ...
-    pitch: u32,
-    /// ... and cells of the depth buffer.
-    width: u32,
-}
-
-/// Triangles to be drawn one after the other, in arrays.
-#[derive(Clone, Debug)]
-pub struct Batch {
-    count: usize,
-    /// True if triangles of no pixel have mostly been left out already: to look for more does not pay.
-    is_sifted: bool,
-    /// The corners of all triangles: x and y in 1/256 pixel, shade in 1/256.
-    x: [[i32; Self::CAPACITY]; 3],
-    y: [[i32; Self::CAPACITY]; 3],
-    shade: [[u16; Self::CAPACITY]; 3],
-    depth: [[u32; Self::CAPACITY]; 3],
-    interpolation: [Interpolation; Self::CAPACITY],
-}
-
-impl Batch {
-    /// The most triangles. With 64 the group of eight that ends a batch is oftener part empty.
-    pub const CAPACITY: usize = 128;
-
-    /// Without a triangle.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self {
-            count: 0,
-            is_sifted: false,
-            x: [[0; Self::CAPACITY]; 3],
-            y: [[0; Self::CAPACITY]; 3],
-            shade: [[0; Self::CAPACITY]; 3],
-            depth: [[0; Self::CAPACITY]; 3],
-            interpolation: [Interpolation::Flat(0); Self::CAPACITY],
-        }
-    }
-
-    /// One for triangles of which those that cover no pixel have mostly been left out.
-    #[cfg(feature = "alloc")]
-    pub(crate) const fn of_sifted() -> Self {
-        Self { is_sifted: true, ..Self::new() }
-    }
-
-    /// Returns whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
-    #[must_use]
-    #[inline]
-    #[doc(hidden)]
-    pub const fn takes(interpolation: Interpolation) -> bool {
-        matches!(interpolation, Interpolation::Flat(_) | Interpolation::Gouraud | Interpolation::GouraudReseeded)
-    }
-
-    /// Puts a triangle behind the others. Returns `false`, and leaves it out, if the batch is full or does not
-    /// [take](Self::takes) this shading.
-    #[inline]
-    pub fn push(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> bool {
-        let at = self.count;
-        if at >= Self::CAPACITY || !Self::takes(interpolation) {
-            return false;
-        }
-        for (corner, v) in vertices.iter().enumerate() {
-            self.x[corner][at] = v.x().to_bits();
-            self.y[corner][at] = v.y().to_bits();
-            // A flat triangle is one whose corners agree: the nearest of a whole shade is that shade.
-            self.shade[corner][at] = match interpolation {
-                Interpolation::Flat(index) => u16::from(index) << 8,
-                _ => v.shade().to_bits(),
-            };
-            self.depth[corner][at] = v.depth();
-        }
-        self.interpolation[at] = interpolation;
-        self.count = at + 1;
-        true
-    }
-
-    /// Number of triangles in the batch.
-    #[must_use]
-    #[inline]
-    pub const fn len(&self) -> usize {
-        self.count
-    }
-
-    /// Returns whether the batch holds no triangle.
-    #[must_use]
-    #[inline]
-    pub const fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    /// Returns whether there is no room left.
-    #[must_use]
-    #[inline]
-    #[doc(hidden)]
-    pub const fn is_full(&self) -> bool {
-        self.count == Self::CAPACITY
-    }
-
-    /// Takes all triangles out.
-    #[inline]
-    pub const fn clear(&mut self) {
-        self.count = 0;
-    }
-
-    fn depth_plane(&self, at: usize) -> DepthPlane {
-        let at = at % Self::CAPACITY;
-        DepthPlane::of_corners([0, 1, 2].map(|corner| (self.x[corner][at], self.y[corner][at], self.depth[corner][at])))
-    }
-
-    /// The most pieces that start anew in a row of a large triangle.
-    fn pieces(&self, at: usize) -> usize {
-        if self.interpolation[at] != Interpolation::GouraudReseeded {
-            return 1;
-        }
-        let [a, b, c] = self.x.each_ref().map(|x| x[at]);
-        // As in `sieve`; at most 1,024 pixels.
-        let columns = ((a.max(b).max(c) + 127) >> 8) - ((a.min(b).min(c) + 127) >> 8);
-        ((columns - 1) as usize / RESEED as usize + 1).clamp(1, MAX_PIECES)
-    }
-
-    /// A triangle as it was put in, but that the vertices of a flat one have its shade.
-    fn triangle(&self, at: usize) -> ([Vertex; 3], Interpolation) {
-        let vertex = |corner: usize| {
-            let (x, y) = (I24F8::from_bits(self.x[corner][at]), I24F8::from_bits(self.y[corner][at]));
-            let shade = U8F8::from_bits(self.shade[corner][at]);
-            // They came out of a vertex; with another shade none would be drawn.
-            Vertex::new(x, y, shade, self.depth[corner][at]).unwrap_or_default()
-        };
-        ([vertex(0), vertex(1), vertex(2)], self.interpolation[at])
-    }
-}
-
-impl Default for Batch {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+use class::{ClassedIndex, SizeClass};
+use cull::Survivors;
+use setup::{Corners8, TriangleSetup8};
+use triangles::{FrameLayout, LANES, MAX_WIDTH};
 
 impl<D: Cell> Raster<'_, D> {
     /// Draws the triangles of a batch, one after the other: the bytes, depths and counts are those of
@@ -235,20 +87,10 @@ impl<D: Cell> Raster<'_, D> {
             let (pixels, _) = self.frame.pixels_mut();
             // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-            drawn += match depth {
-                None => draw_triangles::<u32, false>(
-                    level,
-                    batch,
-                    triangles,
-                    (layout, self.clip),
-                    self.kernel,
-                    pixels,
-                    &mut [],
-                ),
-                Some(depth) => {
-                    let cells = depth.values_mut();
-                    draw_triangles::<D, true>(level, batch, triangles, (layout, self.clip), self.kernel, pixels, cells)
-                }
+            let way = (layout, self.clip, self.kernel);
+            drawn += match depth.map(DepthBuffer::values_mut) {
+                None => draw_all(level, batch, triangles, way, pixels),
+                Some(cells) => draw_where_nearer(batch, triangles, way, pixels, cells),
             };
             left = rest;
         }
@@ -261,25 +103,60 @@ impl<D: Cell> Raster<'_, D> {
     }
 }
 
+/// Where and with what triangles are drawn: the pixels' layout, the clip rectangle, and the kernel.
+type Way = (FrameLayout, Rect, Kernel);
+
+// Without type parameters, so that they are compiled in this crate, and not in each that draws.
 compiled_for_each_level! {
-    /// Draws these triangles, a [`ClassedIndex`] each and none unbatched; with `DEPTHS` where they are nearer than cells.
-    fn draw_triangles[D: Cell, const DEPTHS: bool][D, DEPTHS](
-        batch: &Batch,
-        kept: &[u32],
-        layout: (FrameLayout, Rect),
-        kernel: Kernel,
-        pixels: &mut [u8],
-        cells: &mut [D],
-    ) -> DrawStats = draw_triangles_by;
+    /// Draws these triangles, a [`ClassedIndex`] each and none unbatched.
+    fn draw_all[][](batch: &Batch, kept: &[u32], way: Way, pixels: &mut [u8]) -> DrawStats = draw_all_by;
 }
 
 #[inline(always)]
-fn draw_triangles_by<S: Lanes8, D: Cell, const DEPTHS: bool>(
+fn draw_all_by<S: Lanes8>(s: S, batch: &Batch, kept: &[u32], way: Way, pixels: &mut [u8]) -> DrawStats {
+    draw_triangles::<S, u32, false>(s, batch, kept, way, pixels, &mut [])
+}
+
+/// Likewise, where they are nearer than cells.
+fn draw_where_nearer<D: Cell>(batch: &Batch, kept: &[u32], way: Way, pixels: &mut [u8], cells: &mut [D]) -> DrawStats {
+    if let Some(cells) = D::as_u32(cells) {
+        return draw_nearer(way.2.simd_level(), batch, kept, way, pixels, cells);
+    }
+    match D::as_u16(cells) {
+        Some(cells) => draw_nearer_in_16_bits(batch, kept, way, pixels, cells),
+        None => DrawStats::default(),
+    }
+}
+
+compiled_for_each_level! {
+    fn draw_nearer[][](batch: &Batch, kept: &[u32], way: Way, pixels: &mut [u8], cells: &mut [u32]) -> DrawStats
+        = draw_nearer_by;
+}
+
+#[inline(always)]
+fn draw_nearer_by<S: Lanes8>(
     s: S,
     batch: &Batch,
     kept: &[u32],
-    (layout, clip): (FrameLayout, Rect),
-    kernel: Kernel,
+    way: Way,
+    pixels: &mut [u8],
+    cells: &mut [u32],
+) -> DrawStats {
+    draw_triangles::<S, u32, true>(s, batch, kept, way, pixels, cells)
+}
+
+/// Cells of 16 bits are for small machines: by what every processor of the target has.
+#[inline(never)]
+fn draw_nearer_in_16_bits(batch: &Batch, kept: &[u32], way: Way, pixels: &mut [u8], cells: &mut [u16]) -> DrawStats {
+    draw_triangles::<_, u16, true>(BASELINE, batch, kept, way, pixels, cells)
+}
+
+#[inline(always)]
+fn draw_triangles<S: Lanes8, D: Cell, const DEPTHS: bool>(
+    s: S,
+    batch: &Batch,
+    kept: &[u32],
+    (layout, clip, kernel): Way,
     pixels: &mut [u8],
     cells: &mut [D],
 ) -> DrawStats {

@@ -5,7 +5,8 @@
 //! Left and right are the smaller and the greater of two edges: where the long edge and a short one meet a row, one
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
 
-use super::setup::{Edges, Floats, Ints, LANES, TriangleSetup8};
+use super::setup::{Edges, Floats, Ints, TriangleSetup8};
+use super::triangles::LANES;
 use crate::fixed::ROUND_MAGIC;
 use crate::raster::frame::Rect;
 use crate::simd::Lanes8;

@@ -35,16 +35,13 @@
 //! quotient is taken of 2²⁴·r + ¼, which is exact, too, so that what is rounded lies at least 1/(4A), more than 2⁻²⁸·¹², from
 //! the middle between two integers. It is below 2²³·¹, and off by at most 2⁻⁵² of that: less than 2⁻²⁸·⁹.
 
-use super::cull::ClassedIndex;
-use super::{Batch, FrameLayout};
+use super::class::ClassedIndex;
+use super::triangles::{Batch, FrameLayout, LANES};
 use crate::fixed::ROUND_MAGIC;
 use crate::raster::depth::DepthPlane;
 use crate::simd::Lanes8;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 use crate::span::LargeTriangle;
-
-/// Triangles at a time, or rows of one.
-pub(super) const LANES: usize = 8;
 
 pub(super) type Floats = [f64; LANES];
 pub(super) type Ints = [i32; LANES];
@@ -335,4 +332,84 @@ fn depth_gradient<S: Lanes8>(s: S, n: S::F64, area: S::F64, inverse: S::F64) -> 
     let part = s.mul_add(s.mul_add(rest, s.all_f64(16_777_216.0), s.all_f64(0.25)), inverse, magic);
     // Of the first sum the bits of the magic number are shifted out. The wrap is meant: see `raster::depth`.
     s.add_i64(s.shl_i64(s.bits(integer), 24), s.sub_i64(s.bits(part), s.bits(magic)))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::triangles::{MAX_COLUMNS, MAX_ROWS};
+    use super::*;
+    use crate::simd::compiled_for_each_level;
+    use crate::span::Kernel;
+
+    fn depth() -> impl Strategy<Value = u32> {
+        let end = prop::sample::select(&[0, 1, 1 << 30, u32::MAX - 1, u32::MAX][..]);
+        let near = (1_u32 << 29)..(1 << 29) + 5_000;
+        prop_oneof![3 => any::<u32>(), 6 => near, 2 => 1_u32..1 << 30, 1 => end]
+    }
+
+    /// A corner within a box of this many units.
+    fn corner(width: i32, height: i32) -> BoxedStrategy<(i32, i32, u32)> {
+        let at = |most: i32| prop_oneof![4 => 0..=most, 1 => Just(0), 1 => Just(most)];
+        (at(width), at(height), depth()).boxed()
+    }
+
+    fn triangle() -> BoxedStrategy<[(i32, i32, u32); 3]> {
+        let (width, height) = (MAX_COLUMNS * 256, MAX_ROWS * 256);
+        let sizes = prop_oneof![2 => Just((width, height)), 2 => Just((600, 600)), 2 => Just((40, 40)), 1 => Just((3, 3)),
+            1 => Just((width, 4)), 1 => Just((4, height))];
+        let corners = sizes.prop_flat_map(|(w, h)| [corner(w, h), corner(w, h), corner(w, h)]);
+        let place = (-(1_i32 << 20)..=(1 << 20) - width, -(1_i32 << 20)..=(1 << 20) - height);
+        let place = prop_oneof![3 => (0_i32..50_000, 0_i32..30_000), 1 => place];
+        (corners, place).prop_map(|(corners, (left, top))| corners.map(|(x, y, d)| (left + x, top + y, d))).boxed()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        /// Depths and steps are those of the plane that is worked out in integers, to the bit, by every level.
+        #[test]
+        fn eight_planes_are_each_its_own(triangles in prop::collection::vec(triangle(), LANES), width in 1_u32..=4_096) {
+            let mut corners = Corners8::NONE;
+            for (lane, of_triangle) in triangles.iter().enumerate() {
+                for (corner, &(x, y, d)) in of_triangle.iter().enumerate() {
+                    (corners.x[corner][lane], corners.y[corner][lane]) = (x, y);
+                    corners.depth[corner][lane] = d.cast_signed();
+                }
+            }
+            let layout = FrameLayout { first_row: 3, pitch: width + 5, width };
+            for kernel in Kernel::available() {
+                let mut setup = TriangleSetup8::NONE;
+                set_up(kernel.simd_level(), &mut setup, &corners, layout);
+                for (lane, corners) in triangles.iter().enumerate() {
+                    let [a, b, c] = corners.map(|(x, y, _)| (i64::from(x), i64::from(y)));
+                    if (b.0 - a.0) * (c.1 - a.1) == (c.0 - a.0) * (b.1 - a.1) {
+                        prop_assert_eq!(setup.rows[lane], 0);
+                        continue;
+                    }
+                    let plane = DepthPlane::of_corners(*corners);
+                    let (column, row) = (setup.column[lane], setup.row[lane]);
+                    prop_assert_eq!(setup.cell[lane], (row - 3) * width as i32 + column);
+                    for j in 0..=MAX_ROWS {
+                        for i in [0, 1, 17, MAX_COLUMNS] {
+                            let z = setup.z[lane]
+                                .wrapping_add(setup.z_per_column[lane].wrapping_mul(i.into()))
+                                .wrapping_add(setup.z_per_row[lane].wrapping_mul(j.into()));
+                            prop_assert_eq!(z, plane.fixed_at(column + i, row + j) << 8);
+                        }
+                    }
+                    prop_assert_eq!(setup.z_per_column[lane], plane.step() << 8);
+                }
+            }
+        }
+    }
+
+    compiled_for_each_level! {
+        fn set_up[][](setup: &mut TriangleSetup8, corners: &Corners8, layout: FrameLayout) = set_up_by;
+    }
+
+    #[inline(always)]
+    fn set_up_by<S: Lanes8>(s: S, setup: &mut TriangleSetup8, corners: &Corners8, layout: FrameLayout) {
+        setup.set_up::<S, true>(s, corners, layout);
+    }
 }

@@ -1,0 +1,177 @@
+//! Every level's operations against those of plain arrays, lane by lane and bit by bit.
+
+use std::vec::Vec;
+
+use super::*;
+
+/// Numbers of all sizes, signs and bit patterns.
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn i64s(&mut self) -> [i64; 8] {
+        [(); 8]
+            .map(|()| (self.bits() >> (self.bits() % 64)).cast_signed().wrapping_mul(1 - 2 * (self.bits() & 1) as i64))
+    }
+
+    fn i32s(&mut self) -> [i32; 8] {
+        let ends = [0, 1, -1, i32::MAX, i32::MIN];
+        self.i64s().map(|n| if n % 7 == 0 { ends[n.rem_euclid(5) as usize] } else { n as i32 })
+    }
+
+    /// Integers, so that a product and a sum round alike in one step and in two.
+    fn f64s(&mut self) -> [f64; 8] {
+        self.i64s().map(|n| (n % (1 << 24)) as f64)
+    }
+}
+
+/// A value of each type, in both levels.
+struct Checker<S> {
+    s: S,
+    name: &'static str,
+}
+
+impl<S: Lanes8> Checker<S> {
+    fn f64s(&self, what: &str, found: S::F64, expected: [f64; 8]) {
+        let mut lanes = [0.0; 8];
+        self.s.put_f64s(found, &mut lanes);
+        assert_eq!(
+            lanes.map(f64::to_bits),
+            expected.map(f64::to_bits),
+            "{what} of {}: {lanes:?} {expected:?}",
+            self.name
+        );
+    }
+
+    fn i32s(&self, what: &str, found: S::I32, expected: [i32; 8]) {
+        let mut lanes = [0; 8];
+        self.s.put_i32s(found, &mut lanes);
+        assert_eq!(lanes, expected, "{what} of {}", self.name);
+    }
+
+    fn i64s(&self, what: &str, found: S::I64, expected: [i64; 8]) {
+        let mut lanes = [0; 8];
+        self.s.put_i64s(found, &mut lanes);
+        assert_eq!(lanes, expected, "{what} of {}", self.name);
+    }
+
+    fn mask(&self, what: &str, found: S::Mask, expected: [i32; 8]) {
+        assert_eq!(self.s.mask_bits(found), Portable.mask_bits(expected), "{what} of {}", self.name);
+    }
+}
+
+fn check<S: Lanes8>(s: S, name: &'static str) {
+    let c = Checker { s, name };
+    let p = Portable;
+    let mut random = Random(15);
+    for round in 0..2_000 {
+        let (a, b, d) = (random.f64s(), random.f64s(), random.f64s());
+        let (fa, fb, fd) = (s.f64s(&a), s.f64s(&b), s.f64s(&d));
+        c.f64s("add", s.add(fa, fb), p.add(a, b));
+        c.f64s("sub", s.sub(fa, fb), p.sub(a, b));
+        c.f64s("mul", s.mul(fa, fb), p.mul(a, b));
+        c.f64s("mul_add", s.mul_add(fa, fb, fd), p.mul_add(a, b, d));
+        c.f64s("neg_mul_add", s.neg_mul_add(fa, fb, fd), p.neg_mul_add(a, b, d));
+        let divisor = b.map(|x| if x == 0.0 { 1.0 } else { x });
+        c.f64s("div", s.div(fa, s.f64s(&divisor)), p.div(a, divisor));
+        // Zeros of different signs are not compared.
+        let positive = b.map(|x| x + 0.0);
+        c.f64s("min", s.min(fa, s.f64s(&positive)), p.min(a, positive));
+        c.f64s("max", s.max(fa, s.f64s(&positive)), p.max(a, positive));
+        c.f64s("flip", s.flip(fa, fb), p.flip(a, b));
+        c.mask("is_less", s.is_less(fa, fb), p.is_less(a, b));
+        c.mask("is_less, equal", s.is_less(fa, fa), [0; 8]);
+        c.i32s("low_bits", s.low_bits(fa), p.low_bits(a));
+        c.i64s("bits", s.bits(fa), p.bits(a));
+
+        let (i, j) = (random.i32s(), random.i32s());
+        let (ii, ij) = (s.i32s(&i), s.i32s(&j));
+        c.f64s("to_f64", s.to_f64(ii), p.to_f64(i));
+        c.f64s("unsigned_to_f64", s.unsigned_to_f64(ii), p.unsigned_to_f64(i));
+        c.i32s("add_i32", s.add_i32(ii, ij), p.add_i32(i, j));
+        c.i32s("sub_i32", s.sub_i32(ii, ij), p.sub_i32(i, j));
+        c.i32s("mul_i32", s.mul_i32(ii, ij), p.mul_i32(i, j));
+        c.i32s("min_i32", s.min_i32(ii, ij), p.min_i32(i, j));
+        c.i32s("max_i32", s.max_i32(ii, ij), p.max_i32(i, j));
+        c.i32s("and_i32", s.and_i32(ii, ij), p.and_i32(i, j));
+        c.i32s("or_i32", s.or_i32(ii, ij), p.or_i32(i, j));
+        c.i32s("xor_i32", s.xor_i32(ii, ij), p.xor_i32(i, j));
+        let by = round % 32;
+        c.i32s("shl_i32", s.shl_i32(ii, by), p.shl_i32(i, by));
+        c.i32s("sar_i32", s.sar_i32(ii, by), p.sar_i32(i, by));
+        let (greater, equal) = (s.is_greater(ii, ij), s.is_equal(ii, ij));
+        c.mask("is_greater", greater, p.is_greater(i, j));
+        c.mask("is_equal", equal, p.is_equal(i, j));
+        c.mask("is_equal, equal", s.is_equal(ii, ii), [-1; 8]);
+        let mask = p.is_greater(i, j);
+        c.f64s("select", s.select(greater, fa, fb), p.select(mask, a, b));
+        c.i32s("select_i32", s.select_i32(greater, ii, ij), p.select_i32(mask, i, j));
+        let ([low, high], expected) = (s.zip_i32(ii, ij), p.zip_i32(i, j));
+        c.i32s("zip_i32", low, expected[0]);
+        c.i32s("zip_i32, high", high, expected[1]);
+
+        let (k, l) = (random.i64s(), random.i64s());
+        let (kk, ll) = (s.i64s(&k), s.i64s(&l));
+        c.i64s("add_i64", s.add_i64(kk, ll), p.add_i64(k, l));
+        c.i64s("sub_i64", s.sub_i64(kk, ll), p.sub_i64(k, l));
+        c.i64s("mul_i64", s.mul_i64(kk, ll), p.mul_i64(k, l));
+        c.i64s("mul_low_i64", s.mul_low_i64(kk, ll), p.mul_low_i64(k, l));
+        let by = round % 64;
+        c.i64s("shl_i64", s.shl_i64(kk, by), p.shl_i64(k, by));
+        c.i64s("to_i64", s.to_i64(ii), p.to_i64(i));
+        c.i64s("unsigned_to_i64", s.unsigned_to_i64(ii), p.unsigned_to_i64(i));
+        c.i64s("halves_i64", s.halves_i64(k[0], k[1]), p.halves_i64(k[0], k[1]));
+        c.i64s("all_i64", s.all_i64(k[2]), [k[2]; 8]);
+        let ([low, high], expected) = (s.halves_of_i64(kk), p.halves_of_i64(k));
+        c.i32s("halves_of_i64", low, expected[0]);
+        c.i32s("halves_of_i64, high", high, expected[1]);
+        let ([low, high], expected) = (s.zip_i64(kk, ll), p.zip_i64(k, l));
+        c.i64s("zip_i64", low, expected[0]);
+        c.i64s("zip_i64, high", high, expected[1]);
+
+        c.mask("both", s.both(greater, s.is_greater(ii, s.all_i32(0))), p.both(mask, p.is_greater(i, [0; 8])));
+        c.mask("but_not", s.but_not(greater, s.is_greater(ii, s.all_i32(0))), p.but_not(mask, p.is_greater(i, [0; 8])));
+    }
+    for bits in 0..=u8::MAX {
+        let mask = s.mask_of_bits(bits);
+        assert_eq!(s.mask_bits(mask), bits.into(), "mask_of_bits of {name}");
+        let numbers = random.i32s();
+        let wide = random.i64s();
+        let set = (0..8).filter(|lane| bits >> lane & 1 == 1);
+        let mut packed = Packed::<24>::new();
+        packed.append(s, mask, s.i32s(&numbers));
+        packed.append(s, mask, s.i32s(&numbers));
+        let once: Vec<u32> = set.clone().map(|lane: usize| numbers[lane].cast_unsigned()).collect();
+        assert_eq!(packed.as_slice(), [once.clone(), once].concat(), "compact_i32 of {name}");
+        let mut to = [0; 8];
+        s.compact_i64(mask, [s.i64s(&wide)], [&mut to]);
+        for (to, lane) in to.iter().zip(set) {
+            assert_eq!(*to, wide[lane], "compact_i64 of {name}");
+        }
+    }
+}
+
+#[test]
+fn every_level_has_the_operations_of_plain_arrays() {
+    check(Portable, "plain arrays");
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    {
+        check(SSE2, "SSE2");
+        let tried = [Avx2::find().map(|s| check(s, "AVX2")), Avx512::find().map(|s| check(s, "AVX-512"))];
+        for (name, tried) in ["AVX2", "AVX-512"].into_iter().zip(tried) {
+            if tried.is_none() {
+                std::eprintln!("NOT TRIED: this processor has no {name}");
+            }
+        }
+    }
+    #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+    check(NEON, "NEON");
+    #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+    check(SIMD128, "simd128");
+}
