@@ -17,7 +17,7 @@
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
 //! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
 //! | [`edge`], [`cover`] | which pixels |
-//! | [`interpolation`], [`shade`], [`wide`], [`hyperbolic`], `float` | which byte |
+//! | [`interpolation`], [`shade`], [`fixed16`], [`hyperbolic`], `float` | which byte |
 //! | [`vintage`] | both as the sources print them |
 //! | [`depth`] | whether it is in front |
 //! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
@@ -54,6 +54,8 @@ pub mod edge;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod effects;
+#[doc(hidden)]
+pub mod fixed16;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod float;
@@ -78,8 +80,6 @@ pub mod vertex;
 #[doc(hidden)]
 pub mod vintage;
 mod weights;
-#[doc(hidden)]
-pub mod wide;
 
 pub use batch::Batch;
 pub use depth::DepthBuffer;

@@ -7,7 +7,7 @@ use super::frame::{Frame, Rect};
 use super::interpolation::Interpolation;
 use super::paint::RowShader;
 use super::vertex::Vertex;
-use super::vintage::PeriodTriangle;
+use super::vintage::VintageTriangle;
 use crate::span::Kernel;
 
 /// Draws triangles into a frame: inside a clip rectangle, with a depth buffer if there is one, with
@@ -159,7 +159,7 @@ impl<'a, D: Cell> Raster<'a, D> {
         }
         let mut plane = None;
         let (width, clip) = (self.frame.width(), self.clip);
-        PeriodTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, ramp| {
+        VintageTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, ramp| {
             drawn.covered += (row.x1 - row.x0) as u32;
             let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };

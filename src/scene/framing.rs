@@ -342,8 +342,8 @@ mod tests {
     /// Between two of them a vertex comes nearer to where it is farthest by at most 1 − cos(π / 720) of its radius,
     /// 9.5·10⁻⁶; perspective makes up to 1.2 times that of it, as the eye is at least 2.3 radii away. The camera's numbers
     /// are f32, of 2⁻²⁴ each.
-    const LEAST: f64 = FILL - 2e-5;
-    const MOST: f64 = FILL + 2e-6;
+    const MIN: f64 = FILL - 2e-5;
+    const MAX: f64 = FILL + 2e-6;
 
     struct Random(u64);
 
@@ -389,7 +389,7 @@ mod tests {
     fn check(what: &str, object: &Object, camera: &Camera) {
         let reached = reached(object, camera);
         let most = reached.into_iter().fold(0.0, f64::max);
-        assert!((LEAST..=MOST).contains(&most), "{what}: {reached:?}");
+        assert!((MIN..=MAX).contains(&most), "{what}: {reached:?}");
         let [left, right, below, above] = reached;
         assert!(
             (left - right).abs() < 4e-5 && (below - above).abs() < 4e-5,

@@ -78,9 +78,9 @@ mod simd;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 pub(crate) use simd::{avx2, nearer};
 #[doc(hidden)]
-pub mod texture;
+pub mod fixed16;
 #[doc(hidden)]
-pub mod wide;
+pub mod texture;
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
 mod x86;

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::Texture;
 use crate::palette::median_cut::MedianCut;
-use crate::palette::{Rgb, Search};
+use crate::palette::{NearestColors, Rgb};
 use crate::span::texture::Levels;
 
 /// The smaller copies of a texture, level 1 and up, and the colours that all its levels share.
@@ -57,7 +57,7 @@ impl Mipmap {
                 shown.push(mean);
             }
         }
-        let search = Search::new(&shown);
+        let search = NearestColors::new(&shown);
         let texels = means.iter().map(|&(mean, _)| entries[usize::from(search.nearest(mean))]).collect();
         Self { texels, colors, width_bits, height_bits }
     }

@@ -21,13 +21,13 @@ const WIDTH: u8 = 32;
 /// A search for the nearest of some colours.
 ///
 /// ```
-/// use mode13h::palette::{BIOS, Rgb, Search};
-/// let search = Search::new(BIOS.colors());
+/// use mode13h::palette::{BIOS, Rgb, NearestColors};
+/// let search = NearestColors::new(BIOS.colors());
 /// assert_eq!(search.nearest(Rgb::new(1, 2, 170)), 1);
 /// ```
 #[derive(Clone, Debug)]
 #[doc(hidden)]
-pub struct Search {
+pub struct NearestColors {
     /// The candidates of all boxes: those of box `i` run from `starts[i]` up to `starts[i + 1]`.
     candidates: Vec<Candidate>,
     starts: Vec<usize>,
@@ -46,7 +46,7 @@ struct Reach {
     farthest: u32,
 }
 
-impl Search {
+impl NearestColors {
     /// Makes a search among `colors`, of which the first 256 count.
     #[must_use]
     pub fn new(colors: &[Rgb]) -> Self {
