@@ -23,7 +23,7 @@
 //! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
-//! | [`batch`] | the same for many triangles at a time: [`Raster::batch`] |
+//! | [`batch`] | many triangles at a time: [`Raster::triangles`] |
 //! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
 //! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
@@ -40,6 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[doc(hidden)]
 pub mod batch;
 #[doc(hidden)]
 pub mod clip;
@@ -81,6 +82,7 @@ pub mod vertex;
 pub mod vintage;
 mod weights;
 
+#[doc(hidden)]
 pub use batch::Batch;
 pub use depth::DepthBuffer;
 pub use draw_stats::DrawStats;

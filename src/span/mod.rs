@@ -326,6 +326,13 @@ impl fmt::Display for Kernel {
     }
 }
 
+/// The [fastest](Kernel::fastest).
+impl Default for Kernel {
+    fn default() -> Self {
+        Self::fastest()
+    }
+}
+
 /// Two are equal if they have one name and draw with the same level.
 impl PartialEq for Kernel {
     fn eq(&self, other: &Self) -> bool {

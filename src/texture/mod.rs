@@ -123,6 +123,7 @@ impl Texture {
 
     /// Makes a texture of one texel of one colour, which leaves a surface as plain as without it.
     #[must_use]
+    #[doc(hidden)]
     pub fn plain(color: Rgb) -> Self {
         Self { texels: vec![0], colors: [color; 256], width_bits: 0, height_bits: 0 }
     }

@@ -498,7 +498,7 @@ fn p2_no_pixel_has_an_index_of_another_ramp() {
     let materials = scene[id].materials.clone();
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     for turn in 0..4 {
-        scene[id].set_angles([0.35, f64::from(turn), 0.0].map(Angle::from_radians));
+        scene[id].angles = [0.35, f64::from(turn), 0.0].map(Angle::from_radians);
         for (number, material) in (1..).zip(&mut scene[id].materials) {
             material.ramp = RampChoice::Entries(Ramp::single(number));
         }

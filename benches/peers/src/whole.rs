@@ -75,8 +75,8 @@ pub fn measure(mesh: &Mesh, kernel: Kernel) -> Result<Whole, Box<dyn Error>> {
     // Ours sees the mesh as large as it is from where it fills the frame; Mesa sees it at the unit's size.
     let scale = Scene::default().camera.eye.z / eye.z;
     let mut renderers = [Renderer::new(), Renderer::new()];
-    renderers.iter_mut().for_each(|renderer| renderer.set_kernel(kernel));
-    renderers[0].settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+    renderers.iter_mut().for_each(|renderer| renderer.settings.kernel = kernel);
+    renderers[0].settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     // An open mesh shows its other side, too.
     let both = !renderers[0].make_plan(&scene, Screen::MODE_13H)?.is_on(0, Effect::BackFaceCulling);
     // SAFETY: Mesa has been started.
@@ -87,7 +87,7 @@ pub fn measure(mesh: &Mesh, kernel: Kernel) -> Result<Whole, Box<dyn Error>> {
     for round in 0..=ROUNDS {
         // Each renderer sees each pose once, so nothing is kept. The first round warms up.
         let angles = [0.4, 0.6 + 0.01 * round as f64, 0.0];
-        scene.objects_mut()[0].set_angles(angles.map(Angle::from_radians));
+        scene.objects_mut()[0].angles = angles.map(Angle::from_radians);
         let turn = scene.objects()[0].rotation();
         let mut model = [0.0_f32; 16];
         let offset = turn * -bounds.centre * scale;

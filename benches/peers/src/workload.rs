@@ -25,7 +25,7 @@ impl Workload {
     fn of_mesh(name: String, mesh: Mesh) -> Result<Self, Box<dyn Error>> {
         let mut scene = Scene::showing(mesh.clone());
         scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
-        scene.objects_mut()[0].set_angles([0.4, 0.6, 0.0].map(Angle::from_radians));
+        scene.objects_mut()[0].angles = [0.4, 0.6, 0.0].map(Angle::from_radians);
         let mut triangles = Vec::new();
         Renderer::new().for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| triangles.push(*vertices))?;
         triangles.sort_by_key(|vertices| vertices.iter().map(|v| u64::from(v.depth())).sum::<u64>());

@@ -415,9 +415,9 @@ mod tests {
 
     fn frame(number: u64, scene: &Scene, shadings: &[Shading]) -> Frame {
         let mut picture = Vga::new();
-        let renderer = |&shading| {
+        let renderer = |&shading: &Shading| {
             let mut renderer = Renderer::new();
-            renderer.set_shading(shading);
+            renderer.settings.accuracy = Some(shading.into());
             renderer.draw(scene, &mut picture).expect("a legal scene");
             renderer.set_alike()
         };
@@ -430,7 +430,7 @@ mod tests {
     /// The whole truth against what is drawn.
     fn errors(scene: &Scene, shading: Shading) -> ErrorMap {
         let mut renderer = Renderer::new();
-        renderer.set_shading(shading);
+        renderer.settings.accuracy = Some(shading.into());
         let shown = Probe::new(renderer).look(scene, Screen::MODE_13H).expect("a legal scene");
         let truth = Truth::new(scene, Screen::MODE_13H).expect("a legal scene").draw(Standard::Lit);
         ErrorMap::new(&truth, &shown).expect("of one size")

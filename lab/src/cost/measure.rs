@@ -138,7 +138,7 @@ pub fn measure(
     let study = Study {
         input: name.to_string(),
         host: Host { clock: clock.name.to_string(), clock_step: clock.step(), ..host.clone() },
-        kernel: renderer().kernel().to_string(),
+        kernel: renderer().settings.kernel.to_string(),
         frames: frames.len(),
         rounds: outcome.samples.rounds(),
         shadings: of_shadings,
