@@ -193,6 +193,7 @@ impl<'a> Frame<'a> {
 
     /// All pixels that it holds.
     #[must_use]
+    #[doc(hidden)]
     pub fn bounds(&self) -> Rect {
         Rect { x0: 0, y0: self.rows.start, x1: self.width, y1: self.rows.end }
     }

@@ -23,7 +23,7 @@
 //! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
-//! | [`batch`] | many triangles at a time: [`Raster::triangles`] |
+//! | [`batch`], `triangles` | many triangles at a time: [`Raster::triangles`] |
 //! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
 //! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
@@ -77,6 +77,7 @@ pub mod shade;
 #[doc(hidden)]
 pub mod shade_trace;
 pub mod triangle;
+mod triangles;
 pub mod vertex;
 #[doc(hidden)]
 pub mod vintage;

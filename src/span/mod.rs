@@ -32,7 +32,7 @@
 //!
 //! | loop | what |
 //! |---|---|
-//! | [`wide::fill_16_16`] | the span in 16.16 |
+//! | [`fixed16::fill_16_16`] | the span in 16.16 |
 //! | [`hyperbolic::fill_quotients`] | perspective-correct shades |
 //! | [`float::fill_float`] | the same in f32 |
 //! | [`dither::fill_dithered`] | the span with ordered dither |
