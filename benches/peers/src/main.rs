@@ -1,14 +1,15 @@
 //! mode13h side by side with Allegro 4, retrofire and Mesa's llvmpipe, on the same triangles.
 //!
 //! ```text
-//! cargo run --release -- [--rabbit MODEL.obj] [--json FILE] [--rounds N] [--faces N] [--only TEXT] [--no-frames]
-//!     [MODEL.obj | TRIANGLES.tri] ...
+//! cargo run --release -- [--rabbit MODEL.obj] [--json FILE] [--rounds N] [--faces N] [--only TEXT]
+//!     [--no-frames | --no-triangles] [MODEL.obj | TRIANGLES.tri] ...
 //! ```
 //!
 //! Triangles: a cleared frame of 320 × 200, then all front faces, back to front; nothing but the rasterizer is timed,
 //! with the clearing of its depth buffer, if it has one, and the packing of our batches. Every round each candidate
-//! draws once, or as often as it takes to fill a millisecond, in an order that each round shuffles anew. Figures are
-//! medians, and in brackets the interval that holds the median in 95 of 100 runs. Ratios are taken round by round.
+//! draws once, or as often as it takes to fill a millisecond, in an order that each round shuffles anew. Figures are the
+//! thread's own time: medians, and in brackets the interval that holds the median in 95 of 100 runs. Ratios are taken
+//! round by round.
 //!
 //! Whole frames: transform, light, culling, hidden surfaces and drawing.
 //!
@@ -27,7 +28,6 @@ mod workload;
 
 use std::error::Error;
 use std::path::PathBuf;
-use std::time::Instant;
 
 use candidate::{Candidate, Triangle};
 use drawing::{Drawing, Material};
@@ -49,6 +49,7 @@ struct Options {
     rounds: usize,
     /// Finer meshes are left out.
     faces: usize,
+    triangles: bool,
     frames: bool,
     only: String,
     files: Vec<String>,
@@ -60,6 +61,7 @@ fn options() -> Result<Options, String> {
         json: None,
         rounds: 31,
         faces: usize::MAX,
+        triangles: true,
         frames: true,
         only: String::new(),
         files: Vec::new(),
@@ -74,6 +76,7 @@ fn options() -> Result<Options, String> {
             "--rounds" => options.rounds = number(next()?)?,
             "--faces" => options.faces = number(next()?)?,
             "--only" => options.only = next()?,
+            "--no-triangles" => options.triangles = false,
             "--no-frames" => options.frames = false,
             _ if word.starts_with('-') => return Err(format!("no such option: {word}")),
             _ => options.files.push(word),
@@ -101,7 +104,7 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
         .collect();
     println!("{}; medians of {} rounds", processor(), options.rounds);
     let mut tables = Vec::new();
-    for drawing in Drawing::ALL {
+    for drawing in Drawing::ALL.into_iter().filter(|_| options.triangles) {
         let mut rows = Vec::new();
         println!("\nTriangles, {}: ns a triangle", drawing.name());
         let is_drawn =
@@ -154,11 +157,11 @@ fn triangles(
         for &which in turns.shuffled() {
             let candidate = &mut candidates[which];
             candidate.clear(0);
-            let started = Instant::now();
+            let started = timing::seconds();
             for _ in 0..repeats[which] {
                 candidate.draw();
             }
-            times[which].push(started.elapsed().as_secs_f64() / f64::from(repeats[which]));
+            times[which].push((timing::seconds() - started) / f64::from(repeats[which]));
         }
     }
     // Who is best is decided by medians; the ratio is that of the two.
@@ -233,7 +236,8 @@ fn pictures(
     let mut pictures = Vec::new();
     for (candidate, bytes) in candidates.iter().zip(&drawn) {
         let both = ours.iter().zip(bytes).filter(|(a, b)| **a != 0 && **b != 0);
-        let difference = both.clone().map(|(a, b)| f64::from(a.abs_diff(*b))).fold(0.0, |a, b| a + b) / both.count().max(1) as f64;
+        let difference =
+            both.clone().map(|(a, b)| f64::from(a.abs_diff(*b))).fold(0.0, |a, b| a + b) / both.count().max(1) as f64;
         let share = count(bytes) / count(ours);
         // Nobody's edges are a pixel off on the mean, and a texel off is 24 to 168 shades of a few pixels.
         if !(0.95..1.05).contains(&share) || difference > 12.0 {
@@ -264,9 +268,9 @@ fn mean_pixels(triangles: &[Triangle]) -> f64 {
 /// How often it draws in a millisecond, at least once.
 fn repeats(candidate: &mut dyn Candidate) -> u32 {
     candidate.draw();
-    let started = Instant::now();
+    let started = timing::seconds();
     candidate.draw();
-    (1e-3 / started.elapsed().as_secs_f64()).clamp(1.0, 10_000.0) as u32
+    (1e-3 / (timing::seconds() - started)).clamp(1.0, 10_000.0) as u32
 }
 
 /// One mesh, drawn by us in several ways and by Mesa.

@@ -29,6 +29,8 @@ int peers_mesa_start(int width, int height, const float *projection, const float
     glLightModelfv(GL_LIGHT_MODEL_AMBIENT, (const float[]){1, 1, 1, 1});
     glMaterialfv(GL_FRONT_AND_BACK, GL_AMBIENT, (const float[]){0.15f, 0.15f, 0.15f, 1});
     glMaterialfv(GL_FRONT_AND_BACK, GL_DIFFUSE, (const float[]){0.85f, 0.85f, 0.85f, 1});
+    /* The matrix of a model has a size. */
+    glEnable(GL_RESCALE_NORMAL);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_LUMINANCE8, side, side, 0, GL_LUMINANCE, GL_UNSIGNED_BYTE, texels);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);

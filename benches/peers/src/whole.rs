@@ -2,7 +2,6 @@
 
 use std::error::Error;
 use std::ffi::{CStr, c_char, c_int};
-use std::time::Instant;
 
 use mode13h::Angle;
 use mode13h::glam::{Mat3, Vec3};
@@ -16,7 +15,7 @@ use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 
 use crate::drawing::{Material, SIDE_BITS};
-use crate::timing::{Times, Turns};
+use crate::timing::{Times, Turns, seconds};
 use crate::{HEIGHT, WIDTH};
 
 unsafe extern "C" {
@@ -178,14 +177,14 @@ pub fn measure(
         scene.objects_mut()[0].angles = angles.map(Angle::from_radians);
         let model = model(scene.objects()[0].rotation(), bounds.centre, scale);
         for &which in turns.shuffled() {
-            let started = Instant::now();
+            let started = seconds();
             match ours.get_mut(which) {
                 Some((renderer, vga)) => drop(renderer.draw(&scene, vga)?),
                 // SAFETY: a matrix of 16.
                 None => unsafe { peers_mesa_frame(model.as_ptr()) },
             }
             if round > 0 {
-                times[which].push(started.elapsed().as_secs_f64());
+                times[which].push(seconds() - started);
             }
         }
     }
