@@ -61,6 +61,10 @@ pub fn all<'a>(
             all.push(Box::new(Batches::new(triangles, drawing, kernel)));
         }
     }
+    let fastest = kernels.last().copied().unwrap_or_default();
+    if drawing.is_perspective() {
+        all.push(Box::new(Effects::new(triangles, drawing, material, fastest).every_16()));
+    }
     // A triangle a call, by the slowest and by the fastest.
     for &kernel in kernels.first().into_iter().chain(kernels.last()).filter(|_| !drawing.has_texture()) {
         all.push(Box::new(OneByOne::new(triangles, drawing, kernel)));

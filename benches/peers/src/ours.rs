@@ -134,6 +134,7 @@ impl Candidate for Batches {
 pub struct Effects<'a> {
     faces: Vec<([Vertex; 3], [Attributes; 3])>,
     drawing: Drawing,
+    mapping: TextureMapping,
     material: &'a Material,
     target: Target,
     batch: EffectBatch,
@@ -150,6 +151,7 @@ impl<'a> Effects<'a> {
         Self {
             faces: triangles.iter().map(face).collect(),
             drawing,
+            mapping: if drawing.is_perspective() { TextureMapping::Perspective } else { TextureMapping::Affine },
             material,
             target: Target::new(drawing, kernel),
             batch: EffectBatch::new(),
@@ -157,9 +159,18 @@ impl<'a> Effects<'a> {
     }
 }
 
+impl Effects<'_> {
+    /// Texture coordinates exact at every sixteenth pixel, as the renderer's plan has them where that shows nothing.
+    /// Allegro, too, draws affine where distances are alike.
+    pub fn every_16(self) -> Self {
+        Self { mapping: TextureMapping::Every16, ..self }
+    }
+}
+
 impl Candidate for Effects<'_> {
     fn name(&self) -> String {
-        format!("batches, {}", self.target.kernel)
+        let every = if self.mapping == TextureMapping::Every16 { "every 16th, " } else { "" };
+        format!("batches, {every}{}", self.target.kernel)
     }
 
     fn is_ours(&self) -> bool {
@@ -173,13 +184,12 @@ impl Candidate for Effects<'_> {
     fn draw(&mut self) {
         let (drawing, material) = (self.drawing, self.material);
         let interpolation = if drawing.is_lit() { Interpolation::GouraudReseeded } else { Interpolation::Flat(255) };
-        let mapping = if drawing.is_perspective() { TextureMapping::Perspective } else { TextureMapping::Affine };
         let pipeline = PixelPipeline {
             source: ShadeSource::Shaded(interpolation),
             texture: Some(TextureStage {
                 texels: Texels::new(&material.texels, SIDE_BITS, SIDE_BITS).expect("as many texels"),
                 levels: None,
-                mapping,
+                mapping: self.mapping,
                 tables: [material.table(drawing); 3],
             }),
             blend: (drawing == Drawing::Translucent).then_some(&*material.mixed),
