@@ -11,11 +11,11 @@ use mode13h::lanes::{LANES, Points};
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::depth::{copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
+use mode13h::span::fixed16::fill_16_16;
 use mode13h::span::float::fill_float;
 use mode13h::span::hyperbolic::fill_quotients;
 use mode13h::span::lit::interpolate;
 use mode13h::span::texture::{Texels, fill_affine, fill_perspective, fill_perspective_portable};
-use mode13h::span::wide::fill_16_16;
 use mode13h::span::{Kernel, lookup};
 use std::hint::black_box;
 use std::time::Instant;
@@ -49,14 +49,14 @@ type Nearer = fn(&mut [u8], &mut [u32], &[u8], i64, i64) -> u32;
 type Before = fn(&mut [u8], &[u32], &[u8], i64, i64) -> u32;
 type Quotients = fn(&mut [u8], i128, i128, i128, i128);
 type Interpolate = fn(u16, &[f64; 6], &[f64; 6], f64, f64) -> Points;
-type Wide = fn(&mut [u8], u32, u32);
+type Fixed16 = fn(&mut [u8], u32, u32);
 type Float = fn(&mut [u8], i32, [f32; 2], [f32; 2], [f32; 2]);
 
 /// A loop under its name; a portable one comes before its twin. Each is called by its address, which the
 /// compiler is not told: so that none is inlined and made for these numbers alone, and `nm -S` shows its size.
 const LOOPS: [(&str, Draw); 16] = [
     ("span", |m, start, n| Kernel::fastest().fill(&mut m.row[start..start + n], 0x1234, 0x56)),
-    ("16.16", |m, start, n| black_box(fill_16_16 as Wide)(&mut m.row[start..start + n], 0x12_3456, 0x5678)),
+    ("16.16", |m, start, n| black_box(fill_16_16 as Fixed16)(&mut m.row[start..start + n], 0x12_3456, 0x5678)),
     ("dither portable", |m, start, n| dither(fill_dithered_portable, m, start, n)),
     ("dither", |m, start, n| dither(fill_dithered, m, start, n)),
     ("affine", |m, start, n| {

@@ -44,7 +44,7 @@ fn main() {
             .iter()
             .map(|&shading| {
                 let mut renderer = Renderer::new();
-                renderer.set_shading(shading);
+                renderer.settings.accuracy = Some(shading.into());
                 renderer
             })
             .collect();

@@ -29,9 +29,9 @@ type Triangles = Vec<([Vertex; 3], Interpolation)>;
 fn of_mesh(mesh: Mesh, shading: Shading) -> Triangles {
     let mut scene = Scene::showing(mesh);
     scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
-    scene.objects_mut()[0].set_angles([0.4, 0.6, 0.0].map(Angle::from_radians));
+    scene.objects_mut()[0].angles = [0.4, 0.6, 0.0].map(Angle::from_radians);
     let mut renderer = Renderer::new();
-    renderer.set_shading(shading);
+    renderer.settings.accuracy = Some(shading.into());
     let mut triangles = Triangles::new();
     renderer
         .for_each_triangle(&scene, Screen::MODE_13H, |vertices, interpolation| {

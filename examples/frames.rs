@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => return Err("no such scene".into()),
     };
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-    renderer.set_kernel(Kernel::by_name(kernel)?);
+    renderer.settings.kernel = Kernel::by_name(kernel)?;
     let (mut all, mut on) = (0xcbf2_9ce4_8422_2325, BTreeSet::new());
     for frame in 0..frames.parse::<u32>()? {
         scene.set_time(f64::from(frame) / 35.0);

@@ -55,7 +55,7 @@
 //! as `[0.0, 1.0, 0.0]`. A colour of the palette, of a picture or of fog is an [`Rgb`](palette::Rgb) of three bytes. A
 //! colour of a light or of a surface is `[f32; 3]`: red, green and blue, as a rule 0 to 1. An `Rgb` becomes one by `into`.
 //!
-//! Functions and methods that only the laboratory and the program use are in [`hooks`], or hidden from this
+//! Functions and methods that only the laboratory and the program use are in `src/hooks.rs`, or hidden from this
 //! documentation. They may change with any version.
 //!
 //! # Features
@@ -97,6 +97,7 @@ pub use names::UnknownName;
 #[cfg(feature = "alloc")]
 pub mod auto_palette;
 #[cfg(feature = "alloc")]
+#[doc(hidden)]
 pub mod hooks;
 #[cfg(feature = "alloc")]
 pub mod light;

@@ -45,6 +45,7 @@ impl Error for ModelError {
 /// A model as it was read.
 #[derive(Debug)]
 #[non_exhaustive]
+#[doc(hidden)]
 pub struct Model {
     /// The mesh with its materials and textures, under the file's name.
     pub object: Object,
@@ -57,6 +58,7 @@ pub struct Model {
 /// # Errors
 ///
 /// [`ObjError`] with the file and the line.
+#[doc(hidden)]
 pub fn load(path: impl AsRef<Path>, options: &obj::Options) -> Result<Model, ObjError> {
     let path = path.as_ref();
     let loaded = obj::load_with(path, options, |_, _| {})?;

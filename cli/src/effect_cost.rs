@@ -79,7 +79,7 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
         match effect {
             Effect::HiddenSurfaces => {
                 let way = if on { HiddenSurfaces::BackFaces } else { HiddenSurfaces::DepthBuffer };
-                switched.renderer.settings_mut().hidden_surfaces = Some(way);
+                switched.renderer.settings.hidden_surfaces = Some(way);
             }
             Effect::PaletteAnimation => switched.renderer.force(effect, Some(!on)),
             _ => switched.renderer.force_for(object, effect, Some(!on)),

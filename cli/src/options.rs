@@ -257,11 +257,11 @@ impl Drawing {
     pub(crate) fn renderer(&self, kernel: Kernel) -> Renderer {
         let Pipeline { hidden_surfaces, mapping, mipmaps, arithmetic, .. } = self.pipeline;
         let mut renderer = Renderer::new();
-        renderer.set_kernel(kernel);
-        renderer.settings_mut().hidden_surfaces = hidden_surfaces;
-        renderer.settings_mut().mapping = mapping;
-        renderer.settings_mut().mipmaps = mipmaps;
-        renderer.settings_mut().vertex_path = arithmetic.unwrap_or_default();
+        renderer.settings.kernel = kernel;
+        renderer.settings.hidden_surfaces = hidden_surfaces;
+        renderer.settings.mapping = mapping;
+        renderer.settings.mipmaps = mipmaps;
+        renderer.settings.vertex_path = arithmetic.unwrap_or_default();
         renderer
     }
 }

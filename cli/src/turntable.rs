@@ -130,8 +130,8 @@ impl Turntable {
         match self.shown {
             Shown::Model => {
                 for object in self.scene.objects_mut() {
-                    let [x, y, z] = object.angles();
-                    object.set_angles([x + Angle::from_radians(tilt), y + Angle::from_radians(turn), z]);
+                    let [x, y, z] = object.angles;
+                    object.angles = [x + Angle::from_radians(tilt), y + Angle::from_radians(turn), z];
                 }
             }
             Shown::Scene if is_turned => self.scene.camera = gone_round(self.scene.camera, turn, tilt),

@@ -10,24 +10,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// An error of a file that was not written. The file that stood under its name before is untouched.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct ExportError {
-    path: PathBuf,
-    kind: ExportErrorKind,
+    /// The file that was to be written.
+    pub path: PathBuf,
+    /// The kind of the error.
+    pub kind: ExportErrorKind,
 }
 
 impl ExportError {
     pub(super) fn new(path: &Path, kind: ExportErrorKind) -> ExportError {
         ExportError { path: path.to_path_buf(), kind }
-    }
-
-    /// The file that was to be written.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The kind of the error.
-    pub fn kind(&self) -> &ExportErrorKind {
-        &self.kind
     }
 }
 

@@ -32,6 +32,7 @@ impl FrameRate {
     }
 
     /// Returns the rate in frames a second.
+    #[doc(hidden)]
     pub fn frames_per_second(self) -> f64 {
         self.0
     }

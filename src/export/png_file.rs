@@ -28,7 +28,7 @@ use crate::vga::Vga;
 /// ```
 pub fn png(vga: &Vga, path: impl AsRef<Path>) -> Result<(), ExportError> {
     let palette = vga.palette();
-    Png::INDEXED.save(&Picture::mode_13h(vga.pixels(), &palette), path)
+    Png::default().save(&Picture::mode_13h(vga.pixels(), &palette), path)
 }
 
 /// The form in which a [`Picture`] becomes a PNG file.
@@ -54,9 +54,6 @@ pub struct Png {
 }
 
 impl Png {
-    /// The picture's own pixels as indices, with its palette: the default.
-    pub const INDEXED: Self = Self { scale: Scale::One, rgb: false };
-
     /// Writes a picture.
     ///
     /// # Errors

@@ -1,7 +1,6 @@
 //! A mesh in 16.16: slices that the caller owns, checked once.
 
-use core::fmt;
-
+use super::IntegerError;
 use super::vector::{Vector, cross, narrow_unit, widen};
 use crate::fixed::I16F16;
 
@@ -32,49 +31,6 @@ impl Index for u32 {
         self as usize
     }
 }
-
-/// The errors of slices that cannot serve as a mesh.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub enum FixedMeshError {
-    /// A slice has a wrong length.
-    Count {
-        /// The name of what was counted.
-        what: &'static str,
-        /// The number given.
-        given: usize,
-        /// The number needed.
-        needed: usize,
-    },
-    /// A coordinate lies outside ±32,767.
-    Position {
-        /// The vertex.
-        vertex: usize,
-    },
-    /// A normal's length is not within 2⁻¹⁴ of 1.
-    NormalNotUnit {
-        /// The vertex.
-        vertex: usize,
-    },
-    /// A triangle names a vertex that does not exist.
-    IndexOutOfRange {
-        /// The triangle.
-        triangle: usize,
-    },
-}
-
-impl fmt::Display for FixedMeshError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Count { what, given, needed } => write!(f, "{given} {what} given where {needed} are needed"),
-            Self::Position { vertex } => write!(f, "vertex {vertex} lies outside ±32,767"),
-            Self::NormalNotUnit { vertex } => write!(f, "the normal of vertex {vertex} is not of length 1"),
-            Self::IndexOutOfRange { triangle } => write!(f, "triangle {triangle} names a vertex that is not there"),
-        }
-    }
-}
-
-impl core::error::Error for FixedMeshError {}
 
 /// A mesh in 16.16, borrowed and checked: one that exists is sound.
 #[derive(Clone, Copy, Debug)]
@@ -111,12 +67,12 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         normals: &'a [Vector],
         triangles: &'a [[I; 3]],
         closed: bool,
-    ) -> Result<Self, FixedMeshError> {
+    ) -> Result<Self, IntegerError> {
         count("normals", normals.len(), positions.len())?;
         let mut most = 0;
         for (vertex, position) in positions.iter().enumerate() {
             if position.iter().any(|c| c.to_bits().unsigned_abs() > Self::REACH.to_bits().unsigned_abs()) {
-                return Err(FixedMeshError::Position { vertex });
+                return Err(IntegerError::Position { vertex });
             }
             most = most.max(square(*position));
         }
@@ -124,7 +80,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
             let long = normal.iter().any(|c| c.to_bits().unsigned_abs() > 2 * 65_536);
             // 2⁻¹⁴ is 4 units.
             if long || !(65_532 * 65_532..=65_540 * 65_540).contains(&square(*normal)) {
-                return Err(FixedMeshError::NormalNotUnit { vertex });
+                return Err(IntegerError::NormalNotUnit { vertex });
             }
         }
         check_indices(triangles, positions.len())?;
@@ -162,7 +118,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         mut self,
         vertex_surfaces: &'a [u16],
         triangle_surfaces: &'a [u16],
-    ) -> Result<Self, FixedMeshError> {
+    ) -> Result<Self, IntegerError> {
         count("surfaces of vertices", vertex_surfaces.len(), self.positions.len())?;
         count("surfaces of triangles", triangle_surfaces.len(), self.triangles.len())?;
         let most = vertex_surfaces.iter().chain(triangle_surfaces).max();
@@ -195,13 +151,13 @@ impl<'a, I: Index> FixedMesh<'a, I> {
     }
 }
 
-fn count(what: &'static str, given: usize, needed: usize) -> Result<(), FixedMeshError> {
-    if given == needed { Ok(()) } else { Err(FixedMeshError::Count { what, given, needed }) }
+fn count(what: &'static str, given: usize, needed: usize) -> Result<(), IntegerError> {
+    if given == needed { Ok(()) } else { Err(IntegerError::Count { what, given, needed }) }
 }
 
-fn check_indices<I: Index>(triangles: &[[I; 3]], vertices: usize) -> Result<(), FixedMeshError> {
+fn check_indices<I: Index>(triangles: &[[I; 3]], vertices: usize) -> Result<(), IntegerError> {
     match triangles.iter().position(|t| t.iter().any(|i| i.place() >= vertices)) {
-        Some(triangle) => Err(FixedMeshError::IndexOutOfRange { triangle }),
+        Some(triangle) => Err(IntegerError::IndexOutOfRange { triangle }),
         None => Ok(()),
     }
 }
@@ -234,7 +190,7 @@ pub fn average_normals<I: Index>(
     positions: &[Vector],
     triangles: &[[I; 3]],
     normals: &mut [Vector],
-) -> Result<(), FixedMeshError> {
+) -> Result<(), IntegerError> {
     count("normals", normals.len(), positions.len())?;
     check_indices(triangles, positions.len())?;
     const NONE: Vector = [I16F16::from_bits(0); 3];

@@ -62,12 +62,14 @@ use core::fmt;
 pub use crate::shading::Shading;
 pub use angle::BinaryAngle;
 pub use light::{Beam, Paint, Sun};
-pub use mesh::{FixedMesh, FixedMeshError, Index, average_normals, face_normal};
+#[doc(hidden)]
+pub use mesh::Index;
+pub use mesh::{FixedMesh, average_normals, face_normal};
 pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};
 pub use view::{Camera, Lens, Placement, View};
 
-/// The errors of the integer path.
+/// The errors of the integer path: of a mesh, a camera, lights or paints.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum IntegerError {
@@ -84,7 +86,7 @@ pub enum IntegerError {
     Scale,
     /// A part of an object may be more than 65,535 units from the eye.
     TooFar,
-    /// More than [`Sun::MAX_COUNT`] suns, or one without direction.
+    /// More than 4,096 suns, or one without direction.
     Light,
     /// There are fewer paints than the mesh has surfaces.
     Paints {
@@ -95,6 +97,30 @@ pub enum IntegerError {
     Room {
         /// The number that there must be room for.
         needed: usize,
+    },
+    /// A slice of a mesh has a wrong length.
+    Count {
+        /// The name of what was counted.
+        what: &'static str,
+        /// The number given.
+        given: usize,
+        /// The number needed.
+        needed: usize,
+    },
+    /// A coordinate of a mesh lies outside ±32,767.
+    Position {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// A normal's length is not within 2⁻¹⁴ of 1.
+    NormalNotUnit {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// A triangle names a vertex that does not exist.
+    IndexOutOfRange {
+        /// The triangle.
+        triangle: usize,
     },
 }
 
@@ -111,6 +137,10 @@ impl IntegerError {
             Self::Light => "a sun must have a direction, and there may be 4,096 of them",
             Self::Paints { .. } => "each surface of a mesh must have a paint",
             Self::Room { .. } => "there is too little room for vertices or beams",
+            Self::Count { .. } => "the slices of a mesh must fit together",
+            Self::Position { .. } => "each vertex of a mesh must lie within ±32,767",
+            Self::NormalNotUnit { .. } => "each normal of a mesh must be of length 1",
+            Self::IndexOutOfRange { .. } => "each triangle of a mesh must name vertices that are there",
         }
     }
 }
@@ -120,7 +150,16 @@ impl fmt::Display for IntegerError {
         f.write_str(self.what())?;
         match self {
             Self::Paints { needed } | Self::Room { needed } => write!(f, ": {needed} are needed"),
-            _ => Ok(()),
+            Self::Count { what, given, needed } => write!(f, ": {given} {what} given where {needed} are needed"),
+            Self::Position { vertex } | Self::NormalNotUnit { vertex } => write!(f, ": vertex {vertex} is not"),
+            Self::IndexOutOfRange { triangle } => write!(f, ": triangle {triangle} does not"),
+            Self::Size
+            | Self::FieldOfView
+            | Self::Near
+            | Self::Direction
+            | Self::Scale
+            | Self::TooFar
+            | Self::Light => Ok(()),
         }
     }
 }

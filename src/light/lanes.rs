@@ -16,7 +16,7 @@ type Wides = Lanes<f64>;
 /// x, y and z.
 type Vectors = [Wides; 3];
 
-const NOUGHT: Wides = [0.0; LANES];
+const ZERO: Wides = [0.0; LANES];
 
 /// The light that falls on the points, for each channel.
 struct Front<const N: usize> {
@@ -56,7 +56,7 @@ fn normals_of<const UNIT: bool>(points: &Points) -> [Lanes<f32>; 3] {
 fn unit_normals(points: &Points) -> [Lanes<f32>; 3] {
     let wide = [0, 1, 2].map(|axis| widen(&points[axis]));
     let squares = dot(&wide, &wide);
-    let mut parts = NOUGHT;
+    let mut parts = ZERO;
     for (part, square) in parts.iter_mut().zip(&squares) {
         let length = square_root(*square);
         *part = if length > 0.0 && length < f64::INFINITY { 1.0 / length } else { 0.0 };
@@ -194,7 +194,7 @@ impl Lights<'_> {
         of_sun: impl Fn(&super::Beam) -> [f64; N],
         of_lamp: impl Fn(&super::LampBeam) -> [f64; N],
     ) -> Front<N> {
-        let mut front = Front { diffuse: [NOUGHT; N], specular: [NOUGHT; N] };
+        let mut front = Front { diffuse: [ZERO; N], specular: [ZERO; N] };
         // Suns alone ask for neither.
         let wide = || (narrow.each_ref().map(widen), [3, 4, 5].map(|axis| widen(&points[axis])));
         // As in `Lights::sum_by`.
@@ -206,13 +206,13 @@ impl Lights<'_> {
         });
         for sun in self.suns {
             let towards = sun.towards.to_array();
-            let mut cosines = NOUGHT;
+            let mut cosines = ZERO;
             for (lane, cosine) in cosines.iter_mut().enumerate() {
                 let [x, y, z] = [0, 1, 2].map(|axis| narrow[axis][lane] * towards[axis]);
                 *cosine = f64::from((x + y) + z);
             }
             let cosines = positive(&cosines);
-            if cosines == NOUGHT {
+            if cosines == ZERO {
                 continue;
             }
             let highlights = eye.as_ref().map(|eye| {
@@ -230,14 +230,14 @@ impl Lights<'_> {
             let squares = dot(&to_lamp, &to_lamp).map(|square| square * lamp.inverse_square);
             let towards = unit(&to_lamp);
             let mut cosines = positive(&dot(&normals, &towards));
-            let mut fall_off = NOUGHT;
+            let mut fall_off = ZERO;
             for (cosine, (fall_off, square)) in cosines.iter_mut().zip(fall_off.iter_mut().zip(&squares)) {
                 // NaN, of what is too far to be squared, fails it too.
                 let is_in_range = *square < 1.0;
                 *fall_off = if is_in_range { (1.0 - square) * (1.0 - square) } else { 0.0 };
                 *cosine = if is_in_range { *cosine } else { 0.0 };
             }
-            if cosines == NOUGHT {
+            if cosines == ZERO {
                 continue;
             }
             let highlights = eye.as_ref().map(|eye| eye.highlights_by::<APART>(&towards, &cosines, shininess));
@@ -300,14 +300,14 @@ impl Eye {
             *along = if *cosine > 0.0 { mirrored } else { 0.0 };
         }
         let along = positive(&along);
-        if along == NOUGHT { NOUGHT } else { shininess.of_lanes(&along) }
+        if along == ZERO { ZERO } else { shininess.of_lanes(&along) }
     }
 }
 
 /// Replaces values that are not above 0, or not numbers, by zero.
 #[inline(always)]
 fn positive(values: &Wides) -> Wides {
-    let mut positive = NOUGHT;
+    let mut positive = ZERO;
     for (positive, value) in positive.iter_mut().zip(values) {
         *positive = if *value > 0.0 { *value } else { 0.0 };
     }
@@ -316,7 +316,7 @@ fn positive(values: &Wides) -> Wides {
 
 #[inline(always)]
 fn widen(values: &Lanes<f32>) -> Wides {
-    let mut wide = NOUGHT;
+    let mut wide = ZERO;
     for (wide, value) in wide.iter_mut().zip(values) {
         *wide = f64::from(*value);
     }
@@ -337,7 +337,7 @@ fn from(to: &Wide, points: &Vectors) -> Vectors {
 
 #[inline(always)]
 fn dot(a: &Vectors, b: &Vectors) -> Wides {
-    let mut sums = NOUGHT;
+    let mut sums = ZERO;
     for (lane, sum) in sums.iter_mut().enumerate() {
         *sum = a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane];
     }
@@ -348,7 +348,7 @@ fn dot(a: &Vectors, b: &Vectors) -> Wides {
 #[inline(always)]
 fn unit(vectors: &Vectors) -> Vectors {
     let squares = dot(vectors, vectors);
-    let mut parts = NOUGHT;
+    let mut parts = ZERO;
     for (part, square) in parts.iter_mut().zip(&squares) {
         *part = 1.0 / square_root(*square);
     }

@@ -3,7 +3,7 @@
 use crate::lanes::{LANES, Lanes};
 
 /// The max whole shininess that is raised to by products.
-const MOST: f64 = 1_024.0;
+const MAX_EXPONENT: f64 = 1_024.0;
 
 /// The shininess of a highlight: an exponent, at least 0.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -26,7 +26,7 @@ impl Shininess {
     pub(crate) fn new(exponent: f64) -> Self {
         let exponent = exponent.max(0.0);
         // 0 to 1,024.
-        let whole = exponent.min(MOST) as u32;
+        let whole = exponent.min(MAX_EXPONENT) as u32;
         if f64::from(whole) == exponent { Self::Whole(whole) } else { Self::Other(exponent) }
     }
 

@@ -67,6 +67,7 @@ impl Light {
 
     /// Returns the light's intensity.
     #[must_use]
+    #[doc(hidden)]
     pub fn intensity(&self) -> f32 {
         match *self {
             Self::Sun { intensity, .. } | Self::Lamp { intensity, .. } => intensity,
@@ -75,6 +76,7 @@ impl Light {
 
     /// Returns the light's red, green and blue.
     #[must_use]
+    #[doc(hidden)]
     pub fn color(&self) -> [f32; 3] {
         match *self {
             Self::Sun { color, .. } | Self::Lamp { color, .. } => color,

@@ -67,6 +67,7 @@ pub struct Mesh {
 impl Mesh {
     /// The max number of vertices, and of triangles, of a mesh: a third of 2³², so that the corners of all triangles
     /// can be counted in 32 bits.
+    #[doc(hidden)]
     pub const MAX_COUNT: usize = (u32::MAX / 3) as usize;
 
     /// Makes a mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share a vertex. A
@@ -240,6 +241,7 @@ impl Mesh {
     /// a body, or several that may share edges and points. Vertices at the same position count as one, and triangles
     /// with two corners in one point do not count.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_closed(&self) -> bool {
         self.closed
     }
@@ -260,6 +262,7 @@ impl Mesh {
     /// other. The test is exact: if rounding gave a face the slightest dent, the result is `false`, which costs time,
     /// never correctness.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_convex(&self) -> bool {
         self.convex
     }

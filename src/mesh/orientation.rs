@@ -92,17 +92,17 @@ fn split(a: f64) -> (f64, f64) {
 
 /// A sum kept exactly: components that do not overlap, in order of rising magnitude.
 struct Expansion {
-    components: [f64; Self::MOST],
+    components: [f64; Self::MAX],
     len: usize,
 }
 
 impl Expansion {
     /// Six terms of 2 · 2 · 2 · 2 products of two components each; an addition makes at most one
     /// component more.
-    const MOST: usize = 6 * 16 * 2;
+    const MAX: usize = 6 * 16 * 2;
 
     fn new() -> Self {
-        Self { components: [0.0; Self::MOST], len: 0 }
+        Self { components: [0.0; Self::MAX], len: 0 }
     }
 
     /// Shewchuk's GROW-EXPANSION, zeros left out.

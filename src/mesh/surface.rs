@@ -29,6 +29,7 @@ impl Surface {
     /// The colour in full light: `Kd`, each channel to the nearest of 0 to 255. Values below 0 and NaN count as 0,
     /// values above 1 as 1.
     #[must_use]
+    #[doc(hidden)]
     pub fn color(&self) -> Rgb {
         Rgb::from_intensities(self.diffuse)
     }

@@ -9,7 +9,7 @@
 //!   darkest and the brightest that is seen, it costs `area·length²/(12·(n − 1)²)`.
 //! - The textures' colours at all brightnesses seen are reduced by median cut, whose cuts have known gains. All
 //! textures share one block: their shades look for the nearest entry of the whole palette
-//! ([`Table::shades`](super::Table::shades)), and so use the ramps' entries too.
+//! ([`Lut64K::shades`](super::Lut64K::shades)), and so use the ramps' entries too.
 //!
 //! - Colours that are mixed on the screen and lie on no ramp (in fog, behind glass, under coloured light) are points of
 //!   the same cloud, as they are.
@@ -90,7 +90,7 @@ pub struct Automatic {
 /// The number of entries to be shared out: all but the first and the last.
 const CAPACITY: usize = 254;
 /// The min length of a ramp, unless there are fewer colours on it.
-const LEAST: usize = 4;
+const MIN_ENTRIES: usize = 4;
 /// The number of entries kept for textures before the ramps have theirs.
 const MIN_FOR_TEXTURES: usize = 16;
 /// The share of the area that a surface has if it is never in sight.
@@ -143,7 +143,7 @@ pub fn share_beside(uses: &[Use<'_>], mixtures: &[(Rgb, f32)]) -> Automatic {
     let is_needed = !mixed.is_empty() || uses.iter().any(|of| of.texels.is_some());
     let kept = if is_needed { MIN_FOR_TEXTURES } else { 0 };
     textures.cut_to(kept);
-    let (mut ramps, ramp_of) = choose(uses, &areas, (CAPACITY - kept) / LEAST);
+    let (mut ramps, ramp_of) = choose(uses, &areas, (CAPACITY - kept) / MIN_ENTRIES);
     give(&mut ramps, &mut textures);
 
     let mut colors = [Rgb::BLACK; 256];
@@ -275,7 +275,7 @@ impl Wanted {
         let places = (0..=1024).filter_map(|i| color_at(i, 1025, &ramp.keys)).map(Rgb::nearest_on_dac);
         let mut before = None;
         ramp.colors = places.filter(|&color| before.replace(color) != Some(color)).count();
-        ramp.entries = ramp.colors.min(LEAST);
+        ramp.entries = ramp.colors.min(MIN_ENTRIES);
         ramp
     }
 

@@ -9,8 +9,8 @@
 //! | [`cube`] | the 6 × 6 × 6 colour cube with greys, and its nearest entry without a search |
 //! | [`BIOS`] | the colours that mode 13h starts with |
 //! | [`builtin`] | the palettes that are compiled in, by name |
-//! | [`Search`], [`Nearest`] | the nearest entry of any palette: exactly, and by a table of 5 bits a channel (`alloc`) |
-//! | [`Table`] | 64 KiB from two bytes to a third: shaded texels, fog, glass (`alloc`) |
+//! | [`NearestColors`], [`InverseColormap`] | the nearest entry of any palette: exactly, and by a table of 5 bits a channel (`alloc`) |
+//! | [`Lut64K`] | 64 KiB from two bytes to a third: shaded texels, fog, glass (`alloc`) |
 //! | [`auto`] | a palette made for the materials of a model (`alloc`) |
 //! | [`mod@file`] | JASC, GIMP, Adobe, Lospec and raw VGA files |
 //!
@@ -28,25 +28,25 @@ pub mod file;
 #[doc(hidden)]
 pub mod gradient;
 #[cfg(feature = "alloc")]
+mod inverse_colormap;
+#[cfg(feature = "alloc")]
+mod lut64k;
+#[cfg(feature = "alloc")]
 pub(crate) mod median_cut;
 #[cfg(feature = "alloc")]
-mod nearest;
+mod nearest_colors;
 mod ramp;
 mod rgb;
-#[cfg(feature = "alloc")]
-mod search;
-#[cfg(feature = "alloc")]
-mod table;
 
 pub use bios::BIOS;
 #[cfg(feature = "alloc")]
-pub use nearest::Nearest;
+pub use inverse_colormap::InverseColormap;
+#[cfg(feature = "alloc")]
+pub use lut64k::Lut64K;
+#[cfg(feature = "alloc")]
+pub use nearest_colors::NearestColors;
 pub use ramp::Ramp;
 pub use rgb::{Rgb, dac6_to_8, to_dac6};
-#[cfg(feature = "alloc")]
-pub use search::Search;
-#[cfg(feature = "alloc")]
-pub use table::Table;
 
 /// 256 colours, and the number of equal shade ramps that they form.
 ///

@@ -107,6 +107,7 @@ impl ObjectPlan {
     /// Returns whether an effect is on.
     #[inline]
     #[must_use]
+    #[doc(hidden)]
     pub fn is_on(&self, effect: Effect) -> bool {
         !effect.is_left_out() && self.decision(effect).on
     }
@@ -257,6 +258,7 @@ impl Plan {
 /// One decision in words.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
+#[doc(hidden)]
 pub struct Row {
     /// The object's place in the scene.
     pub place: usize,

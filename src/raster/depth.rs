@@ -17,12 +17,10 @@
 //! A sliver's gradients don't fit in 64 bits. The *sum* does, so all is taken modulo 2⁶⁴, where
 //! the wrap is meant; only the division needs 128 bits, and only then.
 
-use core::fmt;
-
 use super::cover::SortedTriangle;
-use super::frame::Frame;
 #[cfg(feature = "alloc")]
 use super::frame::Rect;
+use super::frame::{Frame, FrameError};
 use super::quotient::Divisor;
 pub use crate::span::depth::Cell;
 
@@ -130,36 +128,19 @@ pub struct DepthBuffer<'a, D: Cell = u32> {
     first_row: u32,
 }
 
-/// The slice is too short for a frame's depth buffer.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct DepthBufferError {
-    /// Values given.
-    pub given: usize,
-    /// Values needed: the frame's columns times the rows that it holds.
-    pub needed: usize,
-}
-
-impl fmt::Display for DepthBufferError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} depths given for a frame that needs {}", self.given, self.needed)
-    }
-}
-
-impl core::error::Error for DepthBufferError {}
-
 impl<'a, D: Cell> DepthBuffer<'a, D> {
     /// Lays a depth buffer over the rows that `frame` holds. The values stay as they are:
     /// [`clear`](Self::clear) sets them.
     ///
     /// # Errors
     /// `values` is shorter than columns × rows.
-    pub fn new(values: &'a mut [D], frame: &Frame<'_>) -> Result<Self, DepthBufferError> {
+    pub fn new(values: &'a mut [D], frame: &Frame<'_>) -> Result<Self, FrameError> {
         let rows = frame.rows();
         let needed = frame.width() as usize * (rows.end - rows.start) as usize;
         let given = values.len();
         match values.get_mut(..needed) {
             Some(values) => Ok(Self { values, width: frame.width(), first_row: rows.start }),
-            None => Err(DepthBufferError { given, needed }),
+            None => Err(FrameError::Depths { given, needed }),
         }
     }
 

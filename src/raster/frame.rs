@@ -57,7 +57,7 @@ impl Rect {
     }
 }
 
-/// Error of bytes that cannot serve as a frame.
+/// Error of bytes or depths that cannot serve as a frame or as its depth buffer.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum FrameError {
@@ -91,6 +91,13 @@ pub enum FrameError {
         /// Bytes needed.
         needed: usize,
     },
+    /// There are fewer depths than the frame has columns times rows that it holds.
+    Depths {
+        /// Depths given.
+        given: usize,
+        /// Depths needed.
+        needed: usize,
+    },
 }
 
 impl fmt::Display for FrameError {
@@ -104,6 +111,7 @@ impl fmt::Display for FrameError {
                 write!(f, "rows {first} to {end} are no band of a frame of {height} rows")
             }
             Self::Short { given, needed } => write!(f, "{given} bytes given for a frame that needs {needed}"),
+            Self::Depths { given, needed } => write!(f, "{given} depths given for a frame that needs {needed}"),
         }
     }
 }
@@ -124,6 +132,7 @@ pub struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     /// The most columns or rows.
+    #[doc(hidden)]
     pub const MAX_SIDE: u32 = 4096;
 
     /// A whole frame of `width × height` pixels whose rows lie `pitch` bytes apart.
@@ -184,6 +193,7 @@ impl<'a> Frame<'a> {
 
     /// All pixels that it holds.
     #[must_use]
+    #[doc(hidden)]
     pub fn bounds(&self) -> Rect {
         Rect { x0: 0, y0: self.rows.start, x1: self.width, y1: self.rows.end }
     }
@@ -220,6 +230,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Borrows the frame for a shorter time.
+    #[doc(hidden)]
     pub fn reborrow(&mut self) -> Frame<'_> {
         Frame {
             pixels: self.pixels,

@@ -17,13 +17,13 @@
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
 //! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
 //! | [`edge`], [`cover`] | which pixels |
-//! | [`interpolation`], [`shade`], [`wide`], [`hyperbolic`], `float` | which byte |
+//! | [`interpolation`], [`shade`], [`fixed16`], [`hyperbolic`], `float` | which byte |
 //! | [`vintage`] | both as the sources print them |
 //! | [`depth`] | whether it is in front |
 //! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
-//! | [`batch`] | the same for many triangles at a time: [`Raster::batch`] |
+//! | [`batch`], `triangles` | many triangles at a time: [`Raster::triangles`] |
 //! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
 //! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
@@ -40,6 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[doc(hidden)]
 pub mod batch;
 #[doc(hidden)]
 pub mod clip;
@@ -54,6 +55,8 @@ pub mod edge;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod effects;
+#[doc(hidden)]
+pub mod fixed16;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod float;
@@ -74,13 +77,13 @@ pub mod shade;
 #[doc(hidden)]
 pub mod shade_trace;
 pub mod triangle;
+mod triangles;
 pub mod vertex;
 #[doc(hidden)]
 pub mod vintage;
 mod weights;
-#[doc(hidden)]
-pub mod wide;
 
+#[doc(hidden)]
 pub use batch::Batch;
 pub use depth::DepthBuffer;
 pub use draw_stats::DrawStats;

@@ -7,20 +7,20 @@ use core::ops::Range;
 use super::cover::{Row, SortedTriangle};
 use super::depth::{Cell, DepthPlane};
 use super::draw_stats::DrawStats;
+use super::fixed16::ShadePlane16;
 #[cfg(feature = "alloc")]
 use super::float::FloatPlane;
 use super::hyperbolic::HyperbolicPlane;
 use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
-use super::vintage::{PeriodTriangle, Ramp};
-use super::wide::ShadePlane16;
+use super::vintage::{Ramp, VintageTriangle};
 #[cfg(feature = "alloc")]
 use crate::span::dither::fill_dithered;
+use crate::span::fixed16::fill_16_16;
 #[cfg(feature = "alloc")]
 use crate::span::float;
 #[cfg(feature = "alloc")]
 use crate::span::hyperbolic;
-use crate::span::wide::fill_16_16;
 use crate::span::{Kernel, depth};
 
 /// The shades of one triangle, or another value of its corners, ready to be painted row by row.
@@ -31,10 +31,10 @@ pub(super) enum RowShader {
         plane: ShadePlane,
         reseeded: bool,
     },
-    Period(PeriodTriangle),
+    Vintage(VintageTriangle),
     /// The vintage shades of one row.
     Ramp(Ramp),
-    Wide(ShadePlane16),
+    Fixed16(ShadePlane16),
     Hyperbolic(HyperbolicPlane),
     #[cfg(feature = "alloc")]
     Float(FloatPlane),
@@ -65,8 +65,8 @@ impl RowShader {
     #[inline(never)]
     fn of_another_kind(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation) -> Self {
         match interpolation {
-            Interpolation::GouraudVintage => Self::Period(PeriodTriangle::new(triangle, values)),
-            Interpolation::Gouraud1616 => Self::Wide(ShadePlane16::of_values(triangle, values)),
+            Interpolation::GouraudVintage => Self::Vintage(VintageTriangle::new(triangle, values)),
+            Interpolation::Gouraud1616 => Self::Fixed16(ShadePlane16::of_values(triangle, values)),
             Interpolation::GouraudHyperbolic => Self::Hyperbolic(HyperbolicPlane::of_values(triangle, values)),
             #[cfg(feature = "alloc")]
             Interpolation::Float => Self::Float(FloatPlane::of_values(triangle, values)),
@@ -92,7 +92,7 @@ impl RowShader {
     #[inline(never)]
     fn row_of_another_kind(&self, row: &Row, pixels: &mut [u8], kernel: Kernel, drawn: &mut DrawStats) {
         match self {
-            Self::Period(triangle) => Self::Ramp(triangle.ramp(row.y)).row_of_another_kind(row, pixels, kernel, drawn),
+            Self::Vintage(triangle) => Self::Ramp(triangle.ramp(row.y)).row_of_another_kind(row, pixels, kernel, drawn),
             Self::Ramp(ramp) => ramp.spans(row.x0..row.x1, |range, shade, step| {
                 span(pixels, range, drawn, |pixels| kernel.fill(pixels, shade, step));
             }),
@@ -125,7 +125,7 @@ impl RowShader {
     #[inline(never)]
     fn row_of_another_kind_where_nearer<D: Cell>(&self, row: &Row, tested: &mut Tested<'_, D>) {
         match self {
-            Self::Period(triangle) => {
+            Self::Vintage(triangle) => {
                 Self::Ramp(triangle.ramp(row.y)).row_of_another_kind_where_nearer(row, tested);
             }
             Self::Ramp(ramp) => {
@@ -148,7 +148,7 @@ impl RowShader {
     #[inline]
     fn fill(&self, row: &Row, x: i32, pixels: &mut [u8]) {
         match self {
-            Self::Wide(plane) => fill_16_16(pixels, wide_start(plane, row, x), plane.step()),
+            Self::Fixed16(plane) => fill_16_16(pixels, fixed16_start(plane, row, x), plane.step()),
             Self::Hyperbolic(plane) => plane.fill(x, row.y, pixels),
             #[cfg(feature = "alloc")]
             Self::Float(plane) => {
@@ -157,7 +157,7 @@ impl RowShader {
             }
             Self::Flat(index) => pixels.fill(*index),
             // Their rows are cut where they start anew.
-            Self::Linear { .. } | Self::Period(_) | Self::Ramp(_) => {}
+            Self::Linear { .. } | Self::Vintage(_) | Self::Ramp(_) => {}
         }
     }
 }
@@ -185,7 +185,7 @@ impl RowShader {
                 };
                 linear(piece, column, start, plane.step(), 128);
             }
-            (Self::Period(triangle), _) => Self::Ramp(triangle.ramp(row.y)).piece(row, x, piece, dither, kernel),
+            (Self::Vintage(triangle), _) => Self::Ramp(triangle.ramp(row.y)).piece(row, x, piece, dither, kernel),
             // At most 64 pixels.
             (Self::Ramp(ramp), _) => ramp.spans(x..x + piece.len() as i32, |range, shade, step| {
                 linear(&mut piece[range.start - column..range.end - column], range.start, shade, step, 0);
@@ -204,9 +204,9 @@ impl RowShader {
     fn shades(&self, row: &Row, x: i32, shades: &mut [u16]) {
         // Each is 0 to 0xFF00, by cover.
         match self {
-            Self::Wide(plane) => {
+            Self::Fixed16(plane) => {
                 // Less the half.
-                let mut sum = wide_start(plane, row, x).wrapping_sub(0x8000);
+                let mut sum = fixed16_start(plane, row, x).wrapping_sub(0x8000);
                 for shade in shades {
                     *shade = (sum >> 8) as u16;
                     sum = sum.wrapping_add(plane.step());
@@ -224,7 +224,7 @@ impl RowShader {
                     *shade = (float::quotient(k, at.n, at.d, at.range) * 256.0) as u16;
                 }
             }
-            Self::Flat(_) | Self::Linear { .. } | Self::Period(_) | Self::Ramp(_) => {}
+            Self::Flat(_) | Self::Linear { .. } | Self::Vintage(_) | Self::Ramp(_) => {}
         }
     }
 }
@@ -244,7 +244,7 @@ pub(super) fn to_bytes(shades: &[u16], thresholds: &[u8; 8], column: usize, byte
 
 /// The sum at column `x`: it starts at the row's origin.
 #[inline]
-fn wide_start(plane: &ShadePlane16, row: &Row, x: i32) -> u32 {
+fn fixed16_start(plane: &ShadePlane16, row: &Row, x: i32) -> u32 {
     // Columns are below 4,096; the sum is meant modulo 2³².
     plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul((x - row.origin) as u32))
 }
@@ -328,7 +328,7 @@ mod tests {
         });
         let triangle = SortedTriangle::new(&vertices);
         let depths = DepthPlane::new(&triangle);
-        let ramp = RowShader::Ramp(PeriodTriangle::new(&triangle, triangle.shades()).ramp(7));
+        let ramp = RowShader::Ramp(VintageTriangle::new(&triangle, triangle.shades()).ramp(7));
         let paints = Interpolation::INTERPOLATED.iter().map(|interpolation| RowShader::new(&triangle, *interpolation));
         for paint in paints.chain([RowShader::Flat(9), ramp]) {
             let mut rows = 0;

@@ -228,6 +228,7 @@ impl<D: Cell> Raster<'_, D> {
     /// # Errors
     /// A shading that is neither flat nor linear in 8.8, a polygon that is not convex (after rounding to 1/256 pixel one may no longer be), or a table
     /// with too few rows. Nothing is drawn then.
+    #[doc(hidden)]
     pub fn polygon(
         &mut self,
         vertices: &[Vertex],

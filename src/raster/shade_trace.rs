@@ -6,13 +6,13 @@
 use alloc::vec::Vec;
 
 use super::cover::{Row, SortedTriangle};
+use super::fixed16::ShadePlane16;
 use super::float::FloatPlane;
 use super::frame::Rect;
 use super::hyperbolic::HyperbolicPlane;
 use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
-use super::vintage::PeriodTriangle;
-use super::wide::ShadePlane16;
+use super::vintage::VintageTriangle;
 use crate::span::float::{fill_float, quotient};
 
 /// An exact number: a fraction.
@@ -142,7 +142,7 @@ impl ShadeTrace {
                 Self::of_sums(sums, linear)
             }
             Interpolation::GouraudVintage => {
-                let ramp = PeriodTriangle::new(triangle, values).ramp(y);
+                let ramp = VintageTriangle::new(triangle, values).ramp(y);
                 // Beyond the row's own pixels the nearest of them counts.
                 let steps = x.min(ramp.x1 - 1).max(ramp.x0) - ramp.x0;
                 let step = i64::from(ramp.step as i16);
@@ -209,7 +209,7 @@ fn each_row(
     mut each: impl FnMut(Row),
 ) {
     if interpolation == Some(Interpolation::GouraudVintage) {
-        PeriodTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, _| each(row));
+        VintageTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, _| each(row));
     } else {
         triangle.rows(width, clip, each);
     }

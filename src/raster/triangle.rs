@@ -7,7 +7,7 @@ use super::frame::{Frame, Rect};
 use super::interpolation::Interpolation;
 use super::paint::RowShader;
 use super::vertex::Vertex;
-use super::vintage::PeriodTriangle;
+use super::vintage::VintageTriangle;
 use crate::span::Kernel;
 
 /// Draws triangles into a frame: inside a clip rectangle, with a depth buffer if there is one, with
@@ -30,6 +30,7 @@ impl<'a> Raster<'a> {
     /// Draws with a depth buffer of its own, cleared, in `values`, which is made as long as needed.
     #[cfg(feature = "alloc")]
     #[must_use]
+    #[doc(hidden)]
     pub fn with_cleared_depth<D: Cell>(self, values: &'a mut alloc::vec::Vec<D>) -> Raster<'a, D> {
         let rows = self.frame.rows();
         values.clear();
@@ -79,6 +80,7 @@ impl<'a, D: Cell> Raster<'a, D> {
 
     /// Draws with `kernel`. All give the same bytes.
     #[must_use]
+    #[doc(hidden)]
     pub fn with_kernel(mut self, kernel: Kernel) -> Self {
         self.kernel = kernel;
         self
@@ -159,7 +161,7 @@ impl<'a, D: Cell> Raster<'a, D> {
         }
         let mut plane = None;
         let (width, clip) = (self.frame.width(), self.clip);
-        PeriodTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, ramp| {
+        VintageTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, ramp| {
             drawn.covered += (row.x1 - row.x0) as u32;
             let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };

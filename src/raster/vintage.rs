@@ -88,7 +88,7 @@ impl Edge {
 
 /// A triangle with its vertices on whole pixels.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PeriodTriangle {
+pub(super) struct VintageTriangle {
     /// From the top to the bottom.
     long: Edge,
     /// From the top to the middle, and from there to the bottom.
@@ -100,7 +100,7 @@ pub(super) struct PeriodTriangle {
     doubled_area: i32,
 }
 
-impl PeriodTriangle {
+impl VintageTriangle {
     /// Makes one with these shades, 0 to 0xFF00, at its vertices. The order of the vertices stays: a vertex above
     /// another in 1/256 pixel is not below it in pixels.
     #[inline]

@@ -91,8 +91,13 @@ impl Renderer {
     ) -> Result<Stats, RenderError> {
         let (mut stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
-        let pipelines =
-            Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        let pipelines = Pipelines {
+            scene,
+            plan: &self.plan,
+            states: &self.states,
+            tables: &self.tables,
+            kernel: self.settings.kernel,
+        };
         for &object in &self.plan.order {
             let of_scene = &scene.objects()[object];
             if self.settings.vertex_path == VertexPath::Integer {

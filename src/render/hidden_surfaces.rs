@@ -14,9 +14,9 @@ use crate::scene::Scene;
 impl Renderer {
     pub(super) fn fill(&mut self, scene: &Scene, stats: &mut Stats, mut frame: Frame<'_>) {
         frame.clear(scene.background);
-        let mut raster = Raster::new(frame).with_kernel(self.kernel);
+        let mut raster = Raster::new(frame).with_kernel(self.settings.kernel);
         let mut depths = mem::take(&mut self.depths);
-        let sieve = Sieve { clip: raster.clip(), kernel: self.kernel };
+        let sieve = Sieve { clip: raster.clip(), kernel: self.settings.kernel };
         match self.plan.hidden_surfaces() {
             HiddenSurfaces::BackFaces => self.one_by_one(scene, stats, raster),
             // Chosen, the objects lie far to near, and in a convex one no face hides another.
@@ -50,8 +50,13 @@ impl Renderer {
             let plan = &self.plan.objects[object];
             let mut drawn = DrawStats::default();
             let mut decided = self.states[object].take_decided();
-            let pipelines =
-                Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+            let pipelines = Pipelines {
+                scene,
+                plan: &self.plan,
+                states: &self.states,
+                tables: &self.tables,
+                kernel: self.settings.kernel,
+            };
             if self.settings.vertex_path == VertexPath::Integer {
                 let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
                 let mut plain = |vertices: &[Vertex; 3], interpolation| batched.triangle(vertices, interpolation);
@@ -89,8 +94,13 @@ impl Renderer {
         self.far_to_near.clear();
         self.far_to_near.reserve(self.transparent.capacity());
         far_to_near(self.transparent.iter().map(DeferredFace::depth), &mut self.far_to_near);
-        let pipelines =
-            Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        let pipelines = Pipelines {
+            scene,
+            plan: &self.plan,
+            states: &self.states,
+            tables: &self.tables,
+            kernel: self.settings.kernel,
+        };
         let mut batched = BatchedEffects::new(&mut self.effects, &pipelines, 0);
         for &(_, place) in &self.far_to_near {
             let DeferredFace { vertices, attributes, of } = &self.transparent[place];
@@ -144,7 +154,7 @@ impl Renderer {
                     plan: &self.plan,
                     states: &self.states,
                     tables: &self.tables,
-                    kernel: self.kernel,
+                    kernel: self.settings.kernel,
                 };
                 let mut sink = DeferredSink {
                     triangles: &mut self.triangles,
@@ -171,8 +181,13 @@ impl Renderer {
 
     /// Far to near, each over what is there.
     fn painter(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let pipelines =
-            Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        let pipelines = Pipelines {
+            scene,
+            plan: &self.plan,
+            states: &self.states,
+            tables: &self.tables,
+            kernel: self.settings.kernel,
+        };
         self.far_to_near.clear();
         self.far_to_near.reserve(self.triangles.capacity());
         far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
@@ -197,8 +212,13 @@ impl Renderer {
 
     /// All at once, each pixel once.
     fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let pipelines =
-            Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel: self.kernel };
+        let pipelines = Pipelines {
+            scene,
+            plan: &self.plan,
+            states: &self.states,
+            tables: &self.tables,
+            kernel: self.settings.kernel,
+        };
         self.lists.reserve(self.triangles.capacity());
         let scratch = self.lists.scratch(self.triangles.len());
         let (places, kept, effects) = (&self.kept_places, &self.kept, &mut self.effects);

@@ -203,7 +203,7 @@ impl IntegerPath {
                 // No farther than the farthest.
                 position: from_eye(object.position).map(|c| fixed(c * scale).unwrap_or_default()),
                 pivot: Vector::default(),
-                angles: object.angles().map(BinaryAngle::from),
+                angles: object.angles.map(BinaryAngle::from),
                 // 1 to 2.
                 scale: fixed(libm::ldexp(scaled, -scale_exponent)).unwrap_or_default(),
             };

@@ -60,8 +60,8 @@ use crate::raster::scan_line::Lists;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
 pub use crate::scene::{HiddenSurfaces, Mapping, Shading};
-use crate::span::Kernel;
 use crate::vga::Vga;
+#[doc(hidden)]
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use error::RenderError;
@@ -87,12 +87,20 @@ const VERTEX_BITS: u32 = 8;
 
 /// Draws scenes. It keeps the memory that the next frame will need too, and the vertices of objects that
 /// do not change; the bytes are those of a new renderer.
+///
+/// ```
+/// use mode13h::render::{Accuracy, Mapping, Renderer};
+///
+/// let mut renderer = Renderer::new();
+/// renderer.settings.mapping = Some(Mapping::Perspective);
+/// renderer.settings.accuracy = Some(Accuracy::WithinError(2.0));
+/// ```
 #[derive(Debug)]
 pub struct Renderer {
-    settings: Settings,
+    /// Settings: accuracy of shades, mapping of textures, hidden surfaces, arithmetic of the vertices, span kernel.
+    pub settings: Settings,
     /// Bits after the point of projected vertices; 8 as the raster has them.
     vertex_bits: u32,
-    kernel: Kernel,
     views: Vec<ObjectView>,
     change: Vec<Change>,
     states: Vec<ObjectState>,
@@ -123,7 +131,6 @@ impl Renderer {
         Self {
             settings: Settings::default(),
             vertex_bits: VERTEX_BITS,
-            kernel: Kernel::fastest(),
             views: Vec::new(),
             change: Vec::new(),
             states: Vec::new(),
@@ -147,39 +154,7 @@ impl Renderer {
     #[must_use]
     #[doc(hidden)]
     pub fn set_alike(&self) -> Self {
-        Self { settings: self.settings.clone(), kernel: self.kernel, ..Self::new() }
-    }
-
-    /// Settings of the renderer.
-    #[must_use]
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    /// Settings of the renderer, to change them: how textures are mapped, how hidden surfaces are left out, the numbers
-    /// that vertices are made in.
-    ///
-    /// ```
-    /// use mode13h::render::{HiddenSurfaces, Mapping, Renderer};
-    ///
-    /// let mut renderer = Renderer::new();
-    /// renderer.settings_mut().mapping = Some(Mapping::Perspective);
-    /// renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::ScanLine);
-    /// ```
-    pub fn settings_mut(&mut self) -> &mut Settings {
-        &mut self.settings
-    }
-
-    /// Chooses a shading: sets the [accuracy](Settings::accuracy) to [`Accuracy::Shading`]. Returns what was chosen before,
-    /// a shading or an error that is accepted, in whose place it comes.
-    pub fn set_shading(&mut self, shading: Shading) -> Option<Accuracy> {
-        self.settings.accuracy.replace(Accuracy::Shading(shading))
-    }
-
-    /// Accepts so many shades of error, 1/255 of full intensity each: sets the [accuracy](Settings::accuracy) to
-    /// [`Accuracy::WithinError`]. Returns what was chosen before, a shading or another error, in whose place it comes.
-    pub fn set_max_error(&mut self, shades: f32) -> Option<Accuracy> {
-        self.settings.accuracy.replace(Accuracy::WithinError(shades))
+        Self { settings: self.settings.clone(), ..Self::new() }
     }
 
     /// Rounds projected vertices once more, to so many bits after the point: 8, as they are, or fewer, so to whole pixels
@@ -190,23 +165,13 @@ impl Renderer {
         self.states.clear();
     }
 
-    /// Chooses the span kernel. All give the same bytes.
-    pub fn set_kernel(&mut self, kernel: Kernel) {
-        self.kernel = kernel;
-    }
-
-    /// The span kernel.
-    #[must_use]
-    pub fn kernel(&self) -> Kernel {
-        self.kernel
-    }
-
     /// Switches an effect on or off for every object, or leaves it to the plan, as a new renderer does.
     ///
     /// Effects that save work give the same bytes on or off. That of hidden surfaces is switched by
     /// [`Settings::hidden_surfaces`]. Where an effect that changes the picture is
     /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
     /// image that changes nothing). Clipping stays on where the plan calls for it.
+    #[doc(hidden)]
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
         self.settings.overrides.set(effect, on);
     }
@@ -237,6 +202,7 @@ impl Renderer {
     /// on. That is worked out here, face by face, and only here. For an object that is drawn within an error
     /// budget, it says how many of its triangles each shading got.
     #[must_use]
+    #[doc(hidden)]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         self.plan.rows_with(scene, |object| Findings {
             face_counts: self.states.get(object).and_then(ObjectState::face_counts),
@@ -278,6 +244,7 @@ impl Renderer {
     ///
     /// # Errors
     /// Those of [`draw`](Self::draw), except for numbers that 16.16 can't hold, which show only when it is drawn.
+    #[doc(hidden)]
     pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
         let view = self.checked(scene, screen)?;
         self.decide(scene, &view, true);
@@ -344,6 +311,7 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`draw`](Self::draw), before the first triangle.
+    #[doc(hidden)]
     pub fn for_each_triangle(
         &mut self,
         scene: &Scene,
@@ -395,7 +363,7 @@ impl Renderer {
             self.drawing = Some(Drawing { screen, background, hidden_surfaces, settings, order, palette });
         }
 
-        let mut stats = Stats::new(&settings, self.kernel, self.plan.hidden_surfaces());
+        let mut stats = Stats::new(&settings, self.settings.kernel, self.plan.hidden_surfaces());
         for (i, (object, state)) in scene.objects().iter().zip(&mut self.states).enumerate() {
             let plan = &self.plan.objects[i];
             if !scene.is_visible(i) {
@@ -407,7 +375,7 @@ impl Renderer {
                 state.forget();
                 continue;
             }
-            if state.vertices(scene, object, &view, plan, self.kernel, &mut stats) {
+            if state.vertices(scene, object, &view, plan, self.settings.kernel, &mut stats) {
                 changed = true;
                 if self.vertex_bits < VERTEX_BITS {
                     state.round_vertices(self.vertex_bits);

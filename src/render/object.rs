@@ -16,7 +16,7 @@ use super::tessellate::Tessellated;
 use super::vertex::{self, Geometry, VertexAttributes};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
-use crate::palette::{Palette, Table};
+use crate::palette::{Lut64K, Palette};
 use crate::plan::stages::{Lamps, Lighting, LitAt, VertexStage};
 use crate::plan::{Change, Effect, FaceCounts, ObjectPlan};
 use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
@@ -141,7 +141,7 @@ pub(super) struct ObjectState {
     /// The mesh and the number of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
     /// One for each surface, and what they were made from.
-    normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Table)>,
+    normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Lut64K)>,
     /// Lights that the vertices would be made from now.
     beams: Vec<Beam>,
     /// Data of a budget's decisions, and those that were made, one for each triangle.
@@ -383,7 +383,7 @@ impl ObjectState {
                     fill_normal_table(table, &lights, paint);
                 }
                 None => {
-                    let mut table = Table::from_fn(|_, _| 0);
+                    let mut table = Lut64K::from_fn(|_, _| 0);
                     fill_normal_table(&mut table, &lights, paint);
                     self.normal_tables.push((self.beams.clone(), paint.clone(), table));
                 }
@@ -479,7 +479,7 @@ impl ObjectState {
             + self.lamps.capacity() * size_of::<LampBeam>()
             + self.tessellated.bytes()
             + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)
-            + self.normal_tables.len() * Table::BYTES
+            + self.normal_tables.len() * Lut64K::BYTES
             + self.beams.capacity() * size_of::<Beam>()
             + self.budget.bytes()
             + self.decided.bytes()

@@ -4,7 +4,7 @@ use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Lanes, Points};
 use crate::light::Lights;
-use crate::palette::Table;
+use crate::palette::Lut64K;
 use crate::raster::effects::Lighting;
 use crate::span::Kernel;
 
@@ -45,7 +45,7 @@ impl Lighting for PixelLight<'_> {
 ///
 /// `lights` are in the eye's space, the eye far away on z.
 #[inline(never)]
-pub(super) fn fill_normal_table(table: &mut Table, lights: &Lights<'_>, paint: &SurfaceMaterial) {
+pub(super) fn fill_normal_table(table: &mut Lut64K, lights: &Lights<'_>, paint: &SurfaceMaterial) {
     let mut eight = [0; LANES];
     table.fill(|row, column| {
         let at = |step: u8| (f32::from(step) - 127.5) / 127.5;

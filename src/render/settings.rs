@@ -5,6 +5,7 @@ use core::fmt;
 use super::VertexPath;
 use crate::plan::{Effect, Overrides};
 use crate::scene::{HiddenSurfaces, Mapping, Preferences, Shading};
+use crate::span::Kernel;
 
 /// Accuracy of shades: one choice, so that a shading and a budget cannot both be set.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -88,6 +89,8 @@ pub struct Settings {
     pub mipmaps: Option<bool>,
     /// The numbers that vertices are made in.
     pub vertex_path: VertexPath,
+    /// Kernel that fills spans; the fastest by default. All give equal bytes.
+    pub kernel: Kernel,
     /// Effects that are switched by hand.
     #[doc(hidden)]
     pub overrides: Overrides,

@@ -6,7 +6,7 @@ use core::mem;
 
 use crate::light::Blend;
 use crate::palette::cube::CUBE;
-use crate::palette::{Nearest, Palette, Rgb, Table};
+use crate::palette::{InverseColormap, Lut64K, Palette, Rgb};
 use crate::raster::effects::Mix;
 use crate::shared::Shared;
 use crate::span::texture::Levels;
@@ -32,17 +32,17 @@ struct Made<T> {
 #[derive(Debug, Default)]
 pub(super) struct Tables {
     palette: Option<Palette>,
-    fog: Option<(Rgb, Table)>,
-    nearest: Option<Nearest>,
+    fog: Option<(Rgb, Lut64K)>,
+    nearest: Option<InverseColormap>,
     /// They hold for every palette.
     mipmaps: Vec<(Shared<Texture>, Mipmap)>,
-    shades: Vec<Made<Table>>,
-    channels: Vec<Made<[Table; 3]>>,
-    blends: Vec<(Blend, Table)>,
+    shades: Vec<Made<Lut64K>>,
+    channels: Vec<Made<[Lut64K; 3]>>,
+    blends: Vec<(Blend, Lut64K)>,
     /// The row itself: an image that changes no shade.
-    neutral_shades: Option<Table>,
+    neutral_shades: Option<Lut64K>,
     /// The column itself: fog that hides nothing.
-    neutral_fog: Option<Table>,
+    neutral_fog: Option<Lut64K>,
     /// The channel that is shown instead of what the three are mixed to.
     pub(super) only_channel: Option<usize>,
 }
@@ -65,9 +65,9 @@ impl Tables {
     /// Sees to it that there is a table of fog in this colour; of none, one that changes nothing.
     pub(super) fn need_fog(&mut self, color: Option<Rgb>) {
         match color {
-            None if self.neutral_fog.is_none() => self.neutral_fog = Some(Table::from_fn(|_, index| index)),
+            None if self.neutral_fog.is_none() => self.neutral_fog = Some(Lut64K::from_fn(|_, index| index)),
             Some(color) if self.fog.as_ref().is_none_or(|(of, _)| *of != color) => {
-                self.fog = Some((color, Table::fog(self.palette(), color)));
+                self.fog = Some((color, Lut64K::fog(self.palette(), color)));
             }
             _ => {}
         }
@@ -75,14 +75,14 @@ impl Tables {
 
     pub(super) fn fog(&self, color: Option<Rgb>) -> Option<&[u8; 65_536]> {
         match color {
-            None => self.neutral_fog.as_ref().map(Table::as_array),
+            None => self.neutral_fog.as_ref().map(Lut64K::as_array),
             Some(_) => self.fog.as_ref().map(|(_, table)| table.as_array()),
         }
     }
 
     pub(super) fn need_mix(&mut self) {
         if self.nearest.is_none() && self.palette() != &CUBE {
-            self.nearest = Some(Nearest::new(self.palette()));
+            self.nearest = Some(InverseColormap::new(self.palette()));
         }
     }
 
@@ -121,9 +121,9 @@ impl Tables {
 
     pub(super) fn need_shades(&mut self, image: Option<Image<'_>>) {
         match image {
-            None if self.neutral_shades.is_none() => self.neutral_shades = Some(Table::from_fn(|shade, _| shade)),
+            None if self.neutral_shades.is_none() => self.neutral_shades = Some(Lut64K::from_fn(|shade, _| shade)),
             Some(image) if find(&self.shades, image).is_none() => {
-                let table = Table::shades(self.palette(), self.colors(image));
+                let table = Lut64K::shades(self.palette(), self.colors(image));
                 self.shades.push(Made::of(image, table));
             }
             _ => {}
@@ -144,7 +144,7 @@ impl Tables {
         if find(&self.channels, image).is_none() {
             let colors = self.colors(image);
             let lit = |channel: fn(Rgb) -> u8| {
-                Table::from_fn(|shade, texel| {
+                Lut64K::from_fn(|shade, texel| {
                     let full = u32::from(channel(colors[usize::from(texel)]));
                     // At most 255.
                     ((full * u32::from(shade) + 127) / 255) as u8
@@ -156,16 +156,16 @@ impl Tables {
     }
 
     pub(super) fn channels(&self, image: Image<'_>) -> Option<[&[u8; 65_536]; 3]> {
-        find(&self.channels, image).map(|tables| tables.each_ref().map(Table::as_array))
+        find(&self.channels, image).map(|tables| tables.each_ref().map(Lut64K::as_array))
     }
 
     pub(super) fn need_blend(&mut self, blend: Blend) {
         if self.blend(blend).is_none() {
             let table = match blend {
                 // The new byte itself.
-                Blend::Opaque => Table::from_fn(|new, _| new),
-                Blend::Mix(opacity) => Table::blend(self.palette(), opacity),
-                Blend::Add => Table::add(self.palette()),
+                Blend::Opaque => Lut64K::from_fn(|new, _| new),
+                Blend::Mix(opacity) => Lut64K::blend(self.palette(), opacity),
+                Blend::Add => Lut64K::add(self.palette()),
             };
             self.blends.push((blend, table));
         }
@@ -184,7 +184,7 @@ impl Tables {
             + usize::from(self.neutral_shades.is_some())
             + usize::from(self.neutral_fog.is_some());
         let levels: usize = self.mipmaps.iter().map(|(_, mipmap)| mipmap.bytes()).sum();
-        levels + tables * Table::BYTES + if self.nearest.is_some() { Nearest::BYTES } else { 0 }
+        levels + tables * Lut64K::BYTES + if self.nearest.is_some() { InverseColormap::BYTES } else { 0 }
     }
 }
 

@@ -28,7 +28,7 @@ use crate::mesh::normals::unit;
 const DEPTH: usize = 6;
 
 /// Splitting ends where there are so many triangles.
-const MOST: usize = 1 << 18;
+const MAX_TRIANGLES: usize = 1 << 18;
 
 /// A mesh that was split.
 #[derive(Debug, Default)]
@@ -99,7 +99,7 @@ impl Tessellated {
         let has_highlights = paints.iter().any(|paint| paint.answer.specular != 0.0);
         let bend = Bend { lights, paints, tolerance: f64::from(tolerance) / 255.0, has_highlights };
         for _ in 0..DEPTH {
-            if self.triangles.len() >= MOST || !self.halve(&bend) {
+            if self.triangles.len() >= MAX_TRIANGLES || !self.halve(&bend) {
                 return;
             }
         }
@@ -251,7 +251,7 @@ impl Tessellated {
         }
         self.vertex_surfaces.push(self.vertex_surfaces[a]);
         self.points.push(point);
-        // Fewer than 2³², see `MOST`.
+        // Fewer than 2³², see `MAX_TRIANGLES`.
         (self.positions.len() - 1) as u32
     }
 }

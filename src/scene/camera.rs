@@ -22,6 +22,7 @@ pub struct Camera {
 
 impl Camera {
     /// 40°, rounded to an f32: about that of a 4:3 screen at the length of an arm and a half.
+    #[doc(hidden)]
     pub const FIELD_OF_VIEW: Angle = Angle::from_radians((40.0 * core::f32::consts::PI / 180.0) as f64);
 
     /// The share of the picture's height that a framed sphere fills.

@@ -74,9 +74,9 @@ impl Swept {
     /// The space that `object` covers, turning so, and going along `path` if there is one.
     pub(super) fn new(object: &Object, turning: Turning, path: Option<&Path>) -> Self {
         let shape = match turning {
-            Turning::Still => Shape::Points(points(object, object.angles())),
+            Turning::Still => Shape::Points(points(object, object.angles)),
             Turning::Upright => {
-                let [tilt, _, roll] = object.angles();
+                let [tilt, _, roll] = object.angles;
                 let axis = object::turn([tilt, Angle::default(), Angle::default()]).map(|row| row[1]);
                 let rings = points(object, [Angle::default(), Angle::default(), roll]);
                 Shape::Rings(axis, rings.into_iter().map(|[x, y, z]| [libm::sqrt(x * x + z * z), y]).collect())
@@ -318,6 +318,7 @@ impl Camera {
     /// assert!(scene.camera.eye.z < 0.9 * sphere.eye.z);
     /// ```
     #[must_use]
+    #[doc(hidden)]
     pub fn framing_turn(object: &Object) -> Self {
         let from = Viewpoint { direction: Vec3::Z, up: Vec3::Y, field_of_view: Self::FIELD_OF_VIEW, target: None };
         let swept = Swept::new(object, Turning::Upright, None);
@@ -342,8 +343,8 @@ mod tests {
     /// Between two of them a vertex comes nearer to where it is farthest by at most 1 − cos(π / 720) of its radius,
     /// 9.5·10⁻⁶; perspective makes up to 1.2 times that of it, as the eye is at least 2.3 radii away. The camera's numbers
     /// are f32, of 2⁻²⁴ each.
-    const LEAST: f64 = FILL - 2e-5;
-    const MOST: f64 = FILL + 2e-6;
+    const MIN: f64 = FILL - 2e-5;
+    const MAX: f64 = FILL + 2e-6;
 
     struct Random(u64);
 
@@ -366,10 +367,10 @@ mod tests {
         let [right, up, _] = axes(towards.map(|c| -c), widen(camera.up)).expect("a view");
         let half = libm::tan(camera.field_of_view.to_radians() / 2.0);
         let mut object = object.clone();
-        let [tilt, _, roll] = object.angles();
+        let [tilt, _, roll] = object.angles;
         let mut reached = [0.0_f64; 4];
         for step in 0..ANGLES {
-            object.set_angles([tilt, Angle::TURN * f64::from(step) / f64::from(ANGLES), roll]);
+            object.angles = [tilt, Angle::TURN * f64::from(step) / f64::from(ANGLES), roll];
             let turn = object.turn();
             for &i in object.mesh().triangles().iter().flatten() {
                 let p = added(widen(object.mesh().positions()[i as usize]), widen(object.pivot), -1.0);
@@ -389,7 +390,7 @@ mod tests {
     fn check(what: &str, object: &Object, camera: &Camera) {
         let reached = reached(object, camera);
         let most = reached.into_iter().fold(0.0, f64::max);
-        assert!((LEAST..=MOST).contains(&most), "{what}: {reached:?}");
+        assert!((MIN..=MAX).contains(&most), "{what}: {reached:?}");
         let [left, right, below, above] = reached;
         assert!(
             (left - right).abs() < 4e-5 && (below - above).abs() < 4e-5,
@@ -427,7 +428,7 @@ mod tests {
             object.pivot = object.mesh().bounds().centre + Vec3::splat(size as f32 * 0.5);
             object.position = Vec3::new(random.within(size) as f32, size as f32, 0.0);
             object.scale = 2.5;
-            object.set_angles([random.within(1.2), 1.0, random.within(3.0)].map(Angle::from_radians));
+            object.angles = [random.within(1.2), 1.0, random.within(3.0)].map(Angle::from_radians);
             check(&alloc::format!("object {number}"), &object, &Camera::framing_turn(&object));
         }
         for name in shapes::NAMES {
@@ -465,7 +466,7 @@ mod tests {
             let mut object = Object::new(Mesh::new(positions.clone(), vec![[0, 1, 2]]).expect("a mesh")).centred();
             for tilt in [0.0, 0.35, TAU / 4.0] {
                 for position in [Vec3::ZERO, Vec3::splat(1e6)] {
-                    object.set_angles([tilt, 0.0, 0.0].map(Angle::from_radians));
+                    object.angles = [tilt, 0.0, 0.0].map(Angle::from_radians);
                     object.position = position;
                     let camera = Camera::framing_turn(&object);
                     let made = crate::view::View::new(&camera, crate::view::Screen::MODE_13H);
@@ -492,21 +493,19 @@ mod tests {
                 _ => Some(Path::Circle { centre, from, towards, period: 1.0 }),
             };
             let mut object = Object::new(mesh(&mut random, 12, [1.0, 0.4, 0.7], [3.0, 0.0, 0.0])).centred();
-            object.set_angles([0.3, 1.0, 2.0].map(Angle::from_radians));
+            object.angles = [0.3, 1.0, 2.0].map(Angle::from_radians);
             let target = (number % 2 == 1).then_some(target);
             let viewpoint = Viewpoint { direction, up, field_of_view: Angle::from_radians(0.8), target };
             let camera = viewpoint.camera(&[Swept::new(&object, turning, path.as_ref())]).expect("a camera");
             let mut most = 0.0_f64;
             for step in 0..300 {
                 object.position = path.map_or(Vec3::ZERO, |path| path.at(f64::from(step) / 100.0));
-                object.set_angles(
-                    match turning {
-                        Turning::Still => [0.3, 1.0, 2.0],
-                        Turning::Upright => [0.3, random.within(7.0), 2.0],
-                        Turning::Anyhow => [(); 3].map(|()| random.within(7.0)),
-                    }
-                    .map(Angle::from_radians),
-                );
+                object.angles = match turning {
+                    Turning::Still => [0.3, 1.0, 2.0],
+                    Turning::Upright => [0.3, random.within(7.0), 2.0],
+                    Turning::Anyhow => [(); 3].map(|()| random.within(7.0)),
+                }
+                .map(Angle::from_radians);
                 let view = crate::view::View::new(&camera, crate::view::Screen::MODE_13H).expect("a view");
                 let view = crate::view::ObjectView::new(&view, &object);
                 for p in object.mesh().positions() {

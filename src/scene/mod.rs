@@ -137,16 +137,16 @@ impl Scene {
     /// use mode13h::scene::Scene;
     /// let mut scene = Scene::showing(shapes::teapot(8));
     /// scene.set_time(scene.duration / 4.0);
-    /// assert_eq!(scene.objects()[0].angles()[1].to_degrees(), 90.0);
+    /// assert_eq!(scene.objects()[0].angles[1].to_degrees(), 90.0);
     /// ```
     #[must_use]
     pub fn showing(object: impl Into<Object>) -> Self {
         let mut object = object.into().centred();
         object.position = Vec3::ZERO;
-        object.set_angles([Self::TILT, Angle::default(), Angle::default()]);
+        object.angles = [Self::TILT, Angle::default(), Angle::default()];
         let mut scene = Self::new();
         scene.camera = Camera::framing_turn(&object);
-        let start = object.angles();
+        let start = object.angles;
         let object = scene.add(object);
         scene.motions.push(Motion::Spin { object, start, turns: [0.0, 1.0 / scene.duration, 0.0] });
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
@@ -181,6 +181,7 @@ impl Scene {
 
     /// The index of an object in [`objects`](Self::objects); `None` if it was removed.
     #[must_use]
+    #[doc(hidden)]
     pub fn index_of(&self, id: ObjectId) -> Option<usize> {
         self.object_ids.binary_search(&id).ok()
     }
@@ -273,7 +274,7 @@ impl Scene {
             match self.motions[i] {
                 Motion::Spin { object, start, turns } => {
                     if let Some(object) = self.get_mut(object) {
-                        object.set_angles(motion::spun(start, turns, seconds));
+                        object.angles = motion::spun(start, turns, seconds);
                     }
                 }
                 Motion::Path { what, path } => {

@@ -41,7 +41,12 @@ pub struct Object {
     /// The object that it moves, turns and grows with; its position is then in that object's own coordinates, those of
     /// the parent's mesh. A parent that was removed counts as none.
     pub parent: Option<ObjectId>,
-    angles: [Angle; 3],
+    /// The angles about x, y and z. The turn about z comes first, then y, then x: y spins the object like a turntable,
+    /// x tilts the table.
+    ///
+    /// The matrix is made anew from the angles for every frame, never from a product of small steps, so it stays a
+    /// rotation for ever. Set from the time, frame n does not depend on whether the frames before it were drawn.
+    pub angles: [Angle; 3],
 }
 
 impl Object {
@@ -77,6 +82,7 @@ impl Object {
 
     /// Makes the object turn about the middle of its mesh, which then lies at `position`.
     #[must_use]
+    #[doc(hidden)]
     pub fn centred(mut self) -> Self {
         self.pivot = self.mesh.bounds().centre;
         self
@@ -132,22 +138,6 @@ impl Object {
     /// Turns the object further about the z axis.
     pub fn rotate_z(&mut self, angle: Angle) {
         self.angles[2] += angle;
-    }
-
-    /// The angles about x, y and z. The turn about z comes first, then y, then x: y spins the object like a turntable,
-    /// x tilts the table.
-    #[must_use]
-    pub fn angles(&self) -> [Angle; 3] {
-        self.angles
-    }
-
-    /// Sets the angles about x, y and z. Set from the time, frame n does not depend on whether the frames before it
-    /// were drawn.
-    ///
-    /// The matrix is made anew from the angles for every frame, never from a product of small
-    /// steps, so it stays a rotation for ever.
-    pub fn set_angles(&mut self, angles: [Angle; 3]) {
-        self.angles = angles;
     }
 
     /// The matrix that turns the mesh's directions into the scene's: its up axis, then its angles.
@@ -222,6 +212,7 @@ impl Scene {
 
     /// Returns whether an object is drawn, by its index: it and all that it hangs from are visible.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_visible(&self, index: usize) -> bool {
         self.objects().get(index).is_some_and(|object| object.visible)
             && self.ancestors(index).all(|above| above.visible)

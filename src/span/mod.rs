@@ -32,7 +32,7 @@
 //!
 //! | loop | what |
 //! |---|---|
-//! | [`wide::fill_16_16`] | the span in 16.16 |
+//! | [`fixed16::fill_16_16`] | the span in 16.16 |
 //! | [`hyperbolic::fill_quotients`] | perspective-correct shades |
 //! | [`float::fill_float`] | the same in f32 |
 //! | [`dither::fill_dithered`] | the span with ordered dither |
@@ -78,9 +78,9 @@ mod simd;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 pub(crate) use simd::avx512::{LargeTriangle, fill_large};
 #[doc(hidden)]
-pub mod texture;
+pub mod fixed16;
 #[doc(hidden)]
-pub mod wide;
+pub mod texture;
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
 mod x86;
@@ -332,6 +332,13 @@ impl fmt::Display for Kernel {
             "simd" => write!(f, "simd ({})", self.level.name()),
             name => f.write_str(name),
         }
+    }
+}
+
+/// The [fastest](Kernel::fastest).
+impl Default for Kernel {
+    fn default() -> Self {
+        Self::fastest()
     }
 }
 

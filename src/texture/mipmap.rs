@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::Texture;
 use crate::palette::median_cut::MedianCut;
-use crate::palette::{Rgb, Search};
+use crate::palette::{NearestColors, Rgb};
 use crate::span::texture::Levels;
 
 /// The smaller copies of a texture, level 1 and up, and the colours that all its levels share.
@@ -40,11 +40,13 @@ impl Mipmap {
     pub fn new(texture: &Texture) -> Self {
         let (width_bits, height_bits) = (texture.width_bits(), texture.height_bits());
         let means = means(texture);
-        let mut colors = *texture.colors();
-        let (mut entries, free): (Vec<u8>, Vec<u8>) =
-            (0..=255).partition(|&entry| texture.histogram()[usize::from(entry)] > 0);
+        let (mut colors, histogram) = (*texture.colors(), texture.histogram());
+        let (mut entries, free): (Vec<u8>, Vec<u8>) = (0..=255).partition(|&entry| histogram[usize::from(entry)] > 0);
         let mut shown: Vec<Rgb> = entries.iter().map(|&entry| colors[usize::from(entry)]).collect();
-        let mut missing: Vec<(Rgb, u32)> = means.iter().copied().filter(|(mean, _)| !shown.contains(mean)).collect();
+        let mut own = shown.clone();
+        own.sort_unstable();
+        let is_missing = |(mean, _): &(Rgb, u32)| own.binary_search(mean).is_err();
+        let mut missing: Vec<(Rgb, u32)> = means.iter().copied().filter(is_missing).collect();
         missing.sort_unstable();
         let missing = missing.chunk_by(|(a, _), (b, _)| a == b);
         let missing = missing.map(|same| (same[0].0, same.iter().map(|(_, area)| area).sum())).collect();
@@ -57,7 +59,7 @@ impl Mipmap {
                 shown.push(mean);
             }
         }
-        let search = Search::new(&shown);
+        let search = NearestColors::new(&shown);
         let texels = means.iter().map(|&(mean, _)| entries[usize::from(search.nearest(mean))]).collect();
         Self { texels, colors, width_bits, height_bits }
     }

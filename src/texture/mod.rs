@@ -8,7 +8,7 @@
 //! | [`Mipmap`] | a texture's smaller copies, for where it is far away |
 //! | `load`, `decode` | from a PNG file (feature `image`) |
 //!
-//! A texel is shaded by a table that [`Table::shades`](crate::palette::Table::shades) makes from a
+//! A texel is shaded by a table that [`Lut64K::shades`](crate::palette::Lut64K::shades) makes from a
 //! palette and the texture's colours, so a texture knows nothing of any palette.
 
 mod builtin;
@@ -22,7 +22,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use crate::palette::median_cut::MedianCut;
-use crate::palette::{Rgb, Search};
+use crate::palette::{NearestColors, Rgb};
 #[cfg(feature = "png")]
 pub use load::{LoadError, LoadErrorKind, decode, load};
 pub use mipmap::Mipmap;
@@ -123,6 +123,7 @@ impl Texture {
 
     /// Makes a texture of one texel of one colour, which leaves a surface as plain as without it.
     #[must_use]
+    #[doc(hidden)]
     pub fn plain(color: Rgb) -> Self {
         Self { texels: vec![0], colors: [color; 256], width_bits: 0, height_bits: 0 }
     }
@@ -269,7 +270,7 @@ fn reduced(pixels: &[Rgb], most: u16) -> (Vec<u8>, [Rgb; 256]) {
     cut.cut_to(usize::from(most));
     let mut means: Vec<Rgb> = cut.means().collect();
     means.sort_unstable_by_key(|color| (color.brightness(), *color));
-    let search = Search::new(&means);
+    let search = NearestColors::new(&means);
     let texels = pixels.iter().map(|&pixel| search.nearest(pixel)).collect();
     let mut colors = [Rgb::BLACK; 256];
     colors.iter_mut().zip(means).for_each(|(color, mean)| *color = mean);

@@ -15,6 +15,7 @@ pub mod timing;
 
 use core::ops::RangeBounds;
 
+#[doc(hidden)]
 pub use dac::Dac;
 pub use timing::Beam;
 
@@ -173,6 +174,7 @@ impl Vga {
 
     /// The DAC's registers.
     #[must_use]
+    #[doc(hidden)]
     pub const fn dac(&self) -> &Dac {
         &self.dac
     }

@@ -89,6 +89,7 @@ impl Beam {
 
     /// Returns whether a pixel is being shown.
     #[must_use]
+    #[doc(hidden)]
     pub const fn is_displaying(self) -> bool {
         self.line() < LINES_SHOWN && self.dot() < DOTS_SHOWN
     }

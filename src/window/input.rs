@@ -25,16 +25,25 @@ pub struct Buttons {
 
 /// The user's input since the last frame, and the keys and buttons that are held.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Input {
     pressed: Vec<Key>,
     /// The keys of `pressed` that went down while Shift was down.
     shifted: Vec<Key>,
     held: Vec<Key>,
-    typed: String,
-    mouse: Option<(f32, f32)>,
-    buttons: Buttons,
-    drag: (f32, f32),
-    wheel: f32,
+    /// The characters that were typed since the last frame, by the user's own keyboard layout. A key that is held
+    /// repeats, as the desktop is set up.
+    pub typed: String,
+    /// The position of the mouse, in pixels of the frame, from the top left corner: 0 to 320 across and 0 to 200 down
+    /// while it is on the picture, `None` while it is outside of the window.
+    pub mouse: Option<(f32, f32)>,
+    /// The mouse's buttons that are down.
+    pub buttons: Buttons,
+    /// The distance that the mouse was drawn with its left button down since the last frame, in pixels of the frame: to
+    /// the right and down.
+    pub drag: (f32, f32),
+    /// The number of notches that the wheel was turned since the last frame; away from the user is positive.
+    pub wheel: f32,
 }
 
 impl Input {
@@ -52,34 +61,6 @@ impl Input {
     /// Returns whether the key is down.
     pub fn held(&self, key: Key) -> bool {
         self.held.contains(&key)
-    }
-
-    /// The characters that were typed since the last frame, by the user's own keyboard layout. A key that is held
-    /// repeats, as the desktop is set up.
-    pub fn typed(&self) -> &str {
-        &self.typed
-    }
-
-    /// The position of the mouse, in pixels of the frame, from the top left corner: 0 to 320 across and 0 to 200 down
-    /// while it is on the picture, `None` while it is outside of the window.
-    pub fn mouse(&self) -> Option<(f32, f32)> {
-        self.mouse
-    }
-
-    /// The mouse's buttons that are down.
-    pub fn buttons(&self) -> Buttons {
-        self.buttons
-    }
-
-    /// The distance that the mouse was drawn with its left button down since the last frame, in pixels of the frame: to
-    /// the right and down.
-    pub fn drag(&self) -> (f32, f32) {
-        self.drag
-    }
-
-    /// The number of notches that the wheel was turned since the last frame; away from the user is positive.
-    pub fn wheel(&self) -> f32 {
-        self.wheel
     }
 
     /// Returns whether the user did anything, or holds anything, after `before`.

@@ -128,6 +128,7 @@ pub fn run<R: FrameResult>(title: &str, mut frame: impl FnMut(&mut Vga, &Input, 
 }
 
 /// An open window. Most programs need only [`run`].
+#[doc(hidden)]
 pub struct Window {
     window: minifb::Window,
     events: Events,

@@ -438,23 +438,23 @@ fn depths_of_earlier_frames_do_not_count() {
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
     let second = scene.add(Object::new(shapes::by_name("cube").expect("listed")));
     let (mut again, mut machine) = (Renderer::new(), Vga::new());
-    again.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+    again.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     let mut drawn = 0;
     for round in 0..300 {
         let mut number = |most: f64| (random.unit() * 2.0 - 1.0) * most;
         for object in 0..=1 {
-            scene.objects_mut()[object].set_angles([number(3.0), number(3.0), number(3.0)].map(Angle::from_radians));
+            scene.objects_mut()[object].angles = [number(3.0), number(3.0), number(3.0)].map(Angle::from_radians);
         }
         // Beyond the screen's edges and through the near plane, too.
         let far = number(3.0);
         scene[second].position = Vec3::new(number(4.0) as f32, number(3.0) as f32, far as f32);
         scene.camera.eye = Vec3::new(number(1.0) as f32, number(1.0) as f32, 3.0 + number(1.5) as f32);
-        again.set_shading(random.one_of(&Shading::ALL));
+        again.settings.accuracy = Some(random.one_of(&Shading::ALL).into());
         let mut fresh = again.set_alike();
         let mut other = Vga::new();
         let stats = again.draw(&scene, &mut machine).expect("a legal scene");
         fresh.draw(&scene, &mut other).expect("a legal scene");
-        assert!(machine.pixels() == other.pixels(), "round {round}, {}", again.settings().accuracy.unwrap_or_default());
+        assert!(machine.pixels() == other.pixels(), "round {round}, {}", again.settings.accuracy.unwrap_or_default());
         drawn += stats.raster.pixels;
     }
     assert!(drawn > 1_000_000, "{drawn}");

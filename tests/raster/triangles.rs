@@ -552,3 +552,41 @@ fn c5_perspective_correct_shades() {
 fn c5_long_perspective_correct_shades() {
     perspective_correct_shades(Tried::new("c5_long_perspective_correct_shades", 300_000));
 }
+
+/// Lists of all lengths about a batch's, of shadings that a batch takes and of those that it does not.
+#[test]
+fn a_list_is_drawn_as_triangle_by_triangle() {
+    let (width, height) = (96_u32, 64_u32);
+    let size = (width * height) as usize;
+    let mut tried = Tried::new("a_list_is_drawn_as_triangle_by_triangle", 200);
+    let mut random = Random::named("lists of triangles");
+    let mut all = Interpolation::INTERPOLATED.to_vec();
+    all.push(Interpolation::Flat(77));
+    let mut pixels = 0;
+    for _ in 0..200 {
+        let length = random.one_of(&[0, 1, 127, 128, 129, 300]) as usize;
+        // One in five does not go into a batch.
+        let pick = |random: &mut Random| {
+            if random.within(0, 4) == 0 { random.one_of(&all) } else { Interpolation::GouraudReseeded }
+        };
+        let list: Vec<_> =
+            (0..length).map(|_| (triangle(&mut random, width.into(), height.into()), pick(&mut random))).collect();
+        let drawn = |draw: &dyn Fn(&mut Raster<'_>) -> DrawStats| {
+            let (mut bytes, mut depths) = (vec![0; size], vec![0_u32; size]);
+            let frame = Frame::new(&mut bytes, width, height, width as usize).expect("legal");
+            let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+            let stats = draw(&mut Raster::new(frame).with_depth(depth));
+            (bytes, depths, stats)
+        };
+        let at_once = drawn(&|raster| raster.triangles(list.iter().map(|(corners, shading)| (corners, *shading))));
+        let apart = drawn(&|raster| {
+            let mut stats = DrawStats::default();
+            list.iter().for_each(|(corners, shading)| stats += raster.triangle(corners, *shading));
+            stats
+        });
+        assert!(at_once == apart, "{length} triangles: {} and {}", at_once.2.pixels, apart.2.pixels);
+        pixels += u64::from(apart.2.pixels);
+        tried.add(1);
+    }
+    assert!(pixels > 100_000, "{pixels}");
+}

@@ -9,7 +9,7 @@ use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect
 use mode13h::span::Kernel;
 use mode13h::span::depth::Cell;
 
-const PERIOD: Interpolation = Interpolation::GouraudVintage;
+const VINTAGE: Interpolation = Interpolation::GouraudVintage;
 
 /// A row at a time, by hand.
 #[test]
@@ -17,7 +17,7 @@ fn rows_are_those_of_the_sources() {
     let mut tried = Tried::new("rows_are_those_of_the_sources", 2);
     // In whole pixels, with fractions that are rounded away.
     let corner = |x: i64, y: i64, shade: i64| vertex(x * 256 - 60, y * 256 + 90, shade * 256, 5);
-    let bytes = draw(&[corner(0, 0, 16), corner(7, 0, 85), corner(0, 2, 16)], PERIOD, 7, 2, None, 9);
+    let bytes = draw(&[corner(0, 0, 16), corner(7, 0, 85), corner(0, 2, 16)], VINTAGE, 7, 2, None, 9);
     // (85 − 16) / 7 in 1/256: 2,523.4, cut to 2,523.
     assert_eq!(bytes[..7], [16, 25, 35, 45, 55, 65, 75]);
     tried.add(1);
@@ -43,7 +43,7 @@ fn rows_without_a_pixel_are_not_drawn() {
         };
         let corners = [corner(), corner(), corner()];
         let mut bytes = vec![3; 96 * 24];
-        let drawn = Raster::new(Frame::new(&mut bytes, 96, 24, 96).expect("legal")).triangle(&corners, PERIOD);
+        let drawn = Raster::new(Frame::new(&mut bytes, 96, 24, 96).expect("legal")).triangle(&corners, VINTAGE);
         assert_eq!(drawn, DrawStats::default(), "{corners:?}");
         assert!(bytes.iter().all(|byte| *byte == 3), "{corners:?}");
     }
@@ -141,14 +141,14 @@ impl Case {
             let (x, y) = (pixel.x as u32, pixel.y as u32);
             (self.clip.x0..self.clip.x1).contains(&x) && (self.clip.y0..self.clip.y1).contains(&y)
         };
-        let pixels = oracle::pixels(&self.corners, PERIOD, width as i32, height as i32);
+        let pixels = oracle::pixels(&self.corners, VINTAGE, width as i32, height as i32);
         pixels.into_iter().filter(inside).map(|p| (p, p.y as usize * width as usize + p.x as usize)).collect()
     }
 
     fn without_depth(&self) -> u64 {
         let (width, height) = self.size;
         let mut drawn = DrawStats::default();
-        let bytes = self.draw(|mut raster, _| drawn += raster.triangle(&self.corners, PERIOD));
+        let bytes = self.draw(|mut raster, _| drawn += raster.triangle(&self.corners, VINTAGE));
         let mut expected = vec![EMPTY; (width * height) as usize];
         let shades = self.corners.map(|v| v.shade().to_bits() >> 8);
         let range = shades.into_iter().min().expect("three")..=shades.into_iter().max().expect("three");
@@ -170,7 +170,7 @@ impl Case {
         let bytes = self.draw(|mut raster, first| {
             let from = (first * width) as usize;
             let depth = DepthBuffer::new(&mut depths[from..], &raster.frame()).expect("long enough");
-            raster.with_depth(depth).triangle(&self.corners, PERIOD);
+            raster.with_depth(depth).triangle(&self.corners, VINTAGE);
         });
         for (pixel, place) in self.pixels() {
             let depth = D::of_depth(oracle::depth_beyond(&self.corners, pixel.x, pixel.y));
@@ -197,9 +197,9 @@ fn by_scan_line_its_shades_are_on_exact_cover() {
         let corners = triangle(&mut random, width.into(), height.into());
         let mut bytes = vec![EMPTY; (width * height) as usize];
         let mut raster = Raster::new(Frame::new(&mut bytes, width, height, width as usize).expect("legal"));
-        raster.scan_line(&[(corners, PERIOD)], lists.scratch(1)).expect("room enough");
+        raster.scan_line(&[(corners, VINTAGE)], lists.scratch(1)).expect("room enough");
         let mut expected = vec![EMPTY; (width * height) as usize];
-        let shades = oracle::Shades::of_vertices(&corners, PERIOD);
+        let shades = oracle::Shades::of_vertices(&corners, VINTAGE);
         for covered in oracle::pixels(&corners, Interpolation::Flat(0), width as i32, height as i32) {
             let place = (covered.y as u32 * width + covered.x as u32) as usize;
             expected[place] = shades.byte((0, 0), covered.x, covered.y, None);
@@ -207,8 +207,8 @@ fn by_scan_line_its_shades_are_on_exact_cover() {
         }
         assert_eq!(bytes, expected, "{corners:?}");
         // Where the sources have the pixel too it is the same.
-        let own = draw(&corners, PERIOD, width, height, None, EMPTY);
-        let other = draw(&corners, PERIOD, width, height, None, EMPTY + 1);
+        let own = draw(&corners, VINTAGE, width, height, None, EMPTY);
+        let other = draw(&corners, VINTAGE, width, height, None, EMPTY + 1);
         for place in 0..own.len() {
             let both = own[place] == other[place] && expected[place] != EMPTY;
             assert!(!both || own[place] == expected[place] || own[place] == EMPTY, "{corners:?}");
@@ -234,7 +234,7 @@ fn neighbours_share_no_pixel() {
             continue;
         }
         let shade = U8F8::from_shade(200);
-        let count = |third: Vertex| draw(&[a, b, third].map(|v| v.with_shade(shade)), PERIOD, 64, 24, None, 0);
+        let count = |third: Vertex| draw(&[a, b, third].map(|v| v.with_shade(shade)), VINTAGE, 64, 24, None, 0);
         let (first, second) = (count(c), count(d));
         for place in 0..first.len() {
             assert!(first[place] == 0 || second[place] == 0, "{place} of {a:?} {b:?} {c:?} {d:?}");

@@ -13,7 +13,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::{Choice, Decision, Effect};
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Shading, Stats, VertexPath};
+use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Shading, Stats, VertexPath};
 use mode13h::scene::{Motion, Object, Scene, shipped};
 use mode13h::vga::Vga;
 
@@ -90,27 +90,23 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
         let scene = shipped.load().expect("it is shipped").scene;
         try_one(name.to_string(), &scene, &|_, _| ());
         for way in HiddenSurfaces::ALL {
-            try_one(format!("{name}, {way}"), &scene, &|_, renderer| {
-                renderer.settings_mut().hidden_surfaces = Some(way)
-            });
+            try_one(format!("{name}, {way}"), &scene, &|_, renderer| renderer.settings.hidden_surfaces = Some(way));
         }
         for shading in Shading::ALL {
             try_one(format!("{name}, {shading}"), &scene, &|_, renderer| {
-                renderer.set_shading(shading);
+                renderer.settings.accuracy = Some(shading.into());
             });
         }
         for mapping in Mapping::ALL {
-            try_one(format!("{name}, {mapping}"), &scene, &|_, renderer| {
-                renderer.settings_mut().mapping = Some(mapping)
-            });
+            try_one(format!("{name}, {mapping}"), &scene, &|_, renderer| renderer.settings.mapping = Some(mapping));
         }
         for shades in [0.8, 2.0] {
             try_one(format!("{name}, within {shades}"), &scene, &|_, renderer| {
-                renderer.set_max_error(shades);
+                renderer.settings.accuracy = Some(Accuracy::WithinError(shades));
             });
         }
         try_one(format!("{name}, in integers"), &scene, &|_, renderer| {
-            renderer.settings_mut().vertex_path = VertexPath::Integer
+            renderer.settings.vertex_path = VertexPath::Integer
         });
         try_one(format!("{name}, dithered"), &scene, &|scene, _| scene.preferences.dither = true);
         for effect in Effect::ALL {
@@ -142,7 +138,7 @@ fn nor_of_a_fine_body_or_one_that_is_cut() {
     for (name, scene) in [("a sphere", fine), ("a torus around the eye", cut)] {
         for way in HiddenSurfaces::ALL {
             let (mut scene, mut renderer) = (scene.clone(), Renderer::new());
-            renderer.settings_mut().hidden_surfaces = Some(way);
+            renderer.settings.hidden_surfaces = Some(way);
             wrong.extend(turns(&format!("{name}, {way}"), &mut scene, &mut renderer));
             tried.add(u64::from(2 * FRAMES));
         }

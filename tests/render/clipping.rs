@@ -133,7 +133,7 @@ fn r7_a_corner_within_rounding_of_the_limit() {
         let mesh = Mesh::new(vec![p, q, r, s], vec![[0, 1, 2], [1, 0, 3]]).expect("a mesh");
         for (path, clipped) in VertexPath::ALL.into_iter().zip(&mut clipped) {
             let mut renderer = Renderer::new();
-            renderer.settings_mut().vertex_path = path;
+            renderer.settings.vertex_path = path;
             let (counts, stats) = counts_by(&mut renderer, &scene(mesh.clone()));
             *clipped += u64::from(stats.clipped == 1);
             let holes = counts.iter().filter(|&&times| times == 0).count();
@@ -157,7 +157,7 @@ fn c3_what_is_very_far_is_drawn() {
         scene.objects_mut()[0].scale = 1e10;
         scene.add_light(Light::sun([0.0, 0.0, 1.0]));
         let mut renderer = Renderer::new();
-        renderer.settings_mut().hidden_surfaces = Some(way);
+        renderer.settings.hidden_surfaces = Some(way);
         let mut vga = Vga::new();
         renderer.draw(&scene, &mut vga).expect("a legal scene");
         let lit = vga.pixels().iter().filter(|&&byte| byte != 0).count();

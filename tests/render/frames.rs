@@ -19,7 +19,7 @@ const HEIGHT: i32 = Vga::HEIGHT as i32;
 /// Draws the scene twice, once by the oracle; returns how many pixels are not background.
 fn check(scene: &Scene, shading: Shading) -> usize {
     let mut renderer = Renderer::new();
-    renderer.set_shading(shading);
+    renderer.settings.accuracy = Some(shading.into());
     let mut triangles: Vec<([Vertex; 3], Interpolation)> = Vec::new();
     let stats = renderer
         .for_each_triangle(scene, Screen::MODE_13H, |v, interpolation| triangles.push((*v, interpolation)))
@@ -51,7 +51,7 @@ fn check(scene: &Scene, shading: Shading) -> usize {
     }
     for kernel in Kernel::available() {
         let mut vga = Vga::new();
-        renderer.set_kernel(kernel);
+        renderer.settings.kernel = kernel;
         let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
         let differs = vga.pixels().iter().zip(&expected).position(|(is, should)| is != should);
         assert_eq!(differs, None, "kernel {}", kernel.name());
@@ -64,7 +64,7 @@ fn check(scene: &Scene, shading: Shading) -> usize {
 
 fn turned(mesh: Mesh, degrees: f64) -> Scene {
     let mut scene = crate::support::scenes::framed(mesh);
-    scene.objects_mut()[0].set_angles([0.4, degrees.to_radians(), 0.1].map(Angle::from_radians));
+    scene.objects_mut()[0].angles = [0.4, degrees.to_radians(), 0.1].map(Angle::from_radians);
     scene
 }
 

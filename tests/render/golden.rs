@@ -12,7 +12,7 @@ use mode13h::vga::Vga;
 
 fn draw(scene: &Scene, kernel: Kernel) -> Indexed {
     let mut renderer = Renderer::new();
-    renderer.set_kernel(kernel);
+    renderer.settings.kernel = kernel;
     let mut vga = Vga::new();
     renderer.draw(scene, &mut vga).expect("a legal scene");
     Indexed::of(&vga)
@@ -27,7 +27,7 @@ fn golden_frames() {
     for (name, shading) in all {
         let mut scene = crate::support::scenes::framed(shapes::by_name(name).expect("listed"));
         scene.palette = Some(builtin::COPPER.clone());
-        scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1].map(Angle::from_radians));
+        scene.objects_mut()[0].angles = [0.5, 0.7, 0.1].map(Angle::from_radians);
         scene.preferences.shading = Some(shading);
         wrong.extend(check(&format!("{name}-{shading}"), &mut tried, |kernel| draw(&scene, kernel)));
     }

@@ -47,7 +47,7 @@ fn bars() -> Scene {
 
 fn picture(scene: &Scene, way: Option<HiddenSurfaces>) -> (Vec<u8>, HiddenSurfaces) {
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-    renderer.settings_mut().hidden_surfaces = way;
+    renderer.settings.hidden_surfaces = way;
     let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
     (vga.pixels().to_vec(), stats.hidden_surfaces)
 }
@@ -65,7 +65,7 @@ fn d1_bars_in_a_circle_are_never_left_to_the_painter() {
     let mut wrong = 0;
     for degrees in (0..360).step_by(5) {
         for object in scene.objects_mut() {
-            object.set_angles([0.0, 0.0, f64::from(degrees).to_radians()].map(Angle::from_radians));
+            object.angles = [0.0, 0.0, f64::from(degrees).to_radians()].map(Angle::from_radians);
         }
         let (chosen, way) = picture(&scene, None);
         assert_eq!(way, HiddenSurfaces::DepthBuffer);
@@ -136,7 +136,7 @@ fn d4_all_four_methods_on_convex_meshes() {
             let mut scene = crate::support::scenes::framed(mesh.clone());
             let object = &mut scene.objects_mut()[0];
             object.scale = (0.01_f64.powf(random.unit())) as f32;
-            object.set_angles([(); 3].map(|()| random.unit() * 6.3).map(Angle::from_radians));
+            object.angles = [(); 3].map(|()| random.unit() * 6.3).map(Angle::from_radians);
             object.position.x = random.unit() as f32;
             let counts = covers(&scene);
             let (first, way) = picture(&scene, None);
@@ -177,7 +177,7 @@ fn d4_painters_order_is_taken_for_convex_objects_that_are_apart() {
             let scale = 0.2 + random.unit();
             let reach = scale * 1.7321;
             object.scale = scale as f32;
-            object.set_angles([(); 3].map(|()| random.unit() * 6.3).map(Angle::from_radians));
+            object.angles = [(); 3].map(|()| random.unit() * 6.3).map(Angle::from_radians);
             z -= reach;
             object.position = Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, z as f32);
             z -= reach + 0.001 + random.unit();
@@ -236,7 +236,7 @@ fn a_model_of_your_own() {
         let mut tried = Tried::new("hidden_a_model_of_your_own", 360);
         let mut scene = crate::support::scenes::framed(mode13h::mesh::obj::load(&path).expect("a model").mesh);
         for degrees in 0..360 {
-            scene.objects_mut()[0].set_angles([0.2, f64::from(degrees).to_radians(), 0.0].map(Angle::from_radians));
+            scene.objects_mut()[0].angles = [0.2, f64::from(degrees).to_radians(), 0.0].map(Angle::from_radians);
             assert_eq!(by(&scene, HiddenSurfaces::DepthBuffer), by(&scene, HiddenSurfaces::ScanLine), "{degrees}°");
             tried.add(1);
         }

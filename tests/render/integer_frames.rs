@@ -23,14 +23,14 @@ const HEIGHT: usize = 200;
 
 fn renderer(path: VertexPath) -> Renderer {
     let mut renderer = Renderer::new();
-    renderer.settings_mut().vertex_path = path;
+    renderer.settings.vertex_path = path;
     renderer
 }
 
 fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
     let mut vga = Vga::new();
     let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
-    assert_eq!(stats.vertex_path, renderer.settings().vertex_path);
+    assert_eq!(stats.vertex_path, renderer.settings.vertex_path);
     vga.pixels().to_vec()
 }
 
@@ -150,7 +150,7 @@ fn both_paths_draw_the_same_picture() {
         scene.add_light(Light::sun([-1.0, 0.3, 0.2]).with_intensity(0.5));
         for _ in 0..24 {
             let angles = [0; 3].map(|_| steps(random.within(-70_000, 70_000)));
-            scene.objects_mut()[0].set_angles(angles.map(Angle::from_radians));
+            scene.objects_mut()[0].angles = angles.map(Angle::from_radians);
             let (pixels, others) = compare(&scene, name);
             (compared, differ) = (compared + pixels, differ + others);
             tried.add(1);
@@ -171,7 +171,7 @@ fn the_plan_names_the_shading_that_is_drawn() {
         for shading in Shading::ALL {
             let drawn = if path == VertexPath::Integer { shading.in_integers() } else { shading };
             let mut renderer = renderer(path);
-            renderer.set_shading(shading);
+            renderer.settings.accuracy = Some(shading.into());
             let mut interpolations = Vec::new();
             let stats = renderer
                 .for_each_triangle(&scene, Screen::MODE_13H, |_, interpolation| interpolations.push(interpolation))
@@ -204,13 +204,13 @@ fn every_shading_and_odd_scene_is_drawn_and_counted_alike() {
             let mut object = Object::new(shapes::torus(24, 12));
             (object.scale, object.pivot, object.up_axis) = (scale, Vec3::new(0.3, 2.0, -0.1), UpAxis::Z);
             object.position = Vec3::splat(place);
-            object.set_angles([steps(1000), steps(20_000), steps(-300)].map(Angle::from_radians));
+            object.angles = [steps(1000), steps(20_000), steps(-300)].map(Angle::from_radians);
             scene.add(object);
             scene.add_light(Light::sun([0.4, 0.6, 1.0]));
             scene.camera = Camera::framing(Vec3::splat(place) - Vec3::Y * 2.0 * scale, 2.0 * scale);
             let [float, integer] = VertexPath::ALL.map(|path| {
                 let mut renderer = renderer(path);
-                renderer.set_shading(shading);
+                renderer.settings.accuracy = Some(shading.into());
                 let mut vga = Vga::new();
                 let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
                 (vga.pixels().to_vec(), stats)
@@ -243,7 +243,7 @@ fn t3_a_full_turn_returns_to_the_picture() {
             let mut turned = |n: i64| {
                 let mut angles = [0.1, 0.2, 0.3];
                 angles[axis] = steps(n);
-                scene.objects_mut()[0].set_angles(angles.map(Angle::from_radians));
+                scene.objects_mut()[0].angles = angles.map(Angle::from_radians);
                 frame(&mut renderer, &scene)
             };
             let once = turned(n);
@@ -268,12 +268,12 @@ fn t2_steps_of_any_size() {
         scene.objects_mut()[id].rotate_y(Angle::from_radians(step));
         let there = frame(&mut renderer, &scene);
         assert_eq!(there == first, step == 0.0, "a step of {step}");
-        scene.objects_mut()[id].set_angles([Angle::default(); 3]);
+        scene.objects_mut()[id].angles = [Angle::default(); 3];
         assert!(frame(&mut renderer, &scene) == first, "and back");
         tried.add(1);
     }
     // Beyond what f64 can count turns in it is some angle.
-    scene.objects_mut()[id].set_angles([f64::MAX, -1e300, f64::MIN_POSITIVE].map(Angle::from_radians));
+    scene.objects_mut()[id].angles = [f64::MAX, -1e300, f64::MIN_POSITIVE].map(Angle::from_radians);
     frame(&mut renderer, &scene);
     tried.add(1);
 }
@@ -284,7 +284,7 @@ fn t1_frame_n_after_n_frames_is_frame_n_at_once() {
     let mut renderer = renderer(VertexPath::Integer);
     let mut scene = crate::support::scenes::framed(shapes::torus(12, 8));
     for n in 0..500 {
-        scene.objects_mut()[0].set_angles([steps(3 * n), steps(131 * n), steps(-7 * n)].map(Angle::from_radians));
+        scene.objects_mut()[0].angles = [steps(3 * n), steps(131 * n), steps(-7 * n)].map(Angle::from_radians);
         let after_all_before = frame(&mut renderer, &scene);
         assert!(after_all_before == frame(&mut self::renderer(VertexPath::Integer), &scene), "frame {n}");
         tried.add(1);
@@ -322,7 +322,7 @@ fn e1_a_changed_mesh_is_converted_anew() {
 fn r8_bands_on_the_integer_path_give_the_bytes_of_the_whole() {
     let mut tried = Tried::new("r8_bands_on_the_integer_path_give_the_bytes_of_the_whole", 25);
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
-    scene.objects_mut()[0].set_angles([steps(5000), steps(900), 0.0].map(Angle::from_radians));
+    scene.objects_mut()[0].angles = [steps(5000), steps(900), 0.0].map(Angle::from_radians);
     let mut renderer = renderer(VertexPath::Integer);
     let whole = frame(&mut renderer, &scene);
     let mut band = [0; WIDTH * 8];
@@ -541,7 +541,7 @@ fn r10_denormal_and_huge_scenes_are_scaled_into_range() {
         let mesh = Mesh::with_normals(positions, cube.normals().to_vec(), cube.triangles().to_vec()).expect("sound");
         let mut scene = Scene::new();
         let mut object = Object::new(mesh);
-        object.set_angles([0.4, 0.5, 0.6].map(Angle::from_radians));
+        object.angles = [0.4, 0.5, 0.6].map(Angle::from_radians);
         scene.add(object);
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
         let framed = Camera::framing(Vec3::ZERO, 1.0);

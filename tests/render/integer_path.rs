@@ -6,8 +6,8 @@ use mode13h::Angle;
 use mode13h::fixed::I16F16;
 use mode13h::glam::Vec3;
 use mode13h::integer::{
-    BinaryAngle, Camera, FixedMesh, FixedMeshError, IntegerError, Lens, Object, Paint, Placement, Shading, Sun, Vector,
-    VertexStage, View, average_normals, face_normal, turn, unit_vector,
+    BinaryAngle, Camera, FixedMesh, IntegerError, Lens, Object, Paint, Placement, Shading, Sun, Vector, VertexStage,
+    View, average_normals, face_normal, turn, unit_vector,
 };
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::Ramp;
@@ -142,7 +142,7 @@ fn n2_normals_that_cancel() {
     let own = face_normal(positions[0], positions[1], positions[2]).expect("it has an area");
     assert_eq!(normals, [own, own, own, bits([0, 0, 65_536])]);
     tried.add(4);
-    let needed = FixedMeshError::Count { what: "normals", given: 3, needed: 4 };
+    let needed = IntegerError::Count { what: "normals", given: 3, needed: 4 };
     assert_eq!(average_normals(&positions, &triangles, &mut normals[..3]), Err(needed));
 }
 
@@ -180,7 +180,7 @@ fn the_turn_is_the_f64_turn() {
     while tried.more() {
         let steps = [0; 3].map(|_| random.next_u64() as u16);
         let rows = turn(steps.map(BinaryAngle::from_bits)).map(real);
-        object.set_angles(steps.map(|a| f64::from(a) * TAU / 65_536.0).map(Angle::from_radians));
+        object.angles = steps.map(|a| f64::from(a) * TAU / 65_536.0).map(Angle::from_radians);
         let exact = object.rotation().transpose().to_cols_array_2d();
         for (row, exact) in rows.iter().flatten().zip(exact.as_flattened()) {
             // 0.501 units, and half an f32's last bit of what it is compared with.
@@ -521,13 +521,13 @@ fn what_16_16_cannot_hold_is_refused() {
         tried.add(1);
     };
     check(mesh(far, z, 0).is_ok(), "the farthest vertex");
-    check(mesh(bits([0, (32_767 << 16) + 1, 0]), z, 0) == Err(FixedMeshError::Position { vertex: 0 }), "beyond");
-    check(mesh(bits([i32::MIN, 0, 0]), z, 0) == Err(FixedMeshError::Position { vertex: 0 }), "beyond below");
+    check(mesh(bits([0, (32_767 << 16) + 1, 0]), z, 0) == Err(IntegerError::Position { vertex: 0 }), "beyond");
+    check(mesh(bits([i32::MIN, 0, 0]), z, 0) == Err(IntegerError::Position { vertex: 0 }), "beyond below");
     check(mesh(corner, bits([0, 0, 65_540]), 0).is_ok(), "a normal off by 2⁻¹⁴");
     for normal in [[0, 0, 65_541], [0, 0, 65_531], [0, 0, 0], [i32::MIN; 3]] {
-        check(mesh(corner, bits(normal), 0) == Err(FixedMeshError::NormalNotUnit { vertex: 0 }), "a normal");
+        check(mesh(corner, bits(normal), 0) == Err(IntegerError::NormalNotUnit { vertex: 0 }), "a normal");
     }
-    check(mesh(corner, z, 1) == Err(FixedMeshError::IndexOutOfRange { triangle: 0 }), "an index");
+    check(mesh(corner, z, 1) == Err(IntegerError::IndexOutOfRange { triangle: 0 }), "an index");
 
     let lens = |w, h, aspect, degrees| Lens::new(w, h, aspect, BinaryAngle::from_degrees(degrees)).map(|_| ());
     check(lens(320, 200, (5, 6), 40).is_ok(), "the usual picture");

@@ -28,7 +28,7 @@ fn three() -> (Scene, [ObjectId; 3]) {
     let ids = at.map(|(mesh, position)| {
         let id = scene.add(Object::new(mesh));
         scene[id].position = position;
-        scene[id].set_angles([0.3, 0.4, 0.0].map(Angle::from_radians));
+        scene[id].angles = [0.3, 0.4, 0.0].map(Angle::from_radians);
         id
     });
     (scene, ids)
@@ -72,15 +72,15 @@ fn a_child_stands_where_its_parent_puts_it() {
     let (mut scene, [torus, cube, cone]) = three();
     (scene[torus].position, scene[torus].scale) = (Vec3::new(1.0, 0.0, -2.0), 2.0);
     scene[torus].pivot = Vec3::new(0.5, 0.0, 0.0);
-    scene[torus].set_angles([Angle::default(); 3]);
+    scene[torus].angles = [Angle::default(); 3];
     let mut by_hand = scene.clone();
     // (0.75, 0.25, 1) is (0.25, 0.25, 1) from the pivot, twice that from (1, 0, −2).
     (by_hand[cube].position, by_hand[cube].scale) = (Vec3::new(1.5, 0.5, 0.0), 0.5);
     (by_hand[cone].position, by_hand[cone].scale) = (Vec3::new(2.0, 0.5, 0.0), 0.25);
     (scene[cube].position, scene[cube].scale, scene[cube].parent) = (Vec3::new(0.75, 0.25, 1.0), 0.25, Some(torus));
     // And one that hangs from that: its turn is the cube's, which the cone by hand has not.
-    scene[cube].set_angles([Angle::default(); 3]);
-    by_hand[cube].set_angles([Angle::default(); 3]);
+    scene[cube].angles = [Angle::default(); 3];
+    by_hand[cube].angles = [Angle::default(); 3];
     (scene[cone].position, scene[cone].scale, scene[cone].parent) = (Vec3::new(1.0, 0.0, 0.0), 0.5, Some(cube));
     let frame = drawn(&scene);
     assert!(frame == drawn(&by_hand));
@@ -105,7 +105,7 @@ fn parents_in_a_circle_and_on_the_integer_path_are_refused() {
     scene[cube].parent = Some(torus);
     let mut vga = Vga::new();
     let mut integer = Renderer::new();
-    integer.settings_mut().vertex_path = VertexPath::Integer;
+    integer.settings.vertex_path = VertexPath::Integer;
     let refused = |result| matches!(result, Err(RenderError::Object { .. }));
     assert!(refused(integer.draw(&scene, &mut vga)));
     scene[torus].parent = Some(cone);

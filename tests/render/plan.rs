@@ -52,7 +52,7 @@ fn the_full_work_gives_the_same_bytes() {
         let (expected, stats, chosen) = draw(&scene, |_| ());
         // What saves work by being on: culling, and hidden surfaces without depths.
         let (full, _, _) =
-            draw(&scene, |renderer| renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
+            draw(&scene, |renderer| renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
         let covered_twice = differing(&expected, &full);
         assert!(covered_twice == 0, "{name}, depth buffer: {covered_twice} pixels differ");
         for effect in Effect::ALL {
@@ -67,7 +67,7 @@ fn the_full_work_gives_the_same_bytes() {
             let (bytes, forced, renderer) = draw(&scene, |renderer| {
                 renderer.force(effect, Some(on));
                 if !on {
-                    renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+                    renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
                 }
             });
             assert!(
@@ -195,7 +195,7 @@ fn d1_the_plan_never_picks_painters_order_for_what_overlaps() {
         let (_, stats, _) = draw(&scene, |_| ());
         if stats.hidden_surfaces == HiddenSurfaces::PainterOrder {
             let (depth, _, _) =
-                draw(&scene, |renderer| renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
+                draw(&scene, |renderer| renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
             assert_eq!(differing(&draw(&scene, |_| ()).0, &depth), 0, "{name}");
         }
         tried.add(1);
@@ -350,7 +350,7 @@ fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
         for (effect, shading) in [(Effect::Phong, Some(Shading::Phong)), (Effect::Tessellation, None)] {
             let (bytes, stats, _) = draw(&scene, |renderer| match shading {
                 Some(shading) => {
-                    renderer.set_shading(shading);
+                    renderer.settings.accuracy = Some(shading.into());
                 }
                 None => renderer.force(effect, Some(true)),
             });
@@ -383,7 +383,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
         let pieces = random.within(1, 24) as u32;
         let mut scene = crate::support::scenes::framed(mode13h::mesh::shapes::wall(pieces, pieces));
         let object = &mut scene.objects_mut()[0];
-        object.set_angles([random.unit() - 0.5, 2.4 * random.unit() - 1.2, random.unit()].map(Angle::from_radians));
+        object.angles = [random.unit() - 0.5, 2.4 * random.unit() - 1.2, random.unit()].map(Angle::from_radians);
         let material = &mut object.materials[0];
         (material.ambient, material.diffuse) = (1.0, 0.0);
         material.texture = Some(mode13h::scene::Shared::clone(&texture));
@@ -421,7 +421,7 @@ fn mipmaps_change_nothing_of_what_is_near() {
                 let mut scene = crate::support::scenes::framed(mode13h::mesh::shapes::wall(3, 3));
                 let object = &mut scene.objects_mut()[0];
                 object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
-                object.set_angles([angle, angle, angle].map(Angle::from_radians));
+                object.angles = [angle, angle, angle].map(Angle::from_radians);
                 // 128 texels on √2 units: even the far corners of the tilted wall have fewer than √2 to a pixel.
                 scene.camera.eye = mode13h::glam::Vec3::new(0.0, 0.0, 0.8);
                 if channels {
@@ -429,8 +429,8 @@ fn mipmaps_change_nothing_of_what_is_near() {
                 }
                 let frame = |mipmaps| {
                     draw(&scene, |renderer| {
-                        renderer.settings_mut().mapping = Some(mapping);
-                        renderer.settings_mut().mipmaps = Some(mipmaps);
+                        renderer.settings.mapping = Some(mapping);
+                        renderer.settings.mipmaps = Some(mipmaps);
                     })
                 };
                 let ((without, off, _), (with, on, _)) = (frame(false), frame(true));
@@ -463,7 +463,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
             8192.0_f64.sqrt() * f64::from(distance) * (scene.camera.field_of_view.to_radians() / 2.0).tan() / 100.0;
         assert!((expected..expected * 1.01).contains(&texels), "{texels} texels to a pixel, not {expected}");
         assert_eq!(decision.on, texels > core::f64::consts::FRAC_1_SQRT_2);
-        let without = draw(&scene, |renderer| renderer.settings_mut().mipmaps = Some(false)).0;
+        let without = draw(&scene, |renderer| renderer.settings.mipmaps = Some(false)).0;
         // The corners' coordinates and places are rounded.
         if texels < 1.40 {
             assert_eq!(differing(&bytes, &without), 0, "{texels} texels to a pixel");
@@ -479,7 +479,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
 fn mipmaps_are_asked_for() {
     let mut floor = scenes::floor("bricks", 8.0);
     let is_on = |scene: &Scene, asked| {
-        let (_, _, renderer) = draw(scene, |renderer| renderer.settings_mut().mipmaps = asked);
+        let (_, _, renderer) = draw(scene, |renderer| renderer.settings.mipmaps = asked);
         called_for(&renderer, Effect::Mipmaps)
     };
     assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [true, true, false]);
@@ -531,8 +531,8 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
         let mut bytes = vec![0; width * height];
         let frame = Frame::new(&mut bytes, width as u32, height as u32, width).expect("a legal frame");
         let mut renderer = Renderer::new();
-        renderer.settings_mut().mapping = Some(mapping);
-        renderer.settings_mut().mipmaps = Some(mipmaps);
+        renderer.settings.mapping = Some(mapping);
+        renderer.settings.mipmaps = Some(mipmaps);
         renderer.draw_frame(scene, frame, (5, 6)).expect("a legal scene");
         shown(scene, &bytes)
     };
@@ -590,8 +590,8 @@ fn clipping_that_is_needed_cannot_be_switched_off() {
             for way in HiddenSurfaces::ALL {
                 let mut frames = [true, false].map(|forced| {
                     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-                    renderer.set_shading(shading);
-                    renderer.settings_mut().hidden_surfaces = Some(way);
+                    renderer.settings.accuracy = Some(shading.into());
+                    renderer.settings.hidden_surfaces = Some(way);
                     if forced {
                         renderer.force(Effect::NearClipping, Some(false));
                         renderer.force(Effect::ScreenClipping, Some(false));

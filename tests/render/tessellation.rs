@@ -68,9 +68,8 @@ fn wall(random: &mut Random) -> Scene {
     let mut scene = Scene::new();
     let mut object = Object::new(shapes::wall(random.within(1, 4) as u32, random.within(1, 4) as u32));
     object.scale = 0.3 * (1.0 + 20.0 * random.unit() as f32 * random.unit() as f32);
-    object.set_angles(
-        [random.unit() * 1.2 - 0.6, random.unit() * 2.4 - 1.2, random.unit() * 6.0].map(Angle::from_radians),
-    );
+    object.angles =
+        [random.unit() * 1.2 - 0.6, random.unit() * 2.4 - 1.2, random.unit() * 6.0].map(Angle::from_radians);
     // The eye is three and a half units away.
     let z = 3.5 * (random.unit() * random.unit()) as f32;
     object.position = Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, z);
@@ -130,7 +129,7 @@ fn r12_creases_are_split_alike_from_both_sides() {
     while tried.more() {
         let mut scene = Scene::new();
         let mut cube = Object::new(shapes::cube());
-        cube.set_angles([random.unit() * 6.0, random.unit() * 6.0, 0.0].map(Angle::from_radians));
+        cube.angles = [random.unit() * 6.0, random.unit() * 6.0, 0.0].map(Angle::from_radians);
         scene.add(cube);
         let mut coordinate = || 2.4 * random.unit() as f32 - 1.2;
         scene.add_light(Light::lamp([coordinate(), coordinate(), coordinate()], 2.0));
@@ -157,7 +156,7 @@ fn highlight() -> Scene {
 
 fn middle(scene: &Scene, shading: Shading) -> u8 {
     let mut renderer = Renderer::new();
-    renderer.set_shading(shading);
+    renderer.settings.accuracy = Some(shading.into());
     let mut vga = Vga::new();
     renderer.draw(scene, &mut vga).expect("a legal scene");
     vga.pixels()[100 * 320 + 160]
@@ -204,7 +203,7 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
             for dither in [false, true] {
                 scene.preferences.dither = dither;
                 let mut renderer = Renderer::new();
-                renderer.set_shading(shading);
+                renderer.settings.accuracy = Some(shading.into());
                 let mut vga = Vga::new();
                 renderer.draw(&scene, &mut vga).expect("a legal scene");
                 // Every pixel that the face covers is in the ramp, whatever its byte, and no other is drawn.
@@ -238,7 +237,7 @@ fn p2_dither_keeps_to_its_ramp() {
             let mut scene = crate::support::scenes::framed(shapes::torus(12, 8));
             scene.preferences.dither = true;
             scene.preferences.shading = Some(shading);
-            scene.objects_mut()[0].set_angles([0.3, tried_angle(first, entries), 0.2].map(Angle::from_radians));
+            scene.objects_mut()[0].angles = [0.3, tried_angle(first, entries), 0.2].map(Angle::from_radians);
             let ramp = mode13h::palette::Ramp::new(first, entries).expect("a ramp");
             let material = &mut scene.objects_mut()[0].materials[0];
             material.ramp = mode13h::light::RampChoice::Entries(ramp);

@@ -8,7 +8,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Light, RampChoice};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::auto::{Automatic, Entries, Use, share};
-use mode13h::palette::{Palette, Ramp, Rgb, Search, builtin};
+use mode13h::palette::{NearestColors, Palette, Ramp, Rgb, builtin};
 use mode13h::render::Renderer;
 use mode13h::scene::{Camera, Motion, Object, ObjectId, Scene, UpAxis};
 use mode13h::texture::Texture;
@@ -323,7 +323,7 @@ fn anything_may_be_asked_for() {
 
 /// The mean squared distance between texels in all lights seen and the entries that stand for them.
 fn off(palette: &Palette, texels: &[(Rgb, u32)], darkest: u8, brightest: u8) -> f64 {
-    let search = Search::of_shown(palette);
+    let search = NearestColors::of_shown(palette);
     let shown = palette.on_dac();
     let (mut sum, mut weight) = (0.0, 0.0);
     for shade in darkest..=brightest {
@@ -498,7 +498,7 @@ fn p2_no_pixel_has_an_index_of_another_ramp() {
     let materials = scene[id].materials.clone();
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     for turn in 0..4 {
-        scene[id].set_angles([0.35, f64::from(turn), 0.0].map(Angle::from_radians));
+        scene[id].angles = [0.35, f64::from(turn), 0.0].map(Angle::from_radians);
         for (number, material) in (1..).zip(&mut scene[id].materials) {
             material.ramp = RampChoice::Entries(Ramp::single(number));
         }
@@ -544,7 +544,7 @@ fn the_house_has_two_ramps_and_bricks() {
     assert!(matches!(walls, Entries::Textures { block } if block.entries() > 64), "{walls:?}");
     // Texels in full light: in the mean off by less than a step of the card, 4.05 a channel.
     let colors = bricks.tinted(surfaces[1].color());
-    let table = mode13h::palette::Table::shades(&made.palette, &colors);
+    let table = mode13h::palette::Lut64K::shades(&made.palette, &colors);
     let off: u32 = bricks
         .texels()
         .iter()

@@ -35,7 +35,7 @@ fn walls(random: &mut Random, mut material: impl FnMut(&mut Random) -> Material)
         wall.position = Vec3::new(f32::from(i % 4) * 2.0 - 3.0, f32::from(i / 4) * 2.0 - 2.0, 0.0);
         wall.scale = 0.9;
         let mut angle = || random.unit() - 0.5;
-        wall.set_angles([angle(), angle(), 0.0].map(Angle::from_radians));
+        wall.angles = [angle(), angle(), 0.0].map(Angle::from_radians);
         wall.materials = vec![material(random)];
         scene.add(wall);
     }
@@ -156,7 +156,7 @@ fn surfaces_are_shown_in_their_colours() {
             let mesh = wall.mesh().clone().with_surfaces(vec![surface], vec![0; 2]).expect("one surface");
             let mut new = Object::new(mesh);
             (new.position, new.scale) = (wall.position, wall.scale);
-            new.set_angles(wall.angles());
+            new.angles = wall.angles;
             *wall = new;
         }
         let mut own = scene.clone();
@@ -232,7 +232,7 @@ fn fog_is_shown_in_its_colours() {
         let mut expected = Vec::new();
         for wall in scene.objects_mut() {
             // One distance for all of it.
-            wall.set_angles([Angle::default(); 3]);
+            wall.angles = [Angle::default(); 3];
             wall.position.z = (random.unit() * 9.0 - 8.0) as f32;
             let level = fog.level(10.0 - f64::from(wall.position.z));
             expected.push(mixed(lit(wall, [1.0; 3]), [haze.r, haze.g, haze.b].map(f64::from), level));
@@ -256,10 +256,10 @@ fn what_shines_through_is_shown_in_its_colours() {
         let mut expected = Vec::new();
         let walls: Vec<Object> = scene.objects().to_vec();
         for (i, mut pane) in walls.into_iter().enumerate() {
-            scene.objects_mut()[i].set_angles([Angle::default(); 3]);
+            scene.objects_mut()[i].angles = [Angle::default(); 3];
             let wall = &scene.objects()[i];
             // Before the middle of the wall.
-            pane.set_angles([Angle::default(); 3]);
+            pane.angles = [Angle::default(); 3];
             (pane.scale, pane.position) = (0.4, wall.position * 0.99 + Vec3::Z * 0.1);
             let opacity = random.within(64, 192) as u8;
             let blend = if i % 2 == 0 { Blend::Mix(opacity) } else { Blend::Add };
@@ -319,7 +319,7 @@ fn highlights_are_shown_in_their_colours() {
         });
         // Where it is seen, it is seen straight on.
         scene.lights_mut()[0] = Light::sun([0.0, 0.0, 1.0]);
-        scene.objects_mut()[0].set_angles([Angle::default(); 3]);
+        scene.objects_mut()[0].angles = [Angle::default(); 3];
         scene.objects_mut()[0].position = Vec3::Z;
         let material = scene.objects()[0].materials[0].clone();
         let expected = [0, 1, 2].map(|i| {

@@ -2,7 +2,7 @@
 
 use crate::support::random::Random;
 use crate::support::tried::Tried;
-use mode13h::palette::{Nearest, Palette, Rgb, Search, Table, builtin};
+use mode13h::palette::{InverseColormap, Lut64K, NearestColors, Palette, Rgb, builtin};
 
 // The oracle
 
@@ -73,7 +73,7 @@ fn palettes() -> Vec<(String, Palette)> {
 /// Every entry of `table` against `expected(high, low)`; the columns of a row with the same colours
 /// cost the oracle one search.
 #[track_caller]
-fn assert_table(name: &str, table: &Table, expected: impl Fn(u8, u8) -> u8) {
+fn assert_table(name: &str, table: &Lut64K, expected: impl Fn(u8, u8) -> u8) {
     for high in 0..=255 {
         for low in 0..=255 {
             let byte = table.as_array()[usize::from(high) * 256 + usize::from(low)];
@@ -117,7 +117,7 @@ fn a_search_finds_what_looking_at_all_finds() {
     let mut tried = Tried::new("a_search_finds_what_looking_at_all_finds", 16 * 40_000);
     let mut random = Random::named("search");
     for (name, palette) in palettes() {
-        let (colors, search) = (all_shown(&palette), Search::of_shown(&palette));
+        let (colors, search) = (all_shown(&palette), NearestColors::of_shown(&palette));
         // The corners of the search's boxes and what is beside them, then anything.
         let edges: Vec<u8> = (0..8).flat_map(|i| [32 * i, 32 * i + 1, 32 * i + 30, 32 * i + 31]).collect();
         let on_edges = edges.iter().flat_map(|&r| edges.iter().map(move |&g| (r, g)));
@@ -135,17 +135,17 @@ fn a_search_among_few_colours_or_none() {
     let mut random = Random::named("few");
     for count in 1..40 {
         let colors: Vec<Rgb> = (0..count).map(|_| random_color(&mut random)).collect();
-        let search = Search::new(&colors);
+        let search = NearestColors::new(&colors);
         for _ in 0..500 {
             let color = random_color(&mut random);
             assert_eq!(search.nearest(color), naive_nearest(&colors, color));
         }
     }
-    assert_eq!(Search::new(&[]).nearest(Rgb::WHITE), 0);
+    assert_eq!(NearestColors::new(&[]).nearest(Rgb::WHITE), 0);
     // Beyond 256 an index would not fit.
     let mut many = vec![Rgb::BLACK; 256];
     many.push(Rgb::WHITE);
-    assert_eq!(Search::new(&many).nearest(Rgb::WHITE), 0);
+    assert_eq!(NearestColors::new(&many).nearest(Rgb::WHITE), 0);
 }
 
 // Tables
@@ -159,7 +159,7 @@ fn shaded_texels_are_the_nearest_entries() {
         let few: Vec<Rgb> = (0..20).map(|_| random_color(&mut random)).collect();
         let texels: [Rgb; 256] = core::array::from_fn(|i| few[i * i % 20]);
         let shown = all_shown(&palette);
-        let table = Table::shades(&palette, &texels);
+        let table = Lut64K::shades(&palette, &texels);
         let expected: Vec<Vec<u8>> = (0..=255)
             .map(|shade| few.iter().map(|&c| naive_nearest(&shown, naive_mix(Rgb::BLACK, c, shade))).collect())
             .collect();
@@ -178,7 +178,7 @@ fn fog_is_the_nearest_entry_to_the_mixture() {
             continue;
         }
         let (colors, fog) = (all_shown(&palette), Rgb::new(120, 130, 151));
-        assert_table(&name, &Table::fog(&palette, fog), |level, byte| match level {
+        assert_table(&name, &Lut64K::fog(&palette, fog), |level, byte| match level {
             0 => byte,
             _ => naive_nearest(&colors, naive_mix(colors[usize::from(byte)], fog, level)),
         });
@@ -195,10 +195,10 @@ fn glass_is_the_nearest_entry_to_the_mixture_or_to_the_sum() {
         }
         let colors = all_shown(&palette);
         let color = |byte: u8| colors[usize::from(byte)];
-        assert_table(&name, &Table::blend(&palette, 90), |new, old| {
+        assert_table(&name, &Lut64K::blend(&palette, 90), |new, old| {
             if new == old { new } else { naive_nearest(&colors, naive_mix(color(old), color(new), 90)) }
         });
-        assert_table(&name, &Table::add(&palette), |new, old| {
+        assert_table(&name, &Lut64K::add(&palette), |new, old| {
             let (a, b) = (color(new), color(old));
             let sum = |a: u8, b: u8| (u32::from(a) + u32::from(b)).min(255) * 255;
             match (a == Rgb::BLACK, b == Rgb::BLACK) {
@@ -216,9 +216,9 @@ fn glass_is_the_nearest_entry_to_the_mixture_or_to_the_sum() {
 #[test]
 fn neutral_rows_and_tables_are_the_identity() {
     for (name, palette) in palettes() {
-        let fog = Table::fog(&palette, Rgb::WHITE);
-        let (opaque, clear) = (Table::blend(&palette, 255), Table::blend(&palette, 0));
-        let half = Table::blend(&palette, 128);
+        let fog = Lut64K::fog(&palette, Rgb::WHITE);
+        let (opaque, clear) = (Lut64K::blend(&palette, 255), Lut64K::blend(&palette, 0));
+        let half = Lut64K::blend(&palette, 128);
         for byte in 0..=255 {
             assert_eq!(fog.get(0, byte), byte, "{name}");
             assert_eq!(half.get(byte, byte), byte, "{name}");
@@ -233,11 +233,11 @@ fn neutral_rows_and_tables_are_the_identity() {
 fn full_fog_and_full_light_show_their_own_colours() {
     let palette = builtin::by_name("cube").expect("built in").palette;
     let fog = Rgb::new(255, 203, 101);
-    let table = Table::fog(palette, fog);
+    let table = Lut64K::fog(palette, fog);
     for byte in 0..=255 {
         assert_eq!(palette.on_dac().color(table.get(255, byte)), fog, "a colour that the palette has");
     }
-    let shades = Table::shades(palette, palette.on_dac().colors());
+    let shades = Lut64K::shades(palette, palette.on_dac().colors());
     for texel in 0..=255 {
         let color = palette.on_dac().color(shades.get(255, texel));
         assert_eq!(color, palette.on_dac().color(texel));
@@ -247,7 +247,7 @@ fn full_fog_and_full_light_show_their_own_colours() {
 
 #[test]
 fn a_table_from_a_function_has_rows_of_256() {
-    let table = Table::from_fn(|high, low| high.wrapping_mul(7) ^ low);
+    let table = Lut64K::from_fn(|high, low| high.wrapping_mul(7) ^ low);
     assert_table("function", &table, |high, low| high.wrapping_mul(7) ^ low);
 }
 
@@ -257,7 +257,7 @@ fn a_table_from_a_function_has_rows_of_256() {
 fn the_map_holds_the_nearest_entry_for_the_middle_of_every_bin() {
     let mut tried = Tried::new("the_map_holds_the_nearest_entry_for_the_middle_of_every_bin", 16 * 32_768);
     for (name, palette) in palettes() {
-        let (colors, map) = (all_shown(&palette), Nearest::new(&palette));
+        let (colors, map) = (all_shown(&palette), InverseColormap::new(&palette));
         for (i, &entry) in map.as_array().iter().enumerate() {
             let channel = |five: usize| (five % 32 * 8 + five % 32 / 4) as u8;
             let color = Rgb::new(channel(i / 1024), channel(i / 32), channel(i));
@@ -281,9 +281,9 @@ fn the_spread_is_the_median_distance_between_neighbours() {
         }
         distances.sort_unstable();
         let expected = distances.get(distances.len() / 2).map_or(0.0, |&square| f64::from(square).sqrt().round());
-        assert_eq!(f64::from(Nearest::new(&palette).spread()), expected.min(255.0), "{name}");
+        assert_eq!(f64::from(InverseColormap::new(&palette).spread()), expected.min(255.0), "{name}");
     }
-    assert_eq!(Nearest::new(builtin::by_name("cube").expect("built in").palette).spread(), 49);
+    assert_eq!(InverseColormap::new(builtin::by_name("cube").expect("built in").palette).spread(), 49);
 }
 
 /// Ordered dither by the 64 thresholds of an 8 × 8 matrix, in any order, moved by the spread: the mean of
@@ -294,8 +294,8 @@ fn dither_by_the_spread_hits_colours_between_entries() {
     let mut random = Random::named("dither");
     for name in ["materials-8x32", "materials-16x16", "cube", "bios"] {
         let palette = builtin::by_name(name).expect("built in").palette;
-        let (colors, search) = (all_shown(palette), Search::of_shown(palette));
-        let spread = f64::from(Nearest::new(palette).spread());
+        let (colors, search) = (all_shown(palette), NearestColors::of_shown(palette));
+        let spread = f64::from(InverseColormap::new(palette).spread());
         let mut off = [0.0; 3];
         for _ in 0..400 {
             let (i, share) = (random.within(0, 254) as usize, random.unit());

@@ -499,7 +499,7 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert!((bounds.max - Vec3::new(4.0, 2.0, 0.0) * 0.5_f32.sqrt()).length() < 1e-6, "{bounds:?}");
     assert_eq!((bar.position, bar.scale, bar.up_axis), (Vec3::new(4.0, 5.0, 6.0), 1.0, UpAxis::Z));
     assert_eq!(bar.pivot, Vec3::new(1.0, 0.0, 0.0));
-    assert_eq!(bar.angles(), [90.0, 0.0, -45.0].map(Angle::from_degrees));
+    assert_eq!(bar.angles, [90.0, 0.0, -45.0].map(Angle::from_degrees));
     let material = &bar.materials[0];
     assert_eq!((material.ambient, material.diffuse, material.specular), (0.1, 0.2, 0.3));
     assert_eq!((material.shininess, material.blend), (40.0, Blend::Mix(128)));
@@ -531,14 +531,14 @@ fn things_move_as_a_file_says() {
     near(scene.camera.target, Vec3::new(0.0, 3.0, 0.0));
     // Backwards from (4, 5, 6) to (1, 2, 3).
     near(scene.objects()[0].position, Vec3::new(3.25, 4.25, 5.25));
-    let [x, y, z] = scene.objects()[0].angles().map(Angle::to_radians);
+    let [x, y, z] = scene.objects()[0].angles.map(Angle::to_radians);
     assert!(
         (x - 180_f64.to_radians()).abs() < 1e-9
             && y == 0.0
             && (z + 225_f64.to_radians()).rem_euclid(360_f64.to_radians()) < 1e-9,
         "{x} {y} {z}"
     );
-    assert!((scene.objects()[1].angles()[1].to_degrees() - 180.0).abs() < 1e-9);
+    assert!((scene.objects()[1].angles[1].to_degrees() - 180.0).abs() < 1e-9);
     // Four rounds clockwise: after a quarter of the time it is where it began, at the top.
     let lamp = |scene: &Scene| match scene.lights()[1] {
         Light::Lamp { position, .. } => position,
@@ -548,10 +548,10 @@ fn things_move_as_a_file_says() {
     scene.set_time(0.5);
     near(lamp(&scene), Vec3::new(2.0, 1.0, 0.0));
     // A round later all is as it was.
-    let (eye, angles) = (scene.camera.eye, scene.objects()[0].angles());
+    let (eye, angles) = (scene.camera.eye, scene.objects()[0].angles);
     scene.set_time(8.5);
     near(scene.camera.eye, eye);
-    for (a, b) in scene.objects()[0].angles().into_iter().zip(angles) {
+    for (a, b) in scene.objects()[0].angles.into_iter().zip(angles) {
         assert!((a - b).to_degrees().abs() < 1e-9);
     }
     assert_eq!(scene.motions.len(), 7);

@@ -7,7 +7,7 @@ use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec2;
 use mode13h::mesh::shapes;
-use mode13h::palette::{Palette, Rgb, Table};
+use mode13h::palette::{Lut64K, Palette, Rgb};
 use mode13h::render::{Mapping, Renderer};
 use mode13h::scene::Shared;
 use mode13h::span::texture::{Levels, TexelsError};
@@ -42,7 +42,7 @@ fn images_far_from_their_corner_are_brought_back() {
         let inner = mesh.texcoords().expect("a wall has them").iter().map(|&uv| uv * 0.5 + 0.25 + at).collect();
         let mut scene = crate::support::scenes::framed(mesh.with_texcoords(inner).expect("as many"));
         scene.objects_mut()[0].materials[0].texture = Some(Shared::clone(&texture));
-        scene.objects_mut()[0].set_angles([0.2, 0.9, 0.1].map(Angle::from_radians));
+        scene.objects_mut()[0].angles = [0.2, 0.9, 0.1].map(Angle::from_radians);
         scene.preferences.mapping = Some(mapping);
         let mut vga = Vga::new();
         Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
@@ -275,7 +275,7 @@ fn a_plain_texture_has_one_colour() {
     let plain = Texture::plain(Rgb::new(200, 100, 0));
     assert_eq!((plain.width(), plain.height(), plain.texels()), (1, 1, &[0][..]));
     let palette = Palette::from_colors(core::array::from_fn(|i| Rgb::BLACK.mix(Rgb::new(200, 100, 0), i as u8)));
-    let (table, shown) = (Table::shades(&palette, plain.colors()), palette.on_dac());
+    let (table, shown) = (Lut64K::shades(&palette, plain.colors()), palette.on_dac());
     for shade in 0..=255 {
         let color = shown.color(table.get(shade, 0));
         assert!(

@@ -106,7 +106,7 @@ fn keeps_the_rules(name: &str, kernel: entry::Entry, shortest: usize) {
         let length = shortest + (random.next_u64() % 321) as usize;
         let bits = random.next_u64();
         let (shade, step) = (bits as u16, (bits >> 16) as u16);
-        // Ones, noughts and noise: each a way to show that an upper half is read.
+        // Ones, zeros and noise: each a way to show that an upper half is read.
         let rubbish = [u64::MAX, 0, random.next_u64()][i % 3];
         if let Err(fault) = called(kernel, length, shade, step, rubbish) {
             panic!("{name}: {fault} (shade {shade:#06x} step {step:#06x} length {length} rubbish {rubbish:#x})");

@@ -11,10 +11,10 @@ use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::curve::curve;
 use mode13h::span::depth::{Cell, copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
+use mode13h::span::fixed16::fill_16_16;
 use mode13h::span::float::fill_float;
 use mode13h::span::lit::interpolate;
 use mode13h::span::texture::{Texels, TexelsError, fill_affine, fill_perspective, fill_perspective_portable};
-use mode13h::span::wide::fill_16_16;
 use mode13h::span::{Kernel, lookup};
 use std::fmt::Debug;
 
@@ -235,7 +235,7 @@ mod dithered {
     }
 }
 
-mod wide {
+mod fixed16 {
     use super::*;
 
     type Fill = fn(&mut [u8], u32, u32);

@@ -28,7 +28,7 @@ pub fn showing(shape: &str) -> Scene {
     let mut scene = framed(shapes::by_name(shape).expect("listed"));
     scene.name = shape.to_string();
     scene.objects_mut()[0].name = shape.to_string();
-    scene.objects_mut()[0].set_angles([0.5, 0.7, 0.1].map(Angle::from_radians));
+    scene.objects_mut()[0].angles = [0.5, 0.7, 0.1].map(Angle::from_radians);
     scene
 }
 
@@ -46,7 +46,7 @@ pub fn floor(image: &str, times: f32) -> Scene {
     let repeated = wall.texcoords().expect("a wall has some").iter().map(|uv| *uv * times).collect();
     let mut scene = Scene::showing(wall.with_texcoords(repeated).expect("as many"));
     let object = &mut scene.objects_mut()[0];
-    object.set_angles([-core::f64::consts::FRAC_PI_2, 0.3, 0.0].map(Angle::from_radians));
+    object.angles = [-core::f64::consts::FRAC_PI_2, 0.3, 0.0].map(Angle::from_radians);
     object.position = Vec3::new(0.0, -0.5, -5.0);
     object.scale = 12.0;
     (object.materials[0].ambient, object.materials[0].diffuse) = (1.0, 0.0);
@@ -75,7 +75,7 @@ pub fn random(random: &mut Random) -> Scene {
         let mut object = Object::new(mesh);
         object.position = [0.0; 3].map(|_| between(-1.5, 1.5) as f32).into();
         object.scale = between(0.3, 2.5) as f32;
-        object.set_angles([0.0; 3].map(|_| between(0.0, 7.0)).map(Angle::from_radians));
+        object.angles = [0.0; 3].map(|_| between(0.0, 7.0)).map(Angle::from_radians);
         let material = &mut object.materials[0];
         material.diffuse = between(0.3, 1.0) as f32;
         if between(0.0, 1.0) < 0.5 {
@@ -140,7 +140,7 @@ fn small() -> Vec<(&'static str, Scene)> {
 
     let mut crates = framed(shapes::wall(1, 1));
     material(&mut crates, 0).texture = texture("crate");
-    crates.objects_mut()[0].set_angles([0.0, 1.1, 0.0].map(Angle::from_radians));
+    crates.objects_mut()[0].angles = [0.0, 1.1, 0.0].map(Angle::from_radians);
     scenes.push(("texture", crates.clone()));
     crates.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
     crates.add_light(Light::sun([-1.0, 0.0, 0.5]).with_color([1.0, 0.3, 0.1]));
@@ -163,7 +163,7 @@ fn small() -> Vec<(&'static str, Scene)> {
     let mut glass = showing("torus");
     let mut cube = Object::new(shapes::cube()).named("glass");
     cube.materials[0].blend = Blend::Mix(120);
-    cube.set_angles([0.3, 0.4, 0.0].map(Angle::from_radians));
+    cube.angles = [0.3, 0.4, 0.0].map(Angle::from_radians);
     glass.add(cube);
     scenes.push(("glass", glass));
     let mut glenz = showing("cube");

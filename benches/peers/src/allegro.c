@@ -4,13 +4,21 @@
 #include <allegro.h>
 #include <string.h>
 
-static BITMAP *bitmap;
+static BITMAP *bitmap, *texture;
+static ZBUFFER *depths;
+static COLOR_MAP table;
 
-int peers_allegro_start(int width, int height) {
+int peers_allegro_start(int width, int height, int side) {
     if (install_allegro(SYSTEM_NONE, &errno, NULL) != 0) return -1;
     set_color_depth(8);
     bitmap = create_bitmap_ex(8, width, height);
-    return bitmap ? 0 : -1;
+    texture = create_bitmap_ex(8, side, side);
+    if (!bitmap || !texture) return -1;
+    depths = create_zbuffer(bitmap);
+    if (!depths) return -1;
+    set_zbuffer(depths);
+    color_map = &table;
+    return 0;
 }
 
 /* Without clipping Allegro is faster; only for triangles that lie inside. */
@@ -22,12 +30,38 @@ void peers_allegro_read(unsigned char *bytes) {
     for (int y = 0; y < bitmap->h; y++) memcpy(bytes + y * bitmap->w, bitmap->line[y], bitmap->w);
 }
 
-void peers_allegro_float(int type, V3D_f *vertices, int triangles) {
-    for (int i = 0; i < triangles; i++, vertices += 3)
-        triangle3d_f(bitmap, type, NULL, vertices, vertices + 1, vertices + 2);
+/* The texels, and the byte for a shade or a texel (row) and a texel or the frame's byte (column). */
+void peers_allegro_material(const unsigned char *texels, const unsigned char *bytes) {
+    for (int y = 0; y < texture->h; y++) memcpy(texture->line[y], texels + y * texture->w, texture->w);
+    memcpy(table.data, bytes, sizeof table.data);
 }
 
-void peers_allegro_fixed(int type, V3D *vertices, int triangles) {
+/* In the order of `Drawing`. */
+static const int types[] = {
+    POLYTYPE_FLAT,
+    POLYTYPE_GCOL,
+    POLYTYPE_GCOL | POLYTYPE_ZBUF,
+    POLYTYPE_ATEX,
+    POLYTYPE_ATEX_LIT,
+    POLYTYPE_PTEX,
+    POLYTYPE_PTEX_LIT,
+    POLYTYPE_PTEX | POLYTYPE_ZBUF,
+    POLYTYPE_ATEX_TRANS,
+};
+
+static int start(int drawing) {
+    if (types[drawing] & POLYTYPE_ZBUF) clear_zbuffer(depths, 0);
+    return types[drawing];
+}
+
+void peers_allegro_float(int drawing, V3D_f *vertices, int triangles) {
+    const int type = start(drawing);
     for (int i = 0; i < triangles; i++, vertices += 3)
-        triangle3d(bitmap, type, NULL, vertices, vertices + 1, vertices + 2);
+        triangle3d_f(bitmap, type, texture, vertices, vertices + 1, vertices + 2);
+}
+
+void peers_allegro_fixed(int drawing, V3D *vertices, int triangles) {
+    const int type = start(drawing);
+    for (int i = 0; i < triangles; i++, vertices += 3)
+        triangle3d(bitmap, type, texture, vertices, vertices + 1, vertices + 2);
 }

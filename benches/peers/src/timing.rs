@@ -1,28 +1,98 @@
-//! Times of rounds in which everybody has a turn.
+//! Times of rounds in which everybody has a turn, in an order that each round shuffles anew.
 
-/// Rounds that count.
-pub const ROUNDS: usize = 15;
+use std::ffi::{c_int, c_long};
 
-/// The times of one contender, seconds.
-#[derive(Clone, Debug)]
+/// `struct timespec` of 64-bit Linux.
+#[repr(C)]
+struct Timespec {
+    seconds: c_long,
+    nanoseconds: c_long,
+}
+
+unsafe extern "C" {
+    fn clock_gettime(clock: c_int, time: *mut Timespec) -> c_int;
+}
+
+/// `CLOCK_THREAD_CPUTIME_ID`.
+const THREAD: c_int = 3;
+
+/// Seconds that this thread has run. All draw in it, and what else the processor did meanwhile does not count.
+pub fn seconds() -> f64 {
+    let mut time = Timespec { seconds: 0, nanoseconds: 0 };
+    // SAFETY: the clock is there since Linux 2.6.12, and writes both numbers.
+    unsafe { clock_gettime(THREAD, &raw mut time) };
+    time.seconds as f64 + time.nanoseconds as f64 * 1e-9
+}
+
+/// The times of one candidate, seconds, a round each.
+#[derive(Clone, Debug, Default)]
 pub struct Times(Vec<f64>);
 
-impl Times {
-    pub const fn new() -> Self {
-        Self(Vec::new())
-    }
+/// A median with the interval that holds it in 95 of 100 runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Median {
+    pub low: f64,
+    pub median: f64,
+    pub high: f64,
+}
 
+impl Times {
     pub fn push(&mut self, seconds: f64) {
         self.0.push(seconds);
     }
 
-    pub fn best(&self) -> f64 {
-        self.0.iter().copied().fold(f64::INFINITY, f64::min)
+    pub fn median(&self) -> Median {
+        Median::of(&self.0)
     }
 
-    pub fn median(&self) -> f64 {
-        let mut sorted = self.0.clone();
+    /// How many times as long as `other`'s, round by round: what slows down a whole round does not show.
+    pub fn ratio(&self, other: &Self) -> Median {
+        Median::of(&self.0.iter().zip(&other.0).map(|(a, b)| a / b).collect::<Vec<_>>())
+    }
+}
+
+impl Median {
+    /// The interval ends at order statistics: a median lies beyond the k-th of n with the chance that fewer than k of n
+    /// coins show heads, for which the normal distribution stands. With few values it is all of them.
+    pub fn of(values: &[f64]) -> Self {
+        let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
-        sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+        let n = sorted.len() as f64;
+        let beside = ((n - 1.96 * n.sqrt()) / 2.0).floor().max(0.0) as usize;
+        let at = |i: usize| sorted.get(i).copied().unwrap_or(f64::NAN);
+        let last = sorted.len().saturating_sub(1);
+        Self { low: at(beside), median: (at(last / 2) + at(last.div_ceil(2))) / 2.0, high: at(last - beside.min(last)) }
+    }
+
+    pub fn times(self, factor: f64) -> Self {
+        Self { low: self.low * factor, median: self.median * factor, high: self.high * factor }
+    }
+
+    pub fn json(self) -> serde_json::Value {
+        serde_json::json!({ "low": self.low, "median": self.median, "high": self.high })
+    }
+}
+
+/// Orders of turns: SplitMix64 and the shuffle of Fisher and Yates.
+pub struct Turns {
+    state: u64,
+    order: Vec<usize>,
+}
+
+impl Turns {
+    pub fn of(candidates: usize) -> Self {
+        Self { state: 13, order: (0..candidates).collect() }
+    }
+
+    pub fn shuffled(&mut self) -> &[usize] {
+        for last in (1..self.order.len()).rev() {
+            self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+            let mut z = self.state;
+            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+            z ^= z >> 31;
+            self.order.swap(last, (z % (last as u64 + 1)) as usize);
+        }
+        &self.order
     }
 }

@@ -3,10 +3,11 @@
 use mode13h::raster::Vertex;
 use mode13h::span::Kernel;
 
-use crate::contender::{Candidate, Shade};
+use crate::candidate::{self, Candidate, Triangle};
+use crate::drawing::{Drawing, Material};
 use crate::{HEIGHT, WIDTH};
 
-/// How far a contender is from the truth, over the triangles that were looked at.
+/// How far a candidate is from the truth, over the triangles that were looked at.
 #[derive(Clone, Copy, Default, Debug)]
 pub struct Errors {
     /// Pixels that are covered and were not drawn.
@@ -18,18 +19,24 @@ pub struct Errors {
 }
 
 /// Each triangle by itself, on black and on white: a pixel was drawn if it is the same on both.
-pub fn errors(triangles: &[[Vertex; 3]], shade: Shade, kernel: Kernel, contender: usize) -> Errors {
+pub fn errors(
+    triangles: &[Triangle],
+    drawing: Drawing,
+    material: &Material,
+    kernels: &[Kernel],
+    candidate: usize,
+) -> Errors {
     let mut errors = Errors::default();
     let (mut black, mut white) = (vec![0; WIDTH * HEIGHT], vec![0; WIDTH * HEIGHT]);
-    for vertices in triangles {
-        let mut contender: Box<dyn Candidate> =
-            crate::contender::all(std::slice::from_ref(vertices), shade, kernel).swap_remove(contender);
+    for triangle in triangles {
+        let mut candidate: Box<dyn Candidate> =
+            candidate::all(std::slice::from_ref(triangle), drawing, material, kernels).swap_remove(candidate);
         for (index, bytes) in [(0, &mut black), (255, &mut white)] {
-            contender.clear(index);
-            contender.draw();
-            contender.read(bytes);
+            candidate.clear(index);
+            candidate.draw();
+            candidate.read(bytes);
         }
-        let plane = Plane::new(vertices, shade);
+        let plane = Plane::new(&triangle.map(|corner| corner.vertex), drawing);
         for (place, (&on_black, &on_white)) in black.iter().zip(&white).enumerate() {
             let (x, y) = ((place % WIDTH) as i64, (place / WIDTH) as i64);
             let drawn = on_black == on_white;
@@ -51,10 +58,10 @@ struct Plane {
 }
 
 impl Plane {
-    fn new(vertices: &[Vertex; 3], shade: Shade) -> Option<Self> {
+    fn new(vertices: &[Vertex; 3], drawing: Drawing) -> Option<Self> {
         let first = i64::from(vertices[0].shade().nearest()) << 8;
         let corner = |v: &Vertex| {
-            let value = if shade == Shade::Flat { first } else { i64::from(v.shade().to_bits()) };
+            let value = if drawing == Drawing::Flat { first } else { i64::from(v.shade().to_bits()) };
             [i64::from(v.x().to_bits()), i64::from(v.y().to_bits()), value]
         };
         let mut corners = vertices.each_ref().map(corner);

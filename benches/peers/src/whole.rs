@@ -2,36 +2,52 @@
 
 use std::error::Error;
 use std::ffi::{CStr, c_char, c_int};
-use std::time::Instant;
 
 use mode13h::Angle;
-use mode13h::glam::Vec3;
+use mode13h::glam::{Mat3, Vec3};
 use mode13h::mesh::Mesh;
+use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
-use mode13h::render::{Renderer, Screen};
-use mode13h::scene::{Camera, HiddenSurfaces, Scene};
+use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Screen};
+use mode13h::scene::{Camera, Fog, Scene};
 use mode13h::span::Kernel;
+use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 
-use crate::timing::{ROUNDS, Times};
+use crate::drawing::{Material, SIDE_BITS};
+use crate::timing::{Times, Turns, seconds};
 use crate::{HEIGHT, WIDTH};
 
 unsafe extern "C" {
-    fn peers_mesa_start(width: c_int, height: c_int, projection: *const f32, light: *const f32) -> c_int;
+    fn peers_mesa_start(
+        width: c_int,
+        height: c_int,
+        projection: *const f32,
+        light: *const f32,
+        side: c_int,
+        texels: *const u8,
+    ) -> c_int;
     fn peers_mesa_renderer() -> *const c_char;
-    fn peers_mesa_mesh(positions: *const f32, normals: *const f32, indices: *const u32, count: c_int);
-    fn peers_mesa_sides(both: c_int);
+    fn peers_mesa_mesh(
+        positions: *const f32,
+        normals: *const f32,
+        texcoords: *const f32,
+        indices: *const u32,
+        count: c_int,
+    );
+    fn peers_mesa_stages(both: c_int, textured: c_int, start: f32, end: f32, grey: f32);
     fn peers_mesa_frame(modelview: *const f32);
-    fn peers_mesa_lit(of_pixels: c_int) -> c_int;
+    fn peers_mesa_read(of_pixels: c_int, bytes: *mut u8);
 }
 
 /// The towards-light direction of `Scene::showing`.
 const LIGHT: [f32; 4] = [0.4, 0.6, 1.0, 0.0];
-/// Radius of what is looked at, for all meshes: they are scaled to it by the model's matrix.
 const ASPECT: f32 = 4.0 / 3.0;
+/// The fog's colour, of 255.
+const FOG: u8 = 128;
 
-/// Starts Mesa; gives the name of its renderer.
-pub fn start_mesa() -> Result<String, Box<dyn Error>> {
+/// Starts Mesa; gives the name of its renderer, which must be llvmpipe.
+pub fn start_mesa(material: &Material) -> Result<String, Box<dyn Error>> {
     let scene = Scene::default();
     let (near, far) = (scene.camera.near, 100.0 * scene.camera.near.max(1.0));
     let f = 1.0 / (scene.camera.field_of_view.to_radians() as f32 / 2.0).tan();
@@ -42,78 +58,160 @@ pub fn start_mesa() -> Result<String, Box<dyn Error>> {
         0.0, 0.0, (far + near) / (near - far), -1.0,
         0.0, 0.0, 2.0 * far * near / (near - far), 0.0,
     ];
-    // SAFETY: a matrix of 16 and a vector of 4; called once.
+    let side = 1 << SIDE_BITS;
+    // SAFETY: a matrix of 16, a vector of 4 and as many texels; called once.
     let name = unsafe {
-        if peers_mesa_start(WIDTH as c_int, HEIGHT as c_int, projection.as_ptr(), LIGHT.as_ptr()) != 0 {
+        let (projection, texels) = (projection.as_ptr(), material.texels.as_ptr());
+        if peers_mesa_start(WIDTH as c_int, HEIGHT as c_int, projection, LIGHT.as_ptr(), side, texels) != 0 {
             return Err("Mesa does not start".into());
         }
         CStr::from_ptr(peers_mesa_renderer())
     };
-    Ok(name.to_string_lossy().into_owned())
+    let name = name.to_string_lossy().into_owned();
+    // Mesa has other software renderers, which are slower.
+    if name.contains("llvmpipe") { Ok(name) } else { Err(format!("Mesa renders by {name}, not by llvmpipe").into()) }
+}
+
+/// What is done to the pixels of a lit mesh.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Stages {
+    pub textured: bool,
+    pub fogged: bool,
+}
+
+impl Stages {
+    pub const ALL: [Self; 4] = [
+        Self { textured: false, fogged: false },
+        Self { textured: true, fogged: false },
+        Self { textured: false, fogged: true },
+        Self { textured: true, fogged: true },
+    ];
+
+    pub fn name(self) -> &'static str {
+        match (self.textured, self.fogged) {
+            (false, false) => "lit",
+            (true, false) => "lit, textured",
+            (false, true) => "lit, fogged",
+            (true, true) => "lit, textured, fogged",
+        }
+    }
 }
 
 /// Frames of one mesh that turns.
 pub struct Whole {
-    /// Frames by us with the depth buffer, by us as planned, by Mesa: seconds each.
-    pub times: [Times; 3],
-    /// Pixels that are not black, ours and Mesa's.
+    /// The names of ours: the depth buffer by each kernel, and as planned by the fastest.
+    pub names: Vec<String>,
+    /// Seconds a frame, of ours and then of Mesa.
+    pub times: Vec<Times>,
+    /// Pixels that are drawn: ours with the depth buffer, and Mesa's.
     pub pixels: [usize; 2],
+    /// The mean difference of the pixels that both draw, of 255.
+    pub difference: f64,
 }
 
-pub fn measure(mesh: &Mesh, kernel: Kernel) -> Result<Whole, Box<dyn Error>> {
+pub fn measure(
+    mesh: &Mesh,
+    stages: Stages,
+    material: &Material,
+    kernels: &[Kernel],
+    rounds: usize,
+) -> Result<Whole, Box<dyn Error>> {
     let positions: Vec<[f32; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
     let normals: Vec<[f32; 3]> = mesh.normals().iter().map(|n| n.to_array()).collect();
+    let texcoords: Vec<[f32; 2]> = mesh.texcoords().unwrap_or_default().iter().map(|t| t.to_array()).collect();
+    assert_eq!(texcoords.len(), positions.len(), "each vertex has texture coordinates");
     let indices: &[u32] = mesh.triangles().as_flattened();
-    // SAFETY: the arrays outlive the frames drawn here; every index is below the number of positions.
-    unsafe {
-        peers_mesa_mesh(positions.as_ptr().cast(), normals.as_ptr().cast(), indices.as_ptr(), indices.len() as c_int);
-    }
     let mut scene = Scene::showing(mesh.clone());
-    scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
     let bounds = scene.objects()[0].mesh().bounds();
-    let eye = scene.camera.eye;
+    scene.camera = Camera::framing(Vec3::ZERO, bounds.radius);
     // Ours sees the mesh as large as it is from where it fills the frame; Mesa sees it at the unit's size.
-    let scale = Scene::default().camera.eye.z / eye.z;
-    let mut renderers = [Renderer::new(), Renderer::new()];
-    renderers.iter_mut().for_each(|renderer| renderer.set_kernel(kernel));
-    renderers[0].settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+    let scale = Scene::default().camera.eye.z / scene.camera.eye.z;
+    if stages.textured {
+        let grey = |&byte: &u8| Rgb::new(byte, byte, byte);
+        let image: Vec<Rgb> = material.texels.iter().map(grey).collect();
+        // Rows of a picture run down, those of the image up, as Mesa has them.
+        let rows: Vec<Rgb> = image.chunks(1 << SIDE_BITS).rev().flatten().copied().collect();
+        let texture = Texture::from_rgb(1 << SIDE_BITS, 1 << SIDE_BITS, &rows)?;
+        scene.objects_mut()[0].materials[0].texture = Some(texture.into());
+    }
+    let eye = scene.camera.eye.z;
+    let (start, end) = (eye - bounds.radius, eye + 2.0 * bounds.radius);
+    if stages.fogged {
+        scene.fog = Some(Fog { color: Rgb::new(FOG, FOG, FOG), start, end });
+    }
+
+    let fastest = kernels.last().copied().unwrap_or_default();
+    let of_ours = kernels.iter().map(|kernel| (*kernel, true)).chain([(fastest, false)]);
+    let (mut names, mut ours) = (Vec::new(), Vec::new());
+    for (kernel, has_depth) in of_ours {
+        let mut renderer = Renderer::new();
+        renderer.settings.kernel = kernel;
+        renderer.settings.mipmaps = Some(false);
+        if has_depth {
+            renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+            renderer.settings.mapping = Some(Mapping::Perspective);
+        }
+        names.push(format!("{}, {kernel}", if has_depth { "depth buffer" } else { "as planned" }));
+        ours.push((renderer, Box::new(Vga::new())));
+    }
     // An open mesh shows its other side, too.
-    let both = !renderers[0].make_plan(&scene, Screen::MODE_13H)?.is_on(0, Effect::BackFaceCulling);
-    // SAFETY: Mesa has been started.
-    unsafe { peers_mesa_sides(both.into()) };
-    let mut machines = [Vga::new(), Vga::new()];
-    let mut times = [const { Times::new() }; 3];
-    let mut pixels = [0; 2];
-    for round in 0..=ROUNDS {
+    let both = !ours[0].0.make_plan(&scene, Screen::MODE_13H)?.is_on(0, Effect::BackFaceCulling);
+    let (start, end) = if stages.fogged { (start * scale, end * scale) } else { (0.0, 0.0) };
+    // SAFETY: Mesa has been started; the arrays outlive the frames drawn here, and every index is below their number.
+    unsafe {
+        peers_mesa_mesh(
+            positions.as_ptr().cast(),
+            normals.as_ptr().cast(),
+            texcoords.as_ptr().cast(),
+            indices.as_ptr(),
+            indices.len() as c_int,
+        );
+        peers_mesa_stages(both.into(), stages.textured.into(), start, end, f32::from(FOG) / 255.0);
+    }
+
+    let mut times = vec![Times::default(); ours.len() + 1];
+    let mut turns = Turns::of(times.len());
+    for round in 0..=rounds {
         // Each renderer sees each pose once, so nothing is kept. The first round warms up.
         let angles = [0.4, 0.6 + 0.01 * round as f64, 0.0];
-        scene.objects_mut()[0].set_angles(angles.map(Angle::from_radians));
-        let turn = scene.objects()[0].rotation();
-        let mut model = [0.0_f32; 16];
-        let offset = turn * -bounds.centre * scale;
-        for (column, axis) in [turn.x_axis, turn.y_axis, turn.z_axis].into_iter().enumerate() {
-            model[4 * column..4 * column + 3].copy_from_slice(&(axis * scale).to_array());
-        }
-        model[12..15].copy_from_slice(&offset.to_array());
-        model[14] -= Scene::default().camera.eye.z;
-        model[15] = 1.0;
-        for place in 0..3 {
-            let which = (place + round) % 3;
-            let started = Instant::now();
-            match which {
-                0 | 1 => {
-                    renderers[which].draw(&scene, &mut machines[which])?;
-                }
+        scene.objects_mut()[0].angles = angles.map(Angle::from_radians);
+        let model = model(scene.objects()[0].rotation(), bounds.centre, scale);
+        for &which in turns.shuffled() {
+            let started = seconds();
+            match ours.get_mut(which) {
+                Some((renderer, vga)) => drop(renderer.draw(&scene, vga)?),
                 // SAFETY: a matrix of 16.
-                _ => unsafe { peers_mesa_frame(model.as_ptr()) },
+                None => unsafe { peers_mesa_frame(model.as_ptr()) },
             }
             if round > 0 {
-                times[which].push(started.elapsed().as_secs_f64());
+                times[which].push(seconds() - started);
             }
         }
-        pixels[0] = machines[0].pixels().iter().filter(|&&index| index != 0).count();
-        // SAFETY: Mesa has as many pixels.
-        pixels[1] = unsafe { peers_mesa_lit((WIDTH * HEIGHT) as c_int) } as usize;
     }
-    Ok(Whole { times, pixels })
+    let mut theirs = vec![0; WIDTH * HEIGHT];
+    // SAFETY: Mesa has as many pixels.
+    unsafe { peers_mesa_read(theirs.len() as c_int, theirs.as_mut_ptr()) };
+    let (pixels, difference) = compared(ours[0].1.pixels(), &theirs);
+    Ok(Whole { names, times, pixels, difference })
+}
+
+/// The matrix by which Mesa sees the mesh from the default camera, column-major.
+fn model(turn: Mat3, centre: Vec3, scale: f32) -> [f32; 16] {
+    let mut model = [0.0_f32; 16];
+    for (column, axis) in [turn.x_axis, turn.y_axis, turn.z_axis].into_iter().enumerate() {
+        model[4 * column..4 * column + 3].copy_from_slice(&(axis * scale).to_array());
+    }
+    model[12..15].copy_from_slice(&(turn * -centre * scale).to_array());
+    model[14] -= Scene::default().camera.eye.z;
+    model[15] = 1.0;
+    model
+}
+
+/// The pixels that each draws, and the mean difference of those that both draw. Mesa's lowest row is the first.
+fn compared(ours: &[u8], theirs: &[u8]) -> ([usize; 2], f64) {
+    let flipped: Vec<u8> = theirs.chunks(WIDTH).rev().flatten().copied().collect();
+    let drawn = |bytes: &[u8]| bytes.iter().filter(|byte| **byte != 0).count();
+    let both: Vec<f64> =
+        ours.iter().zip(&flipped).filter(|(a, b)| **a != 0 && **b != 0).map(|(a, b)| a.abs_diff(*b).into()).collect();
+    ([drawn(ours), drawn(&flipped)], both.iter().sum::<f64>() / both.len().max(1) as f64)
 }

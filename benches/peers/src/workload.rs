@@ -5,18 +5,21 @@ use std::path::Path;
 
 use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::glam::Vec3;
+use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::{Mesh, obj, shapes};
 use mode13h::raster::Vertex;
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Scene};
 
+use crate::candidate::{Corner, Triangle};
 use crate::refine::refined;
+use crate::{HEIGHT, WIDTH};
 
-/// Triangles, rounded as the engine rounds them: every peer's numbers hold these exactly.
+/// Triangles, back to front, and the mesh that they are of.
 pub struct Workload {
     pub name: String,
-    pub triangles: Vec<[Vertex; 3]>,
+    pub triangles: Vec<Triangle>,
+    /// With texture coordinates; `None` for triangles of a file, which have neither distances nor an image.
     pub mesh: Option<Mesh>,
 }
 
@@ -25,11 +28,13 @@ impl Workload {
     fn of_mesh(name: String, mesh: Mesh) -> Result<Self, Box<dyn Error>> {
         let mut scene = Scene::showing(mesh.clone());
         scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
-        scene.objects_mut()[0].set_angles([0.4, 0.6, 0.0].map(Angle::from_radians));
+        scene.objects_mut()[0].angles = [0.4, 0.6, 0.0].map(Angle::from_radians);
         let mut triangles = Vec::new();
         Renderer::new().for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| triangles.push(*vertices))?;
         triangles.sort_by_key(|vertices| vertices.iter().map(|v| u64::from(v.depth())).sum::<u64>());
-        Ok(Self { name, triangles, mesh: Some(mesh) })
+        let radius = mesh.bounds().radius;
+        let texcoords = mesh.positions().iter().map(|p| Vec2::new(p.x + p.z / 2.0, p.y) / radius).collect();
+        Ok(Self { name, triangles: with_texels(&triangles), mesh: Some(mesh.with_texcoords(texcoords)?) })
     }
 
     /// A little-endian u32 count, then for each triangle three times f32 x, y and shade (pixels,
@@ -45,15 +50,16 @@ impl Workload {
             let coordinate = |pixels| I24F8::round_from_f32(pixels).ok_or("a coordinate out of range");
             Ok(Vertex::new(coordinate(x)?, coordinate(y)?, U8F8::from_intensity(shade / 255.0, 0, 256), 0)?)
         };
+        let mut corner = || Ok::<_, Box<dyn Error>>(Corner { vertex: vertex()?, w: 1.0, texel: [0.0; 2] });
         let mut triangles = Vec::new();
         for _ in 0..count {
-            triangles.push([vertex()?, vertex()?, vertex()?]);
+            triangles.push([corner()?, corner()?, corner()?]);
         }
         Ok(Self { name: name_of(path), triangles, mesh: None })
     }
 
-    /// The shapes, the rabbit (or, without one, a rough sphere) ever finer, and the files.
-    pub fn all(rabbit: Option<&Path>, files: &[String]) -> Result<Vec<Self>, Box<dyn Error>> {
+    /// The shapes, the rabbit (or, without one, a rough sphere) ever finer up to so many faces, and the files.
+    pub fn all(rabbit: Option<&Path>, most_faces: usize, files: &[String]) -> Result<Vec<Self>, Box<dyn Error>> {
         let mut all = Vec::new();
         for name in ["cube", "torus", "teapot"] {
             all.push(Self::of_mesh(name.to_owned(), shapes::by_name(name).ok_or("a shape that is not there")?)?);
@@ -63,7 +69,7 @@ impl Workload {
             None => ("sphere".to_owned(), refined(&shapes::by_name("cube").ok_or("no cube")?, 3_600)),
         };
         all.push(Self::of_mesh(name.clone(), mesh.clone())?);
-        for thousands in [11, 48, 200, 870] {
+        for thousands in [11, 48, 200, 870].into_iter().filter(|thousands| thousands * 1_000 <= most_faces) {
             all.push(Self::of_mesh(format!("{name}, {thousands} thousand"), refined(&mesh, thousands * 1_000))?);
         }
         for file in files {
@@ -81,4 +87,23 @@ impl Workload {
 
 fn name_of(path: &Path) -> String {
     path.file_stem().map_or_else(|| path.display().to_string(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// Triangles with the distances that their depths stand for, and an image laid on them: a function that is linear in
+/// space, so that neighbours agree at their corners and between.
+fn with_texels(triangles: &[[Vertex; 3]]) -> Vec<Triangle> {
+    // A depth is 2³⁰ times the near plane's distance over its own.
+    let distance = |v: &Vertex| (1_u64 << 30) as f32 / v.depth().max(1) as f32;
+    let corners = triangles.iter().flatten();
+    let mean = corners.clone().map(distance).sum::<f32>() / corners.count().max(1) as f32;
+    let corner = |vertex: Vertex| {
+        let w = distance(&vertex);
+        let across = |bits: i32, side: usize| (bits as f32 / 256.0 - side as f32 / 2.0) * w / mean;
+        let (x, y) = (across(vertex.x().to_bits(), WIDTH), across(vertex.y().to_bits(), HEIGHT));
+        // Half a texel a pixel, so 256 texels or fewer, of which f32 holds 1/65,536ths.
+        let texel =
+            [x + 0.3 * (w / mean - 1.0) * WIDTH as f32, y].map(|t| ((t / 2.0 + 128.0) * 65_536.0).round() / 65_536.0);
+        Corner { vertex, w, texel }
+    };
+    triangles.iter().map(|vertices| vertices.map(corner)).collect()
 }

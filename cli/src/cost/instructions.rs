@@ -44,17 +44,17 @@ impl Counts {
 /// Draws all frames by each shading, and says which kernel did: what callgrind looks at.
 pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -> Renderer) -> Result<(), Failure> {
     let mut vga = Vga::new();
-    let mut kernel = renderer().kernel();
+    let mut kernel = renderer().settings.kernel;
     for shading in shadings {
         let mut renderer = renderer();
-        renderer.set_shading(*shading);
+        renderer.settings.accuracy = Some((*shading).into());
         renderer.force(Effect::Transform, Some(true));
         for scene in frames {
             renderer.draw(scene, &mut vga).map_err(Failure::from)?;
         }
         draw_counted(frames, &mut renderer, &mut vga)?;
         shading_is_done(shading);
-        kernel = renderer.kernel();
+        kernel = renderer.settings.kernel;
     }
     let level = if kernel.name() == "simd" { format!("simd-{}", kernel.level()) } else { kernel.name().to_string() };
     output::print(&format!("{level}\n"))

@@ -162,8 +162,8 @@ impl Default for Divider {
 impl Divider {
     /// Follows the mouse, or not. Whether a click changed that.
     fn follow(&mut self, input: &Input) -> bool {
-        let x = input.mouse().map(|(x, _)| x);
-        self.moved(x, input.buttons().left, input.drag())
+        let x = input.mouse.map(|(x, _)| x);
+        self.moved(x, input.buttons.left, input.drag)
     }
 
     fn moved(&mut self, mouse: Option<f32>, is_down: bool, drag: (f32, f32)) -> bool {
@@ -216,7 +216,7 @@ mod tests {
     fn the_right_half_is_drawn_by_its_own_renderer() {
         let scene = Scene::showing(shapes::torus(24, 12));
         let (mut renderer, mut phong) = (Renderer::new(), Vga::new());
-        renderer.set_shading(Shading::Phong);
+        renderer.settings.accuracy = Some(Shading::Phong.into());
         renderer.draw(&scene, &mut phong).expect("a legal scene");
         let mut compare = Compare::new();
         assert!(compare.draw(&scene, 0.0).expect("a legal scene"));

@@ -52,7 +52,7 @@ const OTHER_FACE: u8 = 7;
 /// Entries of brightness that each colour has.
 const STEPS: u8 = 32;
 /// Least brightness of a colour, of 256: otherwise nobody could tell one from another in the dark.
-const LEAST: u32 = 112;
+const MIN_COLOR: u32 = 112;
 /// Least brightness of a right pixel's colour, of 256: it need not be told from anything.
 const MIN_GREY: u32 = 0;
 
@@ -250,7 +250,7 @@ fn step(color: Rgb) -> u8 {
 fn palette() -> Palette {
     let mut colors = [Rgb::BLACK; 256];
     for (i, level) in LEVELS.iter().enumerate() {
-        let least = if i == 0 { MIN_GREY } else { LEAST };
+        let least = if i == 0 { MIN_GREY } else { MIN_COLOR };
         for (step, color) in (0..).zip(&mut colors[i * usize::from(STEPS)..][..usize::from(STEPS)]) {
             let light = least + (256 - least) * step / u32::from(STEPS - 1);
             // At most 255 · 256 / 256.
@@ -415,9 +415,9 @@ mod tests {
 
     fn frame(number: u64, scene: &Scene, shadings: &[Shading]) -> Frame {
         let mut picture = Vga::new();
-        let renderer = |&shading| {
+        let renderer = |&shading: &Shading| {
             let mut renderer = Renderer::new();
-            renderer.set_shading(shading);
+            renderer.settings.accuracy = Some(shading.into());
             renderer.draw(scene, &mut picture).expect("a legal scene");
             renderer.set_alike()
         };
@@ -430,7 +430,7 @@ mod tests {
     /// The whole truth against what is drawn.
     fn errors(scene: &Scene, shading: Shading) -> ErrorMap {
         let mut renderer = Renderer::new();
-        renderer.set_shading(shading);
+        renderer.settings.accuracy = Some(shading.into());
         let shown = Probe::new(renderer).look(scene, Screen::MODE_13H).expect("a legal scene");
         let truth = Truth::new(scene, Screen::MODE_13H).expect("a legal scene").draw(Standard::Lit);
         ErrorMap::new(&truth, &shown).expect("of one size")

@@ -144,7 +144,7 @@ mod tests {
         for scene in shipped::ALL {
             let mut demo = demo(scene.name);
             for budget in [None, Some(1.0)] {
-                let shading = demo.renderer.settings().accuracy.unwrap_or_default().shading();
+                let shading = demo.renderer.settings.accuracy.unwrap_or_default().shading();
                 demo.shading = ShadingChoice::new(shading, budget);
                 demo.draw().expect("a legal scene");
                 for size in WINDOWS {

@@ -448,7 +448,7 @@ impl Demo {
                 self.notice = Some((format!("{name} {state}"), seconds + NOTICE));
             }
         }
-        self.mouse = input.mouse().and_then(Pixel::at).unwrap_or(self.mouse);
+        self.mouse = input.mouse.and_then(Pixel::at).unwrap_or(self.mouse);
         if !self.magnifies {
             self.stepper.stop();
         } else if self.stepper.follow(input, self.mouse) {
@@ -576,8 +576,8 @@ impl Demo {
     fn draw_scene(&mut self) -> Result<(), Failure> {
         self.stage.show(self.motion.seconds(), self.motion.pose);
         self.shading.set(&mut self.renderer);
-        self.renderer.set_kernel(*self.kernels.chosen());
-        self.renderer.settings_mut().mapping = *self.mappings.chosen();
+        self.renderer.settings.kernel = *self.kernels.chosen();
+        self.renderer.settings.mapping = *self.mappings.chosen();
         // Of a picture that stands still the time for its plan stays, too.
         if self.figures.is_open && (self.is_redrawn || self.planning.frame == 0.0) {
             let start = Instant::now();
@@ -595,8 +595,8 @@ impl Demo {
             self.number += 1;
         }
         if self.compare.is_on {
-            self.compare.right.renderer.set_kernel(*self.kernels.chosen());
-            self.compare.right.renderer.settings_mut().mapping = *self.mappings.chosen();
+            self.compare.right.renderer.settings.kernel = *self.kernels.chosen();
+            self.compare.right.renderer.settings.mapping = *self.mappings.chosen();
             let is_new = self.compare.draw(&self.stage.scene, self.seconds).map_err(Failure::from)?;
             self.number += u64::from(is_new);
         }

@@ -85,12 +85,12 @@ impl Motion {
             let held = if input.held(key) { ARROW_SPEED * passed } else { 0.0 };
             held + if input.pressed(key) { ARROW_TAP } else { 0.0 }
         };
-        let (right, down) = input.drag();
+        let (right, down) = input.drag;
         self.pose.turn += arrow(Key::Right) - arrow(Key::Left) + DRAG * f64::from(right);
         self.pose.tilt += arrow(Key::Down) - arrow(Key::Up) + DRAG * PIXEL_HEIGHT * f64::from(down);
 
-        let typed = |characters: &[char]| input.typed().contains(characters);
-        let mut notches = f64::from(input.wheel());
+        let typed = |characters: &[char]| input.typed.contains(characters);
+        let mut notches = f64::from(input.wheel);
         if input.pressed(Key::NumPadPlus) || typed(&['+', '=']) {
             notches += 1.0;
         }

@@ -63,7 +63,7 @@ mod tests {
         let scene = Scene::showing(shapes::torus(24, 12));
         for shading in Shading::ALL {
             let mut renderer = Renderer::new();
-            renderer.set_shading(shading);
+            renderer.settings.accuracy = Some(shading.into());
             let mut vga = mode13h::vga::Vga::new();
             renderer.draw(&scene, &mut vga).expect("a legal scene");
             for (x, y) in [(0, 0), (160, 60), (100, 100), (319, 199)] {

@@ -42,10 +42,10 @@ enum Wish {
 
 /// Finds the user's request, if there is any.
 fn wish(input: &Input) -> Option<Wish> {
-    let typed = |character: char| input.typed().contains(character);
+    let typed = |character: char| input.typed.contains(character);
     let is_down = |&(key, pad, character): &(Key, Key, char)| {
         // Where digits are typed with Shift, as in France, a key of the top row means what it types.
-        input.pressed(pad) || typed(character) || (input.pressed(key) && input.typed().is_empty())
+        input.pressed(pad) || typed(character) || (input.pressed(key) && input.typed.is_empty())
     };
     if let Some(shading) =
         DIGITS.iter().zip(Shading::ALL).find_map(|(digit, shading)| is_down(digit).then_some(shading))
@@ -67,7 +67,7 @@ fn wish(input: &Input) -> Option<Wish> {
 
 /// Finds the user's request for the right half of a picture: the same keys with Shift.
 fn shifted_wish(input: &Input) -> Option<Wish> {
-    let typed = |character: char| input.typed().contains(character);
+    let typed = |character: char| input.typed.contains(character);
     // Where digits are typed with Shift they are the left half's.
     let is_down = |&(key, _, character): &(Key, Key, char)| input.pressed_with_shift(key) && !typed(character);
     if let Some(shading) =
@@ -143,7 +143,7 @@ impl ShadingChoice {
 
     /// Sets a renderer to draw by it.
     pub(super) fn set(&self, renderer: &mut Renderer) {
-        renderer.settings_mut().accuracy = Some(match self.by_budget {
+        renderer.settings.accuracy = Some(match self.by_budget {
             true => Accuracy::WithinError(self.budget),
             false => Accuracy::Shading(self.shading),
         });
@@ -218,8 +218,8 @@ mod tests {
     fn a_renderer_draws_by_what_was_chosen() {
         let mut renderer = Renderer::new();
         ShadingChoice::new(Shading::Flat, Some(4.0)).set(&mut renderer);
-        assert_eq!(renderer.settings().accuracy, Some(Accuracy::WithinError(4.0)));
+        assert_eq!(renderer.settings.accuracy, Some(Accuracy::WithinError(4.0)));
         ShadingChoice::new(Shading::Phong, None).set(&mut renderer);
-        assert_eq!(renderer.settings().accuracy, Some(Accuracy::Shading(Shading::Phong)));
+        assert_eq!(renderer.settings.accuracy, Some(Accuracy::Shading(Shading::Phong)));
     }
 }

@@ -63,7 +63,7 @@ struct Wished {
 impl Wished {
     /// Reads the keys: a key that is held goes on.
     fn of(input: &Input) -> Wished {
-        let typed = |wanted: char| input.typed().chars().filter(|typed| *typed == wanted).count() as isize;
+        let typed = |wanted: char| input.typed.chars().filter(|typed| *typed == wanted).count() as isize;
         let with_shift = |key| isize::from(input.pressed_with_shift(key));
         // With Shift a comma may be typed as one too, on some keyboard.
         let (back, on) = (with_shift(Key::Comma), with_shift(Key::Period));
@@ -289,7 +289,7 @@ mod tests {
         let scene = Scene::showing(mode13h::mesh::shapes::torus(24, 12));
         for shading in Shading::ALL {
             let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-            renderer.set_shading(shading);
+            renderer.settings.accuracy = Some(shading.into());
             renderer.draw(&scene, &mut vga).expect("a legal scene");
             let shade_trace = explain::pixel(&mut renderer, &scene, Screen::MODE_13H, 100, 100).expect("a legal scene");
             let traced = Traced::of(&shade_trace).expect("the torus is there");

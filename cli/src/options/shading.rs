@@ -43,7 +43,7 @@ impl ShadingOptions {
     /// A renderer that is set as the command line says.
     pub(crate) fn renderer(&self, drawing: &Drawing, kernel: Kernel) -> Renderer {
         let mut renderer = drawing.renderer(kernel);
-        renderer.settings_mut().accuracy = self.accuracy();
+        renderer.settings.accuracy = self.accuracy();
         renderer
     }
 }

@@ -15,7 +15,7 @@ use embedded_graphics::text::{Baseline, Text};
 use mode13h::palette::Rgb;
 use mode13h::window::{Area, Canvas};
 
-use text::{Head, LEAST, Laid, laid};
+use text::{Head, Laid, MIN_SIZE, laid};
 pub(crate) use text::{Letters, Row, wrapped};
 
 /// Text of its own weight.
@@ -125,7 +125,7 @@ impl Sheet {
         let bottom = self.free[0].1.min(self.free[1].1);
         let lines = wrapped(text, columns);
         let height = lines.len() * letters.line() + 2 * PADDING;
-        if columns < LEAST.0 || height + PADDING > bottom {
+        if columns < MIN_SIZE.0 || height + PADDING > bottom {
             return;
         }
         let widest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
@@ -153,7 +153,7 @@ impl Sheet {
         let sets = || [Some(self.letters), self.letters.smaller()].into_iter().flatten();
         let fits = |letters: Letters, width: usize| {
             let columns = width / letters.width();
-            (columns >= LEAST.0).then(|| laid(rows, columns)).filter(|lines| lines.len() * letters.line() <= room)
+            (columns >= MIN_SIZE.0).then(|| laid(rows, columns)).filter(|lines| lines.len() * letters.line() <= room)
         };
         // In large letters it may be half as wide as the window; before it is wider, letters are smaller.
         let ways = sets().flat_map(|letters| widths[..2].iter().map(move |&width| (letters, width)));
@@ -168,7 +168,7 @@ impl Sheet {
         let columns = widths.last().map_or(0, |width| width / letters.width());
         // The last line says what page it is.
         let per_page = (room / letters.line()).saturating_sub(1);
-        if columns < LEAST.0 || per_page + 1 < LEAST.1 {
+        if columns < MIN_SIZE.0 || per_page + 1 < MIN_SIZE.1 {
             return 0;
         }
         let lines = laid(rows, columns);

@@ -5,7 +5,7 @@ use embedded_graphics::mono_font::iso_8859_1::{FONT_6X9, FONT_6X12, FONT_9X15};
 use mode13h::palette::Rgb;
 
 /// The fewest letters to a line, and the fewest lines, of which a panel is made: in smaller windows there is none.
-pub(super) const LEAST: (usize, usize) = (8, 2);
+pub(super) const MIN_SIZE: (usize, usize) = (8, 2);
 
 /// Sets of letters, all of one width in a set. In each the full stop is a square dot.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -113,7 +113,7 @@ impl Laid {
 pub(super) fn laid(rows: &[Row], columns: usize) -> Vec<Laid> {
     let widest = rows.iter().map(Row::head_width).max().unwrap_or(0);
     // Where that leaves no room for words, text stands below its head.
-    let (beside, indent) = if widest + LEAST.0 <= columns { (true, widest) } else { (false, 0) };
+    let (beside, indent) = if widest + MIN_SIZE.0 <= columns { (true, widest) } else { (false, 0) };
     let mut lines = Vec::new();
     for row in rows {
         let mut head = row.head.clone();

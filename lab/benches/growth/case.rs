@@ -98,7 +98,7 @@ fn showing(mesh: &Shared<Mesh>) -> Scene {
 /// With a depth for every pixel, as most models need, also where a sphere is found to be convex.
 fn renderer() -> Renderer {
     let mut renderer = Renderer::new();
-    renderer.settings_mut().hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+    renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     renderer
 }
 
@@ -109,8 +109,8 @@ fn draw(renderer: &mut Renderer, scene: &mut Scene, vga: &mut Vga) -> u64 {
 }
 
 fn turn(scene: &mut Scene) {
-    let [x, y, z] = scene.objects()[0].angles();
-    scene.objects_mut()[0].set_angles([x, y + Angle::from_radians(0.01), z]);
+    let [x, y, z] = scene.objects()[0].angles;
+    scene.objects_mut()[0].angles = [x, y + Angle::from_radians(0.01), z];
 }
 
 /// Spheres that fill the screen, the more faces the smaller.

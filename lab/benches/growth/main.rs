@@ -20,7 +20,7 @@ use case::Case;
 use series::Series;
 
 /// What a bound says of ns a face at 10⁶ faces, divided by those at 10⁴.
-const MOST_GROWTH: f64 = 1.5;
+const MAX_GROWTH: f64 = 1.5;
 
 /// All spheres together take no more than this, in bytes for each face of the largest: see the table of memory.
 const BYTES: u64 = 200;
@@ -79,10 +79,10 @@ fn main() {
     println!();
     for (series, both_ways) in [(&all[0], false), (&all[1], true)] {
         let Some(growth) = series.growth(1e4, 1e6) else { continue };
-        let kept = growth <= MOST_GROWTH && (!both_ways || growth >= 1.0 / MOST_GROWTH);
-        let least = if both_ways { format!("{:.2} to ", 1.0 / MOST_GROWTH) } else { "at most ".to_string() };
+        let kept = growth <= MAX_GROWTH && (!both_ways || growth >= 1.0 / MAX_GROWTH);
+        let least = if both_ways { format!("{:.2} to ", 1.0 / MAX_GROWTH) } else { "at most ".to_string() };
         println!(
-            "{}: ns a face at 10^6 are {growth:.2} x those at 10^4 ({least}{MOST_GROWTH}: {})",
+            "{}: ns a face at 10^6 are {growth:.2} x those at 10^4 ({least}{MAX_GROWTH}: {})",
             series.title,
             if kept { "kept" } else { "NOT KEPT" }
         );

@@ -58,7 +58,7 @@ impl<'a> Configuration<'a> {
 
     fn accurate(kind: Kind, name: impl ToString, accuracy: Accuracy) -> Self {
         Self::new(kind, name, move |renderer| {
-            renderer.settings_mut().accuracy = Some(accuracy);
+            renderer.settings.accuracy = Some(accuracy);
         })
     }
 
@@ -102,13 +102,13 @@ impl<'a> Configuration<'a> {
     pub(super) fn choices(shadings: &[Shading]) -> Vec<Self> {
         let with_shading = |aspect, name: &dyn fmt::Display, set: Box<dyn Fn(&mut Renderer) + Sync>| {
             Self::new(Kind::Choice(aspect), name, move |renderer| {
-                renderer.set_shading(Shading::default());
+                renderer.settings.accuracy = Some(Shading::default().into());
                 set(renderer);
             })
         };
         let mut ways = Vec::new();
         for path in VertexPath::ALL {
-            ways.push(with_shading(Aspect::VertexPath, &path, Box::new(move |r| r.settings_mut().vertex_path = path)));
+            ways.push(with_shading(Aspect::VertexPath, &path, Box::new(move |r| r.settings.vertex_path = path)));
         }
         for (bits, name) in [(8, "1/256 pixel"), (4, "1/16 pixel"), (0, "whole pixels")] {
             ways.push(with_shading(Aspect::VertexRounding, &name, Box::new(move |r| hooks::set_vertex_bits(r, bits))));
@@ -116,24 +116,20 @@ impl<'a> Configuration<'a> {
         let fastest = Kernel::fastest();
         let others = Kernel::available().filter(|kernel| kernel.level() != fastest.level());
         for kernel in core::iter::once(fastest).chain(others) {
-            ways.push(with_shading(Aspect::Kernel, &kernel, Box::new(move |r| r.set_kernel(kernel))));
+            ways.push(with_shading(Aspect::Kernel, &kernel, Box::new(move |r| r.settings.kernel = kernel)));
         }
         for (dither, name) in [(false, "none"), (true, "ordered")] {
             ways.push(with_shading(Aspect::Dither, &name, Box::new(|_| {})).dithered(dither));
         }
         let called_for = core::iter::once((None, "as called for"));
         for (way, name) in called_for.chain(HiddenSurfaces::ALL.into_iter().map(|way| (Some(way), way.name()))) {
-            ways.push(with_shading(
-                Aspect::HiddenSurfaces,
-                &name,
-                Box::new(move |r| r.settings_mut().hidden_surfaces = way),
-            ));
+            ways.push(with_shading(Aspect::HiddenSurfaces, &name, Box::new(move |r| r.settings.hidden_surfaces = way)));
         }
         let others = Shading::ALL.into_iter().filter(|shading| *shading != REFERENCE && shadings.contains(shading));
         for shading in core::iter::once(REFERENCE).chain(others) {
             ways.push(Self::new(Kind::Choice(Aspect::PortableShading), shading, move |renderer| {
-                renderer.set_shading(shading);
-                renderer.set_kernel(Kernel::PORTABLE);
+                renderer.settings.accuracy = Some(shading.into());
+                renderer.settings.kernel = Kernel::PORTABLE;
             }));
         }
         ways

@@ -147,7 +147,7 @@ pub(super) fn always_drawing(mut renderer: Renderer) -> Renderer {
     renderer
 }
 
-/// Settings of a contest.
+/// Settings of an interleaved benchmark.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spent {
     pub(super) clock: Clock,
@@ -159,7 +159,7 @@ pub(super) struct Spent {
     pub(super) seed: u64,
 }
 
-/// Outcome of a contest.
+/// Outcome of an interleaved benchmark.
 pub(super) struct Outcome {
     pub(super) samples: Samples,
     /// One for each way.
@@ -169,7 +169,7 @@ pub(super) struct Outcome {
 /// Times all ways on their frames (all of one number), about as long as `spent` says: longer where fewer than 25 rounds would
 /// fit in, up to four times as long, and twice as long as long as a shading's or a budget's ratio to the first way is not
 /// known to 2 %. Where `spent` says at most, as long as it says, or for seven rounds. `progress` is told the share of the time that is over.
-pub(super) fn contest(
+pub(super) fn run_interleaved(
     ways: &[(&Configuration<'_>, &[Scene])],
     base: &dyn Fn() -> Renderer,
     spent: &Spent,
@@ -285,7 +285,7 @@ mod tests {
             Configuration::budget(4.0),
         ];
         let ways: Vec<(&Configuration<'_>, &[Scene])> = ways.iter().map(|way| (way, &frames[..])).collect();
-        let Ok(Outcome { samples, work }) = contest(
+        let Ok(Outcome { samples, work }) = run_interleaved(
             &ways,
             &Renderer::new,
             &Spent { clock: Clock::WALL, seconds: 0.001, at_most: false, seed: 1 },

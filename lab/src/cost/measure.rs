@@ -7,7 +7,7 @@ use super::accuracy::{Referee, Results};
 use super::claims::claims;
 use super::clock::Clock;
 use super::configuration::{BUDGETS, Configuration, Kind, REFERENCE};
-use super::interleaved::{Outcome, Samples, Spent, contest};
+use super::interleaved::{Outcome, Samples, Spent, run_interleaved};
 use super::split::split;
 use super::statistics::{Ratio, Rng, quartiles};
 use super::{Aspect, BudgetRow, CostError, Host, OptionRow, ShadingRow, Split, Study};
@@ -124,7 +124,7 @@ pub fn measure(
     let dithered = [false, true].map(|dither| with_dither(frames, dither));
     let entrants: Vec<(&Configuration<'_>, &[Scene])> =
         ways.iter().map(|way| (way, way.dither.map_or(frames, |dither| &dithered[usize::from(dither)]))).collect();
-    let outcome = contest(&entrants, renderer, &spent(0.5), &|share| progress(Step::Times, share))?;
+    let outcome = run_interleaved(&entrants, renderer, &spent(0.5), &|share| progress(Step::Times, share))?;
     let of_shadings: Vec<&Configuration<'_>> = ways.iter().filter(|way| matches!(way.kind, Kind::Shading(_))).collect();
     let splits = split(&of_shadings, frames, renderer, &spent(0.25), &|share| progress(Step::Split, share))?;
 
@@ -138,7 +138,7 @@ pub fn measure(
     let study = Study {
         input: name.to_string(),
         host: Host { clock: clock.name.to_string(), clock_step: clock.step(), ..host.clone() },
-        kernel: renderer().kernel().to_string(),
+        kernel: renderer().settings.kernel.to_string(),
         frames: frames.len(),
         rounds: outcome.samples.rounds(),
         shadings: of_shadings,

@@ -118,12 +118,12 @@ impl Probe {
             *light = light.with_color([1.0; 3]).with_intensity(light.brightness());
         }
         // Making a table for every digit would take long.
-        let accuracy = self.renderer.settings().resolve(&scene.preferences).asked;
+        let accuracy = self.renderer.settings.resolve(&scene.preferences).asked;
         let needs_tables = accuracy == Accuracy::Shading(Shading::PhongTable);
-        let replaced = needs_tables.then(|| self.renderer.set_shading(Shading::Phong));
+        let replaced = needs_tables.then(|| self.renderer.settings.accuracy.replace(Shading::Phong.into()));
         let numbers = self.numbers(scene, screen);
         if let Some(accuracy) = replaced {
-            self.renderer.settings_mut().accuracy = accuracy;
+            self.renderer.settings.accuracy = accuracy;
         }
         Ok(numbers?.into_iter().map(|number| self.numbered.face(number)).collect())
     }
@@ -253,7 +253,7 @@ impl Numbered {
         object.position = like.position;
         object.scale = like.scale;
         object.up_axis = like.up_axis;
-        object.set_angles(like.angles());
+        object.angles = like.angles;
         object
     }
 

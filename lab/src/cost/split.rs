@@ -64,7 +64,7 @@ impl Part {
 }
 
 /// Splits the time of each way's frames, for about as long as `spent` says. Rounds are shuffled, as in a
-/// [contest](super::contest); of each part the median counts.
+/// [interleaved benchmark](super::interleaved); of each part the median counts.
 pub(super) fn split(
     ways: &[&Configuration<'_>],
     frames: &[Scene],

@@ -9,7 +9,7 @@ use core::cell::{Cell, RefCell};
 
 use mode13h::hooks::DrawnTriangle;
 use mode13h::lanes::{LANES, Lanes, Points};
-use mode13h::palette::Table;
+use mode13h::palette::Lut64K;
 use mode13h::raster::effects::{Attributes, Lighting, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use mode13h::raster::{DrawStats, Frame, Raster, Rect, Vertex};
 use mode13h::render::Screen;
@@ -275,8 +275,8 @@ fn stages(
         _ => {}
     }
     // A row of a table is a shade, a level or the new byte; a column a texel or the byte that was there.
-    let columns = Table::from_fn(|_, column| column);
-    let rows = Table::from_fn(|row, _| row);
+    let columns = Lut64K::from_fn(|_, column| column);
+    let rows = Lut64K::from_fn(|row, _| row);
     made.texel = look.texture.map(|texture| {
         let texture = TextureStage { tables: [columns.as_array(); 3], ..texture };
         pixel.look(met, behind, &PixelPipeline { texture: Some(texture), ..single })

@@ -193,7 +193,7 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
         hidden_surfaces: trace.stats.hidden_surfaces,
         hidden_surfaces_why: hidden.map(|row| row.reason.clone()).unwrap_or_default(),
         shading: trace.stats.shading,
-        shading_why: shading_why(&renderer.settings().resolve(&scene.preferences)),
+        shading_why: shading_why(&renderer.settings.resolve(&scene.preferences)),
         max_error: trace.stats.max_error,
         vertex_path: trace.stats.vertex_path,
         objects: (0..scene.objects().len()).map(|object| hooks::name_of(scene, object)).collect(),
@@ -229,7 +229,7 @@ fn shading_why(settings: &Resolved) -> String {
 /// A triangle, with its place in the mesh.
 fn here(renderer: &Renderer, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> FaceHere {
     let is_part =
-        renderer.settings().vertex_path == VertexPath::Float && renderer.plan().is_on(met.object, Effect::Tessellation);
+        renderer.settings.vertex_path == VertexPath::Float && renderer.plan().is_on(met.object, Effect::Tessellation);
     let triangle = if is_part || met.face.is_none() { nearest(truth, met, x, y) } else { met.face };
     FaceHere {
         object: met.object,

@@ -159,7 +159,7 @@ pub(super) fn png(case: &Case, comparison: &Comparison) -> Result<Vec<u8>, Pictu
         words(&mut frame, MARGIN, height - MARGIN - 15, legend, Ink::Words, &FONT_9X15);
     }
     let shape = PixelShape::SQUARE;
-    Png::INDEXED.encode(&Picture { pixels: &pixels, width: w, height: h, pitch: w, palette: &inks.colors, shape })
+    Png::default().encode(&Picture { pixels: &pixels, width: w, height: h, pitch: w, palette: &inks.colors, shape })
 }
 
 fn pixels_in_words(count: usize) -> String {

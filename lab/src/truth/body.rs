@@ -84,7 +84,7 @@ struct Turn {
 
 impl Turn {
     fn new(object: &Object) -> Self {
-        Self { up_axis: object.up_axis, angles: object.angles().map(|angle| libm::sincos(angle.to_radians())) }
+        Self { up_axis: object.up_axis, angles: object.angles.map(|angle| libm::sincos(angle.to_radians())) }
     }
 
     fn apply(&self, [x, y, z]: Vector) -> Vector {

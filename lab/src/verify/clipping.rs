@@ -47,7 +47,7 @@ fn check(seed: u64, project: Project<'_>) -> Group {
     // The 16.16 path has 30 bits from the nearest to the farthest.
     floors(&mut group, &[400.0, 1e3, 8e3], &|scene| {
         let mut renderer = Renderer::new();
-        renderer.settings_mut().vertex_path = VertexPath::Integer;
+        renderer.settings.vertex_path = VertexPath::Integer;
         Record::of_scene(&mut renderer, scene, Screen::MODE_13H).ok()
     });
     rays(&mut group, &mut random, project);
@@ -268,7 +268,7 @@ fn refused(group: &mut Group) {
             |scene, bad| scene.ambient = bad,
             |scene, bad| scene.objects_mut()[0].position.z = bad,
             |scene, bad| scene.objects_mut()[0].scale = bad,
-            |scene, bad| scene.objects_mut()[0].set_angles([0.0, bad.into(), 0.0].map(Angle::from_radians)),
+            |scene, bad| scene.objects_mut()[0].angles = [0.0, bad.into(), 0.0].map(Angle::from_radians),
             |scene, bad| scene.objects_mut()[0].materials[0].diffuse = bad,
         ];
         for (number, spoil) in spoil.into_iter().enumerate() {

@@ -44,30 +44,30 @@ impl Frames {
 #[must_use]
 pub fn frames(kernel: Kernel) -> Frames {
     let mut renderer = Renderer::new();
-    renderer.set_kernel(kernel);
+    renderer.settings.kernel = kernel;
     let mut frames = Frames { count: 0, hash: START };
     let mut vga = Vga::new();
     let ways = VertexPath::ALL.into_iter().flat_map(|path| Shading::ALL.map(|shading| (path, shading)));
     for (shape, name) in shapes::NAMES.iter().enumerate() {
         let Some(mesh) = shapes::by_name(name).map(Shared::new) else { continue };
         for (number, (path, shading)) in ways.clone().enumerate() {
-            renderer.settings_mut().vertex_path = path;
-            renderer.set_shading(shading);
+            renderer.settings.vertex_path = path;
+            renderer.settings.accuracy = Some(shading.into());
             for step in 0..4_u8 {
                 let mut scene = super::framed(mesh.clone());
                 scene.palette = Some(builtin::ALL[(shape + number) % builtin::ALL.len()].palette.clone());
                 scene.background = step;
-                scene.objects_mut()[0].set_angles([0.4, f64::from(step) * 1.7, 0.1].map(Angle::from_radians));
+                scene.objects_mut()[0].angles = [0.4, f64::from(step) * 1.7, 0.1].map(Angle::from_radians);
                 frames.draw(&mut renderer, &scene, &mut vga);
             }
         }
     }
     let torus = Shared::new(shapes::torus(24, 12));
     for way in HiddenSurfaces::ALL {
-        renderer.settings_mut().hidden_surfaces = Some(way);
+        renderer.settings.hidden_surfaces = Some(way);
         for (path, shading) in ways.clone() {
-            renderer.settings_mut().vertex_path = path;
-            renderer.set_shading(shading);
+            renderer.settings.vertex_path = path;
+            renderer.settings.accuracy = Some(shading.into());
             for step in 0..4_u8 {
                 frames.draw(&mut renderer, &close_up(&torus, f64::from(step)), &mut vga);
             }
@@ -94,9 +94,9 @@ fn close_up(torus: &Shared<Mesh>, turn: f64) -> Scene {
     scene.palette = Some(builtin::COPPER.clone());
     let mut second = Object::new(torus.clone());
     second.position = Vec3::new(0.5, 0.0, 0.0);
-    second.set_angles([1.5, turn, 0.0].map(Angle::from_radians));
+    second.angles = [1.5, turn, 0.0].map(Angle::from_radians);
     scene.add(second);
-    scene.objects_mut()[0].set_angles([0.2, 0.1, turn].map(Angle::from_radians));
+    scene.objects_mut()[0].angles = [0.2, 0.1, turn].map(Angle::from_radians);
     scene.camera.near = 0.3;
     scene.camera.eye.z = 1.1;
     scene.add_light(Light::sun([-1.0, 0.2, 0.3]).with_intensity(0.4));

@@ -78,7 +78,7 @@ fn convex(group: &mut Group, random: &mut Random, draw: Draw<'_>) {
         let Some(mesh) = shapes::by_name(name) else { continue };
         let mut scene = super::framed(mesh);
         for _ in 0..3 {
-            scene.objects_mut()[0].set_angles([0; 3].map(|_| random.around_zero(3.2)).map(Angle::from_radians));
+            scene.objects_mut()[0].angles = [0; 3].map(|_| random.around_zero(3.2)).map(Angle::from_radians);
             let Ok(record) = Record::of_scene(&mut Renderer::new(), &scene, Screen::MODE_13H) else { continue };
             let once = |place: usize, covered: &[u32]| covered[place] < 2;
             group.check_record("d4", &record, &|record| {

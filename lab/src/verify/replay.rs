@@ -212,7 +212,7 @@ mod tests {
 
     fn torus() -> Record {
         let mut scene = super::super::framed(shapes::torus(12, 6));
-        scene.objects_mut()[0].set_angles([1.1, 0.0, 0.4].map(Angle::from_radians));
+        scene.objects_mut()[0].angles = [1.1, 0.0, 0.4].map(Angle::from_radians);
         Record::of_scene(&mut Renderer::new(), &scene, Screen::MODE_13H).expect("a legal scene")
     }
 

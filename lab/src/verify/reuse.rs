@@ -47,9 +47,9 @@ fn check(seed: u64, draw: Draw<'_>) -> Group {
         let path = random.one_of(&VertexPath::ALL);
         let mut fresh = (Renderer::new(), Vga::new());
         for renderer in [&mut used, &mut fresh.0] {
-            renderer.set_shading(shading);
-            renderer.settings_mut().hidden_surfaces = forced;
-            renderer.settings_mut().vertex_path = path;
+            renderer.settings.accuracy = Some(shading.into());
+            renderer.settings.hidden_surfaces = forced;
+            renderer.settings.vertex_path = path;
         }
         let drawn = [draw(&mut used, &scene, vga), fresh.0.draw(&scene, &mut fresh.1).is_ok()];
         let differ = vga.pixels().iter().zip(fresh.1.pixels()).filter(|(a, b)| a != b).count();
@@ -100,7 +100,7 @@ fn change(random: &mut Random, scene: &mut Scene, meshes: &[Shared<Mesh>], palet
             "the camera"
         }
         _ => {
-            scene.objects_mut()[0].set_angles([0; 3].map(|_| random.around_zero(3.0)).map(Angle::from_radians));
+            scene.objects_mut()[0].angles = [0; 3].map(|_| random.around_zero(3.0)).map(Angle::from_radians);
             "the angles"
         }
     }
@@ -122,7 +122,7 @@ mod tests {
     fn a_frame_that_is_kept_by_mistake_is_told() {
         let mut last = None;
         let group = check(1, &mut |renderer, scene, vga| {
-            let angles = Some(scene.objects()[0].angles());
+            let angles = Some(scene.objects()[0].angles);
             let kept = std::mem::replace(&mut last, angles) == angles;
             kept || renderer.draw(scene, vga).is_ok()
         });

@@ -21,7 +21,7 @@ use mode13h::vga::Vga;
 /// ```
 #[must_use]
 pub fn time(seed: u64) -> Group {
-    check(seed, &turned, &|scene, angles| scene.objects_mut()[0].set_angles(angles.map(Angle::from_radians)))
+    check(seed, &turned, &|scene, angles| scene.objects_mut()[0].angles = angles.map(Angle::from_radians))
 }
 
 /// The matrix of three angles.
@@ -62,11 +62,11 @@ fn integer_turn(steps: [f64; 3]) -> [[f64; 3]; 3] {
 /// T3: any angle, and as many turns more.
 fn full_turns(group: &mut Group, random: &mut Random) {
     let mut renderer = Renderer::new();
-    renderer.settings_mut().vertex_path = VertexPath::Integer;
+    renderer.settings.vertex_path = VertexPath::Integer;
     let mut scene = super::framed(shapes::torus(16, 8));
     let mut draw = |steps: [i64; 3]| {
-        scene.objects_mut()[0]
-            .set_angles(steps.map(|steps| steps as f64 / 65_536.0 * core::f64::consts::TAU).map(Angle::from_radians));
+        scene.objects_mut()[0].angles =
+            steps.map(|steps| steps as f64 / 65_536.0 * core::f64::consts::TAU).map(Angle::from_radians);
         let mut vga = Vga::new();
         renderer.draw(&scene, &mut vga).map(|_| vga)
     };
@@ -110,7 +110,7 @@ fn frame_at_once(group: &mut Group, random: &mut Random, pose: Pose<'_>) {
             continue;
         }
         let mut at_once = super::framed(shapes::torus(16, 8));
-        at_once.objects_mut()[0].set_angles(angles(frame).map(Angle::from_radians));
+        at_once.objects_mut()[0].angles = angles(frame).map(Angle::from_radians);
         let mut fresh = Vga::new();
         let drawn = drawn && Renderer::new().draw(&at_once, &mut fresh).is_ok();
         let differ = vga.pixels().iter().zip(fresh.pixels()).filter(|(a, b)| a != b).count();
@@ -134,8 +134,7 @@ mod tests {
     #[test]
     fn a_matrix_that_grew_is_told() {
         let grown = |angles: [f64; 3]| turned(angles).map(|row| row.map(|c| c * 1.000_001));
-        let group =
-            check(1, &grown, &|scene, angles| scene.objects_mut()[0].set_angles(angles.map(Angle::from_radians)));
+        let group = check(1, &grown, &|scene, angles| scene.objects_mut()[0].angles = angles.map(Angle::from_radians));
         assert!(group.failures[0].starts_with("t1 angles [0.0, -0.0, 0.0]: no rotation, by 3"), "{:?}", group.failures);
         let group = check(1, &|_| [[f64::NAN; 3]; 3], &|_, _| {});
         assert!(group.failures[0].ends_with("by NaN"), "{:?}", group.failures);
@@ -145,9 +144,9 @@ mod tests {
     #[test]
     fn a_turn_that_drifts_is_told() {
         let step = |scene: &mut Scene, angles: [f64; 3]| {
-            let [x, y, z] = scene.objects()[0].angles().map(Angle::to_radians);
+            let [x, y, z] = scene.objects()[0].angles.map(Angle::to_radians);
             let next = if x == 0.0 { angles } else { [x, y + core::f64::consts::TAU / 140.0 * 0.999, z] };
-            scene.objects_mut()[0].set_angles(next.map(Angle::from_radians));
+            scene.objects_mut()[0].angles = next.map(Angle::from_radians);
         };
         let group = check(1, &turned, &step);
         assert!(group.failures[0].contains("pixels are not those of it drawn at once"), "{:?}", group.failures);

@@ -20,7 +20,7 @@ const BUDGETS: [f32; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
 
 fn within(max_error: f32) -> Renderer {
     let mut renderer = Renderer::new();
-    renderer.set_max_error(max_error);
+    renderer.settings.accuracy = Some(Accuracy::WithinError(max_error));
     renderer
 }
 
@@ -94,7 +94,7 @@ fn in_one_sun_no_pixel_is_beyond() {
         let slices = random.within(6, 40) as u32;
         let mut scene = Scene::new();
         let mut object = Object::new(shapes::sphere(slices, slices / 2));
-        object.set_angles([0.0; 3].map(|_| 7.0 * random.unit()).map(Angle::from_radians));
+        object.angles = [0.0; 3].map(|_| 7.0 * random.unit()).map(Angle::from_radians);
         let material = &mut object.materials[0];
         (material.ambient, material.diffuse) = (0.15 * random.unit() as f32, 0.6 + 0.4 * random.unit() as f32);
         scene.add(object);
@@ -148,7 +148,7 @@ fn large_faces(random: &mut Random) -> Scene {
     };
     let mut scene = Scene::new();
     let mut object = Object::new(mesh);
-    object.set_angles([0.0; 3].map(|_| between(0.0, 7.0)).map(Angle::from_radians));
+    object.angles = [0.0; 3].map(|_| between(0.0, 7.0)).map(Angle::from_radians);
     let material = &mut object.materials[0];
     (material.ambient, material.diffuse) = (between(0.0, 0.3) as f32, between(0.3, 1.1) as f32);
     let kind = between(0.0, 1.0);
@@ -181,7 +181,7 @@ fn faces_that_are_quadratic_are_within() {
         let scene = large_faces(&mut random);
         let truth = Truth::new(&scene, SCREEN).expect("a legal scene").draw(Standard::Lit);
         let mut phong = Renderer::new();
-        phong.set_shading(Shading::Phong);
+        phong.settings.accuracy = Some(Shading::Phong.into());
         let lit = ErrorMap::new(&truth, &look(phong, &scene)).expect("of one size");
         for max_error in [6.0, 3.0, 1.5] {
             let mut renderer = within(max_error);
@@ -269,7 +269,7 @@ fn shares_are_of_all_triangles() {
             assert_eq!(shared, stats.drawn, "{name}: {stats}");
         }
         let mut flat = Renderer::new();
-        flat.set_shading(Shading::Flat);
+        flat.settings.accuracy = Some(Shading::Flat.into());
         let stats = flat.draw(&scene, &mut Vga::new()).expect("a legal scene");
         assert_eq!(stats.shares.of(Shading::Flat), stats.drawn, "{name}");
     }
@@ -298,7 +298,7 @@ fn kept_decisions_are_those_that_would_be_made() {
             if change == 5 {
                 scene.lights_mut().iter_mut().for_each(|light| *light = light.with_intensity(0.6));
             }
-            renderer.set_max_error(max_error);
+            renderer.settings.accuracy = Some(Accuracy::WithinError(max_error));
             let kept = draw(&mut renderer, &scene, &mut vga);
             assert_eq!(kept, draw(&mut within(max_error), &scene, &mut Vga::new()), "{name}, change {change}");
             tried.add(1);
@@ -323,12 +323,12 @@ fn the_budget_is_the_renderers_or_the_scenes() {
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
     scene.preferences.max_error = Some(3.0);
     let mut renderer = Renderer::new();
-    let drawn_by = |renderer: &Renderer| renderer.settings().resolve(&scene.preferences).accuracy;
+    let drawn_by = |renderer: &Renderer| renderer.settings.resolve(&scene.preferences).accuracy;
     assert_eq!(drawn_by(&renderer), Accuracy::WithinError(3.0));
-    assert_eq!(renderer.set_max_error(5.0), None);
+    assert_eq!(renderer.settings.accuracy.replace(Accuracy::WithinError(5.0)), None);
     assert_eq!(drawn_by(&renderer), Accuracy::WithinError(5.0));
     // A shading comes in the place of a budget, and is told so.
-    assert_eq!(renderer.set_shading(Shading::Phong), Some(Accuracy::WithinError(5.0)));
+    assert_eq!(renderer.settings.accuracy.replace(Shading::Phong.into()), Some(Accuracy::WithinError(5.0)));
     assert_eq!(drawn_by(&renderer), Accuracy::Shading(Shading::Phong));
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     assert_eq!((stats.max_error, stats.shares.of(Shading::Phong)), (None, stats.drawn));
@@ -343,7 +343,7 @@ fn the_budget_is_the_renderers_or_the_scenes() {
 fn integers_know_no_budget() {
     let scene = crate::support::scenes::framed(shapes::torus(24, 12));
     let mut renderer = within(2.0);
-    renderer.settings_mut().vertex_path = VertexPath::Integer;
+    renderer.settings.vertex_path = VertexPath::Integer;
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     assert_eq!(stats.max_error, None);
     assert_eq!(stats.shares.of(Shading::Gouraud88Reseeded), stats.drawn);

@@ -127,7 +127,7 @@ fn an_account_ends_with_the_byte_of_the_frame() {
     for (name, scene) in scenes::all() {
         for shading in Shading::ALL {
             let mut renderer = Renderer::new();
-            renderer.set_shading(shading);
+            renderer.settings.accuracy = Some(shading.into());
             let bytes = frame(&mut renderer, &scene);
             for (x, y) in some_pixels(&bytes, scene.background, 7, &mut random) {
                 let what = format!("{name} by {shading} at ({x}, {y})");
@@ -155,10 +155,10 @@ fn an_account_follows_the_way_to_hidden_surfaces() {
         for way in HiddenSurfaces::ALL {
             for path in VertexPath::ALL {
                 let mut renderer = Renderer::new();
-                renderer.settings_mut().hidden_surfaces = Some(way);
-                renderer.settings_mut().vertex_path = path;
+                renderer.settings.hidden_surfaces = Some(way);
+                renderer.settings.vertex_path = path;
                 if random.unit() < 0.3 {
-                    renderer.set_shading(Shading::GouraudVintage);
+                    renderer.settings.accuracy = Some(Shading::GouraudVintage.into());
                 }
                 let bytes = frame(&mut renderer, &scene);
                 for (x, y) in some_pixels(&bytes, scene.background, 9, &mut random) {
@@ -187,7 +187,7 @@ fn an_account_leaves_the_renderer_as_it_was() {
     let mut scene = scenes::showing("torus");
     let (mut one, mut other) = (Renderer::new(), Renderer::new());
     for turn in 0..4 {
-        scene.objects_mut()[0].set_angles([0.3, 0.2 * f64::from(turn), 0.0].map(Angle::from_radians));
+        scene.objects_mut()[0].angles = [0.3, 0.2 * f64::from(turn), 0.0].map(Angle::from_radians);
         explain(&mut one, &scene, 160, 100);
         assert!(frame(&mut one, &scene) == frame(&mut other, &scene));
         explain(&mut one, &scenes::showing("cube"), 160, 100);
@@ -253,7 +253,7 @@ fn faces_within_a_budget_are_named_by_what_shaded_them() {
     let mut named = [0; 3];
     for (name, scene) in scenes::all() {
         let mut renderer = Renderer::new();
-        renderer.set_max_error(4.0);
+        renderer.settings.accuracy = Some(Accuracy::WithinError(4.0));
         let bytes = frame(&mut renderer, &scene);
         for (x, y) in some_pixels(&bytes, scene.background, 8, &mut Random::named(&name)) {
             let pixel = explain(&mut renderer, &scene, x, y);
@@ -288,8 +288,8 @@ fn faces_with_the_same_corners_keep_their_own_numbers() {
     ] {
         for max_error in [None, Some(4.0)] {
             let mut renderer = Renderer::new();
-            renderer.settings_mut().hidden_surfaces = Some(way);
-            renderer.settings_mut().accuracy = max_error.map(Accuracy::WithinError);
+            renderer.settings.hidden_surfaces = Some(way);
+            renderer.settings.accuracy = max_error.map(Accuracy::WithinError);
             // Below the diagonal.
             let pixel = explain(&mut renderer, &twice, 105, 80);
             let named: Vec<_> = pixel.faces.iter().map(|face| (face.triangle, face.fate)).collect();
@@ -312,8 +312,8 @@ fn every_pixel_of_a_long_row_and_of_equal_depths() {
     for shading in Shading::ALL {
         for way in HiddenSurfaces::ALL {
             let mut renderer = Renderer::new();
-            renderer.set_shading(shading);
-            renderer.settings_mut().hidden_surfaces = Some(way);
+            renderer.settings.accuracy = Some(shading.into());
+            renderer.settings.hidden_surfaces = Some(way);
             let bytes = frame(&mut renderer, &twins);
             for x in (0..320).step_by(5) {
                 let pixel = explain(&mut renderer, &twins, x, 90);
@@ -321,7 +321,7 @@ fn every_pixel_of_a_long_row_and_of_equal_depths() {
             }
         }
         let mut renderer = Renderer::new();
-        renderer.set_shading(shading);
+        renderer.settings.accuracy = Some(shading.into());
         let bytes = frame(&mut renderer, &scene);
         let mut anew = 0;
         for x in 0..320 {
@@ -497,7 +497,7 @@ fn a_walk_over_what_is_seen_has_the_frames_bytes() {
     {
         let scene = scenes::showing(shape);
         let mut renderer = Renderer::new();
-        renderer.set_shading(shading);
+        renderer.settings.accuracy = Some(shading.into());
         let bytes = frame(&mut renderer, &scene);
         let shown = Probe::new(renderer.set_alike()).look(&scene, SCREEN).expect("a legal scene");
         let mut seen = 0;
@@ -536,7 +536,7 @@ fn the_level_of_a_texel_is_named() {
     let scene = scenes::floor("bricks", 24.0);
     let level = |mipmaps: bool, y: u32| {
         let mut renderer = Renderer::new();
-        renderer.settings_mut().mipmaps = Some(mipmaps);
+        renderer.settings.mipmaps = Some(mipmaps);
         let bytes = frame(&mut renderer, &scene);
         let pixel = explain(&mut renderer, &scene, 160, y);
         assert_eq!(pixel.byte, bytes[y as usize * 320 + 160]);

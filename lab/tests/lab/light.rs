@@ -256,7 +256,7 @@ fn n5_lights_from_any_direction_on_three_channels() {
         });
         for shading in [Shading::Gouraud88Reseeded, Shading::Phong] {
             let mut renderer = Renderer::new();
-            renderer.set_shading(shading);
+            renderer.settings.accuracy = Some(shading.into());
             let screen = Screen { width: 24, height: 16, ..Screen::MODE_13H };
             let shown = Probe::new(renderer).look(&scene, screen).expect("a legal scene");
             let middle = 24 * 8 + 12;
@@ -301,7 +301,7 @@ fn r10_denormals_and_minus_zero_draw_as_zero() {
         scene.camera = Camera { eye: Vec3::new(1.0, 2.0, 4.0), target: Vec3::splat(tiny), ..Camera::default() };
         let object = scene.add(Object::new(mesh(tiny)));
         scene[object].position = Vec3::splat(tiny);
-        scene[object].set_angles([f64::from(tiny); 3].map(Angle::from_radians));
+        scene[object].angles = [f64::from(tiny); 3].map(Angle::from_radians);
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
         let mut vga = Vga::new();
         Renderer::new().draw(&scene, &mut vga).expect("a legal scene");

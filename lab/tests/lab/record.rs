@@ -17,7 +17,7 @@ use proptest::prelude::*;
 
 fn scene(name: &str) -> Scene {
     let mut scene = crate::support::scenes::framed(shapes::by_name(name).expect("listed"));
-    scene.objects_mut()[0].set_angles([0.4, 0.5, 0.1].map(Angle::from_radians));
+    scene.objects_mut()[0].angles = [0.4, 0.5, 0.1].map(Angle::from_radians);
     scene
 }
 
@@ -194,7 +194,7 @@ fn d4_recorded_frames_replay() {
     for name in shapes::NAMES {
         for shading in Shading::ALL {
             let mut renderer = Renderer::new();
-            renderer.set_shading(shading);
+            renderer.settings.accuracy = Some(shading.into());
             if shading.lights_pixels() {
                 assert!(Record::of_scene(&mut renderer, &scene(name), Screen::MODE_13H).is_err());
                 continue;

@@ -53,7 +53,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
     }
     let fresh = || {
         let mut renderer = Renderer::new();
-        renderer.settings_mut().vertex_path = path;
+        renderer.settings.vertex_path = path;
         renderer
     };
     let mesh = Shared::new(shapes::torus(8, 6));
@@ -72,8 +72,8 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
         moved += u32::from(bytes != before);
 
         let mut at_once = crate::support::scenes::framed(mesh.clone());
-        at_once.objects_mut()[0]
-            .set_angles([f64::from(n) * STEPS[0], f64::from(n) * STEPS[1], 0.0].map(Angle::from_radians));
+        at_once.objects_mut()[0].angles =
+            [f64::from(n) * STEPS[0], f64::from(n) * STEPS[1], 0.0].map(Angle::from_radians);
         let mut expected = [n as u8; (WIDTH * HEIGHT) as usize];
         draw(&mut fresh(), &at_once, &mut expected);
         let differ = bytes.iter().zip(&expected).filter(|(is, should)| is != should).count();
@@ -82,17 +82,16 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
 
         let (off, limit) = match path {
             VertexPath::Float => (from_orthonormal(scene.objects()[0].rotation()), 1e-6),
-            _ => (
-                from_orthonormal(turn_in_16_16(scene.objects()[0].angles().map(Angle::to_radians))),
-                f32::powi(2.0, -13),
-            ),
+            _ => {
+                (from_orthonormal(turn_in_16_16(scene.objects()[0].angles.map(Angle::to_radians))), f32::powi(2.0, -13))
+            }
         };
         tried.worst("from orthonormal", f64::from(off));
         assert!(off <= limit, "frame {n}, {path}: {off:e} from orthonormal");
 
         // Each of n additions is rounded to half a unit in the last place of a number below 2¹⁴: 2⁻⁴⁰.
         drifting.rotate_y(Angle::from_radians(step));
-        let drift = (drifting.angles()[1].to_radians() - f64::from(n) * step).abs();
+        let drift = (drifting.angles[1].to_radians() - f64::from(n) * step).abs();
         tried.worst("radians of drift", drift);
         assert!(drift <= f64::from(n) * f64::powi(2.0, -40), "frame {n}: {drift:e} radians");
     }

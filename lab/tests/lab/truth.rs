@@ -248,7 +248,7 @@ fn backs_of_open_meshes_are_seen_from_their_side() {
         let mut scene = scene(64, square(4.0));
         scene.objects_mut()[0].pivot = Vec3::new(0.0, 0.0, -4.0);
         scene.objects_mut()[0].position = Vec3::new(0.0, 0.0, -4.0);
-        scene.objects_mut()[0].set_angles([0.0, PI, 0.0].map(Angle::from_radians));
+        scene.objects_mut()[0].angles = [0.0, PI, 0.0].map(Angle::from_radians);
         scene.add_light(Light::sun([0.0, 3.0, 4.0]));
         assert_close(at(&draw(&scene, 64, standard), 30, 30).intensity[0], 0.8);
         scene.lights_mut()[0] = Light::sun([0.0, 3.0, -4.0]);
@@ -276,20 +276,11 @@ fn turns_and_axes() {
     assert_eq!(corner(|_| ()), units(1.0, 2.0, 3.0));
     assert_eq!(corner(|object| object.scale = 2.0), units(2.0, 4.0, 6.0));
     assert_eq!(corner(|object| object.pivot = Vec3::new(1.0, 0.0, 0.0)), units(0.0, 2.0, 3.0));
-    assert_eq!(
-        corner(|object| object.set_angles([FRAC_PI_2, 0.0, 0.0].map(Angle::from_radians))),
-        units(1.0, -3.0, 2.0)
-    );
-    assert_eq!(
-        corner(|object| object.set_angles([0.0, FRAC_PI_2, 0.0].map(Angle::from_radians))),
-        units(3.0, 2.0, -1.0)
-    );
-    assert_eq!(
-        corner(|object| object.set_angles([0.0, 0.0, FRAC_PI_2].map(Angle::from_radians))),
-        units(-2.0, 1.0, 3.0)
-    );
+    assert_eq!(corner(|object| object.angles = [FRAC_PI_2, 0.0, 0.0].map(Angle::from_radians)), units(1.0, -3.0, 2.0));
+    assert_eq!(corner(|object| object.angles = [0.0, FRAC_PI_2, 0.0].map(Angle::from_radians)), units(3.0, 2.0, -1.0));
+    assert_eq!(corner(|object| object.angles = [0.0, 0.0, FRAC_PI_2].map(Angle::from_radians)), units(-2.0, 1.0, 3.0));
     // About z first: (−2, 1, 3); then about y: (3, 1, 2); then about x: (3, −2, 1).
-    assert_eq!(corner(|object| object.set_angles([FRAC_PI_2; 3].map(Angle::from_radians))), units(3.0, -2.0, 1.0));
+    assert_eq!(corner(|object| object.angles = [FRAC_PI_2; 3].map(Angle::from_radians)), units(3.0, -2.0, 1.0));
     assert_eq!(corner(|object| object.up_axis = UpAxis::Z), units(1.0, 3.0, -2.0));
 }
 

@@ -12,7 +12,7 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
 use mode13h::raster::FrameError;
-use mode13h::render::{HiddenSurfaces, RenderError, Renderer, Shading, VertexPath};
+use mode13h::render::{Accuracy, HiddenSurfaces, RenderError, Renderer, Shading, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::span::channels::mix_cube;
 use mode13h::vga::Vga;
@@ -27,7 +27,7 @@ fn truth(scene: &Scene) -> Truth<'_> {
 
 fn probe(shading: Shading) -> Probe {
     let mut renderer = Renderer::new();
-    renderer.set_shading(shading);
+    renderer.settings.accuracy = Some(shading.into());
     Probe::new(renderer)
 }
 
@@ -296,7 +296,7 @@ fn flattened(scene: &Scene) -> [Scene; 2] {
             let mut with = Object::new(mesh);
             (with.pivot, with.position, with.scale) = (object.pivot, object.position, object.scale);
             (with.up_axis, with.materials) = (object.up_axis, object.materials.clone());
-            with.set_angles(object.angles());
+            with.angles = object.angles;
             with
         };
         let mut mesh = object.mesh().clone();
@@ -426,7 +426,7 @@ fn the_probe_shows_the_channels_that_are_mixed() {
     for shading in Shading::ALL {
         let (shown, mut vga) = (look(&scene, shading), Vga::new());
         let mut renderer = Renderer::new();
-        renderer.set_shading(shading);
+        renderer.settings.accuracy = Some(shading.into());
         renderer.draw(&scene, &mut vga).expect("a legal scene");
         let mut seen = 0;
         for ((face, shades), &drawn) in shown.faces.iter().zip(&shown.shades).zip(vga.pixels()) {
@@ -447,7 +447,7 @@ fn the_probe_shows_the_channels_that_are_mixed() {
     let (mut by_probe, mut fresh) = (Vga::new(), Vga::new());
     probe.renderer().draw(&scene, &mut by_probe).expect("a legal scene");
     let mut renderer = Renderer::new();
-    renderer.set_shading(Shading::Phong);
+    renderer.settings.accuracy = Some(Shading::Phong.into());
     renderer.draw(&scene, &mut fresh).expect("a legal scene");
     assert!(by_probe.pixels() == fresh.pixels());
 }
@@ -459,7 +459,7 @@ fn the_probe_numbers_any_triangle() {
     for (n, x) in [(300_u32, -0.8), (20, 0.8)] {
         let wall = scene.add(Object::new(shapes::wall(n, n / 2)));
         scene[wall].position = Vec3::new(x, 0.0, 0.0);
-        scene[wall].set_angles([0.3, 0.2, 0.0].map(Angle::from_radians));
+        scene[wall].angles = [0.3, 0.2, 0.0].map(Angle::from_radians);
     }
     scene.add_light(Light::lamp([0.3, 0.4, 1.0], 3.0));
     let (truth, shown) = (truth(&scene), look(&scene, Shading::GouraudHyperbolic));
@@ -473,9 +473,9 @@ fn the_probe_numbers_any_triangle() {
     assert!(errors.figures().max <= 1.0, "{:?}", errors.figures());
 
     let mut torus = crate::support::scenes::framed(shapes::torus(48, 24));
-    torus.objects_mut()[0].set_angles([0.3, 0.2, 0.0].map(Angle::from_radians));
+    torus.objects_mut()[0].angles = [0.3, 0.2, 0.0].map(Angle::from_radians);
     let mut probe = probe(Shading::Gouraud88Reseeded);
-    probe.renderer().settings_mut().vertex_path = VertexPath::Integer;
+    probe.renderer().settings.vertex_path = VertexPath::Integer;
     let shown = probe.look(&torus, SCREEN).expect("a legal scene");
     let errors = compare(&self::truth(&torus).draw(Standard::Gouraud), &shown);
     // Angles of 16 bits, a table sine and normals of 16 bits are off by less than 1/1,000 of what a shade takes.
@@ -558,7 +558,7 @@ fn n7_a_highlight_inside_a_face_against_the_truth() {
         Material { ambient: 0.1, diffuse: 0.2, specular: 0.6, shininess: 60.0, ..Material::white() };
     scene.add_light(Light::sun([0.2, 0.1, 1.0]));
     for angle in [0.0, 0.05, 0.1, 0.15] {
-        scene[wall].set_angles([0.5 * angle, angle, 2.0 * angle].map(Angle::from_radians));
+        scene[wall].angles = [0.5 * angle, angle, 2.0 * angle].map(Angle::from_radians);
         for (shading, most) in [
             // The loop at every pixel: a half, and vertices.
             (Shading::Phong, 1.0),
@@ -902,7 +902,7 @@ fn n2_models_with_faults_have_no_specks() {
             let mut probe = probe(Shading::Gouraud88Reseeded);
             // The others are right for what is convex and far to near.
             let way = if i == 1 { HiddenSurfaces::ScanLine } else { HiddenSurfaces::DepthBuffer };
-            probe.renderer().settings_mut().hidden_surfaces = Some(way);
+            probe.renderer().settings.hidden_surfaces = Some(way);
             let specks = specks(&scene, &mut probe);
             tried.worst("specks", specks.len() as f64);
             if !specks.is_empty() {
@@ -953,11 +953,11 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
                     }
                     for setting in 0..12 {
                         let mut probe = probe(Shading::ALL[setting % Shading::ALL.len()]);
-                        probe.renderer().settings_mut().hidden_surfaces = Some(way);
+                        probe.renderer().settings.hidden_surfaces = Some(way);
                         match setting {
-                            10 => probe.renderer().settings_mut().vertex_path = VertexPath::Integer,
+                            10 => probe.renderer().settings.vertex_path = VertexPath::Integer,
                             11 => {
-                                probe.renderer().set_max_error(4.0);
+                                probe.renderer().settings.accuracy = Some(Accuracy::WithinError(4.0));
                             }
                             _ => {}
                         }

@@ -210,11 +210,11 @@ fn a_film_has_as_many_frames_as_it_says() {
     let mut film = create(2);
     film.add(&made).expect("added");
     let error = film.add(&larger).expect_err("another size");
-    assert!(matches!(error.kind(), ExportErrorKind::Picture(PictureError::OtherSize { .. })), "{error}");
+    assert!(matches!(error.kind, ExportErrorKind::Picture(PictureError::OtherSize { .. })), "{error}");
     let fixed = FilmColors::Palette(Box::new(*GREY.colors()));
     let other = ApngFrame::new(None, &picture(&frames[0]), Scale::One, &fixed).expect("a frame");
     let error = film.add(&other).expect_err("other colours");
-    assert!(matches!(error.kind(), ExportErrorKind::Picture(PictureError::OtherColors)), "{error}");
+    assert!(matches!(error.kind, ExportErrorKind::Picture(PictureError::OtherColors)), "{error}");
     drop(film);
     assert!(create(0).finish().is_err());
     assert_eq!(std::fs::read_dir(directory.path()).expect("a directory").count(), 0, "nothing is left");

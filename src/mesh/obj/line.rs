@@ -124,10 +124,10 @@ pub(super) fn numbers<'a, const N: usize>(
 
 /// A word as an error shows it: on one line, and short, for words may be a megabyte long.
 pub(super) fn shown(word: &[u8]) -> String {
-    const MOST: usize = 40;
-    let text = String::from_utf8_lossy(&word[..word.len().min(MOST)]);
+    const MAX: usize = 40;
+    let text = String::from_utf8_lossy(&word[..word.len().min(MAX)]);
     let mut shown = text.replace(char::is_control, "\u{FFFD}");
-    if word.len() > MOST {
+    if word.len() > MAX {
         shown.push('…');
     }
     shown.to_owned()

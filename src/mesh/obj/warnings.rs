@@ -3,7 +3,7 @@
 use std::string::String;
 use std::vec::Vec;
 
-/// Warnings, of which the first [`MOST`](Self::MOST) are kept and the others counted: a file may give cause for one in
+/// Warnings, of which the first [`MAX`](Self::MAX) are kept and the others counted: a file may give cause for one in
 /// every line, and each holds a path as long as the file likes.
 #[derive(Default)]
 pub(super) struct Warnings {
@@ -12,10 +12,10 @@ pub(super) struct Warnings {
 }
 
 impl Warnings {
-    const MOST: usize = 100;
+    const MAX: usize = 100;
 
     pub(super) fn push(&mut self, warning: impl FnOnce() -> String) {
-        if self.kept.len() < Self::MOST {
+        if self.kept.len() < Self::MAX {
             self.kept.push(warning());
         } else {
             self.more += 1;

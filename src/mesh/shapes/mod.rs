@@ -36,7 +36,7 @@ pub use teapot::teapot;
 pub use wall::wall;
 
 /// The max number of slices, stacks or segments.
-const MOST: u32 = 4096;
+const MAX_PARTS: u32 = 4096;
 
 /// A name, and the shape in its usual subdivision.
 type Row = (&'static str, fn() -> Mesh);

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use super::{MOST, quad, toward_zero};
+use super::{MAX_PARTS, quad, toward_zero};
 use crate::mesh::Mesh;
 use crate::mesh::wide::narrow;
 
@@ -32,7 +32,7 @@ fn band(positions: &[Vec3], slices: u32, lower: u32, upper: u32, triangles: &mut
 /// (at least 2). 2 · slices · (stacks − 1) triangles.
 #[must_use]
 pub fn sphere(slices: u32, stacks: u32) -> Mesh {
-    let (slices, stacks) = (slices.clamp(3, MOST), stacks.clamp(2, MOST));
+    let (slices, stacks) = (slices.clamp(3, MAX_PARTS), stacks.clamp(2, MAX_PARTS));
     // From the south pole up.
     let mut positions = alloc::vec![Vec3::NEG_Y];
     let mut normals = alloc::vec![Vec3::NEG_Y];
@@ -70,7 +70,7 @@ pub fn sphere(slices: u32, stacks: u32) -> Mesh {
 pub fn torus(u: u32, v: u32) -> Mesh {
     const RING: f64 = 0.7;
     const TUBE: f64 = 0.3;
-    let (u, v) = (u.clamp(3, MOST), v.clamp(3, MOST));
+    let (u, v) = (u.clamp(3, MAX_PARTS), v.clamp(3, MAX_PARTS));
     let mut positions = Vec::new();
     let mut normals = Vec::new();
     for i in 0..u {
@@ -101,7 +101,7 @@ pub fn torus(u: u32, v: u32) -> Mesh {
 /// At the apex each slice has a vertex of its own, with the normal of the slice's middle.
 #[must_use]
 pub fn cone(slices: u32, stacks: u32) -> Mesh {
-    let (slices, stacks) = (slices.clamp(3, MOST), stacks.clamp(1, 256));
+    let (slices, stacks) = (slices.clamp(3, MAX_PARTS), stacks.clamp(1, 256));
     let radius = libm::sqrt(0.75);
     // A unit of slope: the side falls by 3/2 over √¾ outward.
     let (out, up) = (libm::sqrt(0.75), 0.5);
@@ -142,7 +142,7 @@ pub fn cone(slices: u32, stacks: u32) -> Mesh {
 /// triangles.
 #[must_use]
 pub fn cylinder(slices: u32, stacks: u32) -> Mesh {
-    let (slices, stacks) = (slices.clamp(3, MOST), stacks.clamp(1, MOST));
+    let (slices, stacks) = (slices.clamp(3, MAX_PARTS), stacks.clamp(1, MAX_PARTS));
     let half = libm::sqrt(0.5);
     let mut positions = Vec::new();
     let mut normals = Vec::new();

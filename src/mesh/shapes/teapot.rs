@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use super::{MOST, toward_zero};
+use super::{MAX_PARTS, toward_zero};
 use crate::mesh::wide::{Wide, add, cross, length, narrow, scale, sub};
 use crate::mesh::{Mesh, topology};
 
@@ -73,7 +73,7 @@ type Patch = [[Wide; 4]; 4];
 /// It is not closed: the spout is open, and there is a gap about the lid.
 #[must_use]
 pub fn teapot(segments: u32) -> Mesh {
-    let n = segments.clamp(2, MOST / 8);
+    let n = segments.clamp(2, MAX_PARTS / 8);
     let mut builder = Builder { n, positions: Vec::new(), normals: Vec::new(), triangles: Vec::new() };
     for profile in REVOLVED {
         let mut patch = profile.map(|[r, t, z]| [[r, 0.0, z], [r, -t, z], [t, -r, z], [0.0, -r, z]]);

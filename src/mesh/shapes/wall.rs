@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use glam::{Vec2, Vec3};
 
-use super::{MOST, toward_zero};
+use super::{MAX_PARTS, toward_zero};
 use crate::mesh::Mesh;
 
 /// A square in the plane z = 0 with its corners on the unit sphere, facing +z, cut into
@@ -12,7 +12,7 @@ use crate::mesh::Mesh;
 /// (0, 0) in its lower left corner to (1, 1).
 #[must_use]
 pub fn wall(columns: u32, rows: u32) -> Mesh {
-    let (columns, rows) = (columns.clamp(1, MOST), rows.clamp(1, MOST));
+    let (columns, rows) = (columns.clamp(1, MAX_PARTS), rows.clamp(1, MAX_PARTS));
     let half = libm::sqrt(0.5);
     let place = |i: u32, of: u32| toward_zero(half * (2.0 * f64::from(i) / f64::from(of) - 1.0));
     // Both at most 4,096: exact.

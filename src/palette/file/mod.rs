@@ -40,7 +40,9 @@ mod vga;
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
 
-pub use error::{Excerpt, PaletteError, PaletteErrorKind, Place};
+#[doc(hidden)]
+pub use error::Excerpt;
+pub use error::{PaletteError, PaletteErrorKind, Place};
 
 use super::Palette;
 
@@ -124,6 +126,7 @@ pub static FORMATS: [Format; 6] = [
 impl Format {
     /// The format of a name, as in [`FORMATS`].
     #[must_use]
+    #[doc(hidden)]
     pub fn by_name(name: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|format| format.name == name)
     }
@@ -157,6 +160,7 @@ impl Format {
     ///
     /// # Errors
     /// A `PaletteError` with the line or the offset.
+    #[doc(hidden)]
     pub fn read(&self, bytes: &[u8]) -> Result<Palette, PaletteError> {
         if bytes.is_empty() {
             return Err(PaletteError::at_offset(0, PaletteErrorKind::Empty));

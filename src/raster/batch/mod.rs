@@ -47,6 +47,7 @@ use triangles::{FrameLayout, LANES, MAX_WIDTH};
 impl<D: Cell> Raster<'_, D> {
     /// Draws the triangles of a batch, one after the other: the bytes, depths and counts are those of
     /// [`triangle`](Self::triangle) called for each.
+    #[doc(hidden)]
     pub fn batch(&mut self, batch: &Batch) -> DrawStats {
         self.draw_batch::<true>(batch)
     }

@@ -164,6 +164,7 @@ impl<D: Cell> Raster<'_, D> {
     ///
     /// # Errors
     /// `scratch` is too small for so many faces. Nothing is drawn then.
+    #[doc(hidden)]
     pub fn scan_line(
         &mut self,
         faces: &[([Vertex; 3], Interpolation)],

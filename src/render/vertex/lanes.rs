@@ -180,7 +180,7 @@ mod tests {
                 let camera = Camera { eye, near, ..Camera::default() };
                 let corners = [Vec3::NEG_ONE, Vec3::ONE, Vec3::X];
                 let mut object = Object::new(Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).expect("a legal mesh"));
-                object.set_angles(angles.map(crate::Angle::from_radians));
+                object.angles = angles.map(crate::Angle::from_radians);
                 (object.position, object.scale) = (position.into(), scale);
                 ObjectView::new(&View::new(&camera, Screen::MODE_13H).expect("a legal camera"), &object)
             },

@@ -144,7 +144,7 @@ impl<'a> Builder<'a> {
                 if is_framed {
                     self.swept.push(Swept::new(&object, turning, path.as_ref()));
                 }
-                let start = object.angles();
+                let start = object.angles;
                 let id = self.scene.add(object);
                 if turns != [0.0; 3] {
                     // A round takes the duration.

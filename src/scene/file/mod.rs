@@ -11,7 +11,7 @@
 //! let no_files = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
 //! let mut scene = Scene::from_toml(text, "torus.toml", no_files)?.scene;
 //! scene.set_time(scene.duration / 4.0);
-//! assert_eq!(scene.objects()[0].angles()[1].to_degrees(), 90.0);
+//! assert_eq!(scene.objects()[0].angles[1].to_degrees(), 90.0);
 //!
 //! let error = Scene::from_toml("objects = [{ shap = 'torus' }]", "torus.toml", no_files).unwrap_err();
 //! assert!(error.to_string().starts_with("torus.toml:1:14: key `objects[0].shap`: unknown key; known are name, shape"));

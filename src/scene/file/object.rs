@@ -116,7 +116,7 @@ impl Objects {
             object.up_axis = up.0.0;
         }
         if let Some(List(degrees)) = layout.angles {
-            object.set_angles(degrees.map(|degrees| Angle::from_degrees(degrees.0)));
+            object.angles = degrees.map(|degrees| Angle::from_degrees(degrees.0));
         }
         self.materials(layout, &mut object, named)?;
         Ok(positions

@@ -22,31 +22,31 @@ const SHAPES: [Shape; 7] = [
     Shape { name: "cube", subdivisions: &[], triangles: |_| 12, make: |_| shapes::cube() },
     Shape {
         name: "sphere",
-        subdivisions: &[("slices", 3, MOST, 48), ("stacks", 2, MOST, 24)],
+        subdivisions: &[("slices", 3, MAX_PARTS, 48), ("stacks", 2, MAX_PARTS, 24)],
         triangles: |n| 2 * product(n),
         make: |n| shapes::sphere(n[0], n[1]),
     },
     Shape {
         name: "torus",
-        subdivisions: &[("around the axis", 3, MOST, 48), ("around the tube", 3, MOST, 24)],
+        subdivisions: &[("around the axis", 3, MAX_PARTS, 48), ("around the tube", 3, MAX_PARTS, 24)],
         triangles: |n| 2 * product(n),
         make: |n| shapes::torus(n[0], n[1]),
     },
     Shape {
         name: "cone",
-        subdivisions: &[("slices", 3, MOST, 48), ("stacks", 1, 256, 8)],
+        subdivisions: &[("slices", 3, MAX_PARTS, 48), ("stacks", 1, 256, 8)],
         triangles: |n| 2 * product(n),
         make: |n| shapes::cone(n[0], n[1]),
     },
     Shape {
         name: "cylinder",
-        subdivisions: &[("slices", 3, MOST, 48), ("stacks", 1, MOST, 8)],
+        subdivisions: &[("slices", 3, MAX_PARTS, 48), ("stacks", 1, MAX_PARTS, 8)],
         triangles: |n| 2 * product(n) + 2 * u64::from(n[0]),
         make: |n| shapes::cylinder(n[0], n[1]),
     },
     Shape {
         name: "wall",
-        subdivisions: &[("columns", 1, MOST, 16), ("rows", 1, MOST, 16)],
+        subdivisions: &[("columns", 1, MAX_PARTS, 16), ("rows", 1, MAX_PARTS, 16)],
         triangles: |n| 2 * product(n),
         make: |n| shapes::wall(n[0], n[1]),
     },
@@ -59,7 +59,7 @@ const SHAPES: [Shape; 7] = [
 ];
 
 /// The max number of most kinds of subdivisions.
-const MOST: u32 = 4096;
+const MAX_PARTS: u32 = 4096;
 
 fn product(subdivisions: &[u32]) -> u64 {
     subdivisions.iter().map(|&n| u64::from(n)).product()

@@ -42,7 +42,7 @@ pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
             panic!("{corners:?}")
         };
         let mut renderer = Renderer::new();
-        renderer.set_shading(random.one_of(&shadings));
+        renderer.settings.accuracy = Some(random.one_of(&shadings).into());
         let judged = judged(&mut renderer, &lit(scene(mesh)), SCREEN);
         assert!(judged.counts.iter().all(|&times| times <= 1), "parts of {corners:?} overlap");
         let shades = judged.triangles.iter().flat_map(|(vertices, _)| vertices.map(|v| f64::from(v.shade().to_bits())));

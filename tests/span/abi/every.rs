@@ -7,7 +7,7 @@
 use mode13h::glam::Vec3;
 use mode13h::mesh::Mesh;
 use mode13h::raster::{Batch, DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
-use mode13h::render::{HiddenSurfaces, Renderer, Shading};
+use mode13h::render::{Accuracy, HiddenSurfaces, Renderer, Shading};
 use mode13h::scene::{Object, Scene};
 use mode13h::span::depth::Cell;
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
@@ -218,12 +218,12 @@ fn s7_frames_keep_the_rules() {
         let (width, height) = random.one_of(&[(64_u32, 40_u32), (33, 77), (100, 30)]);
         try_kernels(&format!("case {case}, {shading:?}"), &mut random, &mut tried, |kernel| {
             let mut renderer = Renderer::new();
-            renderer.set_kernel(kernel);
-            renderer.settings_mut().hidden_surfaces = way;
+            renderer.settings.kernel = kernel;
+            renderer.settings.hidden_surfaces = way;
             if is_budget {
-                renderer.set_max_error(2.0);
+                renderer.settings.accuracy = Some(Accuracy::WithinError(2.0));
             } else if let Some(shading) = shading {
-                renderer.set_shading(shading);
+                renderer.settings.accuracy = Some(shading.into());
             }
             // Of its own, so that the mesh and all that belongs to it is guarded as well.
             let scene = own_scene(&scene);
@@ -244,7 +244,7 @@ fn own_scene(scene: &Scene) -> Scene {
     for object in scene.objects_mut() {
         let mesh = object.mesh().clone();
         let mut own = Object::new(mesh);
-        own.set_angles(object.angles());
+        own.angles = object.angles;
         (own.pivot, own.position, own.scale, own.up_axis) =
             (object.pivot, object.position, object.scale, object.up_axis);
         own.materials.clone_from(&object.materials);

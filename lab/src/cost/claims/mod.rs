@@ -19,7 +19,7 @@ use self::figures::{Figures, Sphere};
 use self::scenes::SLICES;
 use super::accuracy::{against, between};
 use super::configuration::Configuration;
-use super::interleaved::{Outcome, Spent, contest};
+use super::interleaved::{Outcome, Spent, run_interleaved};
 use super::statistics::{Ratio, Rng, quartiles};
 use super::{Claim, CostError};
 use crate::truth::Standard;
@@ -89,7 +89,7 @@ pub(super) fn claims(
     let ways: Vec<Configuration<'_>> = list.iter().map(|(shading, _)| Configuration::shading(*shading)).collect();
     let entrants: Vec<(&Configuration<'_>, &[Scene])> =
         ways.iter().zip(&list).map(|(way, (_, scene))| (way, scenes[*scene].as_slice())).collect();
-    let Outcome { samples, .. } = contest(&entrants, base, spent, &|share| progress(share / 2.0))?;
+    let Outcome { samples, .. } = run_interleaved(&entrants, base, spent, &|share| progress(share / 2.0))?;
     let times = Times { times: (0..list.len()).map(|way| samples.of(way)).collect(), list, seed: spent.seed };
 
     let mut spheres = Vec::new();

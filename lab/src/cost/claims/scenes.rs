@@ -32,10 +32,7 @@ fn turned(mesh: Mesh, shiny: bool) -> Vec<Scene> {
     }
     let frame = |frame: u32| {
         let angle = TAU * f64::from(frame) / f64::from(FRAMES) + 0.2;
-        scene
-            .objects_mut()
-            .iter_mut()
-            .for_each(|object| object.set_angles([0.35, angle, 0.1].map(Angle::from_radians)));
+        scene.objects_mut().iter_mut().for_each(|object| object.angles = [0.35, angle, 0.1].map(Angle::from_radians));
         scene.clone()
     };
     (0..FRAMES).map(frame).collect()
@@ -57,7 +54,7 @@ pub(super) fn floor() -> Vec<Scene> {
     let mut scene = Scene::new();
     let mut floor = Object::new(shapes::wall(1, 1));
     floor.scale = 4.0;
-    floor.set_angles([-TAU / 4.0, 0.0, 0.0].map(Angle::from_radians));
+    floor.angles = [-TAU / 4.0, 0.0, 0.0].map(Angle::from_radians);
     scene.add(floor);
     scene.add_light(Light::lamp([-1.5, 1.0, 2.5], 8.0));
     let frame = |frame: u32| {

@@ -49,7 +49,7 @@ fn color_of(error: f32) -> u8 {
 
 fn uri(pixels: &[u8], colors: [Rgb; 256]) -> Option<String> {
     let palette = Palette::from_colors(colors);
-    let file = Png::INDEXED.encode(&Picture::mode_13h(pixels, &palette)).ok()?;
+    let file = Png::default().encode(&Picture::mode_13h(pixels, &palette)).ok()?;
     Some(format!("data:image/png;base64,{}", STANDARD.encode(file)))
 }
 

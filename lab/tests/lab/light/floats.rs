@@ -104,7 +104,7 @@ const FLOATS: &[Row] = &[
     ("Object.pivot", 3, |s, bad, i| s.objects_mut()[0].pivot[i] = bad, "object 0"),
     ("Object.position", 3, |s, bad, i| s.objects_mut()[0].position[i] = bad, "object 0"),
     ("Object.scale", 1, |s, bad, _| s.objects_mut()[0].scale = bad, "object 0"),
-    ("Object.angles", 3, |s, bad, i| s.objects_mut()[0].set_angles(one(bad, i).map(Angle::from_radians)), "object 0"),
+    ("Object.angles", 3, |s, bad, i| s.objects_mut()[0].angles = one(bad, i).map(Angle::from_radians), "object 0"),
     (
         "PaletteAnimation::Fade.period",
         1,

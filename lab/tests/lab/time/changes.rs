@@ -52,12 +52,12 @@ impl Settings {
     pub(super) fn renderer(&self) -> Renderer {
         let Self { accuracy, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
         let mut renderer = Renderer::new();
-        renderer.settings_mut().accuracy = *accuracy;
-        renderer.settings_mut().mapping = *mapping;
-        renderer.settings_mut().mipmaps = *mipmaps;
-        renderer.settings_mut().vertex_path = *vertex_path;
-        renderer.set_kernel(*kernel);
-        renderer.settings_mut().hidden_surfaces = *hidden_surfaces;
+        renderer.settings.accuracy = *accuracy;
+        renderer.settings.mapping = *mapping;
+        renderer.settings.mipmaps = *mipmaps;
+        renderer.settings.vertex_path = *vertex_path;
+        renderer.settings.kernel = *kernel;
+        renderer.settings.hidden_surfaces = *hidden_surfaces;
         for (object, effect, on) in forced {
             match object {
                 Some(object) => renderer.force_for(*object, *effect, *on),
@@ -97,7 +97,7 @@ const fn unseen(name: &'static str, apply: fn(&mut World, &mut Random)) -> Chang
 pub(super) const EXEMPT: [(&str, &str); 4] = [
     ("Shipped.name", "of a file that is compiled in"),
     ("Shipped.text", "a file that is compiled in"),
-    ("Renderer::settings_mut", "its fields are changed one by one"),
+    ("Renderer.settings", "its fields are changed one by one"),
     ("Settings.overrides", "changed by Renderer::force"),
 ];
 
@@ -197,7 +197,7 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("Preferences.mapping", |w, r| {
         w.settings.mapping = None;
-        w.kept.settings_mut().mapping = None;
+        w.kept.settings.mapping = None;
         let (before, after) = two_mappings(r);
         w.scene.preferences.mapping = before;
         textured(w, r);
@@ -211,7 +211,7 @@ pub(super) const CHANGES: &[Change] = &[
         // By a lamp near a large face, which is split otherwise then.
         if r.within(0, 1) == 1 {
             let mut wall = Object::new(shapes::wall(1, 1));
-            wall.set_angles([0.0, 0.2, 0.0].map(Angle::from_radians));
+            wall.angles = [0.0, 0.2, 0.0].map(Angle::from_radians);
             w.scene.objects_mut()[0] = wall;
             while let Some(&id) = w.scene.light_ids().get(3) {
                 w.scene.remove_light(id);
@@ -219,7 +219,7 @@ pub(super) const CHANGES: &[Change] = &[
             w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
             w.scene.preferences.max_error = None;
             w.settings.accuracy = None;
-            w.kept.settings_mut().accuracy = None;
+            w.kept.settings.accuracy = None;
             w.scene.preferences.tessellation = Some(4.0);
             drawn(w);
             w.scene.preferences.tessellation = Some(between(r, 0.5, 1.0));
@@ -302,7 +302,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Object::rotate_x", |w, r| one_object(w, r).rotate_x(Angle::from_radians(r.unit()))),
     seen("Object::rotate_y", |w, r| one_object(w, r).rotate_y(Angle::from_radians(r.unit()))),
     seen("Object::rotate_z", |w, r| one_object(w, r).rotate_z(Angle::from_radians(r.unit()))),
-    seen("Object::set_angles", |w, r| one_object(w, r).set_angles(angles(r).map(Angle::from_radians))),
+    seen("Object.angles", |w, r| one_object(w, r).angles = angles(r).map(Angle::from_radians)),
     // Material
     unseen("Material.name", |w, r| one_material(w, r).name = text(r)),
     seen("Material.ambient", |w, r| one_material(w, r).ambient = between(r, 0.0, 0.6)),
@@ -362,61 +362,58 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Light::Lamp.range", |w, r| lamp(w, r, |r, _, _, range, _| *range = between(r, 0.5, 4.0))),
     seen("Light::Lamp.color", |w, r| lamp(w, r, |r, _, _, _, color| *color = channels(r))),
     // The renderer
-    seen("Renderer::set_shading", |w, r| {
-        // Half the time two that take the same vertices and stages.
-        let linear = [Shading::GouraudVintage, Shading::Gouraud88, Shading::Gouraud1616];
-        if r.within(0, 1) == 1 {
-            w.kept.set_shading(r.one_of(&linear));
-            drawn(w);
-        }
-        let shading = if r.within(0, 1) == 1 { r.one_of(&linear) } else { r.one_of(&Shading::ALL) };
-        w.settings.accuracy = Some(Accuracy::Shading(shading));
-        w.kept.set_shading(shading);
-    }),
     seen("Settings.accuracy", |w, r| {
-        let shades = sometimes(r, |r| between(r, 0.5, 16.0));
-        w.settings.accuracy = shades.map(Accuracy::WithinError);
-        w.kept.settings_mut().accuracy = w.settings.accuracy;
-    }),
-    seen("Renderer::set_max_error", |w, r| {
-        let shades = between(r, 0.5, 16.0);
-        w.settings.accuracy = Some(Accuracy::WithinError(shades));
-        w.kept.set_max_error(shades);
+        // Half the time two shadings that take the same vertices and stages.
+        let linear = [Shading::GouraudVintage, Shading::Gouraud88, Shading::Gouraud1616];
+        let accuracy = match r.within(0, 2) {
+            0 => {
+                if r.within(0, 1) == 1 {
+                    w.kept.settings.accuracy = Some(r.one_of(&linear).into());
+                    drawn(w);
+                }
+                let shading = if r.within(0, 1) == 1 { r.one_of(&linear) } else { r.one_of(&Shading::ALL) };
+                Some(Accuracy::Shading(shading))
+            }
+            1 => sometimes(r, |r| between(r, 0.5, 16.0)).map(Accuracy::WithinError),
+            _ => Some(Accuracy::WithinError(between(r, 0.5, 16.0))),
+        };
+        w.settings.accuracy = accuracy;
+        w.kept.settings.accuracy = accuracy;
     }),
     seen("Settings.mapping", |w, r| {
         // The plan's decision is the same for two of them, and the object's vertices are.
         let (before, after) = two_mappings(r);
-        w.kept.settings_mut().mapping = before;
+        w.kept.settings.mapping = before;
         textured(w, r);
         w.settings.mapping = after;
-        w.kept.settings_mut().mapping = after;
+        w.kept.settings.mapping = after;
     }),
     seen("Settings.mipmaps", |w, r| {
         textured(w, r);
         w.settings.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
-        w.kept.settings_mut().mipmaps = w.settings.mipmaps;
+        w.kept.settings.mipmaps = w.settings.mipmaps;
     }),
     seen("Settings.vertex_path", |w, r| {
         w.settings.vertex_path = r.one_of(&VertexPath::ALL);
-        w.kept.settings_mut().vertex_path = w.settings.vertex_path;
+        w.kept.settings.vertex_path = w.settings.vertex_path;
     }),
-    unseen("Renderer::set_kernel", |w, r| {
+    unseen("Settings.kernel", |w, r| {
         w.settings.kernel = r.one_of(&Kernel::available().collect::<Vec<_>>());
-        w.kept.set_kernel(w.settings.kernel);
+        w.kept.settings.kernel = w.settings.kernel;
     }),
     seen("Settings.hidden_surfaces", |w, r| {
         // Two bodies that pass through each other, so that each way shows them otherwise.
         if r.within(0, 1) == 1 {
             let mut through = Object::new(shapes::torus(9, 6));
-            through.set_angles(angles(r).map(Angle::from_radians));
+            through.angles = angles(r).map(Angle::from_radians);
             w.scene.objects_mut()[0] = Object::new(shapes::cube());
             w.scene.add(through);
             fewer_objects(w);
-            w.kept.settings_mut().hidden_surfaces = Some(HiddenSurfaces::PainterOrder);
+            w.kept.settings.hidden_surfaces = Some(HiddenSurfaces::PainterOrder);
             drawn(w);
         }
         w.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
-        w.kept.settings_mut().hidden_surfaces = w.settings.hidden_surfaces;
+        w.kept.settings.hidden_surfaces = w.settings.hidden_surfaces;
     }),
     seen("Renderer::force", |w, r| {
         let (effect, on) = forced(r);
@@ -561,7 +558,7 @@ pub(super) fn start(random: &mut Random) -> Scene {
                 let mut object = Object::new(mesh(random));
                 object.position = place(random, 0.6);
                 object.scale = 0.6;
-                object.set_angles(angles(random).map(Angle::from_radians));
+                object.angles = angles(random).map(Angle::from_radians);
                 scene.add(object);
             }
         }
@@ -672,7 +669,7 @@ fn object(random: &mut Random) -> Object {
     let mut object = Object::new(mesh(random));
     object.position = place(random, 0.7);
     object.scale = between(random, 0.4, 1.0);
-    object.set_angles(angles(random).map(Angle::from_radians));
+    object.angles = angles(random).map(Angle::from_radians);
     object.materials[0] = material(random);
     object
 }
@@ -785,7 +782,7 @@ fn textured(world: &mut World, random: &mut Random) {
     let object = one_object(world, random);
     if object.mesh().texcoords().is_none() {
         replace_mesh(object, shapes::wall(1, 1));
-        object.set_angles([0.2, 0.9, 0.1].map(Angle::from_radians));
+        object.angles = [0.2, 0.9, 0.1].map(Angle::from_radians);
         object.scale = 1.0;
     }
     if object.materials[0].texture.is_none() {
@@ -834,7 +831,7 @@ fn along(world: &mut World, random: &mut Random, path: impl FnOnce(&mut Random) 
 /// The object with another mesh, all else as it was.
 fn replace_mesh(object: &mut Object, mesh: Mesh) {
     let mut new = Object::new(mesh);
-    new.set_angles(object.angles());
+    new.angles = object.angles;
     let old = std::mem::replace(object, new);
     (object.name, object.materials, object.pivot) = (old.name, old.materials, old.pivot);
     (object.position, object.scale, object.up_axis) = (old.position, old.scale, old.up_axis);

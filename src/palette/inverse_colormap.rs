@@ -3,7 +3,7 @@
 use alloc::boxed::Box;
 use core::fmt;
 
-use super::{Palette, Rgb, Search};
+use super::{NearestColors, Palette, Rgb};
 
 /// The nearest entry of a palette for every colour of 5 bits a channel.
 ///
@@ -11,25 +11,25 @@ use super::{Palette, Rgb, Search};
 /// 31 becomes 255. The nearest is that by the colours that the card shows; the first of those equally near.
 ///
 /// ```
-/// use mode13h::palette::{Nearest, Rgb, builtin};
-/// let nearest = Nearest::new(&builtin::GREY);
+/// use mode13h::palette::{InverseColormap, Rgb, builtin};
+/// let nearest = InverseColormap::new(&builtin::GREY);
 /// assert_eq!(nearest.get(Rgb::new(255, 255, 255)), 252, "the first of four that the card shows as white");
 /// ```
 #[derive(Clone, PartialEq, Eq)]
 #[doc(hidden)]
-pub struct Nearest {
-    entries: Box<[u8; Nearest::BYTES]>,
+pub struct InverseColormap {
+    entries: Box<[u8; InverseColormap::BYTES]>,
     spread: u8,
 }
 
-impl Nearest {
+impl InverseColormap {
     /// The size of the map: 32 KiB.
     pub const BYTES: usize = 32_768;
 
     /// Makes the map of a palette.
     #[must_use]
     pub fn new(palette: &Palette) -> Self {
-        let search = Search::of_shown(palette);
+        let search = NearestColors::of_shown(palette);
         let mut entries = Box::new([0; Self::BYTES]);
         for (i, entry) in (0_u16..).zip(entries.iter_mut()) {
             // 5 bits each.
@@ -68,13 +68,13 @@ impl Nearest {
     }
 }
 
-impl fmt::Debug for Nearest {
+impl fmt::Debug for InverseColormap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Nearest").field("spread", &self.spread).finish_non_exhaustive()
+        f.debug_struct("InverseColormap").field("spread", &self.spread).finish_non_exhaustive()
     }
 }
 
-/// See [`Nearest::spread`].
+/// See [`InverseColormap::spread`].
 ///
 /// Measured on colours between neighbours (`tests/palette_tables.rs`), the means of blocks of 8 × 8
 /// are off, in the palette of 16 ramps, by 7.3 without dither and 1.9 with this spread, 20; in the cube

@@ -8,22 +8,22 @@
 use alloc::boxed::Box;
 use core::fmt;
 
-use super::{Palette, Rgb, Search};
+use super::{NearestColors, Palette, Rgb};
 
 /// A table of 256 × 256 bytes.
 ///
 /// ```
-/// use mode13h::palette::{Rgb, Table, builtin};
-/// let fog = Table::fog(&builtin::GREY, Rgb::new(128, 128, 128));
+/// use mode13h::palette::{Rgb, Lut64K, builtin};
+/// let fog = Lut64K::fog(&builtin::GREY, Rgb::new(128, 128, 128));
 /// assert_eq!(fog.get(0, 77), 77);
 /// assert_eq!(fog.get(255, 77), fog.get(255, 200));
 /// assert_eq!(fog.as_array()[255 << 8 | 77], fog.get(255, 77));
 /// ```
 #[derive(Clone, PartialEq, Eq)]
 #[doc(hidden)]
-pub struct Table(Box<[u8; Table::BYTES]>);
+pub struct Lut64K(Box<[u8; Lut64K::BYTES]>);
 
-impl Table {
+impl Lut64K {
     /// 64 KiB.
     pub(crate) const BYTES: usize = 65_536;
 
@@ -49,7 +49,7 @@ impl Table {
     /// `colors[texel]·shade/255`.
     #[must_use]
     pub fn shades(palette: &Palette, colors: &[Rgb; 256]) -> Self {
-        let search = Search::of_shown(palette);
+        let search = NearestColors::of_shown(palette);
         Self::from_fn(|shade, texel| search.nearest(Rgb::BLACK.mix(colors[usize::from(texel)], shade)))
     }
 
@@ -58,7 +58,7 @@ impl Table {
     #[must_use]
     pub fn fog(palette: &Palette, fog: Rgb) -> Self {
         let shown = palette.on_dac();
-        let search = Search::of_shown(palette);
+        let search = NearestColors::of_shown(palette);
         Self::from_fn(|level, byte| match level {
             0 => byte,
             _ => search.nearest(shown.color(byte).mix(fog, level)),
@@ -71,7 +71,7 @@ impl Table {
     #[must_use]
     pub fn blend(palette: &Palette, opacity: u8) -> Self {
         let shown = palette.on_dac();
-        let search = Search::of_shown(palette);
+        let search = NearestColors::of_shown(palette);
         Self::from_fn(|new, old| match opacity {
             255 => new,
             0 => old,
@@ -86,7 +86,7 @@ impl Table {
     #[must_use]
     pub fn add(palette: &Palette) -> Self {
         let shown = palette.on_dac();
-        let search = Search::of_shown(palette);
+        let search = NearestColors::of_shown(palette);
         Self::from_fn(|new, old| match (shown.color(new), shown.color(old)) {
             (Rgb::BLACK, _) => old,
             (_, Rgb::BLACK) => new,
@@ -109,8 +109,8 @@ impl Table {
     }
 }
 
-impl fmt::Debug for Table {
+impl fmt::Debug for Lut64K {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Table").finish_non_exhaustive()
+        f.debug_struct("Lut64K").finish_non_exhaustive()
     }
 }

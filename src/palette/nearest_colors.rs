@@ -21,16 +21,34 @@ const WIDTH: u8 = 32;
 /// A search for the nearest of some colours.
 ///
 /// ```
-/// use mode13h::palette::{BIOS, Rgb, Search};
-/// let search = Search::new(BIOS.colors());
+/// use mode13h::palette::{BIOS, Rgb, NearestColors};
+/// let search = NearestColors::new(BIOS.colors());
 /// assert_eq!(search.nearest(Rgb::new(1, 2, 170)), 1);
 /// ```
 #[derive(Clone, Debug)]
 #[doc(hidden)]
-pub struct Search {
+pub struct NearestColors {
     /// The candidates of all boxes: those of box `i` run from `starts[i]` up to `starts[i + 1]`.
-    candidates: Vec<Candidate>,
+    candidates: Candidates,
     starts: Vec<usize>,
+}
+
+/// Candidates, each channel in a list of its own, which the search reads as vectors.
+#[derive(Clone, Debug, Default)]
+struct Candidates {
+    red: Vec<i16>,
+    green: Vec<i16>,
+    blue: Vec<i16>,
+    index: Vec<i16>,
+}
+
+impl Candidates {
+    fn push(&mut self, Candidate { color, index }: Candidate) {
+        self.red.push(color.r.into());
+        self.green.push(color.g.into());
+        self.blue.push(color.b.into());
+        self.index.push(index.into());
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +64,7 @@ struct Reach {
     farthest: u32,
 }
 
-impl Search {
+impl NearestColors {
     /// Makes a search among `colors`, of which the first 256 count.
     #[must_use]
     pub fn new(colors: &[Rgb]) -> Self {
@@ -56,7 +74,7 @@ impl Search {
                 distinct.push(Candidate { color, index });
             }
         }
-        let mut search = Self { candidates: Vec::new(), starts: Vec::with_capacity(SIDE * SIDE * SIDE + 1) };
+        let mut search = Self { candidates: Candidates::default(), starts: Vec::with_capacity(SIDE * SIDE * SIDE + 1) };
         search.starts.push(0);
         let edges = || (0..=u8::MAX).step_by(usize::from(WIDTH));
         for r in edges() {
@@ -83,8 +101,8 @@ impl Search {
         let reaches = || reaches.iter().zip(colors).map(|(reach, c)| reach.and(c.color.b, b));
         let bound = reaches().map(|reach| reach.farthest).min().unwrap_or(0);
         let near = reaches().zip(colors).filter(|(reach, _)| reach.nearest <= bound);
-        self.candidates.extend(near.map(|(_, &candidate)| candidate));
-        self.starts.push(self.candidates.len());
+        near.for_each(|(_, &candidate)| self.candidates.push(candidate));
+        self.starts.push(self.candidates.index.len());
     }
 
     /// The index of the colour nearest to `color` by [`Rgb::distance_squared`]; the first of those equally near. 0 if
@@ -94,11 +112,20 @@ impl Search {
     pub fn nearest(&self, color: Rgb) -> u8 {
         let side = |v: u8| usize::from(v / WIDTH);
         let i = (side(color.r) * SIDE + side(color.g)) * SIDE + side(color.b);
-        let candidates = &self.candidates[self.starts[i]..self.starts[i + 1]];
-        // A square is below 2¹⁸. With the index behind it the least is the first of the nearest, and the
-        // loop has no branch.
-        let key = |c: &Candidate| c.color.distance_squared(color) << 8 | u32::from(c.index);
-        (candidates.iter().map(key).min().unwrap_or(0) & 255) as u8
+        let of_box = self.starts[i]..self.starts[i + 1];
+        let Candidates { red, green, blue, index } = &self.candidates;
+        let channels = red[of_box.clone()].iter().zip(&green[of_box.clone()]).zip(&blue[of_box.clone()]);
+        let square = |a: i16, b: u8| {
+            let d = i32::from(a.wrapping_sub(b.into()));
+            d.wrapping_mul(d)
+        };
+        // A sum of squares is below 2¹⁸. With the index behind it the least is the first of the nearest. The loop has no
+        // branch, not even a check of overflow, so that it is one of vectors.
+        let keys = channels.zip(&index[of_box.clone()]).map(|(((&r, &g), &b), &index)| {
+            let sum = square(r, color.r).wrapping_add(square(g, color.g)).wrapping_add(square(b, color.b));
+            sum << 8 | i32::from(index)
+        });
+        if of_box.is_empty() { 0 } else { (keys.fold(i32::MAX, i32::min) & 255) as u8 }
     }
 }
 

@@ -1,0 +1,211 @@
+//! Our raster: a triangle a call, in batches, and in batches with effects.
+
+use mode13h::raster::effects::{Attributes, EffectBatch, PixelPipeline, ShadeSource, TextureMapping, TextureStage};
+use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Vertex};
+use mode13h::span::Kernel;
+use mode13h::span::texture::Texels;
+
+use crate::candidate::{Candidate, Triangle};
+use crate::drawing::{Drawing, Material, SIDE_BITS};
+use crate::{HEIGHT, WIDTH};
+
+fn interpolation(vertices: &[Vertex; 3], drawing: Drawing) -> Interpolation {
+    match drawing {
+        Drawing::Flat => Interpolation::Flat(vertices[0].shade().nearest()),
+        _ => Interpolation::GouraudReseeded,
+    }
+}
+
+/// A frame and, if the drawing has one, its depth buffer.
+struct Target {
+    bytes: Vec<u8>,
+    depths: Option<Vec<u32>>,
+    kernel: Kernel,
+}
+
+impl Target {
+    fn new(drawing: Drawing, kernel: Kernel) -> Self {
+        let depths = drawing.has_depth().then(|| vec![0; WIDTH * HEIGHT]);
+        Self { bytes: vec![0; WIDTH * HEIGHT], depths, kernel }
+    }
+
+    /// The raster, its depths cleared.
+    fn raster(&mut self) -> Raster<'_> {
+        let frame = Frame::new(&mut self.bytes, WIDTH as u32, HEIGHT as u32, WIDTH).expect("a legal frame");
+        let depth = self.depths.as_mut().map(|depths| {
+            let mut depth = DepthBuffer::new(depths, &frame).expect("as long as the frame");
+            depth.clear();
+            depth
+        });
+        let raster = Raster::new(frame).with_kernel(self.kernel);
+        match depth {
+            Some(depth) => raster.with_depth(depth),
+            None => raster,
+        }
+    }
+
+    fn read(&self, bytes: &mut [u8]) {
+        bytes.copy_from_slice(&self.bytes);
+    }
+}
+
+/// Triangles as `Raster` takes them.
+fn shaded(triangles: &[Triangle], drawing: Drawing) -> Vec<([Vertex; 3], Interpolation)> {
+    let of = |triangle: &Triangle| {
+        let vertices = triangle.map(|corner| corner.vertex);
+        (vertices, interpolation(&vertices, drawing))
+    };
+    triangles.iter().map(of).collect()
+}
+
+/// The raster, a triangle a call.
+pub struct OneByOne {
+    triangles: Vec<([Vertex; 3], Interpolation)>,
+    target: Target,
+}
+
+impl OneByOne {
+    pub fn new(triangles: &[Triangle], drawing: Drawing, kernel: Kernel) -> Self {
+        Self { triangles: shaded(triangles, drawing), target: Target::new(drawing, kernel) }
+    }
+}
+
+impl Candidate for OneByOne {
+    fn name(&self) -> String {
+        format!("one by one, {}", self.target.kernel)
+    }
+
+    fn is_ours(&self) -> bool {
+        true
+    }
+
+    fn clear(&mut self, index: u8) {
+        self.target.bytes.fill(index);
+    }
+
+    fn draw(&mut self) {
+        let mut raster = self.target.raster();
+        for (vertices, interpolation) in &self.triangles {
+            raster.triangle(vertices, *interpolation);
+        }
+    }
+
+    fn read(&mut self, bytes: &mut [u8]) {
+        self.target.read(bytes);
+    }
+}
+
+/// The raster, a list a call. That batches are packed is part of the time.
+pub struct Batches {
+    triangles: Vec<([Vertex; 3], Interpolation)>,
+    target: Target,
+}
+
+impl Batches {
+    pub fn new(triangles: &[Triangle], drawing: Drawing, kernel: Kernel) -> Self {
+        Self { triangles: shaded(triangles, drawing), target: Target::new(drawing, kernel) }
+    }
+}
+
+impl Candidate for Batches {
+    fn name(&self) -> String {
+        format!("batches, {}", self.target.kernel)
+    }
+
+    fn is_ours(&self) -> bool {
+        true
+    }
+
+    fn clear(&mut self, index: u8) {
+        self.target.bytes.fill(index);
+    }
+
+    fn draw(&mut self) {
+        let list = self.triangles.iter().map(|(vertices, interpolation)| (vertices, *interpolation));
+        self.target.raster().triangles(list);
+    }
+
+    fn read(&mut self, bytes: &mut [u8]) {
+        self.target.read(bytes);
+    }
+}
+
+/// The stages for pixels, many faces at a time. That batches are packed is part of the time.
+pub struct Effects<'a> {
+    faces: Vec<([Vertex; 3], [Attributes; 3])>,
+    drawing: Drawing,
+    mapping: TextureMapping,
+    material: &'a Material,
+    target: Target,
+    batch: EffectBatch,
+}
+
+impl<'a> Effects<'a> {
+    pub fn new(triangles: &[Triangle], drawing: Drawing, material: &'a Material, kernel: Kernel) -> Self {
+        let attributes = |[u, v]: [f32; 2]| Attributes {
+            // Below 2³¹, and whole.
+            texture: [u, v].map(|texels| (texels * 65_536.0) as i32),
+            ..Attributes::default()
+        };
+        let face = |triangle: &Triangle| (triangle.map(|corner| corner.vertex), triangle.map(|c| attributes(c.texel)));
+        Self {
+            faces: triangles.iter().map(face).collect(),
+            drawing,
+            mapping: if drawing.is_perspective() { TextureMapping::Perspective } else { TextureMapping::Affine },
+            material,
+            target: Target::new(drawing, kernel),
+            batch: EffectBatch::new(),
+        }
+    }
+}
+
+impl Effects<'_> {
+    /// Texture coordinates exact at every sixteenth pixel, as the renderer's plan has them where that shows nothing.
+    /// Allegro, too, draws affine where distances are alike.
+    pub fn every_16(self) -> Self {
+        Self { mapping: TextureMapping::Every16, ..self }
+    }
+}
+
+impl Candidate for Effects<'_> {
+    fn name(&self) -> String {
+        let every = if self.mapping == TextureMapping::Every16 { "every 16th, " } else { "" };
+        format!("batches, {every}{}", self.target.kernel)
+    }
+
+    fn is_ours(&self) -> bool {
+        true
+    }
+
+    fn clear(&mut self, index: u8) {
+        self.target.bytes.fill(index);
+    }
+
+    fn draw(&mut self) {
+        let (drawing, material) = (self.drawing, self.material);
+        let interpolation = if drawing.is_lit() { Interpolation::GouraudReseeded } else { Interpolation::Flat(255) };
+        let pipeline = PixelPipeline {
+            source: ShadeSource::Shaded(interpolation),
+            texture: Some(TextureStage {
+                texels: Texels::new(&material.texels, SIDE_BITS, SIDE_BITS).expect("as many texels"),
+                levels: None,
+                mapping: self.mapping,
+                tables: [material.table(drawing); 3],
+            }),
+            blend: (drawing == Drawing::Translucent).then_some(&*material.mixed),
+            ..PixelPipeline::PLAIN
+        };
+        let mut raster = self.target.raster();
+        for (vertices, attributes) in &self.faces {
+            if self.batch.is_full() {
+                raster.batch_with_effects(&mut self.batch, &pipeline);
+            }
+            self.batch.push(vertices, attributes);
+        }
+        raster.batch_with_effects(&mut self.batch, &pipeline);
+    }
+
+    fn read(&mut self, bytes: &mut [u8]) {
+        self.target.read(bytes);
+    }
+}
