@@ -62,6 +62,8 @@ use core::fmt;
 pub use crate::shading::Shading;
 pub use angle::BinaryAngle;
 pub use light::{Beam, Paint, Sun};
+#[doc(hidden)]
+pub use mesh::FixedMeshParts;
 pub use mesh::{FixedMesh, FixedMeshError, Index, average_normals, face_normal};
 pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};
