@@ -11,9 +11,7 @@ use core::arch::{asm, global_asm};
 static RESET: extern "C" fn() -> ! = start;
 
 #[cfg(target_arch = "riscv32")]
-global_asm!(".section .reset", ".globl _start", "_start:", "la sp, stack_top", "tail {start}", start = sym start);
-#[cfg(target_arch = "arm")]
-global_asm!("");
+global_asm!(".section .reset, \"ax\"", ".globl _start", "_start:", "la sp, stack_top", "tail {start}", start = sym start);
 
 extern "C" fn start() -> ! {
     #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
