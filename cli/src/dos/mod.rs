@@ -30,7 +30,7 @@ static PLAYER: &[u8] = include_bytes!("player.bin");
 /// Bytes of the stub's table in `PLAYER`: offset and length of the film, the stack's top, the extended memory in KB.
 const TABLE: usize = 4;
 /// Bytes of a program, at most: DOS loads it below 640 KB.
-const MAX_SIZE: usize = 400_000;
+const MAX_SIZE: usize = 500_000;
 /// Bytes of stack behind the program, half of it for real mode.
 const STACK: usize = 0x1_0000;
 
@@ -126,7 +126,7 @@ fn program(film: &[u8], vertices: usize) -> Result<Vec<u8>, Failure> {
     let header = [
         u16::from_le_bytes(*b"MZ"),
         (size % 512) as u16,
-        size.div_ceil(512) as u16, // at most 782
+        size.div_ceil(512) as u16, // at most 978
         0,                         // relocations
         paragraphs(HEADER),
         paragraphs(STACK), // memory behind the program, at least and at most
@@ -164,16 +164,14 @@ mod tests {
     use super::*;
     use mode13h::scene::shipped;
 
-    /// Every shipped scene that the 16.16 path can draw is drawn by the film as by the renderer, and its file says so
-    /// where it is broken off.
+    /// Every shipped scene is drawn by the film as by the renderer, and a film that is broken off is refused.
     #[test]
     fn a_film_is_drawn_as_the_scene_is() {
-        let mut drawn = 0;
         for shipped in &shipped::ALL {
             let Ok(loaded) = shipped.load() else { panic!("{}", shipped.name) };
             let mut stage = Turntable::of_scene(loaded.scene);
             let mut renderer = Renderer::new();
-            let Ok((film, _)) = film_of(&mut stage, &mut renderer, 5) else { continue };
+            let (film, _) = film_of(&mut stage, &mut renderer, 5).unwrap();
             let read = Film::read(&film).unwrap();
             assert_eq!(read.frames(), 5);
             let mut player = Player::new(&read, mode13h::span::Kernel::PORTABLE).unwrap();
@@ -185,9 +183,7 @@ mod tests {
                 assert!(pixels == vga.pixels(), "{} frame {number}", shipped.name);
             }
             assert!(Film::read(&film[..film.len() - 1]).is_none(), "{}", shipped.name);
-            drawn += 1;
         }
-        assert!(drawn >= 15, "{drawn} of {} scenes", shipped::ALL.len());
     }
 
     #[test]

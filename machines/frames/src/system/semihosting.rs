@@ -2,7 +2,7 @@
 
 use alloc::string::String;
 use alloc::vec;
-use core::arch::{asm, global_asm};
+use core::arch::asm;
 
 /// Where a Cortex-M starts: the word after the top of the stack.
 #[cfg(target_arch = "arm")]
@@ -11,7 +11,7 @@ use core::arch::{asm, global_asm};
 static RESET: extern "C" fn() -> ! = start;
 
 #[cfg(target_arch = "riscv32")]
-global_asm!(".section .reset, \"ax\"", ".globl _start", "_start:", "la sp, stack_top", "tail {start}", start = sym start);
+core::arch::global_asm!(".section .reset, \"ax\"", ".globl _start", "_start:", "la sp, stack_top", "tail {start}", start = sym start);
 
 extern "C" fn start() -> ! {
     #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
