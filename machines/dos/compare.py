@@ -25,8 +25,8 @@ def png(path):
         for x in range(320):
             left, corner = (row[x - 1], above[x - 1]) if x else (0, 0)
             near = left + above[x] - corner
-            paeth = min((abs(near - left), 0, left), (abs(near - above[x]), 1, above[x]), (abs(near - corner), 2, corner))
-            row[x] = (row[x] + [0, left, above[x], (left + above[x]) // 2, paeth[2]][kind]) % 256
+            nearest = min((abs(near - left), 0, left), (abs(near - above[x]), 1, above[x]), (abs(near - corner), 2, corner))
+            row[x] = (row[x] + [0, left, above[x], (left + above[x]) // 2, nearest[2]][kind]) % 256
         above = bytes(row)
         pixels += above
     return pixels, colors.ljust(768, b"\0")

@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn names_are_those_of_dos() {
-        assert_eq!(short_name("two-lights"), "TWO-LIGH");
+        assert_eq!(short_name("a long.name"), "ALONGNAM");
         assert_eq!(short_name("é"), "SCENE");
     }
 }
