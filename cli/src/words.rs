@@ -57,7 +57,7 @@ enum Command {
     ///
     /// Both are enlarged 16 times. Without an ID the cases are listed.
     Show(show::Options),
-    /// Write a program for DOS that shows a scene in mode 13h
+    /// Write a program for DOS, or a floppy, that shows a scene in mode 13h
     ///
     /// It draws one round of the scene by integers alone, on a 386 with 4 MB, HIMEM.SYS and a VGA, until Esc is pressed.
     /// With /B it prints frames per second and the hash of its frames, which is the one printed here. Effects that

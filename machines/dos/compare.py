@@ -1,6 +1,7 @@
-"""Compares what a VGA held, SCREEN.BIN of the program for DOS, with an indexed PNG of that frame.
+"""Compares what a VGA held with an indexed PNG of that frame.
 
-    compare.py SCREEN.BIN FRAME.png
+    compare.py SCREEN.BIN FRAME.png               video memory and DAC, as the program for DOS writes them
+    compare.py VIDEO.BIN SCREEN.ppm FRAME.png     video memory, and the picture that QEMU shows, twice as large
 """
 
 import struct
@@ -33,9 +34,18 @@ def png(path):
 
 
 screen = open(sys.argv[1], "rb").read()
-pixels, colors = png(sys.argv[2])
+pixels, colors = png(sys.argv[-1])
 dac = bytes(part >> 2 for part in colors)
-wrong = sum(a != b for a, b in zip(screen[:64000], pixels)), sum(a != b for a, b in zip(screen[64000:], dac))
-if len(screen) != 64768 or any(wrong):
-    sys.exit(f"{len(screen)} bytes; {wrong[0]} pixels and {wrong[1]} parts of colours differ")
+if len(sys.argv) == 4:
+    shown = open(sys.argv[2], "rb").read()
+    assert shown[:15] == b"P6\n640 400\n255\n", "640 x 400 colours"
+    places = (((y * 640 + x) * 3 + 15, 3 * pixels[y // 2 * 320 + x // 2]) for y in range(400) for x in range(640))
+    colors_wrong = sum(bytes(c >> 2 for c in shown[at : at + 3]) != dac[i : i + 3] for at, i in places)
+    length = 64000
+else:
+    colors_wrong = sum(a != b for a, b in zip(screen[64000:], dac))
+    length = 64768
+wrong = sum(a != b for a, b in zip(screen, pixels))
+if len(screen) != length or wrong or colors_wrong:
+    sys.exit(f"{len(screen)} bytes; {wrong} pixels and {colors_wrong} colours or parts of them differ")
 print("video memory and DAC are those of the picture")

@@ -1,5 +1,7 @@
 ; The 16-bit half of the program for DOS: `nasm -f bin`, 4,096 bytes, which stand before the flat image of player/.
 ;
+; From a floppy (boot.asm) it is started at `boot`, where there is no DOS: it then serves the few calls of DOS itself.
+;
 ; It sees to a 386 in real mode with enough extended memory (XMS), enters protected mode with segments whose base is the
 ; program's own, so that address 0 is the first byte of this file, and calls the image. The image may ask for one service:
 ; an interrupt of DOS or the BIOS, in real mode. Interrupts are off in protected mode: what the keyboard sends waits until
@@ -46,6 +48,8 @@ real_sp         dw 0
 real_ss         dw 0
 saved_esp       dd 0
 status          db 0
+is_booted       db 0
+no_words        db 0                    ; a command line of no words
 
         align 8, db 0
 gdt     dq 0
@@ -72,12 +76,9 @@ say_and_end:
         mov ax, 4C01h
         int 21h
 
-begin:  cld
-        mov [cs:psp], es
-        push cs
-        pop ds
-        ; Bits 12 to 15 of the flags: all set on an 8086, all clear on a 286, what was written on a 386.
-        pushf
+; Clears the carry flag on a 386. Bits 12 to 15 of the flags: all set on an 8086, all clear on a 286, what was written on
+; a 386.
+is_386: pushf
         pop ax
         and ah, 0Fh
         push ax
@@ -86,14 +87,25 @@ begin:  cld
         pop ax
         and ah, 0F0h
         cmp ah, 0F0h
-        je .no_386
+        je .older
         mov ah, 70h
         push ax
         popf
         pushf
         pop ax
         and ah, 70h
-        jz .no_386
+        jz .older
+        clc
+        ret
+.older: stc
+        ret
+
+begin:  cld
+        mov [cs:psp], es
+        push cs
+        pop ds
+        call is_386
+        jc no_processor
         smsw ax
         test al, 1
         mov dx, in_v86
@@ -113,26 +125,27 @@ begin:  cld
         mov ah, 8                       ; the largest free block
         call far [xms]
         cmp ax, [heap_kb]
-        jb .no_room
+        jb no_processor.no_room
         mov dx, [heap_kb]
         mov ah, 9                       ; allocate
         call far [xms]
         dec ax
-        jnz .no_room
+        jnz no_processor.no_room
         mov [handle], dx
         mov ah, 0Ch                     ; lock: DX:BX is its address
         call far [xms]
         dec ax
-        jnz .free
+        jnz no_processor.free
         mov [heap], bx
         mov [heap + 2], dx
         mov ah, 5                       ; A20 on
         call far [xms]
         dec ax
         mov dx, no_a20
-        jnz .unlock
+        jnz no_processor.unlock
 
         ; The base of all segments is where the program begins.
+based:
         xor eax, eax
         mov ax, cs
         mov [stub_segment], eax
@@ -147,6 +160,10 @@ begin:  cld
         sub ecx, eax
         add ecx, 80h
         mov [command], ecx
+        cmp byte [is_booted], 0
+        je .with_words
+        mov dword [command], no_words
+.with_words:
         mov [gdt + CODE32 + 2], ax
         mov [gdt + DATA32 + 2], ax
         mov [gdt + CODE16 + 2], ax
@@ -166,7 +183,7 @@ begin:  cld
         mov ebx, run
         jmp protected
 
-.no_386:
+no_processor:
         mov dx, no_386
         jmp say_and_end
 .free:  mov dx, [handle]
@@ -275,6 +292,8 @@ interrupt:
 
         bits 16
 finish: sti
+        cmp byte [is_booted], 0
+        jne .end
         mov ah, 6                       ; A20 off again
         call far [xms]
         mov dx, [handle]
@@ -283,8 +302,86 @@ finish: sti
         mov dx, [handle]
         mov ah, 0Ah
         call far [xms]
-        mov al, [status]
+.end:   mov al, [status]
         mov ah, 4Ch
         int 21h
 
+; Without DOS: the BIOS has read the program from a floppy. The stack is below the boot sector.
+booted: cld
+        push cs
+        pop ds
+        mov byte [is_booted], 1
+        xor ax, ax
+        mov es, ax
+        mov word [es:21h * 4], dos
+        mov [es:21h * 4 + 2], cs
+        call is_386
+        jc no_processor
+        mov ah, 88h                     ; KB above 1 MB
+        int 15h
+        mov dx, no_room
+        jc .end
+        cmp ax, [heap_kb]
+        jb .end
+        mov dword [heap], 100000h
+        in al, 92h                      ; A20 on, by the chip set
+        or al, 2
+        and al, 0FEh
+        out 92h, al
+        mov ax, 2401h                   ; and by the BIOS
+        int 15h
+        ; A byte at 500h, and that of 1 MB above it, are two.
+        mov ax, 0FFFFh
+        mov fs, ax
+        mov byte [es:500h], 0
+        mov byte [fs:510h], 0FFh
+        cmp byte [es:500h], 0
+        mov dx, no_a20
+        jne .end
+        jmp based
+.end:   jmp say_and_end
+
+; The calls of DOS that are needed: 9 and 40h print, 4Ch ends; others fail.
+dos:    cmp ah, 40h
+        je .write
+        cmp ah, 9
+        je .line
+        cmp ah, 4Ch
+        je .stop
+        stc
+        retf 2
+.stop:  sti
+        hlt
+        jmp .stop
+.write: push si
+        push cx
+        mov si, dx
+        jcxz .written
+.byte:  call .put
+        loop .byte
+.written:
+        pop cx
+        pop si
+        mov ax, cx
+        clc
+        retf 2
+.line:  push si
+        mov si, dx
+.more:  cmp byte [si], '$'
+        je .all
+        call .put
+        jmp .more
+.all:   pop si
+        clc
+        retf 2
+.put:   lodsb
+        push bx
+        mov ah, 0Eh
+        mov bx, 7
+        int 10h
+        pop bx
+        ret
+
+        times IMAGE - 16 - ($ - $$) db 0
+boot:   jmp near booted                 ; boot.asm starts here
         times IMAGE - ($ - $$) db 0

@@ -27,6 +27,12 @@ use crate::turntable::Turntable;
 /// Stub and image, as `machines/dos/build` makes them.
 static PLAYER: &[u8] = include_bytes!("player.bin");
 
+/// The first sector of a floppy, and where in it the number of sectors behind it stands.
+static BOOT: &[u8; 512] = include_bytes!("boot.bin");
+const SECTORS: usize = 4;
+/// Bytes of a floppy.
+const FLOPPY: usize = 2 * 80 * 18 * 512;
+
 /// Bytes of the stub's table in `PLAYER`: offset and length of the film, the stack's top, the extended memory in KB.
 const TABLE: usize = 4;
 /// Bytes of a program, at most: DOS loads it below 640 KB.
@@ -39,6 +45,8 @@ pub(crate) struct Options {
     #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
     /// The name of the program [default: INPUT.EXE in this directory]
+    ///
+    /// A name that ends in .img is that of a floppy of 1.44 MB, which starts the program without DOS.
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite INPUT.EXE
@@ -67,7 +75,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut renderer = Renderer::new();
     renderer.set_kernel(kernel);
     let (film, vertices) = film_of(&mut stage, &mut renderer, *frames)?;
-    let program = program(&film, vertices)?;
+    let body = body(&film, vertices)?;
+    let is_floppy = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("img"));
+    let program = if is_floppy { floppy(&body) } else { program(&body) };
     let sum = hash_of(&film).ok_or_else(|| Failure::words("a mesh of the scene is not sound in 16.16"))?;
     output::file(|| export::write_atomically(&out, |file| file.write_all(&program)))?;
     output::print(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
@@ -103,8 +113,8 @@ fn show(stage: &mut Turntable, renderer: &mut Renderer, number: u16, frames: u16
     }
 }
 
-/// The program for DOS.
-fn program(film: &[u8], vertices: usize) -> Result<Vec<u8>, Failure> {
+/// Stub, image and film, as they are in memory.
+fn body(film: &[u8], vertices: usize) -> Result<Vec<u8>, Failure> {
     let mut body = PLAYER.to_vec();
     body.resize(body.len().next_multiple_of(16), 0);
     let start = body.len();
@@ -121,6 +131,20 @@ fn program(film: &[u8], vertices: usize) -> Result<Vec<u8>, Failure> {
     for (to, value) in body[TABLE..].as_chunks_mut::<4>().0.iter_mut().zip(table) {
         *to = (value as u32).to_le_bytes();
     }
+    Ok(body)
+}
+
+/// A floppy that starts it.
+fn floppy(body: &[u8]) -> Vec<u8> {
+    let mut floppy = BOOT.to_vec();
+    floppy[SECTORS..SECTORS + 2].copy_from_slice(&(body.len().div_ceil(512) as u16).to_le_bytes()); // at most 977
+    floppy.extend(body);
+    floppy.resize(FLOPPY, 0);
+    floppy
+}
+
+/// The program for DOS.
+fn program(body: &[u8]) -> Vec<u8> {
     const HEADER: usize = 32;
     let (size, paragraphs) = (HEADER + body.len(), |bytes: usize| (bytes / 16) as u16); // below 2²⁰ bytes
     let header = [
@@ -143,7 +167,7 @@ fn program(film: &[u8], vertices: usize) -> Result<Vec<u8>, Failure> {
     ];
     let mut program: Vec<u8> = header.iter().flat_map(|word| word.to_le_bytes()).collect();
     program.extend(body);
-    Ok(program)
+    program
 }
 
 /// The hash that the program prints: of all frames' bytes, then of the DAC.
