@@ -210,6 +210,27 @@ mod tests {
         }
     }
 
+    /// DOS and the boot sector load all that there is, and what DOS cannot load is refused.
+    #[test]
+    fn headers_say_what_follows() {
+        let bytes = body(b"a film", 3).unwrap();
+        let table = |i: usize| u32::from_le_bytes(bytes[TABLE + 4 * i..][..4].try_into().unwrap()) as usize;
+        assert_eq!(bytes[table(0)..][..table(1)], *b"a film");
+        assert!(table(2) == bytes.len() + STACK && table(3) * 1024 > 5 * PIXELS);
+
+        let program = program(&bytes);
+        let word = |at: usize| usize::from(u16::from_le_bytes([program[at], program[at + 1]]));
+        assert_eq!((word(4) - 1) * 512 + word(2), program.len());
+        assert_eq!(program[word(8) * 16..], bytes);
+        assert_eq!((word(14) * 16, word(16)), (bytes.len(), STACK / 2));
+
+        let floppy = floppy(&bytes);
+        assert_eq!((floppy.len(), &floppy[510..512]), (1_474_560, &[0x55, 0xAA][..]));
+        assert!(floppy[512..].starts_with(&bytes));
+        assert_eq!(usize::from(u16::from_le_bytes([floppy[4], floppy[5]])), bytes.len().div_ceil(512));
+        assert!(body(&vec![0; MAX_SIZE], 0).is_err());
+    }
+
     #[test]
     fn names_are_those_of_dos() {
         assert_eq!(short_name("a long.name"), "ALONGNAM");
