@@ -8,6 +8,7 @@ use crate::mesh::Mesh;
 pub use crate::plan::reason::name_of;
 pub use crate::raster::shade_trace::{Accumulator, Progression, Ratio, ShadeTrace, row_of, rows_of};
 pub use crate::render::each_triangle::{DrawnEffects, DrawnTriangle};
+pub use crate::render::integer_frame::IntegerFrame;
 use crate::render::{RenderError, Renderer, Screen, Stats};
 pub use crate::scene::object::turn;
 use crate::scene::{Object, Scene, Shared};
@@ -33,6 +34,18 @@ pub fn each_triangle(
 /// Those of [`Renderer::draw`].
 pub fn make_vertices(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
     renderer.make_vertices(scene, screen)
+}
+
+/// Prepares a frame by the 16.16 path, which the renderer then has, draws nothing, and returns its numbers.
+///
+/// # Errors
+/// Those of [`Renderer::draw`].
+pub fn integer_frame<'a>(
+    renderer: &'a mut Renderer,
+    scene: &'a Scene,
+    screen: Screen,
+) -> Result<IntegerFrame<'a>, RenderError> {
+    renderer.integer_frame(scene, screen)
 }
 
 /// Rounds projected vertices once more, to so many bits after the point: 8, the default, or fewer; 0 gives whole pixels.

@@ -1,8 +1,11 @@
 //! `mode13h`: a scene or a model in a window, or a picture of it.
 
+extern crate alloc;
+
 mod chart;
 mod cost;
 mod demo;
+mod dos;
 mod effect_cost;
 mod explain;
 mod failure;

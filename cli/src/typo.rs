@@ -7,8 +7,8 @@ use mode13h::mesh::shapes;
 use mode13h::scene::shipped;
 
 /// The names of the commands.
-pub(crate) const COMMANDS: [&str; 10] =
-    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "verify", "generate"];
+pub(crate) const COMMANDS: [&str; 11] =
+    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "dos", "verify", "generate"];
 
 /// Options that were renamed, and what each is now.
 const OPTIONS: [(&str, &str); 4] = [

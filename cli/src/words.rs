@@ -7,7 +7,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::failure::{EXIT_STATUS, Failure};
 use crate::typo::COMMANDS;
-use crate::{cost, demo, explain, generate, output, palette, plan, render, scenes, show, typo, verify};
+use crate::{cost, demo, dos, explain, generate, output, palette, plan, render, scenes, show, typo, verify};
 
 /// Columns of help, at most.
 const WIDTH: usize = 100;
@@ -57,6 +57,12 @@ enum Command {
     ///
     /// Both are enlarged 16 times. Without an ID the cases are listed.
     Show(show::Options),
+    /// Write a program for DOS, or a floppy, that shows a scene in mode 13h
+    ///
+    /// It draws one round of the scene by integers alone, on a 386 with 4 MB, HIMEM.SYS and a VGA, until Esc is pressed.
+    /// With /B it prints frames per second and the hash of its frames, which is the one printed here. Effects that
+    /// `--arithmetic fixed` leaves out are left out, and palettes stand still.
+    Dos(dos::Options),
     /// Check the span kernels and the hard cases on this machine
     Verify(verify::Options),
     /// Print completions for a shell, or man pages
@@ -101,6 +107,7 @@ pub(crate) fn run(words: &Words) -> Result<(), Failure> {
         Some(Command::Cost(options)) => cost::run(options),
         Some(Command::Palette(options)) => palette::run(options),
         Some(Command::Show(options)) => show::run(options),
+        Some(Command::Dos(options)) => dos::run(options),
         Some(Command::Verify(options)) => verify::run(options),
         Some(Command::Generate(options)) => generate::run(options, command()),
     }

@@ -51,6 +51,20 @@ pub struct FixedMesh<'a, I: Index = u16> {
     pub(crate) surfaces: usize,
 }
 
+/// What a [`FixedMesh`] was made of.
+#[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
+pub struct FixedMeshParts<'a, I: Index> {
+    pub positions: &'a [Vector],
+    pub normals: &'a [Vector],
+    pub triangles: &'a [[I; 3]],
+    pub closed: bool,
+    pub twins: &'a [u64],
+    pub exponent: i32,
+    pub vertex_surfaces: &'a [u16],
+    pub triangle_surfaces: &'a [u16],
+}
+
 impl<'a, I: Index> FixedMesh<'a, I> {
     /// The largest coordinate, either way.
     pub(crate) const REACH: I16F16 = I16F16::from_int(i16::MAX);
@@ -125,6 +139,31 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         self.surfaces = most.map_or(1, |&most| usize::from(most) + 1);
         (self.vertex_surfaces, self.triangle_surfaces) = (vertex_surfaces, triangle_surfaces);
         Ok(self)
+    }
+
+    /// Marks triangles that lie back to back with another, a bit for each, 64 in a word: they are left out if they are
+    /// turned away.
+    #[must_use]
+    #[doc(hidden)]
+    pub fn with_twins(mut self, twins: &'a [u64]) -> Self {
+        self.twins = twins;
+        self
+    }
+
+    /// Returns what the mesh was made of.
+    #[must_use]
+    #[doc(hidden)]
+    pub fn parts(&self) -> FixedMeshParts<'a, I> {
+        FixedMeshParts {
+            positions: self.positions,
+            normals: self.normals,
+            triangles: self.triangles,
+            closed: self.closed,
+            twins: self.twins,
+            exponent: self.exponent,
+            vertex_surfaces: self.vertex_surfaces,
+            triangle_surfaces: self.triangle_surfaces,
+        }
     }
 
     /// Counts the vertices: a stage needs room for so many.

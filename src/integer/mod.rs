@@ -63,7 +63,7 @@ pub use crate::shading::Shading;
 pub use angle::BinaryAngle;
 pub use light::{Beam, Paint, Sun};
 #[doc(hidden)]
-pub use mesh::Index;
+pub use mesh::{FixedMeshParts, Index};
 pub use mesh::{FixedMesh, average_normals, face_normal};
 pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};

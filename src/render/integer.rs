@@ -135,6 +135,8 @@ struct Prepared {
 pub(super) struct IntegerPath {
     meshes: Vec<Converted>,
     view: Option<View>,
+    /// What the view was made of.
+    camera: Option<(Camera, [I16F16; 2])>,
     objects: Vec<Prepared>,
     paints: Vec<Paint>,
     suns: Vec<Sun>,
@@ -212,6 +214,7 @@ impl IntegerPath {
             view.check(&self.objects[index].placement, &mesh).map_err(of_object)?;
         }
         self.view = Some(view);
+        self.camera = Some((camera, [fx, fy]));
         Ok(())
     }
 
@@ -228,6 +231,18 @@ impl IntegerPath {
             });
             self.objects.push(Prepared { converted, exponent: 0, placement: Placement::default(), paints: 0..0 });
         }
+    }
+
+    /// The prepared scene in numbers, without its objects: camera, focal lengths, suns.
+    pub(super) fn frame(&self) -> Option<(Camera, [I16F16; 2], &[Sun])> {
+        self.camera.map(|(camera, focal)| (camera, focal, &*self.suns))
+    }
+
+    /// An object of the prepared scene in numbers.
+    pub(super) fn object<'a>(&'a self, index: usize, object: &'a scene::Object) -> Option<Object<'a, u32>> {
+        let prepared = self.objects.get(index)?;
+        let mesh = fixed_mesh(&self.meshes, prepared, object);
+        Some(Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] })
     }
 
     /// Hands the triangles of an object of the prepared scene to `triangle`.

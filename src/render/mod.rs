@@ -31,6 +31,7 @@ mod face;
 mod faces;
 mod hidden_surfaces;
 mod integer;
+pub(crate) mod integer_frame;
 mod lit;
 mod object;
 mod paint;

@@ -54,7 +54,7 @@ unsafe fn low(from: F64) -> __m256i {
     }
 }
 
-/// Of each mask of eight lanes, the numbers of those that are set, then zeros: a byte each, the first lowest.
+/// Numbers of the lanes that are set in each mask of eight, then zeros: a byte each, the first lowest.
 static SET_LANES: [u64; 256] = {
     let mut all = [0; 256];
     let mut mask = 0;

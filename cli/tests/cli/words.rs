@@ -11,8 +11,8 @@ use mode13h::scene::shipped;
 use serde_json::Value;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 10] =
-    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "verify", "generate"];
+const COMMANDS: [&str; 11] =
+    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "dos", "verify", "generate"];
 
 /// The commands that draw a scene.
 const DRAWING: [&str; 5] = ["demo", "render", "plan", "explain", "cost"];
@@ -236,7 +236,7 @@ fn every_command_ends_with_the_status_that_help_names() {
     put("missing.toml", "objects = [{ model = 'none.obj' }]\n");
     put("broken.pal", "JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n");
     put("broken.rec", "no record\n");
-    let cases: [(&str, &[(&str, i32)]); 10] = [
+    let cases: [(&str, &[(&str, i32)]); 11] = [
         (
             "demo",
             &[
@@ -305,6 +305,17 @@ fn every_command_ends_with_the_status_that_help_names() {
             ],
         ),
         ("show", &[("show", 0), ("show R5 -o x.png", 0), ("show BOGUS", 2), ("show R5 -o none/x.png", 3)]),
+        (
+            "dos",
+            &[
+                ("dos cube --frames 2 -o CUBE.EXE", 0),
+                ("dos cube --frames 0", 2),
+                ("dos bogus", 2),
+                ("dos broken.toml", 2),
+                ("dos none.obj", 3),
+                ("dos cube --frames 2 -o none/x.exe", 3),
+            ],
+        ),
         // That a check which fails ends with 1 has a test beside the code: here none may.
         (
             "verify",

@@ -3,7 +3,7 @@
 //!
 //! | group | what | file |
 //! |---|---|---|
-//! | spans | S: every kernel against the definition, twins of other loops against theirs | `spans`, `twins` |
+//! | spans | S: every kernel against the definition, twins of other loops against theirs | `spans`, `freestanding` |
 //! | triangles | R: cover, bytes and range against the definition; shared edges, clip rectangles, bands | `triangles` |
 //! | clipping | C: the near plane, the guard band, odd views; what is not finite is refused | `clipping` |
 //! | normals | N: normals of length 1, light within its range | `normals` |
@@ -23,24 +23,21 @@
 mod clipping;
 mod drawing;
 mod files;
-mod fingerprint;
-mod frames;
+mod freestanding;
 mod hidden_surfaces;
 mod machine;
 mod normals;
 mod oracle;
-mod random;
 mod replay;
 mod reuse;
 mod shrink;
 mod spans;
 mod time;
 mod triangles;
-mod twins;
 
 pub use clipping::clipping;
 pub use files::files;
-pub use frames::{Frames, frames};
+pub use freestanding::{Frames, frames, frames_in_steps};
 pub use hidden_surfaces::hidden_surfaces;
 pub use machine::machine;
 pub use normals::normals;
@@ -51,28 +48,11 @@ pub use time::time;
 pub use triangles::triangles;
 
 use crate::record::Record;
-use mode13h::glam::Vec3;
-use mode13h::light::Light;
-use mode13h::mesh::Mesh;
-use mode13h::scene::{Camera, Object, Scene, Shared};
-
-/// A mesh in the middle, seen straight on by a camera that frames its sphere, under one sun: however it is turned it is in
-/// the picture.
-fn framed(mesh: impl Into<Shared<Mesh>>) -> Scene {
-    let object = Object::new(mesh).centred();
-    let mut scene = Scene::new();
-    scene.camera = Camera::framing(Vec3::ZERO, object.mesh().bounds().radius);
-    scene.add(object);
-    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-    scene
-}
+use freestanding::{FAILURES, framed, random};
 
 /// Every group. Each is given the seed of its random cases.
 pub const GROUPS: [fn(u64) -> Group; 9] =
     [spans, triangles, clipping, normals, time, hidden_surfaces, machine, reuse, files];
-
-/// No more failures of a group are kept (of spans: of a kernel, of a loop): one fault shows in many cases.
-const FAILURES: usize = 4;
 
 /// Results of one group of checks.
 #[derive(Clone, PartialEq, Eq, Debug)]

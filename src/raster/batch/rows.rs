@@ -22,7 +22,7 @@ trait Lane<S: Lanes8>: Copy {
     fn i64s(self, s: S, from: &[i64; LANES]) -> S::I64;
 }
 
-/// The same row of each of eight triangles.
+/// Lanes are the same row of each of eight triangles.
 #[derive(Clone, Copy)]
 struct EachTriangle;
 
@@ -41,7 +41,7 @@ impl<S: Lanes8> Lane<S> for EachTriangle {
     }
 }
 
-/// Eight rows of this triangle. Its number is below 8.
+/// Lanes are eight rows of this triangle, whose number is below 8.
 #[derive(Clone, Copy)]
 struct OneTriangle(usize);
 

@@ -124,7 +124,6 @@ impl Sifted {
 mod tests {
     use super::*;
     use crate::fixed::{I24F8, U8F8};
-    use crate::raster::batch::cull::TINY_SIDE;
     use crate::raster::clip::doubled_area;
     use crate::raster::{Frame, Interpolation, Raster, Vertex};
     use proptest::prelude::*;

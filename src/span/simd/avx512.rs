@@ -154,8 +154,8 @@ unsafe fn each(pixels: *mut u8, spans: &SpanList) {
 /// long by it.)
 #[derive(Clone, Copy)]
 pub(crate) struct LargeTriangle {
-    /// Of the long edge, of the upper and the lower short one, and of the shade: the numerator in the first row, its change
-    /// from one row to the next, and the inverse of the divisor. An edge has its column as a sum with `ROUND_MAGIC`.
+    /// The numerator in the first row, its change from one row to the next, and the inverse of the divisor: of the long edge,
+    /// of the upper and the lower short one, and of the shade.
     pub(crate) long: [f64; 3],
     pub(crate) upper: [f64; 3],
     pub(crate) lower: [f64; 3],

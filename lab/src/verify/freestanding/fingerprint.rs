@@ -1,10 +1,10 @@
 //! One number for many frames: FNV-1a, 64 bits.
 
 /// The hash of nothing.
-pub(super) const START: u64 = 0xCBF2_9CE4_8422_2325;
+pub(in super::super) const START: u64 = 0xCBF2_9CE4_8422_2325;
 
 /// The hash of what `hash` is the hash of, and then these bytes (Fowler, Noll, Vo; draft-eastlake-fnv).
-pub(super) fn fnv_1a(hash: u64, bytes: &[u8]) -> u64 {
+pub(in super::super) fn fnv_1a(hash: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01B3))
 }
 

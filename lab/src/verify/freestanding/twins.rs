@@ -1,7 +1,10 @@
 //! Group S, the loops beside the span: every faster twin against its portable specification.
 
-use super::Group;
+use super::Tally;
 use super::random::Random;
+use alloc::string::String;
+use alloc::vec::Vec;
+use alloc::{format, vec};
 use mode13h::span::channels::{mix_cube, mix_cube_portable};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
 use mode13h::span::texture::{Texels, fill_perspective, fill_perspective_portable};
@@ -27,15 +30,15 @@ struct Twins {
 }
 
 /// Adds their cases: every length to 320, at changing alignments.
-pub(super) fn twins(group: &mut Group, seed: u64) {
-    Twins { fill_dithered, fill_perspective, mix_cube }.check(group, seed);
+pub(super) fn twins(all: &mut Tally, seed: u64) {
+    Twins { fill_dithered, fill_perspective, mix_cube }.check(all, seed);
 }
 
 impl Twins {
-    fn check(&self, group: &mut Group, seed: u64) {
+    fn check(&self, all: &mut Tally, seed: u64) {
         for one in [Self::dithered, Self::perspective, Self::mixed] {
-            // A group for each: one fault does not hide another.
-            let mut own = Group::new("spans");
+            // A tally for each: one fault does not hide another.
+            let mut own = Tally::default();
             let mut random = Random::new(seed, "twins");
             let mut canvas = vec![GUARD_BYTE; LONGEST + 64 + 2 * GUARD];
             for case in 0..(LONGEST + 1) * ROWS {
@@ -47,8 +50,7 @@ impl Twins {
                 own.check(wrong.is_none(), || format!("{text} length {}: {}", row.len(), wrong.unwrap_or_default()));
                 canvas.fill(GUARD_BYTE);
             }
-            group.cases += own.cases;
-            group.failures.append(&mut own.failures);
+            all.append(own);
         }
     }
 
@@ -115,11 +117,11 @@ mod tests {
 
     const RIGHT: Twins = Twins { fill_dithered, fill_perspective, mix_cube };
 
-    fn check(twins: &Twins) -> Group {
-        let mut group = Group::new("spans");
-        twins.check(&mut group, 1);
-        assert_eq!(group.cases, 3 * 321 * ROWS as u64);
-        group
+    fn check(twins: &Twins) -> Tally {
+        let mut all = Tally::default();
+        twins.check(&mut all, 1);
+        assert_eq!(all.cases, 3 * 321 * ROWS as u64);
+        all
     }
 
     #[test]
@@ -146,7 +148,7 @@ mod tests {
         ];
         for (twins, text) in wrong {
             let failures = check(&twins).failures;
-            assert_eq!(failures.len(), crate::verify::FAILURES, "{text}");
+            assert_eq!(failures.len(), super::super::FAILURES, "{text}");
             for failure in failures {
                 assert!(failure.starts_with(text) && failure.contains(": pixel "), "{failure}");
             }

@@ -1,0 +1,238 @@
+//! `mode13h dos`: a scene as a program for DOS, which draws it in the mode 13h of a real VGA.
+//!
+//! The program is a header of DOS, a stub of 16 bits, a flat image of the engine for a 386, and a film: one round of the
+//! scene in 16.16 ([`player`]). Stub and image are at hand as bytes, so that no assembler is needed here; their source is
+//! in `machines/dos`, whose `build` makes the bytes anew.
+
+mod film;
+mod player;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+use mode13h::export;
+use mode13h::hooks;
+use mode13h::palette::{BIOS, Palette};
+use mode13h::render::{HiddenSurfaces, Renderer, Screen, VertexPath};
+
+use self::player::{EMPTY, Film, PIXELS, Player, hash};
+use crate::failure::Failure;
+use crate::input;
+use crate::options::Drawing;
+use crate::output;
+use crate::turntable::Turntable;
+
+/// Stub and image, as `machines/dos/build` makes them.
+static PLAYER: &[u8] = include_bytes!("player.bin");
+
+/// The first sector of a floppy, and where in it the number of sectors behind it stands.
+static BOOT: &[u8; 512] = include_bytes!("boot.bin");
+const SECTORS: usize = 4;
+/// Bytes of a floppy.
+const FLOPPY: usize = 2 * 80 * 18 * 512;
+
+/// Bytes of the stub's table in `PLAYER`: offset and length of the film, the stack's top, the extended memory in KB.
+const TABLE: usize = 4;
+/// Bytes of a program, at most: DOS loads it below 640 KB.
+const MAX_SIZE: usize = 500_000;
+/// Bytes of stack behind the program, half of it for real mode.
+const STACK: usize = 0x1_0000;
+
+#[derive(Args)]
+pub(crate) struct Options {
+    #[arg(help = input::HELP, long_help = input::long_help())]
+    input: OsString,
+    /// The name of the program [default: INPUT.EXE in this directory]
+    ///
+    /// A name that ends in .img is that of a floppy of 1.44 MB, which starts the program without DOS.
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite INPUT.EXE
+    #[arg(long)]
+    force: bool,
+    /// The number of frames of a round
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    frames: u16,
+    #[command(flatten)]
+    drawing: Drawing,
+}
+
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let Options { input, out, force, frames, drawing } = options;
+    let kernel = drawing.kernel()?;
+    let name = input::name_of(input);
+    let out = match out {
+        Some(out) => out.clone(),
+        None => {
+            let out = PathBuf::from(format!("{}.EXE", short_name(&name)));
+            output::refuse_overwriting(&out, *force)?;
+            out
+        }
+    };
+    let mut stage = drawing.stage(drawing.input(input)?)?;
+    let mut renderer = Renderer::new();
+    renderer.settings.kernel = kernel;
+    let (film, vertices) = film_of(&mut stage, &mut renderer, *frames)?;
+    let body = body(&film, vertices)?;
+    let is_floppy = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("img"));
+    let program = if is_floppy { floppy(&body) } else { program(&body) };
+    let sum = hash_of(&film).ok_or_else(|| Failure::words("a mesh of the scene is not sound in 16.16"))?;
+    output::file(|| export::write_atomically(&out, |file| file.write_all(&program)))?;
+    output::print(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
+}
+
+/// A name that DOS can have: at most eight letters, digits and a few signs.
+fn short_name(name: &str) -> String {
+    let fits = |c: &char| c.is_ascii_alphanumeric() || "_-".contains(*c);
+    let short: String = name.chars().filter(fits).take(8).collect::<String>().to_ascii_uppercase();
+    if short.is_empty() { "SCENE".into() } else { short }
+}
+
+/// One round of a scene as a film, and the max number of vertices of a mesh.
+fn film_of(stage: &mut Turntable, renderer: &mut Renderer, frames: u16) -> Result<(Vec<u8>, usize), Failure> {
+    let mut writer = film::Writer::new();
+    for number in 0..frames {
+        show(stage, renderer, number, frames);
+        let frame = hooks::integer_frame(renderer, &stage.scene, Screen::MODE_13H)?;
+        writer.push(&frame).map_err(Failure::words)?;
+    }
+    let vertices = writer.vertices;
+    let palette: &Palette = stage.scene.palette.as_ref().unwrap_or(&BIOS);
+    Ok((writer.finish(palette).map_err(Failure::words)?, vertices))
+}
+
+/// Puts a scene where it is in a frame of its round. Painter's order by faces is no way of a film.
+fn show(stage: &mut Turntable, renderer: &mut Renderer, number: u16, frames: u16) {
+    let (seconds, pose) = stage.turned(0.0, 360.0 * f64::from(number) / f64::from(frames));
+    stage.show(seconds, pose);
+    renderer.settings.vertex_path = VertexPath::Integer;
+    if stage.scene.preferences.hidden_surfaces == Some(HiddenSurfaces::PainterOrder) {
+        stage.scene.preferences.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+    }
+}
+
+/// Stub, image and film, as they are in memory.
+fn body(film: &[u8], vertices: usize) -> Result<Vec<u8>, Failure> {
+    let mut body = PLAYER.to_vec();
+    body.resize(body.len().next_multiple_of(16), 0);
+    let start = body.len();
+    body.extend(film);
+    body.resize(body.len().next_multiple_of(16), 0);
+    // The film's lists may be copied as they grow; a vertex takes less than 64 bytes.
+    let heap = 4 * film.len() + 5 * PIXELS + 64 * vertices + 65_536;
+    if body.len() > MAX_SIZE {
+        let line = format!("the program would have {} bytes, and DOS has room for {MAX_SIZE}", body.len());
+        return Err(Failure::words(line));
+    }
+    // All below 2³².
+    let table = [start, film.len(), body.len() + STACK, heap.div_ceil(1024)];
+    for (to, value) in body[TABLE..].as_chunks_mut::<4>().0.iter_mut().zip(table) {
+        *to = (value as u32).to_le_bytes();
+    }
+    Ok(body)
+}
+
+/// A floppy that starts it.
+fn floppy(body: &[u8]) -> Vec<u8> {
+    let mut floppy = BOOT.to_vec();
+    floppy[SECTORS..SECTORS + 2].copy_from_slice(&(body.len().div_ceil(512) as u16).to_le_bytes()); // at most 977
+    floppy.extend(body);
+    floppy.resize(FLOPPY, 0);
+    floppy
+}
+
+/// The program for DOS.
+fn program(body: &[u8]) -> Vec<u8> {
+    const HEADER: usize = 32;
+    let (size, paragraphs) = (HEADER + body.len(), |bytes: usize| (bytes / 16) as u16); // below 2²⁰ bytes
+    let header = [
+        u16::from_le_bytes(*b"MZ"),
+        (size % 512) as u16,
+        size.div_ceil(512) as u16, // at most 978
+        0,                         // relocations
+        paragraphs(HEADER),
+        paragraphs(STACK), // memory behind the program, at least and at most
+        paragraphs(STACK),
+        paragraphs(body.len()), // SS:SP
+        (STACK / 2) as u16,
+        0, // sum
+        0, // CS:IP, 0:0
+        0,
+        HEADER as u16 - 4, // the table of relocations
+        0,
+        0,
+        0,
+    ];
+    let mut program: Vec<u8> = header.iter().flat_map(|word| word.to_le_bytes()).collect();
+    program.extend(body);
+    program
+}
+
+/// The hash that the program prints: of all frames' bytes, then of the DAC.
+fn hash_of(film: &[u8]) -> Option<u64> {
+    let film = Film::read(film)?;
+    let mut player = Player::new(&film, mode13h::span::Kernel::PORTABLE)?;
+    let mut pixels = vec![0; PIXELS];
+    let mut sum = EMPTY;
+    for number in 0..film.frames() {
+        player.draw(number, &mut pixels)?;
+        sum = hash(sum, &pixels);
+    }
+    Some(hash(sum, film.dac))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mode13h::scene::shipped;
+
+    /// Every shipped scene is drawn by the film as by the renderer, and a film that is broken off is refused.
+    #[test]
+    fn a_film_is_drawn_as_the_scene_is() {
+        for shipped in &shipped::ALL {
+            let Ok(loaded) = shipped.load() else { panic!("{}", shipped.name) };
+            let mut stage = Turntable::of_scene(loaded.scene);
+            let mut renderer = Renderer::new();
+            let (film, _) = film_of(&mut stage, &mut renderer, 5).unwrap();
+            let read = Film::read(&film).unwrap();
+            assert_eq!(read.frames(), 5);
+            let mut player = Player::new(&read, mode13h::span::Kernel::PORTABLE).unwrap();
+            let (mut pixels, mut vga) = (vec![0; PIXELS], Vga::new());
+            for number in 0..5 {
+                show(&mut stage, &mut renderer, number, 5);
+                renderer.draw(&stage.scene, &mut vga).unwrap();
+                player.draw(number.into(), &mut pixels).unwrap();
+                assert!(pixels == vga.pixels(), "{} frame {number}", shipped.name);
+            }
+            assert!(Film::read(&film[..film.len() - 1]).is_none(), "{}", shipped.name);
+        }
+    }
+
+    /// DOS and the boot sector load all that there is, and what DOS cannot load is refused.
+    #[test]
+    fn headers_say_what_follows() {
+        let bytes = body(b"a film", 3).unwrap();
+        let table = |i: usize| u32::from_le_bytes(bytes[TABLE + 4 * i..][..4].try_into().unwrap()) as usize;
+        assert_eq!(bytes[table(0)..][..table(1)], *b"a film");
+        assert!(table(2) == bytes.len() + STACK && table(3) * 1024 > 5 * PIXELS);
+
+        let program = program(&bytes);
+        let word = |at: usize| usize::from(u16::from_le_bytes([program[at], program[at + 1]]));
+        assert_eq!((word(4) - 1) * 512 + word(2), program.len());
+        assert_eq!(program[word(8) * 16..], bytes);
+        assert_eq!((word(14) * 16, word(16)), (bytes.len(), STACK / 2));
+
+        let floppy = floppy(&bytes);
+        assert_eq!((floppy.len(), &floppy[510..512]), (1_474_560, &[0x55, 0xAA][..]));
+        assert!(floppy[512..].starts_with(&bytes));
+        assert_eq!(usize::from(u16::from_le_bytes([floppy[4], floppy[5]])), bytes.len().div_ceil(512));
+        assert!(body(&vec![0; MAX_SIZE], 0).is_err());
+    }
+
+    #[test]
+    fn names_are_those_of_dos() {
+        assert_eq!(short_name("a long.name"), "ALONGNAM");
+        assert_eq!(short_name("é"), "SCENE");
+    }
+}

@@ -1,0 +1,110 @@
+//! Plays a film of projected scenes in the mode 13h of a real VGA, on a 386 without a floating point unit. `stub.asm` has
+//! entered protected mode and calls [`play`].
+//!
+//! | word | what |
+//! |---|---|
+//! | none | the scene, round after round, until Esc |
+//! | `/B` | draws all frames once for their hash, then as many as it can in ten seconds; prints both |
+//! | `/W n` | shows frame n, and writes what the card then holds into SCREEN.BIN: 64,000 bytes and 768 of the DAC |
+#![no_std]
+#![no_main]
+
+extern crate alloc;
+
+#[path = "../../../../cli/src/dos/player.rs"]
+mod film;
+mod machine;
+
+use alloc::format;
+use alloc::vec;
+use film::{EMPTY, Film, PIXELS, Player, hash};
+use machine::{Machine, Parameters};
+use mode13h::span::Kernel;
+
+/// Called by the stub, which stands before it; returns the status of the program.
+///
+/// # Safety
+/// The stub gives its own table.
+#[unsafe(link_section = ".entry")]
+#[unsafe(no_mangle)]
+unsafe extern "C" fn play(parameters: *mut Parameters) -> u32 {
+    // SAFETY: it is the stub's, which calls once.
+    let (mut machine, film, words) = unsafe { Machine::new(parameters) };
+    match run(&mut machine, film, words) {
+        Ok(()) => 0,
+        Err(line) => {
+            machine.set_mode(Machine::TEXT);
+            machine.print(line);
+            1
+        }
+    }
+}
+
+fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static str> {
+    const BROKEN: &str = "The scene in this program is broken.\n";
+    let film = Film::read(bytes).ok_or(BROKEN)?;
+    let kernel = Kernel::by_name("asm").unwrap_or(Kernel::PORTABLE);
+    let mut player = Player::new(&film, kernel).ok_or(BROKEN)?;
+    let mut pixels = vec![0; PIXELS];
+    let words = core::str::from_utf8(words).unwrap_or_default();
+    let mut words = words.split_ascii_whitespace();
+    let word = words.next().unwrap_or_default();
+    match (word, words.next()) {
+        ("", None) => {
+            machine.set_mode(Machine::MODE_13H);
+            machine.set_dac(film.dac, 0);
+            let mut number = 0;
+            player.draw(number, &mut pixels).ok_or(BROKEN)?;
+            machine.show(&pixels);
+            machine.fade(film.dac, false);
+            while !machine.is_escaped() {
+                number = (number + 1) % film.frames();
+                player.draw(number, &mut pixels).ok_or(BROKEN)?;
+                machine.wait_for_retrace();
+                machine.show(&pixels);
+            }
+            machine.fade(film.dac, true);
+            machine.set_mode(Machine::TEXT);
+        }
+        ("/B" | "/b", None) => {
+            machine.set_mode(Machine::MODE_13H);
+            machine.set_dac(film.dac, 64);
+            let mut sum = EMPTY;
+            for number in 0..film.frames() {
+                player.draw(number, &mut pixels).ok_or(BROKEN)?;
+                sum = hash(sum, &pixels);
+            }
+            sum = hash(sum, film.dac);
+            // From one change of the clock's second to another, ten seconds later or more.
+            let (mut frames, mut seconds) = (0_u32, 0);
+            let mut last = machine.seconds();
+            while last == machine.seconds() {}
+            last = machine.seconds();
+            while seconds < 10 {
+                player.draw(frames as usize % film.frames(), &mut pixels).ok_or(BROKEN)?;
+                machine.show(&pixels);
+                frames += 1;
+                let now = machine.seconds();
+                seconds += (now + 60 - last) % 60;
+                last = now;
+            }
+            machine.set_mode(Machine::TEXT);
+            let tenths = frames * 10 / seconds;
+            let count = film.frames();
+            machine.print(&format!("{count} frames, {sum:016x}, {}.{} a second\n", tenths / 10, tenths % 10));
+        }
+        ("/W" | "/w", Some(number)) if number.parse::<usize>().is_ok() => {
+            machine.set_mode(Machine::MODE_13H);
+            machine.set_dac(film.dac, 64);
+            player.draw(number.parse().unwrap_or(0), &mut pixels).ok_or(BROKEN)?;
+            machine.show(&pixels);
+            let written = machine.write_screen();
+            machine.set_mode(Machine::TEXT);
+            if !written {
+                return Err("SCREEN.BIN cannot be written.\n");
+            }
+        }
+        _ => return Err("Without a word: the scene, until Esc. /B: frames a second. /W n: frame n to SCREEN.BIN.\n"),
+    }
+    Ok(())
+}

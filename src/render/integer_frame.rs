@@ -1,0 +1,57 @@
+//! A frame of the 16.16 path in numbers, for programs that draw it on another machine.
+
+use alloc::vec::Vec;
+
+use super::{RenderError, Renderer, Screen, VertexPath};
+use crate::fixed::I16F16;
+use crate::integer::{Camera, Object, Sun};
+use crate::scene::{HiddenSurfaces, Scene};
+use crate::shading::Shading;
+
+/// A frame of the 16.16 path before its vertices are made.
+#[derive(Clone, Debug)]
+pub struct IntegerFrame<'a> {
+    /// A shading of this path.
+    pub shading: Shading,
+    /// True if depths are needed: the order of the objects alone does not do.
+    pub is_depth_tested: bool,
+    /// The entry that the frame is cleared to.
+    pub background: u8,
+    /// The camera, in a scene that is scaled into range with the eye as its origin.
+    pub camera: Camera,
+    /// The focal lengths in pixels, across and down.
+    pub focal: [I16F16; 2],
+    /// The suns.
+    pub suns: &'a [Sun],
+    /// The objects in the order in which they are drawn, with the index of each in the scene.
+    pub objects: Vec<(usize, Object<'a, u32>)>,
+}
+
+impl Renderer {
+    /// Prepares a frame by the 16.16 path, draws nothing, and returns its numbers.
+    pub(crate) fn integer_frame<'a>(
+        &'a mut self,
+        scene: &'a Scene,
+        screen: Screen,
+    ) -> Result<IntegerFrame<'a>, RenderError> {
+        self.settings.vertex_path = VertexPath::Integer;
+        let (stats, _) = self.prepare(scene, screen, None, true)?;
+        self.last = None;
+        let Some((camera, focal, suns)) = self.integer.frame() else {
+            return Err(RenderError::Camera("there is none"));
+        };
+        let order = self.plan.order.iter();
+        Ok(IntegerFrame {
+            shading: stats.shading,
+            is_depth_tested: !matches!(
+                self.plan.hidden_surfaces(),
+                HiddenSurfaces::BackFaces | HiddenSurfaces::PainterOrder
+            ),
+            background: scene.background,
+            camera,
+            focal,
+            suns,
+            objects: order.filter_map(|&i| Some((i, self.integer.object(i, &scene.objects()[i])?))).collect(),
+        })
+    }
+}
