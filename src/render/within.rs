@@ -1,7 +1,7 @@
 //! The stage of an object's faces within an error budget: each is drawn by the shading that is decided for it.
 
 use super::Stats;
-use super::budget::{Budget, Choice, Decided, Settled, WORTH_SAMPLES};
+use super::budget::{Budget, Choice, Decided, Settled, WORTH_CURVE, WORTH_SAMPLES};
 use super::clip::WithEffects;
 use super::face::{Face, Sink, is_turned_away};
 use super::faces::Faces;
@@ -14,6 +14,12 @@ use crate::scene::Shading;
 
 /// Shading of linear faces within a budget.
 const LINEAR_SHADING: Shading = Shading::Gouraud88Reseeded;
+
+/// Faces of a chunk that are tried in a row in vain until only large ones are.
+const TRIES: u32 = 3;
+
+/// Pixels from which on such a face is tried.
+const SMALL: u64 = 64;
 
 /// Pixels from which on a face is tried by more points than the fewest.
 const LARGE: u64 = 192;
@@ -38,7 +44,7 @@ impl Faces<'_> {
             let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), true, (chunk, triangles), stats);
             let here = left & !sifted.clipped;
             let sides = (first, if CULLS { 0 } else { sifted.back });
-            let Settled { linear: settled, hopeless } = self.settled(budget, sides, decided, here);
+            let Settled { linear: settled, hopeless, hopeless_if_small } = self.settled(budget, sides, decided, here);
             linear += u64::from(settled.count_ones());
             if let (Some((listed, numbered)), Some(sieve)) = (&mut listed, &sieve) {
                 if settled == left {
@@ -57,6 +63,7 @@ impl Faces<'_> {
                 continue;
             }
             let choices = decided.of_chunk(chunk);
+            let mut in_vain = 0;
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
@@ -84,7 +91,8 @@ impl Faces<'_> {
                 } else if is(sifted.clipped) {
                     self.clipped_within::<true, EFFECTS>(face, (budget, choice), stats, sink);
                 } else {
-                    self.one_within::<EFFECTS>(face, (budget, choice, is(hopeless)), stats, sink);
+                    let hopeless = (is(hopeless), is(hopeless_if_small), &mut in_vain);
+                    self.one_within::<EFFECTS>(face, (budget, choice), hopeless, stats, sink);
                 }
             }
         }
@@ -99,7 +107,8 @@ impl Faces<'_> {
     fn one_within<const EFFECTS: bool>(
         &self,
         face: Face,
-        (budget, choice, hopeless): (&Budget, &mut Choice, bool),
+        (budget, choice): (&Budget, &mut Choice),
+        (hopeless, hopeless_if_small, in_vain): (bool, bool, &mut u32),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) {
@@ -107,8 +116,18 @@ impl Faces<'_> {
         let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
         if *choice == Choice::Unknown {
             // Points of a tiny one would be more than its pixels.
-            let in_vain = is_smaller(&vertices, if hopeless { LARGE } else { WORTH_SAMPLES });
-            *choice = if in_vain && self.lights_pixels { Choice::Phong } else { self.fit(budget, face, &vertices) };
+            let worth = match (hopeless, hopeless_if_small) {
+                (true, _) => LARGE,
+                _ if *in_vain >= TRIES => SMALL,
+                (_, true) => WORTH_CURVE,
+                _ => WORTH_SAMPLES,
+            };
+            if self.lights_pixels && is_smaller(&vertices, worth) {
+                *choice = Choice::Phong;
+            } else {
+                *choice = self.fit(budget, face, &vertices);
+                *in_vain = if *choice == Choice::Phong { *in_vain + 1 } else { 0 };
+            }
         }
         let choice = *choice;
         stats.shares.add(choice.shading(), 1);

@@ -257,6 +257,44 @@ impl<const N: usize> Sums<N> {
     }
 }
 
+/// Ranges in the light of one source: n·l, the same times the fall-off, and r·v; the greatest and the least.
+struct Ranges<'a> {
+    facing: &'a [Lanes<f32>; 2],
+    weighted: &'a [Lanes<f32>; 2],
+    along: Option<&'a [Lanes<f32>; 2]>,
+    falls: &'a [FallOff; LANES],
+}
+
+impl<const N: usize> Sums<N> {
+    /// Adds the terms of one light. `eye` has the highlight's power, and what the direction to the eye turns by.
+    #[inline(always)]
+    fn add_light<const WHOLE: bool>(
+        &mut self,
+        ranges: &Ranges<'_>,
+        normals: &[Normals; LANES],
+        eye: Option<(&Lobe, &Lanes<f32>)>,
+        strength: &Strength<N>,
+        below: bool,
+    ) {
+        let Ranges { facing, weighted, along, falls } = *ranges;
+        let mut terms = [[0.0; LANES]; 4];
+        for lane in 0..LANES {
+            let term = body::<WHOLE>(normals[lane], (weighted[0][lane], weighted[1][lane]), falls[lane], below);
+            (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) =
+                (term.error, term.range, term.most, term.least);
+        }
+        self.add(&strength.body, &terms);
+        let (Some(along), Some((lobe, eye_turn))) = (along, eye) else { return };
+        for lane in 0..LANES {
+            let (along, facing) = ((along[0][lane], along[1][lane]), (facing[0][lane], facing[1][lane]));
+            let term = highlight(normals[lane], lobe, along, facing, falls[lane], eye_turn[lane]);
+            (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) =
+                (term.error, term.range, term.most, term.least);
+        }
+        self.add(&strength.highlight, &terms);
+    }
+}
+
 impl Incident<'_> {
     /// Returns whether all strengths together are so small that their sums are numbers.
     fn is_moderate<const N: usize>(&self) -> bool {
@@ -325,34 +363,20 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
         }
         (sight, turn)
     });
-    let mut add = |facing: &[Lanes<f32>; 2],
-                   weighted: &[Lanes<f32>; 2],
-                   along: Option<[Lanes<f32>; 2]>,
-                   falls: &[FallOff; LANES],
-                   strength: &Strength<N>| {
-        let mut terms = [[0.0; LANES]; 4];
-        for lane in 0..LANES {
-            let ends = (weighted[0][lane], weighted[1][lane]);
-            let term = body::<WHOLE>(normals[lane], ends, falls[lane], incident.below);
-            (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) =
-                (term.error, term.range, term.most, term.least);
-        }
-        sums.add(&strength.body, &terms);
-        let (Some(along), Some((_, eye_turn))) = (along, &eye) else { return };
-        for lane in 0..LANES {
-            let (along, facing) = ((along[0][lane], along[1][lane]), (facing[0][lane], facing[1][lane]));
-            let term = highlight(normals[lane], &lobe, along, facing, falls[lane], eye_turn[lane]);
-            (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) =
-                (term.error, term.range, term.most, term.least);
-        }
-        sums.add(&strength.highlight, &terms);
-    };
     for sun in suns {
         let directions = patches.sun(sun.towards.to_array());
         let facing = patches.facing(&directions);
         let along = eye.as_ref().map(|(sight, _)| patches.mirrored(&directions, &sight.directions));
         let strength = incident.strength::<N>(sun.intensity, sun.channels);
-        add(&facing, &facing, along, &[FallOff::NONE; LANES], &strength);
+        let ranges =
+            Ranges { facing: &facing, weighted: &facing, along: along.as_ref(), falls: &[FallOff::NONE; LANES] };
+        sums.add_light::<WHOLE>(
+            &ranges,
+            &normals,
+            eye.as_ref().map(|(_, turn)| (&lobe, turn)),
+            &strength,
+            incident.below,
+        );
     }
     for lamp in lamps {
         let inverse_range = (libm::sqrt(lamp.inverse_square) as f32).min(HUGE);
@@ -368,7 +392,15 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
         }
         let weighted = patches.weighted(&sight, &ends, inverse_range);
         let along = eye.as_ref().map(|(of_eye, _)| patches.mirrored(&sight.directions, &of_eye.directions));
-        add(&facing, &weighted, along, &falls, &incident.strength::<N>(lamp.intensity, lamp.channels));
+        let ranges = Ranges { facing: &facing, weighted: &weighted, along: along.as_ref(), falls: &falls };
+        let strength = incident.strength::<N>(lamp.intensity, lamp.channels);
+        sums.add_light::<WHOLE>(
+            &ranges,
+            &normals,
+            eye.as_ref().map(|(_, turn)| (&lobe, turn)),
+            &strength,
+            incident.below,
+        );
     }
     let mut bounds = Bounds { on_screen: [0.0; LANES], on_face: [0.0; LANES] };
     for channel in 0..N {

@@ -1,5 +1,5 @@
 //! The bound, tested as a bound: on random patches in random light no sampled error is greater than that of the face, of the
-//! part, or of the node that the face is in. `cargo test` tries 300,000 faces; the long run climbs towards the worst.
+//! part, or of the node that the face is in. `cargo test` tries 32,000 faces, the long run 3,200,000.
 
 use std::vec::Vec;
 
@@ -251,8 +251,8 @@ impl Case {
     }
 }
 
-/// The sampled errors themselves are rounded to f64.
-const ROUNDING: f64 = 1e-12;
+/// Sums of f32 near 1 are rounded by so much: 1/10,000 shade, which the rounding of shades has room for.
+const ROUNDING: f64 = 4e-7;
 
 /// Tries one case; returns bound over error of each face where there is an error to speak of.
 fn try_case(case: &Case, random: &mut Random, points: u32) -> Vec<f64> {
@@ -300,14 +300,14 @@ fn no_sampled_error_is_beyond_its_bound() {
     assert!(ratios.len() > 5_000);
 }
 
-/// A hundred times as many, and more points of each.
+/// A hundred times as many.
 #[test]
-#[ignore = "the long run: 400,000 cases of eight faces"]
-fn bound_long_no_sampled_error_is_beyond_its_bound() {
+#[ignore = "the long run: 3,200,000 faces"]
+fn bound_of_many_more_patches() {
     let mut random = Random(14);
     for _ in 0..400_000 {
         let case = Case::new(&mut random);
-        try_case(&case, &mut random, 16);
+        try_case(&case, &mut random, 12);
     }
 }
 

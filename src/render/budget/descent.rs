@@ -2,6 +2,7 @@
 
 use super::bound::{Bounds, Incident, Shapes, interpolation_error};
 use super::decided::Decided;
+use super::fit::LINEAR_MODEL;
 use super::ranges::{EightFaces, EightNodes, Patches, ZERO, dot, greater, lesser};
 use super::{Budget, Choice, Depths, EXACT_ROUNDING, LINEAR_ROUNDING};
 use crate::lanes::{LANES, Lanes};
@@ -13,12 +14,20 @@ use crate::simd::at_best_level;
 /// Share of a face that the coarsest parts have, which points are lit between.
 const COARSEST: f32 = 0.25;
 
+/// Times of what is allowed beyond which a bound seldom is so loose that linear shades do.
+const MOST_LIKELY: f32 = 6.0;
+
+/// Edges between the eye and a body from which on perspective bends shades by no more than a fiftieth of their range.
+const NEAR_EDGES: f32 = 25.0;
+
 /// Decisions on the faces of a chunk, a bit for each.
 #[derive(Clone, Copy, Default)]
 pub(in crate::render) struct Settled {
     pub(in crate::render) linear: u64,
-    /// Faces of which a few points say nothing.
+    /// Faces of which no function is known to be near enough by a few points; and small ones, which are tried by linear
+    /// functions alone.
     pub(in crate::render) hopeless: u64,
+    pub(in crate::render) hopeless_if_small: u64,
 }
 
 impl Depths {
@@ -31,7 +40,7 @@ impl Depths {
         for (lane, bend) in bends.iter_mut().enumerate() {
             let slack = 1e-5 * (middle[lane].abs() + half[lane] + self.offset.abs());
             let near = greater(middle[lane] + self.offset - half[lane] - slack, self.near);
-            *bend = lesser(2.0 * edge[lane] * self.scale / (4.0 * near), 1.0);
+            *bend = lesser(edge[lane] * self.scale / (2.0 * near), 1.0);
         }
         bends
     }
@@ -137,7 +146,7 @@ impl Faces<'_> {
         if let Some(choices) = decided.chosen(chunk) {
             unknown &= !those(unknown, |at| choices[at] != Choice::Unknown);
         }
-        let mut settled = Settled { linear: left & !unknown & *decided.linear(chunk), hopeless: 0 };
+        let mut settled = Settled { linear: left & !unknown & *decided.linear(chunk), ..Settled::default() };
         if unknown == 0 {
             return settled;
         }
@@ -199,8 +208,10 @@ impl Faces<'_> {
             shapes.bend = ZERO;
             let parts = self.bounds::<false, _>(budget, (&faces, &shapes), surface, false);
             for (lane, &at) in places.iter().enumerate() {
-                let is_hopeless = parts.on_face[lane] > exact || parts.on_face[lane].is_nan();
-                settled.hopeless |= u64::from(is_hopeless) << at;
+                let (part, whole) = (parts.on_face[lane], bounds.on_face[lane]);
+                settled.hopeless |= u64::from(part > exact) << at;
+                let is_hopeless = part > LINEAR_MODEL * linear || whole > MOST_LIKELY * linear;
+                settled.hopeless_if_small |= u64::from(is_hopeless) << at;
             }
         }
     }
@@ -215,21 +226,33 @@ impl Faces<'_> {
     ) -> (EightFaces, Shapes) {
         let mut faces = EightFaces { normals: [[ZERO; 3]; 3], positions: [[ZERO; 3]; 3] };
         let mut shapes = Shapes { spread: ZERO, edge: ZERO, part: [1.0; LANES], bend: ZERO };
+        // Suns on a matt body far from the eye ask for no positions.
+        let asks = self.full || self.channels || budget.depths.nearest < NEAR_EDGES * budget.tree.longest();
         for (lane, (at, back)) in places.enumerate() {
             let side = if back { -1.0 } else { 1.0 };
             let facet = &budget.tree.facets[first + at];
             (shapes.spread[lane], shapes.edge[lane]) = (facet.spread, facet.edge);
             for (corner, i) in self.geometry.triangles[first + at].into_iter().enumerate() {
-                let (normal, position) = (self.geometry.normals[i as usize], self.geometry.positions[i as usize]);
+                let normal = self.geometry.normals[i as usize] * side;
                 for axis in 0..3 {
-                    faces.normals[corner][axis][lane] = normal[axis] * side;
-                    faces.positions[corner][axis][lane] = position[axis];
+                    faces.normals[corner][axis][lane] = normal[axis];
+                }
+                if asks {
+                    let position = self.geometry.positions[i as usize];
+                    for axis in 0..3 {
+                        faces.positions[corner][axis][lane] = position[axis];
+                    }
                 }
             }
         }
-        let ratios = budget.depths.ratios(&faces);
-        for (bend, ratio) in shapes.bend.iter_mut().zip(ratios) {
-            *bend = lesser(ratio / 4.0, 1.0);
+        if asks {
+            for (bend, ratio) in shapes.bend.iter_mut().zip(budget.depths.ratios(&faces)) {
+                *bend = lesser(ratio / 4.0, 1.0);
+            }
+        } else {
+            for (bend, edge) in shapes.bend.iter_mut().zip(shapes.edge) {
+                *bend = edge / (2.0 * budget.depths.nearest);
+            }
         }
         (faces, shapes)
     }
@@ -265,7 +288,8 @@ impl Faces<'_> {
         let geometry = &self.geometry;
         let tree =
             super::Tree::new(geometry.triangles, geometry.triangle_surfaces, geometry.positions, geometry.normals);
-        let budget = Budget { tree, kernel: Some(self.kernel), depths: Depths::new(self.view), ..Budget::default() };
+        let budget =
+            Budget { depths: Depths::new(self.view, &tree), tree, kernel: Some(self.kernel), ..Budget::default() };
         let sides: &[bool] = if self.culls { &[false] } else { &[false, true] };
         let mut most = 0.0_f32;
         for (at, surfaces) in geometry.triangle_surfaces.chunks(LANES).enumerate() {

@@ -23,6 +23,7 @@ use crate::raster::effects::{Attributes, Limits, SampleSpacing};
 use crate::render::face::Face;
 use crate::render::faces::Faces;
 use crate::render::paint::SurfaceMaterial;
+use crate::simd::at_best_level;
 use crate::span::Kernel;
 
 /// Pixels for each point of the finer grids, at least, for it to be worth it. (The spheres of `phong` within 2 shades: at 10
@@ -31,11 +32,14 @@ const PIXELS_A_POINT: f32 = 4.0;
 
 /// Pixels from which on a quadratic function pays. (From 64 on the torus takes 0.86 of the time of `phong` within 2 shades, from 32
 /// on 0.78, from 16 on 0.75; from 10 on 0.77.)
-const WORTH_CURVE: f32 = 16.0;
+pub(in crate::render) const WORTH_CURVE: u64 = 16;
 
 /// Share of the allowed error up to which light may be off between the points of a grid for it to be worth lighting.
 /// (With 0.5 the torus within 1 shade takes 1.00 of `phong`, with 0.9 0.93.)
 const MODEL: f32 = 0.9;
+
+/// The same for linear functions.
+pub(super) const LINEAR_MODEL: f32 = 0.67;
 
 /// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
 const WORTH_KNOTS: f32 = 16.0;
@@ -79,13 +83,13 @@ const fn grid<const EIGHTS: usize>(n: usize) -> [Weights; EIGHTS] {
     eights
 }
 
-/// 15, 45 and 153 points, the six nodes among them.
+/// 6, 15, 45 and 153 points, the six nodes among them.
 static FOURTHS: [Weights; 2] = grid(4);
 static EIGHTHS: [Weights; 5] = grid(8);
 static SIXTEENTHS: [Weights; 19] = grid(16);
 
 /// Divisions of an edge: the number of parts, and the points.
-const GRIDS: [(f32, &[Weights]); 3] = [(4.0, &FOURTHS), (8.0, &EIGHTHS), (16.0, &SIXTEENTHS)];
+const GRIDS: [(f32, &[Weights]); 4] = [(2.0, &[]), (4.0, &FOURTHS), (8.0, &EIGHTHS), (16.0, &SIXTEENTHS)];
 
 /// A face on the screen.
 struct OnScreen<'a> {
@@ -142,7 +146,12 @@ impl Quadratic {
 
     /// Bounds its distance from some values.
     #[inline]
-    fn off(&self, [a, b, c]: &Weights, values: &Lanes<f32>) -> f32 {
+    fn off(&self, weights: &Weights, values: &Lanes<f32>, kernel: Kernel) -> f32 {
+        at_best_level!(kernel, self.off_lanes(weights, values))
+    }
+
+    #[inline(always)]
+    fn off_lanes(&self, [a, b, c]: &Weights, values: &Lanes<f32>) -> f32 {
         let ([fa, fb, fc], [da, db, dc]) = (self.corners, self.bends);
         let mut off = [0.0_f32; LANES];
         for lane in 0..LANES {
@@ -288,17 +297,18 @@ impl Faces<'_> {
     ) -> Choice {
         let (linear, exact) = (budget.spare(LINEAR_ROUNDING), budget.spare(EXACT_ROUNDING));
         let channels = if self.channels { 3 } else { 1 };
-        let may_curve = pixels >= WORTH_CURVE && budget.adds;
+        // Exact.
+        let may_curve = pixels >= WORTH_CURVE as f32 && budget.adds;
         // Eight points at a time, and the nodes.
         let pays = |points: &[Weights]| (LANES * (points.len() + 1)) as f32 * PIXELS_A_POINT <= pixels;
         let dark = self.dark(face.answer);
         let mut curves = None;
         for (grid, (n, points)) in GRIDS.iter().enumerate() {
-            if grid > 0 && !pays(points) {
+            if grid > 1 && !pays(points) {
                 break;
             }
             let mut left = [linear - bounds(grid), exact - smooth(grid)];
-            let mut may = [left[0] > 0.0, may_curve && left[1] > (1.0 - MODEL) * exact];
+            let mut may = [left[0] > (1.0 - LINEAR_MODEL) * linear, may_curve && left[1] > (1.0 - MODEL) * exact];
             if may == [false; 2] {
                 continue;
             }
@@ -321,8 +331,8 @@ impl Faces<'_> {
                 let light = self.light_at(face, weights);
                 for channel in 0..channels {
                     let drawn = light[channel].map(|light| shown(light, channel));
-                    may[0] &= lines[channel].off(weights, &drawn) <= left[0];
-                    may[1] &= curves[channel].off(weights, &light[channel]) <= left[1];
+                    may[0] = may[0] && lines[channel].off(weights, &drawn, face.kernel) <= left[0];
+                    may[1] = may[1] && curves[channel].off(weights, &light[channel], face.kernel) <= left[1];
                 }
             }
             if may[0] {

@@ -25,7 +25,7 @@ mod tree;
 
 pub(super) use self::decided::{Choice, Decided};
 pub(super) use self::descent::Settled;
-pub(super) use self::fit::limits;
+pub(super) use self::fit::{WORTH_CURVE, limits};
 use self::tree::Tree;
 use super::paint::SurfaceMaterial;
 use super::vertex::Geometry;
@@ -39,11 +39,13 @@ use crate::view::ObjectView;
 /// and `two-lights` within 2 shades 25 % more.)
 pub(super) const WORTH_SAMPLES: u64 = 5;
 
-/// Rounding of a linear shade that starts anew every 64 pixels: a half, 1/512 of the vertices' shades, a quarter of drift.
-const LINEAR_ROUNDING: f32 = 0.752;
+/// Rounding of a linear shade that starts anew every 64 pixels: a half, 1/512 of the vertices' shades, a quarter of drift,
+/// and 1/2,000 of the bound itself.
+const LINEAR_ROUNDING: f32 = 0.7525;
 
-/// Rounding of a shade that is exact before it: a half, 1/512 of the vertices' shades, 1/100 of f32.
-const EXACT_ROUNDING: f32 = 0.512;
+/// Rounding of a shade that is exact before it: a half, 1/512 of the vertices' shades, 1/100 of f32, and the
+/// bound's.
+const EXACT_ROUNDING: f32 = 0.5125;
 
 /// An object, projected.
 #[derive(Clone, Copy)]
@@ -81,12 +83,17 @@ struct Depths {
     near: f32,
     /// Size of the object's unit.
     scale: f32,
+    /// The least distance of a vertex, in these units, and no less than the near plane's.
+    nearest: f32,
 }
 
 impl Depths {
-    fn new(view: &ObjectView) -> Self {
+    fn new(view: &ObjectView, tree: &Tree) -> Self {
         let (row, offset) = view.along_view();
-        Self { row, offset, near: view.near(), scale: view.scale() as f32 }
+        let (near, scale) = (view.near(), view.scale() as f32);
+        let slack = 1e-5 * (offset.abs() + tree.extent * row.iter().map(|c| c.abs()).sum::<f32>());
+        let nearest = (tree.least_along(row) + offset - slack).max(near) / scale;
+        Self { row, offset, near, scale, nearest }
     }
 }
 
@@ -102,12 +109,12 @@ impl Budget {
         let Projected { geometry, mesh, view, lights, paints, kernel } = *object;
         (self.allowed, self.kernel) = (allowed, Some(kernel));
         self.adds = adds(lights, paints);
-        self.depths = Depths::new(view);
         if !matches!((&self.mesh, mesh), (Some(known), Some(mesh)) if Shared::ptr_eq(known, mesh)) {
             self.mesh = mesh.map(Shared::clone);
             let Geometry { triangles, triangle_surfaces, positions, normals, .. } = *geometry;
             self.tree = Tree::new(triangles, triangle_surfaces, positions, normals);
         }
+        self.depths = Depths::new(view, &self.tree);
         decided.forget(geometry.triangles.len());
     }
 

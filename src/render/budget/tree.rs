@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use super::ranges::{EightNodes, ZERO};
+use super::ranges::{EightNodes, ZERO, dot};
 use crate::lanes::{LANES, Lanes};
 
 const PI: f32 = core::f32::consts::PI;
@@ -144,6 +144,7 @@ pub(super) struct Tree {
     pub(super) levels: Vec<Vec<Siblings>>,
     /// The greatest coordinate.
     pub(super) extent: f32,
+    longest: f32,
 }
 
 impl Tree {
@@ -165,7 +166,29 @@ impl Tree {
             nodes = nodes.chunks(LANES).map(Node::of_nodes).collect();
         }
         let extent = positions.iter().fold(0.0, |most: f32, at| most.max(at.abs().max_element()));
-        Self { facets, levels, extent }
+        let longest = facets.iter().fold(0.0, |most: f32, facet| most.max(facet.edge));
+        Self { facets, levels, extent, longest }
+    }
+
+    /// The greatest radius of a face's positions.
+    pub(super) fn longest(&self) -> f32 {
+        self.longest
+    }
+
+    /// A lower bound of all positions along a direction.
+    pub(super) fn least_along(&self, row: [f32; 3]) -> f32 {
+        let mut least = f32::INFINITY;
+        for Siblings { nodes, surfaces, edge, .. } in self.levels.last().into_iter().flatten() {
+            let middle = dot(&nodes.centres, &row.map(|c| [c; LANES]));
+            let half = dot(&nodes.halves, &row.map(|c| [c.abs(); LANES]));
+            for lane in 0..LANES {
+                // Missing nodes have neither.
+                if edge[lane] > 0.0 || surfaces[lane].is_some() {
+                    least = least.min(middle[lane] - half[lane]);
+                }
+            }
+        }
+        least
     }
 
     /// Bytes that it holds.
