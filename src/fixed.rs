@@ -19,15 +19,18 @@ pub(crate) const HAS_F64: bool = cfg!(any(
     all(target_arch = "x86", target_feature = "sse2")
 ));
 
+/// 1.5 · 2⁵²: a sum of it and a value within ±2⁵¹ has the nearest integer, halves to even, in the low bits of its mantissa.
+/// The lower half of its own bits is 0, so the lower half of the sum's bits is that integer modulo 2³².
+pub(crate) const ROUND_MAGIC: f64 = 6_755_399_441_055_744.0;
+const _: () = assert!(ROUND_MAGIC.to_bits() as u32 == 0);
+
 /// The whole number nearest to a value within ±2⁵¹, halves to even; for any other value, some number.
 ///
 /// Only where [`HAS_F64`]. SSE2 has no rounding instruction, and a cast to i64 would saturate, at the
 /// cost of two comparisons.
 #[inline]
 pub(crate) fn nearest_whole(x: f64) -> i64 {
-    // 1.5 · 2⁵²: adding it leaves the nearest integer in the low bits of the mantissa.
-    const MAGIC: f64 = 6_755_399_441_055_744.0;
-    (x + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()) as i64
+    (x + ROUND_MAGIC).to_bits().wrapping_sub(ROUND_MAGIC.to_bits()) as i64
 }
 
 /// The whole part of a value of at least 0 and below 2³¹; for any other value, some number. A cast would saturate,
@@ -36,11 +39,10 @@ pub(crate) fn nearest_whole(x: f64) -> i64 {
 #[inline(always)]
 pub(crate) fn whole_part(x: f64) -> i32 {
     // As in `nearest_whole`; what was rounded up is one too much.
-    const MAGIC: f64 = 6_755_399_441_055_744.0;
-    let sum = x + MAGIC;
+    let sum = x + ROUND_MAGIC;
     // Its lower half.
     let nearest = sum.to_bits() as i32;
-    nearest.wrapping_sub(i32::from(sum - MAGIC > x))
+    nearest.wrapping_sub(i32::from(sum - ROUND_MAGIC > x))
 }
 
 /// A screen coordinate in 1/256 pixel: 24 bits before the point, 8 behind it.

@@ -9,6 +9,19 @@
     expect(unsafe_code, reason = "code for processors found only when the program runs")
 )]
 
+mod lanes;
+mod packed;
+mod portable;
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+mod avx2;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+mod avx512;
+
+pub(crate) use lanes::Lanes8;
+pub(crate) use packed::Packed;
+pub(crate) use portable::Portable;
+
 /// A level that a kernel may use.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) enum Level {
@@ -85,7 +98,7 @@ impl Level {
     }
 }
 
-/// Proof that the processor has AVX2 and FMA. (Nearly all that have AVX2 have FMA.)
+/// Proof that the processor has AVX2, FMA and POPCNT. (Nearly all that have AVX2 have the others.)
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Avx2(());
@@ -95,9 +108,11 @@ impl Avx2 {
     /// The proof, if the processor has them.
     pub(crate) fn find() -> Option<Self> {
         #[cfg(feature = "std")]
-        let found = std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma");
+        let found = std::arch::is_x86_feature_detected!("avx2")
+            && std::arch::is_x86_feature_detected!("fma")
+            && std::arch::is_x86_feature_detected!("popcnt");
         #[cfg(not(feature = "std"))]
-        let found = cfg!(all(target_feature = "avx2", target_feature = "fma"));
+        let found = cfg!(all(target_feature = "avx2", target_feature = "fma", target_feature = "popcnt"));
         found.then_some(Self(()))
     }
 
@@ -114,7 +129,7 @@ impl Avx2 {
     }
 }
 
-/// Proof that the processor has F, BW, DQ and VL of AVX-512, BMI2, POPCNT and what [`Avx2`] stands for.
+/// Proof that the processor has F, BW, DQ and VL of AVX-512, BMI2 and what [`Avx2`] stands for.
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Avx512(Avx2);
@@ -128,16 +143,14 @@ impl Avx512 {
             && std::arch::is_x86_feature_detected!("avx512bw")
             && std::arch::is_x86_feature_detected!("avx512dq")
             && std::arch::is_x86_feature_detected!("avx512vl")
-            && std::arch::is_x86_feature_detected!("bmi2")
-            && std::arch::is_x86_feature_detected!("popcnt");
+            && std::arch::is_x86_feature_detected!("bmi2");
         #[cfg(not(feature = "std"))]
         let found = cfg!(all(
             target_feature = "avx512f",
             target_feature = "avx512bw",
             target_feature = "avx512dq",
             target_feature = "avx512vl",
-            target_feature = "bmi2",
-            target_feature = "popcnt"
+            target_feature = "bmi2"
         ));
         Avx2::find().filter(|_| found).map(Self)
     }
@@ -185,3 +198,42 @@ macro_rules! at_best_level {
     }};
 }
 pub(crate) use at_best_level;
+
+/// Functions of a level that call one that is generic over [`Lanes8`], which is inlined and so compiled for each level.
+///
+/// `fn name[parameters][their names](arguments) -> result = generic;` gives a function whose first argument is the level.
+macro_rules! compiled_for_each_level {
+    ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
+        ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $generic:ident;) => {
+        $(#[$attribute])*
+        #[cfg_attr(
+            all(feature = "simd", target_arch = "x86_64"),
+            expect(unsafe_code, reason = "code for processors found only when the program runs")
+        )]
+        $visibility fn $name<$($parameters)*>(level: crate::simd::Level, $($argument: $type),*) $(-> $result)? {
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            {
+                use crate::simd::{Avx2, Avx512, Level};
+
+                #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,bmi2,popcnt,avx2,fma")]
+                fn avx512<$($parameters)*>(lanes: Avx512, $($argument: $type),*) $(-> $result)? {
+                    $generic::<_, $($names)*>(lanes, $($argument),*)
+                }
+                #[target_feature(enable = "avx2,fma,popcnt")]
+                fn avx2<$($parameters)*>(lanes: Avx2, $($argument: $type),*) $(-> $result)? {
+                    $generic::<_, $($names)*>(lanes, $($argument),*)
+                }
+                match level {
+                    // SAFETY: the processor has AVX-512, says the token.
+                    Level::Avx512(lanes) => return unsafe { avx512::<$($names)*>(lanes, $($argument),*) },
+                    // SAFETY: the processor has AVX2, FMA and POPCNT, says the token.
+                    Level::Avx2(lanes) => return unsafe { avx2::<$($names)*>(lanes, $($argument),*) },
+                    _ => {}
+                }
+            }
+            let _ = level;
+            $generic::<_, $($names)*>(crate::simd::Portable, $($argument),*)
+        }
+    };
+}
+pub(crate) use compiled_for_each_level;

@@ -17,7 +17,7 @@ use crate::fixed::U8F8;
 use crate::light::both_sides;
 use crate::mesh::normals::face_normal;
 use crate::plan::FaceShading;
-use crate::raster::batch::numbered::{Numbered, TURNED};
+use crate::raster::batch::indexed::{Numbered, TURNED};
 use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
 use crate::view::Homogeneous;

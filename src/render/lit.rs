@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use crate::fixed::{I24F8, U8F8};
 use crate::raster::Vertex;
-pub(super) use crate::raster::batch::numbered::Place;
+pub(super) use crate::raster::batch::indexed::Place;
 
 /// A vertex of the object at hand, lit and projected.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

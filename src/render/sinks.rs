@@ -6,7 +6,7 @@ use super::face::Sink;
 use super::pipelines::{Pipeline, Pipelines};
 use super::sift::Sieve;
 use crate::plan::FaceShading;
-use crate::raster::batch::numbered::Numbered;
+use crate::raster::batch::indexed::Numbered;
 use crate::raster::effects::{Attributes, EffectBatch};
 use crate::raster::{Batch, DrawStats, Interpolation, Raster, Vertex};
 

@@ -1,16 +1,280 @@
-//! A list of short spans, drawn by one call: those of small triangles.
+//! Lists of spans, drawn by one call: those of the triangles of a batch.
 //!
 //! ```text
 //! for every span of the list:  fill(pixels[at .. at + length], shade, step)
 //! ```
 //!
-//! or, with a list of depths beside it, `fill_nearer`.
+//! or, with a depth test, `fill_nearer`. The rows of triangles are put in eight at a time; lanes without a pixel, and spans
+//! that do not lie inside the pixels, are left out by compression, so no branch asks how many there are.
 
+#![expect(unsafe_code, reason = "arrays that are written before they are read")]
+
+use core::mem::MaybeUninit;
+
+use super::Kernel;
 use super::depth::{Cell, fill_nearer};
+use crate::simd::{Lanes8, Portable};
+
+/// Spans that a list has room for.
+const CAPACITY: usize = 128;
+/// Spans that are written at a time. Those behind the last span are written over.
+const LANES: usize = 8;
+
+type Numbers = [MaybeUninit<u32>; CAPACITY + LANES];
+type Depths = [MaybeUninit<i64>; CAPACITY + LANES];
+
+/// Spans, in arrays. Each lies inside the pixels and, with depths, the cells.
+pub(crate) struct SpanList {
+    /// Offsets of the first pixels.
+    at: Numbers,
+    /// Offsets of the first cells, with depths and unless they are those of the pixels.
+    cell: Numbers,
+    length: Numbers,
+    /// The shade, and above it the step.
+    paint: Numbers,
+    /// Depths, the integer parts in the upper halves, modulo 2⁶⁴.
+    z: Depths,
+    dz: Depths,
+    count: usize,
+    /// Number of pixels and cells.
+    pixels: i32,
+    cells: i32,
+    /// Pixels from one row to the next, ...
+    pub(crate) pitch: i32,
+    /// ... and cells.
+    pub(crate) width: i32,
+    /// Pixels of all spans there have been, in eight parts.
+    covered: [i32; LANES],
+    /// Spans that have been drawn.
+    drawn: u32,
+    /// Pixels that were nearer.
+    nearer: u32,
+}
+
+/// Eight spans. Those of no length are none.
+pub(crate) struct Spans8<S: Lanes8> {
+    pub(crate) at: S::I32,
+    pub(crate) cell: S::I32,
+    pub(crate) length: S::I32,
+    /// The shade, and above it the step.
+    pub(crate) paint: S::I32,
+    /// Depths, as those of the list.
+    pub(crate) z: S::I64,
+}
+
+impl<S: Lanes8> Spans8<S> {
+    /// Spans 0 of both, spans 1 of both, and so on.
+    #[inline(always)]
+    pub(crate) fn zip<const DEPTHS: bool>(&self, s: S, other: &Self, list: &SpanList) -> [Self; 2] {
+        let [at, more_at] = s.zip_i32(self.at, other.at);
+        let [cell, more_cell] =
+            if DEPTHS && !list.cells_are_pixels() { s.zip_i32(self.cell, other.cell) } else { [at, more_at] };
+        let [length, more_length] = s.zip_i32(self.length, other.length);
+        let [paint, more_paint] = s.zip_i32(self.paint, other.paint);
+        let [z, more_z] = if DEPTHS { s.zip_i64(self.z, other.z) } else { [self.z, other.z] };
+        [
+            Self { at, cell, length, paint, z },
+            Self { at: more_at, cell: more_cell, length: more_length, paint: more_paint, z: more_z },
+        ]
+    }
+}
+
+impl SpanList {
+    /// An empty list for these numbers of pixels and cells, and of those from one row to the next.
+    #[inline(always)]
+    pub(crate) fn new((pixels, pitch): (usize, u32), (cells, width): (usize, u32)) -> Self {
+        const NUMBERS: Numbers = [MaybeUninit::uninit(); CAPACITY + LANES];
+        const DEPTHS: Depths = [MaybeUninit::uninit(); CAPACITY + LANES];
+        // Offsets beyond are never those of a frame.
+        let most = |length: usize| length.min(i32::MAX as usize) as i32;
+        Self {
+            at: NUMBERS,
+            cell: NUMBERS,
+            length: NUMBERS,
+            paint: NUMBERS,
+            z: DEPTHS,
+            dz: DEPTHS,
+            count: 0,
+            pixels: most(pixels),
+            cells: most(cells),
+            pitch: pitch as i32,
+            width: width as i32,
+            covered: [0; LANES],
+            drawn: 0,
+            nearer: 0,
+        }
+    }
+
+    /// Spans, pixels that they cover, and those that were nearer, of all that was drawn.
+    pub(crate) fn counts(&self) -> (u32, u32, u32) {
+        (self.drawn, self.covered.iter().sum::<i32>().cast_unsigned(), self.nearer)
+    }
+
+    /// Returns whether there is room for so many more.
+    #[inline(always)]
+    pub(crate) fn has_room(&self, spans: usize) -> bool {
+        self.count + spans <= CAPACITY
+    }
+
+    /// Rows of pixels and of cells have one length, and so pixels and their cells one offset.
+    #[inline(always)]
+    fn cells_are_pixels(&self) -> bool {
+        self.pitch == self.width
+    }
+
+    /// Puts those of eight spans that have a length, and lie inside, behind the others. Without room for eight, some are
+    /// left out.
+    #[inline(always)]
+    pub(crate) fn append<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, spans: &Spans8<S>, dz: S::I64) {
+        let &Spans8 { at, cell, length, paint, z } = spans;
+        let mut mask = s.both(s.is_greater(length, s.all_i32(0)), s.is_greater(at, s.all_i32(-1)));
+        // No overflow where `at` is not negative.
+        mask = s.but_not(mask, s.is_greater(length, s.sub_i32(s.all_i32(self.pixels), at)));
+        if DEPTHS {
+            mask = s.both(mask, s.is_greater(cell, s.all_i32(-1)));
+            mask = s.but_not(mask, s.is_greater(length, s.sub_i32(s.all_i32(self.cells), cell)));
+        }
+        let covered = s.select_i32(mask, length, s.all_i32(0));
+        s.put_i32s(s.add_i32(s.i32s(&self.covered), covered), &mut self.covered);
+        let count = self.count.min(CAPACITY);
+        s.compact_i32(
+            mask,
+            [at, length, paint],
+            [eight(&mut self.at, count), eight(&mut self.length, count), eight(&mut self.paint, count)],
+        );
+        if DEPTHS {
+            if !self.cells_are_pixels() {
+                s.compact_i32(mask, [cell], [eight(&mut self.cell, count)]);
+            }
+            s.compact_i64(mask, [z, dz], [eight(&mut self.z, count), eight(&mut self.dz, count)]);
+        }
+        self.count = (count + s.mask_bits(mask).count_ones() as usize).min(CAPACITY);
+    }
+
+    /// Draws the spans, with `DEPTHS` where they are nearer than cells, and empties the list. With fewer pixels or cells than
+    /// the list was made for, nothing is drawn.
+    #[inline(always)]
+    pub(crate) fn draw_by<D: Cell, const DEPTHS: bool>(&mut self, kernel: Kernel, pixels: &mut [u8], cells: &mut [D]) {
+        if self.count == 0 {
+            return;
+        }
+        if DEPTHS {
+            let nearer = kernel.fill_spans_nearer(pixels, cells, &self.spans(), &self.depths());
+            self.nearer = self.nearer.wrapping_add(nearer);
+        } else {
+            kernel.fill_spans(pixels, &self.spans());
+        }
+        // At most 2⁷ at a time; the sum is meant modulo 2³², as `DrawStats`.
+        self.drawn = self.drawn.wrapping_add(self.count as u32);
+        self.count = 0;
+    }
+
+    #[inline(always)]
+    fn spans(&self) -> Spans<'_> {
+        let count = self.count;
+        // SAFETY: `append` has written the first `count` numbers of each array.
+        let [at, length, paint] =
+            unsafe { [&self.at, &self.length, &self.paint].map(|numbers| written(numbers, count)) };
+        Spans { at, length, paint, pixels: self.pixels as usize }
+    }
+
+    #[inline(always)]
+    fn depths(&self) -> SpanDepths<'_> {
+        let cell = if self.cells_are_pixels() { &self.at } else { &self.cell };
+        // SAFETY: as above; with depths of these as well.
+        let (cell, z, dz) =
+            unsafe { (written(cell, self.count), written(&self.z, self.count), written(&self.dz, self.count)) };
+        SpanDepths { cell, z, dz, cells: self.cells as usize }
+    }
+}
+
+/// Eight places from this number on.
+#[inline(always)]
+fn eight<T>(numbers: &mut [MaybeUninit<T>; CAPACITY + LANES], from: usize) -> &mut [MaybeUninit<T>; LANES] {
+    let rest = &mut numbers[from.min(CAPACITY)..];
+    match rest.first_chunk_mut() {
+        Some(eight) => eight,
+        None => unreachable!("eight places are behind the last"),
+    }
+}
+
+/// The first of these.
+///
+/// # Safety
+/// So many have been written.
+#[inline(always)]
+unsafe fn written<T>(numbers: &[MaybeUninit<T>; CAPACITY + LANES], count: usize) -> &[T] {
+    let first = &numbers[..count];
+    // SAFETY: by the caller's promise; `MaybeUninit<T>` has the layout of `T`.
+    unsafe { &*(&raw const *first as *const [T]) }
+}
+
+/// The spans of a list: of each its numbers in three arrays of one length.
+pub(super) struct Spans<'a> {
+    pub(super) at: &'a [u32],
+    pub(super) length: &'a [u32],
+    pub(super) paint: &'a [u32],
+    /// All spans lie inside so many pixels.
+    pixels: usize,
+}
+
+impl Spans<'_> {
+    /// Returns whether all lie inside these.
+    pub(super) fn are_inside(&self, pixels: &[u8]) -> bool {
+        pixels.len() >= self.pixels
+    }
+
+    /// Fills each by this function.
+    #[inline(always)]
+    pub(super) fn each(&self, pixels: &mut [u8], fill: impl Fn(&mut [u8], u16, u16)) {
+        for ((&at, &length), &paint) in self.at.iter().zip(self.length).zip(self.paint) {
+            // No overflow: both are below 2³¹.
+            if let Some(row) = pixels.get_mut(at as usize..at as usize + length as usize) {
+                // Its halves.
+                fill(row, paint as u16, (paint >> 16) as u16);
+            }
+        }
+    }
+}
+
+/// The depths of as many spans.
+pub(super) struct SpanDepths<'a> {
+    pub(super) cell: &'a [u32],
+    pub(super) z: &'a [i64],
+    pub(super) dz: &'a [i64],
+    /// All spans lie inside so many cells.
+    cells: usize,
+}
+
+impl SpanDepths<'_> {
+    /// Returns whether all lie inside these.
+    pub(super) fn are_inside<D>(&self, cells: &[D]) -> bool {
+        cells.len() >= self.cells
+    }
+}
+
+/// Fills each span where it is nearer. Returns the number of pixels written.
+#[inline(never)]
+pub(super) fn each_nearer<D: Cell>(
+    pixels: &mut [u8],
+    cells: &mut [D],
+    spans: &Spans<'_>,
+    depths: &SpanDepths<'_>,
+) -> u32 {
+    let mut written = 0;
+    let of_spans = spans.at.iter().zip(spans.length).zip(spans.paint);
+    for (((&at, &length), &paint), ((&cell, z), dz)) in of_spans.zip(depths.cell.iter().zip(depths.z).zip(depths.dz)) {
+        // As above.
+        let (at, cell, length) = (at as usize, cell as usize, length as usize);
+        if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
+            written += fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z >> 8, dz >> 8);
+        }
+    }
+    written
+}
 
 /// A span and where it lies.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[repr(C)]
 pub struct Listed {
     /// The offset of its first pixel.
     pub at: u32,
@@ -24,8 +288,7 @@ pub struct Listed {
 
 /// The depths of a span, and where they lie in the depth buffer.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[repr(C)]
-pub struct Depths {
+pub struct ListedDepths {
     /// Depth of the first pixel, with 24 fraction bits, as `fill_nearer` takes it.
     pub z: i64,
     /// Change from one pixel to the next.
@@ -34,28 +297,51 @@ pub struct Depths {
     pub at: u32,
 }
 
-/// Fills every span of a list where it is nearer. Returns the number of pixels written.
-#[inline(never)]
-pub(super) fn each_nearer<D: Cell>(pixels: &mut [u8], cells: &mut [D], spans: &[Listed], depths: &[Depths]) -> u32 {
-    let mut written = 0;
-    for (span, depth) in spans.iter().zip(depths) {
-        let (at, cell, length) = (span.at as usize, depth.at as usize, span.length as usize);
-        let row = pixels.get_mut(at..at.saturating_add(length));
-        if let (Some(row), Some(cells)) = (row, cells.get_mut(cell..cell.saturating_add(length))) {
-            written += fill_nearer(row, cells, span.shade, span.step, depth.z, depth.dz);
+/// Draws spans, in order, as the batches do it with this kernel: those that lie inside the pixels. For tests.
+pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[Listed]) {
+    let mut list = SpanList::new((pixels.len(), 0), (0, 0));
+    for eight in spans.chunks(LANES) {
+        list.append::<Portable, false>(Portable, &lanes(eight), [0; LANES]);
+        if !list.has_room(LANES) {
+            list.draw_by::<u32, false>(kernel, pixels, &mut []);
         }
     }
-    written
+    list.draw_by::<u32, false>(kernel, pixels, &mut []);
 }
 
-/// Fills every span of a list.
-#[inline(always)]
-pub(super) fn each(pixels: &mut [u8], spans: &[Listed], fill: impl Fn(&mut [u8], u16, u16)) {
-    for span in spans {
-        // No overflow: both are below 2³² and a length is at most 4,096 where usize has no more bits.
-        let at = span.at as usize;
-        if let Some(row) = pixels.get_mut(at..at.saturating_add(span.length as usize)) {
-            fill(row, span.shade, span.step);
+/// Draws spans, in order, where they are nearer, as the batches do it with this kernel: those that lie inside the pixels and
+/// cells. For tests.
+pub fn fill_where_nearer<D: Cell>(
+    kernel: Kernel,
+    pixels: &mut [u8],
+    cells: &mut [D],
+    spans: &[Listed],
+    depths: &[ListedDepths],
+) -> u32 {
+    // Of different pitches, so that offsets of cells are their own.
+    let mut list = SpanList::new((pixels.len(), 0), (cells.len(), 1));
+    for (spans, depths) in spans.chunks(LANES).zip(depths.chunks(LANES)) {
+        let mut eight = lanes(spans);
+        let mut dz = [0; LANES];
+        for (i, depths) in depths.iter().enumerate() {
+            (eight.cell[i], eight.z[i], dz[i]) = (depths.at.cast_signed(), depths.z << 8, depths.dz << 8);
+        }
+        list.append::<Portable, true>(Portable, &eight, dz);
+        if !list.has_room(LANES) {
+            list.draw_by::<D, true>(kernel, pixels, cells);
         }
     }
+    list.draw_by::<D, true>(kernel, pixels, cells);
+    list.counts().2
+}
+
+fn lanes(spans: &[Listed]) -> Spans8<Portable> {
+    let mut eight: Spans8<Portable> =
+        Spans8 { at: [0; LANES], cell: [0; LANES], length: [0; LANES], paint: [0; LANES], z: [0; LANES] };
+    for (i, span) in spans.iter().enumerate() {
+        eight.at[i] = span.at.cast_signed();
+        eight.length[i] = span.length.cast_signed();
+        eight.paint[i] = (u32::from(span.shade) | u32::from(span.step) << 16).cast_signed();
+    }
+    eight
 }

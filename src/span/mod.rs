@@ -40,7 +40,7 @@
 //! | [`lookup()`] | shades of texels, fog, transparency, Phong's table: one byte of two |
 //! | [`channels::mix_cube`], [`channels::mix_nearest`] | red, green and blue to an index, with dither |
 //! | [`depth::fill_nearer`], [`depth::copy_nearer`], [`depth::copy_before`] | with a depth test |
-//! | [`Kernel::fill_list`], [`Kernel::fill_list_nearer`] | a list of short spans in one call |
+//! | [`list::fill`], [`list::fill_where_nearer`] | a list of spans, as batches make it |
 //! | [`lit::interpolate`] | writes no pixels: normals and positions for Phong's shading |
 //! | [`curve::curve`] | writes no pixels: shades on a parabola |
 
@@ -75,8 +75,6 @@ mod portable;
     allow(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
 )]
 mod simd;
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-pub(crate) use simd::{avx2, nearer};
 #[doc(hidden)]
 pub mod texture;
 #[doc(hidden)]
@@ -98,8 +96,6 @@ pub mod entry {
 
 /// Signature of every kernel: `row` (any length), `shade` and `step` in 8.8.
 type Fill = fn(row: &mut [u8], shade: u16, step: u16);
-/// Signature of every kernel for a list of spans.
-type FillList = fn(pixels: &mut [u8], spans: &[list::Listed]);
 
 /// A way to fill a span that this machine has.
 ///
@@ -120,28 +116,27 @@ pub struct Kernel {
     name: &'static str,
     level: Level,
     fill: Fill,
-    fill_list: FillList,
 }
 
 /// A row of the table of kernels.
 struct Listed {
     name: &'static str,
-    /// The level it draws with and its functions; `None` where the machine or the build lacks it.
+    /// The level it draws with and its function; `None` where the machine or the build lacks it.
     find: fn() -> Option<Found>,
 }
 
-/// Level that a kernel draws with, and its functions.
-type Found = (Level, Fill, FillList);
+/// Level that a kernel draws with, and its function.
+type Found = (Level, Fill);
 
 impl Listed {
     fn kernel(&self) -> Option<Kernel> {
-        (self.find)().map(|(level, fill, fill_list)| Kernel { name: self.name, level, fill, fill_list })
+        (self.find)().map(|(level, fill)| Kernel { name: self.name, level, fill })
     }
 }
 
 /// Every kernel there is, portable first.
 static LISTED: [Listed; 10] = [
-    Listed { name: "portable", find: || Some((Level::Portable, portable::fill, portable::fill_list)) },
+    Listed { name: "portable", find: || Some((Level::Portable, portable::fill)) },
     Listed { name: "asm", find: find_asm },
     Listed { name: "asm-unrolled", find: find_asm_unrolled },
     Listed { name: "simd", find: find_simd },
@@ -155,16 +150,16 @@ static LISTED: [Listed; 10] = [
 
 fn find_asm() -> Option<Found> {
     #[cfg(all(feature = "asm", target_arch = "x86_64"))]
-    return Some((Level::X86_64, x86::fill, |pixels, spans| list::each(pixels, spans, x86::fill)));
+    return Some((Level::X86_64, x86::fill));
     #[cfg(all(feature = "asm", target_arch = "x86"))]
-    return Some((Level::I686, x86::fill, |pixels, spans| list::each(pixels, spans, x86::fill)));
+    return Some((Level::I686, x86::fill));
     #[cfg(not(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86"))))]
     return None;
 }
 
 fn find_asm_unrolled() -> Option<Found> {
     #[cfg(all(feature = "asm", target_arch = "x86_64"))]
-    return Some((Level::X86_64, x86::fill_unrolled, |pixels, spans| list::each(pixels, spans, x86::fill_unrolled)));
+    return Some((Level::X86_64, x86::fill_unrolled));
     #[cfg(not(all(feature = "asm", target_arch = "x86_64")))]
     return None;
 }
@@ -175,51 +170,49 @@ fn find_simd() -> Option<Found> {
 
 fn find_arrays() -> Option<Found> {
     #[cfg(feature = "simd")]
-    return Some((Level::Arrays, simd::arrays::fill, |pixels, spans| list::each(pixels, spans, simd::arrays::fill)));
+    return Some((Level::Arrays, simd::arrays::fill));
     #[cfg(not(feature = "simd"))]
     return None;
 }
 
 fn find_sse2() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return Some((Level::Sse2, simd::sse2::fill, simd::sse2::fill_list));
+    return Some((Level::Sse2, simd::sse2::fill));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
 
 fn find_neon() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
-    return Some((Level::Neon, simd::neon::fill, simd::neon::fill_list));
+    return Some((Level::Neon, simd::neon::fill));
     #[cfg(not(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little")))]
     return None;
 }
 
 fn find_wasm() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
-    return Some((Level::Wasm, simd::wasm::fill, simd::wasm::fill_list));
+    return Some((Level::Wasm, simd::wasm::fill));
     #[cfg(not(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128")))]
     return None;
 }
 
 fn find_avx2() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return Avx2::find().map(|avx2| (Level::Avx2(avx2), simd::avx2::fill as Fill, simd::avx2::fill_list as FillList));
+    return Avx2::find().map(|avx2| (Level::Avx2(avx2), simd::avx2::fill as Fill));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
 
 fn find_avx512() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return Avx512::find()
-        .map(|avx512| (Level::Avx512(avx512), simd::avx512::fill as Fill, simd::avx512::fill_list as FillList));
+    return Avx512::find().map(|avx512| (Level::Avx512(avx512), simd::avx512::fill as Fill));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
 
 impl Kernel {
     /// The specification, in Rust.
-    pub const PORTABLE: Self =
-        Self { name: "portable", level: Level::Portable, fill: portable::fill, fill_list: portable::fill_list };
+    pub const PORTABLE: Self = Self { name: "portable", level: Level::Portable, fill: portable::fill };
 
     /// The kernels that this machine and this build have, `portable` first.
     ///
@@ -235,7 +228,7 @@ impl Kernel {
     pub fn fastest() -> Self {
         // Not the assembly: the compiler makes vectors of the portable loop, and they beat it at every length.
         match find_simd() {
-            Some((level, fill, fill_list)) => Self { name: "simd", level, fill, fill_list },
+            Some((level, fill)) => Self { name: "simd", level, fill },
             None => Self::PORTABLE,
         }
     }
@@ -272,33 +265,53 @@ impl Kernel {
         (self.fill)(row, shade, step);
     }
 
-    /// Fills every span of a list, in order, as [`fill`](Self::fill) does. Nothing is drawn of a span that
-    /// reaches beyond `pixels`.
+    /// Fills every span, in order, as [`fill`](Self::fill) does.
     #[inline]
-    #[doc(hidden)]
-    pub fn fill_list(self, pixels: &mut [u8], spans: &[list::Listed]) {
-        (self.fill_list)(pixels, spans);
+    fn fill_spans(self, pixels: &mut [u8], spans: &list::Spans<'_>) {
+        match self.level {
+            Level::Portable => spans.each(pixels, portable::fill),
+            #[cfg(feature = "simd")]
+            Level::Arrays => spans.each(pixels, simd::arrays::fill),
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            Level::Sse2 => simd::sse2::fill_spans(pixels, spans),
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            Level::Avx2(avx2) => simd::avx2::fill_spans(avx2, pixels, spans),
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            Level::Avx512(avx512) => simd::avx512::fill_spans(avx512, pixels, spans),
+            #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+            Level::Neon => simd::neon::fill_spans(pixels, spans),
+            #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+            Level::Wasm => simd::wasm::fill_spans(pixels, spans),
+            #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
+            _ => spans.each(pixels, self.fill),
+        }
     }
 
-    /// Fills every span of a list, in order, with the depth test of [`depth::fill_nearer`].
-    ///
-    /// There are as many `depths` as spans. Returns the number of pixels written.
+    /// Fills every span, in order, with the depth test of [`depth::fill_nearer`]. Returns the number of pixels written.
     #[inline]
-    #[doc(hidden)]
-    pub fn fill_list_nearer<D: depth::Cell>(
+    fn fill_spans_nearer<D: depth::Cell>(
         self,
         pixels: &mut [u8],
         cells: &mut [D],
-        spans: &[list::Listed],
-        depths: &[list::Depths],
+        spans: &list::Spans<'_>,
+        depths: &list::SpanDepths<'_>,
     ) -> u32 {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if self.avx2().is_some()
+        if let Some(avx2) = self.avx2()
             && let Some(cells) = D::as_u32(cells)
         {
-            return simd::nearer::fill_list(pixels, cells, spans, depths);
+            return match self.avx512() {
+                Some(avx512) => simd::avx512::fill_spans_nearer(avx512, pixels, cells, spans, depths),
+                None => simd::nearer::fill_spans(avx2, pixels, cells, spans, depths),
+            };
         }
         list::each_nearer(pixels, cells, spans, depths)
+    }
+
+    /// The level that it draws with.
+    #[inline]
+    pub(crate) const fn simd_level(self) -> Level {
+        self.level
     }
 
     /// The proof that the processor has AVX2, if this kernel may use it.

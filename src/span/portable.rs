@@ -1,7 +1,5 @@
 //! The loop of 1994, and the specification: what this writes is right.
 
-use super::list::{Listed, each};
-
 /// `mov [edi],ah` / `inc edi` / `add ax,bx` / `loop`, with `row` for EDI and CX.
 #[inline]
 pub(super) fn fill(row: &mut [u8], shade: u16, step: u16) {
@@ -11,9 +9,4 @@ pub(super) fn fill(row: &mut [u8], shade: u16, step: u16) {
         *pixel = ah;
         ax = ax.wrapping_add(step);
     }
-}
-
-/// Fills every span of a list by [`fill`].
-pub(super) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
-    each(pixels, spans, fill);
 }

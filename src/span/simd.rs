@@ -84,7 +84,7 @@ pub(super) mod arrays {
 #[cfg(target_arch = "x86_64")]
 pub(super) mod sse2 {
     use super::super::dither::fill_dithered_portable;
-    use super::super::list::{Listed, each};
+    use super::super::list::Spans;
     use core::arch::x86_64::*;
 
     /// Even and odd shades of a block of 16 pixels.
@@ -153,9 +153,9 @@ pub(super) mod sse2 {
     }
 
     /// Every span of a list.
-    pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
+    pub(crate) fn fill_spans(pixels: &mut [u8], spans: &Spans<'_>) {
         // SAFETY: x86-64 includes SSE2.
-        each(pixels, spans, |row, shade, step| unsafe { vectors(row, shade, step) });
+        spans.each(pixels, |row, shade, step| unsafe { vectors(row, shade, step) });
     }
 
     /// Rows of less than 16, each with stores that overlap instead of a loop for the rest.
@@ -252,8 +252,9 @@ pub(crate) mod nearer;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx2 {
-    use super::super::list::{Listed, each};
+    use super::super::list::Spans;
     use super::sse2;
+    use crate::simd::Avx2;
     use core::arch::x86_64::*;
 
     /// Only for a processor that has [`Avx2`](crate::simd::Avx2).
@@ -262,14 +263,16 @@ pub(crate) mod avx2 {
         unsafe { vectors(row, shade, step) }
     }
 
-    /// Every span of a list, only for such a processor.
-    pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
+    /// Every span of a list.
+    pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], spans: &Spans<'_>) {
         #[target_feature(enable = "avx2")]
-        fn list(pixels: &mut [u8], spans: &[Listed]) {
-            each(pixels, spans, |row, shade, step| vectors(row, shade, step));
+        fn each(pixels: &mut [u8], spans: &Spans<'_>) {
+            for ((&at, &length), &paint) in spans.at.iter().zip(spans.length).zip(spans.paint) {
+                span(pixels, at, length, paint);
+            }
         }
-        // SAFETY: the table gives this function out only where AVX2 was found.
-        unsafe { list(pixels, spans) }
+        // SAFETY: the processor has AVX2, says the token.
+        unsafe { each(pixels, spans) }
     }
 
     /// Fills a span at `at`, up to sixteen pixels at once. `paint` has its shade, and above it the step.
@@ -277,7 +280,7 @@ pub(crate) mod avx2 {
     /// reaches beyond `pixels`.
     #[inline]
     #[target_feature(enable = "avx2")]
-    pub(crate) fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {
+    fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {
         const MOST: usize = 16;
         static MASK: [[u8; MOST]; 2] = [[0; MOST], [u8::MAX; MOST]];
         let (shade, step) = (paint as u16, (paint >> 16) as u16);
@@ -367,105 +370,5 @@ pub(crate) mod avx2 {
     }
 }
 
-/// AVX-512 in assembly: its intrinsics came with Rust 1.89, and this crate builds with 1.88.
 #[cfg(target_arch = "x86_64")]
-pub(super) mod avx512 {
-    use super::super::list::{Listed, each};
-
-    /// Start values of the vectors, read by the assembly at the offsets beside them.
-    #[repr(C, align(64))]
-    struct Constants {
-        /// 0: the number of each even pixel of a block.
-        even: [u16; 32],
-        /// 64: both bytes of a 16-bit lane from its upper, for `vpshufb`.
-        upper: [u8; 16],
-        /// 80: the even bytes of a block, as a mask.
-        even_bytes: u64,
-        /// 88: the odd bytes of two lanes.
-        odd_bytes: u32,
-    }
-
-    static CONSTANTS: Constants = Constants {
-        even: {
-            let mut even = [0; 32];
-            let mut j = 0;
-            while j < 32 {
-                even[j as usize] = 2 * j;
-                j += 1;
-            }
-            even
-        },
-        upper: [1, 1, 3, 3, 5, 5, 7, 7, 9, 9, 11, 11, 13, 13, 15, 15],
-        even_bytes: 0x5555_5555_5555_5555,
-        odd_bytes: 0xFF00_FF00,
-    };
-
-    /// Only for a processor that has [`Avx512`](crate::simd::Avx512).
-    ///
-    /// ```text
-    /// even[j] = shade + 2·j·step
-    /// while more than 64 pixels are left:
-    ///     bytes = even + step, its even bytes replaced by the upper bytes of even
-    ///     even += 64·step
-    /// the last 1 to 64: the same bytes, stored under a mask
-    /// ```
-    ///
-    /// 1. A masked store ends every row, so that no length has a branch of its own: spans of 1 to 64
-    ///    pixels in a random order take 2.8 ns each, the same as in order; with AVX2 it is 10.4.
-    /// 2. In the loop a masked `vpshufb` does the work of a shift and a merge: 320 pixels in 4.9 ns
-    ///    instead of 6.6. (`vpermi2b`, which packs two vectors, is three operations on Intel.)
-    /// 3. Two blocks a turn, a last store that overlaps, stores from an aligned address on, 32-byte vectors:
-    ///    each tried, none faster at 320 pixels and at 8.
-    /// 4. Registers 16 to 31 need no `vzeroupper`, and no calling convention saves them.
-    pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
-        // SAFETY: the table gives this function out only where `simd::Avx512` was found.
-        // Written are the row's first 64 bytes, and the next, for as long as more than 64 are left, and then
-        // as many bytes as are left, by the mask. Read is `CONSTANTS`, at the offsets of `repr(C)`. The
-        // stack is not used; flags and all registers written are given up.
-        unsafe {
-            core::arch::asm!(
-                "vpbroadcastw zmm16, {shade:e}",
-                "vpbroadcastw zmm17, {step:e}",
-                "vpmullw    zmm18, zmm17, [{constants}]",
-                "vpaddw     zmm18, zmm18, zmm16",               // even
-                "sub        {left}, 64",
-                "jbe        3f",
-                "vbroadcasti32x4 zmm20, [{constants} + 64]",    // upper
-                "kmovq      k2, [{constants} + 80]",            // even_bytes
-                "vpsllw     zmm21, zmm17, 6",                   // 64·step
-                ".p2align   5",
-                "2:",
-                "vpaddw     zmm19, zmm18, zmm17",               // odd
-                "vpshufb    zmm19{{k2}}, zmm18, zmm20",         // and the upper bytes of even
-                "vpaddw     zmm18, zmm18, zmm21",
-                "vmovdqu64  [{row}], zmm19",
-                "add        {row}, 64",
-                "sub        {left}, 64",                        // left: of this row, less 64
-                "ja         2b",
-                "3:",
-                "add        {left}, 64",                        // 0 to 64
-                "mov        {mask}, -1",
-                "bzhi       {mask}, {mask}, {left}",
-                "kmovq      k1, {mask}",
-                "vpaddw     zmm19, zmm18, zmm17",
-                "vpsrlw     zmm16, zmm18, 8",
-                "vpternlogd zmm16, zmm19, [{constants} + 88]{{1to16}}, 0xF8", // even >> 8 | odd & 0xFF00
-                "vmovdqu8   [{row}]{{k1}}, zmm16",
-                row = inout(reg) row.as_mut_ptr() => _,
-                left = inout(reg) row.len() => _,
-                mask = out(reg) _,
-                shade = in(reg) u32::from(shade),
-                step = in(reg) u32::from(step),
-                constants = in(reg) &raw const CONSTANTS,
-                out("zmm16") _, out("zmm17") _, out("zmm18") _, out("zmm19") _, out("zmm20") _, out("zmm21") _,
-                out("k1") _, out("k2") _,
-                options(nostack),
-            );
-        }
-    }
-
-    /// Every span of a list, only for such a processor.
-    pub(crate) fn fill_list(pixels: &mut [u8], spans: &[Listed]) {
-        each(pixels, spans, fill);
-    }
-}
+pub(crate) mod avx512;

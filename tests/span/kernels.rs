@@ -13,7 +13,7 @@ use crate::support::tried::Tried;
 use crate::support::tried::is_here;
 use mode13h::span::Kernel;
 use mode13h::span::hyperbolic::fill_quotients;
-use mode13h::span::list::{Depths, Listed};
+use mode13h::span::list::{self, Listed, ListedDepths};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::fmt;
@@ -598,9 +598,9 @@ fn lists_are_filled_as_pixel_by_pixel() {
             let slope = random.next_u64() as i64 >> random.within(0, 63);
             let z = random.within(0, level - 1) << 24;
             depths.push(match random.within(0, 3) {
-                0 => Depths { at: cell as u32, z: random.next_u64() as i64, dz: slope },
-                1 => Depths { at: cell as u32, z, dz: 0 },
-                _ => Depths { at: cell as u32, z, dz: slope >> 30 },
+                0 => ListedDepths { at: cell as u32, z: random.next_u64() as i64, dz: slope },
+                1 => ListedDepths { at: cell as u32, z, dz: 0 },
+                _ => ListedDepths { at: cell as u32, z, dz: slope >> 30 },
             });
         }
         let bytes: Vec<u8> = (0..PIXELS).map(guard_byte).collect();
@@ -630,10 +630,10 @@ fn lists_are_filled_as_pixel_by_pixel() {
         written += nearer;
         for kernel in Kernel::available() {
             let mut drawn = bytes.clone();
-            kernel.fill_list(&mut drawn, &spans);
+            list::fill(kernel, &mut drawn, &spans);
             assert_eq!(drawn, flat, "{kernel}, round {round}: {spans:?}");
             let (mut drawn, mut kept) = (bytes.clone(), cells.clone());
-            let count = kernel.fill_list_nearer(&mut drawn, &mut kept, &spans, &depths);
+            let count = list::fill_where_nearer(kernel, &mut drawn, &mut kept, &spans, &depths);
             assert!(
                 (&drawn, &kept, count) == (&deep, &nearest, nearer),
                 "{kernel}, round {round}: {spans:?}, {depths:?}"

@@ -6,7 +6,7 @@ use core::mem::offset_of;
 
 use super::listed::{BEYOND, Listed};
 use super::{MOST, Sifted, TINY_SIDE};
-use crate::raster::batch::numbered::{Place, TURNED};
+use crate::raster::batch::indexed::{Place, TURNED};
 
 /// Faces at a time.
 const LANES: usize = 16;

@@ -2,7 +2,7 @@
 
 use super::MOST;
 use crate::raster::Batch;
-use crate::raster::batch::numbered::TURNED;
+use crate::raster::batch::indexed::TURNED;
 use crate::span::Kernel;
 
 /// Faces that are written beyond the last, and are none.

@@ -9,43 +9,54 @@
 use core::arch::x86_64::*;
 
 use super::super::depth::fill_nearer;
-use super::super::list::{Depths, Listed};
+use super::super::list::{SpanDepths, Spans};
+use crate::simd::Avx2;
 
 /// Pixels a turn, ...
 const EIGHT: usize = 8;
 /// ... or of spans that have no more than
 const FOUR: usize = 4;
 
-/// Every span of a list, only for a processor for which `avx2::found` is true. Returns the number of pixels written.
-pub(crate) fn fill_list(pixels: &mut [u8], cells: &mut [u32], spans: &[Listed], depths: &[Depths]) -> u32 {
-    let tested = |(span, depth): (&Listed, &Depths)| {
-        let paint = u32::from(span.shade) | u32::from(span.step) << 16;
-        let (z, dz) = (depth.z << 8, depth.dz << 8);
-        Tested { at: span.at, cell: depth.at, length: span.length, paint, z, dz }
-    };
-    // SAFETY: the kernel that calls this is given out only where AVX2 was found.
-    unsafe { fill(pixels, cells, spans.iter().zip(depths).map(tested)) }
+/// Every span of a list. Returns the number of pixels written.
+pub(crate) fn fill_spans(
+    _: Avx2,
+    pixels: &mut [u8],
+    cells: &mut [u32],
+    spans: &Spans<'_>,
+    depths: &SpanDepths<'_>,
+) -> u32 {
+    let of_spans = spans.at.iter().zip(depths.cell).zip(spans.length).zip(spans.paint).zip(depths.z).zip(depths.dz);
+    // SAFETY: the processor has AVX2, says the token.
+    unsafe { fill(pixels, cells, of_spans.map(tested)) }
+}
+
+/// A span's numbers, of each array one.
+type Zipped<'a> = (((((&'a u32, &'a u32), &'a u32), &'a u32), &'a i64), &'a i64);
+
+/// A span out of the arrays.
+fn tested((((((&at, &cell), &length), &paint), &z), &dz): Zipped<'_>) -> Tested {
+    Tested { at, cell, length, paint, z, dz }
 }
 
 /// A span with a depth test.
-pub(crate) struct Tested {
+struct Tested {
     /// The offset of its first pixel, ...
-    pub(crate) at: u32,
+    at: u32,
     /// ... and of its first cell.
-    pub(crate) cell: u32,
-    pub(crate) length: u32,
+    cell: u32,
+    length: u32,
     /// Shade, and above it the step.
-    pub(crate) paint: u32,
+    paint: u32,
     /// Depths, the integer parts in the upper halves, modulo 2⁶⁴.
-    pub(crate) z: i64,
-    pub(crate) dz: i64,
+    z: i64,
+    dz: i64,
 }
 
 /// Fills spans, one after the other. Returns the number of pixels written.
 /// Nothing is drawn of a span that does not lie inside the pixels and cells. (One function for a list: as one for a
 /// span, which is too large to be part of the loop, a quarter slower.)
 #[target_feature(enable = "avx2")]
-pub(crate) fn fill(pixels: &mut [u8], cells: &mut [u32], spans: impl Iterator<Item = Tested>) -> u32 {
+fn fill(pixels: &mut [u8], cells: &mut [u32], spans: impl Iterator<Item = Tested>) -> u32 {
     // Pixels of all turns, and of each lane those that were not written, as a number below 0. Sums are meant modulo 2³².
     let mut turned = 0_u32;
     let (mut of_eight, mut of_four) = (_mm256_setzero_si256(), _mm_setzero_si128());

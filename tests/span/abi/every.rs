@@ -11,7 +11,7 @@ use mode13h::render::{HiddenSurfaces, Renderer, Shading};
 use mode13h::scene::{Object, Scene};
 use mode13h::span::depth::Cell;
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
-use mode13h::span::list::{Depths, Listed};
+use mode13h::span::list::{self, Listed, ListedDepths};
 use mode13h::span::{Kernel, channels};
 
 use super::guarded::{Side, arrays, guarded};
@@ -46,7 +46,7 @@ fn own<T: Clone>(numbers: &[T]) -> Box<[T]> {
 }
 
 /// Spans within so many pixels, the first and the last of them among their ends.
-fn spans(random: &mut Random, pixels: i64) -> (Vec<Listed>, Vec<Depths>) {
+fn spans(random: &mut Random, pixels: i64) -> (Vec<Listed>, Vec<ListedDepths>) {
     let count = random.within(1, 40);
     (0..count)
         .map(|_| {
@@ -57,7 +57,7 @@ fn spans(random: &mut Random, pixels: i64) -> (Vec<Listed>, Vec<Depths>) {
             let bits = random.next_u64();
             let span = Listed { at, length: length as u32, shade: bits as u16, step: (bits >> 16) as u16 };
             let z = random.within(0, i64::from(u32::MAX)) << 24;
-            (span, Depths { z, dz: random.within(-(1 << 30), 1 << 30), at })
+            (span, ListedDepths { z, dz: random.within(-(1 << 30), 1 << 30), at })
         })
         .unzip()
 }
@@ -69,11 +69,11 @@ fn s7_lists_keep_the_rules() {
     fn nearer<D: Cell>(
         kernel: Kernel,
         pixels: usize,
-        (spans, depths): &(Vec<Listed>, Vec<Depths>),
+        (spans, depths): &(Vec<Listed>, Vec<ListedDepths>),
     ) -> (Box<[u8]>, Vec<D>) {
         let (spans, depths) = (own(spans), own(depths));
         let (mut bytes, mut cells) = (own(&vec![3; pixels]), vec![D::of_depth(1 << 30); pixels]);
-        let written = kernel.fill_list_nearer(&mut bytes, &mut cells, &spans, &depths);
+        let written = list::fill_where_nearer(kernel, &mut bytes, &mut cells, &spans, &depths);
         assert!(written as usize <= spans.iter().map(|span| span.length as usize).sum());
         (bytes, cells)
     }
@@ -83,7 +83,7 @@ fn s7_lists_keep_the_rules() {
         let pixels = pixels as usize;
         try_kernels("a list", &mut random, &mut tried, |kernel| {
             let (mut bytes, spans) = (own(&vec![3; pixels]), own(&list.0));
-            kernel.fill_list(&mut bytes, &spans);
+            list::fill(kernel, &mut bytes, &spans);
             bytes
         });
         try_kernels("a list with depths", &mut random, &mut tried, |kernel| nearer::<u32>(kernel, pixels, &list));

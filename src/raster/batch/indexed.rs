@@ -71,12 +71,6 @@ impl Batch {
         let numbers = &numbers[..numbers.len().min(Self::CAPACITY)];
         self.interpolation[..numbers.len()].fill(interpolation);
         self.count = numbers.len();
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if let Some(avx512) = kernel.avx512()
-            && super::avx512::numbered::refill(avx512, self, from, numbers)
-        {
-            return;
-        }
         let _ = kernel;
         self.refill_one_by_one(from, numbers);
     }

@@ -1,0 +1,235 @@
+//! [`Lanes8`] by AVX2 and FMA: two halves of 64-bit lanes.
+
+use core::arch::x86_64::*;
+use core::mem::MaybeUninit;
+
+use super::{Avx2, Lanes8};
+
+// Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
+// the proof that the processor has them.
+macro_rules! lanes {
+    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
+        $(
+            #[inline(always)]
+            fn $name(self, $($argument: $type),*) $(-> $result)? {
+                // SAFETY: the processor has the instructions, says `self`. Loads and stores go to whole arrays, and ask for no
+                // alignment.
+                unsafe { $body }
+            }
+        )*
+    };
+}
+
+type F64 = [__m256d; 2];
+type I64 = [__m256i; 2];
+
+/// A function of each half.
+macro_rules! halves {
+    ($half:ident => $value:expr) => {{
+        let of = {
+            let $half = 0;
+            $value
+        };
+        let $half = 1;
+        [of, $value]
+    }};
+}
+
+/// Masks of 32-bit lanes as those of the two halves' 64-bit lanes.
+#[inline(always)]
+unsafe fn wide(mask: __m256i) -> F64 {
+    // SAFETY: the caller has AVX2.
+    unsafe {
+        let (low, high) = (_mm256_castsi256_si128(mask), _mm256_extracti128_si256::<1>(mask));
+        [_mm256_castsi256_pd(_mm256_cvtepi32_epi64(low)), _mm256_castsi256_pd(_mm256_cvtepi32_epi64(high))]
+    }
+}
+
+/// The lower halves of eight 64-bit lanes.
+#[inline(always)]
+unsafe fn low(from: F64) -> __m256i {
+    // SAFETY: the caller has AVX2.
+    unsafe {
+        let halves = _mm256_shuffle_ps::<0b10_00_10_00>(_mm256_castpd_ps(from[0]), _mm256_castpd_ps(from[1]));
+        _mm256_permute4x64_epi64::<0b11_01_10_00>(_mm256_castps_si256(halves))
+    }
+}
+
+/// Of each mask of eight lanes, the numbers of those that are set, then zeros: a byte each, the first lowest.
+static SET_LANES: [u64; 256] = {
+    let mut all = [0; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 8 {
+            if mask >> lane & 1 == 1 {
+                all[mask] |= lane << (8 * count);
+                count += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    all
+};
+/// Likewise of four lanes of 64 bits: the numbers of their halves.
+static SET_PAIRS: [u64; 16] = {
+    let mut all = [0; 16];
+    let mut mask = 0;
+    while mask < 16 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 4 {
+            if mask >> lane & 1 == 1 {
+                all[mask] |= (2 * lane | (2 * lane + 1) << 8) << (16 * count);
+                count += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    all
+};
+
+impl Lanes8 for Avx2 {
+    type F64 = F64;
+    type I32 = __m256i;
+    type I64 = I64;
+    /// −1 in the lanes that are set, otherwise 0.
+    type Mask = __m256i;
+
+    lanes! {
+        fn f64s(from: &[f64; 8]) -> F64 { [_mm256_loadu_pd(from.as_ptr()), _mm256_loadu_pd(from.as_ptr().add(4))] }
+        fn all_f64(value: f64) -> F64 { [_mm256_set1_pd(value); 2] }
+        fn put_f64s(from: F64, to: &mut [f64; 8]) {
+            _mm256_storeu_pd(to.as_mut_ptr(), from[0]);
+            _mm256_storeu_pd(to.as_mut_ptr().add(4), from[1]);
+        }
+        fn add(a: F64, b: F64) -> F64 { halves!(h => _mm256_add_pd(a[h], b[h])) }
+        fn sub(a: F64, b: F64) -> F64 { halves!(h => _mm256_sub_pd(a[h], b[h])) }
+        fn mul(a: F64, b: F64) -> F64 { halves!(h => _mm256_mul_pd(a[h], b[h])) }
+        fn div(a: F64, b: F64) -> F64 { halves!(h => _mm256_div_pd(a[h], b[h])) }
+        fn mul_add(a: F64, b: F64, c: F64) -> F64 { halves!(h => _mm256_fmadd_pd(a[h], b[h], c[h])) }
+        fn neg_mul_add(a: F64, b: F64, c: F64) -> F64 { halves!(h => _mm256_fnmadd_pd(a[h], b[h], c[h])) }
+        fn min(a: F64, b: F64) -> F64 { halves!(h => _mm256_min_pd(a[h], b[h])) }
+        fn max(a: F64, b: F64) -> F64 { halves!(h => _mm256_max_pd(a[h], b[h])) }
+        fn flip(a: F64, sign: F64) -> F64 {
+            halves!(h => _mm256_xor_pd(a[h], _mm256_and_pd(sign[h], _mm256_set1_pd(-0.0))))
+        }
+        fn is_less(a: F64, b: F64) -> __m256i { low(halves!(h => _mm256_cmp_pd::<_CMP_LT_OQ>(a[h], b[h]))) }
+        fn select(mask: __m256i, a: F64, b: F64) -> F64 {
+            let mask = wide(mask);
+            halves!(h => _mm256_blendv_pd(b[h], a[h], mask[h]))
+        }
+        fn to_f64(from: __m256i) -> F64 {
+            [_mm256_cvtepi32_pd(_mm256_castsi256_si128(from)), _mm256_cvtepi32_pd(_mm256_extracti128_si256::<1>(from))]
+        }
+        fn unsigned_to_f64(from: __m256i) -> F64 {
+            // Less 2³¹, and that added again: both are exact.
+            let signed = _mm256_xor_si256(from, _mm256_set1_epi32(i32::MIN));
+            let (low, high) = (_mm256_castsi256_si128(signed), _mm256_extracti128_si256::<1>(signed));
+            let more = _mm256_set1_pd(2_147_483_648.0);
+            [_mm256_add_pd(_mm256_cvtepi32_pd(low), more), _mm256_add_pd(_mm256_cvtepi32_pd(high), more)]
+        }
+        fn low_bits(from: F64) -> __m256i { low(from) }
+        fn bits(from: F64) -> I64 { halves!(h => _mm256_castpd_si256(from[h])) }
+
+        fn i32s(from: &[i32; 8]) -> __m256i { _mm256_loadu_si256(from.as_ptr().cast()) }
+        fn all_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
+        fn put_i32s(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
+        fn add_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_add_epi32(a, b) }
+        fn sub_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_sub_epi32(a, b) }
+        fn mul_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_mullo_epi32(a, b) }
+        fn min_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_min_epi32(a, b) }
+        fn max_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_max_epi32(a, b) }
+        fn and_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_and_si256(a, b) }
+        fn or_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_or_si256(a, b) }
+        fn xor_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_xor_si256(a, b) }
+        fn shl_i32(a: __m256i, by: i32) -> __m256i { _mm256_sll_epi32(a, _mm_cvtsi32_si128(by)) }
+        fn sar_i32(a: __m256i, by: i32) -> __m256i { _mm256_sra_epi32(a, _mm_cvtsi32_si128(by)) }
+        fn is_greater(a: __m256i, b: __m256i) -> __m256i { _mm256_cmpgt_epi32(a, b) }
+        fn is_equal(a: __m256i, b: __m256i) -> __m256i { _mm256_cmpeq_epi32(a, b) }
+        fn select_i32(mask: __m256i, a: __m256i, b: __m256i) -> __m256i { _mm256_blendv_epi8(b, a, mask) }
+        fn zip_i32(a: __m256i, b: __m256i) -> [__m256i; 2] {
+            let (even, odd) = (_mm256_unpacklo_epi32(a, b), _mm256_unpackhi_epi32(a, b));
+            [_mm256_permute2x128_si256::<0x20>(even, odd), _mm256_permute2x128_si256::<0x31>(even, odd)]
+        }
+
+        fn i64s(from: &[i64; 8]) -> I64 {
+            [_mm256_loadu_si256(from.as_ptr().cast()), _mm256_loadu_si256(from.as_ptr().add(4).cast())]
+        }
+        fn all_i64(value: i64) -> I64 { [_mm256_set1_epi64x(value); 2] }
+        fn halves_i64(low: i64, high: i64) -> I64 { [_mm256_set1_epi64x(low), _mm256_set1_epi64x(high)] }
+        fn put_i64s(from: I64, to: &mut [i64; 8]) {
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), from[0]);
+            _mm256_storeu_si256(to.as_mut_ptr().add(4).cast(), from[1]);
+        }
+        fn add_i64(a: I64, b: I64) -> I64 { halves!(h => _mm256_add_epi64(a[h], b[h])) }
+        fn sub_i64(a: I64, b: I64) -> I64 { halves!(h => _mm256_sub_epi64(a[h], b[h])) }
+        fn mul_i64(a: I64, b: I64) -> I64 {
+            // The products of lower halves, and of lower and upper ones.
+            halves!(h => {
+                let (a, b) = (a[h], b[h]);
+                let upper = _mm256_add_epi64(
+                    _mm256_mul_epu32(a, _mm256_srli_epi64::<32>(b)),
+                    _mm256_mul_epu32(_mm256_srli_epi64::<32>(a), b),
+                );
+                _mm256_add_epi64(_mm256_mul_epu32(a, b), _mm256_slli_epi64::<32>(upper))
+            })
+        }
+        fn mul_low_i64(a: I64, b: I64) -> I64 {
+            halves!(h => {
+                let upper = _mm256_mul_epu32(a[h], _mm256_srli_epi64::<32>(b[h]));
+                _mm256_add_epi64(_mm256_mul_epu32(a[h], b[h]), _mm256_slli_epi64::<32>(upper))
+            })
+        }
+        fn shl_i64(a: I64, by: i32) -> I64 { halves!(h => _mm256_sll_epi64(a[h], _mm_cvtsi32_si128(by))) }
+        fn to_i64(from: __m256i) -> I64 {
+            let (low, high) = (_mm256_castsi256_si128(from), _mm256_extracti128_si256::<1>(from));
+            [_mm256_cvtepi32_epi64(low), _mm256_cvtepi32_epi64(high)]
+        }
+        fn unsigned_to_i64(from: __m256i) -> I64 {
+            let (low, high) = (_mm256_castsi256_si128(from), _mm256_extracti128_si256::<1>(from));
+            [_mm256_cvtepu32_epi64(low), _mm256_cvtepu32_epi64(high)]
+        }
+        fn zip_i64(a: I64, b: I64) -> [I64; 2] {
+            halves!(h => {
+                let (even, odd) = (_mm256_unpacklo_epi64(a[h], b[h]), _mm256_unpackhi_epi64(a[h], b[h]));
+                [_mm256_permute2x128_si256::<0x20>(even, odd), _mm256_permute2x128_si256::<0x31>(even, odd)]
+            })
+        }
+
+        fn both(a: __m256i, b: __m256i) -> __m256i { _mm256_and_si256(a, b) }
+        fn but_not(a: __m256i, b: __m256i) -> __m256i { _mm256_andnot_si256(b, a) }
+        fn mask_bits(mask: __m256i) -> u32 { _mm256_movemask_ps(_mm256_castsi256_ps(mask)).cast_unsigned() }
+    }
+
+    #[inline(always)]
+    fn compact_i32<const N: usize>(self, mask: __m256i, from: [__m256i; N], to: [&mut [MaybeUninit<u32>; 8]; N]) {
+        // Eight bits.
+        let set = SET_LANES[self.mask_bits(mask) as usize % 256].cast_signed();
+        for (from, to) in from.into_iter().zip(to) {
+            // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array.
+            unsafe {
+                let front = _mm256_permutevar8x32_epi32(from, _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(set)));
+                _mm256_storeu_si256(to.as_mut_ptr().cast(), front);
+            }
+        }
+    }
+    #[inline(always)]
+    fn compact_i64<const N: usize>(self, mask: __m256i, from: [I64; N], to: [&mut [MaybeUninit<i64>; 8]; N]) {
+        let bits = self.mask_bits(mask) as usize;
+        let set = [bits % 16, bits / 16 % 16].map(|half| SET_PAIRS[half].cast_signed());
+        let low = (bits % 16).count_ones() as usize;
+        for (from, to) in from.into_iter().zip(to) {
+            // SAFETY: the processor has the instructions, says `self`. The first store goes to the first four of eight, the
+            // second to the four that begin behind up to four of them.
+            unsafe {
+                let to = to.as_mut_ptr().cast::<i64>();
+                for (half, to) in [to, to.add(low)].into_iter().enumerate() {
+                    let lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(set[half]));
+                    _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(from[half], lanes));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! [`Lanes8`] by AVX-512: 512 bits of 64-bit lanes, 256 of 32-bit ones.
+
+use core::arch::x86_64::*;
+use core::mem::MaybeUninit;
+
+use super::{Avx512, Lanes8};
+
+// Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
+// the proof that the processor has them.
+macro_rules! lanes {
+    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
+        $(
+            #[inline(always)]
+            fn $name(self, $($argument: $type),*) $(-> $result)? {
+                // SAFETY: the processor has the instructions, says `self`. Loads and stores go to whole arrays, and ask for no
+                // alignment.
+                unsafe { $body }
+            }
+        )*
+    };
+}
+
+impl Lanes8 for Avx512 {
+    type F64 = __m512d;
+    type I32 = __m256i;
+    type I64 = __m512i;
+    type Mask = __mmask8;
+
+    lanes! {
+        fn f64s(from: &[f64; 8]) -> __m512d { _mm512_loadu_pd(from.as_ptr()) }
+        fn all_f64(value: f64) -> __m512d { _mm512_set1_pd(value) }
+        fn put_f64s(from: __m512d, to: &mut [f64; 8]) { _mm512_storeu_pd(to.as_mut_ptr(), from) }
+        fn add(a: __m512d, b: __m512d) -> __m512d { _mm512_add_pd(a, b) }
+        fn sub(a: __m512d, b: __m512d) -> __m512d { _mm512_sub_pd(a, b) }
+        fn mul(a: __m512d, b: __m512d) -> __m512d { _mm512_mul_pd(a, b) }
+        fn div(a: __m512d, b: __m512d) -> __m512d { _mm512_div_pd(a, b) }
+        fn mul_add(a: __m512d, b: __m512d, c: __m512d) -> __m512d { _mm512_fmadd_pd(a, b, c) }
+        fn neg_mul_add(a: __m512d, b: __m512d, c: __m512d) -> __m512d { _mm512_fnmadd_pd(a, b, c) }
+        fn min(a: __m512d, b: __m512d) -> __m512d { _mm512_min_pd(a, b) }
+        fn max(a: __m512d, b: __m512d) -> __m512d { _mm512_max_pd(a, b) }
+        fn flip(a: __m512d, sign: __m512d) -> __m512d {
+            _mm512_xor_pd(a, _mm512_and_pd(sign, _mm512_set1_pd(-0.0)))
+        }
+        fn is_less(a: __m512d, b: __m512d) -> __mmask8 { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b) }
+        fn select(mask: __mmask8, a: __m512d, b: __m512d) -> __m512d { _mm512_mask_blend_pd(mask, b, a) }
+        fn to_f64(from: __m256i) -> __m512d { _mm512_cvtepi32_pd(from) }
+        fn unsigned_to_f64(from: __m256i) -> __m512d { _mm512_cvtepu32_pd(from) }
+        fn low_bits(from: __m512d) -> __m256i { _mm512_cvtepi64_epi32(_mm512_castpd_si512(from)) }
+        fn bits(from: __m512d) -> __m512i { _mm512_castpd_si512(from) }
+
+        fn i32s(from: &[i32; 8]) -> __m256i { _mm256_loadu_si256(from.as_ptr().cast()) }
+        fn all_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
+        fn put_i32s(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
+        fn add_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_add_epi32(a, b) }
+        fn sub_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_sub_epi32(a, b) }
+        fn mul_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_mullo_epi32(a, b) }
+        fn min_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_min_epi32(a, b) }
+        fn max_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_max_epi32(a, b) }
+        fn and_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_and_si256(a, b) }
+        fn or_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_or_si256(a, b) }
+        fn xor_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_xor_si256(a, b) }
+        fn shl_i32(a: __m256i, by: i32) -> __m256i { _mm256_sll_epi32(a, _mm_cvtsi32_si128(by)) }
+        fn sar_i32(a: __m256i, by: i32) -> __m256i { _mm256_sra_epi32(a, _mm_cvtsi32_si128(by)) }
+        fn is_greater(a: __m256i, b: __m256i) -> __mmask8 { _mm256_cmpgt_epi32_mask(a, b) }
+        fn is_equal(a: __m256i, b: __m256i) -> __mmask8 { _mm256_cmpeq_epi32_mask(a, b) }
+        fn select_i32(mask: __mmask8, a: __m256i, b: __m256i) -> __m256i { _mm256_mask_blend_epi32(mask, b, a) }
+        fn zip_i32(a: __m256i, b: __m256i) -> [__m256i; 2] {
+            let low = _mm256_setr_epi32(0, 8, 1, 9, 2, 10, 3, 11);
+            let high = _mm256_setr_epi32(4, 12, 5, 13, 6, 14, 7, 15);
+            [_mm256_permutex2var_epi32(a, low, b), _mm256_permutex2var_epi32(a, high, b)]
+        }
+
+        fn i64s(from: &[i64; 8]) -> __m512i { _mm512_loadu_si512(from.as_ptr().cast()) }
+        fn all_i64(value: i64) -> __m512i { _mm512_set1_epi64(value) }
+        fn halves_i64(low: i64, high: i64) -> __m512i { _mm512_mask_set1_epi64(_mm512_set1_epi64(low), 0xF0, high) }
+        fn put_i64s(from: __m512i, to: &mut [i64; 8]) { _mm512_storeu_si512(to.as_mut_ptr().cast(), from) }
+        fn add_i64(a: __m512i, b: __m512i) -> __m512i { _mm512_add_epi64(a, b) }
+        fn sub_i64(a: __m512i, b: __m512i) -> __m512i { _mm512_sub_epi64(a, b) }
+        fn mul_i64(a: __m512i, b: __m512i) -> __m512i { _mm512_mullo_epi64(a, b) }
+        fn mul_low_i64(a: __m512i, b: __m512i) -> __m512i {
+            _mm512_mullo_epi64(_mm512_and_si512(a, _mm512_set1_epi64(0xFFFF_FFFF)), b)
+        }
+        fn shl_i64(a: __m512i, by: i32) -> __m512i { _mm512_sll_epi64(a, _mm_cvtsi32_si128(by)) }
+        fn to_i64(from: __m256i) -> __m512i { _mm512_cvtepi32_epi64(from) }
+        fn unsigned_to_i64(from: __m256i) -> __m512i { _mm512_cvtepu32_epi64(from) }
+        fn zip_i64(a: __m512i, b: __m512i) -> [__m512i; 2] {
+            let low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
+            let high = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
+            [_mm512_permutex2var_epi64(a, low, b), _mm512_permutex2var_epi64(a, high, b)]
+        }
+    }
+
+    #[inline(always)]
+    fn both(self, a: __mmask8, b: __mmask8) -> __mmask8 {
+        a & b
+    }
+    #[inline(always)]
+    fn but_not(self, a: __mmask8, b: __mmask8) -> __mmask8 {
+        a & !b
+    }
+    #[inline(always)]
+    fn mask_bits(self, mask: __mmask8) -> u32 {
+        mask.into()
+    }
+
+    #[inline(always)]
+    fn compact_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [MaybeUninit<u32>; 8]; N]) {
+        for (from, to) in from.into_iter().zip(to) {
+            // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array. (`vpcompressd` to
+            // memory is slow on Zen 4.)
+            unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, from)) }
+        }
+    }
+    #[inline(always)]
+    fn compact_i64<const N: usize>(self, mask: __mmask8, from: [__m512i; N], to: [&mut [MaybeUninit<i64>; 8]; N]) {
+        for (from, to) in from.into_iter().zip(to) {
+            // SAFETY: likewise.
+            unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, from)) }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Eight lanes of numbers: the operations that the batches are written in, once for all levels.
+//!
+//! A token that implements [`Lanes8`] is the proof that the processor has its level. Each operation works lane by lane.
+//! Lanes 0 to 7 are in the order of the arrays that they come from.
+
+use core::mem::MaybeUninit;
+
+/// Operations on eight lanes of f64, i32 and i64, and on masks of eight lanes.
+///
+/// All methods are inlined into a function that is compiled for the level: see `compiled_for_each_level!`.
+pub(crate) trait Lanes8: Copy {
+    /// Eight f64.
+    type F64: Copy;
+    /// Eight i32. All sums, differences and products wrap.
+    type I32: Copy;
+    /// Eight i64, or eight u64. All sums and products wrap.
+    type I64: Copy;
+    /// Eight truth values.
+    type Mask: Copy;
+
+    fn f64s(self, from: &[f64; 8]) -> Self::F64;
+    fn all_f64(self, value: f64) -> Self::F64;
+    fn put_f64s(self, from: Self::F64, to: &mut [f64; 8]);
+    fn add(self, a: Self::F64, b: Self::F64) -> Self::F64;
+    fn sub(self, a: Self::F64, b: Self::F64) -> Self::F64;
+    fn mul(self, a: Self::F64, b: Self::F64) -> Self::F64;
+    fn div(self, a: Self::F64, b: Self::F64) -> Self::F64;
+    /// `a·b + c`. It is rounded once where the level has FMA, otherwise twice: callers allow for both.
+    fn mul_add(self, a: Self::F64, b: Self::F64, c: Self::F64) -> Self::F64;
+    /// `c − a·b`, rounded like [`mul_add`](Self::mul_add).
+    fn neg_mul_add(self, a: Self::F64, b: Self::F64, c: Self::F64) -> Self::F64;
+    /// The smaller one. Neither is NaN, and zeros have the same sign.
+    fn min(self, a: Self::F64, b: Self::F64) -> Self::F64;
+    /// The greater one, likewise.
+    fn max(self, a: Self::F64, b: Self::F64) -> Self::F64;
+    /// `a`, negated where the sign bit of `sign` is set.
+    fn flip(self, a: Self::F64, sign: Self::F64) -> Self::F64;
+    fn is_less(self, a: Self::F64, b: Self::F64) -> Self::Mask;
+    /// `a` where the mask is set, otherwise `b`.
+    fn select(self, mask: Self::Mask, a: Self::F64, b: Self::F64) -> Self::F64;
+    fn to_f64(self, from: Self::I32) -> Self::F64;
+    /// The lanes taken as u32.
+    fn unsigned_to_f64(self, from: Self::I32) -> Self::F64;
+    /// The lower halves of the bits.
+    fn low_bits(self, from: Self::F64) -> Self::I32;
+    fn bits(self, from: Self::F64) -> Self::I64;
+
+    fn i32s(self, from: &[i32; 8]) -> Self::I32;
+    fn all_i32(self, value: i32) -> Self::I32;
+    fn put_i32s(self, from: Self::I32, to: &mut [i32; 8]);
+    fn add_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn sub_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn mul_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn min_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn max_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn and_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn or_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn xor_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
+    /// Shifts left by a constant.
+    fn shl_i32(self, a: Self::I32, by: i32) -> Self::I32;
+    /// Shifts right by a constant, with the sign.
+    fn sar_i32(self, a: Self::I32, by: i32) -> Self::I32;
+    fn is_greater(self, a: Self::I32, b: Self::I32) -> Self::Mask;
+    fn is_equal(self, a: Self::I32, b: Self::I32) -> Self::Mask;
+    fn select_i32(self, mask: Self::Mask, a: Self::I32, b: Self::I32) -> Self::I32;
+    /// Lanes 0 of both, lanes 1 of both, and so on: the first eight and the last eight.
+    fn zip_i32(self, a: Self::I32, b: Self::I32) -> [Self::I32; 2];
+
+    fn i64s(self, from: &[i64; 8]) -> Self::I64;
+    fn all_i64(self, value: i64) -> Self::I64;
+    /// `low` in lanes 0 to 3, `high` in lanes 4 to 7.
+    fn halves_i64(self, low: i64, high: i64) -> Self::I64;
+    fn put_i64s(self, from: Self::I64, to: &mut [i64; 8]);
+    fn add_i64(self, a: Self::I64, b: Self::I64) -> Self::I64;
+    fn sub_i64(self, a: Self::I64, b: Self::I64) -> Self::I64;
+    fn mul_i64(self, a: Self::I64, b: Self::I64) -> Self::I64;
+    /// The lower halves of `a`, taken as u32, times `b`.
+    fn mul_low_i64(self, a: Self::I64, b: Self::I64) -> Self::I64;
+    /// Shifts left by a constant.
+    fn shl_i64(self, a: Self::I64, by: i32) -> Self::I64;
+    fn to_i64(self, from: Self::I32) -> Self::I64;
+    /// The lanes taken as u32.
+    fn unsigned_to_i64(self, from: Self::I32) -> Self::I64;
+    /// Like [`zip_i32`](Self::zip_i32).
+    fn zip_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2];
+
+    fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// `a` and not `b`.
+    fn but_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// A bit for each lane, that of lane 0 lowest.
+    fn mask_bits(self, mask: Self::Mask) -> u32;
+    /// Writes the lanes whose mask is set to the front, in order, and anything behind them.
+    fn compact_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [MaybeUninit<u32>; 8]; N]);
+    /// Likewise.
+    fn compact_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [MaybeUninit<i64>; 8]; N]);
+}

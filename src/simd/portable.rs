@@ -1,0 +1,257 @@
+//! [`Lanes8`] by plain arrays, for every processor.
+
+use core::mem::MaybeUninit;
+
+use super::Lanes8;
+
+/// The level that every processor has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Portable;
+
+type F64 = [f64; 8];
+type I32 = [i32; 8];
+type I64 = [i64; 8];
+
+macro_rules! each {
+    ($lane:ident => $value:expr) => {{
+        let mut to = [Default::default(); 8];
+        for ($lane, to) in to.iter_mut().enumerate() {
+            *to = $value;
+        }
+        to
+    }};
+}
+
+impl Lanes8 for Portable {
+    type F64 = F64;
+    type I32 = I32;
+    type I64 = I64;
+    type Mask = [bool; 8];
+
+    #[inline(always)]
+    fn f64s(self, from: &F64) -> F64 {
+        *from
+    }
+    #[inline(always)]
+    fn all_f64(self, value: f64) -> F64 {
+        [value; 8]
+    }
+    #[inline(always)]
+    fn put_f64s(self, from: F64, to: &mut F64) {
+        *to = from;
+    }
+    #[inline(always)]
+    fn add(self, a: F64, b: F64) -> F64 {
+        each!(i => a[i] + b[i])
+    }
+    #[inline(always)]
+    fn sub(self, a: F64, b: F64) -> F64 {
+        each!(i => a[i] - b[i])
+    }
+    #[inline(always)]
+    fn mul(self, a: F64, b: F64) -> F64 {
+        each!(i => a[i] * b[i])
+    }
+    #[inline(always)]
+    fn div(self, a: F64, b: F64) -> F64 {
+        each!(i => a[i] / b[i])
+    }
+    #[inline(always)]
+    fn mul_add(self, a: F64, b: F64, c: F64) -> F64 {
+        each!(i => a[i] * b[i] + c[i])
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, a: F64, b: F64, c: F64) -> F64 {
+        each!(i => c[i] - a[i] * b[i])
+    }
+    #[inline(always)]
+    fn min(self, a: F64, b: F64) -> F64 {
+        each!(i => if a[i] < b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn max(self, a: F64, b: F64) -> F64 {
+        each!(i => if a[i] > b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn flip(self, a: F64, sign: F64) -> F64 {
+        each!(i => f64::from_bits(a[i].to_bits() ^ (sign[i].to_bits() & 1 << 63)))
+    }
+    #[inline(always)]
+    fn is_less(self, a: F64, b: F64) -> [bool; 8] {
+        each!(i => a[i] < b[i])
+    }
+    #[inline(always)]
+    fn select(self, mask: [bool; 8], a: F64, b: F64) -> F64 {
+        each!(i => if mask[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn to_f64(self, from: I32) -> F64 {
+        each!(i => f64::from(from[i]))
+    }
+    #[inline(always)]
+    fn unsigned_to_f64(self, from: I32) -> F64 {
+        each!(i => f64::from(from[i].cast_unsigned()))
+    }
+    #[inline(always)]
+    fn low_bits(self, from: F64) -> I32 {
+        each!(i => from[i].to_bits() as i32)
+    }
+    #[inline(always)]
+    fn bits(self, from: F64) -> I64 {
+        each!(i => from[i].to_bits().cast_signed())
+    }
+
+    #[inline(always)]
+    fn i32s(self, from: &I32) -> I32 {
+        *from
+    }
+    #[inline(always)]
+    fn all_i32(self, value: i32) -> I32 {
+        [value; 8]
+    }
+    #[inline(always)]
+    fn put_i32s(self, from: I32, to: &mut I32) {
+        *to = from;
+    }
+    #[inline(always)]
+    fn add_i32(self, a: I32, b: I32) -> I32 {
+        each!(i => a[i].wrapping_add(b[i]))
+    }
+    #[inline(always)]
+    fn sub_i32(self, a: I32, b: I32) -> I32 {
+        each!(i => a[i].wrapping_sub(b[i]))
+    }
+    #[inline(always)]
+    fn mul_i32(self, a: I32, b: I32) -> I32 {
+        each!(i => a[i].wrapping_mul(b[i]))
+    }
+    #[inline(always)]
+    fn min_i32(self, a: I32, b: I32) -> I32 {
+        each!(i => a[i].min(b[i]))
+    }
+    #[inline(always)]
+    fn max_i32(self, a: I32, b: I32) -> I32 {
+        each!(i => a[i].max(b[i]))
+    }
+    #[inline(always)]
+    fn and_i32(self, a: I32, b: I32) -> I32 {
+        each!(i => a[i] & b[i])
+    }
+    #[inline(always)]
+    fn or_i32(self, a: I32, b: I32) -> I32 {
+        each!(i => a[i] | b[i])
+    }
+    #[inline(always)]
+    fn xor_i32(self, a: I32, b: I32) -> I32 {
+        each!(i => a[i] ^ b[i])
+    }
+    #[inline(always)]
+    fn shl_i32(self, a: I32, by: i32) -> I32 {
+        each!(i => a[i] << by)
+    }
+    #[inline(always)]
+    fn sar_i32(self, a: I32, by: i32) -> I32 {
+        each!(i => a[i] >> by)
+    }
+    #[inline(always)]
+    fn is_greater(self, a: I32, b: I32) -> [bool; 8] {
+        each!(i => a[i] > b[i])
+    }
+    #[inline(always)]
+    fn is_equal(self, a: I32, b: I32) -> [bool; 8] {
+        each!(i => a[i] == b[i])
+    }
+    #[inline(always)]
+    fn select_i32(self, mask: [bool; 8], a: I32, b: I32) -> I32 {
+        each!(i => if mask[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn zip_i32(self, a: I32, b: I32) -> [I32; 2] {
+        let of = |i: usize| if i % 2 == 0 { a[i / 2] } else { b[i / 2] };
+        [each!(i => of(i)), each!(i => of(i + 8))]
+    }
+
+    #[inline(always)]
+    fn i64s(self, from: &I64) -> I64 {
+        *from
+    }
+    #[inline(always)]
+    fn all_i64(self, value: i64) -> I64 {
+        [value; 8]
+    }
+    #[inline(always)]
+    fn halves_i64(self, low: i64, high: i64) -> I64 {
+        each!(i => if i < 4 { low } else { high })
+    }
+    #[inline(always)]
+    fn put_i64s(self, from: I64, to: &mut I64) {
+        *to = from;
+    }
+    #[inline(always)]
+    fn add_i64(self, a: I64, b: I64) -> I64 {
+        each!(i => a[i].wrapping_add(b[i]))
+    }
+    #[inline(always)]
+    fn sub_i64(self, a: I64, b: I64) -> I64 {
+        each!(i => a[i].wrapping_sub(b[i]))
+    }
+    #[inline(always)]
+    fn mul_i64(self, a: I64, b: I64) -> I64 {
+        each!(i => a[i].wrapping_mul(b[i]))
+    }
+    #[inline(always)]
+    fn mul_low_i64(self, a: I64, b: I64) -> I64 {
+        each!(i => (a[i] & 0xFFFF_FFFF).wrapping_mul(b[i]))
+    }
+    #[inline(always)]
+    fn shl_i64(self, a: I64, by: i32) -> I64 {
+        each!(i => a[i] << by)
+    }
+    #[inline(always)]
+    fn to_i64(self, from: I32) -> I64 {
+        each!(i => i64::from(from[i]))
+    }
+    #[inline(always)]
+    fn unsigned_to_i64(self, from: I32) -> I64 {
+        each!(i => i64::from(from[i].cast_unsigned()))
+    }
+    #[inline(always)]
+    fn zip_i64(self, a: I64, b: I64) -> [I64; 2] {
+        let of = |i: usize| if i % 2 == 0 { a[i / 2] } else { b[i / 2] };
+        [each!(i => of(i)), each!(i => of(i + 8))]
+    }
+
+    #[inline(always)]
+    fn both(self, a: [bool; 8], b: [bool; 8]) -> [bool; 8] {
+        each!(i => a[i] & b[i])
+    }
+    #[inline(always)]
+    fn but_not(self, a: [bool; 8], b: [bool; 8]) -> [bool; 8] {
+        each!(i => a[i] & !b[i])
+    }
+    #[inline(always)]
+    fn mask_bits(self, mask: [bool; 8]) -> u32 {
+        mask.iter().rev().fold(0, |bits, &set| bits << 1 | u32::from(set))
+    }
+    #[inline(always)]
+    fn compact_i32<const N: usize>(self, mask: [bool; 8], from: [I32; N], mut to: [&mut [MaybeUninit<u32>; 8]; N]) {
+        let mut count = 0;
+        for (lane, set) in mask.into_iter().enumerate() {
+            for (from, to) in from.iter().zip(&mut to) {
+                // Fewer than eight come before it.
+                to[count % 8].write(from[lane].cast_unsigned());
+            }
+            count += usize::from(set);
+        }
+    }
+    #[inline(always)]
+    fn compact_i64<const N: usize>(self, mask: [bool; 8], from: [I64; N], mut to: [&mut [MaybeUninit<i64>; 8]; N]) {
+        let mut count = 0;
+        for (lane, set) in mask.into_iter().enumerate() {
+            for (from, to) in from.iter().zip(&mut to) {
+                to[count % 8].write(from[lane]);
+            }
+            count += usize::from(set);
+        }
+    }
+}
