@@ -181,7 +181,7 @@ fn body<const WHOLE: bool>(n: Normals, (most, least): (f32, f32), fall: FallOff,
 fn highlight(
     n: Normals,
     lobe: &Lobe,
-    (along_most, along_least): (f32, f32),
+    (along_most, along_least, along_highest): (f32, f32, f32),
     (facing_most, facing_least): (f32, f32),
     fall: FallOff,
     eye_turn: f32,
@@ -195,7 +195,7 @@ fn highlight(
         + fall.turn * fall.turn
         + eye_turn * eye_turn;
     let curved = 0.5 * (turn * turn + aside);
-    let (highest, lowest) = (lesser(along_most + curved, 1.0), greater(along_least - curved, -1.0));
+    let (highest, lowest) = (lesser(along_most + curved, along_highest), greater(along_least - curved, -1.0));
     let y = s * greater(1.0 - highest, 0.0);
     let seen = if highest > 0.0 { 1.0 } else { 0.0 };
     let bright = seen * falling(y);
@@ -261,7 +261,7 @@ impl<const N: usize> Sums<N> {
 struct Ranges<'a> {
     facing: &'a [Lanes<f32>; 2],
     weighted: &'a [Lanes<f32>; 2],
-    along: Option<&'a [Lanes<f32>; 2]>,
+    along: Option<&'a [Lanes<f32>; 3]>,
     falls: &'a [FallOff; LANES],
 }
 
@@ -286,7 +286,8 @@ impl<const N: usize> Sums<N> {
         self.add(&strength.body, &terms);
         let (Some(along), Some((lobe, eye_turn))) = (along, eye) else { return };
         for lane in 0..LANES {
-            let (along, facing) = ((along[0][lane], along[1][lane]), (facing[0][lane], facing[1][lane]));
+            let along = (along[0][lane], along[1][lane], along[2][lane]);
+            let facing = (facing[0][lane], facing[1][lane]);
             let term = highlight(normals[lane], lobe, along, facing, falls[lane], eye_turn[lane]);
             (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) =
                 (term.error, term.range, term.most, term.least);
@@ -308,15 +309,18 @@ impl Incident<'_> {
         suns.chain(lamps).map(size).sum::<f32>() + ambient < MODERATE
     }
 
+    #[inline(always)]
     fn strength<const N: usize>(&self, intensity: f32, channels: [f32; 3]) -> Strength<N> {
         let (kd, ks) = (self.answer.diffuse as f32, self.answer.specular as f32);
         let of = |channel: usize, share: f32, color: [f64; 3]| {
             if N == 1 { share * intensity } else { share * channels[channel] * color[channel] as f32 }
         };
-        Strength {
-            body: core::array::from_fn(|channel| of(channel, kd, self.answer.color)),
-            highlight: core::array::from_fn(|channel| of(channel, ks, self.answer.highlight)),
+        let mut strength = Strength { body: [0.0; N], highlight: [0.0; N] };
+        for channel in 0..N {
+            strength.body[channel] = of(channel, kd, self.answer.color);
+            strength.highlight[channel] = of(channel, ks, self.answer.highlight);
         }
+        strength
     }
 }
 
@@ -366,7 +370,7 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
     for sun in suns {
         let directions = patches.sun(sun.towards.to_array());
         let facing = patches.facing(&directions);
-        let along = eye.as_ref().map(|(sight, _)| patches.mirrored(&directions, &sight.directions));
+        let along = eye.as_ref().map(|(sight, turn)| patches.mirrored(&directions, &sight.directions, turn));
         let strength = incident.strength::<N>(sun.intensity, sun.channels);
         let ranges =
             Ranges { facing: &facing, weighted: &facing, along: along.as_ref(), falls: &[FallOff::NONE; LANES] };
@@ -391,7 +395,13 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
             (ends[0][lane], ends[1][lane]) = (falls[lane].most, falls[lane].least);
         }
         let weighted = patches.weighted(&sight, &ends, inverse_range);
-        let along = eye.as_ref().map(|(of_eye, _)| patches.mirrored(&sight.directions, &of_eye.directions));
+        let along = eye.as_ref().map(|(of_eye, turn)| {
+            let mut turns = *turn;
+            for lane in 0..LANES {
+                turns[lane] += falls[lane].turn;
+            }
+            patches.mirrored(&sight.directions, &of_eye.directions, &turns)
+        });
         let ranges = Ranges { facing: &facing, weighted: &weighted, along: along.as_ref(), falls: &falls };
         let strength = incident.strength::<N>(lamp.intensity, lamp.channels);
         sums.add_light::<WHOLE>(

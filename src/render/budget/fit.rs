@@ -330,8 +330,11 @@ impl Faces<'_> {
                 }
                 let light = self.light_at(face, weights);
                 for channel in 0..channels {
-                    let drawn = light[channel].map(|light| shown(light, channel));
-                    may[0] = may[0] && lines[channel].off(weights, &drawn, face.kernel) <= left[0];
+                    if may[0] {
+                        let mut drawn = light[channel];
+                        drawn.iter_mut().for_each(|light| *light = shown(*light, channel));
+                        may[0] = lines[channel].off(weights, &drawn, face.kernel) <= left[0];
+                    }
                     may[1] = may[1] && curves[channel].off(weights, &light[channel], face.kernel) <= left[1];
                 }
             }

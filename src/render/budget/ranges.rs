@@ -37,8 +37,9 @@ pub(super) trait Patches {
     /// Range of n·l times a lamp's fall-off, whose own range is `falls`.
     fn weighted(&self, sight: &Sight<Self::Directions>, falls: &[Lanes<f32>; 2], inverse_range: f32)
     -> [Lanes<f32>; 2];
-    /// Range of r·v.
-    fn mirrored(&self, light: &Self::Directions, eye: &Self::Directions) -> [Lanes<f32>; 2];
+    /// Range of r·v at the corners, and its greatest value anywhere; `turns` is what directions to the light and to the eye
+    /// turn by along a patch's radius.
+    fn mirrored(&self, light: &Self::Directions, eye: &Self::Directions, turns: &Lanes<f32>) -> [Lanes<f32>; 3];
 }
 
 /// Eight faces, on the side that is seen: what their corners have. Missing ones are zero.
@@ -60,7 +61,7 @@ impl Patches for EightFaces {
 
     #[inline(always)]
     fn sun(&self, towards: [f32; 3]) -> FromCorners {
-        FromCorners { directions: [towards.map(|c| [c; LANES]); 3], distances: [ZERO; 3], off: [ROUNDING; LANES] }
+        FromCorners { directions: [spread(towards); 3], distances: [ZERO; 3], off: [ROUNDING; LANES] }
     }
 
     #[inline(always)]
@@ -83,7 +84,7 @@ impl Patches for EightFaces {
         }
         let (mut near, mut far, mut off) = (ZERO, ZERO, ZERO);
         for lane in 0..LANES {
-            let [a, b, c] = [0, 1, 2].map(|corner| distances[corner][lane]);
+            let [a, b, c] = [distances[0][lane], distances[1][lane], distances[2][lane]];
             let least = lesser(a, lesser(b, c)) * (1.0 - ROUNDING) - blur;
             // Lemma 1, of the squares of distances.
             let square = least * least - edge[lane] * edge[lane];
@@ -96,36 +97,84 @@ impl Patches for EightFaces {
 
     #[inline(always)]
     fn facing(&self, to: &FromCorners) -> [Lanes<f32>; 2] {
-        let cosines = [0, 1, 2].map(|corner| dot(&self.normals[corner], &to.directions[corner]));
-        ends(&cosines, &to.off)
+        let [a, b, c] = &self.normals;
+        let [to_a, to_b, to_c] = &to.directions;
+        ends(&[dot(a, to_a), dot(b, to_b), dot(c, to_c)], &to.off)
     }
 
     #[inline(always)]
     fn weighted(&self, sight: &Sight<FromCorners>, _: &[Lanes<f32>; 2], inverse_range: f32) -> [Lanes<f32>; 2] {
         let to = &sight.directions;
-        let cosines = [0, 1, 2].map(|corner| {
-            let mut cosines = dot(&self.normals[corner], &to.directions[corner]);
+        let mut cosines = [ZERO; 3];
+        for (corner, cosines) in cosines.iter_mut().enumerate() {
+            *cosines = dot(&self.normals[corner], &to.directions[corner]);
             for lane in 0..LANES {
                 let away = to.distances[corner][lane] * inverse_range;
                 let left = greater(1.0 - away * away, 0.0);
                 cosines[lane] *= left * left;
             }
-            cosines
-        });
+        }
         ends(&cosines, &to.off)
     }
 
     #[inline(always)]
-    fn mirrored(&self, light: &FromCorners, eye: &FromCorners) -> [Lanes<f32>; 2] {
+    fn mirrored(&self, light: &FromCorners, eye: &FromCorners, turns: &Lanes<f32>) -> [Lanes<f32>; 3] {
         let mut off = ZERO;
         for lane in 0..LANES {
             off[lane] = 3.0 * (light.off[lane] + eye.off[lane]);
         }
-        let cosines = [0, 1, 2].map(|corner| {
+        let mut cosines = [ZERO; 3];
+        for (corner, cosines) in cosines.iter_mut().enumerate() {
             let (light, eye, normals) = (&light.directions[corner], &eye.directions[corner], &self.normals[corner]);
-            mirror(&dot(normals, light), &dot(normals, eye), &dot(light, eye))
-        });
-        ends(&cosines, &off)
+            *cosines = mirror(&dot(normals, light), &dot(normals, eye), &dot(light, eye));
+        }
+        let [most, least] = ends(&cosines, &off);
+        [most, least, self.highest(light, eye, &off, turns)]
+    }
+}
+
+impl EightFaces {
+    /// The greatest r·v anywhere on the faces, by the vector h half-way between light and eye at the first corner (Lemma
+    /// 11): what the normals have across h is a flat triangle, which lies no nearer to 0 than in any one direction.
+    #[inline(always)]
+    fn highest(&self, light: &FromCorners, eye: &FromCorners, off: &Lanes<f32>, turns: &Lanes<f32>) -> Lanes<f32> {
+        let mut half_way = [ZERO; 3];
+        for (axis, values) in half_way.iter_mut().enumerate() {
+            for lane in 0..LANES {
+                values[lane] = light.directions[0][axis][lane] + eye.directions[0][axis][lane];
+            }
+        }
+        let squares = dot(&half_way, &half_way);
+        for values in &mut half_way {
+            for lane in 0..LANES {
+                values[lane] /= square_root(squares[lane]);
+            }
+        }
+        let (mut across, mut sum) = (self.normals, [ZERO; 3]);
+        for vectors in &mut across {
+            let along = dot(vectors, &half_way);
+            for axis in 0..3 {
+                for lane in 0..LANES {
+                    vectors[axis][lane] -= along[lane] * half_way[axis][lane];
+                    sum[axis][lane] += vectors[axis][lane];
+                }
+            }
+        }
+        let (lengths, [a, b, c]) =
+            (dot(&sum, &sum), [dot(&across[0], &sum), dot(&across[1], &sum), dot(&across[2], &sum)]);
+        let mut highest = ZERO;
+        for lane in 0..LANES {
+            let least = lesser(a[lane], lesser(b[lane], c[lane])) / square_root(lengths[lane]) - off[lane];
+            let sine = greater(least, 0.0);
+            // |l + v|²/2 is 1 + l·v.
+            let cosine = 1.0 - 0.5 * squares[lane] * sine * sine + off[lane];
+            let cosine = if cosine < 1.0 { cosine } else { 1.0 };
+            let turn = 2.0 * turns[lane];
+            let more =
+                turn * square_root(greater(1.0 - cosine * cosine, 0.0)) + 0.5 * turn * turn * greater(-cosine, 0.0);
+            highest[lane] = lesser(cosine + more, 1.0);
+        }
+        highest
     }
 }
 
@@ -151,7 +200,7 @@ impl Patches for EightNodes {
 
     #[inline(always)]
     fn sun(&self, towards: [f32; 3]) -> FromBoxes {
-        FromBoxes { directions: towards.map(|c| [c; LANES]), turns: ZERO }
+        FromBoxes { directions: spread(towards), turns: ZERO }
     }
 
     #[inline(always)]
@@ -202,10 +251,11 @@ impl Patches for EightNodes {
     }
 
     #[inline(always)]
-    fn mirrored(&self, light: &FromBoxes, eye: &FromBoxes) -> [Lanes<f32>; 2] {
+    fn mirrored(&self, light: &FromBoxes, eye: &FromBoxes, _: &Lanes<f32>) -> [Lanes<f32>; 3] {
         let (of_light, of_eye) = (dot(&self.axes, &light.directions), dot(&self.axes, &eye.directions));
         let along = mirror(&of_light, &of_eye, &dot(&light.directions, &eye.directions));
-        self.turned(&along, |lane| 2.0 * self.angles[lane] + light.turns[lane] + eye.turns[lane])
+        let [most, least] = self.turned(&along, |lane| 2.0 * self.angles[lane] + light.turns[lane] + eye.turns[lane]);
+        [most, least, most]
     }
 }
 
@@ -225,6 +275,12 @@ impl EightNodes {
         }
         ends
     }
+}
+
+/// One vector in all lanes.
+#[inline(always)]
+pub(super) fn spread([x, y, z]: [f32; 3]) -> Vectors {
+    [[x; LANES], [y; LANES], [z; LANES]]
 }
 
 /// r·v of n·l, n·v and l·v.
