@@ -12,15 +12,39 @@
 mod lanes;
 mod packed;
 mod portable;
+#[cfg(all(
+    feature = "simd",
+    any(
+        target_arch = "x86_64",
+        all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"),
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )
+))]
+mod quarters;
 
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 mod avx2;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 mod avx512;
+#[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+#[expect(unsafe_code, reason = "vector loads and stores")]
+mod neon;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+mod sse2;
+#[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+#[expect(unsafe_code, reason = "vector loads and stores")]
+mod wasm;
 
 pub(crate) use lanes::Lanes8;
 pub(crate) use packed::Packed;
 pub(crate) use portable::Portable;
+
+#[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+pub(crate) const NEON: quarters::Quarters<neon::Neon> = quarters::Quarters(neon::Neon);
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+pub(crate) const SSE2: quarters::Quarters<sse2::Sse2> = quarters::Quarters(sse2::Sse2);
+#[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+pub(crate) const SIMD128: quarters::Quarters<wasm::Simd128> = quarters::Quarters(wasm::Simd128);
 
 /// A level that a kernel may use.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -228,8 +252,18 @@ macro_rules! compiled_for_each_level {
                     Level::Avx512(lanes) => return unsafe { avx512::<$($names)*>(lanes, $($argument),*) },
                     // SAFETY: the processor has AVX2, FMA and POPCNT, says the token.
                     Level::Avx2(lanes) => return unsafe { avx2::<$($names)*>(lanes, $($argument),*) },
+                    // Every x86-64 has SSE2.
+                    Level::Portable | Level::Sse2 => return $generic::<_, $($names)*>(crate::simd::SSE2, $($argument),*),
                     _ => {}
                 }
+            }
+            #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+            if matches!(level, crate::simd::Level::Portable | crate::simd::Level::Neon) {
+                return $generic::<_, $($names)*>(crate::simd::NEON, $($argument),*);
+            }
+            #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+            if matches!(level, crate::simd::Level::Portable | crate::simd::Level::Wasm) {
+                return $generic::<_, $($names)*>(crate::simd::SIMD128, $($argument),*);
             }
             let _ = level;
             $generic::<_, $($names)*>(crate::simd::Portable, $($argument),*)

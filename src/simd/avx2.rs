@@ -191,6 +191,12 @@ impl Lanes8 for Avx2 {
             let (low, high) = (_mm256_castsi256_si128(from), _mm256_extracti128_si256::<1>(from));
             [_mm256_cvtepu32_epi64(low), _mm256_cvtepu32_epi64(high)]
         }
+        fn halves_of_i64(from: I64) -> [__m256i; 2] {
+            let (a, b) = (_mm256_castsi256_ps(from[0]), _mm256_castsi256_ps(from[1]));
+            let low = _mm256_castps_si256(_mm256_shuffle_ps::<0b10_00_10_00>(a, b));
+            let high = _mm256_castps_si256(_mm256_shuffle_ps::<0b11_01_11_01>(a, b));
+            [_mm256_permute4x64_epi64::<0b11_01_10_00>(low), _mm256_permute4x64_epi64::<0b11_01_10_00>(high)]
+        }
         fn zip_i64(a: I64, b: I64) -> [I64; 2] {
             halves!(h => {
                 let (even, odd) = (_mm256_unpacklo_epi64(a[h], b[h]), _mm256_unpackhi_epi64(a[h], b[h]));
@@ -200,6 +206,10 @@ impl Lanes8 for Avx2 {
 
         fn both(a: __m256i, b: __m256i) -> __m256i { _mm256_and_si256(a, b) }
         fn but_not(a: __m256i, b: __m256i) -> __m256i { _mm256_andnot_si256(b, a) }
+        fn mask_of_bits(bits: u8) -> __m256i {
+            let lanes = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(bits.into()), lanes), lanes)
+        }
         fn mask_bits(mask: __m256i) -> u32 { _mm256_movemask_ps(_mm256_castsi256_ps(mask)).cast_unsigned() }
     }
 

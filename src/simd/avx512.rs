@@ -83,6 +83,9 @@ impl Lanes8 for Avx512 {
         fn shl_i64(a: __m512i, by: i32) -> __m512i { _mm512_sll_epi64(a, _mm_cvtsi32_si128(by)) }
         fn to_i64(from: __m256i) -> __m512i { _mm512_cvtepi32_epi64(from) }
         fn unsigned_to_i64(from: __m256i) -> __m512i { _mm512_cvtepu32_epi64(from) }
+        fn halves_of_i64(from: __m512i) -> [__m256i; 2] {
+            [_mm512_cvtepi64_epi32(from), _mm512_cvtepi64_epi32(_mm512_srli_epi64::<32>(from))]
+        }
         fn zip_i64(a: __m512i, b: __m512i) -> [__m512i; 2] {
             let low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
             let high = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
@@ -97,6 +100,10 @@ impl Lanes8 for Avx512 {
     #[inline(always)]
     fn but_not(self, a: __mmask8, b: __mmask8) -> __mmask8 {
         a & !b
+    }
+    #[inline(always)]
+    fn mask_of_bits(self, bits: u8) -> __mmask8 {
+        bits
     }
     #[inline(always)]
     fn mask_bits(self, mask: __mmask8) -> u32 {

@@ -81,6 +81,8 @@ pub(crate) trait Lanes8: Copy {
     fn to_i64(self, from: Self::I32) -> Self::I64;
     /// The lanes taken as u32.
     fn unsigned_to_i64(self, from: Self::I32) -> Self::I64;
+    /// The lower and the upper halves.
+    fn halves_of_i64(self, from: Self::I64) -> [Self::I32; 2];
     /// Like [`zip_i32`](Self::zip_i32).
     fn zip_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2];
 
@@ -89,6 +91,8 @@ pub(crate) trait Lanes8: Copy {
     fn but_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// A bit for each lane, that of lane 0 lowest.
     fn mask_bits(self, mask: Self::Mask) -> u32;
+    /// The mask of such bits.
+    fn mask_of_bits(self, bits: u8) -> Self::Mask;
     /// Writes the lanes whose mask is set to the front, in order, and anything behind them.
     fn compact_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [MaybeUninit<u32>; 8]; N]);
     /// Likewise.

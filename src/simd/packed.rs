@@ -31,6 +31,14 @@ impl<const N: usize> Packed<N> {
         }
     }
 
+    /// Takes the first so many out.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn remove_first(&mut self, count: usize) {
+        let count = count.min(self.count);
+        self.numbers.copy_within(count..self.count, 0);
+        self.count -= count;
+    }
+
     #[inline(always)]
     pub(crate) fn as_slice(&self) -> &[u32] {
         let numbers = &self.numbers[..self.count];

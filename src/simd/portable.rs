@@ -26,7 +26,8 @@ impl Lanes8 for Portable {
     type F64 = F64;
     type I32 = I32;
     type I64 = I64;
-    type Mask = [bool; 8];
+    /// −1 in the lanes that are set, otherwise 0.
+    type Mask = I32;
 
     #[inline(always)]
     fn f64s(self, from: &F64) -> F64 {
@@ -77,12 +78,13 @@ impl Lanes8 for Portable {
         each!(i => f64::from_bits(a[i].to_bits() ^ (sign[i].to_bits() & 1 << 63)))
     }
     #[inline(always)]
-    fn is_less(self, a: F64, b: F64) -> [bool; 8] {
-        each!(i => a[i] < b[i])
+    fn is_less(self, a: F64, b: F64) -> I32 {
+        each!(i => -i32::from(a[i] < b[i]))
     }
     #[inline(always)]
-    fn select(self, mask: [bool; 8], a: F64, b: F64) -> F64 {
-        each!(i => if mask[i] { a[i] } else { b[i] })
+    fn select(self, mask: I32, a: F64, b: F64) -> F64 {
+        let wide = |i: usize| i64::from(mask[i]).cast_unsigned();
+        each!(i => f64::from_bits((a[i].to_bits() & wide(i)) | (b[i].to_bits() & !wide(i))))
     }
     #[inline(always)]
     fn to_f64(self, from: I32) -> F64 {
@@ -154,16 +156,16 @@ impl Lanes8 for Portable {
         each!(i => a[i] >> by)
     }
     #[inline(always)]
-    fn is_greater(self, a: I32, b: I32) -> [bool; 8] {
-        each!(i => a[i] > b[i])
+    fn is_greater(self, a: I32, b: I32) -> I32 {
+        each!(i => -i32::from(a[i] > b[i]))
     }
     #[inline(always)]
-    fn is_equal(self, a: I32, b: I32) -> [bool; 8] {
-        each!(i => a[i] == b[i])
+    fn is_equal(self, a: I32, b: I32) -> I32 {
+        each!(i => -i32::from(a[i] == b[i]))
     }
     #[inline(always)]
-    fn select_i32(self, mask: [bool; 8], a: I32, b: I32) -> I32 {
-        each!(i => if mask[i] { a[i] } else { b[i] })
+    fn select_i32(self, mask: I32, a: I32, b: I32) -> I32 {
+        each!(i => (a[i] & mask[i]) | (b[i] & !mask[i]))
     }
     #[inline(always)]
     fn zip_i32(self, a: I32, b: I32) -> [I32; 2] {
@@ -216,42 +218,50 @@ impl Lanes8 for Portable {
         each!(i => i64::from(from[i].cast_unsigned()))
     }
     #[inline(always)]
+    fn halves_of_i64(self, from: I64) -> [I32; 2] {
+        [each!(i => from[i] as i32), each!(i => (from[i] >> 32) as i32)]
+    }
+    #[inline(always)]
     fn zip_i64(self, a: I64, b: I64) -> [I64; 2] {
         let of = |i: usize| if i % 2 == 0 { a[i / 2] } else { b[i / 2] };
         [each!(i => of(i)), each!(i => of(i + 8))]
     }
 
     #[inline(always)]
-    fn both(self, a: [bool; 8], b: [bool; 8]) -> [bool; 8] {
+    fn both(self, a: I32, b: I32) -> I32 {
         each!(i => a[i] & b[i])
     }
     #[inline(always)]
-    fn but_not(self, a: [bool; 8], b: [bool; 8]) -> [bool; 8] {
+    fn but_not(self, a: I32, b: I32) -> I32 {
         each!(i => a[i] & !b[i])
     }
     #[inline(always)]
-    fn mask_bits(self, mask: [bool; 8]) -> u32 {
-        mask.iter().rev().fold(0, |bits, &set| bits << 1 | u32::from(set))
+    fn mask_bits(self, mask: I32) -> u32 {
+        mask.iter().rev().fold(0, |bits, &set| bits << 1 | (set & 1).cast_unsigned())
     }
     #[inline(always)]
-    fn compact_i32<const N: usize>(self, mask: [bool; 8], from: [I32; N], mut to: [&mut [MaybeUninit<u32>; 8]; N]) {
+    fn mask_of_bits(self, bits: u8) -> I32 {
+        each!(i => -i32::from(bits >> i & 1))
+    }
+    #[inline(always)]
+    fn compact_i32<const N: usize>(self, mask: I32, from: [I32; N], mut to: [&mut [MaybeUninit<u32>; 8]; N]) {
         let mut count = 0;
         for (lane, set) in mask.into_iter().enumerate() {
             for (from, to) in from.iter().zip(&mut to) {
                 // Fewer than eight come before it.
                 to[count % 8].write(from[lane].cast_unsigned());
             }
-            count += usize::from(set);
+            count += (set & 1) as usize;
         }
     }
     #[inline(always)]
-    fn compact_i64<const N: usize>(self, mask: [bool; 8], from: [I64; N], mut to: [&mut [MaybeUninit<i64>; 8]; N]) {
+    fn compact_i64<const N: usize>(self, mask: I32, from: [I64; N], mut to: [&mut [MaybeUninit<i64>; 8]; N]) {
         let mut count = 0;
         for (lane, set) in mask.into_iter().enumerate() {
             for (from, to) in from.iter().zip(&mut to) {
                 to[count % 8].write(from[lane]);
             }
-            count += usize::from(set);
+            count += (set & 1) as usize;
         }
     }
 }

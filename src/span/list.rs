@@ -62,6 +62,14 @@ pub(crate) struct Spans8<S: Lanes8> {
     pub(crate) z: S::I64,
 }
 
+/// The changes of depth of eight spans from one pixel to the next, as those of the list.
+#[derive(Clone, Copy)]
+pub(crate) enum DepthSteps<S: Lanes8> {
+    Each(S::I64),
+    /// One for all: those of one triangle.
+    All(i64),
+}
+
 impl<S: Lanes8> Spans8<S> {
     /// Spans 0 of both, spans 1 of both, and so on.
     #[inline(always)]
@@ -110,6 +118,13 @@ impl SpanList {
         (self.drawn, self.covered.iter().sum::<i32>().cast_unsigned(), self.nearer)
     }
 
+    /// Counts spans and their pixels that were drawn without the list.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    pub(crate) fn count(&mut self, (spans, covered): (u32, u32)) {
+        self.drawn = self.drawn.wrapping_add(spans);
+        self.covered[0] = self.covered[0].wrapping_add(covered.cast_signed());
+    }
+
     /// Returns whether there is room for so many more.
     #[inline(always)]
     pub(crate) fn has_room(&self, spans: usize) -> bool {
@@ -122,18 +137,31 @@ impl SpanList {
         self.pitch == self.width
     }
 
+    /// Those of eight spans that have a length, and lie inside.
+    #[inline(always)]
+    fn inside<S: Lanes8, const DEPTHS: bool>(&self, s: S, spans: &Spans8<S>) -> S::Mask {
+        // Each is negative where a span has no length, begins before the pixels, ends behind 2³¹, or ends behind them.
+        let end = s.add_i32(spans.at, spans.length);
+        let mut sign = s.or_i32(s.sub_i32(spans.length, s.all_i32(1)), s.or_i32(spans.at, end));
+        sign = s.or_i32(sign, s.sub_i32(s.all_i32(self.pixels), end));
+        if DEPTHS {
+            if self.cells_are_pixels() {
+                sign = s.or_i32(sign, s.sub_i32(s.all_i32(self.cells), end));
+            } else {
+                let end = s.add_i32(spans.cell, spans.length);
+                sign = s.or_i32(sign, s.or_i32(spans.cell, end));
+                sign = s.or_i32(sign, s.sub_i32(s.all_i32(self.cells), end));
+            }
+        }
+        s.is_greater(sign, s.all_i32(-1))
+    }
+
     /// Puts those of eight spans that have a length, and lie inside, behind the others. Without room for eight, some are
     /// left out.
     #[inline(always)]
-    pub(crate) fn append<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, spans: &Spans8<S>, dz: S::I64) {
+    pub(crate) fn append<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, spans: &Spans8<S>, dz: DepthSteps<S>) {
         let &Spans8 { at, cell, length, paint, z } = spans;
-        let mut mask = s.both(s.is_greater(length, s.all_i32(0)), s.is_greater(at, s.all_i32(-1)));
-        // No overflow where `at` is not negative.
-        mask = s.but_not(mask, s.is_greater(length, s.sub_i32(s.all_i32(self.pixels), at)));
-        if DEPTHS {
-            mask = s.both(mask, s.is_greater(cell, s.all_i32(-1)));
-            mask = s.but_not(mask, s.is_greater(length, s.sub_i32(s.all_i32(self.cells), cell)));
-        }
+        let mask = self.inside::<S, DEPTHS>(s, spans);
         let covered = s.select_i32(mask, length, s.all_i32(0));
         s.put_i32s(s.add_i32(s.i32s(&self.covered), covered), &mut self.covered);
         let count = self.count.min(CAPACITY);
@@ -146,7 +174,15 @@ impl SpanList {
             if !self.cells_are_pixels() {
                 s.compact_i32(mask, [cell], [eight(&mut self.cell, count)]);
             }
-            s.compact_i64(mask, [z, dz], [eight(&mut self.z, count), eight(&mut self.dz, count)]);
+            match dz {
+                DepthSteps::Each(dz) => {
+                    s.compact_i64(mask, [z, dz], [eight(&mut self.z, count), eight(&mut self.dz, count)]);
+                }
+                DepthSteps::All(dz) => {
+                    s.compact_i64(mask, [z], [eight(&mut self.z, count)]);
+                    *eight(&mut self.dz, count) = [MaybeUninit::new(dz); LANES];
+                }
+            }
         }
         self.count = (count + s.mask_bits(mask).count_ones() as usize).min(CAPACITY);
     }
@@ -159,33 +195,129 @@ impl SpanList {
             return;
         }
         if DEPTHS {
-            let nearer = kernel.fill_spans_nearer(pixels, cells, &self.spans(), &self.depths());
+            let nearer = kernel.fill_spans_nearer(pixels, cells, self);
             self.nearer = self.nearer.wrapping_add(nearer);
         } else {
-            kernel.fill_spans(pixels, &self.spans());
+            kernel.fill_spans(pixels, self);
         }
         // At most 2⁷ at a time; the sum is meant modulo 2³², as `DrawStats`.
         self.drawn = self.drawn.wrapping_add(self.count as u32);
         self.count = 0;
     }
 
-    #[inline(always)]
-    fn spans(&self) -> Spans<'_> {
-        let count = self.count;
-        // SAFETY: `append` has written the first `count` numbers of each array.
-        let [at, length, paint] =
-            unsafe { [&self.at, &self.length, &self.paint].map(|numbers| written(numbers, count)) };
-        Spans { at, length, paint, pixels: self.pixels as usize }
+    /// Returns whether all spans lie inside these pixels.
+    pub(super) fn are_inside(&self, pixels: &[u8]) -> bool {
+        pixels.len() >= self.pixels as usize
     }
 
+    /// Returns whether all spans lie inside these cells.
+    pub(super) fn are_inside_cells<D>(&self, cells: &[D]) -> bool {
+        cells.len() >= self.cells as usize
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Offset of the first pixel, length and paint of each.
     #[inline(always)]
-    fn depths(&self) -> SpanDepths<'_> {
+    pub(super) fn spans(&self) -> impl Iterator<Item = Span> {
+        // SAFETY: `append` has written the first `count` numbers of each array.
+        let [at, length, paint] = unsafe {
+            [written(&self.at, self.count), written(&self.length, self.count), written(&self.paint, self.count)]
+        };
+        let all = at.iter().zip(length).zip(paint);
+        all.map(|((&at, &length), &paint)| Span { at, length, paint })
+    }
+
+    /// The same with depths.
+    #[inline(always)]
+    pub(super) fn tested_spans(&self) -> impl Iterator<Item = (Span, SpanDepth)> {
         let cell = if self.cells_are_pixels() { &self.at } else { &self.cell };
         // SAFETY: as above; with depths of these as well.
         let (cell, z, dz) =
             unsafe { (written(cell, self.count), written(&self.z, self.count), written(&self.dz, self.count)) };
-        SpanDepths { cell, z, dz, cells: self.cells as usize }
+        let depths = cell.iter().zip(z).zip(dz).map(|((&cell, &z), &dz)| SpanDepth { cell, z, dz });
+        self.spans().zip(depths)
     }
+
+    /// Span `k`.
+    ///
+    /// # Safety
+    /// `k` is below `len`.
+    #[inline(always)]
+    pub(super) unsafe fn span(&self, k: usize) -> Span {
+        // SAFETY: by the caller's promise; `append` has written so many.
+        unsafe {
+            Span {
+                at: self.at.get_unchecked(k).assume_init(),
+                length: self.length.get_unchecked(k).assume_init(),
+                paint: self.paint.get_unchecked(k).assume_init(),
+            }
+        }
+    }
+
+    /// The depth of span `k`.
+    ///
+    /// # Safety
+    /// `k` is below `len`, and the spans were put in with depths.
+    #[inline(always)]
+    pub(super) unsafe fn depth(&self, k: usize) -> SpanDepth {
+        let cell = if self.cells_are_pixels() { &self.at } else { &self.cell };
+        // SAFETY: by the caller's promise; `append` has written so many.
+        unsafe {
+            SpanDepth {
+                cell: cell.get_unchecked(k).assume_init(),
+                z: self.z.get_unchecked(k).assume_init(),
+                dz: self.dz.get_unchecked(k).assume_init(),
+            }
+        }
+    }
+
+    /// Fills each by this function.
+    #[inline(always)]
+    pub(super) fn each(&self, pixels: &mut [u8], fill: impl Fn(&mut [u8], u16, u16)) {
+        for Span { at, length, paint } in self.spans() {
+            // No overflow: both are below 2³¹.
+            if let Some(row) = pixels.get_mut(at as usize..at as usize + length as usize) {
+                // Its halves.
+                fill(row, paint as u16, (paint >> 16) as u16);
+            }
+        }
+    }
+
+    /// Fills each where it is nearer. Returns the number of pixels written.
+    #[inline(never)]
+    pub(super) fn each_nearer<D: Cell>(&self, pixels: &mut [u8], cells: &mut [D]) -> u32 {
+        let mut written = 0;
+        for (Span { at, length, paint }, SpanDepth { cell, z, dz }) in self.tested_spans() {
+            // As above.
+            let (at, cell, length) = (at as usize, cell as usize, length as usize);
+            if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
+                written += fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z >> 8, dz >> 8);
+            }
+        }
+        written
+    }
+}
+
+/// A span of a list.
+#[derive(Clone, Copy)]
+pub(super) struct Span {
+    /// The offset of its first pixel.
+    pub(super) at: u32,
+    pub(super) length: u32,
+    /// The shade, and above it the step.
+    pub(super) paint: u32,
+}
+
+/// The depth of a span: the integer part in the upper half, modulo 2⁶⁴.
+#[derive(Clone, Copy)]
+pub(super) struct SpanDepth {
+    /// The offset of its first cell.
+    pub(super) cell: u32,
+    pub(super) z: i64,
+    pub(super) dz: i64,
 }
 
 /// Eight places from this number on.
@@ -207,70 +339,6 @@ unsafe fn written<T>(numbers: &[MaybeUninit<T>; CAPACITY + LANES], count: usize)
     let first = &numbers[..count];
     // SAFETY: by the caller's promise; `MaybeUninit<T>` has the layout of `T`.
     unsafe { &*(&raw const *first as *const [T]) }
-}
-
-/// The spans of a list: of each its numbers in three arrays of one length.
-pub(super) struct Spans<'a> {
-    pub(super) at: &'a [u32],
-    pub(super) length: &'a [u32],
-    pub(super) paint: &'a [u32],
-    /// All spans lie inside so many pixels.
-    pixels: usize,
-}
-
-impl Spans<'_> {
-    /// Returns whether all lie inside these.
-    pub(super) fn are_inside(&self, pixels: &[u8]) -> bool {
-        pixels.len() >= self.pixels
-    }
-
-    /// Fills each by this function.
-    #[inline(always)]
-    pub(super) fn each(&self, pixels: &mut [u8], fill: impl Fn(&mut [u8], u16, u16)) {
-        for ((&at, &length), &paint) in self.at.iter().zip(self.length).zip(self.paint) {
-            // No overflow: both are below 2³¹.
-            if let Some(row) = pixels.get_mut(at as usize..at as usize + length as usize) {
-                // Its halves.
-                fill(row, paint as u16, (paint >> 16) as u16);
-            }
-        }
-    }
-}
-
-/// The depths of as many spans.
-pub(super) struct SpanDepths<'a> {
-    pub(super) cell: &'a [u32],
-    pub(super) z: &'a [i64],
-    pub(super) dz: &'a [i64],
-    /// All spans lie inside so many cells.
-    cells: usize,
-}
-
-impl SpanDepths<'_> {
-    /// Returns whether all lie inside these.
-    pub(super) fn are_inside<D>(&self, cells: &[D]) -> bool {
-        cells.len() >= self.cells
-    }
-}
-
-/// Fills each span where it is nearer. Returns the number of pixels written.
-#[inline(never)]
-pub(super) fn each_nearer<D: Cell>(
-    pixels: &mut [u8],
-    cells: &mut [D],
-    spans: &Spans<'_>,
-    depths: &SpanDepths<'_>,
-) -> u32 {
-    let mut written = 0;
-    let of_spans = spans.at.iter().zip(spans.length).zip(spans.paint);
-    for (((&at, &length), &paint), ((&cell, z), dz)) in of_spans.zip(depths.cell.iter().zip(depths.z).zip(depths.dz)) {
-        // As above.
-        let (at, cell, length) = (at as usize, cell as usize, length as usize);
-        if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
-            written += fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z >> 8, dz >> 8);
-        }
-    }
-    written
 }
 
 /// A span and where it lies.
@@ -301,7 +369,7 @@ pub struct ListedDepths {
 pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[Listed]) {
     let mut list = SpanList::new((pixels.len(), 0), (0, 0));
     for eight in spans.chunks(LANES) {
-        list.append::<Portable, false>(Portable, &lanes(eight), [0; LANES]);
+        list.append::<Portable, false>(Portable, &lanes(eight), DepthSteps::All(0));
         if !list.has_room(LANES) {
             list.draw_by::<u32, false>(kernel, pixels, &mut []);
         }
@@ -326,7 +394,7 @@ pub fn fill_where_nearer<D: Cell>(
         for (i, depths) in depths.iter().enumerate() {
             (eight.cell[i], eight.z[i], dz[i]) = (depths.at.cast_signed(), depths.z << 8, depths.dz << 8);
         }
-        list.append::<Portable, true>(Portable, &eight, dz);
+        list.append::<Portable, true>(Portable, &eight, DepthSteps::Each(dz));
         if !list.has_room(LANES) {
             list.draw_by::<D, true>(kernel, pixels, cells);
         }

@@ -75,6 +75,8 @@ mod portable;
     allow(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
 )]
 mod simd;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+pub(crate) use simd::avx512::{LargeTriangle, fill_large};
 #[doc(hidden)]
 pub mod texture;
 #[doc(hidden)]
@@ -267,7 +269,7 @@ impl Kernel {
 
     /// Fills every span, in order, as [`fill`](Self::fill) does.
     #[inline]
-    fn fill_spans(self, pixels: &mut [u8], spans: &list::Spans<'_>) {
+    fn fill_spans(self, pixels: &mut [u8], spans: &list::SpanList) {
         match self.level {
             Level::Portable => spans.each(pixels, portable::fill),
             #[cfg(feature = "simd")]
@@ -289,23 +291,17 @@ impl Kernel {
 
     /// Fills every span, in order, with the depth test of [`depth::fill_nearer`]. Returns the number of pixels written.
     #[inline]
-    fn fill_spans_nearer<D: depth::Cell>(
-        self,
-        pixels: &mut [u8],
-        cells: &mut [D],
-        spans: &list::Spans<'_>,
-        depths: &list::SpanDepths<'_>,
-    ) -> u32 {
+    fn fill_spans_nearer<D: depth::Cell>(self, pixels: &mut [u8], cells: &mut [D], spans: &list::SpanList) -> u32 {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if let Some(avx2) = self.avx2()
             && let Some(cells) = D::as_u32(cells)
         {
             return match self.avx512() {
-                Some(avx512) => simd::avx512::fill_spans_nearer(avx512, pixels, cells, spans, depths),
-                None => simd::nearer::fill_spans(avx2, pixels, cells, spans, depths),
+                Some(avx512) => simd::avx512::fill_spans_nearer(avx512, pixels, cells, spans),
+                None => simd::nearer::fill_spans(avx2, pixels, cells, spans),
             };
         }
-        list::each_nearer(pixels, cells, spans, depths)
+        spans.each_nearer(pixels, cells)
     }
 
     /// The level that it draws with.

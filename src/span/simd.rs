@@ -84,7 +84,7 @@ pub(super) mod arrays {
 #[cfg(target_arch = "x86_64")]
 pub(super) mod sse2 {
     use super::super::dither::fill_dithered_portable;
-    use super::super::list::Spans;
+    use super::super::list::SpanList;
     use core::arch::x86_64::*;
 
     /// Even and odd shades of a block of 16 pixels.
@@ -153,7 +153,7 @@ pub(super) mod sse2 {
     }
 
     /// Every span of a list.
-    pub(crate) fn fill_spans(pixels: &mut [u8], spans: &Spans<'_>) {
+    pub(crate) fn fill_spans(pixels: &mut [u8], spans: &SpanList) {
         // SAFETY: x86-64 includes SSE2.
         spans.each(pixels, |row, shade, step| unsafe { vectors(row, shade, step) });
     }
@@ -252,7 +252,7 @@ pub(crate) mod nearer;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx2 {
-    use super::super::list::Spans;
+    use super::super::list::{Span, SpanList};
     use super::sse2;
     use crate::simd::Avx2;
     use core::arch::x86_64::*;
@@ -264,10 +264,10 @@ pub(crate) mod avx2 {
     }
 
     /// Every span of a list.
-    pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], spans: &Spans<'_>) {
+    pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], spans: &SpanList) {
         #[target_feature(enable = "avx2")]
-        fn each(pixels: &mut [u8], spans: &Spans<'_>) {
-            for ((&at, &length), &paint) in spans.at.iter().zip(spans.length).zip(spans.paint) {
+        fn each(pixels: &mut [u8], spans: &SpanList) {
+            for Span { at, length, paint } in spans.spans() {
                 span(pixels, at, length, paint);
             }
         }

@@ -34,7 +34,6 @@ impl Place {
     }
 
     /// x in the lower half, y in the upper.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     #[inline(always)]
     pub(crate) const fn to_bits(self) -> u64 {
         self.0

@@ -332,11 +332,22 @@ fn draw_triangles_by<S: Lanes8, D: Cell, const DEPTHS: bool>(
                 let row = setup.row[i % LANES];
                 (first, end) = ((clip.y0 as i32 - row).max(0), end.min(clip.y1 as i32 - row));
             }
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            if !DEPTHS
+                && triangle.class() == SizeClass::Large
+                && let Some(avx512) = kernel.avx512()
+            {
+                list.draw_by::<D, DEPTHS>(kernel, pixels, cells);
+                let reseeds = batch.interpolation[triangle.index()] == Interpolation::GouraudReseeded;
+                list.count(crate::span::fill_large(avx512, pixels, &setup.large_triangle(i, layout, reseeds)));
+                continue;
+            }
             while first < end {
                 if !list.has_room(LANES * pieces) {
                     list.draw_by::<D, DEPTHS>(kernel, pixels, cells);
                 }
-                rows::list_pieces::<S, DEPTHS>(s, &setup, (i, first), (pieces, longest), clip, &mut list);
+                let (part, cut) = ((i, first), (pieces, longest));
+                rows::list_pieces::<S, DEPTHS>(s, &setup, part, cut, clip, &mut list);
                 first += LANES as i32;
             }
         }

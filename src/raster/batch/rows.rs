@@ -9,7 +9,7 @@ use super::setup::{Edges, Floats, Ints, LANES, TriangleSetup8};
 use crate::fixed::ROUND_MAGIC;
 use crate::raster::frame::Rect;
 use crate::simd::Lanes8;
-use crate::span::list::{SpanList, Spans8};
+use crate::span::list::{DepthSteps, SpanList, Spans8};
 
 /// Most rows of eight small triangles that are found row by row, and put into the triangles' order afterwards.
 pub(super) const MAX_SHORT_ROWS: i32 = 4;
@@ -152,22 +152,27 @@ pub(super) fn list_short<S: Lanes8, const DEPTHS: bool>(
     list: &mut SpanList,
 ) {
     let mut cursor = RowCursor8::new::<DEPTHS>(s, setup);
-    let dz = &setup.z_per_column;
+    let dz = |i: usize| setup.z_per_column[i];
     if most_rows <= 0 {
         return;
     }
     let first = cursor.row::<DEPTHS>(s, setup, list, 0);
     if most_rows == 1 {
-        list.append::<S, DEPTHS>(s, &first, if DEPTHS { s.i64s(dz) } else { first.z });
+        let dz = if DEPTHS { DepthSteps::Each(s.i64s(&setup.z_per_column)) } else { DepthSteps::All(0) };
+        list.append::<S, DEPTHS>(s, &first, dz);
         return;
     }
     let second = cursor.row::<DEPTHS>(s, setup, list, 1);
     if most_rows == 2 {
         let [low, high] = first.zip::<DEPTHS>(s, &second, list);
-        let none = [low.z, high.z];
-        let dz = if DEPTHS { s.zip_i64(s.i64s(dz), s.i64s(dz)) } else { none };
-        list.append::<S, DEPTHS>(s, &low, dz[0]);
-        list.append::<S, DEPTHS>(s, &high, dz[1]);
+        let (mut of_low, mut of_high) = (DepthSteps::All(0), DepthSteps::All(0));
+        if DEPTHS {
+            let dz = s.i64s(&setup.z_per_column);
+            let [low, high] = s.zip_i64(dz, dz);
+            (of_low, of_high) = (DepthSteps::Each(low), DepthSteps::Each(high));
+        }
+        list.append::<S, DEPTHS>(s, &low, of_low);
+        list.append::<S, DEPTHS>(s, &high, of_high);
         return;
     }
     let third = cursor.row::<DEPTHS>(s, setup, list, 2);
@@ -178,8 +183,8 @@ pub(super) fn list_short<S: Lanes8, const DEPTHS: bool>(
         let quarters = even[half].zip::<DEPTHS>(s, &odd[half], list);
         for quarter in 0..2 {
             let i = 4 * half + 2 * quarter;
-            let spans = &quarters[quarter];
-            list.append::<S, DEPTHS>(s, spans, if DEPTHS { s.halves_i64(dz[i], dz[i + 1]) } else { spans.z });
+            let dz = if DEPTHS { DepthSteps::Each(s.halves_i64(dz(i), dz(i + 1))) } else { DepthSteps::All(0) };
+            list.append::<S, DEPTHS>(s, &quarters[quarter], dz);
         }
     }
 }
@@ -227,7 +232,7 @@ pub(super) fn list_eight_rows<S: Lanes8, const DEPTHS: bool>(
     list: &mut SpanList,
 ) {
     let (_, spans) = eight_rows::<S, DEPTHS>(s, setup, (i, first), list);
-    list.append::<S, DEPTHS>(s, &spans, OneTriangle(i).i64s(s, &setup.z_per_column));
+    list.append::<S, DEPTHS>(s, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
 }
 
 /// Lists eight rows of triangle `i` from number `first` on, each in so many pieces of up to `longest` pixels, which begin
@@ -277,7 +282,10 @@ pub(super) fn list_pieces<S: Lanes8, const DEPTHS: bool>(
             paint,
             z: if DEPTHS { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
         };
-        list.append::<S, DEPTHS>(s, &spans, dz);
+        list.append::<S, DEPTHS>(s, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
         left = end;
+        if s.mask_bits(s.is_less(left, ends.right)) == 0 {
+            break;
+        }
     }
 }

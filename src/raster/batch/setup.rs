@@ -40,6 +40,8 @@ use super::{Batch, FrameLayout};
 use crate::fixed::ROUND_MAGIC;
 use crate::raster::depth::DepthPlane;
 use crate::simd::Lanes8;
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+use crate::span::LargeTriangle;
 
 /// Triangles at a time, or rows of one.
 pub(super) const LANES: usize = 8;
@@ -178,6 +180,27 @@ impl TriangleSetup8 {
         self.z[i] = z << 8;
         self.z_per_column[i] = plane.step() << 8;
         self.z_per_row[i] = plane.fixed_at(column, row + 1).wrapping_sub(z) << 8;
+    }
+
+    /// Triangle `i` alone.
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    pub(super) fn large_triangle(&self, i: usize, layout: FrameLayout, reseeds: bool) -> LargeTriangle {
+        let edge = |edges: &Edges| [edges.n[i], edges.per_row[i], edges.inverse[i]];
+        LargeTriangle {
+            long: edge(&self.long),
+            upper: edge(&self.upper),
+            lower: edge(&self.lower),
+            shade: [self.shade_n[i], self.shade_per_row[i], self.shade_inverse[i]],
+            per_column: self.shade_per_column[i],
+            at: self.at[i],
+            // At most 2¹⁶.
+            pitch: layout.pitch as i32,
+            rows: self.rows[i],
+            split: self.split[i],
+            // The upper half.
+            step: (self.step[i] >> 16) as u16,
+            reseeds,
+        }
     }
 
     /// Sets up eight triangles of which no box has more than 2¹⁸ pixels; with `DEPTHS` the depth planes of small ones, too.

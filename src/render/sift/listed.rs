@@ -1,73 +1,66 @@
 //! The numbers of faces that are to be drawn, until there is a batch of them.
 
-use super::MOST;
+use super::{LANES, MOST};
 use crate::raster::Batch;
 use crate::raster::batch::indexed::TURNED;
+use crate::simd::{Lanes8, Packed, compiled_for_each_level};
 use crate::span::Kernel;
 
-/// Faces that are written beyond the last, and are none.
-pub(super) const BEYOND: usize = 16;
-/// Less than a batch, and those of one more time.
-const CAPACITY: usize = Batch::CAPACITY + MOST + BEYOND;
+/// Less than a batch, those of one more time, and one vector.
+type Numbers = Packed<{ Batch::CAPACITY + MOST + LANES }>;
 
 /// Numbers of faces, with [`TURNED`] of those whose back is seen.
-pub(crate) struct Listed {
-    pub(super) numbers: [u32; CAPACITY],
-    pub(super) count: usize,
-}
+pub(crate) struct Listed(Numbers);
 
 impl Listed {
     pub(crate) const fn new() -> Self {
-        Self { numbers: [0; CAPACITY], count: 0 }
+        Self(Packed::new())
     }
 
     /// Puts those of 64 faces behind the others whose bits are set, from number `first` on. Only if there is no whole batch.
     #[inline(always)]
     pub(crate) fn add(&mut self, (first, turned): (usize, u64), chosen: u64, kernel: Kernel) {
-        debug_assert!(self.count < Batch::CAPACITY);
+        debug_assert!(self.all().len() < Batch::CAPACITY);
         // Below `TURNED`, or there is no list.
-        let first = first as u32;
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if let Some(avx512) = kernel.avx512() {
-            return super::avx512::list(avx512, self, first, chosen, turned);
-        }
-        let _ = kernel;
-        self.add_one_by_one(first, chosen, turned);
-    }
-
-    /// The definition.
-    fn add_one_by_one(&mut self, first: u32, chosen: u64, turned: u64) {
-        let mut left = chosen;
-        while left != 0 {
-            let at = left.trailing_zeros();
-            left &= left - 1;
-            let side = if turned >> at & 1 == 1 { TURNED } else { 0 };
-            self.numbers[self.count] = (first + at) | side;
-            self.count += 1;
-        }
+        add(kernel.simd_level(), &mut self.0, first as u32, turned, chosen);
     }
 
     /// A whole batch, if there is one.
     #[inline(always)]
     pub(crate) fn whole(&self) -> Option<&[u32]> {
-        if self.count < Batch::CAPACITY { None } else { self.numbers.get(..Batch::CAPACITY) }
+        self.all().get(..Batch::CAPACITY)
     }
 
     /// Takes a whole batch out.
     pub(crate) fn take_whole(&mut self) {
-        let count = self.count.saturating_sub(Batch::CAPACITY);
-        // As many as are added at a time, no more.
-        self.numbers.copy_within(Batch::CAPACITY..Batch::CAPACITY + MOST, 0);
-        self.count = count;
+        self.0.remove_first(Batch::CAPACITY);
     }
 
     /// All there are.
     pub(crate) fn all(&self) -> &[u32] {
-        &self.numbers[..self.count]
+        self.0.as_slice()
     }
 
     pub(crate) fn clear(&mut self) {
-        self.count = 0;
+        self.0 = Packed::new();
+    }
+}
+
+compiled_for_each_level! {
+    fn add[][](numbers: &mut Numbers, first: u32, turned: u64, chosen: u64) = add_by;
+}
+
+#[inline(always)]
+fn add_by<S: Lanes8>(s: S, numbers: &mut Numbers, first: u32, turned: u64, chosen: u64) {
+    let parts = chosen.to_le_bytes().into_iter().zip(turned.to_le_bytes());
+    for (part, (chosen, turned)) in (0_u32..).zip(parts) {
+        if chosen == 0 {
+            continue;
+        }
+        let number = s.all_i32((first + LANES as u32 * part).cast_signed());
+        let number = s.add_i32(number, s.i32s(&[0, 1, 2, 3, 4, 5, 6, 7]));
+        let side = s.select_i32(s.mask_of_bits(turned), s.all_i32(TURNED.cast_signed()), s.all_i32(0));
+        numbers.append(s, s.mask_of_bits(chosen), s.or_i32(number, side));
     }
 }
 

@@ -3,20 +3,18 @@
 
 use super::lit::Place;
 use crate::raster::Rect;
+use crate::raster::batch::cull::Bounds;
+use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-#[expect(unsafe_code, reason = "assembly for processors found only when the program runs")]
-mod avx512;
 pub(super) mod listed;
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-mod x86;
 
 /// Faces at a time.
 pub(super) const MOST: usize = 64;
+/// Faces of a vector.
+const LANES: usize = 8;
 
-/// Culling by cover: the pixels that are drawn, and the kernel that decides.
+/// Culling by cover: the pixels that are drawn, and the kernel whose level decides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sieve {
     pub(super) clip: Rect,
@@ -43,81 +41,83 @@ impl Sieve {
 
     /// Culls up to 64 faces of these corners. The cover of pixels is found for those that have an area, and if it
     /// `culls`, only for those that are turned towards the eye.
+    ///
+    /// # Panics
+    /// If a face has a corner that is not in `places`.
     #[inline]
     pub(super) fn sift(&self, places: &[Place], triangles: &[[u32; 3]], culls: bool) -> Sifted {
-        // Inside a frame, at most 4,096.
-        let sides = [self.clip.x0, self.clip.y0, self.clip.x1, self.clip.y1].map(|side| side as i32);
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if let Some(avx512) = self.kernel.avx512() {
-            return avx512::sift(avx512, places, triangles, sides, culls);
-        }
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if let Some(avx2) = self.kernel.avx2() {
-            return x86::sift(avx2, places, triangles, sides, culls);
-        }
-        let _ = self.kernel;
-        sift(places, triangles, sides, culls)
+        sift(self.kernel.simd_level(), places, triangles, self.clip, culls)
     }
 }
 
-/// The definition: face by face.
-fn sift(places: &[Place], triangles: &[[u32; 3]], sides: [i32; 4], culls: bool) -> Sifted {
+compiled_for_each_level! {
+    fn sift[][](places: &[Place], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> Sifted = sift_by;
+}
+
+#[inline(always)]
+fn sift_by<S: Lanes8>(s: S, places: &[Place], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> Sifted {
     let mut sifted = Sifted::default();
-    for (at, triangle) in triangles.iter().enumerate().take(MOST) {
-        sifted.add(at, triangle.map(|i| places[i as usize]), sides, culls);
+    let triangles = &triangles[..triangles.len().min(MOST)];
+    let (eights, rest) = triangles.as_chunks::<LANES>();
+    for (number, eight) in eights.iter().enumerate() {
+        sifted.add(LANES * number, u64::MAX, sift_eight(s, places, eight, clip, culls));
+    }
+    if let Some(&first) = rest.first() {
+        let mut eight = [first; LANES];
+        eight[..rest.len()].copy_from_slice(rest);
+        let are_faces = (1 << rest.len()) - 1;
+        sifted.add(LANES * eights.len(), are_faces, sift_eight(s, places, &eight, clip, culls));
     }
     sifted
 }
 
-impl Sifted {
-    #[inline]
-    fn add(&mut self, at: usize, corners: [Place; 3], [left, top, right, bottom]: [i32; 4], culls: bool) {
-        if corners.iter().any(|corner| corner.needs_clipping()) {
-            self.clipped |= 1 << at;
-            return;
-        }
-        let [a, b, c] = corners.map(|corner| (corner.x(), corner.y()));
-        // As `doubled_area`: in the guard band differences are at most 2²¹.
-        let product = |p: i32, q: i32| i64::from(p) * i64::from(q);
-        let area = product(b.0 - a.0, c.1 - a.1) - product(c.0 - a.0, b.1 - a.1);
-        self.front |= u64::from(area < 0) << at;
-        self.back |= u64::from(area > 0) << at;
-        if area == 0 || (culls && area > 0) {
-            return;
-        }
-        // `I24F8::first_centre`.
-        let centres = |a: i32, b: i32, c: i32| ((a.min(b).min(c) + 127) >> 8, (a.max(b).max(c) + 127) >> 8);
-        let ((column, end_column), (row, end_row)) = (centres(a.0, b.0, c.0), centres(a.1, b.1, c.1));
-        let mut covers = (column.max(left) < end_column.min(right)) & (row.max(top) < end_row.min(bottom));
-        if (end_column - column <= TINY_SIDE) & (end_row - row <= TINY_SIDE) {
-            let from_first = |(x, y): (i32, i32)| (x - column * 256 - 128, y - row * 256 - 128);
-            covers &= covers_one_of_four(from_first(a), from_first(b), from_first(c));
-        }
-        self.covers |= u64::from(covers) << at;
+/// x and y of one corner of eight faces.
+#[inline(always)]
+fn corner<S: Lanes8>(s: S, places: &[Place], triangles: &[[u32; 3]; LANES], corner: usize) -> [S::I32; 2] {
+    let mut bits = [0; LANES];
+    for (bits, triangle) in bits.iter_mut().zip(triangles) {
+        *bits = places[triangle[corner] as usize].to_bits().cast_signed();
     }
+    s.halves_of_i64(s.i64s(&bits))
 }
 
-/// The longer side, in pixels, of the box of a face whose pixels are looked at one by one.
-const TINY_SIDE: i32 = 2;
+/// Bits of eight faces: those that need clipping, the front, the back, and those that may cover a pixel.
+#[inline(always)]
+fn sift_eight<S: Lanes8>(s: S, places: &[Place], triangles: &[[u32; 3]; LANES], clip: Rect, culls: bool) -> [u32; 4] {
+    let [ax, ay] = corner(s, places, triangles, 0);
+    let [bx, by] = corner(s, places, triangles, 1);
+    let [cx, cy] = corner(s, places, triangles, 2);
+    // The mark is the least number there is. Of such a face the other numbers mean nothing.
+    let least = s.min_i32(s.min_i32(ax, bx), cx);
+    let clipped = s.mask_bits(s.is_equal(least, s.all_i32(Place::BEYOND)));
+    // Exact in f64: differences are at most 2²¹, products 2⁴².
+    let (dx1, dy1) = (s.to_f64(s.sub_i32(bx, ax)), s.to_f64(s.sub_i32(by, ay)));
+    let (dx2, dy2) = (s.to_f64(s.sub_i32(cx, ax)), s.to_f64(s.sub_i32(cy, ay)));
+    let area = s.neg_mul_add(dx2, dy1, s.mul(dx1, dy2));
+    let zero = s.all_f64(0.0);
+    let front = s.mask_bits(s.is_less(area, zero)) & !clipped;
+    let back = s.mask_bits(s.is_less(zero, area)) & !clipped;
+    // Neighbours mostly turn the same way.
+    let seen = if culls { front } else { front | back };
+    if seen == 0 {
+        return [clipped, front, back, 0];
+    }
+    let (x, y) = ([ax, bx, cx], [ay, by, cy]);
+    let bounds = Bounds::of(s, x, y);
+    // Eight bits.
+    let covers = s.both(bounds.overlap(s, clip), s.mask_of_bits(seen as u8));
+    [clipped, front, back, s.mask_bits(bounds.but_empty(s, covers, x, y))]
+}
 
-/// Returns whether a triangle has one of four pixels: that at the origin, the next, and the two below. Its corners must
-/// be less than 1,024 units away.
-///
-/// ```text
-/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
-/// ```
-///
-/// A point on an edge lies inside if the edge is a left or a top one; for others E has to be one step more.
-fn covers_one_of_four(a: (i32, i32), b: (i32, i32), c: (i32, i32)) -> bool {
-    let area = (b.0 - a.0) * (c.1 - a.1) - (c.0 - a.0) * (b.1 - a.1);
-    let (b, c) = if area < 0 { (c, b) } else { (b, c) };
-    [(0, 0), (256, 0), (0, 256), (256, 256)].into_iter().any(|p| {
-        [(a, b), (b, c), (c, a)].into_iter().all(|(from, to)| {
-            let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-            let is_in = dy < 0 || (dy == 0 && dx > 0);
-            dx * (p.1 - from.1) - dy * (p.0 - from.0) >= i32::from(!is_in)
-        })
-    })
+impl Sifted {
+    /// Puts in bits of up to eight faces, from number `first` on.
+    #[inline(always)]
+    fn add(&mut self, first: usize, are_faces: u64, found: [u32; 4]) {
+        let all = [&mut self.clipped, &mut self.front, &mut self.back, &mut self.covers];
+        for (all, bits) in all.into_iter().zip(found) {
+            *all |= (u64::from(bits) & are_faces) << first;
+        }
+    }
 }
 
 #[cfg(test)]

@@ -5,8 +5,10 @@
 //!    faster at 320 pixels and at 8. (`vpermi2b`, which packs two vectors, is three operations on Intel.)
 
 use core::arch::x86_64::*;
+use core::hint::black_box;
 
-use super::super::list::{SpanDepths, Spans};
+use super::super::list::{Span, SpanDepth, SpanList};
+use crate::fixed::ROUND_MAGIC;
 use crate::simd::Avx512;
 
 /// Pixels of a vector.
@@ -21,6 +23,20 @@ static EVEN: [u16; 32] = {
     }
     even
 };
+
+/// Both bytes of a 16-bit lane from its upper. It is read through a `black_box`: the compiler would replace a masked shuffle
+/// that it knows by three operations on the port that shuffles. (A large triangle's rows 3.4 ns each, and 2.0.)
+static UPPER_BYTES: [u8; 64] = {
+    let mut bytes = [0; 64];
+    let mut i = 0;
+    while i < 64 {
+        bytes[i as usize] = i % 16 | 1;
+        i += 1;
+    }
+    bytes
+};
+/// The upper halves of eight 64-bit lanes of two vectors, in 32-bit lanes. Likewise.
+static UPPER_HALVES: [u32; 16] = [1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31];
 
 /// Only for a processor that has [`Avx512`].
 pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
@@ -80,7 +96,7 @@ fn bytes(even: __m512i, steps: __m512i) -> __m512i {
 }
 
 /// Every span of a list.
-pub(crate) fn fill_spans(_: Avx512, pixels: &mut [u8], spans: &Spans<'_>) {
+pub(crate) fn fill_spans(_: Avx512, pixels: &mut [u8], spans: &SpanList) {
     if spans.are_inside(pixels) {
         // SAFETY: the processor has AVX-512, says the token; all spans lie inside the pixels.
         unsafe { each(pixels.as_mut_ptr(), spans) }
@@ -90,10 +106,12 @@ pub(crate) fn fill_spans(_: Avx512, pixels: &mut [u8], spans: &Spans<'_>) {
 /// # Safety
 /// All spans lie inside the pixels.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi2")]
-unsafe fn each(pixels: *mut u8, spans: &Spans<'_>) {
+unsafe fn each(pixels: *mut u8, spans: &SpanList) {
     // SAFETY: 16 bytes; the load asks for no alignment.
     let numbers = unsafe { _mm_loadu_si128(EVEN.as_ptr().cast()) };
-    for ((&at, &length), &paint) in spans.at.iter().zip(spans.length).zip(spans.paint) {
+    for k in 0..spans.len() {
+        // SAFETY: below the number of spans.
+        let Span { at, length, paint } = unsafe { spans.span(k) };
         // Its halves.
         let (shade, step) = (paint as u16, (paint >> 16) as u16);
         // SAFETY: by the caller's promise.
@@ -113,37 +131,206 @@ unsafe fn each(pixels: *mut u8, spans: &Spans<'_>) {
     }
 }
 
+/// A triangle whose rows go to the pixels without a list. Columns and rows are counted from its box's first on.
+///
+/// (Eight rows take half the instructions that the list takes; a cube's triangles of 3,570 pixels in 100 rows 1.57 times as
+/// long by it.)
+#[derive(Clone, Copy)]
+pub(crate) struct LargeTriangle {
+    /// Of the long edge, of the upper and the lower short one, and of the shade: the numerator in the first row, its change
+    /// from one row to the next, and the inverse of the divisor. An edge has its column as a sum with `ROUND_MAGIC`.
+    pub(crate) long: [f64; 3],
+    pub(crate) upper: [f64; 3],
+    pub(crate) lower: [f64; 3],
+    pub(crate) shade: [f64; 3],
+    /// Change of the shade's numerator from one column to the next.
+    pub(crate) per_column: f64,
+    /// The offset of the box's first pixel.
+    pub(crate) at: i32,
+    pub(crate) pitch: i32,
+    pub(crate) rows: i32,
+    /// The first row of the lower edge.
+    pub(crate) split: i32,
+    pub(crate) step: u16,
+    /// Every 64 pixels of a row start anew.
+    pub(crate) reseeds: bool,
+}
+
+/// Draws a large triangle. Rows that do not lie inside the pixels are left out. Returns its spans, and the pixels of these.
+pub(crate) fn fill_large(_: Avx512, pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
+    // SAFETY: the processor has AVX-512, says the token.
+    unsafe { large(pixels, triangle) }
+}
+
+/// Numbers of eight rows, in memory.
+#[repr(C, align(64))]
+struct Rows([u64; 8]);
+
+impl Rows {
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn of(numbers: __m512i) -> Self {
+        let mut rows = Self([0; 8]);
+        // SAFETY: 64 bytes; the store asks for no alignment.
+        unsafe { _mm512_storeu_si512(rows.0.as_mut_ptr().cast(), numbers) }
+        rows
+    }
+}
+
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,bmi2")]
+fn large(pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
+    const ROWS: i32 = 8;
+    let size = _mm512_set1_epi64(pixels.len() as i64);
+    let pixels = pixels.as_mut_ptr();
+    let magic = _mm512_set1_pd(ROUND_MAGIC);
+    let ramp = Ramp::new(triangle.step);
+    let mut numbers = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7);
+    let j = _mm512_setr_pd(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0);
+    let LargeTriangle { long, upper, lower, shade, .. } = *triangle;
+    let numerators = |[n, per_row, _]: [f64; 3]| {
+        (_mm512_fmadd_pd(j, _mm512_set1_pd(per_row), _mm512_set1_pd(n)), _mm512_set1_pd(per_row * f64::from(ROWS)))
+    };
+    let ((mut long_n, long_8), (mut upper_n, upper_8)) = (numerators(long), numerators(upper));
+    let ((mut lower_n, lower_8), (mut shade_n, shade_8)) = (numerators(lower), numerators(shade));
+    let inverse = |[_, _, inverse]: [f64; 3]| _mm512_set1_pd(inverse);
+    let (long, upper, lower, inverse) = (inverse(long), inverse(upper), inverse(lower), inverse(shade));
+    let (rows, split) = (_mm512_set1_epi64(triangle.rows.into()), _mm512_set1_epi64(triangle.split.into()));
+    let pitch = i64::from(triangle.pitch);
+    let first = _mm512_set1_epi64(i64::from(triangle.at).wrapping_sub(ROUND_MAGIC.to_bits().cast_signed()));
+    let mut at = _mm512_add_epi64(first, _mm512_mullo_epi64(numbers, _mm512_set1_epi64(pitch)));
+    let (per_column, per_piece) = (_mm512_set1_pd(triangle.per_column), triangle.per_column * BLOCK as f64);
+    // Pieces of a row, of which there is one where it does not start anew: it has at most 1,024 pixels.
+    let (round, shift) = if triangle.reseeds { (BLOCK as i64 - 1, 6) } else { (1_023, 10) };
+    let (round, shift) = (_mm512_set1_epi64(round), _mm_cvtsi64_si128(shift));
+    let (mut spans, mut covered) = (_mm512_setzero_si512(), _mm512_setzero_si512());
+    for _ in (0..triangle.rows).step_by(ROWS as usize) {
+        let is_lower = _mm512_cmpge_epi64_mask(numbers, split);
+        let short = _mm512_mask_mul_pd(_mm512_mul_pd(upper_n, upper), is_lower, lower_n, lower);
+        let (long, short) = (_mm512_fmadd_pd(long_n, long, magic), _mm512_add_pd(short, magic));
+        let (left, right) = (_mm512_min_pd(long, short), _mm512_max_pd(long, short));
+        let length = _mm512_sub_epi64(_mm512_castpd_si512(right), _mm512_castpd_si512(left));
+        let begin = _mm512_add_epi64(_mm512_castpd_si512(left), at);
+        // All without sign, so what is negative is left out.
+        let is_row = _mm512_cmplt_epi64_mask(numbers, rows);
+        let is_row = _mm512_mask_cmple_epu64_mask(is_row, length, size);
+        let is_row = _mm512_mask_cmple_epu64_mask(is_row, begin, _mm512_sub_epi64(size, length));
+        let length = _mm512_maskz_mov_epi64(is_row, length);
+        let numerator = _mm512_fmadd_pd(_mm512_sub_pd(left, magic), per_column, shade_n);
+        let shades = _mm512_castpd_si512(_mm512_fmadd_pd(numerator, inverse, magic));
+        let shades = _mm512_shuffle_epi8(shades, _mm512_set4_epi32(0x0908_0908, 0x0908_0908, 0x0100_0100, 0x0100_0100));
+        covered = _mm512_add_epi64(covered, length);
+        spans = _mm512_add_epi64(spans, _mm512_srl_epi64(_mm512_add_epi64(length, round), shift));
+        let (begins, lengths, shades) =
+            (Rows::of(_mm512_maskz_mov_epi64(is_row, begin)), Rows::of(length), Rows::of(shades));
+        let numerators = Rows::of(_mm512_castpd_si512(numerator));
+        for lane in 0..ROWS as usize {
+            // The lower half is a shade twice: a broadcast of 32 bits needs no shuffle.
+            let (mut left, shade) = (lengths.0[lane] as usize, shades.0[lane] as i32);
+            // SAFETY: a row lies inside the pixels, or begins at the first and has no length.
+            let mut row = unsafe { pixels.add(begins.0[lane] as usize) };
+            if left <= BLOCK / 2 {
+                // SAFETY: the mask has a bit for each of the row's pixels, which are at most 32.
+                unsafe { _mm256_mask_storeu_epi8(row.cast(), ones(left) as u32, ramp.half(_mm256_set1_epi32(shade))) }
+                continue;
+            }
+            let mut shades = _mm512_set1_epi32(shade);
+            let mut numerator = f64::from_bits(numerators.0[lane]);
+            while left > BLOCK {
+                // SAFETY: more than 64 bytes are left; the store asks for no alignment. So many lie behind the row's place.
+                unsafe {
+                    _mm512_storeu_si512(row.cast(), ramp.bytes(shades));
+                    row = row.add(BLOCK);
+                }
+                left -= BLOCK;
+                if triangle.reseeds {
+                    numerator += per_piece;
+                    // Its lower part.
+                    shades = _mm512_set1_epi16(numerator.mul_add(triangle.shade[2], ROUND_MAGIC).to_bits() as i16);
+                } else {
+                    shades = _mm512_add_epi16(shades, _mm512_slli_epi16::<6>(ramp.steps));
+                }
+            }
+            // SAFETY: the mask has a bit for each of the pixels that are left, which are at most 64.
+            unsafe { _mm512_mask_storeu_epi8(row.cast(), ones(left), ramp.bytes(shades)) }
+        }
+        (long_n, upper_n) = (_mm512_add_pd(long_n, long_8), _mm512_add_pd(upper_n, upper_8));
+        (lower_n, shade_n) = (_mm512_add_pd(lower_n, lower_8), _mm512_add_pd(shade_n, shade_8));
+        numbers = _mm512_add_epi64(numbers, _mm512_set1_epi64(ROWS.into()));
+        at = _mm512_add_epi64(at, _mm512_set1_epi64(pitch * i64::from(ROWS)));
+    }
+    // At most 2¹⁸ pixels.
+    (_mm512_reduce_add_epi64(spans) as u32, _mm512_reduce_add_epi64(covered) as u32)
+}
+
+/// 64 pixels from shade 0 on.
+#[derive(Clone, Copy)]
+struct Ramp {
+    steps: __m512i,
+    even: __m512i,
+    odd: __m512i,
+    /// Both bytes of a 16-bit lane from its upper.
+    upper: __m512i,
+}
+
+impl Ramp {
+    const EVEN_BYTES: u64 = 0x5555_5555_5555_5555;
+
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512bw")]
+    fn new(step: u16) -> Self {
+        // SAFETY: 64 bytes; the load asks for no alignment.
+        let numbers = unsafe { _mm512_loadu_si512(EVEN.as_ptr().cast()) };
+        let steps = _mm512_set1_epi16(step.cast_signed());
+        let even = _mm512_mullo_epi16(steps, numbers);
+        // SAFETY: likewise.
+        let upper = unsafe { _mm512_loadu_si512(black_box(&UPPER_BYTES).as_ptr().cast()) };
+        Self { steps, even, odd: _mm512_add_epi16(even, steps), upper }
+    }
+
+    /// From these shades on: the upper bytes of even ones below those of odd ones.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512bw")]
+    fn bytes(self, shades: __m512i) -> __m512i {
+        let (even, odd) = (_mm512_add_epi16(shades, self.even), _mm512_add_epi16(shades, self.odd));
+        _mm512_mask_shuffle_epi8(odd, Self::EVEN_BYTES, even, self.upper)
+    }
+
+    /// Half as many.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+    fn half(self, shades: __m256i) -> __m256i {
+        let even = _mm256_add_epi16(shades, _mm512_castsi512_si256(self.even));
+        let odd = _mm256_add_epi16(shades, _mm512_castsi512_si256(self.odd));
+        _mm256_mask_shuffle_epi8(odd, Self::EVEN_BYTES as u32, even, _mm512_castsi512_si256(self.upper))
+    }
+}
+
 /// Every span of a list where it is nearer. Returns the number of pixels written.
-pub(crate) fn fill_spans_nearer(
-    _: Avx512,
-    pixels: &mut [u8],
-    cells: &mut [u32],
-    spans: &Spans<'_>,
-    depths: &SpanDepths<'_>,
-) -> u32 {
-    if !spans.are_inside(pixels) || !depths.are_inside(cells) {
+pub(crate) fn fill_spans_nearer(_: Avx512, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
+    if !spans.are_inside(pixels) || !spans.are_inside_cells(cells) {
         return 0;
     }
     // SAFETY: the processor has AVX-512, says the token; all spans lie inside the pixels and cells.
-    unsafe { each_nearer(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans, depths) }
+    unsafe { each_nearer(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans) }
 }
 
 /// # Safety
 /// All spans lie inside the pixels and cells.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,bmi2,popcnt")]
-unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &Spans<'_>, depths: &SpanDepths<'_>) -> u32 {
+unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &SpanList) -> u32 {
     let numbers = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7);
-    // The upper halves of sixteen lanes of two vectors.
-    let upper = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+    // SAFETY: 64 bytes; the load asks for no alignment.
+    let upper = unsafe { _mm512_loadu_si512(black_box(&UPPER_HALVES).as_ptr().cast()) };
     // 1, and above it the pixel's number.
     let numbered = _mm256_setr_epi32(1, 0x1_0001, 0x2_0001, 0x3_0001, 0x4_0001, 0x5_0001, 0x6_0001, 0x7_0001);
     // SAFETY: 16 bytes; the load asks for no alignment.
     let even_numbers = unsafe { _mm_loadu_si128(EVEN.as_ptr().cast()) };
     let odd_bytes = _mm_set1_epi16(0xFF00_u16.cast_signed());
     let mut nearer = 0;
-    let of_spans = spans.at.iter().zip(spans.length).zip(spans.paint);
-    let of_depths = depths.cell.iter().zip(depths.z).zip(depths.dz);
-    for (((&at, &length), &paint), ((&cell, &z), &dz)) in of_spans.zip(of_depths) {
+    for k in 0..spans.len() {
+        // SAFETY: below the number of spans.
+        let (Span { at, length, paint }, SpanDepth { cell, z, dz }) = unsafe { (spans.span(k), spans.depth(k)) };
         // SAFETY: by the caller's promise.
         let (mut row, mut cell) = unsafe { (pixels.add(at as usize), cells.add(cell as usize)) };
         let steps = _mm512_set1_epi64(dz);

@@ -9,7 +9,7 @@
 use core::arch::x86_64::*;
 
 use super::super::depth::fill_nearer;
-use super::super::list::{SpanDepths, Spans};
+use super::super::list::{Span, SpanDepth, SpanList};
 use crate::simd::Avx2;
 
 /// Pixels a turn, ...
@@ -18,69 +18,40 @@ const EIGHT: usize = 8;
 const FOUR: usize = 4;
 
 /// Every span of a list. Returns the number of pixels written.
-pub(crate) fn fill_spans(
-    _: Avx2,
-    pixels: &mut [u8],
-    cells: &mut [u32],
-    spans: &Spans<'_>,
-    depths: &SpanDepths<'_>,
-) -> u32 {
-    let of_spans = spans.at.iter().zip(depths.cell).zip(spans.length).zip(spans.paint).zip(depths.z).zip(depths.dz);
+pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
     // SAFETY: the processor has AVX2, says the token.
-    unsafe { fill(pixels, cells, of_spans.map(tested)) }
-}
-
-/// A span's numbers, of each array one.
-type Zipped<'a> = (((((&'a u32, &'a u32), &'a u32), &'a u32), &'a i64), &'a i64);
-
-/// A span out of the arrays.
-fn tested((((((&at, &cell), &length), &paint), &z), &dz): Zipped<'_>) -> Tested {
-    Tested { at, cell, length, paint, z, dz }
-}
-
-/// A span with a depth test.
-struct Tested {
-    /// The offset of its first pixel, ...
-    at: u32,
-    /// ... and of its first cell.
-    cell: u32,
-    length: u32,
-    /// Shade, and above it the step.
-    paint: u32,
-    /// Depths, the integer parts in the upper halves, modulo 2⁶⁴.
-    z: i64,
-    dz: i64,
+    unsafe { fill(pixels, cells, spans.tested_spans()) }
 }
 
 /// Fills spans, one after the other. Returns the number of pixels written.
 /// Nothing is drawn of a span that does not lie inside the pixels and cells. (One function for a list: as one for a
 /// span, which is too large to be part of the loop, a quarter slower.)
 #[target_feature(enable = "avx2")]
-fn fill(pixels: &mut [u8], cells: &mut [u32], spans: impl Iterator<Item = Tested>) -> u32 {
+fn fill(pixels: &mut [u8], cells: &mut [u32], spans: impl Iterator<Item = (Span, SpanDepth)>) -> u32 {
     // Pixels of all turns, and of each lane those that were not written, as a number below 0. Sums are meant modulo 2³².
     let mut turned = 0_u32;
     let (mut of_eight, mut of_four) = (_mm256_setzero_si256(), _mm_setzero_si128());
-    for span in spans {
-        let (at, cell, length) = (span.at as usize, span.cell as usize, span.length as usize);
+    for (span, depth) in spans {
+        let (at, cell, length) = (span.at as usize, depth.cell as usize, span.length as usize);
         // No overflow: all are below 2³², and usize has 64 bits.
         if length <= FOUR {
             let row = pixels.get_mut(at..at + FOUR).and_then(|row| row.first_chunk_mut());
             let near = cells.get_mut(cell..cell + FOUR).and_then(|cells| cells.first_chunk_mut());
             if let (Some(row), Some(near)) = (row, near) {
-                of_four = _mm_add_epi32(of_four, four(row, near, &span));
+                of_four = _mm_add_epi32(of_four, four(row, near, span, depth));
                 turned = turned.wrapping_add(FOUR as u32);
                 continue;
             }
         }
         let whole = length.next_multiple_of(EIGHT);
         if let (Some(row), Some(near)) = (pixels.get_mut(at..at + whole), cells.get_mut(cell..cell + whole)) {
-            of_eight = _mm256_add_epi32(of_eight, eights(row, near, &span));
+            of_eight = _mm256_add_epi32(of_eight, eights(row, near, span, depth));
             turned = turned.wrapping_add(whole as u32);
             continue;
         }
         if let (Some(row), Some(near)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
             let (shade, step) = (span.paint as u16, (span.paint >> 16) as u16);
-            let written = fill_nearer(row, near, shade, step, span.z >> 8, span.dz >> 8);
+            let written = fill_nearer(row, near, shade, step, depth.z >> 8, depth.dz >> 8);
             turned = turned.wrapping_add(written);
         }
     }
@@ -93,13 +64,13 @@ fn fill(pixels: &mut [u8], cells: &mut [u32], spans: impl Iterator<Item = Tested
 /// One span, in turns of eight. Returns of each lane the pixels that were not written, as a number below 0.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn eights(row: &mut [u8], cells: &mut [u32], span: &Tested) -> __m256i {
+fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> __m256i {
     let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     // So arranged that the upper halves of both are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
-    let dz = _mm256_set1_epi64x(span.dz);
+    let dz = _mm256_set1_epi64x(depth.dz);
     let odd = _mm256_and_si256(dz, _mm256_setr_epi64x(0, -1, 0, -1));
     let later = _mm256_and_si256(_mm256_slli_epi64(dz, 2), _mm256_setr_epi64x(0, 0, -1, -1));
-    let mut z0 = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(span.z), odd), later);
+    let mut z0 = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(depth.z), odd), later);
     let mut z1 = _mm256_add_epi64(z0, _mm256_slli_epi64(dz, 1));
     let next_z = _mm256_slli_epi64(dz, 3);
     // shade + k·step, of which bits 8 to 15 count.
@@ -138,10 +109,10 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: &Tested) -> __m256i {
 /// One span of up to four pixels, likewise.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn four(row: &mut [u8; FOUR], cells: &mut [u32; FOUR], span: &Tested) -> __m128i {
+fn four(row: &mut [u8; FOUR], cells: &mut [u32; FOUR], span: Span, depth: SpanDepth) -> __m128i {
     let lanes = _mm_setr_epi32(0, 1, 2, 3);
-    let dz = _mm_set1_epi64x(span.dz);
-    let z0 = _mm_add_epi64(_mm_set1_epi64x(span.z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
+    let dz = _mm_set1_epi64x(depth.dz);
+    let z0 = _mm_add_epi64(_mm_set1_epi64x(depth.z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
     let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
     let numbered = _mm_or_si128(_mm_slli_epi32(lanes, 16), _mm_set1_epi32(1));
     let shades = _mm_madd_epi16(_mm_set1_epi32(span.paint.cast_signed()), numbered);

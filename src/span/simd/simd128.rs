@@ -39,7 +39,7 @@ pub(super) fn fill<B: Block>(row: &mut [u8], shade: u16, step: u16) {
 /// 64-bit ARM, all of which has NEON.
 #[cfg(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
 pub(in super::super) mod neon {
-    use super::super::super::list::Spans;
+    use super::super::super::list::SpanList;
     use core::arch::aarch64::*;
 
     #[derive(Clone, Copy)]
@@ -82,7 +82,7 @@ pub(in super::super) mod neon {
     }
 
     /// Every span of a list.
-    pub(crate) fn fill_spans(pixels: &mut [u8], spans: &Spans<'_>) {
+    pub(crate) fn fill_spans(pixels: &mut [u8], spans: &SpanList) {
         spans.each(pixels, fill);
     }
 }
@@ -90,7 +90,7 @@ pub(in super::super) mod neon {
 /// WebAssembly with vectors of 128 bits.
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 pub(in super::super) mod wasm {
-    use super::super::super::list::Spans;
+    use super::super::super::list::SpanList;
     use core::arch::wasm32::*;
 
     #[derive(Clone, Copy)]
@@ -126,7 +126,7 @@ pub(in super::super) mod wasm {
     }
 
     /// Every span of a list.
-    pub(crate) fn fill_spans(pixels: &mut [u8], spans: &Spans<'_>) {
+    pub(crate) fn fill_spans(pixels: &mut [u8], spans: &SpanList) {
         spans.each(pixels, fill);
     }
 }

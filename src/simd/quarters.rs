@@ -1,0 +1,419 @@
+//! [`Lanes8`] by vectors of 128 bits: four of 64-bit lanes, two of 32-bit ones. One body for SSE2, NEON and wasm.
+
+use core::mem::MaybeUninit;
+
+use super::Lanes8;
+
+/// Vectors of 128 bits: a pair of f64, or four i32, or two i64.
+///
+/// The value of such a type is the proof that the processor has them.
+pub(crate) trait Vector128: Copy {
+    type F: Copy;
+    /// Four i32 or two i64. Sums, differences and products wrap.
+    type I: Copy;
+
+    fn load_f64(self, from: &[f64; 2]) -> Self::F;
+    fn all_f64(self, value: f64) -> Self::F;
+    fn store_f64(self, from: Self::F, to: &mut [f64; 2]);
+    fn add_f64(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sub_f64(self, a: Self::F, b: Self::F) -> Self::F;
+    fn mul_f64(self, a: Self::F, b: Self::F) -> Self::F;
+    fn div_f64(self, a: Self::F, b: Self::F) -> Self::F;
+    /// `a·b + c`, fused if there is such an instruction.
+    fn mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// `c − a·b`, likewise.
+    fn neg_mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    fn min_f64(self, a: Self::F, b: Self::F) -> Self::F;
+    fn max_f64(self, a: Self::F, b: Self::F) -> Self::F;
+    /// −1 or 0 in two lanes of 64 bits.
+    fn is_less(self, a: Self::F, b: Self::F) -> Self::I;
+    fn bits(self, from: Self::F) -> Self::I;
+    fn of_bits(self, from: Self::I) -> Self::F;
+    /// The first two of four i32.
+    fn low_to_f64(self, from: Self::I) -> Self::F;
+
+    fn load(self, from: &[i32; 4]) -> Self::I;
+    fn all(self, value: i32) -> Self::I;
+    fn store(self, from: Self::I, to: &mut [i32; 4]);
+    fn add(self, a: Self::I, b: Self::I) -> Self::I;
+    fn sub(self, a: Self::I, b: Self::I) -> Self::I;
+    fn mul(self, a: Self::I, b: Self::I) -> Self::I;
+    fn and(self, a: Self::I, b: Self::I) -> Self::I;
+    fn or(self, a: Self::I, b: Self::I) -> Self::I;
+    fn xor(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `a` and not `b`.
+    fn and_not(self, a: Self::I, b: Self::I) -> Self::I;
+    fn shl(self, a: Self::I, by: i32) -> Self::I;
+    fn sar(self, a: Self::I, by: i32) -> Self::I;
+    /// −1 or 0 in four lanes.
+    fn is_greater(self, a: Self::I, b: Self::I) -> Self::I;
+    fn is_equal(self, a: Self::I, b: Self::I) -> Self::I;
+    fn min(self, a: Self::I, b: Self::I) -> Self::I;
+    fn max(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `[a0, b0, a1, b1]`
+    fn zip_low(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `[a2, b2, a3, b3]`
+    fn zip_high(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `[a0, a2, b0, b2]`
+    fn even(self, a: Self::I, b: Self::I) -> Self::I;
+    /// The sign bits of four lanes.
+    fn sign_bits(self, from: Self::I) -> u32;
+
+    fn load_i64(self, from: &[i64; 2]) -> Self::I;
+    fn all_i64(self, value: i64) -> Self::I;
+    fn store_i64(self, from: Self::I, to: &mut [i64; 2]);
+    fn add_i64(self, a: Self::I, b: Self::I) -> Self::I;
+    fn sub_i64(self, a: Self::I, b: Self::I) -> Self::I;
+    fn shl_i64(self, a: Self::I, by: i32) -> Self::I;
+    /// The upper halves of two i64, zero-extended.
+    fn upper(self, a: Self::I) -> Self::I;
+    /// Products of the lower halves of two i64, as u32.
+    fn mul_low(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `[a0, b0]` of i64
+    fn zip_low_i64(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `[a1, b1]` of i64
+    fn zip_high_i64(self, a: Self::I, b: Self::I) -> Self::I;
+}
+
+/// Four vectors for eight lanes of 64 bits, two for eight of 32.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Quarters<V>(pub(crate) V);
+
+/// A function of each of four vectors.
+macro_rules! four {
+    ($i:ident => $value:expr) => {{
+        let $i = 0;
+        let a = $value;
+        let $i = 1;
+        let b = $value;
+        let $i = 2;
+        let c = $value;
+        let $i = 3;
+        [a, b, c, $value]
+    }};
+}
+
+/// A function of each of two vectors.
+macro_rules! two {
+    ($i:ident => $value:expr) => {{
+        let $i = 0;
+        let a = $value;
+        let $i = 1;
+        [a, $value]
+    }};
+}
+
+/// Numbers 2·`i` and the next of eight.
+#[inline(always)]
+fn pair<T>(eight: &[T; 8], i: usize) -> &[T; 2] {
+    &eight.as_chunks::<2>().0[i]
+}
+
+#[inline(always)]
+fn pair_mut<T>(eight: &mut [T; 8], i: usize) -> &mut [T; 2] {
+    &mut eight.as_chunks_mut::<2>().0[i]
+}
+
+impl<V: Vector128> Quarters<V> {
+    /// `a` where the mask is set, otherwise `b`.
+    #[inline(always)]
+    fn choose(self, mask: V::I, a: V::I, b: V::I) -> V::I {
+        self.0.or(self.0.and(a, mask), self.0.and_not(b, mask))
+    }
+
+    /// Each of eight lanes of 32 bits beside another: lanes of 64 bits, of which they are the lower and the upper halves.
+    #[inline(always)]
+    fn with_upper(self, lower: [V::I; 2], upper: [V::I; 2]) -> [V::I; 4] {
+        let v = self.0;
+        [
+            v.zip_low(lower[0], upper[0]),
+            v.zip_high(lower[0], upper[0]),
+            v.zip_low(lower[1], upper[1]),
+            v.zip_high(lower[1], upper[1]),
+        ]
+    }
+}
+
+impl<V: Vector128> Lanes8 for Quarters<V> {
+    type F64 = [V::F; 4];
+    type I32 = [V::I; 2];
+    type I64 = [V::I; 4];
+    /// −1 in the lanes that are set, otherwise 0.
+    type Mask = [V::I; 2];
+
+    #[inline(always)]
+    fn f64s(self, from: &[f64; 8]) -> Self::F64 {
+        four!(i => self.0.load_f64(pair(from, i)))
+    }
+    #[inline(always)]
+    fn all_f64(self, value: f64) -> Self::F64 {
+        [self.0.all_f64(value); 4]
+    }
+    #[inline(always)]
+    fn put_f64s(self, from: Self::F64, to: &mut [f64; 8]) {
+        four!(i => self.0.store_f64(from[i], pair_mut(to, i)));
+    }
+    #[inline(always)]
+    fn add(self, a: Self::F64, b: Self::F64) -> Self::F64 {
+        four!(i => self.0.add_f64(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn sub(self, a: Self::F64, b: Self::F64) -> Self::F64 {
+        four!(i => self.0.sub_f64(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn mul(self, a: Self::F64, b: Self::F64) -> Self::F64 {
+        four!(i => self.0.mul_f64(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn div(self, a: Self::F64, b: Self::F64) -> Self::F64 {
+        four!(i => self.0.div_f64(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self::F64, b: Self::F64, c: Self::F64) -> Self::F64 {
+        four!(i => self.0.mul_add(a[i], b[i], c[i]))
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, a: Self::F64, b: Self::F64, c: Self::F64) -> Self::F64 {
+        four!(i => self.0.neg_mul_add(a[i], b[i], c[i]))
+    }
+    #[inline(always)]
+    fn min(self, a: Self::F64, b: Self::F64) -> Self::F64 {
+        four!(i => self.0.min_f64(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn max(self, a: Self::F64, b: Self::F64) -> Self::F64 {
+        four!(i => self.0.max_f64(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn flip(self, a: Self::F64, sign: Self::F64) -> Self::F64 {
+        let v = self.0;
+        let highest = v.all_i64(i64::MIN);
+        four!(i => v.of_bits(v.xor(v.bits(a[i]), v.and(v.bits(sign[i]), highest))))
+    }
+    #[inline(always)]
+    fn is_less(self, a: Self::F64, b: Self::F64) -> Self::Mask {
+        let less = four!(i => self.0.is_less(a[i], b[i]));
+        [self.0.even(less[0], less[1]), self.0.even(less[2], less[3])]
+    }
+    #[inline(always)]
+    fn select(self, mask: Self::Mask, a: Self::F64, b: Self::F64) -> Self::F64 {
+        let (v, mask) = (self.0, self.with_upper(mask, mask));
+        four!(i => v.of_bits(self.choose(mask[i], v.bits(a[i]), v.bits(b[i]))))
+    }
+    #[inline(always)]
+    fn to_f64(self, from: Self::I32) -> Self::F64 {
+        let v = self.0;
+        let [a, b] = from;
+        [v.low_to_f64(a), v.low_to_f64(v.zip_high_i64(a, a)), v.low_to_f64(b), v.low_to_f64(v.zip_high_i64(b, b))]
+    }
+    #[inline(always)]
+    fn unsigned_to_f64(self, from: Self::I32) -> Self::F64 {
+        // Less 2³¹, and that added again: both are exact.
+        let highest = self.0.all(i32::MIN);
+        let signed = self.to_f64(two!(i => self.0.xor(from[i], highest)));
+        self.add(signed, self.all_f64(2_147_483_648.0))
+    }
+    #[inline(always)]
+    fn low_bits(self, from: Self::F64) -> Self::I32 {
+        let v = self.0;
+        [v.even(v.bits(from[0]), v.bits(from[1])), v.even(v.bits(from[2]), v.bits(from[3]))]
+    }
+    #[inline(always)]
+    fn bits(self, from: Self::F64) -> Self::I64 {
+        four!(i => self.0.bits(from[i]))
+    }
+
+    #[inline(always)]
+    fn i32s(self, from: &[i32; 8]) -> Self::I32 {
+        two!(i => self.0.load(&from.as_chunks::<4>().0[i]))
+    }
+    #[inline(always)]
+    fn all_i32(self, value: i32) -> Self::I32 {
+        [self.0.all(value); 2]
+    }
+    #[inline(always)]
+    fn put_i32s(self, from: Self::I32, to: &mut [i32; 8]) {
+        two!(i => self.0.store(from[i], &mut to.as_chunks_mut::<4>().0[i]));
+    }
+    #[inline(always)]
+    fn add_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
+        two!(i => self.0.add(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn sub_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
+        two!(i => self.0.sub(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn mul_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
+        two!(i => self.0.mul(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn min_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
+        two!(i => self.0.min(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn max_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
+        two!(i => self.0.max(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn and_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
+        two!(i => self.0.and(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn or_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
+        two!(i => self.0.or(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn xor_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
+        two!(i => self.0.xor(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn shl_i32(self, a: Self::I32, by: i32) -> Self::I32 {
+        two!(i => self.0.shl(a[i], by))
+    }
+    #[inline(always)]
+    fn sar_i32(self, a: Self::I32, by: i32) -> Self::I32 {
+        two!(i => self.0.sar(a[i], by))
+    }
+    #[inline(always)]
+    fn is_greater(self, a: Self::I32, b: Self::I32) -> Self::Mask {
+        two!(i => self.0.is_greater(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn is_equal(self, a: Self::I32, b: Self::I32) -> Self::Mask {
+        two!(i => self.0.is_equal(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn select_i32(self, mask: Self::Mask, a: Self::I32, b: Self::I32) -> Self::I32 {
+        two!(i => self.choose(mask[i], a[i], b[i]))
+    }
+    #[inline(always)]
+    fn zip_i32(self, a: Self::I32, b: Self::I32) -> [Self::I32; 2] {
+        two!(i => [self.0.zip_low(a[i], b[i]), self.0.zip_high(a[i], b[i])])
+    }
+
+    #[inline(always)]
+    fn i64s(self, from: &[i64; 8]) -> Self::I64 {
+        four!(i => self.0.load_i64(pair(from, i)))
+    }
+    #[inline(always)]
+    fn all_i64(self, value: i64) -> Self::I64 {
+        [self.0.all_i64(value); 4]
+    }
+    #[inline(always)]
+    fn halves_i64(self, low: i64, high: i64) -> Self::I64 {
+        let (low, high) = (self.0.all_i64(low), self.0.all_i64(high));
+        [low, low, high, high]
+    }
+    #[inline(always)]
+    fn put_i64s(self, from: Self::I64, to: &mut [i64; 8]) {
+        four!(i => self.0.store_i64(from[i], pair_mut(to, i)));
+    }
+    #[inline(always)]
+    fn add_i64(self, a: Self::I64, b: Self::I64) -> Self::I64 {
+        four!(i => self.0.add_i64(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn sub_i64(self, a: Self::I64, b: Self::I64) -> Self::I64 {
+        four!(i => self.0.sub_i64(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn mul_i64(self, a: Self::I64, b: Self::I64) -> Self::I64 {
+        let v = self.0;
+        four!(i => {
+            let upper = v.add_i64(v.mul_low(a[i], v.upper(b[i])), v.mul_low(v.upper(a[i]), b[i]));
+            v.add_i64(v.mul_low(a[i], b[i]), v.shl_i64(upper, 32))
+        })
+    }
+    #[inline(always)]
+    fn mul_low_i64(self, a: Self::I64, b: Self::I64) -> Self::I64 {
+        let v = self.0;
+        four!(i => v.add_i64(v.mul_low(a[i], b[i]), v.shl_i64(v.mul_low(a[i], v.upper(b[i])), 32)))
+    }
+    #[inline(always)]
+    fn shl_i64(self, a: Self::I64, by: i32) -> Self::I64 {
+        four!(i => self.0.shl_i64(a[i], by))
+    }
+    #[inline(always)]
+    fn to_i64(self, from: Self::I32) -> Self::I64 {
+        self.with_upper(from, two!(i => self.0.sar(from[i], 31)))
+    }
+    #[inline(always)]
+    fn unsigned_to_i64(self, from: Self::I32) -> Self::I64 {
+        self.with_upper(from, [self.0.all(0); 2])
+    }
+    #[inline(always)]
+    fn halves_of_i64(self, from: Self::I64) -> [Self::I32; 2] {
+        let v = self.0;
+        let upper = four!(i => v.upper(from[i]));
+        [[v.even(from[0], from[1]), v.even(from[2], from[3])], [v.even(upper[0], upper[1]), v.even(upper[2], upper[3])]]
+    }
+    #[inline(always)]
+    fn zip_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2] {
+        let v = self.0;
+        let zip = |i: usize| [v.zip_low_i64(a[i], b[i]), v.zip_high_i64(a[i], b[i])];
+        let [[a, b], [c, d], [e, f], [g, h]] = [zip(0), zip(1), zip(2), zip(3)];
+        [[a, b, c, d], [e, f, g, h]]
+    }
+
+    #[inline(always)]
+    fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        two!(i => self.0.and(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn but_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        two!(i => self.0.and_not(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn mask_bits(self, mask: Self::Mask) -> u32 {
+        self.0.sign_bits(mask[0]) | self.0.sign_bits(mask[1]) << 4
+    }
+    #[inline(always)]
+    fn mask_of_bits(self, bits: u8) -> Self::Mask {
+        let lanes = self.i32s(&[1, 2, 4, 8, 16, 32, 64, 128]);
+        self.is_equal(self.and_i32(self.all_i32(bits.into()), lanes), lanes)
+    }
+    #[inline(always)]
+    fn compact_i32<const N: usize>(
+        self,
+        mask: Self::Mask,
+        from: [Self::I32; N],
+        mut to: [&mut [MaybeUninit<u32>; 8]; N],
+    ) {
+        // There is no such instruction for all of these levels: lane by lane out of arrays.
+        let bits = self.mask_bits(mask);
+        let mut lanes = [[0; 8]; N];
+        for (from, lanes) in from.into_iter().zip(&mut lanes) {
+            self.put_i32s(from, lanes);
+        }
+        let mut count = 0;
+        for lane in 0..8 {
+            for (lanes, to) in lanes.iter().zip(&mut to) {
+                // Fewer than eight come before it.
+                to[count % 8].write(lanes[lane].cast_unsigned());
+            }
+            count += (bits >> lane & 1) as usize;
+        }
+    }
+    #[inline(always)]
+    fn compact_i64<const N: usize>(
+        self,
+        mask: Self::Mask,
+        from: [Self::I64; N],
+        mut to: [&mut [MaybeUninit<i64>; 8]; N],
+    ) {
+        let bits = self.mask_bits(mask);
+        let mut lanes = [[0; 8]; N];
+        for (from, lanes) in from.into_iter().zip(&mut lanes) {
+            self.put_i64s(from, lanes);
+        }
+        let mut count = 0;
+        for lane in 0..8 {
+            for (lanes, to) in lanes.iter().zip(&mut to) {
+                to[count % 8].write(lanes[lane]);
+            }
+            count += (bits >> lane & 1) as usize;
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! [`Vector128`] by WebAssembly's vectors.
+
+use core::arch::wasm32::*;
+
+use super::quarters::Vector128;
+
+/// The level that the target has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Simd128;
+
+macro_rules! vectors {
+    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
+        $(
+            #[inline(always)]
+            #[allow(unused_unsafe, reason = "loads and stores alone are unsafe")]
+            fn $name(self, $($argument: $type),*) $(-> $result)? {
+                // SAFETY: the target has simd128. Loads and stores go to whole arrays, and ask for no alignment.
+                unsafe { $body }
+            }
+        )*
+    };
+}
+
+impl Vector128 for Simd128 {
+    type F = v128;
+    type I = v128;
+
+    vectors! {
+        fn load_f64(from: &[f64; 2]) -> v128 { v128_load(from.as_ptr().cast()) }
+        fn all_f64(value: f64) -> v128 { f64x2_splat(value) }
+        fn store_f64(from: v128, to: &mut [f64; 2]) { v128_store(to.as_mut_ptr().cast(), from) }
+        fn add_f64(a: v128, b: v128) -> v128 { f64x2_add(a, b) }
+        fn sub_f64(a: v128, b: v128) -> v128 { f64x2_sub(a, b) }
+        fn mul_f64(a: v128, b: v128) -> v128 { f64x2_mul(a, b) }
+        fn div_f64(a: v128, b: v128) -> v128 { f64x2_div(a, b) }
+        fn mul_add(a: v128, b: v128, c: v128) -> v128 { f64x2_add(f64x2_mul(a, b), c) }
+        fn neg_mul_add(a: v128, b: v128, c: v128) -> v128 { f64x2_sub(c, f64x2_mul(a, b)) }
+        fn min_f64(a: v128, b: v128) -> v128 { f64x2_pmin(a, b) }
+        fn max_f64(a: v128, b: v128) -> v128 { f64x2_pmax(a, b) }
+        fn is_less(a: v128, b: v128) -> v128 { f64x2_lt(a, b) }
+        fn bits(from: v128) -> v128 { from }
+        fn of_bits(from: v128) -> v128 { from }
+        fn low_to_f64(from: v128) -> v128 { f64x2_convert_low_i32x4(from) }
+
+        fn load(from: &[i32; 4]) -> v128 { v128_load(from.as_ptr().cast()) }
+        fn all(value: i32) -> v128 { i32x4_splat(value) }
+        fn store(from: v128, to: &mut [i32; 4]) { v128_store(to.as_mut_ptr().cast(), from) }
+        fn add(a: v128, b: v128) -> v128 { i32x4_add(a, b) }
+        fn sub(a: v128, b: v128) -> v128 { i32x4_sub(a, b) }
+        fn mul(a: v128, b: v128) -> v128 { i32x4_mul(a, b) }
+        fn and(a: v128, b: v128) -> v128 { v128_and(a, b) }
+        fn or(a: v128, b: v128) -> v128 { v128_or(a, b) }
+        fn xor(a: v128, b: v128) -> v128 { v128_xor(a, b) }
+        fn and_not(a: v128, b: v128) -> v128 { v128_andnot(a, b) }
+        fn shl(a: v128, by: i32) -> v128 { i32x4_shl(a, by.cast_unsigned()) }
+        fn sar(a: v128, by: i32) -> v128 { i32x4_shr(a, by.cast_unsigned()) }
+        fn is_greater(a: v128, b: v128) -> v128 { i32x4_gt(a, b) }
+        fn is_equal(a: v128, b: v128) -> v128 { i32x4_eq(a, b) }
+        fn min(a: v128, b: v128) -> v128 { i32x4_min(a, b) }
+        fn max(a: v128, b: v128) -> v128 { i32x4_max(a, b) }
+        fn zip_low(a: v128, b: v128) -> v128 { i32x4_shuffle::<0, 4, 1, 5>(a, b) }
+        fn zip_high(a: v128, b: v128) -> v128 { i32x4_shuffle::<2, 6, 3, 7>(a, b) }
+        fn even(a: v128, b: v128) -> v128 { i32x4_shuffle::<0, 2, 4, 6>(a, b) }
+        fn sign_bits(from: v128) -> u32 { i32x4_bitmask(from).into() }
+
+        fn load_i64(from: &[i64; 2]) -> v128 { v128_load(from.as_ptr().cast()) }
+        fn all_i64(value: i64) -> v128 { i64x2_splat(value) }
+        fn store_i64(from: v128, to: &mut [i64; 2]) { v128_store(to.as_mut_ptr().cast(), from) }
+        fn add_i64(a: v128, b: v128) -> v128 { i64x2_add(a, b) }
+        fn sub_i64(a: v128, b: v128) -> v128 { i64x2_sub(a, b) }
+        fn shl_i64(a: v128, by: i32) -> v128 { i64x2_shl(a, by.cast_unsigned()) }
+        fn upper(a: v128) -> v128 { u64x2_shr(a, 32) }
+        fn mul_low(a: v128, b: v128) -> v128 {
+            u64x2_extmul_low_u32x4(i32x4_shuffle::<0, 2, 0, 2>(a, a), i32x4_shuffle::<0, 2, 0, 2>(b, b))
+        }
+        fn zip_low_i64(a: v128, b: v128) -> v128 { i64x2_shuffle::<0, 2>(a, b) }
+        fn zip_high_i64(a: v128, b: v128) -> v128 { i64x2_shuffle::<1, 3>(a, b) }
+    }
+}
