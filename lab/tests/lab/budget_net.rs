@@ -339,9 +339,9 @@ holes! {
 /// Climbs from random scenes towards the worst pixel.
 #[test]
 #[ignore = "the long run: 100,000 scenes"]
-fn budget_long_climbing_finds_no_pixel_beyond() {
+fn climbing_towards_the_worst_finds_no_pixel_beyond() {
     let scenes = std::env::var("MODE13H_SCENES").map_or(100_000, |count| count.parse().expect("a number"));
-    let mut tried = Tried::new("budget_long_climbing_finds_no_pixel_beyond", scenes);
+    let mut tried = Tried::new("climbing_towards_the_worst_finds_no_pixel_beyond", scenes);
     let mut random = Random::named("climbing");
     while tried.cases() < scenes {
         let kind = random.one_of(&Kind::ALL);

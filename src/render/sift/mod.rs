@@ -197,7 +197,7 @@ mod tests {
                     let centres = vertices.each_ref().map(|v| units(v).first_centre());
                     centres.iter().max().zip(centres.iter().min()).map(|(max, min)| max - min)
                 };
-                let is_tiny = centres(Vertex::x) <= Some(TINY_SIDE) && centres(Vertex::y) <= Some(TINY_SIDE);
+                let is_tiny = centres(Vertex::x) <= Some(crate::raster::batch::cull::TINY_SIDE) && centres(Vertex::y) <= Some(crate::raster::batch::cull::TINY_SIDE);
                 if is_tiny && clip == (Rect { x0: 0, y0: 0, x1: 32, y1: 32 }) {
                     prop_assert_eq!(is(covers), drawn.covered > 0, "{:?}", vertices);
                     prop_assert!(!is(covers) || area != 0);
