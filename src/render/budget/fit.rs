@@ -38,7 +38,7 @@ pub(in crate::render) const WORTH_CURVE: u64 = 16;
 /// (With 0.5 the torus within 1 shade takes 1.00 of `phong`, with 0.9 0.93.)
 const MODEL: f32 = 0.9;
 
-/// The same for linear functions.
+/// That share for linear functions.
 pub(super) const LINEAR_MODEL: f32 = 0.67;
 
 /// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.

@@ -13,9 +13,9 @@ const PI: f32 = core::f32::consts::PI;
 /// Radii of a face (Lemma 1), whatever the light.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Facet {
-    /// Of its normals.
+    /// Radius of its normals.
     pub(super) spread: f32,
-    /// Of its positions.
+    /// Radius of its positions.
     pub(super) edge: f32,
 }
 
