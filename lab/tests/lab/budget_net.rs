@@ -3,6 +3,8 @@
 //! A pixel is beyond if it is farther than E from the truth in f64. Where light at the pixel itself is off by more than
 //! what rounding to a byte allows, as vertices are rounded to 1/256 pixel, nothing is promised.
 
+use core::fmt;
+
 use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
@@ -243,12 +245,18 @@ fn look(renderer: Renderer, scene: &Scene, screen: Screen) -> Shown {
 }
 
 /// The pixel that is farthest beyond any of the budgets: by how much, the budget and the place.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 struct Worst {
     beyond: f64,
     budget: f32,
     place: (u32, u32),
     pixels: u64,
+}
+
+impl fmt::Display for Worst {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} beyond {} at {:?}", self.beyond, self.budget, self.place)
+    }
 }
 
 /// Compares the frames of all budgets with the truth.
@@ -299,7 +307,7 @@ fn check(tried: &mut Tried, random: &mut Random, kind: Kind, scenes: usize) {
             broken += 1;
             let is_worst = first.as_ref().is_none_or(|(_, beyond, _)| *beyond < worst.beyond);
             if is_worst {
-                first = Some((format!("{kind:?} {i}: {worst:?} of {screen:?}"), worst.beyond, scene));
+                first = Some((format!("{kind:?} {i}: {worst} of {screen:?}"), worst.beyond, scene));
             }
         }
     }
@@ -358,7 +366,7 @@ fn climbing_towards_the_worst_finds_no_pixel_beyond() {
             }
             assert!(
                 found.beyond <= 0.0,
-                "{kind:?}: {found:?}: {:?} {:?} {:?}",
+                "{kind:?}: {found}: {:?} {:?} {:?}",
                 at.lights(),
                 at.camera,
                 at.objects()[0].materials
