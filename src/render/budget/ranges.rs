@@ -108,10 +108,10 @@ impl Patches for EightFaces {
         let mut cosines = [ZERO; 3];
         for (corner, cosines) in cosines.iter_mut().enumerate() {
             *cosines = dot(&self.normals[corner], &to.directions[corner]);
-            for lane in 0..LANES {
-                let away = to.distances[corner][lane] * inverse_range;
+            for (cosine, distance) in cosines.iter_mut().zip(&to.distances[corner]) {
+                let away = distance * inverse_range;
                 let left = greater(1.0 - away * away, 0.0);
-                cosines[lane] *= left * left;
+                *cosine *= left * left;
             }
         }
         ends(&cosines, &to.off)
@@ -120,8 +120,8 @@ impl Patches for EightFaces {
     #[inline(always)]
     fn mirrored(&self, light: &FromCorners, eye: &FromCorners, turns: &Lanes<f32>) -> [Lanes<f32>; 3] {
         let mut off = ZERO;
-        for lane in 0..LANES {
-            off[lane] = 3.0 * (light.off[lane] + eye.off[lane]);
+        for (lane, off) in off.iter_mut().enumerate() {
+            *off = 3.0 * (light.off[lane] + eye.off[lane]);
         }
         let mut cosines = [ZERO; 3];
         for (corner, cosines) in cosines.iter_mut().enumerate() {
@@ -140,8 +140,8 @@ impl EightFaces {
     fn highest(&self, light: &FromCorners, eye: &FromCorners, off: &Lanes<f32>, turns: &Lanes<f32>) -> Lanes<f32> {
         let mut half_way = [ZERO; 3];
         for (axis, values) in half_way.iter_mut().enumerate() {
-            for lane in 0..LANES {
-                values[lane] = light.directions[0][axis][lane] + eye.directions[0][axis][lane];
+            for (lane, value) in values.iter_mut().enumerate() {
+                *value = light.directions[0][axis][lane] + eye.directions[0][axis][lane];
             }
         }
         let squares = dot(&half_way, &half_way);

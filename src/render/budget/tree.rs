@@ -152,11 +152,11 @@ impl Tree {
         let corners = |of: &[Vec3], indices: [u32; 3]| indices.map(|i| of[i as usize]);
         let facet = |&i: &[u32; 3]| Facet::new(corners(positions, i), corners(normals, i));
         let facets: Vec<Facet> = triangles.iter().map(facet).collect();
-        let faces = facets.chunks(LANES).zip(triangles.chunks(LANES)).zip(surfaces.chunks(LANES));
-        let node = |((facets, triangles), surfaces): ((&[Facet], &[[u32; 3]]), &[u16])| {
-            Node::of_faces(facets, triangles, surfaces, positions, normals)
+        let node = |first: usize| {
+            let faces = first..triangles.len().min(first + LANES);
+            Node::of_faces(&facets[faces.clone()], &triangles[faces.clone()], &surfaces[faces], positions, normals)
         };
-        let mut nodes: Vec<Node> = faces.map(node).collect();
+        let mut nodes: Vec<Node> = (0..triangles.len()).step_by(LANES).map(node).collect();
         let mut levels = Vec::new();
         loop {
             levels.push(nodes.chunks(LANES).map(Siblings::new).collect());
