@@ -1,5 +1,6 @@
 //! Draws frames of a shipped scene, 35 a second, and prints what they come to: a hash of all of them, and the effects
-//! that were on for any object in any of them. `sphere` is a turning one of 79,600 faces.
+//! that were on for any object in any of them. `sphere` is a turning one of 79,600 faces. A fourth word is an error budget
+//! in shades, or a shading.
 //!
 //!     cargo run --release --example frames -- fog 35 portable
 //!
@@ -13,7 +14,7 @@ use mode13h::Angle;
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer};
+use mode13h::render::{Accuracy, RenderError, Renderer, Shading};
 use mode13h::scene::{Motion, Object, Scene, shipped};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
@@ -51,7 +52,11 @@ fn sphere() -> Scene {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let [name, frames, kernel] = words.as_slice() else { return Err("usage: frames SCENE FRAMES KERNEL".into()) };
+    let (name, frames, kernel, max_error) = match words.as_slice() {
+        [name, frames, kernel] => (name, frames, kernel, None),
+        [name, frames, kernel, max_error] => (name, frames, kernel, Some(max_error)),
+        _ => return Err("usage: frames SCENE FRAMES KERNEL [MAX_ERROR | SHADING]".into()),
+    };
     let mut scene = match shipped::by_name(name) {
         Some(shipped) => shipped.load()?.scene,
         None if name == "sphere" => sphere(),
@@ -59,6 +64,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     renderer.settings.kernel = Kernel::by_name(kernel)?;
+    if let Some(accuracy) = max_error {
+        renderer.settings.accuracy = Some(match accuracy.parse() {
+            Ok(shades) => Accuracy::WithinError(shades),
+            Err(_) => accuracy.parse::<Shading>()?.into(),
+        });
+    }
     let (mut all, mut on) = (0xcbf2_9ce4_8422_2325, BTreeSet::new());
     for frame in 0..frames.parse::<u32>()? {
         scene.set_time(f64::from(frame) / 35.0);

@@ -324,16 +324,10 @@ impl ObjectView {
         self.near
     }
 
-    /// A lower bound of a box's distance along the view, from its corners with the least coordinates and with the
-    /// greatest.
-    pub(crate) fn nearest(&self, min: Vec3, max: Vec3) -> f64 {
+    /// The direction along the view, in the object's own space and per unit of distance, and the distance of its origin.
+    pub(crate) fn along_view(&self) -> ([f32; 3], f32) {
         let ([.., row], [.., offset]) = &self.exact;
-        let (min, max) = (widen(min), widen(max));
-        let least: Row = core::array::from_fn(|i| (row[i] * min[i]).min(row[i] * max[i]));
-        let most: Row = core::array::from_fn(|i| (row[i] * min[i]).abs().max((row[i] * max[i]).abs()));
-        // As in `reach`.
-        let slack = (most.iter().sum::<f64>() + offset.abs()) / 4096.0;
-        least.iter().sum::<f64>() + offset - slack
+        (row.map(|c| c as f32), *offset as f32)
     }
 
     /// A vertex before its division. Its numbers do not depend on the triangle, so triangles that share the vertex

@@ -62,9 +62,9 @@ use core::fmt;
 pub use crate::shading::Shading;
 pub use angle::BinaryAngle;
 pub use light::{Beam, Paint, Sun};
+pub use mesh::{FixedMesh, average_normals, face_normal};
 #[doc(hidden)]
 pub use mesh::{FixedMeshParts, Index};
-pub use mesh::{FixedMesh, average_normals, face_normal};
 pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};
 pub use view::{Camera, Lens, Placement, View};

@@ -25,9 +25,6 @@ pub(super) struct ShadedVertices {
     pub(super) depths: Vec<u32>,
     /// Front and back.
     pub(super) shades: Vec<[U8F8; 2]>,
-    /// Flags of the vertices, as many, where a budget asks: a bit for each of the first seven lights, suns first, if
-    /// the front sees it; and the highest, if a shade is clamped.
-    pub(super) flags: Vec<u8>,
 }
 
 impl ShadedVertices {
@@ -37,7 +34,6 @@ impl ShadedVertices {
         self.places.resize(count, Place::NEEDS_CLIPPING);
         self.depths.resize(count, 0);
         self.shades.resize(count, [U8F8::default(); 2]);
-        self.flags.clear();
     }
 
     /// Leaves vertices without shades: faces or pixels are lit.
@@ -75,7 +71,6 @@ impl ShadedVertices {
         self.places.capacity() * size_of::<Place>()
             + self.depths.capacity() * size_of::<u32>()
             + self.shades.capacity() * size_of::<[U8F8; 2]>()
-            + self.flags.capacity()
     }
 }
 

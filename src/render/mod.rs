@@ -8,7 +8,6 @@
 //! | `sift` | culling: back faces, and those that cover no pixel centre |
 //! | `faces` | the input for an object's faces |
 //! | `face`, `within` | the stage of faces, with `clip`: near plane and guard band |
-//! | `bound` | bounds of the error of linear shades against light at every pixel |
 //! | `budget` | the error budget: the shading for each triangle |
 //! | `sinks`, `visible` | where faces go: drawn as they come, or kept; the ways to visible surfaces |
 //! | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
@@ -21,7 +20,6 @@
 //! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
 //! be and left out where they are back faces; the [`raster`](crate::raster) draws what is left.
 
-mod bound;
 mod budget;
 mod clip;
 pub(crate) mod each_triangle;
@@ -224,7 +222,7 @@ impl Renderer {
         }
         let object_in_scene = scene.objects().get(object).filter(|object| !plan::answers_itself(object))?;
         let faces = self.states.get(object)?.faces(object_in_scene, plan)?;
-        Some(bound::linear_error(&faces.geometry, &faces.lights, faces.paints, !faces.culls))
+        Some(faces.linear_error())
     }
 
     /// Makes the plan of the frame that [`draw`](Self::draw) would draw next, and draws nothing. The frames that are

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::Stats;
-use super::budget::{Budget, Decided, Lit};
+use super::budget::{Budget, Decided, Projected};
 use super::faces::Faces;
 use super::lit::ShadedVertices;
 use super::paint::SurfaceMaterial;
@@ -319,21 +319,18 @@ impl ObjectState {
         let Some(max_error) = plan.max_error() else { return self.decided.clear() };
         let (geometry, lights) =
             (drawn_geometry(self.is_tessellated, &self.tessellated, object), source.lights(&self.lamps, plan));
-        let lit = Lit {
+        let object = Projected {
             geometry: &geometry,
-            whole: (!self.is_tessellated).then(|| object.shared_mesh()),
+            mesh: (!self.is_tessellated).then(|| object.shared_mesh()),
             view: &source.view,
-            nearest: plan.stages().nearest,
             lights: &lights,
             paints: &self.paints,
-            channels: plan.stages().lighting == Lighting::Channels,
             kernel,
         };
         if changed {
             stats.decided += 1;
-            self.budget.renew(max_error, &lit, &mut self.decided);
+            self.budget.renew(max_error, &object, &mut self.decided);
         }
-        self.budget.mark(&lit, &mut self.lit, &self.extras);
     }
 
     /// Prepares light for the pixels, where all are lit.

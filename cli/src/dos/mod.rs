@@ -184,8 +184,10 @@ fn hash_of(film: &[u8]) -> Option<u64> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use mode13h::scene::shipped;
+    use mode13h::vga::Vga;
+
+    use super::*;
 
     /// Every shipped scene is drawn by the film as by the renderer, and a film that is broken off is refused.
     #[test]
@@ -203,7 +205,7 @@ mod tests {
                 show(&mut stage, &mut renderer, number, 5);
                 renderer.draw(&stage.scene, &mut vga).unwrap();
                 player.draw(number.into(), &mut pixels).unwrap();
-                assert!(pixels == vga.pixels(), "{} frame {number}", shipped.name);
+                assert!(pixels == *vga.pixels(), "{} frame {number}", shipped.name);
             }
             assert!(Film::read(&film[..film.len() - 1]).is_none(), "{}", shipped.name);
         }

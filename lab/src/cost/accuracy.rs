@@ -12,7 +12,7 @@ use super::configuration::{BUDGETS, Configuration, Kind};
 use super::quantization::Entries;
 use super::{CostError, Errors, Probe};
 use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth};
-use mode13h::render::{Renderer, Screen};
+use mode13h::render::{Renderer, Screen, Shading};
 use mode13h::scene::Scene;
 
 /// Errors over many frames, pixel by pixel and over blocks.
@@ -51,6 +51,9 @@ impl Against {
         }
     }
 }
+
+/// Error of light at the pixel itself: a half, 1/512 of the vertices' shades, 1/100 of f32.
+const LIT: f64 = 0.52;
 
 /// Pixels of one way within a bound.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -99,7 +102,8 @@ impl Results {
         self.unrounded.cover_errors
     }
 
-    /// The share of pixels within a bound of [`BUDGETS`] of `lit`; 1 if none was compared.
+    /// The share of pixels within a bound of [`BUDGETS`] of `lit`, those counted in where vertices that are rounded put
+    /// light at the pixel itself off; 1 if none was compared.
     pub(super) fn within(&self, bound: usize) -> f64 {
         let all = self.lit.pixels.count;
         // Below 2⁵³: pixels.
@@ -200,6 +204,14 @@ impl Referee<'_> {
         let (gouraud, lit) = (truth.draw(Standard::Gouraud), truth.draw(Standard::Lit));
         let choices = self.ways.iter().any(|way| matches!(way.kind, Kind::Choice(_)));
         let unrounded = choices.then(|| truth.draw(Standard::GouraudUnrounded));
+        // Where light at the pixel itself is off by more than rounding, as vertices are rounded, nothing is promised.
+        let mut exact = (self.base)();
+        exact.settings.accuracy = Some(Shading::Phong.into());
+        *probe.renderer() = exact;
+        probe.dither(None);
+        let exact = ErrorMap::new(&lit, &probe.look(scene, Screen::MODE_13H)?);
+        let sure: Vec<bool> =
+            exact.iter().flat_map(ErrorMap::errors).map(|off| off.is_none_or(|off| off <= LIT)).collect();
         let judged = |way: &Configuration<'_>| {
             let shown = self.look(way, scene, probe)?;
             let mut findings = Results::default();
@@ -216,7 +228,8 @@ impl Referee<'_> {
             findings.gouraud.count(&numeric);
             findings.lit.count(&model);
             for (kept, bound) in findings.kept.iter_mut().zip(BUDGETS) {
-                kept.within = model.errors().flatten().filter(|error| *error <= bound).count() as u64;
+                let keeps = |(error, sure): (Option<f64>, &bool)| error.is_some_and(|error| error <= bound || !sure);
+                kept.within = model.errors().zip(&sure).filter(|pair| keeps(*pair)).count() as u64;
                 kept.patch = model.largest_patch(bound);
             }
             findings.entries.count(scene, &shown, probe.renderer());

@@ -140,7 +140,7 @@ pub struct BudgetRow {
     pub patch: usize,
     /// Time for a frame.
     pub per_frame: Nanoseconds,
-    /// The cheapest shading with exact cover that keeps 99.9 % of the pixels within; none may.
+    /// The cheapest shading with exact cover that keeps every pixel within; none may.
     pub best_single_shading: Option<Shading>,
     /// Its time for a frame, measured beside the budget's.
     pub best_single: Option<Nanoseconds>,

@@ -3,6 +3,7 @@
 mod support;
 
 mod budget;
+mod budget_net;
 mod explain;
 mod fuzz_corpus;
 mod light;

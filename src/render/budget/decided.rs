@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use crate::lanes::LANES;
 use crate::plan::{FaceCounts, FaceShading};
 use crate::raster::effects::SampleSpacing;
 use crate::render::sift;
@@ -13,7 +14,6 @@ pub(in crate::render) enum Choice {
     /// Nobody has asked yet.
     #[default]
     Unknown,
-    Flat,
     Linear,
     Float,
     /// Quadratic on the screen, through light at six points.
@@ -25,8 +25,7 @@ pub(in crate::render) enum Choice {
 
 impl Choice {
     /// Choices that draw something, from cheap to exact.
-    const ALL: [Self; 8] = [
-        Self::Flat,
+    const ALL: [Self; 7] = [
         Self::Linear,
         Self::Float,
         Self::Curved,
@@ -38,7 +37,6 @@ impl Choice {
 
     pub(in crate::render) const fn shading(self) -> FaceShading {
         match self {
-            Self::Flat => FaceShading::By(Shading::Flat),
             Self::Float => FaceShading::By(Shading::Float),
             Self::Curved => FaceShading::Quadratic,
             Self::PhongEvery(spacing) => FaceShading::PhongEvery(spacing),
@@ -46,9 +44,7 @@ impl Choice {
             Self::Linear | Self::Unknown => FaceShading::By(Shading::Gouraud88Reseeded),
         }
     }
-}
 
-impl Choice {
     /// Returns whether its pixels need light beyond that of the corners.
     pub(in crate::render) fn needs_light(self) -> bool {
         matches!(self, Self::Phong | Self::PhongEvery(_) | Self::Curved)
@@ -63,46 +59,47 @@ pub(in crate::render) struct Decided {
     /// One for as many triangles as are culled at a time.
     chunks: Vec<Chunk>,
     choices: Vec<Choice>,
-    bodies: Vec<Bodies>,
+    /// For each level of the tree, and eight siblings of it, which of them are linear: fronts, and backs.
+    nodes: Vec<Vec<[Option<u8>; 2]>>,
 }
-
-/// Distances of linear shades from the model, highlights aside, for the two sides of a triangle; not a number where it
-/// is not known. They stay as long as the object and its lights are what they are, wherever the eye is.
-pub(in crate::render) type Bodies = [f32; 2];
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Chunk {
     /// A bit for each triangle that is known to be linear.
     linear: u64,
-    /// True if its choices, and its bodies, were found since, and are not from before.
+    /// True if its choices were made since, and are not from before.
     has_choices: bool,
-    has_bodies: bool,
 }
 
 impl Decided {
     /// Forgets all, for so many triangles.
-    pub(in crate::render) fn nothing_of(&mut self, triangles: usize) {
+    pub(in crate::render) fn forget(&mut self, triangles: usize) {
         self.triangles = triangles;
         self.chunks.clear();
         self.chunks.resize(triangles.div_ceil(sift::MOST), Chunk::default());
         self.choices.resize(triangles, Choice::Unknown);
-        self.bodies.resize(triangles, [f32::NAN; 2]);
-    }
-
-    /// Forgets what was chosen, but not what bodies are off by.
-    pub(in crate::render) fn no_choices(&mut self) {
-        for chunk in &mut self.chunks {
-            (chunk.linear, chunk.has_choices) = (0, false);
+        let mut groups = triangles;
+        for level in 0.. {
+            groups = groups.div_ceil(if level == 0 { LANES * LANES } else { LANES });
+            if self.nodes.len() == level {
+                self.nodes.push(Vec::new());
+            }
+            self.nodes[level].clear();
+            self.nodes[level].resize(groups, [None; 2]);
+            if groups <= 1 {
+                return;
+            }
         }
     }
 
     pub(in crate::render) fn clear(&mut self) {
-        self.nothing_of(0);
+        self.forget(0);
     }
 
-    /// The number of triangles.
-    pub(in crate::render) fn triangles(&self) -> usize {
-        self.triangles
+    /// Linear ones among eight sibling nodes of a level, if that is known.
+    #[inline]
+    pub(super) fn nodes(&mut self, (level, group): (usize, usize), back: bool) -> &mut Option<u8> {
+        &mut self.nodes[level][group][usize::from(back)]
     }
 
     /// Faces of a chunk that are known to be linear, a bit for each.
@@ -118,22 +115,17 @@ impl Decided {
         self.chunks[chunk].has_choices.then(|| &self.choices[first..self.triangles.min(first + sift::MOST)])
     }
 
-    /// A chunk's choices of triangles that are not known to be linear, to be added to, and what bodies are off by.
+    /// A chunk's choices of triangles that are not known to be linear, to be added to.
     #[inline]
-    pub(in crate::render) fn of_chunk(&mut self, chunk: usize) -> (&mut [Choice], &mut [Bodies]) {
+    pub(in crate::render) fn of_chunk(&mut self, chunk: usize) -> &mut [Choice] {
         let first = chunk * sift::MOST;
-        let all = first..self.triangles.min(first + sift::MOST);
-        let (choices, bodies) = (&mut self.choices[all.clone()], &mut self.bodies[all]);
+        let choices = &mut self.choices[first..self.triangles.min(first + sift::MOST)];
         let chunk = &mut self.chunks[chunk];
         if !chunk.has_choices {
             chunk.has_choices = true;
             choices.fill(Choice::Unknown);
         }
-        if !chunk.has_bodies {
-            chunk.has_bodies = true;
-            bodies.fill([f32::NAN; 2]);
-        }
-        (choices, bodies)
+        choices
     }
 
     /// Counts the triangles that have been drawn by this choice.
@@ -159,6 +151,6 @@ impl Decided {
     pub(in crate::render) fn bytes(&self) -> usize {
         self.chunks.capacity() * size_of::<Chunk>()
             + self.choices.capacity() * size_of::<Choice>()
-            + self.bodies.capacity() * size_of::<Bodies>()
+            + self.nodes.iter().map(|level| level.capacity() * size_of::<[Option<u8>; 2]>()).sum::<usize>()
     }
 }

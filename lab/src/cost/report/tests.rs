@@ -261,7 +261,7 @@ fn a_verdict_speaks_of_accuracy_and_of_time() {
     for (within, best, text) in [
         (1.0, phong(0.7), "accuracy kept; time limit kept"),
         (0.998_9, phong(1.05), "accuracy not kept; time limit kept"),
-        (0.999, phong(1.06), "accuracy kept; time limit not kept, by no more than chance may do"),
+        (1.0, phong(1.06), "accuracy kept; time limit not kept, by no more than chance may do"),
         (1.0, phong(1.2), "accuracy kept; time limit not kept"),
         (1.0, None, "accuracy kept; no single shading keeps it, so the time limit is void"),
         (f64::NAN, phong(f64::NAN), "accuracy not kept; time limit not measured"),

@@ -1,55 +1,48 @@
-//! Faces on which light is near enough to a quadratic function of the screen, through the light at six points: the corners
-//! and the middles of the edges (see `raster::effects::ShadeSource::Curved`).
+//! The fit: linear and quadratic functions of the screen, tried on points of one face.
 //!
-//! Whether it is, light at a grid of points says, which divides each edge on the screen in n. With f the light, q the
-//! quadratic function, and off the greatest |f − q| at these points, they differ in any of the n² parts by no more than
+//! Light at a grid of points, which divides each edge on the screen in n, says how far a function is from the light. With
+//! f the light, q the function, and off the greatest |f − q| at these points, they differ in any of the n² parts by no
+//! more than off, what the bound says of a part of the face, and what q itself bends by (`docs/budget.md`, Lemma 10).
 //!
-//! ```text
-//! off                                     of the function that is linear between the part's corners,
-//! + model(ρ/n)                            f from the one that is linear on the part of the face,
-//! + (ρ − 1)/4n · range                    that one from the one that is linear on the screen,
-//! + ⅔ D/n²                                and q from that
-//! ```
+//! The quadratic function goes through the light at six points: the corners and the middles of the edges (see
+//! `raster::effects::ShadeSource::Curved`). It is of light that is not cut off above 1: cut off both differ by no more.
 //!
-//! - ρ is the ratio of the corners' distances. A part's edge on the screen is 1/n of one of the whole's; with depths d, points
-//!   on the face P(L) = Σ dᵢLᵢPᵢ / Σ dᵢLᵢ, and from L to L + (eᵢ − eⱼ)/n it is (dᵢ(Pᵢ − P) − dⱼ(Pⱼ − P)) / n·W that P moves
-//!   by, W being no less than the least depth. That is dⱼ(Pᵢ − Pⱼ) + (dᵢ − dⱼ)(Pᵢ − P) over n·W: as no two points are farther
-//!   apart than the longest edge, no more than ρ/n of that. The same holds for normals and their chords.
-//! - Depths within a part differ by a ratio of at most 1 + (ρ − 1)/n, so its range is bent by a quarter of (ρ − 1)/n. The range is
-//!   that of q, whose slope along an edge is at most |fᵢ − fⱼ| + 4D, over n, and 2·off.
-//! - D is the greatest second difference of q along an edge of the whole. On a part, where these are n² times smaller, q is
-//!   linear less 2 Σ Dᵢⱼ lᵢlⱼ / n², and the products add up to at most ⅓.
-//!
-//! All this is of light that is not cut off above 1: cut off both differ by no more.
-//!
-//! **The horizon.** A matt face in one light is dark beyond a line. There the quadratic function goes through the light as it
-//! would go on below the horizon (on the other side of the face as much is added as here is missing), and where
-//! it is below the shade without light that one is drawn: so the bend is where it should be.
+//! **The horizon.** A matt face in one light is dark beyond a line. There the quadratic function goes through the light as
+//! it would go on below the horizon (on the other side of the face as much is added as here is missing), and where it is
+//! below the shade without light that one is drawn: so the bend is where it should be.
 
 use glam::Vec3;
 
-use super::light::OneLight;
-use super::{Budget, EXACT, Question};
+use super::{Budget, Choice, EXACT_ROUNDING, LINEAR_ROUNDING};
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Lanes, Points};
 use crate::light::Reflectance;
 use crate::raster::Vertex;
-use crate::raster::effects::{Attributes, Limits};
+use crate::raster::clip::doubled_area;
+use crate::raster::effects::{Attributes, Limits, SampleSpacing};
+use crate::render::face::Face;
 use crate::render::faces::Faces;
 use crate::render::paint::SurfaceMaterial;
+use crate::simd::at_best_level;
 use crate::span::Kernel;
-
-/// Pixels from which on it pays to find out. (From 64 on the torus takes 0.86 of the time of `phong` within 2 shades, from 32
-/// on 0.78, from 16 on 0.75; from 10 on 0.77.)
-const WORTH_CURVE: f32 = 16.0;
 
 /// Pixels for each point of the finer grids, at least, for it to be worth it. (The spheres of `phong` within 2 shades: at 10
 /// 1.04 of the time of the shading, at 5 0.99, at 3 0.95; a grid that is lit in vain is dearer the finer it is.)
 const PIXELS_A_POINT: f32 = 4.0;
 
+/// Pixels from which on a quadratic function pays. (From 64 on the torus takes 0.86 of the time of `phong` within 2 shades, from 32
+/// on 0.78, from 16 on 0.75; from 10 on 0.77.)
+pub(in crate::render) const WORTH_CURVE: u64 = 16;
+
 /// Share of the allowed error up to which light may be off between the points of a grid for it to be worth lighting.
 /// (With 0.5 the torus within 1 shade takes 1.00 of `phong`, with 0.9 0.93.)
 const MODEL: f32 = 0.9;
+
+/// That share for linear functions.
+pub(super) const LINEAR_MODEL: f32 = 0.67;
+
+/// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
+const WORTH_KNOTS: f32 = 16.0;
 
 /// Weights of eight points on the screen.
 type Weights = [Lanes<f32>; 3];
@@ -90,13 +83,13 @@ const fn grid<const EIGHTS: usize>(n: usize) -> [Weights; EIGHTS] {
     eights
 }
 
-/// 15, 45 and 153 points, the six nodes among them.
+/// 6, 15, 45 and 153 points, the six nodes among them.
 static FOURTHS: [Weights; 2] = grid(4);
 static EIGHTHS: [Weights; 5] = grid(8);
 static SIXTEENTHS: [Weights; 19] = grid(16);
 
 /// Divisions of an edge: the number of parts, and the points.
-const GRIDS: [(f32, &[Weights]); 3] = [(4.0, &FOURTHS), (8.0, &EIGHTHS), (16.0, &SIXTEENTHS)];
+const GRIDS: [(f32, &[Weights]); 4] = [(2.0, &[]), (4.0, &FOURTHS), (8.0, &EIGHTHS), (16.0, &SIXTEENTHS)];
 
 /// A face on the screen.
 struct OnScreen<'a> {
@@ -153,7 +146,12 @@ impl Quadratic {
 
     /// Bounds its distance from some values.
     #[inline]
-    fn off(&self, [a, b, c]: &Weights, values: &Lanes<f32>) -> f32 {
+    fn off(&self, weights: &Weights, values: &Lanes<f32>, kernel: Kernel) -> f32 {
+        at_best_level!(kernel, self.off_lanes(weights, values))
+    }
+
+    #[inline(always)]
+    fn off_lanes(&self, [a, b, c]: &Weights, values: &Lanes<f32>) -> f32 {
         let ([fa, fb, fc], [da, db, dc]) = (self.corners, self.bends);
         let mut off = [0.0_f32; LANES];
         for lane in 0..LANES {
@@ -164,13 +162,11 @@ impl Quadratic {
         greatest(off)
     }
 
-    /// Bounds its distance, between the points, from light that is so far off at the points.
-    fn between(&self, off: f32, n: f32, ratio: f32) -> f32 {
-        let [fa, fb, fc] = self.corners;
-        let range = greatest([fa - fb, fb - fc, fc - fa].map(f32::abs));
-        let d = greatest(self.bends.map(f32::abs)) / 2.0;
-        let bent = (ratio - 1.0) / (4.0 * n) * ((range + 4.0 * d) / n + 2.0 * off);
-        off + bent + 2.0 / 3.0 * d / (n * n)
+    /// What it bends by between the points of a grid that divides each edge in `n`.
+    #[inline]
+    fn between(&self, n: f32) -> f32 {
+        // D is half of the greatest bend.
+        greatest(self.bends.map(f32::abs)) / 3.0 / (n * n)
     }
 }
 
@@ -183,9 +179,7 @@ impl Faces<'_> {
     /// A face whose light may go on below the horizon.
     fn on_screen(
         &self,
-        indices: [u32; 3],
-        surface: u16,
-        turned: bool,
+        Face { indices, surface, back_facing, .. }: Face,
         depths: [u32; 3],
         kernel: Kernel,
     ) -> OnScreen<'_> {
@@ -197,13 +191,13 @@ impl Faces<'_> {
             && match (self.lights.suns, self.lights.lamps) {
                 ([sun], []) => mixed(normals.map(|normal| normal.dot(sun.towards))),
                 ([], [lamp]) => {
-                    let at = super::light::narrow(lamp.position);
+                    let at = Vec3::from_array(lamp.position.map(|c| c as f32));
                     mixed([0, 1, 2].map(|i| normals[i].dot(at - positions[i])))
                 }
                 _ => false,
             };
         OnScreen {
-            normals: if turned { normals.map(|normal| -normal) } else { normals },
+            normals: if back_facing { normals.map(|normal| -normal) } else { normals },
             positions,
             // Rounded to 24 bits.
             depths: depths.map(|depth| depth as f32),
@@ -244,71 +238,128 @@ impl Faces<'_> {
         }
     }
 
-    /// Returns whether quadratic shades keep within.
+    /// The cheapest shading of a face that is known to keep within the budget by light at some points of it.
     #[inline(never)]
-    pub(super) fn is_quadratic(&self, budget: &Budget, question: &Question<'_>) -> bool {
-        let (Some(vertices), (far, near), pixels) = (question.vertices, question.depths(), question.pixels()) else {
-            return false;
-        };
-        if far == 0 || pixels < WORTH_CURVE || !budget.adds {
-            return false;
-        }
-        let kernel = budget.kernel.unwrap_or(Kernel::PORTABLE);
+    pub(in crate::render) fn fit(&self, budget: &Budget, face: Face, vertices: &[Vertex; 3]) -> Choice {
         let depths = vertices.each_ref().map(Vertex::depth);
-        let face = self.on_screen(question.indices, question.surface, question.turned, depths, kernel);
-        let (ratio, spare) = (near as f32 / far as f32, budget.allowed - EXACT);
+        let (near, far) = (depths[0].max(depths[1]).max(depths[2]), depths[0].min(depths[1]).min(depths[2]));
+        if far == 0 || !self.lights_pixels {
+            return Choice::Phong;
+        }
+        let (ratio, pixels, width) = (near as f32 / far as f32, pixels_of(vertices), width_of(vertices));
+        // The sizes of parts: three grids, then three spacings; the others are of no use.
+        let (mut part, mut bend) = ([1.0; LANES], [1.0; LANES]);
+        for (lane, (n, _)) in GRIDS.iter().enumerate() {
+            part[lane] = (2.155 * ratio - 1.155).min(1.155 * ratio) / n;
+            bend[lane] = (ratio - 1.0) / (4.0 * n);
+        }
+        for (lane, spacing) in (GRIDS.len()..).zip(SampleSpacing::ALL) {
+            let share = spacing.pixels() as f32 / width.max(1.0);
+            (part[lane], bend[lane]) = (share * ratio, (ratio - 1.0) / 4.0 * share);
+        }
+        let mut on_screen = self.on_screen(face, depths, budget.kernel());
+        // Quadratic functions are of light that adds.
+        on_screen.below &= budget.adds;
+        let bounds = self.bounds_of_parts(budget, face, (part, bend), false).on_screen;
+        let smooth =
+            if on_screen.below { self.bounds_of_parts(budget, face, (part, bend), true).on_screen } else { bounds };
+        let is_part = |lane: usize| part[lane] < 1.0;
+        let choice = self.fit_grid(
+            budget,
+            &on_screen,
+            pixels,
+            [&bounds, &smooth].map(|of| {
+                move |grid: usize| {
+                    if is_part(grid) { of[grid] } else { f32::INFINITY }
+                }
+            }),
+        );
+        if choice != Choice::Phong {
+            return choice;
+        }
+        let spare = budget.spare(EXACT_ROUNDING);
+        let is_linear = |(lane, spacing): &(usize, SampleSpacing)| {
+            let pays = width >= WORTH_KNOTS.max(1.5 * spacing.pixels() as f32);
+            pays && part[*lane] <= 0.75 && bounds[*lane] <= spare
+        };
+        let spacings = (GRIDS.len()..).zip(SampleSpacing::ALL);
+        spacings.filter(is_linear).last().map_or(Choice::Phong, |(_, spacing)| Choice::PhongEvery(spacing))
+    }
+
+    /// Tries the functions on grids, from coarse to fine. `bounds` of light, and of light that goes on below the horizon,
+    /// say by how much linear shades are off on a part of each grid.
+    fn fit_grid(
+        &self,
+        budget: &Budget,
+        face: &OnScreen<'_>,
+        pixels: f32,
+        [bounds, smooth]: [impl Fn(usize) -> f32; 2],
+    ) -> Choice {
+        let (linear, exact) = (budget.spare(LINEAR_ROUNDING), budget.spare(EXACT_ROUNDING));
         let channels = if self.channels { 3 } else { 1 };
+        // Exact.
+        let may_curve = pixels >= WORTH_CURVE as f32 && budget.adds;
         // Eight points at a time, and the nodes.
         let pays = |points: &[Weights]| (LANES * (points.len() + 1)) as f32 * PIXELS_A_POINT <= pixels;
-        let grids = 1 + GRIDS[1..].iter().filter(|(_, points)| pays(points)).count();
-        let model = |n: f32| {
-            let part = ratio / n;
-            if part > 0.75 {
-                return f32::INFINITY;
-            }
-            let light = OneLight { below: face.below, ..self.one_light(budget, question, part) };
-            self.model_error_in(budget, question, &light, spare, None)
-        };
-        // Where the finest grid is too coarse all are.
-        let least = model(GRIDS[grids - 1].0);
-        if least > MODEL * spare {
-            return false;
-        }
+        let dark = self.dark(face.answer);
         let mut curves = None;
-        for (i, (n, points)) in GRIDS[..grids].iter().enumerate() {
-            let n = *n;
-            let model = if i + 1 == grids { least } else { model(n) };
-            if model > MODEL * spare {
+        for (grid, (n, points)) in GRIDS.iter().enumerate() {
+            if grid > 1 && !pays(points) {
+                break;
+            }
+            let mut left = [linear - bounds(grid), exact - smooth(grid)];
+            let mut may = [left[0] > (1.0 - LINEAR_MODEL) * linear, may_curve && left[1] > (1.0 - MODEL) * exact];
+            if may == [false; 2] {
                 continue;
             }
-            let curves = curves.get_or_insert_with(|| self.light_at(&face, &NODES).map(|nodes| Quadratic::new(&nodes)));
-            let left = (spare - model) / 255.0;
-            let within = |off: f32, curve: &Quadratic| curve.between(off, n, ratio) <= left;
-            if !curves[..channels].iter().all(|curve| within(0.0, curve)) {
-                continue;
-            }
-            let is_within = |weights: &Weights| {
-                let light = self.light_at(&face, weights);
-                curves.iter().zip(&light).take(channels).all(|(curve, light)| within(curve.off(weights, light), curve))
+            let curves = curves.get_or_insert_with(|| self.light_at(face, &NODES).map(|nodes| Quadratic::new(&nodes)));
+            // What is drawn of light below the horizon is the shade without light.
+            let shown = |light: f32, channel: usize| {
+                (if face.below { light.max(dark[channel]) } else { light }).clamp(0.0, 1.0)
             };
-            return points.iter().all(is_within);
+            let mut lines = *curves;
+            for (channel, line) in lines.iter_mut().enumerate() {
+                line.corners = line.corners.map(|corner| shown(corner, channel));
+                line.bends = [0.0; 3];
+            }
+            left[1] -= curves[..channels].iter().map(|curve| curve.between(*n)).fold(0.0, f32::max);
+            may[1] &= left[1] > 0.0;
+            for weights in core::iter::once(&NODES).chain(points.iter()) {
+                if may == [false; 2] {
+                    break;
+                }
+                let light = self.light_at(face, weights);
+                for channel in 0..channels {
+                    if may[0] {
+                        let mut drawn = light[channel];
+                        drawn.iter_mut().for_each(|light| *light = shown(*light, channel));
+                        may[0] = lines[channel].off(weights, &drawn, face.kernel) <= left[0];
+                    }
+                    may[1] = may[1] && curves[channel].off(weights, &light[channel], face.kernel) <= left[1];
+                }
+            }
+            if may[0] {
+                return Choice::Linear;
+            }
+            if may[1] {
+                return Choice::Curved;
+            }
         }
-        false
+        Choice::Phong
+    }
+
+    /// The shade without light, on each channel.
+    fn dark(&self, answer: &Reflectance) -> [f32; 3] {
+        let ambient = answer.ambient;
+        if self.channels { answer.color.map(|color| (ambient * color) as f32) } else { [ambient as f32; 3] }
     }
 
     /// Puts the quadratic attributes of a face's corners: see `Attributes::lit`.
     #[inline(never)]
-    pub(in crate::render) fn put_curve(
-        &self,
-        attributes: &mut [Attributes; 3],
-        (indices, surface, turned): ([u32; 3], u16, bool),
-        vertices: &[Vertex; 3],
-    ) {
-        let depths = vertices.each_ref().map(Vertex::depth);
-        let kernel = self.kernel;
-        let face = self.on_screen(indices, surface, turned, depths, kernel);
-        let light = self.light_at(&face, &NODES);
-        let ramp = self.paints[usize::from(surface)].ramp;
+    pub(in crate::render) fn put_curve(&self, attributes: &mut [Attributes; 3], face: Face, vertices: &[Vertex; 3]) {
+        let on_screen = self.on_screen(face, vertices.each_ref().map(Vertex::depth), self.kernel);
+        let light = self.light_at(&on_screen, &NODES);
+        let ramp = self.paints[usize::from(face.surface)].ramp;
         let (first, units) = (f32::from(ramp.first()) * 256.0, f32::from(ramp.entries().saturating_sub(1)) * 256.0);
         for (corner, attributes) in attributes.iter_mut().enumerate() {
             for (channel, light) in light.iter().enumerate() {
@@ -317,6 +368,19 @@ impl Faces<'_> {
             }
         }
     }
+}
+
+/// The area of a triangle on the screen, in pixels.
+fn pixels_of(vertices: &[Vertex; 3]) -> f32 {
+    // In 1/256 pixel, and twice.
+    doubled_area(vertices).unsigned_abs() as f32 / 131_072.0
+}
+
+/// The widest row of a triangle, in pixels.
+fn width_of(vertices: &[Vertex; 3]) -> f32 {
+    let [a, b, c] = vertices.each_ref().map(|vertex| vertex.y().to_bits());
+    let height = a.max(b).max(c) - a.min(b).min(c);
+    if height == 0 { 0.0 } else { 512.0 * pixels_of(vertices) / height as f32 }
 }
 
 /// Between which shades quadratic ones are held: that without light, as no light takes any away, and the last.

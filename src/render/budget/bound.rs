@@ -1,0 +1,436 @@
+//! The bound: how far linear shades are from the light of the model on a patch of a surface. `docs/budget.md` proves
+//! what is used here; its lemmas are named where they are used.
+//!
+//! A patch is a face, or many faces of which no figure exceeds the patch's. Eight patches are bounded at a time in plain
+//! arrays that the compiler vectorises.
+
+use super::ranges::{Patches, greater, lesser, square_root};
+use crate::lanes::{LANES, Lanes};
+use crate::light::{Lights, Reflectance};
+
+/// Greatest number that stands for "no bound": its square is still finite.
+const HUGE: f32 = 1e15;
+
+/// Greatest turn of a direction, in radians, that is told from any other.
+pub(super) const GREATEST_TURN: f32 = 1e4;
+
+/// Length of the second derivative of a unit vector, in squares of what it turns by: 2/√3 (Lemma 5).
+const BEND: f32 = 1.154_701;
+
+/// Share of a light's strength that the arithmetic of f32 may be off by, in the bound and in the cosines that enter it.
+const ROUNDING: f32 = 2e-5;
+
+/// Spread from which on a face's normals may cancel.
+const CANCELS: f32 = 0.99;
+
+/// Figures of eight patches, whichever light falls on them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shapes {
+    /// Radius of the corners' normals (Lemma 1): no face's is greater.
+    pub(super) spread: Lanes<f32>,
+    /// Radius of the corners' positions.
+    pub(super) edge: Lanes<f32>,
+    /// Size of the parts that the faces are looked at in, as a share of the face.
+    pub(super) part: Lanes<f32>,
+    /// Share of its range by which perspective moves a shade along.
+    pub(super) bend: Lanes<f32>,
+}
+
+/// Strengths of one light on one surface, on each channel, with their signs.
+#[derive(Clone, Copy, Debug)]
+struct Strength<const N: usize> {
+    body: [f32; N],
+    highlight: [f32; N],
+}
+
+/// Light on a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Incident<'a> {
+    pub(super) lights: Lights<'a>,
+    pub(super) answer: &'a Reflectance,
+    /// The greatest coordinate of the object's vertices.
+    pub(super) extent: f32,
+    /// True if light is meant as it goes on below the horizon, less than none.
+    pub(super) below: bool,
+}
+
+/// Bounds of a patch, in shares of full intensity.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    /// Distance of shades that are linear on the screen from the model's light.
+    pub(super) on_screen: Lanes<f32>,
+    /// Distance of shades that are linear on the face.
+    pub(super) on_face: Lanes<f32>,
+}
+
+/// A highlight's power: constants of Lemma 8.
+#[derive(Clone, Copy, Debug)]
+struct Lobe {
+    shininess: f32,
+    /// 1 − 1/s and 1 − 2/s.
+    slow: f32,
+    fast: f32,
+    /// Where (2y − 1)·e^(−fast·y) is greatest, and what it is there.
+    peak_at: f32,
+    peak: f32,
+    /// Where √(2y/s)·e^(−slow·y) is greatest, and what it is there.
+    steepest_at: f32,
+    steepest: f32,
+}
+
+impl Lobe {
+    fn new(shininess: f64) -> Self {
+        let s = shininess as f32;
+        let (slow, fast) = (1.0 - 1.0 / s, 1.0 - 2.0 / s);
+        let (peak_at, peak) =
+            if fast > 0.01 { (1.0 / fast + 0.5, 2.0 / fast * libm::expf(-1.0 - fast / 2.0)) } else { (HUGE, HUGE) };
+        Self {
+            shininess: s,
+            slow,
+            fast,
+            peak_at,
+            peak: peak.min((s - 1.0).max(0.0)),
+            steepest_at: if slow > 0.0 { 0.5 / slow } else { HUGE },
+            steepest: if s > 1.0 { (0.606_54 / libm::sqrtf(s - 1.0)).min(1.0) } else { 1.0 },
+        }
+    }
+}
+
+/// One light's fall-off on a patch, along the patch's radius.
+#[derive(Clone, Copy, Debug)]
+struct FallOff {
+    most: f32,
+    least: f32,
+    /// Greatest first and second derivatives.
+    first: f32,
+    second: f32,
+    /// Turn of the direction.
+    turn: f32,
+}
+
+impl FallOff {
+    const NONE: Self = Self { most: 1.0, least: 1.0, first: 0.0, second: 0.0, turn: 0.0 };
+
+    /// Lemma 6, from the nearest and the farthest distance.
+    #[inline(always)]
+    fn new(near: f32, far: f32, edge: f32, inverse_range: f32) -> Self {
+        let (d0, d1) = (near * inverse_range, lesser(far * inverse_range, 1.0));
+        let (left, least) = (greater(1.0 - d0 * d0, 0.0), greater(1.0 - d1 * d1, 0.0));
+        let reaches = if d0 < 1.0 { 1.0 } else { 0.0 };
+        let e = edge * inverse_range * reaches;
+        const STEEPEST: f32 = 0.577_350_3;
+        let at = greater(lesser(STEEPEST, d1), d0);
+        let steepest = greater(at * (1.0 - at * at), 0.0) * (1.0 + ROUNDING);
+        let turn = edge / near;
+        Self {
+            most: left * left,
+            least: if far * inverse_range < 1.0 { least * least } else { 0.0 },
+            first: lesser(4.0 * steepest * e, HUGE),
+            second: lesser(greater(4.0 * left, 12.0 * d1 * d1 - 4.0) * e * e, HUGE),
+            turn: lesser(turn, GREATEST_TURN),
+        }
+    }
+}
+
+/// One term of the light on a patch, in shares of its strength.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    /// Error of linear shades.
+    error: f32,
+    /// What the term differs by on one face, or on a part of it.
+    range: f32,
+    most: f32,
+    least: f32,
+}
+
+/// Normals of a patch: radius, deficit 1/|N| − 1, and the part.
+#[derive(Clone, Copy)]
+struct Normals {
+    spread: f32,
+    deficit: f32,
+    part: f32,
+}
+
+/// Lemmas 2, 3 and 7: a light's body, from the range of n·w at the corners, w being the direction times the fall-off.
+#[inline(always)]
+fn body<const WHOLE: bool>(n: Normals, (most, least): (f32, f32), fall: FallOff, below: bool) -> Term {
+    let Normals { spread, deficit, part } = n;
+    let turned = spread * (1.0 + deficit);
+    let w1 = fall.first + fall.most * fall.turn;
+    let w2 = fall.second + 2.0 * fall.first * fall.turn + BEND * fall.most * fall.turn * fall.turn;
+    let curved = spread * w1 + 0.5 * w2;
+    let (above, under) = (greater(most + curved, 0.0), greater(curved - least, 0.0));
+    let highest = lesser(above * (1.0 + deficit), fall.most);
+    let lowest = if below { -lesser(under * (1.0 + deficit), fall.most) } else { greater(least - curved, 0.0) };
+    let differs = lesser(2.0 * part * (turned * fall.most + w1), highest - lowest);
+    let error = if WHOLE {
+        let (lit, dark) = (greater(most, 0.0), greater(-least, 0.0));
+        let kink = lesser(lit * dark / (lit + dark), 0.5 * (spread * fall.most + w1));
+        let kink = if lit * dark > 0.0 { kink } else { 0.0 };
+        curved + greater(deficit * above, kink)
+    } else {
+        let mixed = !below && above > 0.0 && under > 0.0;
+        let kink = if mixed { 0.5 * part * (turned * fall.most + w1) } else { 0.0 };
+        part * part * (0.5 * BEND * turned * turned * fall.most + turned * w1 + 0.5 * w2) + kink
+    };
+    Term { error: lesser(error, differs), range: differs, most: highest, least: lowest }
+}
+
+/// Lemma 8: a light's highlight, from the range of r·v at the corners, and of n·l.
+#[inline(always)]
+fn highlight(
+    n: Normals,
+    lobe: &Lobe,
+    (along_most, along_least, along_highest): (f32, f32, f32),
+    (facing_most, facing_least): (f32, f32),
+    fall: FallOff,
+    eye_turn: f32,
+) -> Term {
+    let Normals { spread, deficit, part } = n;
+    let s = lobe.shininess;
+    let turned = spread * (1.0 + deficit);
+    let turn = 2.0 * turned + fall.turn + eye_turn;
+    let aside = turned * turned * (2.0 + lesser(8.0 * spread, 1.237))
+        + 4.0 * turned * fall.turn
+        + fall.turn * fall.turn
+        + eye_turn * eye_turn;
+    let curved = 0.5 * (turn * turn + aside);
+    let (highest, lowest) = (lesser(along_most + curved, along_highest), greater(along_least - curved, -1.0));
+    let y = s * greater(1.0 - highest, 0.0);
+    let seen = if highest > 0.0 { 1.0 } else { 0.0 };
+    let bright = seen * falling(y);
+    let (slope, bend) = if s >= 2.0 {
+        let slowly = falling(lobe.slow * y);
+        let slope = if y > lobe.steepest_at { slowly * square_root(2.0 * y / s) } else { lobe.steepest };
+        let slope = lesser(slope, lobe.steepest);
+        let beyond = if y > lobe.peak_at { falling(lobe.fast * y) * (2.0 * y - 1.0) } else { lobe.peak };
+        let across = greater(slowly, lesser(beyond, lobe.peak));
+        (seen * s * slope, seen * s * (turn * turn * across + aside * slope))
+    } else {
+        // The power has a bounded slope away from its edge alone.
+        let inverse = 1.0 / lowest;
+        let power = if s >= 1.0 { inverse } else { inverse * inverse };
+        let power = if lowest > 0.05 { power } else { HUGE };
+        (s * power, s * (1.0 + (s - 1.0).abs()) * (turn * turn + aside) * power)
+    };
+    // The light of the horizon, where the highlight begins at once.
+    let horizon = spread * fall.turn + 0.5 * BEND * fall.turn * fall.turn;
+    let (is_lit, is_dark) = (facing_least - horizon > 0.0, facing_most + horizon <= 0.0);
+    let most = if is_dark { 0.0 } else { fall.most * bright };
+    let power = greater(if s >= 1.0 { 1.0 - s * (1.0 - lowest) } else { lowest }, 0.0);
+    let least = if is_lit { lesser(fall.least * power, most) } else { 0.0 };
+    let steep = 2.0 * part * (fall.most * slope * turn + fall.first * bright);
+    let error = 0.5 * part * part * (fall.second * bright + 2.0 * fall.first * slope * turn + fall.most * bend);
+    let (steep, error) = if is_lit { (steep, error) } else { (HUGE, HUGE) };
+    let range = lesser(steep, most - least);
+    Term { error: lesser(error, range), range, most, least }
+}
+
+/// No less than e^−y, for y of at least 0: e^y is greater than the first terms of its series.
+#[inline(always)]
+fn falling(y: f32) -> f32 {
+    1.0 / (1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y / 120.0)))))
+}
+
+/// Sums of all terms on the patches, for each channel.
+struct Sums<const N: usize> {
+    error: [Lanes<f32>; N],
+    range: [Lanes<f32>; N],
+    most: [Lanes<f32>; N],
+    least: [Lanes<f32>; N],
+}
+
+impl<const N: usize> Sums<N> {
+    #[inline(always)]
+    fn add(&mut self, strengths: &[f32; N], terms: &[Lanes<f32>; 4]) {
+        let [error, range, most, least] = terms;
+        for (channel, &strength) in strengths.iter().enumerate() {
+            let size = strength.abs();
+            let (above, below) = (strength.max(0.0), strength.min(0.0));
+            for lane in 0..LANES {
+                self.error[channel][lane] += size * (error[lane] + ROUNDING);
+                self.range[channel][lane] += size * (range[lane] + ROUNDING);
+                self.most[channel][lane] += above * most[lane] + below * least[lane] + size * ROUNDING;
+                self.least[channel][lane] += above * least[lane] + below * most[lane] - size * ROUNDING;
+            }
+        }
+    }
+}
+
+/// Ranges in the light of one source: n·l, the same times the fall-off, and r·v; the greatest and the least.
+struct Ranges<'a> {
+    facing: &'a [Lanes<f32>; 2],
+    weighted: &'a [Lanes<f32>; 2],
+    along: Option<&'a [Lanes<f32>; 3]>,
+    falls: &'a [FallOff; LANES],
+}
+
+impl<const N: usize> Sums<N> {
+    /// Adds the terms of one light. `eye` has the highlight's power, and what the direction to the eye turns by.
+    #[inline(always)]
+    fn add_light<const WHOLE: bool>(
+        &mut self,
+        ranges: &Ranges<'_>,
+        normals: &[Normals; LANES],
+        eye: Option<(&Lobe, &Lanes<f32>)>,
+        strength: &Strength<N>,
+        below: bool,
+    ) {
+        let Ranges { facing, weighted, along, falls } = *ranges;
+        let mut terms = [[0.0; LANES]; 4];
+        for lane in 0..LANES {
+            let term = body::<WHOLE>(normals[lane], (weighted[0][lane], weighted[1][lane]), falls[lane], below);
+            (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) =
+                (term.error, term.range, term.most, term.least);
+        }
+        self.add(&strength.body, &terms);
+        let (Some(along), Some((lobe, eye_turn))) = (along, eye) else { return };
+        for lane in 0..LANES {
+            let along = (along[0][lane], along[1][lane], along[2][lane]);
+            let facing = (facing[0][lane], facing[1][lane]);
+            let term = highlight(normals[lane], lobe, along, facing, falls[lane], eye_turn[lane]);
+            (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) =
+                (term.error, term.range, term.most, term.least);
+        }
+        self.add(&strength.highlight, &terms);
+    }
+}
+
+impl Incident<'_> {
+    /// Returns whether all strengths together are so small that their sums are numbers.
+    fn is_moderate<const N: usize>(&self) -> bool {
+        const MODERATE: f32 = 1e6;
+        let Lights { suns, lamps, .. } = self.lights;
+        let suns = suns.iter().map(|sun| self.strength::<N>(sun.intensity, sun.channels));
+        let lamps = lamps.iter().map(|lamp| self.strength::<N>(lamp.intensity, lamp.channels));
+        let size = |of: Strength<N>| of.body.iter().chain(&of.highlight).map(|share| share.abs()).sum::<f32>();
+        let colors = self.answer.color.map(|color| color.abs() as f32);
+        let ambient = self.answer.ambient.abs() as f32 * (1.0 + colors.iter().sum::<f32>());
+        suns.chain(lamps).map(size).sum::<f32>() + ambient < MODERATE
+    }
+
+    #[inline(always)]
+    fn strength<const N: usize>(&self, intensity: f32, channels: [f32; 3]) -> Strength<N> {
+        let (kd, ks) = (self.answer.diffuse as f32, self.answer.specular as f32);
+        let of = |channel: usize, share: f32, color: [f64; 3]| {
+            if N == 1 { share * intensity } else { share * channels[channel] * color[channel] as f32 }
+        };
+        let mut strength = Strength { body: [0.0; N], highlight: [0.0; N] };
+        for channel in 0..N {
+            strength.body[channel] = of(channel, kd, self.answer.color);
+            strength.highlight[channel] = of(channel, ks, self.answer.highlight);
+        }
+        strength
+    }
+}
+
+/// Bounds the distance of linear shades from the model's light, rounding to bytes aside, on each of eight patches. `WHOLE`
+/// is of whole faces, the corners of which have unit normals; otherwise the bound is of any part of the faces of the
+/// size that `shapes` says, between light at the part's own corners.
+#[inline(always)]
+pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>(
+    patches: &P,
+    shapes: &Shapes,
+    incident: &Incident<'_>,
+) -> Bounds {
+    let Lights { suns, lamps, eye } = incident.lights;
+    let narrow = |at: [f64; 3]| at.map(|c| c as f32);
+    // Coordinates of f32 are off by up to 2⁻²⁴ of themselves, and their differences by no more than this.
+    let blur = |at: [f64; 3]| 5e-7 * at.iter().fold(incident.extent, |most, c| most.max(c.abs() as f32));
+    // Beyond that nothing is said, and below nothing overflows.
+    if !incident.is_moderate::<N>() {
+        return Bounds { on_screen: [HUGE; LANES], on_face: [HUGE; LANES] };
+    }
+    let shines = incident.answer.specular != 0.0;
+    let lobe = Lobe::new(incident.answer.shininess);
+    let mut normals = [Normals { spread: 0.0, deficit: 0.0, part: 0.0 }; LANES];
+    for (lane, normals) in normals.iter_mut().enumerate() {
+        let spread = shapes.spread[lane];
+        let length = square_root(greater(1.0 - spread * spread, 1e-6));
+        let deficit = if spread < CANCELS { (1.0 - length) / length } else { HUGE };
+        *normals = Normals { spread, deficit, part: shapes.part[lane] };
+    }
+    let ambient = incident.answer.ambient as f32;
+    let ambient: [f32; N] =
+        core::array::from_fn(|channel| if N == 1 { ambient } else { ambient * incident.answer.color[channel] as f32 });
+    let mut sums = Sums::<N> {
+        error: [[0.0; LANES]; N],
+        range: [[0.0; LANES]; N],
+        most: ambient.map(|ambient| [ambient; LANES]),
+        least: ambient.map(|ambient| [ambient; LANES]),
+    };
+    let eye = shines.then(|| {
+        let sight = patches.point(narrow(eye), blur(eye), &shapes.edge);
+        let mut turn = [0.0; LANES];
+        for (lane, turn) in turn.iter_mut().enumerate() {
+            *turn = lesser(shapes.edge[lane] / sight.near[lane], GREATEST_TURN);
+        }
+        (sight, turn)
+    });
+    for sun in suns {
+        let directions = patches.sun(sun.towards.to_array());
+        let facing = patches.facing(&directions);
+        let along = eye.as_ref().map(|(sight, turn)| patches.mirrored(&directions, &sight.directions, turn));
+        let strength = incident.strength::<N>(sun.intensity, sun.channels);
+        let ranges =
+            Ranges { facing: &facing, weighted: &facing, along: along.as_ref(), falls: &[FallOff::NONE; LANES] };
+        sums.add_light::<WHOLE>(
+            &ranges,
+            &normals,
+            eye.as_ref().map(|(_, turn)| (&lobe, turn)),
+            &strength,
+            incident.below,
+        );
+    }
+    for lamp in lamps {
+        let inverse_range = (libm::sqrt(lamp.inverse_square) as f32).min(HUGE);
+        let sight = patches.point(narrow(lamp.position), blur(lamp.position), &shapes.edge);
+        let mut falls = [FallOff::NONE; LANES];
+        for (lane, fall) in falls.iter_mut().enumerate() {
+            *fall = FallOff::new(sight.near[lane], sight.far[lane], shapes.edge[lane], inverse_range);
+        }
+        let facing = patches.facing(&sight.directions);
+        let mut ends = [[0.0; LANES]; 2];
+        for lane in 0..LANES {
+            (ends[0][lane], ends[1][lane]) = (falls[lane].most, falls[lane].least);
+        }
+        let weighted = patches.weighted(&sight, &ends, inverse_range);
+        let along = eye.as_ref().map(|(of_eye, turn)| {
+            let mut turns = *turn;
+            for lane in 0..LANES {
+                turns[lane] += falls[lane].turn;
+            }
+            patches.mirrored(&sight.directions, &of_eye.directions, &turns)
+        });
+        let ranges = Ranges { facing: &facing, weighted: &weighted, along: along.as_ref(), falls: &falls };
+        let strength = incident.strength::<N>(lamp.intensity, lamp.channels);
+        sums.add_light::<WHOLE>(
+            &ranges,
+            &normals,
+            eye.as_ref().map(|(_, turn)| (&lobe, turn)),
+            &strength,
+            incident.below,
+        );
+    }
+    let mut bounds = Bounds { on_screen: [0.0; LANES], on_face: [0.0; LANES] };
+    for channel in 0..N {
+        for lane in 0..LANES {
+            let (most, least) = (sums.most[channel][lane], sums.least[channel][lane]);
+            let (error, range) = (sums.error[channel][lane], sums.range[channel][lane]);
+            // Lemma 4: what is cut off at 1 and at 0.
+            let cut = lesser(range / 4.0, greater(most - 1.0, 0.0)) + lesser(range / 4.0, greater(-least, 0.0));
+            // Both lie between the greatest and the least light.
+            let apart =
+                if incident.below { HUGE } else { lesser(greater(most, 0.0), 1.0) - greater(lesser(least, 1.0), 0.0) };
+            let model = error + cut;
+            let bent = model + lesser(shapes.bend[lane] * range, 1.0);
+            let (bent, model) = (lesser(bent, apart), lesser(model, apart));
+            // Not a number is the greatest.
+            let on_screen = &mut bounds.on_screen[lane];
+            *on_screen = if bent <= *on_screen { *on_screen } else { bent };
+            let on_face = &mut bounds.on_face[lane];
+            *on_face = if model <= *on_face { *on_face } else { model };
+        }
+    }
+    bounds
+}
