@@ -8,7 +8,7 @@ use super::Stats;
 use super::budget::{Budget, Decided};
 use super::clip::{Carried, Corner, WithEffects, clip};
 use super::faces::Faces;
-use super::lit::{LitVertex, ShadedVertices};
+use super::lit::{Face, LitVertex, ShadedVertices};
 use super::paint::SurfaceMaterial;
 use super::sift::listed::Listed;
 use super::sift::{self, Sieve, Sifted};
@@ -21,17 +21,6 @@ use crate::raster::batch::indexed::{Numbered, TURNED};
 use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
 use crate::view::Homogeneous;
-
-/// A face of the geometry that is drawn.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Face {
-    /// Its index in the mesh, or in what splitting made of it.
-    pub(super) index: u32,
-    /// Its vertices.
-    pub(super) indices: [u32; 3],
-    pub(super) surface: u16,
-    pub(super) back_facing: bool,
-}
 
 /// Takes faces as they are to be drawn, each with its index in the mesh or in what splitting made of it. The parts of a face
 /// that is clipped have the face's index.

@@ -7,6 +7,17 @@ use crate::fixed::{I24F8, U8F8};
 use crate::raster::Vertex;
 pub(super) use crate::raster::batch::indexed::Place;
 
+/// A face of the geometry that is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// Its index in the mesh, or in what splitting made of it.
+    pub(super) index: u32,
+    /// Its vertices.
+    pub(super) indices: [u32; 3],
+    pub(super) surface: u16,
+    pub(super) back_facing: bool,
+}
+
 /// A vertex of the object at hand, lit and projected.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct LitVertex {

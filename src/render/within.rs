@@ -3,8 +3,9 @@
 use super::Stats;
 use super::budget::{Budget, Choice, Decided, Settled, WORTH_CURVE, WORTH_SAMPLES};
 use super::clip::WithEffects;
-use super::face::{Face, Sink, is_turned_away};
+use super::face::{Sink, is_turned_away};
 use super::faces::Faces;
+use super::lit::Face;
 use super::sift;
 use super::vertex::Geometry;
 use crate::raster::Vertex;

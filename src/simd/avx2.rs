@@ -79,7 +79,7 @@ static SET_PAIRS: [u64; 16] = {
         let (mut lane, mut count) = (0, 0);
         while lane < 4 {
             if mask >> lane & 1 == 1 {
-                all[mask] |= (2 * lane | (2 * lane + 1) << 8) << (16 * count);
+                all[mask] |= ((2 * lane) | ((2 * lane + 1) << 8)) << (16 * count);
                 count += 1;
             }
             lane += 1;

@@ -167,7 +167,7 @@ impl Lanes8 for Portable {
     }
     #[inline(always)]
     fn zip_i32(self, a: I32, b: I32) -> [I32; 2] {
-        let of = |i: usize| if i % 2 == 0 { a[i / 2] } else { b[i / 2] };
+        let of = |i: usize| [a, b][i % 2][i / 2];
         [each!(i => of(i)), each!(i => of(i + 8))]
     }
 
@@ -221,7 +221,7 @@ impl Lanes8 for Portable {
     }
     #[inline(always)]
     fn zip_i64(self, a: I64, b: I64) -> [I64; 2] {
-        let of = |i: usize| if i % 2 == 0 { a[i / 2] } else { b[i / 2] };
+        let of = |i: usize| [a, b][i % 2][i / 2];
         [each!(i => of(i)), each!(i => of(i + 8))]
     }
 

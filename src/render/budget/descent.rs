@@ -6,8 +6,8 @@ use super::fit::LINEAR_MODEL;
 use super::ranges::{EightFaces, EightNodes, Patches, ZERO, dot, greater, lesser};
 use super::{Budget, Choice, Depths, EXACT_ROUNDING, LINEAR_ROUNDING};
 use crate::lanes::{LANES, Lanes};
-use crate::render::face::Face;
 use crate::render::faces::Faces;
+use crate::render::lit::Face;
 use crate::render::sift;
 use crate::simd::at_best_level;
 
