@@ -76,3 +76,39 @@ impl DrawTarget for Frame<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::vec;
+
+    use embedded_graphics::geometry::Point;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// A filled rectangle is those of its pixels that the band holds, put in one by one.
+        #[test]
+        fn a_filled_rectangle_is_its_pixels(
+            (x, y) in (-12_i32..20, -12_i32..20),
+            (width, height) in (0_u32..30, 0_u32..30),
+            (first, end) in (0_u32..10, 1_u32..10),
+        ) {
+            const PITCH: usize = 16;
+            let area = Rectangle::new(Point::new(x, y), Size::new(width, height));
+            let rows = first..(first + end).min(12);
+            let bytes = PITCH * rows.len();
+            let (mut filled, mut expected) = (vec![0; bytes], vec![0; bytes]);
+            let mut band = Frame::band(&mut filled, 13, 12, PITCH, rows.clone()).expect("a band");
+            let Ok(()) = band.fill_solid(&area, Index(7));
+            for py in y..y + height as i32 {
+                for px in (x..x + width as i32).filter(|px| (0..13).contains(px)) {
+                    if let Some(row) = u32::try_from(py).ok().filter(|y| rows.contains(y)) {
+                        expected[(row - rows.start) as usize * PITCH + px as usize] = 7;
+                    }
+                }
+            }
+            prop_assert_eq!(filled, expected);
+        }
+    }
+}
