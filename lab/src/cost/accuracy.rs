@@ -12,7 +12,7 @@ use super::configuration::{BUDGETS, Configuration, Kind};
 use super::quantization::Entries;
 use super::{CostError, Errors, Probe};
 use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth};
-use mode13h::render::{Renderer, Screen, Shading};
+use mode13h::render::{Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::Scene;
 
 /// Errors over many frames, pixel by pixel and over blocks.
@@ -204,8 +204,10 @@ impl Referee<'_> {
         let (gouraud, lit) = (truth.draw(Standard::Gouraud), truth.draw(Standard::Lit));
         let choices = self.ways.iter().any(|way| matches!(way.kind, Kind::Choice(_)));
         let unrounded = choices.then(|| truth.draw(Standard::GouraudUnrounded));
-        // Where light at the pixel itself is off by more than rounding, as vertices are rounded, nothing is promised.
+        // Where light at the pixel itself is off by more than rounding, as vertices are rounded, nothing is promised. The
+        // integers have no such light: what they are off is theirs.
         let mut exact = (self.base)();
+        exact.settings.vertex_path = VertexPath::Float;
         exact.settings.accuracy = Some(Shading::Phong.into());
         *probe.renderer() = exact;
         probe.dither(None);

@@ -234,6 +234,9 @@ fn documents_name_the_keys_of_the_window() {
                 folders.push(path);
                 continue;
             }
+            if path.extension().is_none_or(|extension| extension != "rs") {
+                continue;
+            }
             let text = std::fs::read_to_string(&path).expect("text");
             // Its tests ask for others.
             let text = text.split("#[cfg(test)]").next().expect("a program");
