@@ -7,17 +7,17 @@
 use super::Stats;
 use super::budget::{Budget, Decided};
 use super::clip::{Carried, Corner, WithEffects, clip};
+use super::cull::face_queue::FaceQueue;
+use super::cull::{self, CullMasks, Culler};
 use super::faces::Faces;
 use super::lit::{Face, LitVertex, ShadedVertices};
 use super::paint::SurfaceMaterial;
-use super::sift::listed::Listed;
-use super::sift::{self, Sieve, Sifted};
 use super::vertex::Geometry;
 use crate::fixed::U8F8;
 use crate::light::both_sides;
 use crate::mesh::normals::face_normal;
 use crate::plan::FaceShading;
-use crate::raster::batch::indexed::{Numbered, TURNED};
+use crate::raster::batch::indexed::{BACK_FACE, IndexedTriangles};
 use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
 use crate::view::Homogeneous;
@@ -39,7 +39,7 @@ pub(super) trait Sink {
     /// A face without effects comes next, in an object some of whose faces have them.
     fn after_effects(&mut self) {}
     /// Culling of faces that cover no pixel centre, if there is any.
-    fn sieve(&self) -> Option<Sieve> {
+    fn culler(&self) -> Option<Culler> {
         None
     }
     /// Returns whether it takes faces without effects by their numbers, too.
@@ -47,7 +47,7 @@ pub(super) trait Sink {
         false
     }
     /// Faces without effects, none of which needs clipping, by their numbers and sides.
-    fn numbered(&mut self, _: &Numbered<'_>, _: &[u32], _: Interpolation) {}
+    fn indexed(&mut self, _: &IndexedTriangles<'_>, _: &[u32], _: Interpolation) {}
 }
 
 impl Faces<'_> {
@@ -84,56 +84,56 @@ impl Faces<'_> {
     /// centre is left out where it would draw nothing (a shading with a cover of its own draws beside them), though it
     /// counts as drawn.
     #[inline]
-    pub(super) fn sift<const CULLS: bool>(
+    pub(super) fn cull<const CULLS: bool>(
         &self,
-        sieve: Option<&Sieve>,
+        culler: Option<&Culler>,
         exact_cover: bool,
         (chunk, triangles): (usize, &[[u32; 3]]),
         stats: &mut Stats,
-    ) -> (Sifted, u64) {
-        let sifted = sieve.unwrap_or(&Sieve::EVERYTHING).sift(&self.lit.places, triangles, CULLS);
-        let drawn = if CULLS { sifted.front } else { sifted.front | (sifted.back & !self.twins_of(chunk)) };
-        let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(sifted.clipped.count_ones()));
+    ) -> (CullMasks, u64) {
+        let masks = culler.unwrap_or(&Culler::EVERYTHING).cull(&self.lit.places, triangles, CULLS);
+        let drawn = if CULLS { masks.front } else { masks.front | (masks.back & !self.twins_of(chunk)) };
+        let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(masks.clipped.count_ones()));
         stats.drawn += drawn_here;
         stats.clipped += clipped;
         stats.culled += triangles.len() as u64 - drawn_here - clipped;
-        let covers = if sieve.is_some() && exact_cover { sifted.covers } else { !0 };
-        (sifted, (drawn & covers) | sifted.clipped)
+        let covers = if culler.is_some() && exact_cover { masks.covers } else { !0 };
+        (masks, (drawn & covers) | masks.clipped)
     }
 
     #[inline(never)]
     fn each<const CULLS: bool, const EFFECTS: bool>(&self, stats: &mut Stats, sink: &mut impl Sink) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
-        let (sieve, exact_cover) = (sink.sieve(), self.shading.interpolation().has_exact_cover());
+        let (culler, exact_cover) = (sink.culler(), self.shading.interpolation().has_exact_cover());
         let one_shading = exact_cover && self.runs && !self.lit_by_face;
-        let mut listed = if one_shading { self.listed::<EFFECTS>(sink, self.shading.interpolation()) } else { None };
-        let chunks = triangles.chunks(sift::MOST).zip(triangle_surfaces.chunks(sift::MOST));
+        let mut queue = if one_shading { self.queue::<EFFECTS>(sink, self.shading.interpolation()) } else { None };
+        let chunks = triangles.chunks(cull::CHUNK).zip(triangle_surfaces.chunks(cull::CHUNK));
         for (chunk, (triangles, surfaces)) in chunks.enumerate() {
-            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), exact_cover, (chunk, triangles), stats);
-            if let (Some((listed, numbered)), Some(sieve)) = (&mut listed, &sieve) {
-                if sifted.clipped == 0 {
-                    let sides = (chunk * sift::MOST, if CULLS { 0 } else { sifted.back });
-                    listed.add(sides, left, sieve.kernel);
-                    if let Some(whole) = listed.whole() {
-                        sink.numbered(numbered, whole, self.shading.interpolation());
-                        listed.take_whole();
+            let (masks, mut left) = self.cull::<CULLS>(culler.as_ref(), exact_cover, (chunk, triangles), stats);
+            if let (Some((queue, indexed)), Some(culler)) = (&mut queue, &culler) {
+                if masks.clipped == 0 {
+                    let sides = (chunk * cull::CHUNK, if CULLS { 0 } else { masks.back });
+                    queue.add(sides, left, culler.kernel);
+                    if let Some(whole) = queue.whole() {
+                        sink.indexed(indexed, whole, self.shading.interpolation());
+                        queue.take_whole();
                     }
                     continue;
                 }
                 // In the order of their numbers.
-                sink.numbered(numbered, listed.all(), self.shading.interpolation());
-                listed.clear();
+                sink.indexed(indexed, queue.all(), self.shading.interpolation());
+                queue.clear();
             }
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
                 let (indices, surface) = (triangles[at], surfaces[at]);
                 let is = |bits: u64| bits >> at & 1 == 1;
-                let back_facing = !CULLS && is(sifted.back);
+                let back_facing = !CULLS && is(masks.back);
                 // Fewer than 2³² faces.
-                let index = (chunk * sift::MOST + at) as u32;
+                let index = (chunk * cull::CHUNK + at) as u32;
                 let face = Face { index, indices, surface, back_facing };
-                if is(sifted.clipped) {
+                if is(masks.clipped) {
                     let corners = indices.map(|i| self.lit.get(i as usize));
                     if CULLS || !is(self.twins_of(chunk)) {
                         self.clipped::<CULLS, EFFECTS>(face, &corners, stats, sink);
@@ -155,23 +155,23 @@ impl Faces<'_> {
                 }
             }
         }
-        if let Some((listed, numbered)) = &listed {
-            sink.numbered(numbered, listed.all(), self.shading.interpolation());
+        if let Some((queue, indexed)) = &queue {
+            sink.indexed(indexed, queue.all(), self.shading.interpolation());
         }
     }
 
     /// A list for the numbers of faces, if that is how they are handed on: those without effects, of one shading.
-    pub(super) fn listed<const EFFECTS: bool>(
+    pub(super) fn queue<const EFFECTS: bool>(
         &self,
         sink: &impl Sink,
         interpolation: Interpolation,
-    ) -> Option<(Listed, Numbered<'_>)> {
+    ) -> Option<(FaceQueue, IndexedTriangles<'_>)> {
         let ShadedVertices { places, depths, shades, .. } = self.lit;
         let triangles = self.geometry.triangles;
         let plain = !EFFECTS || self.paints.iter().all(|paint| !paint.has_effects);
         let takes = plain && sink.takes_numbers(interpolation);
-        let fits = triangles.len() < TURNED as usize;
-        (takes && fits).then_some((Listed::new(), Numbered { places, depths, shades, triangles }))
+        let fits = triangles.len() < BACK_FACE as usize;
+        (takes && fits).then_some((FaceQueue::new(), IndexedTriangles { places, depths, shades, triangles }))
     }
 
     /// A face that reaches beyond the near plane or the guard band. Kept apart: it is rare.

@@ -2,9 +2,9 @@
 
 use core::mem;
 
+use super::cull::Culler;
 use super::object::ObjectState;
 use super::pipelines::Pipelines;
-use super::sift::Sieve;
 use super::sinks::{Batched, BatchedEffects, DeferredFace, DeferredSink, ForEachSink, ImmediateSink, depth_of};
 use super::{HiddenSurfaces, Renderer, Stats, VertexPath};
 use crate::plan::{Effect, ObjectPlan, far_to_near};
@@ -16,7 +16,7 @@ impl Renderer {
         frame.clear(scene.background);
         let mut raster = Raster::new(frame).with_kernel(self.settings.kernel);
         let mut depths = mem::take(&mut self.depths);
-        let sieve = Sieve { clip: raster.clip(), kernel: self.settings.kernel };
+        let culler = Culler { clip: raster.clip(), kernel: self.settings.kernel };
         match self.plan.hidden_surfaces() {
             HiddenSurfaces::BackFaces => self.one_by_one(scene, stats, raster),
             // Chosen, the objects lie far to near, and in a convex one no face hides another.
@@ -26,12 +26,12 @@ impl Renderer {
                 self.one_by_one(scene, stats, raster);
             }
             HiddenSurfaces::PainterOrder => {
-                self.gather(scene, stats, sieve);
+                self.gather(scene, stats, culler);
                 self.painter(scene, stats, &mut raster);
                 self.draw_transparent(scene, stats, &mut raster);
             }
             HiddenSurfaces::ScanLine => {
-                self.gather(scene, stats, sieve);
+                self.gather(scene, stats, culler);
                 self.scan_line(scene, stats, &mut raster);
                 self.draw_transparent(scene, stats, &mut raster);
             }
@@ -45,7 +45,7 @@ impl Renderer {
     fn one_by_one(&mut self, scene: &Scene, stats: &mut Stats, mut raster: Raster<'_>) {
         self.transparent.clear();
         self.transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
-        let mut batch = Batch::of_sifted();
+        let mut batch = Batch::of_culled();
         for &object in &self.plan.order {
             let plan = &self.plan.objects[object];
             let mut drawn = DrawStats::default();
@@ -130,7 +130,7 @@ impl Renderer {
     }
 
     /// Keeps every face for when all are known.
-    fn gather(&mut self, scene: &Scene, stats: &mut Stats, sieve: Sieve) {
+    fn gather(&mut self, scene: &Scene, stats: &mut Stats, culler: Culler) {
         self.triangles.clear();
         self.kept_places.clear();
         self.kept.clear();
@@ -163,7 +163,7 @@ impl Renderer {
                     transparent: &mut self.transparent,
                     looks: &pipelines,
                     object,
-                    sieve,
+                    culler,
                 };
                 faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
             }
@@ -191,7 +191,7 @@ impl Renderer {
         self.far_to_near.clear();
         self.far_to_near.reserve(self.triangles.capacity());
         far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
-        let mut batch = Batch::of_sifted();
+        let mut batch = Batch::of_culled();
         let mut batched = Batched::<true> { raster, batch: &mut batch, drawn: &mut stats.raster };
         let mut effects = BatchedEffects::new(&mut self.effects, &pipelines, 0);
         for &(_, i) in &self.far_to_near {

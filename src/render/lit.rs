@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use crate::fixed::{I24F8, U8F8};
 use crate::raster::Vertex;
-pub(super) use crate::raster::batch::indexed::Place;
+pub(super) use crate::raster::batch::indexed::ScreenPos;
 
 /// A face of the geometry that is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ pub(super) struct LitVertex {
 /// All vertices of an object.
 #[derive(Debug, Default)]
 pub(super) struct ShadedVertices {
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<ScreenPos>,
     /// 0 of those that need clipping.
     pub(super) depths: Vec<u32>,
     /// Front and back.
@@ -42,7 +42,7 @@ impl ShadedVertices {
     /// Makes room for `count` vertices of which nothing is known yet. They are to be put on the screen, and lit or left
     /// without light.
     pub(super) fn begin(&mut self, count: usize) {
-        self.places.resize(count, Place::NEEDS_CLIPPING);
+        self.places.resize(count, ScreenPos::NEEDS_CLIPPING);
         self.depths.resize(count, 0);
         self.shades.resize(count, [U8F8::default(); 2]);
     }
@@ -56,8 +56,8 @@ impl ShadedVertices {
     #[inline]
     pub(super) fn put(&mut self, i: usize, vertex: Option<Vertex>) {
         (self.places[i], self.depths[i]) = match vertex {
-            Some(v) => (Place::new(v.x().to_bits(), v.y().to_bits()), v.depth()),
-            None => (Place::NEEDS_CLIPPING, 0),
+            Some(v) => (ScreenPos::new(v.x().to_bits(), v.y().to_bits()), v.depth()),
+            None => (ScreenPos::NEEDS_CLIPPING, 0),
         };
     }
 
@@ -67,7 +67,7 @@ impl ShadedVertices {
         let [front, back] = self.shades[i];
         let place = self.places[i];
         let needs_clipping = place.needs_clipping();
-        let place = if needs_clipping { Place::new(0, 0) } else { place };
+        let place = if needs_clipping { ScreenPos::new(0, 0) } else { place };
         LitVertex { vertex: vertex(place, front, self.depths[i]), back, needs_clipping }
     }
 
@@ -79,13 +79,13 @@ impl ShadedVertices {
 
     /// Bytes that they hold.
     pub(super) fn bytes(&self) -> usize {
-        self.places.capacity() * size_of::<Place>()
+        self.places.capacity() * size_of::<ScreenPos>()
             + self.depths.capacity() * size_of::<u32>()
             + self.shades.capacity() * size_of::<[U8F8; 2]>()
     }
 }
 
 #[inline]
-fn vertex(place: Place, shade: U8F8, depth: u32) -> Vertex {
+fn vertex(place: ScreenPos, shade: U8F8, depth: u32) -> Vertex {
     Vertex::of_projected(I24F8::from_bits(place.x()), I24F8::from_bits(place.y()), shade, depth)
 }

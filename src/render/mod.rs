@@ -5,7 +5,7 @@
 //! | `object` | the state kept of an object: its vertices, and their inputs |
 //! | `vertex`, `lit` | the stages of vertices: projected, lit, given attributes for effects; their results, in arrays |
 //! | `tessellate`, `edge_map` | faces split along their edges; a number for each edge |
-//! | `sift` | culling: back faces, and those that cover no pixel centre |
+//! | `cull` | culling: back faces, and those that cover no pixel centre |
 //! | `faces` | the input for an object's faces |
 //! | `face`, `within` | the stage of faces, with `clip`: near plane and guard band |
 //! | `budget` | the error budget: the shading for each triangle |
@@ -22,6 +22,7 @@
 
 mod budget;
 mod clip;
+mod cull;
 pub(crate) mod each_triangle;
 mod edge_map;
 mod error;
@@ -36,7 +37,6 @@ mod paint;
 mod pipelines;
 mod pixel_light;
 mod settings;
-mod sift;
 mod sinks;
 mod stats;
 mod tables;

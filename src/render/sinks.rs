@@ -2,11 +2,11 @@
 
 use alloc::vec::Vec;
 
+use super::cull::Culler;
 use super::face::Sink;
 use super::pipelines::{Pipeline, Pipelines};
-use super::sift::Sieve;
 use crate::plan::FaceShading;
-use crate::raster::batch::indexed::Numbered;
+use crate::raster::batch::indexed::IndexedTriangles;
 use crate::raster::effects::{Attributes, EffectBatch};
 use crate::raster::{Batch, DrawStats, Interpolation, Raster, Vertex};
 
@@ -83,9 +83,9 @@ impl<'a, 'b, const CLIPS: bool> ImmediateSink<'a, 'b, CLIPS> {
 }
 
 impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
-    fn sieve(&self) -> Option<Sieve> {
+    fn culler(&self) -> Option<Culler> {
         let raster = &self.batched.raster;
-        Some(Sieve { clip: raster.clip(), kernel: raster.kernel() })
+        Some(Culler { clip: raster.clip(), kernel: raster.kernel() })
     }
 
     #[inline]
@@ -104,7 +104,7 @@ impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
         Batch::takes(interpolation)
     }
 
-    fn numbered(&mut self, from: &Numbered<'_>, numbers: &[u32], interpolation: Interpolation) {
+    fn indexed(&mut self, from: &IndexedTriangles<'_>, numbers: &[u32], interpolation: Interpolation) {
         // Those that came before, if any.
         self.draw();
         let kernel = self.batched.raster.kernel();
@@ -226,12 +226,12 @@ pub(super) struct DeferredSink<'a> {
     pub(super) transparent: &'a mut Vec<DeferredFace>,
     pub(super) looks: &'a Pipelines<'a>,
     pub(super) object: usize,
-    pub(super) sieve: Sieve,
+    pub(super) culler: Culler,
 }
 
 impl Sink for DeferredSink<'_> {
-    fn sieve(&self) -> Option<Sieve> {
-        Some(self.sieve)
+    fn culler(&self) -> Option<Culler> {
+        Some(self.culler)
     }
 
     fn plain(&mut self, _: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {

@@ -3,10 +3,10 @@
 use super::Stats;
 use super::budget::{Budget, Choice, Decided, Settled, WORTH_CURVE, WORTH_SAMPLES};
 use super::clip::WithEffects;
+use super::cull;
 use super::face::{Sink, is_turned_away};
 use super::faces::Faces;
 use super::lit::Face;
-use super::sift;
 use super::vertex::Geometry;
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
@@ -36,29 +36,29 @@ impl Faces<'_> {
         sink: &mut impl Sink,
     ) {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
-        let sieve = sink.sieve();
+        let culler = sink.culler();
         let mut linear = 0;
-        let mut listed = self.listed::<EFFECTS>(sink, LINEAR_SHADING.interpolation());
-        for (chunk, triangles) in triangles.chunks(sift::MOST).enumerate() {
-            let first = chunk * sift::MOST;
+        let mut queue = self.queue::<EFFECTS>(sink, LINEAR_SHADING.interpolation());
+        for (chunk, triangles) in triangles.chunks(cull::CHUNK).enumerate() {
+            let first = chunk * cull::CHUNK;
             let surfaces = &triangle_surfaces[first..];
-            let (sifted, mut left) = self.sift::<CULLS>(sieve.as_ref(), true, (chunk, triangles), stats);
-            let here = left & !sifted.clipped;
-            let sides = (first, if CULLS { 0 } else { sifted.back });
+            let (masks, mut left) = self.cull::<CULLS>(culler.as_ref(), true, (chunk, triangles), stats);
+            let here = left & !masks.clipped;
+            let sides = (first, if CULLS { 0 } else { masks.back });
             let Settled { linear: settled, hopeless, hopeless_if_small } = self.settled(budget, sides, decided, here);
             linear += u64::from(settled.count_ones());
-            if let (Some((listed, numbered)), Some(sieve)) = (&mut listed, &sieve) {
+            if let (Some((queue, indexed)), Some(culler)) = (&mut queue, &culler) {
                 if settled == left {
-                    listed.add(sides, left, sieve.kernel);
-                    if let Some(whole) = listed.whole() {
-                        sink.numbered(numbered, whole, LINEAR_SHADING.interpolation());
-                        listed.take_whole();
+                    queue.add(sides, left, culler.kernel);
+                    if let Some(whole) = queue.whole() {
+                        sink.indexed(indexed, whole, LINEAR_SHADING.interpolation());
+                        queue.take_whole();
                     }
                     continue;
                 }
                 // In the order of their numbers.
-                sink.numbered(numbered, listed.all(), LINEAR_SHADING.interpolation());
-                listed.clear();
+                sink.indexed(indexed, queue.all(), LINEAR_SHADING.interpolation());
+                queue.clear();
             }
             if left == 0 {
                 continue;
@@ -70,7 +70,7 @@ impl Faces<'_> {
                 left &= left - 1;
                 let (indices, surface) = (triangles[at], surfaces[at]);
                 let is = |bits: u64| bits >> at & 1 == 1;
-                let turned = !CULLS && is(sifted.back);
+                let turned = !CULLS && is(masks.back);
                 if is(settled) {
                     let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
                     if EFFECTS && self.paints[usize::from(surface)].has_effects {
@@ -87,9 +87,9 @@ impl Faces<'_> {
                 // Fewer than 2³² faces.
                 let face = Face { index: (first + at) as u32, indices, surface, back_facing: turned };
                 let choice = &mut choices[at];
-                if is(sifted.clipped) && (CULLS || !is(self.twins_of(chunk))) {
+                if is(masks.clipped) && (CULLS || !is(self.twins_of(chunk))) {
                     self.clipped_within::<CULLS, EFFECTS>(face, (budget, choice), stats, sink);
-                } else if is(sifted.clipped) {
+                } else if is(masks.clipped) {
                     self.clipped_within::<true, EFFECTS>(face, (budget, choice), stats, sink);
                 } else {
                     let hopeless = (is(hopeless), is(hopeless_if_small), &mut in_vain);
@@ -97,8 +97,8 @@ impl Faces<'_> {
                 }
             }
         }
-        if let Some((listed, numbered)) = &listed {
-            sink.numbered(numbered, listed.all(), LINEAR_SHADING.interpolation());
+        if let Some((queue, indexed)) = &queue {
+            sink.indexed(indexed, queue.all(), LINEAR_SHADING.interpolation());
         }
         stats.shares.add(LINEAR_SHADING.into(), linear);
     }

@@ -44,7 +44,7 @@ fn cull_by<S: Lanes8>(s: S, batch: &Batch, clip: Rect, kept: &mut Survivors) {
         if s.mask_bits(covers) == 0 {
             continue;
         }
-        if !batch.is_sifted {
+        if !batch.is_culled {
             covers = bounds.but_empty(s, covers, x, y);
         }
         let class = |class: i32| s.all_i32(class << 8);

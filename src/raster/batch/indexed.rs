@@ -9,9 +9,9 @@ use crate::span::Kernel;
 /// number, so that it is read at once.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(transparent)]
-pub(crate) struct Place(u64);
+pub(crate) struct ScreenPos(u64);
 
-impl Place {
+impl ScreenPos {
     /// The x of those that need clipping: far outside of the guard band.
     pub(crate) const BEYOND: i32 = i32::MIN;
     pub(crate) const NEEDS_CLIPPING: Self = Self::new(Self::BEYOND, 0);
@@ -47,8 +47,8 @@ impl Place {
 
 /// Vertices, and triangles of them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Numbered<'a> {
-    pub(crate) places: &'a [Place],
+pub(crate) struct IndexedTriangles<'a> {
+    pub(crate) places: &'a [ScreenPos],
     pub(crate) depths: &'a [u32],
     /// Front and back.
     pub(crate) shades: &'a [[U8F8; 2]],
@@ -56,13 +56,13 @@ pub(crate) struct Numbered<'a> {
 }
 
 /// Beside a triangle's number: its back is seen.
-pub(crate) const TURNED: u32 = 1 << 31;
+pub(crate) const BACK_FACE: u32 = 1 << 31;
 
 impl Batch {
     /// Holds these triangles, at most as many as it has room for, in place of all others. None of them needs clipping.
     pub(crate) fn refill(
         &mut self,
-        from: &Numbered<'_>,
+        from: &IndexedTriangles<'_>,
         numbers: &[u32],
         interpolation: Interpolation,
         kernel: Kernel,
@@ -75,13 +75,13 @@ impl Batch {
     }
 
     /// The definition.
-    fn refill_one_by_one(&mut self, from: &Numbered<'_>, numbers: &[u32]) {
+    fn refill_one_by_one(&mut self, from: &IndexedTriangles<'_>, numbers: &[u32]) {
         // Cut to one length, so that a vertex's number is compared with it once.
         let vertices = from.places.len().min(from.depths.len()).min(from.shades.len());
         let (places, depths, shades) = (&from.places[..vertices], &from.depths[..vertices], &from.shades[..vertices]);
         for (at, &number) in numbers.iter().enumerate() {
-            let side = usize::from(number & TURNED != 0);
-            let triangle = from.triangles[(number & !TURNED) as usize];
+            let side = usize::from(number & BACK_FACE != 0);
+            let triangle = from.triangles[(number & !BACK_FACE) as usize];
             for (corner, vertex) in triangle.into_iter().enumerate() {
                 let vertex = vertex as usize;
                 let place = places[vertex];
@@ -118,20 +118,20 @@ mod tests {
             corners in prop::collection::vec(any::<[u32; 3]>(), 1..90),
             numbers in prop::collection::vec((any::<u32>(), any::<bool>()), 0..=140),
         ) {
-            let places: Vec<Place> = vertices.iter().map(|v| Place::new(v.0, v.1)).collect();
+            let places: Vec<ScreenPos> = vertices.iter().map(|v| ScreenPos::new(v.0, v.1)).collect();
             let depths: Vec<u32> = vertices.iter().map(|v| v.2).collect();
             let shades: Vec<[U8F8; 2]> = vertices.iter().map(|v| v.3.map(U8F8::from_bits)).collect();
             let triangles: Vec<[u32; 3]> = corners.iter().map(|c| c.map(|i| i % vertices.len() as u32)).collect();
-            let from = Numbered { places: &places, depths: &depths, shades: &shades, triangles: &triangles };
-            let number = |&(n, turned): &(u32, bool)| (n % triangles.len() as u32) | if turned { TURNED } else { 0 };
+            let from = IndexedTriangles { places: &places, depths: &depths, shades: &shades, triangles: &triangles };
+            let number = |&(n, turned): &(u32, bool)| (n % triangles.len() as u32) | if turned { BACK_FACE } else { 0 };
             let numbers: Vec<u32> = numbers.iter().map(number).collect();
             let most = numbers.len().min(Batch::CAPACITY);
             let mut expected = Batch::new();
             expected.refill(&from, &numbers, Interpolation::Gouraud, Kernel::PORTABLE);
             prop_assert_eq!(expected.len(), most);
             for (number, (corners, interpolation)) in numbers.iter().zip(held(&expected)) {
-                let side = usize::from(number & TURNED != 0);
-                let triangle = triangles[(number & !TURNED) as usize];
+                let side = usize::from(number & BACK_FACE != 0);
+                let triangle = triangles[(number & !BACK_FACE) as usize];
                 let of = |i: u32| {
                     let (x, y, depth, shades) = vertices[i as usize];
                     [x, y, i32::from(shades[side]), depth.cast_signed()]
@@ -149,12 +149,12 @@ mod tests {
     /// A number of nothing is refused as by the definition, whatever the processor.
     #[test]
     fn numbers_of_nothing_are_refused() {
-        let places = [Place::new(1, 2); 5];
+        let places = [ScreenPos::new(1, 2); 5];
         let (depths, shades) = ([1; 5], [[U8F8::default(); 2]; 5]);
         let refused = |depths: &[u32], triangles: &[[u32; 3]], number: u32, lane: usize| {
             let mut numbers = [0; 40];
             numbers[lane] = number;
-            let from = Numbered { places: &places, depths, shades: &shades, triangles };
+            let from = IndexedTriangles { places: &places, depths, shades: &shades, triangles };
             let put = |kernel| Batch::new().refill(&from, &numbers, Interpolation::Gouraud, kernel);
             let refused = |kernel| std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| put(kernel))).is_err();
             let all: Vec<bool> = Kernel::available().map(refused).collect();
@@ -165,7 +165,7 @@ mod tests {
         for lane in [0, 15, 16, 39] {
             assert!(!refused(&depths, &good, 1, lane));
             assert!(refused(&depths, &good, 2, lane));
-            assert!(refused(&depths, &good, !TURNED, lane));
+            assert!(refused(&depths, &good, !BACK_FACE, lane));
             for corner in 0..3 {
                 let mut bad = good;
                 bad[1][corner] = 5;

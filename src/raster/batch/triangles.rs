@@ -36,7 +36,7 @@ pub(super) struct FrameLayout {
 pub struct Batch {
     pub(super) count: usize,
     /// True if triangles of no pixel have mostly been left out already: to look for more does not pay.
-    pub(super) is_sifted: bool,
+    pub(super) is_culled: bool,
     /// The corners of all triangles: x and y in 1/256 pixel, shade in 1/256.
     pub(super) x: [[i32; Self::CAPACITY]; 3],
     pub(super) y: [[i32; Self::CAPACITY]; 3],
@@ -54,7 +54,7 @@ impl Batch {
     pub const fn new() -> Self {
         Self {
             count: 0,
-            is_sifted: false,
+            is_culled: false,
             x: [[0; Self::CAPACITY]; 3],
             y: [[0; Self::CAPACITY]; 3],
             shade: [[0; Self::CAPACITY]; 3],
@@ -65,8 +65,8 @@ impl Batch {
 
     /// One for triangles of which those that cover no pixel have mostly been left out.
     #[cfg(feature = "alloc")]
-    pub(crate) const fn of_sifted() -> Self {
-        Self { is_sifted: true, ..Self::new() }
+    pub(crate) const fn of_culled() -> Self {
+        Self { is_culled: true, ..Self::new() }
     }
 
     /// Returns whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
@@ -139,7 +139,7 @@ impl Batch {
             return 1;
         }
         let [a, b, c] = self.x.each_ref().map(|x| x[at]);
-        // As in `sieve`; at most 1,024 pixels.
+        // As in `culler`; at most 1,024 pixels.
         let columns = ((a.max(b).max(c) + 127) >> 8) - ((a.min(b).min(c) + 127) >> 8);
         ((columns - 1) as usize / RESEED as usize + 1).clamp(1, MAX_PIECES)
     }

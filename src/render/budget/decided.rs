@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use crate::lanes::LANES;
 use crate::plan::{FaceCounts, FaceShading};
 use crate::raster::effects::SampleSpacing;
-use crate::render::sift;
+use crate::render::cull;
 use crate::scene::Shading;
 
 /// Decision on a triangle.
@@ -76,7 +76,7 @@ impl Decided {
     pub(in crate::render) fn forget(&mut self, triangles: usize) {
         self.triangles = triangles;
         self.chunks.clear();
-        self.chunks.resize(triangles.div_ceil(sift::MOST), Chunk::default());
+        self.chunks.resize(triangles.div_ceil(cull::CHUNK), Chunk::default());
         self.choices.resize(triangles, Choice::Unknown);
         let mut groups = triangles;
         for level in 0.. {
@@ -111,15 +111,15 @@ impl Decided {
     /// The choices of a chunk's triangles that are not among these; nothing if none has been made.
     #[inline]
     pub(in crate::render) fn chosen(&self, chunk: usize) -> Option<&[Choice]> {
-        let first = chunk * sift::MOST;
-        self.chunks[chunk].has_choices.then(|| &self.choices[first..self.triangles.min(first + sift::MOST)])
+        let first = chunk * cull::CHUNK;
+        self.chunks[chunk].has_choices.then(|| &self.choices[first..self.triangles.min(first + cull::CHUNK)])
     }
 
     /// A chunk's choices of triangles that are not known to be linear, to be added to.
     #[inline]
     pub(in crate::render) fn of_chunk(&mut self, chunk: usize) -> &mut [Choice] {
-        let first = chunk * sift::MOST;
-        let choices = &mut self.choices[first..self.triangles.min(first + sift::MOST)];
+        let first = chunk * cull::CHUNK;
+        let choices = &mut self.choices[first..self.triangles.min(first + cull::CHUNK)];
         let chunk = &mut self.chunks[chunk];
         if !chunk.has_choices {
             chunk.has_choices = true;

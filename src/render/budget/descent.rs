@@ -6,9 +6,9 @@ use super::fit::LINEAR_MODEL;
 use super::ranges::{EightFaces, EightNodes, Patches, ZERO, dot, greater, lesser};
 use super::{Budget, Choice, Depths, EXACT_ROUNDING, LINEAR_ROUNDING};
 use crate::lanes::{LANES, Lanes};
+use crate::render::cull;
 use crate::render::faces::Faces;
 use crate::render::lit::Face;
-use crate::render::sift;
 use crate::simd::at_best_level;
 
 /// Share of a face that the coarsest parts have, which points are lit between.
@@ -141,7 +141,7 @@ impl Faces<'_> {
         decided: &mut Decided,
         left: u64,
     ) -> Settled {
-        let chunk = first / sift::MOST;
+        let chunk = first / cull::CHUNK;
         let mut unknown = left & !*decided.linear(chunk);
         if let Some(choices) = decided.chosen(chunk) {
             unknown &= !those(unknown, |at| choices[at] != Choice::Unknown);
@@ -175,7 +175,7 @@ impl Faces<'_> {
     ) {
         let surfaces = &self.geometry.triangle_surfaces[first..];
         let (linear, exact) = (budget.spare(LINEAR_ROUNDING), budget.spare(EXACT_ROUNDING));
-        let choices = decided.of_chunk(first / sift::MOST);
+        let choices = decided.of_chunk(first / cull::CHUNK);
         while unknown != 0 {
             let surface = surfaces[unknown.trailing_zeros() as usize];
             let (mut places, mut count, mut left) = ([0; LANES], 0, unknown);

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::Geometry;
 use crate::fixed::U8F8;
 use crate::light::{Lights, both_sides, both_sides_of_eight};
-use crate::render::lit::{Place, ShadedVertices};
+use crate::render::lit::{ScreenPos, ShadedVertices};
 use crate::render::paint::SurfaceMaterial;
 use crate::view::ObjectView;
 use crate::view::lanes::{LANES, Narrow};
@@ -17,7 +17,7 @@ pub(super) fn project<const TESTED: bool>(
     narrow: &Narrow,
     positions: &[Vec3],
     lit: &mut ShadedVertices,
-    eight: impl Fn(&Narrow, &[Vec3; LANES], &mut [Place; LANES], &mut [u32; LANES]),
+    eight: impl Fn(&Narrow, &[Vec3; LANES], &mut [ScreenPos; LANES], &mut [u32; LANES]),
 ) {
     let (eights, rest) = positions.as_chunks::<LANES>();
     let (places, _) = lit.places.as_chunks_mut::<LANES>();
@@ -36,13 +36,13 @@ pub(super) fn project<const TESTED: bool>(
 pub(super) fn project_eight(
     narrow: &Narrow,
     points: &[Vec3; LANES],
-    places: &mut [Place; LANES],
+    places: &mut [ScreenPos; LANES],
     depths: &mut [u32; LANES],
 ) {
     let eight = narrow.project(points);
     for (i, place) in places.iter_mut().enumerate() {
         let within = eight.within[i];
-        *place = Place::new((eight.x[i] & within) | (Place::BEYOND & !within), eight.y[i] & within);
+        *place = ScreenPos::new((eight.x[i] & within) | (ScreenPos::BEYOND & !within), eight.y[i] & within);
     }
     for (i, depth) in depths.iter_mut().enumerate() {
         *depth = (eight.depth[i] & eight.within[i]).cast_unsigned();
@@ -55,7 +55,7 @@ pub(super) fn project_eight(
 pub(super) fn project_eight_apart(
     narrow: &Narrow,
     points: &[Vec3; LANES],
-    places: &mut [Place; LANES],
+    places: &mut [ScreenPos; LANES],
     depths: &mut [u32; LANES],
 ) {
     project_eight(narrow, points, places, depths);

@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use super::lit::{Place, ShadedVertices};
+use super::lit::{ScreenPos, ShadedVertices};
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Points};
@@ -107,7 +107,7 @@ pub(super) fn round_further(bits: u32, lit: &mut ShadedVertices) {
     // Within the guard band, which is a multiple of the unit, so no sum is near the ends of i32, and none leaves it.
     let round = |c: i32| (c + unit / 2).div_euclid(unit) * unit;
     for place in lit.places.iter_mut().filter(|place| !place.needs_clipping()) {
-        *place = Place::new(round(place.x()), round(place.y()));
+        *place = ScreenPos::new(round(place.x()), round(place.y()));
     }
 }
 

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::{Geometry, lanes};
 use crate::fixed::U8F8;
 use crate::light::Lights;
-use crate::render::lit::{Place, ShadedVertices};
+use crate::render::lit::{ScreenPos, ShadedVertices};
 use crate::render::paint::SurfaceMaterial;
 use crate::simd::Avx2;
 use crate::view::ObjectView;
@@ -89,7 +89,7 @@ fn whole([low, high]: [__m256d; 2]) -> __m256i {
 /// `lanes::project_eight`, which names the reasons.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn project_eight(narrow: &Narrow, points: &[Vec3; LANES], places: &mut [Place; LANES], depths: &mut [u32; LANES]) {
+fn project_eight(narrow: &Narrow, points: &[Vec3; LANES], places: &mut [ScreenPos; LANES], depths: &mut [u32; LANES]) {
     let [px, py, pz] = apart(points);
     let all = |x: f32| _mm256_set1_ps(x);
     let (matrix, offset) = (&narrow.matrix, narrow.offset.to_array());
@@ -107,7 +107,7 @@ fn project_eight(narrow: &Narrow, points: &[Vec3; LANES], places: &mut [Place; L
         |x| _mm256_cmp_ps(_mm256_andnot_ps(_mm256_set1_ps(-0.0), x), _mm256_set1_ps(Narrow::LIMIT), _CMP_LE_OQ);
     let in_front = _mm256_cmp_ps(w, all(narrow.near), _CMP_GE_OQ);
     let within = _mm256_castps_si256(_mm256_and_ps(in_front, _mm256_and_ps(near_limit(x), near_limit(y))));
-    let x = _mm256_blendv_epi8(_mm256_set1_epi32(Place::BEYOND), units(x), within);
+    let x = _mm256_blendv_epi8(_mm256_set1_epi32(ScreenPos::BEYOND), units(x), within);
     let y = _mm256_and_si256(units(y), within);
     // 1 to 2³⁰ of what is within, of which the lower half of a number that is cut is that of `whole_part`.
     let near = _mm256_set1_pd(narrow.near.into());

@@ -1,29 +1,29 @@
 //! Culling of many faces at a time, by the places of their corners alone: back faces and those that cover no pixel
 //! centre. Most of a fine model's faces end here.
 
-use super::lit::Place;
+use super::lit::ScreenPos;
 use crate::raster::Rect;
 use crate::raster::batch::cull::Bounds;
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 
-pub(super) mod listed;
+pub(super) mod face_queue;
 
 /// Faces at a time.
-pub(super) const MOST: usize = 64;
+pub(super) const CHUNK: usize = 64;
 /// Faces of a vector.
 const LANES: usize = 8;
 
 /// Culling by cover: the pixels that are drawn, and the kernel whose level decides.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sieve {
+pub(super) struct Culler {
     pub(super) clip: Rect,
     pub(super) kernel: Kernel,
 }
 
 /// Results for up to 64 faces: a bit for each, the first lowest.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(super) struct Sifted {
+pub(super) struct CullMasks {
     /// A corner needs clipping. The other bits of such a face are 0.
     pub(super) clipped: u64,
     /// Turned towards the eye.
@@ -35,7 +35,7 @@ pub(super) struct Sifted {
     pub(super) covers: u64,
 }
 
-impl Sieve {
+impl Culler {
     /// One for those that want to know all faces: its answer on pixel centres means nothing.
     pub(super) const EVERYTHING: Self = Self { clip: Rect { x0: 0, y0: 0, x1: 0, y1: 0 }, kernel: Kernel::PORTABLE };
 
@@ -45,35 +45,35 @@ impl Sieve {
     /// # Panics
     /// If a face has a corner that is not in `places`.
     #[inline]
-    pub(super) fn sift(&self, places: &[Place], triangles: &[[u32; 3]], culls: bool) -> Sifted {
-        sift(self.kernel.simd_level(), places, triangles, self.clip, culls)
+    pub(super) fn cull(&self, places: &[ScreenPos], triangles: &[[u32; 3]], culls: bool) -> CullMasks {
+        cull(self.kernel.simd_level(), places, triangles, self.clip, culls)
     }
 }
 
 compiled_for_each_level! {
-    fn sift[][](places: &[Place], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> Sifted = sift_by;
+    fn cull[][](places: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> CullMasks = cull_by;
 }
 
 #[inline(always)]
-fn sift_by<S: Lanes8>(s: S, places: &[Place], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> Sifted {
-    let mut sifted = Sifted::default();
-    let triangles = &triangles[..triangles.len().min(MOST)];
+fn cull_by<S: Lanes8>(s: S, places: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> CullMasks {
+    let mut masks = CullMasks::default();
+    let triangles = &triangles[..triangles.len().min(CHUNK)];
     let (eights, rest) = triangles.as_chunks::<LANES>();
     for (number, eight) in eights.iter().enumerate() {
-        sifted.add(LANES * number, u64::MAX, sift_eight(s, places, eight, clip, culls));
+        masks.add(LANES * number, u64::MAX, cull_eight(s, places, eight, clip, culls));
     }
     if let Some(&first) = rest.first() {
         let mut eight = [first; LANES];
         eight[..rest.len()].copy_from_slice(rest);
         let are_faces = (1 << rest.len()) - 1;
-        sifted.add(LANES * eights.len(), are_faces, sift_eight(s, places, &eight, clip, culls));
+        masks.add(LANES * eights.len(), are_faces, cull_eight(s, places, &eight, clip, culls));
     }
-    sifted
+    masks
 }
 
 /// x and y of one corner of eight faces.
 #[inline(always)]
-fn corner<S: Lanes8>(s: S, places: &[Place], triangles: &[[u32; 3]; LANES], corner: usize) -> [S::I32; 2] {
+fn corner<S: Lanes8>(s: S, places: &[ScreenPos], triangles: &[[u32; 3]; LANES], corner: usize) -> [S::I32; 2] {
     let mut bits = [0; LANES];
     for (bits, triangle) in bits.iter_mut().zip(triangles) {
         *bits = places[triangle[corner] as usize].to_bits().cast_signed();
@@ -83,13 +83,19 @@ fn corner<S: Lanes8>(s: S, places: &[Place], triangles: &[[u32; 3]; LANES], corn
 
 /// Bits of eight faces: those that need clipping, the front, the back, and those that may cover a pixel.
 #[inline(always)]
-fn sift_eight<S: Lanes8>(s: S, places: &[Place], triangles: &[[u32; 3]; LANES], clip: Rect, culls: bool) -> [u32; 4] {
+fn cull_eight<S: Lanes8>(
+    s: S,
+    places: &[ScreenPos],
+    triangles: &[[u32; 3]; LANES],
+    clip: Rect,
+    culls: bool,
+) -> [u32; 4] {
     let [ax, ay] = corner(s, places, triangles, 0);
     let [bx, by] = corner(s, places, triangles, 1);
     let [cx, cy] = corner(s, places, triangles, 2);
     // The mark is the least number there is. Of such a face the other numbers mean nothing.
     let least = s.min_i32(s.min_i32(ax, bx), cx);
-    let clipped = s.mask_bits(s.is_equal(least, s.all_i32(Place::BEYOND)));
+    let clipped = s.mask_bits(s.is_equal(least, s.all_i32(ScreenPos::BEYOND)));
     // Exact in f64: differences are at most 2²¹, products 2⁴².
     let (dx1, dy1) = (s.to_f64(s.sub_i32(bx, ax)), s.to_f64(s.sub_i32(by, ay)));
     let (dx2, dy2) = (s.to_f64(s.sub_i32(cx, ax)), s.to_f64(s.sub_i32(cy, ay)));
@@ -109,7 +115,7 @@ fn sift_eight<S: Lanes8>(s: S, places: &[Place], triangles: &[[u32; 3]; LANES], 
     [clipped, front, back, s.mask_bits(bounds.but_empty(s, covers, x, y))]
 }
 
-impl Sifted {
+impl CullMasks {
     /// Puts in bits of up to eight faces, from number `first` on.
     #[inline(always)]
     fn add(&mut self, first: usize, are_faces: u64, found: [u32; 4]) {
@@ -130,7 +136,7 @@ mod tests {
 
     const MAX_UNITS: i32 = Vertex::GUARD_BAND;
 
-    fn place() -> impl Strategy<Value = Place> {
+    fn place() -> impl Strategy<Value = ScreenPos> {
         let near = (-300_i32..9_000, -300_i32..9_000);
         let on_centres = (-2_i32..34, -2_i32..34).prop_map(|(x, y)| (x * 256 + 128, y * 256 + 128));
         let far = (-MAX_UNITS..=MAX_UNITS, -MAX_UNITS..=MAX_UNITS);
@@ -139,8 +145,8 @@ mod tests {
         let tiny = (2_000_i32..2_800, 2_000_i32..2_800);
         let on_halves = (15_i32..23, 15_i32..23).prop_map(|(x, y)| (x * 128, y * 128));
         let legal = prop_oneof![4 => near, 2 => on_centres, 8 => tiny, 8 => on_halves, 1 => far, 1 => ends]
-            .prop_map(|(x, y)| Place::new(x, y));
-        prop_oneof![30 => legal, 1 => Just(Place::NEEDS_CLIPPING)]
+            .prop_map(|(x, y)| ScreenPos::new(x, y));
+        prop_oneof![30 => legal, 1 => Just(ScreenPos::NEEDS_CLIPPING)]
     }
 
     fn kernels() -> Vec<Kernel> {
@@ -156,7 +162,7 @@ mod tests {
         fn what_is_left_out_covers_nothing(
             culls: bool,
             places in prop::collection::vec(place(), 1..60),
-            corners in prop::collection::vec((any::<u32>(), any::<u32>(), any::<u32>()), 0..=MOST),
+            corners in prop::collection::vec((any::<u32>(), any::<u32>(), any::<u32>()), 0..=CHUNK),
             clip in prop_oneof![Just((0, 0, 32, 32)), (0_u32..20, 0_u32..20, 12_u32..=32, 12_u32..=32)],
         ) {
             let index = |i: u32| i % places.len() as u32;
@@ -166,16 +172,16 @@ mod tests {
             let frame = Frame::new(&mut pixels, 32, 32, 32).expect("a legal frame");
             let mut raster = Raster::new(frame).with_clip(clip);
             let clip = raster.clip();
-            let all = kernels().into_iter().map(|kernel| Sieve { clip, kernel }.sift(&places, &triangles, culls));
-            let all: Vec<Sifted> = all.collect();
-            for sifted in &all {
-                prop_assert_eq!(*sifted, all[0]);
+            let all = kernels().into_iter().map(|kernel| Culler { clip, kernel }.cull(&places, &triangles, culls));
+            let all: Vec<CullMasks> = all.collect();
+            for masks in &all {
+                prop_assert_eq!(*masks, all[0]);
             }
             for (i, triangle) in triangles.iter().enumerate() {
                 let is = |bits: u64| bits >> i & 1 == 1;
-                let Sifted { clipped, front, back, covers } = all[0];
+                let CullMasks { clipped, front, back, covers } = all[0];
                 let corners = triangle.map(|i| places[i as usize]);
-                prop_assert_eq!(is(clipped), corners.contains(&Place::NEEDS_CLIPPING));
+                prop_assert_eq!(is(clipped), corners.contains(&ScreenPos::NEEDS_CLIPPING));
                 if is(clipped) {
                     prop_assert!(!is(front) && !is(back) && !is(covers));
                     continue;

@@ -1,18 +1,18 @@
 //! The numbers of faces that are to be drawn, until there is a batch of them.
 
-use super::{LANES, MOST};
+use super::{CHUNK, LANES};
 use crate::raster::Batch;
-use crate::raster::batch::indexed::TURNED;
+use crate::raster::batch::indexed::BACK_FACE;
 use crate::simd::{Lanes8, Packed, compiled_for_each_level};
 use crate::span::Kernel;
 
 /// Less than a batch, those of one more time, and one vector.
-type Numbers = Packed<{ Batch::CAPACITY + MOST + LANES }>;
+type Numbers = Packed<{ Batch::CAPACITY + CHUNK + LANES }>;
 
-/// Numbers of faces, with [`TURNED`] of those whose back is seen.
-pub(crate) struct Listed(Numbers);
+/// Numbers of faces, with [`BACK_FACE`] of those whose back is seen.
+pub(crate) struct FaceQueue(Numbers);
 
-impl Listed {
+impl FaceQueue {
     pub(crate) const fn new() -> Self {
         Self(Packed::new())
     }
@@ -21,7 +21,7 @@ impl Listed {
     #[inline(always)]
     pub(crate) fn add(&mut self, (first, turned): (usize, u64), chosen: u64, kernel: Kernel) {
         debug_assert!(self.all().len() < Batch::CAPACITY);
-        // Below `TURNED`, or there is no list.
+        // Below `BACK_FACE`, or there is no list.
         add(kernel.simd_level(), &mut self.0, first as u32, turned, chosen);
     }
 
@@ -59,7 +59,7 @@ fn add_by<S: Lanes8>(s: S, numbers: &mut Numbers, first: u32, turned: u64, chose
         }
         let number = s.all_i32((first + LANES as u32 * part).cast_signed());
         let number = s.add_i32(number, s.i32s(&[0, 1, 2, 3, 4, 5, 6, 7]));
-        let side = s.select_i32(s.mask_of_bits(turned), s.all_i32(TURNED.cast_signed()), s.all_i32(0));
+        let side = s.select_i32(s.mask_of_bits(turned), s.all_i32(BACK_FACE.cast_signed()), s.all_i32(0));
         numbers.append(s, s.mask_of_bits(chosen), s.or_i32(number, side));
     }
 }
@@ -79,22 +79,22 @@ mod tests {
             parts in prop::collection::vec((any::<u64>(), any::<u64>(), any::<u64>(), any::<bool>()), 0..20),
         ) {
             for kernel in Kernel::available() {
-                let (mut listed, mut taken, mut expected) = (Listed::new(), Vec::new(), Vec::new());
+                let (mut queue, mut taken, mut expected) = (FaceQueue::new(), Vec::new(), Vec::new());
                 for (chunk, &(bits, fewer, turned, all)) in (0_u32..).zip(&parts) {
                     let chosen = if all { !0 } else { bits & fewer };
                     let first = chunk * 64;
-                    listed.add((first as usize, turned), chosen, kernel);
+                    queue.add((first as usize, turned), chosen, kernel);
                     let is = |bits: u64, at: u32| bits >> at & 1 == 1;
-                    let number = |at: u32| (first + at) | if is(turned, at) { TURNED } else { 0 };
+                    let number = |at: u32| (first + at) | if is(turned, at) { BACK_FACE } else { 0 };
                     expected.extend((0..64).filter(|&at| is(chosen, at)).map(number));
-                    if let Some(whole) = listed.whole() {
+                    if let Some(whole) = queue.whole() {
                         prop_assert_eq!(whole.len(), Batch::CAPACITY);
                         taken.extend_from_slice(whole);
-                        listed.take_whole();
+                        queue.take_whole();
                     }
-                    prop_assert!(listed.whole().is_none());
+                    prop_assert!(queue.whole().is_none());
                 }
-                taken.extend_from_slice(listed.all());
+                taken.extend_from_slice(queue.all());
                 prop_assert_eq!(&taken, &expected);
             }
         }
