@@ -85,6 +85,23 @@ pub(crate) trait Lanes8: Copy {
     /// Like [`zip_i32`](Self::zip_i32).
     fn zip_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2];
 
+    /// Of each of three columns `from[rows[lane][column]]`.
+    ///
+    /// # Panics
+    /// If one of them is not there.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    fn gather<T: Copy + Into<u64>>(self, from: &[T], rows: &[[u32; 3]; 8]) -> [Self::I64; 3] {
+        let mut lanes = [[0; 8]; 3];
+        for (lane, row) in rows.iter().enumerate() {
+            for (lanes, &index) in lanes.iter_mut().zip(row) {
+                lanes[lane] = from[index as usize].into().cast_signed();
+            }
+        }
+        let [a, b, c] = &lanes;
+        [self.i64s(a), self.i64s(b), self.i64s(c)]
+    }
+
     fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// `a` and not `b`.
     fn but_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;

@@ -33,15 +33,17 @@ impl ScreenPos {
         (self.0 >> 32) as i32
     }
 
-    /// x in the lower half, y in the upper.
-    #[inline(always)]
-    pub(crate) const fn to_bits(self) -> u64 {
-        self.0
-    }
-
     #[inline]
     pub(crate) const fn needs_clipping(self) -> bool {
         self.x() == Self::BEYOND
+    }
+}
+
+/// x in the lower half, y in the upper.
+impl From<ScreenPos> for u64 {
+    #[inline(always)]
+    fn from(pos: ScreenPos) -> Self {
+        pos.0
     }
 }
 

@@ -71,16 +71,6 @@ fn cull_by<S: Lanes8>(s: S, places: &[ScreenPos], triangles: &[[u32; 3]], clip: 
     masks
 }
 
-/// x and y of one corner of eight faces.
-#[inline(always)]
-fn corner<S: Lanes8>(s: S, places: &[ScreenPos], triangles: &[[u32; 3]; LANES], corner: usize) -> [S::I32; 2] {
-    let mut bits = [0; LANES];
-    for (bits, triangle) in bits.iter_mut().zip(triangles) {
-        *bits = places[triangle[corner] as usize].to_bits().cast_signed();
-    }
-    s.halves_of_i64(s.i64s(&bits))
-}
-
 /// Bits of eight faces: those that need clipping, the front, the back, and those that may cover a pixel.
 #[inline(always)]
 fn cull_eight<S: Lanes8>(
@@ -90,9 +80,8 @@ fn cull_eight<S: Lanes8>(
     clip: Rect,
     culls: bool,
 ) -> [u32; 4] {
-    let [ax, ay] = corner(s, places, triangles, 0);
-    let [bx, by] = corner(s, places, triangles, 1);
-    let [cx, cy] = corner(s, places, triangles, 2);
+    let [a, b, c] = s.gather(places, triangles);
+    let ([ax, ay], [bx, by], [cx, cy]) = (s.halves_of_i64(a), s.halves_of_i64(b), s.halves_of_i64(c));
     // The mark is the least number there is. Of such a face the other numbers mean nothing.
     let least = s.min_i32(s.min_i32(ax, bx), cx);
     let clipped = s.mask_bits(s.is_equal(least, s.all_i32(ScreenPos::BEYOND)));

@@ -265,7 +265,7 @@ fn large(pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
                 if triangle.reseeds {
                     numerator += per_piece;
                     // Its lower part.
-                    shades = _mm512_set1_epi16(numerator.mul_add(triangle.shade[2], ROUND_MAGIC).to_bits() as i16);
+                    shades = _mm512_set1_epi16((numerator * triangle.shade[2] + ROUND_MAGIC).to_bits() as i16);
                 } else {
                     shades = _mm512_add_epi16(shades, _mm512_slli_epi16::<6>(ramp.steps));
                 }
