@@ -109,23 +109,6 @@ impl Lanes8 for Avx512 {
         mask.into()
     }
 
-    #[cfg(feature = "alloc")]
-    #[inline(always)]
-    fn gather<T: Copy + Into<u64>>(self, from: &[T], rows: &[[u32; 3]; 8]) -> [__m512i; 3] {
-        // Once for all.
-        let last = rows.as_flattened().iter().fold(0, |last, &index| if index > last { index } else { last });
-        assert!((last as usize) < from.len(), "an index of nothing");
-        let mut columns = [self.all_i64(0); 3];
-        for (column, to) in columns.iter_mut().enumerate() {
-            // SAFETY: no index is above `last`, which is below the length; and the processor has the instructions, says `self`.
-            unsafe {
-                let at = |lane: usize| (*from.get_unchecked(rows[lane][column] as usize)).into().cast_signed();
-                *to = _mm512_setr_epi64(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7));
-            }
-        }
-        columns
-    }
-
     #[inline(always)]
     fn compact_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
         for (from, to) in from.into_iter().zip(to) {

@@ -11,7 +11,7 @@
 //! | `rows` | triangles, or rows of one | ends and first shades of rows, into a list of spans |
 //! | `span::list` | pixels | the bytes |
 //!
-//! Each stage is one function over [`Lanes8`](crate::simd::Lanes8), compiled for each level of the processor; only the last
+//! Each stage is one function over `simd::Lanes8`, compiled for each level of the processor; only the last
 //! one, the span kernel, is a level's own.
 //!
 //! A triangle larger than 2¹⁸ pixels is drawn by [`Raster::triangle`] when its turn comes. The bytes are those of a call of
