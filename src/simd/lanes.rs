@@ -85,7 +85,7 @@ pub(crate) trait Lanes8: Copy {
     /// Like [`zip_i32`](Self::zip_i32).
     fn zip_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2];
 
-    /// Of each of three columns `from[rows[lane][column]]`.
+    /// Reads `from[rows[lane][column]]` for each of three columns.
     ///
     /// # Panics
     /// If one of them is not there.
