@@ -61,10 +61,12 @@ packed = {
         ]
     ),
     "figures": read(*figures),
+    # What the first screen does not need.
+    "style": read(shared / "figures.css", text / "text.css"),
 }
 packed = {name: part if isinstance(part, bytes) else part.encode() for name, part in packed.items()}
 parts = {
-    "style": read(shared / "tokens.css", page / "style.css", shared / "figures.css", text / "text.css"),
+    "style": read(shared / "tokens.css", page / "style.css"),
     "text": read(text / "text.html"),
     "parts": json.dumps({name: len(part) for name, part in packed.items()}),
     "letters": json.dumps(LETTERS),
