@@ -183,14 +183,14 @@ try {
   ]) {
     await tab.value(`page.open(page.engine.shipped.find(({ name }) => name === "${name}").toml, "${name}")`);
     await tab.value(`page.choose(${JSON.stringify({ ...settings, seconds, playing: false, beside: "" })})`);
-    await tab.click("#save-png");
+    await tab.value("element('save-png').click()");
     const file = await saved(`${name}.png`);
     const wanted = join(scratch, `program-${name}.png`);
     execFileSync(program, ["render", name, "--time", `${seconds}`, ...options, "-o", wanted]);
     check(`the saved PNG of ${name} is the file that the program writes`, file.equals(readFileSync(wanted)), `${file.length} bytes, ${readFileSync(wanted).length}`);
   }
   await tab.value("page.open(page.engine.shipped.find(({ name }) => name === 'cube').toml, 'cube'), page.choose({ maxError: null, shading: '' })");
-  await tab.click("#save-gif");
+  await tab.value("element('save-gif').click()");
   const film = await saved("cube.gif");
   execFileSync(program, ["render", "cube", "-o", join(scratch, "program.gif")]);
   check("the saved GIF is the file that the program writes", film.equals(readFileSync(join(scratch, "program.gif"))), `${film.length} bytes`);
