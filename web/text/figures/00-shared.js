@@ -268,15 +268,10 @@
   const decimal = (x, digits = 2) => (x < 0 ? "−" : "") + Math.abs(x).toFixed(digits);
   const count = (n, one, more = `${one}s`) => `${group(n)} ${n === 1 ? one : more}`;
 
-  // The integer at or below n / d, exact for integers below 2⁵³ with a product q·d below 2⁵³.
-  function floorDiv(n, d) {
-    let q = Math.floor(n / d);
-    const rest = n - q * d;
-    if (rest < 0) q--;
-    else if (rest >= d) q++;
-    return q;
-  }
-  const ceilDiv = (n, d) => -floorDiv(-n, d);
+  // The integer at or below, and at or above, n / d. Exact for integers with |n| < 2⁵³: a quotient
+  // that is not whole is at least 1/d from the next whole q, more than a rounding while q·d < 2⁵³.
+  const floorDiv = (n, d) => Math.floor(n / d);
+  const ceilDiv = (n, d) => Math.ceil(n / d);
 
   // ---- the machine ----
 
