@@ -18,7 +18,7 @@ const random = () => {
   seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
   return seed / 2 ** 32;
 };
-const whole = (low, high) => low + Math.floor(random() * (high - low + 1));
+const integer = (low, high) => low + Math.floor(random() * (high - low + 1));
 const times = (n, f) => {
   for (let i = 0; i < n; i++) f(i);
 };
@@ -29,7 +29,7 @@ const big = (corner) => corner.map(BigInt);
 const tests = {
   "the loop is (shade + k·step) mod 65,536 / 256"() {
     times(2000, () => {
-      const [ax, bx, cx] = [whole(0, 65535), whole(0, 65535), whole(0, 40)];
+      const [ax, bx, cx] = [integer(0, 65535), integer(0, 65535), integer(0, 40)];
       const expected = Array.from({ length: cx }, (_, k) => Number(((BigInt(ax) + BigInt(k) * BigInt(bx)) % 65536n) >> 8n));
       assert.deepEqual([...M.spanBytes(ax, bx, cx)], expected);
       const end = M.loopState(ax, bx, cx, 5 * cx);
@@ -42,7 +42,7 @@ const tests = {
 
   "the carry is that of AL"() {
     times(2000, () => {
-      const [ax, bx] = [whole(0, 65535), whole(0, 65535)];
+      const [ax, bx] = [integer(0, 65535), integer(0, 65535)];
       const { ax: sum, carry } = M.loopState(ax, bx, 2, 3);
       assert.equal(carry, (sum >> 8) !== (((ax >> 8) + (bx >> 8)) & 255));
     });
@@ -50,7 +50,7 @@ const tests = {
 
   "half a shade gives the nearest byte, nothing gives the one below"() {
     times(1000, () => {
-      const [start, step] = [whole(0x2000, 0x4000), whole(-64, 64)];
+      const [start, step] = [integer(0x2000, 0x4000), integer(-64, 64)];
       const half = M.halfErrors(start, step, 64, 128);
       assert.ok(half.worst <= .5, `${half.worst}`);
       const none = M.halfErrors(start, step, 64, 0);
@@ -64,7 +64,7 @@ const tests = {
     let [on, covered] = [0, 0];
     times(1500, (n) => {
       const snap = [1, 16, 64, 128][n % 4];
-      const corners = Array.from({ length: 3 }, () => [whole(-512 / snap, 4608 / snap) * snap, whole(-512 / snap, 3584 / snap) * snap]);
+      const corners = Array.from({ length: 3 }, () => [integer(-512 / snap, 4608 / snap) * snap, integer(-512 / snap, 3584 / snap) * snap]);
       const cover = M.coverExact(corners, 16, 12);
       for (let i = 0; i < cover.length; i++) {
         const [where, inside] = slowCover(corners, i % 16, Math.floor(i / 16));
@@ -80,7 +80,7 @@ const tests = {
   "the period's rows are those of one addition a row"() {
     let pixels = 0;
     times(1500, () => {
-      const corners = Array.from({ length: 3 }, () => [whole(-512, 4608), whole(-512, 3584)]);
+      const corners = Array.from({ length: 3 }, () => [integer(-512, 4608), integer(-512, 3584)]);
       const cover = M.coverVintage(corners, 16, 12);
       const expected = slowVintage(corners, 16, 12);
       assert.deepEqual([...cover], expected, JSON.stringify(corners));
@@ -93,7 +93,7 @@ const tests = {
     let worst = 0;
     times(150, (n) => {
       const [w, h] = n % 3 ? [40, 24] : [320, 60];
-      const corner = () => [whole(-400, w * 256 + 400), whole(-400, h * 256 + 400), whole(0, 65280)];
+      const corner = () => [integer(-400, w * 256 + 400), integer(-400, h * 256 + 400), integer(0, 65280)];
       const corners = [corner(), corner(), corner()];
       if (!area(corners)) return;
       const bytes = M.drawTriangle(corners, w, h, new Uint8Array(w * h).fill(7));
@@ -123,7 +123,7 @@ const tests = {
     for (const rule of ["top-left", "both", "neither", "slope"]) {
       sums[rule] = [0, 0];
       times(400, () => {
-        const half = (low, high) => whole(low * 2, high * 2) * 128;
+        const half = (low, high) => integer(low * 2, high * 2) * 128;
         const quad = [[256, 1664], [half(4, 16), half(0, 4)], [19 * 256, 1408], [half(4, 16), half(8, 12)]];
         const { holes, twice } = M.countSeam(rule, quad, 20, 12);
         sums[rule][0] += holes;
@@ -139,10 +139,10 @@ const tests = {
   "a step toward zero keeps every byte in range, a step away does not"() {
     let wrapped = 0;
     times(3000, () => {
-      const [a, b, w] = [whole(0, 255) * 256, whole(0, 255) * 256, whole(2, 320)];
+      const [a, b, w] = [integer(0, 255) * 256, integer(0, 255) * 256, integer(2, 320)];
       const zero = M.rowSums(a, b, w, "zero");
       assert.equal(zero.outside, 0);
-      const k = whole(0, w - 1);
+      const k = integer(0, w - 1);
       const step = BigInt(b - a) / BigInt(w - 1);
       assert.equal(BigInt(zero.step), step);
       const drift = Number((step * BigInt(w - 1) - BigInt(b - a)) * BigInt(k)) / (w - 1);
@@ -154,9 +154,9 @@ const tests = {
   },
 
   "lags stay below what the text says"() {
-    let [most, mostReseeded] = [0, 0];
+    let [max, maxReseeded] = [0, 0];
     times(1500, () => {
-      const [a, b, w] = [whole(0, 255) * 256, whole(0, 255) * 256, whole(2, 320)];
+      const [a, b, w] = [integer(0, 255) * 256, integer(0, 255) * 256, integer(2, 320)];
       for (const [bits, reseed] of [[8, w], [8, 64], [16, w]]) {
         const { lag, sums, bytes } = M.rowDrift(a, b, w, bits, reseed);
         const unit = BigInt(2 ** (bits - 8));
@@ -171,13 +171,13 @@ const tests = {
           assert.ok(lag[k] < (k - from + 1) / 2 ** bits);
           const exact = (a + (b - a) * k / (w - 1)) / 256;
           assert.ok(Math.abs(Math.abs(exact - sums[k]) - lag[k]) < 1e-9);
-          if (bits === 8 && reseed === w) most = Math.max(most, lag[k]);
-          if (reseed === 64) mostReseeded = Math.max(mostReseeded, lag[k]);
+          if (bits === 8 && reseed === w) max = Math.max(max, lag[k]);
+          if (reseed === 64) maxReseeded = Math.max(maxReseeded, lag[k]);
         }
       }
     });
-    assert.ok(most > 1 && most < 1.25, `${most}`);
-    assert.ok(mostReseeded > .2 && mostReseeded < .25, `${mostReseeded}`);
+    assert.ok(max > 1 && max < 1.25, `${max}`);
+    assert.ok(maxReseeded > .2 && maxReseeded < .25, `${maxReseeded}`);
   },
 
   "the eye's model adds nothing to what is straight, and lines to what is bent"() {
@@ -222,7 +222,7 @@ const tests = {
   "a depth buffer shows the nearest triangle at every pixel"() {
     let wrong = 0;
     times(60, () => {
-      const corner = () => [whole(0, 64) + .5, whole(0, 40) + .25, 1 + random()];
+      const corner = () => [integer(0, 64) + .5, integer(0, 40) + .25, 1 + random()];
       const triangles = [0, 1].map(() => [corner(), corner(), corner()]);
       if (triangles.some((t) => !area(t))) return;
       const { shown } = M.hidden(triangles, "buffer", 64, 40);
@@ -257,7 +257,7 @@ const tests = {
     let [tightest, straight] = [Infinity, 0];
     times(4000, () => {
       const sun = (random() - .5) * 160 / 180 * Math.PI;
-      const width = Math.PI / whole(4, 64);
+      const width = Math.PI / integer(4, 64);
       const a = -Math.PI / 2 + random() * (Math.PI - width);
       const bound = M.linearBound(a, a + width, sun);
       const [s, t] = [M.roundLight(a, sun), M.roundLight(a + width, sun)];
@@ -302,9 +302,9 @@ const tests = {
 
   "floors of quotients are exact"() {
     times(20000, () => {
-      const d = whole(1, 2 ** whole(1, 52));
-      const most = Math.floor((2 ** 53 - 2) / d);
-      const n = whole(-most, most) * d + whole(-1, 1);
+      const d = integer(1, 2 ** integer(1, 52));
+      const max = Math.floor((2 ** 53 - 2) / d);
+      const n = integer(-max, max) * d + integer(-1, 1);
       assert.equal(BigInt(M.floorDiv(n, d)), floor(BigInt(n), BigInt(d)));
       assert.equal(BigInt(M.ceilDiv(n, d)), ceil(BigInt(n), BigInt(d)));
     });

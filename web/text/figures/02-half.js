@@ -47,7 +47,7 @@
     const say = M.readout(stage);
     const bar = M.controls(stage);
     const adder = M.slider(bar, {
-      label: "Added before the row", min: 0, max: 256, step: 8, value: added,
+      label: "Added first", min: 0, max: 256, step: 8, value: added,
       format: (v) => `${v}/256`, input: (v) => ((added = v), show()),
     });
     M.slider(bar, {

@@ -5,9 +5,9 @@
   // Adds 1 to every pixel of the rows that the period's code draws: corners on whole pixels, slopes
   // in 16.16 cut toward zero, and one addition a row (gouraud-vintage).
   function coverVintage(corners, width, height, into = new Uint8Array(width * height)) {
-    const whole = (u) => (u + 128) >> 8;
+    const nearestPixel = (u) => (u + 128) >> 8;
     const { v, area } = M.sorted(corners);
-    const [t, m, b] = v.map(([x, y]) => [whole(x), whole(y)]);
+    const [t, m, b] = v.map(([x, y]) => [nearestPixel(x), nearestPixel(y)]);
     const doubled = (m[0] - t[0]) * (b[1] - t[1]) - (b[0] - t[0]) * (m[1] - t[1]);
     if (!area || !doubled) return into;
     const at = (from, to, y) => {
@@ -166,7 +166,7 @@
       if (engine) {
         const bytes = engine.triangles(Float64Array.from(corners.flatMap(([x, y]) => [x / 256, y / 256, 200])));
         const same = exact.every((b, i) => !!b === bytes[Math.floor(i / COLUMNS) * 320 + i % COLUMNS] > 0);
-        parts.push(same ? " The engine covers the same pixels as the left grid." : { b: " The engine covers other pixels.", warn: true });
+        parts.push(same ? " The engine covers the same pixels as the exact grid." : { b: " The engine covers other pixels.", warn: true });
       }
       say(...parts);
       boards.forEach((b) => b.board.repaint());

@@ -72,7 +72,7 @@
       b[1] = M.clamp(b[1], 8 * 256, ROWS * 256);
     };
     M.choice(stage, {
-      label: "A centre on an edge belongs", options: RULES, value: rule,
+      label: "Pixels on the edge go", options: RULES, value: rule,
       input: (v) => ((rule = v), show()),
     });
     const board = M.board(stage, {

@@ -19,9 +19,10 @@
   figure("range", (stage) => {
     let [a, b, w, mode] = [200 * 256, 255 * 256, 320, "away"];
     const LAST = 20;
+    const MODES = { zero: "toward zero", nearest: "to the nearest", away: "away from zero" };
     M.choice(stage, {
       label: "The step is rounded", value: mode,
-      options: [["zero", "toward zero"], ["nearest", "to the nearest"], ["away", "away from zero"]],
+      options: Object.entries(MODES),
       input: (v) => ((mode = v), show()),
     });
     const board = M.board(stage, {
@@ -91,7 +92,7 @@
     function show() {
       const { step, drift, bytes, low, high, outside } = rowSums(a, b, w, mode);
       board.describe(`Row of ${w} pixels from ${low} to ${high}; ${outside} bytes outside that range`);
-      say(`Step ${M.signed(step / 256, 3)}. At the end the sum is ${M.signed(drift[w - 1] / 256)} shades off. `,
+      say(`Rounded ${MODES[mode]}, the step is ${step}/256. At the end the sum is ${M.signed(drift[w - 1] / 256)} shades off. `,
         outside ? { b: `${M.count(outside, "byte leaves", "bytes leave")} the range ${low} … ${high}; the last byte is ${bytes[w - 1]}.`, warn: true }
           : { b: `Every byte lies in ${low} … ${high}.` });
       board.repaint();

@@ -37,7 +37,7 @@
     const TOP = 44;
     const LEFT = 34;
     const board = M.board(stage, {
-      height: () => TOP + 1.3 * 64 + 30,
+      height: () => TOP + 1.3 * 64 + 44,
       paint(c, width, h, ink) {
         const x = (k) => LEFT + (k + .5) / w * (width - LEFT - 4);
         const y = (lag) => TOP + lag * 64;
@@ -48,15 +48,15 @@
         const all = ways();
         M.pixels(c, all[0].bytes, w, 1, LEFT, 0, width - LEFT - 4, 24);
         for (const way of all) M.line(c, [...way.lag].map((l, k) => [x(k), y(l)]), ink[way.color], way.color === "ink" ? 2.5 : 2);
-        M.line(c, [[x(at), 12], [x(at), h - 26]], ink.muted, 1, [3, 3]);
+        M.line(c, [[x(at), 12], [x(at), h - 40]], ink.muted, 1, [3, 3]);
         all.forEach((way, i) => {
           c.fillStyle = ink[way.color];
           c.beginPath();
           c.arc(x(at), y(way.lag[at]), 4, 0, 7);
           c.fill();
         });
-        for (let s = 0; s < w; s += 64) M.text(c, String(s), x(s), h - 8, ink.muted, { align: s ? "center" : "left" });
-        M.text(c, "pixel of the row", width - 4, h - 8, ink.muted, { align: "right" });
+        for (let s = 0; s < w; s += 64) M.text(c, String(s), x(s), h - 24, ink.muted, { align: s ? "center" : "left" });
+        M.text(c, "lag in shades, along the pixels of the row", LEFT, h - 5, ink.muted);
       },
     });
     const go = (k) => {

@@ -30,7 +30,7 @@
 
   // What a simple eye makes of it: each point, and how it differs from its surroundings.
   function machSeen(profile) {
-    const radius = Math.round(profile.length * .03);
+    const radius = Math.round(profile.length * .045);
     const around = blur(blur(profile, radius), radius);
     return profile.map((v, i) => v + 5 * (v - around[i]));
   }

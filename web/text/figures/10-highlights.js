@@ -46,7 +46,7 @@
   Object.assign(M, { wallLight, wallGouraud, wallExact });
 
   figure("highlights", (stage, engine) => {
-    let [lx, ly, power] = [62, 48, 1];
+    let [lx, ly, power] = [62, 48, 0];
     const CUTS = [1, 2, 4, 8, 16, 32];
     const pair = M.make("div", "fig-pair", stage);
     let drawn = null;
@@ -103,12 +103,12 @@
       });
       boards[0].describe(`The wall lit at ${(n + 1) ** 2} corners; worst error ${worst.toFixed(1)} shades`);
       boards[1].describe("The wall lit at each pixel");
-      const parts = ["Light is computed ", { b: `${M.group((n + 1) ** 2)} times` }, ` on the left and ${M.group(WIDTH * HEIGHT)} times on the right. `,
-        "Worst pixel on the left: ", { b: `${worst.toFixed(1)} shades`, warn: worst > 8 }, ` off; mean ${(sum / exact.length).toFixed(1)}.`];
+      const parts = ["Light is computed ", { b: `${M.group((n + 1) ** 2)} times` }, ` at corners, and ${M.group(WIDTH * HEIGHT)} times at pixels. `,
+        "Worst pixel of the first: ", { b: `${worst.toFixed(1)} shades`, warn: worst > 8 }, ` off; mean ${(sum / exact.length).toFixed(1)}.`];
       if (engine) {
         const bytes = engine.triangles(Float64Array.from(gouraud.triangles.flatMap((t) => t.flatMap(([x, y, s]) => [x / 256, y / 256, s / 256]))));
         const same = gouraud.bytes.every((byte, i) => byte === bytes[Math.floor(i / WIDTH) * 320 + i % WIDTH]);
-        parts.push(same ? " The engine draws the left picture to the byte." : { b: " The engine draws other bytes.", warn: true });
+        parts.push(same ? " The engine draws the first picture to the byte." : { b: " The engine draws other bytes.", warn: true });
       }
       say(...parts);
       boards.forEach((b) => b.repaint());

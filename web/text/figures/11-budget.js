@@ -11,8 +11,8 @@
     return AMBIENT + BODY * Math.max(0, nl) + (nl > 0 ? SHINE * Math.max(0, c) ** POWER : 0);
   }
 
-  // Greatest |cos| of angles a to b; b − a is less than π.
-  const greatestCos = (a, b) =>
+  // Maximum of |cos| of angles a to b; b − a is less than π.
+  const maxCos = (a, b) =>
     Math.floor(b / HALF_TURN) > Math.floor(a / HALF_TURN) || a % HALF_TURN === 0 ? 1 : Math.max(Math.abs(Math.cos(a)), Math.abs(Math.cos(b)));
   // Range of cos from a to b.
   function rangeOfCos(a, b) {
@@ -28,15 +28,15 @@
   function linearBound(a, b, sun) {
     const w = (b - a) * (b - a) / 8;
     const u = [Math.cos(a - sun), Math.cos(b - sun)];
-    const k = w * greatestCos(a - sun, b - sun);
+    const k = w * maxCos(a - sun, b - sun);
     const [P, S] = [Math.max(0, ...u), Math.max(0, -Math.min(...u))];
     const body = Math.max(...u) + k <= 0 ? 0 : k + (P + S > 0 ? P * S / (P + S) : 0);
     const [low, high] = rangeOfCos(2 * a - sun, 2 * b - sun).map((c) => Math.max(0, c));
     // H = cˢ bends by s·(s − 1)·c^(s−2) − s²·cˢ: greatest at an end or at c² = (s − 1)(s − 2)/s².
     const bend = (c) => Math.abs(POWER * (POWER - 1) * c ** (POWER - 2) - POWER * POWER * c ** POWER);
     const turn = Math.sqrt((POWER - 1) * (POWER - 2)) / POWER;
-    const most = Math.max(bend(low), bend(high), low < turn && turn < high ? bend(turn) : 0);
-    const shine = Math.min(4 * w * most, high ** POWER - low ** POWER);
+    const maxBend = Math.max(bend(low), bend(high), low < turn && turn < high ? bend(turn) : 0);
+    const shine = Math.min(4 * w * maxBend, high ** POWER - low ** POWER);
     return BODY * body + SHINE * shine + .5;
   }
 
