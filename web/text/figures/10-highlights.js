@@ -34,7 +34,7 @@
         triangles.push([a, b, c], [a, c, d]);
       }
     }
-    for (const t of triangles) M.drawTriangle(t, WIDTH, HEIGHT, bytes);
+    for (const t of triangles) M.drawTriangle(t, WIDTH, HEIGHT, bytes, WIDTH);
     return { bytes, triangles };
   }
 
