@@ -69,6 +69,14 @@ try {
         await page.mouse("mouseReleased", x - 36, y - 24);
       });
       await changes(`handle ${i} by arrow keys`, keys(handle, "ArrowRight", 2), keys(handle, "ArrowDown", 2), keys(handle, "ArrowLeft", 2));
+      if (await page.value(`${handle}.classList.contains("anywhere")`)) {
+        await changes(`a press beside handle ${i}`, async () => {
+          await middle(handle);
+          const [x, y] = await page.value(`(() => { const b = ${handle}.parentElement.getBoundingClientRect(); return [b.x + .31 * b.width, b.y + .42 * b.height]; })()`);
+          await page.mouse("mousePressed", x, y);
+          await page.mouse("mouseReleased", x, y);
+        });
+      }
       counts.handles++;
     }
     for (let i = 0; i < await count("input[type=range]"); i++) {
@@ -95,6 +103,10 @@ try {
       writeFileSync(`${pictures}/${name}.png`, await page.screenshot());
     }
   }
+  const first = () => page.value('settled().then(() => document.querySelector("[data-figure] canvas").toDataURL())');
+  const light = await first();
+  await page.value('document.documentElement.dataset.theme = "dark"; 0');
+  if (light === await first()) faults.push("the dark theme changes no canvas");
   for (const width of [1280, 768, 390, 360]) {
     await page.size(width, 800);
     const over = await page.value("settled().then(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)");

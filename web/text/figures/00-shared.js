@@ -117,9 +117,9 @@
 
   // A point on a board, dragged by pointer or moved by arrow keys (Shift: farther).
   // at() → [x, y] in the board's CSS pixels; move(x, y) takes such; nudge(dx, dy) takes key steps;
-  // say() → what the point's place means.
-  function handle(on, { label, at, move, nudge, say, kind = "" }) {
-    const button = make("button", `fig-handle ${kind}`, on.wrap);
+  // say() → what the point's place means. With `anywhere` a mouse may press the board beside it.
+  function handle(on, { label, at, move, nudge, say, kind = "", anywhere = false }) {
+    const button = make("button", `fig-handle ${kind}${anywhere ? " anywhere" : ""}`, on.wrap);
     button.type = "button";
     button.setAttribute("aria-roledescription", "movable point, arrow keys");
     const place = () => {
@@ -141,6 +141,18 @@
       move(event.clientX - box.left - grip[0], event.clientY - box.top - grip[1]);
       on.repaint();
     });
+    if (anywhere) {
+      on.canvas.addEventListener("pointerdown", (event) => {
+        if (event.pointerType !== "mouse" || event.button) return;
+        event.preventDefault();
+        button.focus({ preventScroll: true });
+        button.setPointerCapture(event.pointerId);
+        grip = [0, 0];
+        const box = on.wrap.getBoundingClientRect();
+        move(event.clientX - box.left, event.clientY - box.top);
+        on.repaint();
+      });
+    }
     button.addEventListener("keydown", (event) => {
       const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
       if (!step) return;

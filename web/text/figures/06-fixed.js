@@ -64,7 +64,7 @@
       show();
     };
     M.handle(board, {
-      label: "Pixel of the row", kind: "upright",
+      label: "Pixel of the row", kind: "upright", anywhere: true,
       at: () => [LEFT + (at + .5) / w * (board.width - LEFT - 4), 12],
       move: (x) => go((x - LEFT) / (board.width - LEFT - 4) * w - .5),
       nudge: (dx, dy) => go(at + dx - dy),

@@ -95,7 +95,7 @@
       },
     });
     M.handle(board, {
-      label: "Divider", kind: "upright",
+      label: "Divider", kind: "upright", anywhere: true,
       at: () => [split * board.width, board.height - 20],
       move: (x) => ((split = M.clamp(x / board.width, 0, 1)), show()),
       nudge: (dx, dy) => ((split = M.clamp(split + (dx - dy) / 100, 0, 1)), show()),

@@ -64,7 +64,7 @@
         show();
       };
       M.handle(board, {
-        label: "Row of the cut", kind: "level",
+        label: "Row of the cut", kind: "level", anywhere: true,
         at: () => [board.width - 18, (row + .5) / HEIGHT * board.height],
         move: (x, y) => move(y / board.height * HEIGHT),
         nudge: (dx, dy) => move(row + dy + dx),

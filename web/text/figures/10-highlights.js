@@ -71,7 +71,7 @@
         },
       });
       M.handle(board, {
-        label: "Lamp",
+        label: "Lamp", anywhere: true,
         at: () => [lx / WIDTH * board.width, ly / HEIGHT * board.height],
         move: (x, y) => put(x / board.width * WIDTH, y / board.height * HEIGHT),
         nudge: (dx, dy) => put(lx + 2 * dx, ly + 2 * dy),

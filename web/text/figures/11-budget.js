@@ -115,7 +115,7 @@
       show();
     };
     M.handle(board, {
-      label: "E, the error that is allowed", kind: "level",
+      label: "E, the error that is allowed", kind: "level", anywhere: true,
       at: () => [LEFT + 24, y(E)],
       move: (px, py) => put(back(py)),
       nudge: (dx, dy) => put(Math.abs(E) * 1.1 ** (dx - dy) + (dx - dy) * .05),

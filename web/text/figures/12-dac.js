@@ -51,7 +51,7 @@
       show();
     };
     M.handle(palette, {
-      label: "Entry of the table", kind: "second",
+      label: "Entry of the table", kind: "second", anywhere: true,
       at: () => [(entry % COLUMNS + .5) / COLUMNS * palette.width, (Math.floor(entry / COLUMNS) + .5) / ROWS * palette.height],
       move: (x, y) => pick(M.clamp(Math.floor(y / palette.height * ROWS), 0, ROWS - 1) * COLUMNS
         + M.clamp(Math.floor(x / palette.width * COLUMNS), 0, COLUMNS - 1)),
