@@ -350,6 +350,11 @@ const tests = {
     }
   },
 
+  "nothing moves by itself"() {
+    assert.doesNotMatch(css, /animation|transition|@keyframes/);
+    for (const [name, source] of sources) assert.doesNotMatch(source, /setInterval|setTimeout|\.animate\(|behavior: "smooth"/, name);
+  },
+
   "all of it is below 90 kB, without indentation and comments"() {
     const size = sources.map(([, s]) => s.replace(/^ +/gm, "").replace(/^\/\/.*\n/gm, "")).join("").length + html.length + css.length;
     assert.ok(size < 90_000, `${size}`);

@@ -80,7 +80,7 @@
         c.restore();
         M.line(c, [[left, y(0)], [width, y(0)]], ink.muted);
         for (const s of [-1, 0, 1]) M.text(c, s ? M.signed(s, 0) : "exact", left - 5, y(s * 256) + 4, ink.muted, { align: "right" });
-        M.text(c, "sum minus exact, in shades", left + 4, bottom + 16, ink.muted);
+        M.text(c, "sum minus exact", left + 4, bottom + 16, ink.muted);
         M.text(c, "shaded: AX wraps", width - 2, bottom + 16, ink.warn, { align: "right" });
       },
     });

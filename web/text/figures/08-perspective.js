@@ -104,7 +104,7 @@
     const say = M.readout(stage);
     const bar = M.controls(stage);
     M.slider(bar, {
-      label: "Far edge against near edge", min: 1.25, max: 16, step: .25, value: ratio,
+      label: "The far edge is", min: 1.25, max: 16, step: .25, value: ratio,
       format: (v) => `${v} times as far`, input: (v) => ((ratio = v), show()),
     });
     function show() {

@@ -89,13 +89,14 @@
           M.text(c, String(l), left - 6, y(l) + 4, ink.muted, { align: "right" });
         }
         const [r, g, b] = copper(entry);
-        for (const [v, color, dash] of [[r, ink.accent, []], [g, ink.second, []], [b, ink.muted, []]]) {
+        // 3 : 1 and more on light and on dark.
+        for (const [v, color] of [[r, "#d83a3a"], [g, "#2f9440"], [b, "#4f7fe8"]]) {
           const steps = [];
           for (let s = 0; s <= 256; s++) steps.push([x(s), y(faded(v, s))], [x(Math.min(s + 1, 256)), y(faded(v, s))]);
-          M.line(c, steps, color, 2, dash);
+          M.line(c, steps, color, 2);
         }
         M.line(c, [[x(t), top - 4], [x(t), bottom]], ink.ink, 1.5, [4, 3]);
-        M.text(c, "level of the entry’s red, green and blue during the fade", left, h - 5, ink.muted);
+        M.text(c, "red, green and blue during the fade", left, h - 5, ink.muted);
       },
     });
     const say = M.readout(stage);
