@@ -12,6 +12,7 @@ import { Browser } from "../test/devtools.mjs";
 const [file, pictures] = process.argv.slice(2);
 const browser = await Browser.launch();
 const faults = [];
+let compared = 0;
 const counts = { figures: 0, handles: 0, sliders: 0, choices: 0, buttons: 0 };
 try {
   const page = await browser.page();
@@ -32,6 +33,11 @@ try {
         + [...${figure}.querySelectorAll("canvas")].map((c) => c.toDataURL()).join()
         + [...${figure}.querySelectorAll("[aria-label]")].map((e) => e.ariaLabel).join())`);
       for (const [words] of shown.matchAll(/The engine \w+ other \w+/g)) faults.push(`${name}: ${words}`);
+      // The promise, on the engine's own picture; rounding the exact light to a byte adds a half.
+      const [, worst] = shown.match(/Worst pixel of the picture: (\d+)/) ?? [];
+      const [, E] = shown.match(/allowed: ([\d.]+) shades/) ?? [];
+      if (worst > +E + .5) faults.push(`${name}: ${worst} shades off within ${E}`);
+      compared += worst !== undefined && E !== undefined;
       return shown;
     };
     // Does the first of these; where nothing changes, the next. A point may stand at its limit.
@@ -112,6 +118,7 @@ try {
     const over = await page.value("settled().then(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)");
     if (over > 0) faults.push(`${width} pixels wide: ${over} pixels too many`);
   }
+  if (await page.value('!!document.querySelector("[data-figure=budget] .fig-pair")') && compared < 10) faults.push(`the promise was compared ${compared} times`);
   faults.push(...page.said.map((words) => `console: ${words}`));
 } catch (error) {
   faults.push(String(error.stack));

@@ -249,6 +249,22 @@
     context.drawImage(canvas, 0, 0, w, h, x, y, toWidth, toHeight);
   }
 
+  // A board with a frame of the engine, which get() gives, under a title.
+  function frame(parent, title, get, color) {
+    const side = make("div", "", parent);
+    make("p", "fig-name", side, title);
+    return board(side, {
+      height: (w) => w * 200 / 320,
+      paint(c, w, h) {
+        const shown = get();
+        if (!shown) return;
+        const p = shown.palette;
+        pixels(c, shown.bytes, shown.width, shown.height, 0, 0, w, h,
+          color ?? ((b) => (p[3 * b] << 16) | (p[3 * b + 1] << 8) | p[3 * b + 2]));
+      },
+    });
+  }
+
   function text(context, string, x, y, color, { align = "left", font } = {}) {
     context.save();
     context.fillStyle = color;
@@ -366,7 +382,7 @@
   globalThis.figure = figure;
   globalThis.mountFigures = mountFigures;
   globalThis.mode13hFigures = {
-    registered, make, board, handle, controls, slider, choice, button, readout, grey, pixels, text, line,
+    registered, make, board, handle, controls, slider, choice, button, readout, grey, pixels, frame, text, line,
     clamp, hex, binary, group, signed, decimal, count, floorDiv, ceilDiv,
     spanBytes, firstCentre, sorted, edgeAt, coverRows, coverExact, drawTriangle, toDac6, dac6To8, equalBytes,
   };

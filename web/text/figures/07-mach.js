@@ -36,7 +36,7 @@
   }
   Object.assign(M, { machProfile, machSeen });
 
-  figure("mach", (stage) => {
+  figure("mach", (stage, engine) => {
     const knees = [[.36, .25], [.64, .75]];
     let soft = false;
     const [STRIP, PAD] = [110, 14];
@@ -83,5 +83,27 @@
       board.repaint();
     }
     show();
-  });
+    if (engine) cone(stage, engine);
+  }, true);
+
+  // The engine's cone, where the bends are real, beside one of many slices.
+  function cone(stage, engine) {
+    const few = engine.shipped.find((s) => s.name === "cone").toml;
+    const many = few.replace("subdivisions = [9, 1]", "subdivisions = [90, 1]");
+    const pair = M.make("div", "fig-pair", stage);
+    const frames = [];
+    const boards = [["A cone of 9 slices", few], ["A cone of 90 slices", many]].map(([title, toml], i) => {
+      const board = M.frame(pair, title, () => frames[i]);
+      board.describe(`${title}, drawn by the engine`);
+      return { scene: engine.open(toml), board };
+    });
+    const draw = (frame) => boards.forEach(({ scene, board }, i) => {
+      frames[i] = scene.render({ frame });
+      board.repaint();
+    });
+    M.slider(M.controls(stage), {
+      label: "Turn the cone", min: 0, max: 139, value: 0, format: (v) => `${Math.round(v / 140 * 360)}°`, input: draw,
+    });
+    draw(0);
+  }
 })();

@@ -90,8 +90,14 @@
           c.restore();
         }
         M.line(c, [[split * w, 0], [split * w, h]], "#ffffff", 2);
-        M.text(c, "exact", 8, 18, "#ffffff");
-        M.text(c, { affine: "affine", every16: "every 16th", exact: "exact" }[mapping], w - 8, 18, "#ffffff", { align: "right" });
+        const tag = (words, x, align) => {
+          const wide = c.measureText(words).width + 12;
+          c.fillStyle = "#15181d";
+          c.fillRect(align === "left" ? x - 6 : x - wide + 6, 4, wide, 20);
+          M.text(c, words, x, 18, "#ffffff", { align });
+        };
+        tag("exact", 10, "left");
+        tag({ affine: "affine", every16: "every 16th", exact: "exact" }[mapping], w - 10, "right");
       },
     });
     M.handle(board, {

@@ -147,41 +147,39 @@
     const scene = engine.open((engine.shipped.find((s) => s.name === "phong") ?? engine.shipped[0]).toml);
     const frame = 45;
     const truth = scene.exact({ frame });
-    // Milliseconds a frame, where the engine has a clock for it.
-    const time = () => scene.time?.(frame / 35);
-    scene.render({ frame, shading: "phong" });
-    const phong = time();
     let [picture, E] = [null, 4];
     const pair = M.make("div", "fig-pair", stage);
-    const part = (title, color) => {
-      const side = M.make("div", "", pair);
-      M.make("p", "fig-name", side, title);
-      return M.board(side, {
-        height: (w) => w * truth.height / truth.width,
-        paint: (c, w, h) => picture && M.pixels(c, picture.bytes, picture.width, picture.height, 0, 0, w, h, color),
-      });
-    };
-    const shown = part("The engine within E", (b) => {
-      const p = picture.palette;
-      return (p[3 * b] << 16) | (p[3 * b + 1] << 8) | p[3 * b + 2];
-    });
-    const off = part("What it is off: bright is E", (b, i) => {
+    const shown = M.frame(pair, "The engine within E", () => picture);
+    const off = M.frame(pair, "What it is off: bright is E", () => picture, (b, i) => {
       const t = Math.min(1, Math.abs(b - truth.bytes[i]) / Math.max(E, 1)) * 255;
       return (t << 16) | ((t * .7) << 8) | (t * .4);
     });
     const say = M.readout(stage);
+    let worst = 0;
+    const tell = (...more) => say("Worst pixel of the picture: ", { b: M.count(worst, "shade") },
+      " from double precision, both rounded. ", ...more);
+    // Both in turn, so that what else runs on the machine hits both.
+    if (scene.time) M.button(M.controls(stage), "Measure the time here", () => {
+      const ways = [{ maxError: E }, { shading: "phong" }];
+      const took = [Infinity, Infinity];
+      for (let round = 0; round < 7; round++) {
+        ways.forEach((way, i) => {
+          scene.render({ frame, ...way });
+          took[i] = Math.min(took[i], scene.time(frame / 35, undefined, 8));
+        });
+      }
+      tell("A frame takes ", { b: `${took[0].toFixed(2)} ms` }, `; with light at each pixel ${took[1].toFixed(2)} ms. Best of 7 rounds.`);
+    });
     let asked = 0;
     return (budget) => {
       E = budget;
       cancelAnimationFrame(asked);
       asked = requestAnimationFrame(() => {
         picture = scene.render({ frame, maxError: E });
-        const ms = time();
-        const worst = picture.bytes.reduce((m, b, i) => Math.max(m, Math.abs(b - truth.bytes[i])), 0);
+        worst = picture.bytes.reduce((m, b, i) => Math.max(m, Math.abs(b - truth.bytes[i])), 0);
         shown.describe(`A torus drawn within ${E} shades`);
         off.describe(`Its error, at most ${worst} shades`);
-        say("Worst pixel of the picture: ", { b: M.count(worst, "shade") }, " from double precision, both rounded. ",
-          ...(ms ? ["Time in this browser: ", { b: `${ms.toFixed(2)} ms` }, `; with light at each pixel ${phong.toFixed(2)} ms.`] : []));
+        tell();
         shown.repaint();
         off.repaint();
       });
