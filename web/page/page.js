@@ -194,13 +194,13 @@ class Page {
     if (counts.redrawn) this.accuracy.count(ms, now);
     const edge = state.beside ? Math.round(state.divider * WIDTH) : WIDTH;
     this.canvas.show(frame, 0, edge);
-    if (state.beside) this.#showBeside(edge);
+    if (state.beside) this.#showBeside(edge, ms);
     this.#mark();
     element("time").value = state.seconds;
     element("seconds").textContent = `${state.seconds.toFixed(2)} s`;
     if (wasStale || now - this.#told > 250) {
       this.#told = now;
-      this.accuracy.shares(counts);
+      if (counts.redrawn) this.accuracy.shares(counts);
       this.plan.show(this.scene.plan());
       this.magnifier.follow(this.scene, frame, state.pixel);
     }
@@ -213,14 +213,23 @@ class Page {
     if (asked && JSON.stringify(asked) !== JSON.stringify(this.question()) && !this.state.playing) this.#isStale = true;
   }
 
-  #showBeside(edge) {
+  /** The pictures' names and, of what the engine draws, their times. */
+  #label(side, words, ms) {
+    const label = document.querySelector(`.side.${side}`);
+    label.hidden = false;
+    // One frame in a while: the eye cannot read them all.
+    const now = performance.now();
+    if (label.dataset.words === words && now - label.dataset.said < 300) return;
+    Object.assign(label.dataset, { words, said: now });
+    label.textContent = ms === undefined || !this.state.playing ? words : `${words}: ${timeText(ms)}`;
+  }
+
+  #showBeside(edge, ms) {
     const { state } = this;
-    for (const [side, words] of [["left", this.#name()], ["right", element("beside").selectedOptions[0].text]]) {
-      const label = document.querySelector(`.side.${side}`);
-      label.hidden = false;
-      label.textContent = words;
-    }
+    const words = element("beside").selectedOptions[0].text;
+    this.#label("left", this.#name(), ms);
     if (state.beside === "truth") {
+      this.#label("right", words);
       const key = JSON.stringify([state.toml, state.seconds, state.pose]);
       if (this.#exact?.key === key) this.canvas.show(this.#exact.frame, edge);
       else {
@@ -232,7 +241,7 @@ class Page {
     this.other ??= this.engine.open(state.toml);
     this.other.set(this.#besideSettings());
     this.other.show(state.seconds, state.pose);
-    this.other.draw();
+    this.#label("right", words, this.other.draw());
     this.canvas.show(this.other.frame(), edge);
   }
 
@@ -262,11 +271,10 @@ class Page {
 }
 
 async function begin() {
-  const source = (id) => element(id).textContent;
-  const name = WebAssembly.validate(HAS_VECTORS) && element("wasm-simd128") ? "wasm-simd128" : "wasm-plain";
-  const wasm = await unpack(source(name));
+  const { wasm, engine: engineScript, worker } = PARTS;
+  if (!WebAssembly.validate(HAS_VECTORS)) throw new Error("this browser has no WebAssembly with vectors of 128 bits");
   const engine = new Engine(await WebAssembly.compile(wasm));
-  const page = new Page(engine, new Background([source("engine-source"), source("worker-source")], wasm));
+  const page = new Page(engine, new Background([engineScript, "\n", worker], wasm));
   globalThis.page = page;
   page.open(engine.shipped[0].toml, engine.shipped[0].name);
   await page.follow(location.hash).catch((error) => page.trouble(error.message));
@@ -278,10 +286,8 @@ async function begin() {
   globalThis.mountFigures?.(engine);
 }
 
-addEventListener("DOMContentLoaded", () => {
-  begin().catch((error) => {
-    const box = element("trouble");
-    box.textContent = `The engine could not be started: ${error.message}`;
-    box.hidden = false;
-  });
+begin().catch((error) => {
+  const box = element("trouble");
+  box.textContent = `The engine could not be started: ${error.message}`;
+  box.hidden = false;
 });

@@ -31,8 +31,8 @@ function logSpan(numbers) {
 /**
  * Draws the chart into an element, at its width.
  *
- * A point is { ms, error, name, kind, efficient, title }: `kind` is "shading", "budget", "now" or "second". Efficient
- * shadings are joined, and so are budgets. A click on a point that has `choose` calls it.
+ * A point is { ms, error, name, kind, efficient, budget, title }: `kind` is "shading", "budget", "now" or "second".
+ * Efficient shadings are joined, and so are budgets, in the order of their errors that are accepted. A click on a point that has `choose` calls it.
  */
 function drawChart(element, points, { height = 260, description = "Error against time" } = {}) {
   const SVG = "http://www.w3.org/2000/svg";
@@ -64,14 +64,21 @@ function drawChart(element, points, { height = 260, description = "Error against
   make("text", { class: "chart-name", x: right, y: height - 6, "text-anchor": "end" }, svg, "time for a frame →");
   make("text", { class: "chart-name", x: 12, y: top + 2, transform: `rotate(-90 12 ${top + 2})`, "text-anchor": "end" }, svg, "error in shades, r.m.s. →");
 
+  const around = (cx, cy, size) => ({ x0: cx - size, x1: cx + size, y0: cy - size, y1: cy + size });
+  const taken = points.map((point) => around(x(point.ms), y(point.error), 5));
   const path = (joined, name) => {
-    const sorted = [...joined].sort((a, b) => a.ms - b.ms);
-    if (sorted.length > 1) make("polyline", { class: name, points: sorted.map((p) => `${x(p.ms)},${y(p.error)}`).join(" ") }, svg);
+    const corners = joined.map((point) => [x(point.ms), y(point.error)]);
+    if (corners.length > 1) make("polyline", { class: name, points: corners.join(" ") }, svg);
+    // Names keep off the line, too.
+    corners.slice(1).forEach(([endX, endY], at) => {
+      const [startX, startY] = corners[at];
+      const steps = Math.ceil(Math.hypot(endX - startX, endY - startY) / 6);
+      for (let i = 1; i < steps; i++) taken.push(around(startX + ((endX - startX) * i) / steps, startY + ((endY - startY) * i) / steps, 1));
+    });
   };
-  path(points.filter((point) => point.kind === "budget"), "chart-budgets");
-  path(points.filter((point) => point.kind === "shading" && point.efficient), "chart-shadings");
+  path(points.filter((point) => point.kind === "budget").sort((a, b) => b.budget - a.budget), "chart-budgets");
+  path(points.filter((point) => point.kind === "shading" && point.efficient).sort((a, b) => a.ms - b.ms), "chart-shadings");
 
-  const taken = points.map((point) => ({ x0: x(point.ms) - 5, x1: x(point.ms) + 5, y0: y(point.error) - 5, y1: y(point.error) + 5 }));
   const meets = (a, b) => a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
   const order = { now: 3, second: 2, shading: 1, budget: 0 };
   for (const point of [...points].sort((a, b) => order[a.kind] - order[b.kind])) {
