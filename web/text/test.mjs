@@ -338,6 +338,10 @@ const tests = {
         assert.ok(s.split(/\s+/).length <= 32, `${id}: ${s}`);
       }
     }
+    const listed = [...html.matchAll(/<li><a href="#(\w+)">(.*?)<\/a>/g)].map((m) => [m[1], m[2]]);
+    assert.deepEqual(listed, sections.map(([, id, body]) => [id, body.match(/<h2>(.*?)<\/h2>/)[1]]));
+    const taken = [...read("../page/index.html").matchAll(/ id="([^"]+)"/g)].map((m) => m[1]);
+    assert.deepEqual(sections.map((s) => s[1]).filter((id) => taken.includes(id)), []);
     const tags = [...html.matchAll(/<(\/?)([a-z0-9]+)[^>]*>/g)];
     const open = [];
     for (const [, close, tag] of tags) close ? assert.equal(open.pop(), tag) : open.push(tag);
@@ -356,7 +360,8 @@ const tests = {
   },
 
   "all of it is below 90 kB, without indentation and comments"() {
-    const size = sources.map(([, s]) => s.replace(/^ +/gm, "").replace(/^\/\/.*\n/gm, "")).join("").length + html.length + css.length;
+    const pieces = [...sources.map(([, s]) => s.replace(/^ +/gm, "").replace(/^\/\/.*\n/gm, "")), html, css];
+    const size = Buffer.byteLength(pieces.join(""));
     assert.ok(size < 90_000, `${size}`);
   },
 };

@@ -229,6 +229,19 @@
     };
   }
 
+  // Fills a table with a head and rows of cells.
+  function fillTable(table, head, rows) {
+    table.replaceChildren();
+    const top = make("tr", "", make("thead", "", table));
+    for (const cell of head) make("th", "", top, cell).scope = "col";
+    const body = make("tbody", "", table);
+    return rows.map((cells) => {
+      const tr = make("tr", "", body);
+      for (const cell of cells) make("td", "", tr, cell);
+      return tr;
+    });
+  }
+
   // ---- drawing ----
 
   const grey = (s) => `rgb(${s},${s},${s})`;
@@ -293,7 +306,6 @@
   const binary = (n, bits) => n.toString(2).padStart(bits, "0");
   const group = (n) => String(Math.round(n)).replace(/\B(?=(\d{3})+$)/g, ",");
   const signed = (x, digits = 2) => (x < 0 ? "−" : "+") + Math.abs(x).toFixed(digits);
-  const decimal = (x, digits = 2) => (x < 0 ? "−" : "") + Math.abs(x).toFixed(digits);
   const count = (n, one, more = `${one}s`) => `${group(n)} ${n === 1 ? one : more}`;
 
   // The integer at or below, and at or above, n / d. Exact for integers with |n| < 2⁵³: a quotient
@@ -382,8 +394,8 @@
   globalThis.figure = figure;
   globalThis.mountFigures = mountFigures;
   globalThis.mode13hFigures = {
-    registered, make, board, handle, controls, slider, choice, button, readout, grey, pixels, frame, text, line,
-    clamp, hex, binary, group, signed, decimal, count, floorDiv, ceilDiv,
+    registered, make, board, handle, controls, slider, choice, button, readout, fillTable, grey, pixels, frame, text, line,
+    clamp, hex, binary, group, signed, count, floorDiv, ceilDiv,
     spanBytes, firstCentre, sorted, edgeAt, coverRows, coverExact, drawTriangle, toDac6, dac6To8, equalBytes,
   };
 })();

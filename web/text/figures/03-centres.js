@@ -52,6 +52,10 @@
         M.clamp(Math.round((x - self.left) / self.cell * 256 / snap) * snap, 0, columns * 256),
         M.clamp(Math.round(y / self.cell * 256 / snap) * snap, 0, rows * 256),
       ],
+      clear(c, ink) {
+        c.fillStyle = ink.paper;
+        c.fillRect(self.left, 0, columns * self.cell, rows * self.cell);
+      },
       lines(c, ink) {
         for (let x = 0; x <= columns; x++) M.line(c, [[self.x(x * 256), 0], [self.x(x * 256), rows * self.cell]], ink.line);
         for (let y = 0; y <= rows; y++) M.line(c, [[self.left, self.y(y * 256)], [self.x(columns * 256), self.y(y * 256)]], ink.line);
@@ -98,8 +102,7 @@
           on.fit(w);
           const exact = M.coverExact(corners, COLUMNS, ROWS);
           const drawn = kind === "exact" ? exact : coverVintage(corners, COLUMNS, ROWS);
-          c.fillStyle = ink.paper;
-          c.fillRect(on.left, 0, COLUMNS * on.cell, h);
+          on.clear(c, ink);
           for (let i = 0; i < drawn.length; i++) {
             if (!drawn[i]) continue;
             c.fillStyle = kind === "exact" || exact[i] ? ink.second : ink.warn;

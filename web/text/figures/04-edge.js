@@ -79,8 +79,7 @@
       height: (w) => on.height(w),
       paint(c, w, h, ink) {
         on.fit(w);
-        c.fillStyle = ink.paper;
-        c.fillRect(on.left, 0, COLUMNS * on.cell, h);
+        on.clear(c, ink);
         const { drawn, marks } = countSeam(rule, [p, a, q, b], COLUMNS, ROWS);
         const first = coverByRule(rule, [p, a, b], COLUMNS, ROWS);
         drawn.forEach((n, i) => {
@@ -129,14 +128,9 @@
           sums[r][1] += twice;
         }
       }
-      table.replaceChildren();
-      const head = M.make("tr", "", M.make("thead", "", table));
-      for (const h of ["1,000 edges", "holes", "drawn twice"]) M.make("th", "", head, h).scope = "col";
-      const body = M.make("tbody", "", table);
-      for (const [r, name] of RULES) {
-        const tr = M.make("tr", r === "top-left" ? "on" : "", body);
-        for (const cell of [name, M.group(sums[r][0]), M.group(sums[r][1])]) M.make("td", "", tr, cell);
-      }
+      const rows = M.fillTable(table, ["1,000 edges", "holes", "drawn twice"],
+        RULES.map(([r, name]) => [name, ...sums[r].map(M.group)]));
+      rows[0].className = "on";
       table.hidden = false;
     });
     function show() {

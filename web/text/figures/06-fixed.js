@@ -49,7 +49,7 @@
         M.pixels(c, all[0].bytes, w, 1, LEFT, 0, width - LEFT - 4, 24);
         for (const way of all) M.line(c, [...way.lag].map((l, k) => [x(k), y(l)]), ink[way.color], way.color === "ink" ? 2.5 : 2);
         M.line(c, [[x(at), 12], [x(at), h - 40]], ink.muted, 1, [3, 3]);
-        all.forEach((way, i) => {
+        all.forEach((way) => {
           c.fillStyle = ink[way.color];
           c.beginPath();
           c.arc(x(at), y(way.lag[at]), 4, 0, 7);
@@ -80,21 +80,15 @@
       input: (v) => ((w = v), (at = Math.min(at, w - 1)), show()),
     });
     function show() {
-      table.replaceChildren();
-      const head = M.make("tr", "", M.make("thead", "", table));
-      for (const t of [`at pixel ${at}`, "sum", "lag", "byte"]) M.make("th", "", head, t).scope = "col";
-      const body = M.make("tbody", "", table);
-      const row = (cells, color) => {
-        const tr = M.make("tr", "", body);
-        cells.forEach((cell, i) => {
-          const td = M.make("td", "", tr, cell);
-          if (!i && color) td.style.boxShadow = `inset 4px 0 var(--${color})`;
-          if (!i) td.style.paddingLeft = "12px";
-        });
-      };
-      row(["exact", exact(at).toFixed(4), "", String(Math.floor(exact(at) + .5))]);
       const all = ways();
-      for (const way of all) row([way.name, way.sums[at].toFixed(4), way.lag[at].toFixed(4), String(way.bytes[at])], way.color);
+      const rows = M.fillTable(table, [`at pixel ${at}`, "sum", "lag", "byte"], [
+        ["exact", exact(at).toFixed(4), "", String(Math.floor(exact(at) + .5))],
+        ...all.map((way) => [way.name, way.sums[at].toFixed(4), way.lag[at].toFixed(4), String(way.bytes[at])]),
+      ]);
+      rows.forEach((tr, i) => {
+        tr.firstChild.style.paddingLeft = "12px";
+        if (i) tr.firstChild.style.boxShadow = `inset 4px 0 var(--${all[i - 1].color})`;
+      });
       const wrong = all.map((way) => way.bytes.reduce((n, byte, k) => n + (byte !== Math.floor(exact(k) + .5)), 0));
       const worst = all.map((way) => Math.max(...way.lag));
       board.describe(`Greatest lag: ${all.map((way, i) => `${way.name} ${worst[i].toFixed(3)} shades`).join(", ")}`);

@@ -119,7 +119,7 @@
       const [painter, buffer] = ["painter", "buffer"].map((m) => hidden(scene(), m));
       const wrong = painter.shown.reduce((n, s, i) => n + (s !== buffer.shown[i]), 0);
       boards[0].describe(`Painter's order: ${wrong} pixels show the wrong triangle`);
-      boards[1].describe("Depth buffer: every pixel shows the nearer triangle");
+      boards[1].describe("Depth buffer: the nearer at every pixel");
       cut.describe(`Cut along row ${row}, seen from above`);
       say("The painter gets ", { b: M.count(wrong, "pixel"), warn: wrong > 0 }, ` wrong. The depth buffer gets none, `,
         `for ${M.group(buffer.compared)} comparisons.`);

@@ -129,7 +129,7 @@
       format: (v) => `${v}°`, input: (v) => ((sun = v / 180 * HALF_TURN), show()),
     });
     const real = engine ? reality(stage, engine) : () => {};
-    if (!engine) M.make("p", "fig-say fig-wait", stage, "A picture within E shades follows here as soon as the engine is loaded.");
+    if (!engine) M.make("p", "fig-say fig-wait", stage, "The engine’s picture follows when it is loaded.");
     function show() {
       const { list, lit, worst } = budgetRow(faces, PIXELS, sun, E);
       const pixelwise = list.filter((f) => !f.straight).length;
