@@ -75,6 +75,14 @@ class Accuracy {
     this.#draw();
   }
 
+  /** Takes in the time of a picture that stands. */
+  stand(ms) {
+    this.#frames = [{ ms, now: 0 }];
+    element("ms").textContent = timeText(ms);
+    element("rate").textContent = "–";
+    this.#draw();
+  }
+
   mean() {
     return this.#frames.reduce((sum, { ms }) => sum + ms, 0) / Math.max(this.#frames.length, 1);
   }
@@ -117,7 +125,7 @@ class Accuracy {
     const { maxError } = asked.settings;
     const isOwn = settingLines(asked.settings) === settingLines(this.page.settings()) && Object.keys(asked.settings.effects).length === 0;
     // The curve of budgets grows as the slider is dragged.
-    if (maxError && isOwn && this.#frames.length > 3 && !this.measuring) this.#take({ maxError }, this.mean(), rms);
+    if (maxError && isOwn && (this.#frames.length > 3 || !this.page.state.playing) && !this.measuring) this.#take({ maxError }, this.mean(), rms);
     element("worst").textContent = max.toFixed(2);
     element("rms").textContent = rms.toFixed(2);
     const within = !asked.settings.maxError || max <= asked.settings.maxError + 0.5;

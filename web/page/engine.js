@@ -40,9 +40,17 @@ class Engine {
       return this.#exports[name](...numbers);
     } catch (error) {
       if (!(error instanceof WebAssembly.RuntimeError)) throw error;
-      const reason = this.text();
+      const reason = this.#reason();
       this.#restart();
       throw new EngineStopped(`The engine stopped at ${name}: ${reason || error.message}. Another one was started.`);
+    }
+  }
+
+  #reason() {
+    try {
+      return this.text();
+    } catch {
+      return "";
     }
   }
 

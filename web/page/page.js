@@ -191,7 +191,8 @@ class Page {
     const ms = this.drawLeft();
     const frame = this.scene.frame();
     const counts = this.scene.counts();
-    if (counts.redrawn) this.accuracy.count(ms, now);
+    if (state.playing) this.accuracy.count(ms, now);
+    else this.#timeStill();
     const edge = state.beside ? Math.round(state.divider * WIDTH) : WIDTH;
     this.canvas.show(frame, 0, edge);
     if (state.beside) this.#showBeside(edge, ms);
@@ -205,6 +206,16 @@ class Page {
       this.magnifier.follow(this.scene, frame, state.pixel);
     }
     this.#judge();
+  }
+
+  /** Times a picture that stands, once for its settings: it is drawn again and again. */
+  #timeStill() {
+    const { toml, seconds, pose } = this.state;
+    const key = JSON.stringify([toml, seconds, pose, this.settings()]);
+    if (key === this.timed) return;
+    this.timed = key;
+    this.accuracy.stand(this.scene.time(seconds, pose, 10));
+    this.scene.draw();
   }
 
   /** Has the frame compared with the truth. Of a picture that stands the last word is its own. */

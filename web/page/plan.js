@@ -3,6 +3,9 @@
 /** Effects that are chosen by another setting, or that keep triangles inside what the raster can draw. */
 const FIXED = ["transform", "hidden-surfaces", "near-clipping", "screen-clipping"];
 
+/** How often each effect's frames are timed. */
+const ROUNDS_OF_PRICE = 15;
+
 class PlanTable {
   #prices = new Map();
   #said = "";
@@ -77,20 +80,21 @@ class PlanTable {
     const switched = { ...usual, effects: { ...usual.effects, [effect]: !on } };
     const differences = [];
     try {
-      for (let round = 0; round < 7; round++) {
+      for (let round = 0; round < ROUNDS_OF_PRICE; round++) {
         scene.set(usual);
-        const as = scene.time(state.seconds, state.pose, 6);
+        const as = scene.time(state.seconds, state.pose, 4);
         scene.set(switched);
-        const other = scene.time(state.seconds, state.pose, 6);
+        const other = scene.time(state.seconds, state.pose, 4);
         differences.push(on ? as - other : other - as);
       }
       if (scene.plan().find((row) => row.effect === effect)?.on === on) return null;
     } finally {
       scene.set(usual);
     }
-    // By chance three of seven would be above 0: what is not clearly more has no price.
+    // Of n differences by chance half are above 0, with a standard deviation of √n/2: what is not three times that above
+    // has no price.
     const above = differences.filter((difference) => difference > 0).length;
-    differences.sort((a, b) => a - b);
-    return above >= 6 ? differences[3] : 0;
+    const isNoise = above <= differences.length / 2 + (3 * Math.sqrt(differences.length)) / 2;
+    return isNoise ? 0 : median(differences);
   }
 }

@@ -74,8 +74,8 @@ class Scenes {
 
   #number(wrong = 0) {
     const count = this.text.value.split("\n").length;
-    const lines = Array.from({ length: count }, (_, at) => make(at + 1 === wrong ? "b" : "span", {}, `${at + 1}\n`));
-    element("lines").replaceChildren(...lines);
+    const lines = Array.from({ length: count }, (_, at) => [make(at + 1 === wrong ? "b" : "span", {}, at + 1), "\n"]);
+    element("lines").replaceChildren(...lines.flat());
     element("lines").scrollTop = this.text.scrollTop;
   }
 

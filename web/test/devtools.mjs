@@ -105,10 +105,16 @@ class Tab {
   /** Waits until an expression is true. */
   async until(expression, seconds = 20) {
     for (let waited = 0; waited < seconds * 20; waited++) {
-      if (await this.value(expression)) return;
+      if (await this.value(`Boolean(${expression})`)) return;
       await new Promise((resolve) => setTimeout(resolve, 50));
     }
+    console.log(`      trouble: ${await this.value("document.getElementById('trouble')?.textContent")}; said: ${this.said.join("; ")}`);
     throw new Error(`after ${seconds} s still not: ${expression}`);
+  }
+
+  /** Puts the page before the others: one behind them draws nothing. */
+  front() {
+    return this.ask("Page.bringToFront");
   }
 
   async size(width, height, isDark = false, isStill = false) {

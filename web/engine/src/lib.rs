@@ -35,7 +35,6 @@ use turntable::Pose;
 #[derive(Default)]
 struct State {
     room: Vec<u8>,
-    answer: Vec<u8>,
     /// Files that scenes may name.
     files: BTreeMap<String, Arc<[u8]>>,
     stages: Vec<Option<Stage>>,
@@ -43,6 +42,12 @@ struct State {
 
 thread_local! {
     static STATE: RefCell<State> = RefCell::default();
+    /// What the last call had to say. By itself, so that a trap can leave its reason while a scene is at work.
+    static ANSWER: RefCell<Vec<u8>> = RefCell::default();
+}
+
+fn say(answer: Vec<u8>) {
+    ANSWER.with(|said| said.try_borrow_mut().map(|mut said| *said = answer).ok());
 }
 
 fn with<Result>(work: impl FnOnce(&mut State) -> Result) -> Result {
@@ -51,15 +56,13 @@ fn with<Result>(work: impl FnOnce(&mut State) -> Result) -> Result {
 
 /// Answers with what `work` makes of a scene, or with the reason why it failed.
 fn on(stage: usize, work: impl FnOnce(&mut Stage) -> Result<Vec<u8>, String>) -> bool {
-    with(|state| {
-        let result = match state.stages.get_mut(stage) {
-            Some(Some(stage)) => work(stage),
-            _ => Err("there is no such scene".into()),
-        };
-        let is_done = result.is_ok();
-        state.answer = result.unwrap_or_else(String::into_bytes);
-        is_done
-    })
+    let result = with(|state| match state.stages.get_mut(stage) {
+        Some(Some(stage)) => work(stage),
+        _ => Err("there is no such scene".into()),
+    });
+    let is_done = result.is_ok();
+    say(result.unwrap_or_else(String::into_bytes));
+    is_done
 }
 
 fn as_text(json: &Value) -> Vec<u8> {
@@ -69,11 +72,7 @@ fn as_text(json: &Value) -> Vec<u8> {
 /// Makes a trap leave its reason as the answer.
 #[unsafe(no_mangle)]
 extern "C" fn start() {
-    panic::set_hook(Box::new(|info| {
-        let reason = info.to_string().into_bytes();
-        // Borrowed where a scene is at work: then the trap has no reason but itself.
-        STATE.with(|state| state.try_borrow_mut().map(|mut state| state.answer = reason).ok());
-    }));
+    panic::set_hook(Box::new(|info| say(info.to_string().into_bytes())));
 }
 
 /// The address of so many bytes, for what the next call takes.
@@ -89,13 +88,13 @@ extern "C" fn room(bytes: usize) -> *mut u8 {
 /// The address of the last answer.
 #[unsafe(no_mangle)]
 extern "C" fn answer() -> *const u8 {
-    with(|state| state.answer.as_ptr())
+    ANSWER.with_borrow(|said| said.as_ptr())
 }
 
 /// Bytes of the last answer.
 #[unsafe(no_mangle)]
 extern "C" fn answer_length() -> usize {
-    with(|state| state.answer.len())
+    ANSWER.with_borrow(Vec::len)
 }
 
 /// Answers with what does not change: the shipped scenes, the shadings, the levels of an error map.
@@ -113,7 +112,7 @@ extern "C" fn about() {
         "kernel": mode13h::span::Kernel::fastest().name(),
         "version": env!("CARGO_PKG_VERSION"),
     });
-    with(|state| state.answer = as_text(&about));
+    say(as_text(&about));
 }
 
 /// Keeps the room as a file that scenes may name: first its name, so many bytes, then what it holds.
@@ -137,7 +136,7 @@ extern "C" fn forget_files() {
 extern "C" fn open() -> i32 {
     with(|state| match Stage::open(&state.room, &state.files) {
         Ok(stage) => {
-            state.answer = as_text(&stage.about());
+            say(as_text(&stage.about()));
             let free = state.stages.iter().position(Option::is_none).unwrap_or(state.stages.len());
             state.stages.resize_with(state.stages.len().max(free + 1), || None);
             state.stages[free] = Some(stage);
@@ -145,7 +144,7 @@ extern "C" fn open() -> i32 {
             free as i32
         }
         Err(error) => {
-            state.answer = as_text(&error);
+            say(as_text(&error));
             -1
         }
     })
@@ -234,11 +233,11 @@ extern "C" fn film(stage: usize, number: u32, frames: u32) -> bool {
 /// Answers with a span: `count` bytes of the 8.8 loop from `shade` by `step`.
 #[unsafe(no_mangle)]
 extern "C" fn span(shade: u16, step: u16, count: usize) {
-    with(|state| state.answer = kit::span(shade, step, count));
+    say(kit::span(shade, step, count));
 }
 
 /// Answers with a frame of the triangles in the room: nine f64 each, x, y and shade of three corners.
 #[unsafe(no_mangle)]
 extern "C" fn triangles() {
-    with(|state| state.answer = kit::triangles(&state.room));
+    say(with(|state| kit::triangles(&state.room)));
 }
