@@ -15,6 +15,7 @@ use mode13h::scene::{self, Scene, Shared, shipped};
 use mode13h::texture::Texture;
 
 use crate::failure::{Failure, on_one_line};
+use crate::turntable::Colors;
 use crate::{read_files, typo};
 
 /// A mesh, and what to call it.
@@ -172,21 +173,6 @@ pub(crate) fn palette_extensions() -> String {
         }
     }
     extensions.join(", ")
-}
-
-/// Colours of the frame's bytes.
-#[derive(Clone, PartialEq, Debug)]
-pub(crate) enum Colors {
-    /// The colours of a palette.
-    Palette(Box<Palette>),
-    /// Colours that are made for what is seen.
-    Auto,
-}
-
-impl From<Palette> for Colors {
-    fn from(palette: Palette) -> Colors {
-        Colors::Palette(Box::new(palette))
-    }
 }
 
 /// The name of the palette that is made for what is seen.

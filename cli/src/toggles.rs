@@ -107,7 +107,7 @@ fn depths(scene: &Scene, object: &Object) -> (f32, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::Colors;
+    use crate::turntable::Colors;
     use crate::turntable::Pose;
     use mode13h::mesh::shapes;
     use mode13h::palette::builtin;

@@ -11,7 +11,20 @@ use mode13h::render::RenderError;
 use mode13h::scene::{Camera, Motion, Moving, Object, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 
-use crate::input::Colors;
+/// Colours of the frame's bytes.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) enum Colors {
+    /// The colours of a palette.
+    Palette(Box<Palette>),
+    /// Colours that are made for what is seen.
+    Auto,
+}
+
+impl From<Palette> for Colors {
+    fn from(palette: Palette) -> Colors {
+        Colors::Palette(Box::new(palette))
+    }
+}
 
 /// Pose into which the user has turned what is shown, and its nearness, beyond what the clock does.
 #[derive(Clone, Copy, PartialEq, Debug)]

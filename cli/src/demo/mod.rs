@@ -40,7 +40,7 @@ use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window, WindowError};
 
 use crate::failure::Failure;
-use crate::input::Colors;
+use crate::turntable::Colors;
 use crate::options::{Drawing, ShadingOptions};
 use crate::overlay::{self, Sheet, Side};
 use crate::toggles::Switch;

@@ -7,6 +7,7 @@
 //! | `measure` | a study from beginning to end |
 //! | `configuration` | the things that are measured against each other: shadings, budgets, and the other choices |
 //! | `accuracy`, `quantization` | errors against each standard of truth; errors that ramp or palette add |
+//! | `error_levels` | the colours of an error map |
 //! | `clock`, `interleaved`, `split` | times, all configurations side by side; the parts of a frame's time |
 //! | `claims` | the sources' claims, measured |
 //! | `statistics` | quartiles, ratios, and their ranges by chance |
@@ -17,10 +18,12 @@ mod claims;
 mod clock;
 mod configuration;
 mod error;
+pub mod error_levels;
 mod interleaved;
 mod measure;
 mod probe;
 mod quantization;
+#[cfg(feature = "report")]
 pub mod report;
 mod split;
 mod statistics;

@@ -3,7 +3,8 @@
 use maud::{Markup, html};
 
 use super::figures::{at_most, count, interval, list, percent, ratio, shades, three_digits, time};
-use super::pictures::{self, COLORS, NONE};
+use super::pictures;
+use crate::cost::error_levels::{ALL as LEVELS, NOT_TAKEN};
 use crate::cost::{Errors, ShadingRow, Split, Study};
 
 /// A part of a frame's time: its name, its class in the style, and which it is.
@@ -138,9 +139,9 @@ pub(super) fn pictures(study: &Study) -> Markup {
             h2 { "Frames and their errors" }
             p { "The first frame, in 256 greys, left of the slider; its error against lit, right of it." }
             p.key {
-                @for (_, name, color) in COLORS { span { (swatch(color)) " " (name) } }
+                @for level in LEVELS { span { (swatch(level.color)) " " (level.label) } }
                 span { "shades" }
-                span { (swatch(NONE)) " none taken: background, or another face than there should be" }
+                span { (swatch(NOT_TAKEN)) " none taken: background, or another face than there should be" }
             }
             div.gallery { @for row in &study.shadings { (pair(row)) } }
         } }

@@ -1,0 +1,118 @@
+// The chart of error against time, both logarithmic: one for the page and for the report of `mode13h cost`.
+"use strict";
+
+/** Errors below are drawn here: a logarithmic axis has no 0. */
+const ERROR_FLOOR = 0.01;
+
+/** A time with its unit, in three digits: `412 µs`. */
+function timeText(ms) {
+  const [number, unit] = ms >= 1000 ? [ms / 1000, "s"] : ms >= 1 ? [ms, "ms"] : ms >= 1e-3 ? [ms * 1e3, "µs"] : [ms * 1e6, "ns"];
+  return `${Number(number.toPrecision(3))} ${unit}`;
+}
+
+/** Ticks of a logarithmic axis: 1, 2 and 5 of each power of ten; of many powers the powers alone. */
+function logTicks(low, high) {
+  const steps = high / low > 1e3 ? [1] : [1, 2, 5];
+  const ticks = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); power++) {
+    for (const step of steps) ticks.push(step * 10 ** power);
+  }
+  return ticks.filter((tick) => tick >= low && tick <= high);
+}
+
+/** The span of an axis: all numbers, with room on either side, and a power of ten at least. */
+function logSpan(numbers) {
+  const [low, high] = [Math.min(...numbers), Math.max(...numbers)];
+  if (!(low <= high)) return [0.1, 10];
+  const room = Math.max(1.5, Math.sqrt((10 * low) / high));
+  return [low / room, high * room];
+}
+
+/**
+ * Draws the chart into an element, at its width.
+ *
+ * A point is { ms, error, name, kind, efficient, budget, title }: `kind` is "shading", "budget", "now" or "second".
+ * Efficient shadings are joined, and so are budgets, in the order of their errors that are accepted. A click on a point that has `choose` calls it.
+ */
+function drawChart(element, points, { height = 260, description = "Error against time" } = {}) {
+  const SVG = "http://www.w3.org/2000/svg";
+  const make = (name, attributes, parent, text) => {
+    const made = document.createElementNS(SVG, name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    if (text !== undefined) made.textContent = text;
+    parent?.append(made);
+    return made;
+  };
+  points = points.filter(({ ms, error }) => ms > 0 && Number.isFinite(ms) && Number.isFinite(error));
+  points = points.map((point) => ({ ...point, error: Math.max(point.error, ERROR_FLOOR) }));
+  const width = Math.max(element.clientWidth, 260);
+  const [left, right, top, bottom] = [46, width - 10, 10, height - 38];
+  const [across, down] = [logSpan(points.map((point) => point.ms)), logSpan(points.map((point) => point.error))];
+  const on = ([low, high], from, to) => (value) => from + (Math.log(value / low) / Math.log(high / low)) * (to - from);
+  const [x, y] = [on(across, left, right), on(down, bottom, top)];
+
+  const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, class: "chart-svg", role: "group", "aria-label": description });
+  const xTicks = logTicks(...across);
+  for (const tick of xTicks) {
+    make("line", { class: "chart-grid", x1: x(tick), x2: x(tick), y1: top, y2: bottom }, svg);
+    make("text", { class: "chart-tick", x: x(tick), y: bottom + 15, "text-anchor": "middle" }, svg, timeText(tick));
+  }
+  for (const tick of logTicks(...down)) {
+    make("line", { class: "chart-grid", x1: left, x2: right, y1: y(tick), y2: y(tick) }, svg);
+    make("text", { class: "chart-tick", x: left - 6, y: y(tick) + 4, "text-anchor": "end" }, svg, `${Number(tick.toPrecision(2))}`);
+  }
+  make("text", { class: "chart-name", x: right, y: height - 6, "text-anchor": "end" }, svg, "time for a frame →");
+  make("text", { class: "chart-name", x: 12, y: top + 2, transform: `rotate(-90 12 ${top + 2})`, "text-anchor": "end" }, svg, "error in shades, r.m.s. →");
+
+  const around = (cx, cy, size) => ({ x0: cx - size, x1: cx + size, y0: cy - size, y1: cy + size });
+  const taken = points.map((point) => around(x(point.ms), y(point.error), 5));
+  const path = (joined, name) => {
+    const corners = joined.map((point) => [x(point.ms), y(point.error)]);
+    if (corners.length > 1) make("polyline", { class: name, points: corners.join(" ") }, svg);
+    // Names keep off the line, too.
+    corners.slice(1).forEach(([endX, endY], at) => {
+      const [startX, startY] = corners[at];
+      const steps = Math.ceil(Math.hypot(endX - startX, endY - startY) / 6);
+      for (let i = 1; i < steps; i++) taken.push(around(startX + ((endX - startX) * i) / steps, startY + ((endY - startY) * i) / steps, 1));
+    });
+  };
+  path(points.filter((point) => point.kind === "budget").sort((a, b) => b.budget - a.budget), "chart-budgets");
+  path(points.filter((point) => point.kind === "shading" && point.efficient).sort((a, b) => a.ms - b.ms), "chart-shadings");
+
+  const meets = (a, b) => a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+  const order = { now: 3, second: 2, shading: 1, budget: 0 };
+  for (const point of [...points].sort((a, b) => order[a.kind] - order[b.kind])) {
+    const at = { x: x(point.ms), y: y(point.error) };
+    const group = make("g", { class: `chart-point ${point.kind}${point.efficient ? " efficient" : ""}` }, svg);
+    make("title", {}, group, point.title ?? `${point.name}: ${timeText(point.ms)}, off by ${point.error.toPrecision(2)} shades r.m.s.`);
+    if (point.kind === "budget") make("path", { d: `M${at.x} ${at.y - 5}l5 9h-10z` }, group);
+    else make("circle", { cx: at.x, cy: at.y, r: point.kind === "shading" ? 4.5 : 7 }, group);
+    if (point.choose) {
+      group.classList.add("chosen-by-click");
+      group.addEventListener("click", point.choose);
+    }
+  }
+  // Names where they cover no point and no other name; otherwise a point has its title alone.
+  for (const point of [...points].sort((a, b) => order[b.kind] - order[a.kind])) {
+    if (!point.name) continue;
+    const [at, size] = [{ x: x(point.ms), y: y(point.error) }, 6.4 * point.name.length];
+    const places = [[9, 4, "start"], [-9, 4, "end"], [0, -10, "middle"], [0, 19, "middle"], [8, -7, "start"], [8, 15, "start"], [-8, -7, "end"], [-8, 15, "end"]];
+    for (const [dx, dy, anchor] of places) {
+      const start = at.x + dx - { start: 0, middle: size / 2, end: size }[anchor];
+      const box = { x0: start, x1: start + size, y0: at.y + dy - 10, y1: at.y + dy + 2 };
+      if (box.x0 < left || box.x1 > right + 8 || box.y0 < top - 6 || box.y1 > bottom || taken.some((other) => meets(box, other))) continue;
+      taken.push(box);
+      make("text", { class: `chart-label ${point.kind}`, x: at.x + dx, y: at.y + dy, "text-anchor": anchor }, svg, point.name);
+      break;
+    }
+  }
+  element.replaceChildren(svg);
+}
+
+/** Marks the shadings that no other is both nearer and faster than. */
+function markEfficient(points) {
+  const shadings = points.filter((point) => point.kind === "shading");
+  const beats = (a, b) => a.ms <= b.ms && a.error <= b.error && (a.ms < b.ms || a.error < b.error);
+  for (const point of shadings) point.efficient = !shadings.some((other) => beats(other, point));
+  return points;
+}

@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Puts the page together: assemble.py OUT MODULE.wasm
+
+One HTML file that needs nothing else. The engine and the scripts are packed by LZMA, the rest stands as it is. Prints what
+takes the room, and fails beyond 800,000 bytes.
+"""
+
+import json
+import lzma
+import pathlib
+import sys
+
+MOST = 800_000
+# Printable letters without <, which could end a script, & and \.
+LETTERS = "".join(letter for letter in map(chr, range(33, 127)) if letter not in "<&\\")
+
+
+def read(*paths):
+    return "\n".join(path.read_text().strip() for path in paths if path.exists())
+
+
+def pack(data):
+    """LZMA of a known size, with the settings that do best for WebAssembly."""
+    settings = {"id": lzma.FILTER_LZMA1, "preset": 9 | lzma.PRESET_EXTREME, "lc": 4, "lp": 0, "pb": 0}
+    packed = lzma.compress(data, lzma.FORMAT_ALONE, filters=[settings | {"dict_size": 1 << 22}])
+    return packed[:5] + len(data).to_bytes(8, "little") + packed[13:]
+
+
+def in_letters(data):
+    """13 bits in two of 91 letters: 23 % longer than the bytes, where base64 is 33 %."""
+    bits, count, letters = 0, 0, []
+    for byte in data + b"\0":
+        bits |= byte << count
+        count += 8
+        if count >= 13:
+            high, low = divmod(bits & 8191, 91)
+            letters += (LETTERS[low], LETTERS[high])
+            bits >>= 13
+            count -= 13
+    high, low = divmod(bits, 91)
+    return "".join([*letters, LETTERS[low], LETTERS[high]])
+
+
+def scripts(folder, *names):
+    return read(*(folder / f"{name}.js" for name in names))
+
+
+web = pathlib.Path(__file__).parent
+page, text, shared = web / "page", web / "text", web.parent / "lab/src/cost/report/figures"
+out, module = map(pathlib.Path, sys.argv[1:])
+figures = sorted((text / "figures").glob("*.js"))
+packed = {
+    "wasm": module.read_bytes(),
+    "engine": scripts(page, "engine"),
+    "worker": scripts(page, "worker"),
+    "page": "\n".join(
+        [
+            scripts(page, "elements", "background", "picture"),
+            scripts(shared, "chart", "divider"),
+            scripts(page, "accuracy", "plan", "magnifier", "scenes", "link", "save", "page"),
+        ]
+    ),
+    "figures": read(*figures),
+}
+packed = {name: part if isinstance(part, bytes) else part.encode() for name, part in packed.items()}
+parts = {
+    "style": read(page / "style.css", shared / "figures.css", text / "text.css"),
+    "text": read(text / "text.html"),
+    "parts": json.dumps({name: len(part) for name, part in packed.items()}),
+    "letters": json.dumps(LETTERS),
+    "unpack": scripts(page, "lzma", "begin"),
+    "packed": in_letters(pack(b"".join(packed.values()))),
+}
+html = (page / "index.html").read_text()
+for name, content in parts.items():
+    for mark in (f"/*{{{name}}}*/", f"<!--{{{name}}}-->"):
+        html = html.replace(mark, content)
+out.parent.mkdir(parents=True, exist_ok=True)
+out.write_text(html)
+size = len(html.encode())
+print(f"{'bytes':>9}  {'packed':>9}")
+for name, part in packed.items():
+    print(f"{len(part):9,}  {round(1.231 * len(pack(part))):9,}  {name}")
+for name in ("style", "text", "unpack"):
+    print(f"{len(parts[name].encode()):9,}  {'':9}  {name}")
+print(f"{size:9,}  {'':9}  {out}")
+if size > MOST:
+    sys.exit(f"{out}: more than {MOST:,} bytes")

@@ -1,0 +1,71 @@
+//! Plan, counts and a pixel's account as JSON.
+
+use mode13h::plan::Row;
+use mode13h::raster::Vertex;
+use mode13h::render::{Renderer, Screen, Stats};
+use mode13h::scene::Scene;
+use mode13h_lab::explain::{self, FaceHere, Pixel, Registers, Seen, ShadedBy, Walk};
+use serde_json::{Value, json};
+
+/// The counts of a frame.
+pub(crate) fn counts(stats: &Stats) -> Value {
+    let shares: Vec<Value> = stats.shares.iter().map(|(shading, faces)| json!([shading.name(), faces])).collect();
+    json!({
+        "shading": stats.shading.name(), "maxError": stats.max_error, "hidden": stats.hidden_surfaces.name(),
+        "kernel": stats.kernel, "redrawn": stats.redrawn, "faces": stats.faces, "drawn": stats.drawn,
+        "pixels": stats.raster.pixels, "vertices": stats.vertices, "shares": shares,
+    })
+}
+
+/// The plan's decisions, each with its reason.
+pub(crate) fn plan(rows: &[Row]) -> Value {
+    let row = |row: &Row| {
+        json!({
+            "place": row.place, "object": row.object, "effect": row.effect.name(), "on": row.on, "choice": row.choice,
+            "reason": row.reason,
+        })
+    };
+    rows.iter().map(row).collect()
+}
+
+/// A pixel's account of itself: the words of `mode13h explain`, and what stands out of them.
+pub(crate) fn pixel(renderer: &mut Renderer, scene: &Scene, x: u32, y: u32) -> Result<Value, String> {
+    let pixel = explain::pixel(renderer, scene, Screen::MODE_13H, x, y).map_err(|error| error.to_string())?;
+    let mut account = json!({
+        "x": x, "y": y, "byte": pixel.byte, "color": format!("#{:06x}", pixel.color.to_u32()), "text": pixel.to_string(),
+        "shading": pixel.shading.name(),
+    });
+    if let Some(seen) = pixel.seen.last() {
+        let against = seen.against.iter();
+        account["against"] = against.map(|of| json!([of.standard.name(), of.shades[0], of.error])).collect();
+        account["exact"] =
+            seen.accounts.first().and_then(|trace| trace.exact).map(|exact| exact.to_f64() / 256.0).into();
+        if let Some(face) = pixel.faces.get(seen.face) {
+            account["object"] = json!(pixel.objects.get(face.object));
+            account["triangle"] = json!(face.triangle);
+            account["corners"] = face.corners.iter().map(corner).collect();
+            account["registers"] = registers(&pixel, face, seen)
+                .map_or(Value::Null, |of| json!({ "edi": of.edi, "eax": of.eax, "ebx": of.ebx, "cx": of.cx }));
+        }
+    }
+    Ok(account)
+}
+
+/// A corner: x and y in pixels, and its shade.
+fn corner(vertex: &Vertex) -> Value {
+    let in_pixels = |bits: i32| f64::from(bits) / 256.0;
+    json!([
+        in_pixels(vertex.x().to_bits()),
+        in_pixels(vertex.y().to_bits()),
+        f64::from(vertex.shade().to_bits()) / 256.0
+    ])
+}
+
+/// What the loop of 1994 holds at the pixel, where a loop keeps a sum.
+fn registers(pixel: &Pixel, face: &FaceHere, seen: &Seen) -> Option<Registers> {
+    if seen.shaded_by != ShadedBy::Corners {
+        return None;
+    }
+    let walk = Walk::new(&face.corners, face.interpolation, seen.exact_cover, Screen::MODE_13H);
+    walk.step(walk.number(pixel.x, pixel.y)?)?.registers
+}

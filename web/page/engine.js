@@ -1,0 +1,270 @@
+// The engine: WebAssembly over linear memory. The page has one, and its worker another.
+
+const WIDTH = 320;
+const HEIGHT = 200;
+const PIXELS = WIDTH * HEIGHT;
+const STANDARDS = ["gouraud", "gouraud-perspective", "gouraud-unrounded", "lit"];
+/** Frames a second of a scene, as in the program's films. */
+const RATE = 35;
+
+/** The pose with which every picture begins: turn and tilt in radians, and the enlargement. */
+const FIRST_POSE = Object.freeze({ turn: 0, tilt: 0, zoom: 1 });
+
+/** The instance has trapped. Another is in its place, with the files that it had. */
+class EngineStopped extends Error {}
+
+class Engine {
+  /** Files that scenes may name. */
+  #files = new Map();
+  #exports = null;
+  /** Counts the instances: a scene that an earlier one opened is opened again. */
+  generation = 0;
+
+  constructor(module) {
+    this.module = module;
+    this.#restart();
+    this.#exports.about();
+    Object.assign(this, this.json());
+  }
+
+  #restart() {
+    this.#exports = new WebAssembly.Instance(this.module).exports;
+    this.generation++;
+    this.#exports.start();
+    for (const [name, bytes] of this.#files) this.#keep(name, bytes);
+  }
+
+  /** Calls an export. What it answers is then `text()`, `json()` or `bytes()`. */
+  call(name, ...numbers) {
+    try {
+      return this.#exports[name](...numbers);
+    } catch (error) {
+      if (!(error instanceof WebAssembly.RuntimeError)) throw error;
+      const reason = this.#reason();
+      this.#restart();
+      throw new EngineStopped(`The engine stopped at ${name}: ${reason || error.message}. Another one was started.`);
+    }
+  }
+
+  #reason() {
+    try {
+      return this.text();
+    } catch {
+      return "";
+    }
+  }
+
+  /** Calls an export that returns whether it could. */
+  ask(name, ...numbers) {
+    if (!this.call(name, ...numbers)) throw new Error(this.text());
+  }
+
+  put(bytes) {
+    const place = this.call("room", bytes.length);
+    new Uint8Array(this.#exports.memory.buffer, place, bytes.length).set(bytes);
+  }
+
+  /** A copy of the answer. */
+  bytes() {
+    const { memory, answer, answer_length } = this.#exports;
+    return new Uint8Array(memory.buffer, answer(), answer_length()).slice();
+  }
+
+  text() {
+    return new TextDecoder().decode(this.bytes());
+  }
+
+  json() {
+    return JSON.parse(this.text());
+  }
+
+  /** Makes the contents of `files`, a Map from name to bytes, what scenes may name. */
+  setFiles(files) {
+    this.call("forget_files");
+    this.#files = new Map(files);
+    for (const [name, bytes] of this.#files) this.#keep(name, bytes);
+  }
+
+  #keep(name, bytes) {
+    const letters = new TextEncoder().encode(name);
+    const both = new Uint8Array(letters.length + bytes.length);
+    both.set(letters);
+    both.set(bytes, letters.length);
+    this.put(both);
+    this.call("file", letters.length);
+  }
+
+  /** Opens a scene. An error has `line` and `column`, counted from 1, where it has a place. */
+  open(toml) {
+    return new Scene(this, toml);
+  }
+
+  /** Bytes of the 8.8 span loop: start AX, step BX, count CX. */
+  span(ax, bx, cx) {
+    this.call("span", ax & 0xffff, bx & 0xffff, Math.max(0, Math.trunc(cx)));
+    return this.bytes();
+  }
+
+  /** A frame of triangles, nine numbers each: x, y and shade of three corners. */
+  triangles(numbers) {
+    this.put(new Uint8Array(numbers.buffer, numbers.byteOffset, numbers.byteLength));
+    this.call("triangles");
+    return this.bytes();
+  }
+}
+
+/** Settings as the engine reads them. `effects` maps a name to true or false. */
+function settingLines({ shading, maxError, effects = {} } = {}) {
+  const lines = Object.entries(effects).map(([name, on]) => `effect ${name} ${on ? "on" : "off"}`);
+  if (maxError) lines.push(`max-error ${maxError}`);
+  else if (shading) lines.push(`shading ${shading}`);
+  return lines.join("\n");
+}
+
+class Scene {
+  #generation = 0;
+  #handle = -1;
+  #lines = "";
+
+  constructor(engine, toml) {
+    this.engine = engine;
+    this.toml = toml;
+    this.#open();
+  }
+
+  #open() {
+    const { engine } = this;
+    engine.put(new TextEncoder().encode(this.toml));
+    this.#handle = engine.call("open");
+    const about = engine.json();
+    if (this.#handle < 0) {
+      const { message, line, column } = about;
+      throw Object.assign(new Error(message), { line, column });
+    }
+    this.about = about;
+    this.#generation = engine.generation;
+    this.#lines = "";
+  }
+
+  #ask(name, ...numbers) {
+    if (this.#generation !== this.engine.generation) this.#open();
+    this.engine.ask(name, this.#handle, ...numbers);
+  }
+
+  /** Sets how the scene is drawn. */
+  set(settings) {
+    const lines = settingLines(settings);
+    if (lines === this.#lines && this.#generation === this.engine.generation) return;
+    if (this.#generation !== this.engine.generation) this.#open();
+    this.engine.put(new TextEncoder().encode(lines));
+    this.#ask("set");
+    this.#lines = lines;
+  }
+
+  /** Moves it to a time in seconds, in a pose. */
+  show(seconds, { turn, tilt, zoom } = FIRST_POSE) {
+    this.#ask("show", seconds, turn, tilt, zoom);
+  }
+
+  /** Draws a frame, `again` even where nothing has changed. Returns the milliseconds that it took. */
+  draw(again = false) {
+    const before = performance.now();
+    this.#ask("draw", again ? 1 : 0);
+    return performance.now() - before;
+  }
+
+  #picture() {
+    const bytes = this.engine.bytes();
+    return { width: WIDTH, height: HEIGHT, bytes: bytes.subarray(0, PIXELS), palette: bytes.subarray(PIXELS) };
+  }
+
+  /** What was drawn last. */
+  frame() {
+    this.#ask("frame");
+    return this.#picture();
+  }
+
+  counts() {
+    this.#ask("counts");
+    return this.engine.json();
+  }
+
+  plan() {
+    this.#ask("plan");
+    return this.engine.json();
+  }
+
+  explain(x, y) {
+    this.#ask("explain", x, y);
+    return this.engine.json();
+  }
+
+  /** How far the frame of this moment is from the truth: figures, and the level of each pixel. */
+  judge() {
+    this.#ask("judge");
+    const figures = this.engine.json();
+    this.#ask("error_map");
+    return { ...figures, map: this.engine.bytes() };
+  }
+
+  png() {
+    this.#ask("png");
+    return this.engine.bytes();
+  }
+
+  /** Adds a frame to a film of one round. After the last one: the GIF file. */
+  film(number, frames) {
+    this.#ask("film", number, frames);
+    return number + 1 < frames ? null : this.engine.bytes();
+  }
+
+  /** A frame by its number, of 35 a second. */
+  render({ frame = 0, pose = FIRST_POSE, ...settings } = {}) {
+    this.set(settings);
+    this.show(frame / RATE, pose);
+    this.draw();
+    return this.frame();
+  }
+
+  /** The truth in f64, rounded to bytes: the lighting model at every pixel, or another standard. */
+  exact({ frame = 0, pose = FIRST_POSE, standard = "lit" } = {}) {
+    this.show(frame / RATE, pose);
+    return this.truth(standard);
+  }
+
+  /** The truth at the moment that is shown. */
+  truth(standard = "lit") {
+    this.#ask("exact", STANDARDS.indexOf(standard));
+    return this.#picture();
+  }
+
+  /** Milliseconds a frame at this time, the mean of as many as fit in `budget` milliseconds. */
+  time(seconds, pose, budget = 12) {
+    // Vertices and tables are made in the first.
+    for (let i = 0; i < 2; i++) {
+      this.show(seconds + i / 70, pose);
+      this.draw(true);
+    }
+    let frames = 0;
+    const before = performance.now();
+    let took = 0;
+    do {
+      this.show(seconds + (frames % 2) / 70, pose);
+      this.#ask("draw", 1);
+      frames++;
+      took = performance.now() - before;
+    } while (took < budget);
+    this.show(seconds, pose);
+    return took / frames;
+  }
+
+  free() {
+    if (this.#generation === this.engine.generation) this.engine.call("close", this.#handle);
+    this.#generation = -1;
+  }
+}
+
+/** A module of one function with a vector of 128 bits: valid where the browser has them. */
+const HAS_VECTORS = new Uint8Array([
+  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
+]);

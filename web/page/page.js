@@ -1,0 +1,304 @@
+// The page: its state, and the loop that draws it.
+
+class Page {
+  state = {
+    name: "torus", toml: "", seconds: 0, playing: !isStill(), pose: { ...FIRST_POSE }, maxError: 4, shading: "", effects: {},
+    beside: "", divider: 0.5, pixel: null,
+  };
+  /** The scene under the divider, if there is one. */
+  other = null;
+  #files = new Map();
+  #last = 0;
+  #told = 0;
+  #stops = 0;
+  #linkTimer = 0;
+  #exact = null;
+  #isStale = true;
+
+  constructor(engine, background) {
+    this.engine = engine;
+    this.background = background;
+    this.canvas = new PalettedCanvas(element("picture"));
+    this.overlay = element("overlay").getContext("2d");
+    Object.assign(element("overlay"), { width: WIDTH, height: HEIGHT });
+    this.accuracy = new Accuracy(this);
+    this.plan = new PlanTable(this);
+    this.magnifier = new Magnifier(this);
+    this.#handle();
+    offerFiles(this);
+  }
+
+  #handle() {
+    const { state } = this;
+    handle(this.canvas, {
+      turn: (turn, tilt) => this.choose({ pose: { ...state.pose, turn: state.pose.turn + turn, tilt: state.pose.tilt + tilt } }),
+      zoom: (factor) => this.choose({ pose: { ...state.pose, zoom: clamp(state.pose.zoom * factor, 0.05, 20) } }),
+      choose: (pixel) => this.choose({ pixel, playing: false }),
+      move: (dx, dy) => this.movePixel(dx, dy),
+      play: () => this.choose({ playing: !state.playing }),
+    });
+    element("play").addEventListener("click", () => this.choose({ playing: !state.playing }));
+    element("time").addEventListener("input", ({ target }) => this.choose({ seconds: Number(target.value), playing: false }));
+    const beside = element("beside");
+    const budgets = [16, 8, 4, 2, 1, 0.5].map((budget) => [`max-error ${budget}`, `at most ${budgetText(budget)}`]);
+    const shadings = this.engine.shadings.map((name) => [`shading ${name}`, name]);
+    beside.append(new Option("the truth in f64", "truth"), ...[...budgets, ...shadings].map(([value, text]) => new Option(text, value)));
+    beside.addEventListener("change", () => this.choose({ beside: beside.value }));
+    this.moveDivider = divide(element("screen"), "How much of the picture is the left one", (place) => {
+      this.state.divider = place;
+      this.#isStale = true;
+    });
+    element("theme").addEventListener("click", () => {
+      const root = document.documentElement;
+      const isDark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+      root.dataset.theme = isDark ? "light" : "dark";
+      this.#isStale = true;
+    });
+  }
+
+  /** How the picture on the left is drawn. */
+  settings() {
+    const { maxError, shading, effects } = this.state;
+    return { maxError, shading, effects };
+  }
+
+  #besideSettings() {
+    const [kind, value] = this.state.beside.split(" ");
+    const { effects } = this.state;
+    return kind === "max-error" ? { maxError: Number(value), effects } : { shading: value, effects };
+  }
+
+  /** What the worker has to know of the present frame. */
+  question() {
+    const { toml, seconds, pose } = this.state;
+    return { toml, version: this.version, seconds, pose: { ...pose }, settings: this.settings() };
+  }
+
+  /** Asks the worker; what goes wrong is said. */
+  async ask(kind, question, onProgress) {
+    try {
+      return await this.background.ask(kind, question, onProgress);
+    } catch (error) {
+      this.trouble(error.message);
+      return null;
+    }
+  }
+
+  version = 0;
+
+  setFiles(files) {
+    this.#files = files;
+    this.version++;
+    this.engine.setFiles(files);
+    this.background.setFiles(files);
+  }
+
+  /** Opens a scene; an error leaves the one that is shown. */
+  open(toml, name, keepsMoment = false) {
+    const scene = this.engine.open(toml);
+    this.scene?.free();
+    this.other?.free();
+    this.scene = scene;
+    this.other = null;
+    Object.assign(this.state, { toml, name });
+    if (!keepsMoment) Object.assign(this.state, { seconds: isStill() ? scene.about.picture : 0, pose: { ...FIRST_POSE }, pixel: null, effects: {} });
+    this.accuracy.forget();
+    this.plan.forget();
+    element("time").max = scene.about.duration;
+    this.scenes?.follow();
+    this.choose({});
+  }
+
+  /** Changes the state, and shows that. */
+  choose(change) {
+    const { state } = this;
+    const before = JSON.stringify(this.settings());
+    Object.assign(state, change);
+    if (JSON.stringify(this.settings()) !== before) this.accuracy.restart();
+    this.accuracy.follow();
+    const play = element("play");
+    play.textContent = state.playing ? "❚❚" : "▶";
+    play.setAttribute("aria-pressed", state.playing);
+    play.setAttribute("aria-label", state.playing ? "Stop the time" : "Let the time run");
+    element("beside").value = state.beside;
+    element("screen").classList.toggle("divided", Boolean(state.beside));
+    if ("divider" in change) this.moveDivider(state.divider);
+    this.#isStale = true;
+    clearTimeout(this.#linkTimer);
+    this.#linkTimer = setTimeout(() => this.link(), 400);
+  }
+
+  movePixel(dx, dy) {
+    const { x, y } = this.state.pixel ?? { x: WIDTH / 2, y: HEIGHT / 2 };
+    this.choose({ pixel: { x: clamp(x + dx, 0, WIDTH - 1), y: clamp(y + dy, 0, HEIGHT - 1) }, playing: false });
+  }
+
+  /** Writes the link into the address bar. */
+  async link() {
+    const link = await linkOf(this.state, this.engine.shipped);
+    this.written = link;
+    try {
+      history.replaceState(null, "", link);
+    } catch {
+      location.hash = link;
+    }
+  }
+
+  /** Takes on the state of a link. */
+  async follow(hash) {
+    if (hash === this.written) return;
+    const linked = await stateOf(hash, this.engine.shipped);
+    if (!linked) return;
+    const { toml, name, ...rest } = linked;
+    this.open(toml, name);
+    this.choose({ ...rest, playing: false });
+  }
+
+  trouble(message) {
+    element("trouble").textContent = message;
+    element("trouble").hidden = !message;
+  }
+
+  /** Draws the picture on the left, at the present moment. Returns its milliseconds. */
+  drawLeft() {
+    this.scene.set(this.settings());
+    this.scene.show(this.state.seconds, this.state.pose);
+    return this.scene.draw();
+  }
+
+  /** Draws a frame of the page. */
+  frame(now) {
+    const { state } = this;
+    const step = Math.min(now - this.#last, 100) / 1000;
+    this.#last = now;
+    try {
+      if (state.playing) state.seconds = (state.seconds + step) % this.scene.about.duration;
+      if (state.playing || this.#isStale) this.#show(now);
+      this.#stops = 0;
+    } catch (error) {
+      this.trouble(error.message);
+      // One stop may be chance; a scene that stops the engine again is left.
+      if (error instanceof EngineStopped && ++this.#stops > 2) this.open(this.engine.shipped[0].toml, this.engine.shipped[0].name);
+      else if (!(error instanceof EngineStopped)) state.playing = false;
+    }
+    requestAnimationFrame((next) => this.frame(next));
+  }
+
+  #show(now) {
+    const { state } = this;
+    const wasStale = this.#isStale;
+    this.#isStale = false;
+    const ms = this.drawLeft();
+    const frame = this.scene.frame();
+    const counts = this.scene.counts();
+    if (state.playing) this.accuracy.count(ms, now);
+    else this.#timeStill();
+    const edge = state.beside ? Math.round(state.divider * WIDTH) : WIDTH;
+    this.canvas.show(frame, 0, edge);
+    if (state.beside) this.#showBeside(edge, ms);
+    this.#mark();
+    element("time").value = state.seconds;
+    element("seconds").textContent = `${state.seconds.toFixed(2)} s`;
+    if (wasStale || now - this.#told > 250) {
+      this.#told = now;
+      if (counts.redrawn) this.accuracy.shares(counts);
+      this.plan.show(this.scene.plan());
+      this.magnifier.follow(this.scene, frame, state.pixel);
+    }
+    this.#judge();
+  }
+
+  /** Times a picture that stands, once for its settings: it is drawn again and again. */
+  #timeStill() {
+    const { toml, seconds, pose } = this.state;
+    const key = JSON.stringify([toml, seconds, pose, this.settings()]);
+    if (key === this.timed) return;
+    this.timed = key;
+    this.accuracy.stand(this.scene.time(seconds, pose, 10));
+    this.scene.draw();
+  }
+
+  /** Has the frame compared with the truth. Of a picture that stands the last word is its own. */
+  async #judge() {
+    const asked = await this.accuracy.judge();
+    if (asked && JSON.stringify(asked) !== JSON.stringify(this.question()) && !this.state.playing) this.#isStale = true;
+  }
+
+  /** The pictures' names and, of what the engine draws, their times. */
+  #label(side, words, ms) {
+    const label = document.querySelector(`.side.${side}`);
+    label.hidden = false;
+    // One frame in a while: the eye cannot read them all.
+    const now = performance.now();
+    if (label.dataset.words === words && now - label.dataset.said < 300) return;
+    Object.assign(label.dataset, { words, said: now });
+    label.textContent = ms === undefined || !this.state.playing ? words : `${words}: ${timeText(ms)}`;
+  }
+
+  #showBeside(edge, ms) {
+    const { state } = this;
+    const words = element("beside").selectedOptions[0].text;
+    this.#label("left", this.#name(), ms);
+    if (state.beside === "truth") {
+      this.#label("right", words);
+      const key = JSON.stringify([state.toml, state.seconds, state.pose]);
+      if (this.#exact?.key === key) this.canvas.show(this.#exact.frame, edge);
+      else {
+        if (this.#exact) this.canvas.show(this.#exact.frame, edge);
+        this.#askExact(key);
+      }
+      return;
+    }
+    this.other ??= this.engine.open(state.toml);
+    this.other.set(this.#besideSettings());
+    this.other.show(state.seconds, state.pose);
+    this.#label("right", words, this.other.draw());
+    this.canvas.show(this.other.frame(), edge);
+  }
+
+  async #askExact(key) {
+    if (this.askingExact) return;
+    this.askingExact = true;
+    const frame = await this.ask("exact", this.question());
+    this.askingExact = false;
+    if (!frame) return;
+    this.#exact = { key, frame };
+    this.#isStale = true;
+  }
+
+  #name() {
+    const { maxError, shading } = this.state;
+    return maxError ? `at most ${budgetText(maxError)}` : shading || "the scene’s";
+  }
+
+  /** Marks the chosen pixel. */
+  #mark() {
+    this.overlay.clearRect(0, 0, WIDTH, HEIGHT);
+    if (!this.state.pixel) return;
+    const { x, y } = this.state.pixel;
+    this.overlay.strokeStyle = "#ff3060";
+    this.overlay.strokeRect(x - 1.5, y - 1.5, 4, 4);
+  }
+}
+
+async function begin() {
+  const { wasm, engine: engineScript, worker } = PARTS;
+  if (!WebAssembly.validate(HAS_VECTORS)) throw new Error("this browser has no WebAssembly with vectors of 128 bits");
+  const engine = new Engine(await WebAssembly.compile(wasm));
+  const page = new Page(engine, new Background([engineScript, "\n", worker], wasm));
+  globalThis.page = page;
+  page.open(engine.shipped[0].toml, engine.shipped[0].name);
+  await page.follow(location.hash).catch((error) => page.trouble(error.message));
+  addEventListener("hashchange", () => page.follow(location.hash).catch((error) => page.trouble(error.message)));
+  requestAnimationFrame((now) => page.frame(now));
+  page.scenes = new Scenes(page);
+  page.scenes.follow();
+  for (const part of document.querySelectorAll("[data-needs-text]")) part.hidden = !element("text").firstElementChild;
+  globalThis.mountFigures?.(engine);
+}
+
+begin().catch((error) => {
+  const box = element("trouble");
+  box.textContent = `The engine could not be started: ${error.message}`;
+  box.hidden = false;
+});

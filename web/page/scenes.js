@@ -1,0 +1,126 @@
+// Scenes: a picture of each that is shipped, the editor, and models that are dropped.
+
+/** Milliseconds without a key before the text is tried. */
+const PAUSE = 300;
+
+class Scenes {
+  #timer = 0;
+  #files = new Map();
+
+  constructor(page) {
+    this.page = page;
+    this.text = element("toml");
+    this.text.addEventListener("input", () => {
+      clearTimeout(this.#timer);
+      this.#timer = setTimeout(() => this.#try(), PAUSE);
+      this.#number();
+    });
+    this.text.addEventListener("scroll", () => (element("lines").scrollTop = this.text.scrollTop));
+    const drop = element("drop");
+    // The whole page takes files, so that none that misses the mark leaves it.
+    addEventListener("dragover", (event) => {
+      event.preventDefault();
+      drop.classList.add("over");
+    });
+    addEventListener("dragleave", (event) => event.relatedTarget ?? drop.classList.remove("over"));
+    addEventListener("drop", (event) => {
+      event.preventDefault();
+      drop.classList.remove("over");
+      if (event.dataTransfer.files.length) this.take([...event.dataTransfer.files]);
+    });
+    element("files").addEventListener("change", ({ target }) => {
+      this.take([...target.files]);
+      target.value = "";
+    });
+    this.#gallery();
+  }
+
+  #gallery() {
+    const cards = this.page.engine.shipped.map(({ name, toml, shows }) => {
+      const card = make("button", { type: "button", className: "card", title: shows });
+      card.dataset.scene = name;
+      const canvas = make("canvas");
+      card.append(canvas, make("span", {}, name));
+      card.addEventListener("click", () => {
+        this.page.open(toml, name);
+        element("instrument").scrollIntoView({ behavior: isStill() ? "auto" : "smooth" });
+      });
+      return { card, canvas, toml };
+    });
+    element("gallery").replaceChildren(...cards.map(({ card }) => card));
+    // One at a time, whenever the page has nothing else to do.
+    const idle = globalThis.requestIdleCallback ?? ((work) => setTimeout(work, 50));
+    const next = () => {
+      const { canvas, toml } = cards.shift() ?? {};
+      if (!canvas) return;
+      const scene = this.page.engine.open(toml);
+      scene.show(scene.about.picture);
+      scene.draw();
+      new PalettedCanvas(canvas).show(scene.frame());
+      scene.free();
+      idle(next);
+    };
+    idle(next);
+  }
+
+  /** Shows the text of the scene that was opened. */
+  follow() {
+    const { toml, name } = this.page.state;
+    if (this.text.value !== toml) this.text.value = toml;
+    for (const card of element("gallery").children) card.setAttribute("aria-current", card.dataset.scene === name);
+    this.#number();
+    this.verdict(this.page.scene.about);
+  }
+
+  #number(wrong = 0) {
+    const count = this.text.value.split("\n").length;
+    const lines = Array.from({ length: count }, (_, at) => [make(at + 1 === wrong ? "b" : "span", {}, at + 1), "\n"]);
+    element("lines").replaceChildren(...lines.flat());
+    element("lines").scrollTop = this.text.scrollTop;
+  }
+
+  #try() {
+    try {
+      this.page.open(this.text.value, this.page.state.name, true);
+    } catch (error) {
+      const { line, column, message } = error;
+      element("verdict").className = "wrong";
+      element("verdict").textContent = line ? `Line ${line}, column ${column}: ${message}` : message;
+      this.text.setAttribute("aria-invalid", "true");
+      this.#number(line);
+    }
+  }
+
+  verdict({ faces, objects, warnings }) {
+    const counts = `${objects} ${objects === 1 ? "object" : "objects"}, ${faces.toLocaleString("en")} faces.`;
+    element("verdict").className = warnings.length ? "warned" : "";
+    element("verdict").textContent = [counts, ...warnings].join(" ");
+    this.text.removeAttribute("aria-invalid");
+  }
+
+  /** Takes files: a scene, or a model with what it names. */
+  async take(files) {
+    try {
+      for (const file of files) this.#files.set(file.name, new Uint8Array(await file.arrayBuffer()));
+      this.page.setFiles(this.#files);
+      element("dropped").replaceChildren(...[...this.#files].map(([name, bytes]) => make("li", { className: "mono" }, `${name}, ${bytes.length.toLocaleString("en")} bytes`)));
+      const find = (extension) => files.find((file) => file.name.toLowerCase().endsWith(extension));
+      const [scene, model] = [find(".toml"), find(".obj")];
+      if (scene) this.page.open(await scene.text(), scene.name.replace(/\.toml$/i, ""));
+      else if (model) this.page.open(this.#showing(model.name), model.name.replace(/\.obj$/i, ""));
+      else this.page.open(this.page.state.toml, this.page.state.name);
+      element("instrument").scrollIntoView({ behavior: isStill() ? "auto" : "smooth" });
+    } catch (error) {
+      this.page.trouble(`${files.map((file) => file.name).join(", ")}: ${error.message}`);
+    }
+  }
+
+  /** The scene of a model that turns; in colours of its own where its materials have any. */
+  #showing(name) {
+    const materials = [...this.#files].filter(([file]) => file.toLowerCase().endsWith(".mtl"));
+    const texts = materials.map(([, bytes]) => new TextDecoder().decode(bytes)).join("\n");
+    const isColored = /^\s*map_Kd\s/m.test(texts) || [...texts.matchAll(/^\s*Kd\s+(\S+)\s+(\S+)\s+(\S+)/gm)].some(([, red, green, blue]) => red !== green || green !== blue);
+    const palette = isColored ? "auto" : "grey";
+    return `palette = "${palette}"\nobjects = [{ model = ${JSON.stringify(name)}, spin = 1 }]\nlights = [{ sun = [0.4, 0.6, 1] }]\n`;
+  }
+}
