@@ -19,47 +19,6 @@ use super::weights::WholeWeights;
 use crate::fixed::HAS_F64;
 use crate::span::hyperbolic::{fill_estimated_quotients, fill_quotients, floor_quotient};
 
-/// A function that is linear over the screen, at pixel centres.
-#[cfg(feature = "alloc")]
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Linear {
-    origin: i128,
-    per_column: i128,
-    per_row: i128,
-}
-
-#[cfg(feature = "alloc")]
-impl Linear {
-    /// The function with these values, each below 2⁶⁴, at the vertices of a triangle that is not degenerate.
-    pub(super) fn new(triangle: &SortedTriangle, [v0, v1, v2]: [i128; 3]) -> Self {
-        let [(x0, y0), (x1, y1), (x2, y2)] =
-            triangle.vertices.each_ref().map(|v| (i128::from(v.x().to_bits()), i128::from(v.y().to_bits())));
-        let sign = i128::from(triangle.doubled_area.signum());
-        let gx = ((v1 - v0) * (y2 - y0) - (v2 - v0) * (y1 - y0)) * sign;
-        let gy = ((v2 - v0) * (x1 - x0) - (v1 - v0) * (x2 - x0)) * sign;
-        Self {
-            origin: v0 * i128::from(triangle.area()) + gx * (128 - x0) + gy * (128 - y0),
-            per_column: gx * 256,
-            per_row: gy * 256,
-        }
-    }
-
-    /// The value times the triangle's doubled area at the centre of pixel (`x`, `y`).
-    pub(super) fn at(&self, x: i32, y: i32) -> i128 {
-        self.origin + self.per_column * i128::from(x) + self.per_row * i128::from(y)
-    }
-
-    /// Change from one pixel to the next.
-    pub(super) fn per_column(&self) -> i128 {
-        self.per_column
-    }
-
-    /// Change from one row to the next.
-    pub(super) fn per_row(&self) -> i128 {
-        self.per_row
-    }
-}
-
 /// The perspective-correct shades of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct HyperbolicPlane {

@@ -45,6 +45,13 @@ impl WholeWeights {
     pub(super) fn per_column(&self) -> [i64; 3] {
         self.per_column
     }
+
+    /// Change of the weights from one row to the next. They add up to 0, and are within 2³⁰.
+    #[cfg(feature = "alloc")]
+    #[inline]
+    pub(super) fn per_row(&self) -> [i64; 3] {
+        self.per_row
+    }
 }
 
 /// The weights of the three corners in f64, exact like [`WholeWeights`].

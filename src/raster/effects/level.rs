@@ -18,7 +18,6 @@
 //! rounded down. All else is exact.
 
 use crate::raster::cover::SortedTriangle;
-use crate::raster::hyperbolic::Linear;
 use crate::span::hyperbolic::floor_quotient;
 
 /// Twice the length of a step.
@@ -41,9 +40,10 @@ fn choose(across: u128, down: u128, unit: u128, last: u32) -> u32 {
     level
 }
 
-/// The level of a face whose coordinates are linear on the screen.
-pub(super) fn of_face(coordinates: &[Linear; 2], area: i64, last: u32) -> u32 {
-    let [across, down] = [Linear::per_column, Linear::per_row].map(|step| doubled(coordinates.each_ref().map(step)));
+/// The level of a face whose coordinates are linear on the screen. They change by these from one pixel of a row, and of a
+/// column, to the next, times the area.
+pub(super) fn of_face(across: [i128; 2], down: [i128; 2], area: i64, last: u32) -> u32 {
+    let [across, down] = [across, down].map(doubled);
     // Coordinates have 16 fraction bits. The area is at most 2⁴².
     choose(across, down, u128::from(area.unsigned_abs()) << 16, last)
 }

@@ -25,7 +25,7 @@ impl Pieces {
             self.shade_channels(faces, buffers, pipeline, kernel);
             if let Some(stage) = pipeline.texture() {
                 let Buffers { other, channels, .. } = &mut *buffers;
-                self.texels(faces, (stage, pipeline.levels()), &mut other[..n]);
+                self.texels((), faces, (stage, pipeline.levels()), &mut other[..n], kernel);
                 for (channel, table) in channels.iter_mut().zip(stage.tables) {
                     for ((piece, texels), channel) in self.pieces().iter().zip(&*other).zip(channel) {
                         let mut shown = *texels;
@@ -38,12 +38,7 @@ impl Pieces {
         }
         self.shade_bytes(faces, buffers, pipeline, kernel);
         if let Some(stage) = pipeline.texture() {
-            let Buffers { other, bytes, .. } = &mut *buffers;
-            self.texels(faces, (stage, pipeline.levels()), &mut other[..n]);
-            for ((piece, texels), shades) in self.pieces().iter().zip(&mut *other).zip(&*bytes) {
-                lookup(&mut texels[..piece.len()], &shades[..piece.len()], stage.tables[0]);
-            }
-            core::mem::swap(bytes, other);
+            self.texels(stage.tables[0], faces, (stage, pipeline.levels()), &mut buffers.bytes[..n], kernel);
         }
     }
 
