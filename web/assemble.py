@@ -8,6 +8,7 @@ takes the room, and fails beyond 800,000 bytes.
 import json
 import lzma
 import pathlib
+import re
 import sys
 
 MOST = 800_000
@@ -41,6 +42,11 @@ def in_letters(data):
     return "".join([*letters, LETTERS[low], LETTERS[high]])
 
 
+def without_comments(script):
+    """A script without the lines that are comments alone."""
+    return re.sub(r"^ *(//.*|/\*\*.*\*/)\n", "", script, flags=re.MULTILINE)
+
+
 def scripts(folder, *names):
     return read(*(folder / f"{name}.js" for name in names))
 
@@ -63,11 +69,11 @@ packed = {
     "figures": read(*figures),
     # What the first screen does not need.
     "style": read(shared / "figures.css", text / "text.css"),
+    "text": read(text / "text.html"),
 }
-packed = {name: part if isinstance(part, bytes) else part.encode() for name, part in packed.items()}
+packed = {name: part if isinstance(part, bytes) else without_comments(part).encode() for name, part in packed.items()}
 parts = {
     "style": read(shared / "tokens.css", page / "style.css"),
-    "text": read(text / "text.html"),
     "parts": json.dumps({name: len(part) for name, part in packed.items()}),
     "letters": json.dumps(LETTERS),
     "unpack": scripts(page, "lzma", "begin"),
@@ -83,7 +89,7 @@ size = len(html.encode())
 print(f"{'bytes':>9}  {'packed':>9}")
 for name, part in packed.items():
     print(f"{len(part):9,}  {round(1.231 * len(pack(part))):9,}  {name}")
-for name in ("style", "text", "unpack"):
+for name in ("style", "unpack"):
     print(f"{len(parts[name].encode()):9,}  {'':9}  {name}")
 print(f"{size:9,}  {'':9}  {out}")
 if size > MOST:

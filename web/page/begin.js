@@ -32,6 +32,7 @@ function run(script) {
 
 const PARTS = unpackParts();
 document.head.append(Object.assign(document.createElement("style"), { textContent: PARTS.style }));
+document.getElementById("text").innerHTML = PARTS.text;
 run(PARTS.engine);
 run(PARTS.figures);
 run(PARTS.page);
