@@ -16,8 +16,8 @@ use mode13h::scene::{Scene, UpAxis};
 use mode13h::span::Kernel;
 
 use crate::failure::Failure;
-use crate::input::{self, Colors, Input, Model};
-use crate::turntable::{Background, Turntable};
+use crate::input::{self, Input, Model};
+use crate::turntable::{Background, Colors, Turntable};
 pub(crate) use shading::ShadingOptions;
 
 /// The environment variable that stands in for `--kernel`. The library reads none.

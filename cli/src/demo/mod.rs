@@ -40,10 +40,10 @@ use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window, WindowError};
 
 use crate::failure::Failure;
-use crate::turntable::Colors;
 use crate::options::{Drawing, ShadingOptions};
 use crate::overlay::{self, Sheet, Side};
 use crate::toggles::Switch;
+use crate::turntable::Colors;
 use crate::turntable::Turntable;
 use crate::{input, output};
 use choice::Choice;
