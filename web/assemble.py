@@ -46,7 +46,7 @@ def scripts(folder, *names):
 
 
 web = pathlib.Path(__file__).parent
-page, text, shared = web / "page", web / "text", web.parent / "lab/src/cost/report/figures"
+page, text, shared = web / "page", web / "text", web.parent / "lab/src/cost/report/shared"
 out, module = map(pathlib.Path, sys.argv[1:])
 figures = sorted((text / "figures").glob("*.js"))
 packed = {
@@ -61,10 +61,12 @@ packed = {
         ]
     ),
     "figures": read(*figures),
+    # What the first screen does not need.
+    "style": read(shared / "figures.css", text / "text.css"),
 }
 packed = {name: part if isinstance(part, bytes) else part.encode() for name, part in packed.items()}
 parts = {
-    "style": read(page / "style.css", shared / "figures.css", text / "text.css"),
+    "style": read(shared / "tokens.css", page / "style.css"),
     "text": read(text / "text.html"),
     "parts": json.dumps({name: len(part) for name, part in packed.items()}),
     "letters": json.dumps(LETTERS),

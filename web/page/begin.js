@@ -31,6 +31,7 @@ function run(script) {
 }
 
 const PARTS = unpackParts();
+document.head.append(Object.assign(document.createElement("style"), { textContent: PARTS.style }));
 run(PARTS.engine);
 run(PARTS.figures);
 run(PARTS.page);

@@ -263,8 +263,3 @@ class Scene {
     this.#generation = -1;
   }
 }
-
-/** A module of one function with a vector of 128 bits: valid where the browser has them. */
-const HAS_VECTORS = new Uint8Array([
-  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
-]);

@@ -283,7 +283,7 @@ class Page {
 
 async function begin() {
   const { wasm, engine: engineScript, worker } = PARTS;
-  if (!WebAssembly.validate(HAS_VECTORS)) throw new Error("this browser has no WebAssembly with vectors of 128 bits");
+  if (!WebAssembly.validate(wasm)) throw new Error("this browser has no WebAssembly with vectors of 128 bits");
   const engine = new Engine(await WebAssembly.compile(wasm));
   const page = new Page(engine, new Background([engineScript, "\n", worker], wasm));
   globalThis.page = page;

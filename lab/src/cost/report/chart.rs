@@ -138,6 +138,22 @@ fn points(study: &Study) -> Vec<Point> {
     points
 }
 
+/// The points as `shared/chart.js` takes them, in JSON: names are those of shadings, which need no escapes.
+pub(super) fn points_json(study: &Study) -> String {
+    let shading = |row: &ShadingRow| {
+        let (ms, error) = (row.per_frame.median / 1e6, row.error_lit.rms);
+        (ms, error, format!(r#""kind":"shading","name":"{}","efficient":{}"#, row.shading, row.efficient))
+    };
+    let budget = |row: &crate::cost::BudgetRow| {
+        let (ms, error, most) = (row.per_frame.median / 1e6, row.rms, row.max_error);
+        (ms, error, format!(r#""kind":"budget","name":"≤ {}","budget":{most}"#, asked(most)))
+    };
+    let all = study.shadings.iter().map(shading).chain(study.budget.iter().map(budget));
+    let all = all.filter(|(ms, error, _)| ms.is_finite() && error.is_finite());
+    let all: Vec<String> = all.map(|(ms, error, rest)| format!(r#"{{"ms":{ms},"error":{error},{rest}}}"#)).collect();
+    format!("[{}]", all.join(","))
+}
+
 /// Budgets that lie at the same place, as far as can be seen, get one name.
 fn join_budgets(points: &mut Vec<Point>, pixel: impl Fn(&Point) -> (i32, i32)) {
     let mut joined: Vec<Point> = Vec::new();

@@ -2,10 +2,25 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
+use super::chart::points_json;
 use super::{budget_svg, budgets, chart_svg, choices, method, shadings, summary};
 use crate::cost::Study;
 
-const STYLE: &str = include_str!("style.css");
+/// The report's own style, and what it shares with the page in the browser: colours, chart and divider.
+const STYLES: [&str; 3] =
+    [include_str!("shared/tokens.css"), include_str!("style.css"), include_str!("shared/figures.css")];
+
+/// Chart and divider.
+const SCRIPTS: [&str; 2] = [include_str!("shared/chart.js"), include_str!("shared/divider.js")];
+
+/// Draws the chart anew, so that it follows the window and light or dark, and puts a divider over each pair.
+const MOUNT: &str = r#"
+for (const chart of document.querySelectorAll("[data-points]")) {
+  const points = JSON.parse(chart.dataset.points);
+  new ResizeObserver(() => drawChart(chart, points, { height: 420, description: chart.ariaLabel })).observe(chart);
+}
+for (const pair of document.querySelectorAll(".pair")) divide(pair, pair.dataset.label);
+"#;
 
 /// The whole study as one HTML file that needs nothing else: pictures and charts are in it, and nothing is loaded.
 #[must_use]
@@ -19,9 +34,9 @@ pub fn html(study: &Study) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
-                style { (PreEscaped(STYLE)) }
-                // Without scripts nothing moves the slider, so both pictures stand side by side.
-                noscript { style { ".pair{display:grid;grid-template-columns:1fr 1fr}.pair img{position:static;clip-path:none}.slide{display:none}" } }
+                @for style in STYLES { style { (PreEscaped(style)) } }
+                // Without scripts nothing moves the divider, so both pictures stand side by side.
+                noscript { style { ".pair{display:grid;grid-template-columns:1fr 1fr}.pair img{position:static;clip-path:none}" } }
             }
             body {
                 main {
@@ -37,7 +52,7 @@ pub fn html(study: &Study) -> String {
                     }
                     section {
                         h2 { "Error against time" }
-                        (chart(&chart_svg(study), "Error against lit and time for a frame of every shading and budget, both logarithmic; the table below has the figures"))
+                        (error_chart(study))
                     }
                     (shadings::tables(study))
                     (shadings::pictures(study))
@@ -46,10 +61,24 @@ pub fn html(study: &Study) -> String {
                     (choices::claims(study))
                     (method::section(study))
                 }
+                script { @for script in SCRIPTS { (PreEscaped(script)) } (PreEscaped(MOUNT)) }
             }
         }
     };
     page.into_string()
+}
+
+/// Error against time: the chart of the page in the browser or, without scripts, an SVG.
+fn error_chart(study: &Study) -> Markup {
+    let description = "Error against lit and time for a frame of every shading and budget, both logarithmic; the table \
+                       below has the figures";
+    markup! {
+        figure.chart role="img" aria-label=(description) data-points=(points_json(study)) { (PreEscaped(chart_svg(study))) }
+        p.key {
+            span { "Filled and joined: efficient shadings, of which none is as near and surely faster." }
+            span { "Triangles: budgets, errors up to so many shades accepted." }
+        }
+    }
 }
 
 fn chart(svg: &str, description: &str) -> Markup {

@@ -137,7 +137,7 @@ pub(super) fn pictures(study: &Study) -> Markup {
     html! {
         @if !study.shadings.is_empty() { section {
             h2 { "Frames and their errors" }
-            p { "The first frame, in 256 greys, left of the slider; its error against lit, right of it." }
+            p { "The first frame, in 256 greys, left of the divider; its error against lit, right of it." }
             p.key {
                 @for level in LEVELS { span { (swatch(level.color)) " " (level.label) } }
                 span { "shades" }
@@ -158,12 +158,10 @@ fn pair(row: &ShadingRow) -> Markup {
         figure {
             @match (frame, map) {
                 (Some(frame), Some(map)) => {
-                    div.pair {
+                    div.pair data-label=(format!("{}: how much of the frame, how much of its error map", row.shading)) {
                         img src=(map) width="320" height="240" alt=(format!("error map of {}", row.shading));
                         img.over src=(frame) width="320" height="240" alt=(format!("frame of {}", row.shading));
                     }
-                    input.slide type="range" min="0" max="100" value="50" aria-label=(format!("{}: how much of the frame, how much of its error map", row.shading))
-                        oninput="this.previousElementSibling.style.setProperty('--at',this.value+'%')";
                 },
                 _ => p.none { "no picture" },
             }

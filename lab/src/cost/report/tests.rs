@@ -89,8 +89,16 @@ fn whole() -> Study {
     study
 }
 
-/// Makes XML of an HTML page: replaces the first line, and closes the elements that have no end.
+/// Takes the one script out of a page. Returns the page without it, and the script.
+fn apart(page: &str) -> (String, &str) {
+    let (before, rest) = page.split_once("<script>").expect("a script");
+    let (script, after) = rest.split_once("</script>").expect("an end of the script");
+    (format!("{before}{after}"), script)
+}
+
+/// Makes XML of an HTML page: replaces the first line, leaves out the script, and closes the elements that have no end.
 fn as_xml(page: &str) -> String {
+    let (page, _) = apart(page);
     let mut text = page
         .strip_prefix("<!DOCTYPE html>")
         .expect("an HTML file")
@@ -148,11 +156,37 @@ fn a_report_is_well_formed_and_says_everything() {
 fn a_report_loads_nothing() {
     let page = html(&whole());
     let own = page.replace("http://www.w3.org/2000/svg", "");
+    let (own, script) = apart(&own);
+    for call in ["http", "fetch", "import", "XMLHttpRequest", "WebSocket", "src", "eval", "</", "<!"] {
+        assert!(!script.contains(call), "{call}");
+    }
     for foreign in ["http", "//", "@import", "<script", "<link", "url("] {
         // Base 64 has slashes.
         let outside = own.split('"').filter(|part| !part.starts_with("data:image/png;base64,"));
         assert!(outside.into_iter().all(|part| !part.contains(foreign)), "{foreign}");
     }
+}
+
+#[test]
+fn the_chart_that_scripts_draw_has_every_point() {
+    let study = whole();
+    let xml = as_xml(&html(&study));
+    let document = parsed(&xml);
+    let points = document.descendants().find_map(|n| n.attribute("data-points")).expect("points");
+    assert_eq!(points.matches(r#"{"ms":"#).count(), study.shadings.len() + study.budget.len());
+    for row in &study.shadings {
+        let (ms, error) = (row.per_frame.median / 1e6, row.error_lit.rms);
+        let point = format!(r#"{{"ms":{ms},"error":{error},"kind":"shading","name":"{}","#, row.shading);
+        assert!(points.contains(&point), "{point} in {points}");
+    }
+    for row in &study.budget {
+        let end = format!(r#""budget":{}}}"#, row.max_error);
+        assert!(points.contains(&end), "{end} in {points}");
+    }
+    // A study that nobody has timed.
+    let mut untimed = self::study(vec![shading(Shading::Flat, f64::NAN, 0.0, 0.0)]);
+    untimed.budget.clear();
+    assert!(html(&untimed).contains(r#"data-points="[]""#));
 }
 
 #[test]
