@@ -73,7 +73,7 @@ fn attributes(random: &mut Random) -> [Attributes; 3] {
     core::array::from_fn(|_| {
         let mut shade = || U8F8::from_bits(random.within(0, 0xFF00) as u16);
         let (fog, channels, slope) = (shade(), [shade(), shade(), shade()], [shade(), shade()]);
-        let reach = random.log_uniform(30) as i64;
+        let reach = random.log_uniform(31) as i64;
         let texture = core::array::from_fn(|_| random.within(-reach, reach) as i32);
         let lit = core::array::from_fn(|_| random.within(0, 20_000) as f32);
         Attributes { texture, fog, channels, slope, lit }
