@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
-use super::{budget_svg, budgets, chart_svg, choices, method, shadings, summary};
+use super::{budget_svg, budgets, chart_svg, choices, method, shadings, summary, time_svg, times};
 use crate::cost::Study;
 
 const STYLE: &str = include_str!("style.css");
@@ -42,6 +42,7 @@ pub fn html(study: &Study) -> String {
                     (shadings::tables(study))
                     (shadings::pictures(study))
                     (budgets::section(study, || chart(&budget_svg(study), "Time for a frame against the accepted error, both logarithmic; the table has the figures")))
+                    (times::section(study, || chart(&time_svg(study), "Largest error against the time that is given for a frame, both logarithmic; the table has the figures")))
                     (choices::options(study))
                     (choices::claims(study))
                     (method::section(study))
