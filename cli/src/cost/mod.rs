@@ -6,6 +6,8 @@ mod instructions;
 mod json;
 mod text;
 
+pub(crate) use host::clock;
+
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Mutex;

@@ -261,7 +261,8 @@ impl Referee<'_> {
                 findings.excess = excess(shading, linear_error, numeric.figures().max, max.fold(0.0, f64::max));
             }
             for (kept, bound) in findings.kept.iter_mut().zip(BUDGETS) {
-                let keeps = |(error, sure): (Option<f64>, &bool)| error.is_some_and(|error| error <= bound.max(LIT) || !sure);
+                let keeps =
+                    |(error, sure): (Option<f64>, &bool)| error.is_some_and(|error| error <= bound.max(LIT) || !sure);
                 kept.within = model.errors().zip(&sure).filter(|pair| keeps(*pair)).count() as u64;
                 kept.patch = model.largest_patch(bound);
             }
@@ -285,7 +286,9 @@ impl Referee<'_> {
         renderer.settings.accuracy = Some(Shading::Gouraud88Reseeded.into());
         renderer.for_each_triangle(scene, Screen::MODE_13H, |_, _| {})?;
         let seen = (0..scene.objects().len()).filter(|object| scene.is_visible(*object));
-        Ok(seen.map(|object| renderer.linear_error(scene, object)).try_fold(0.0_f64, |most, error| Some(most.max(error?))))
+        Ok(seen
+            .map(|object| renderer.linear_error(scene, object))
+            .try_fold(0.0_f64, |most, error| Some(most.max(error?))))
     }
 
     /// Judges the frames from one step to the next.

@@ -137,8 +137,11 @@ pub fn measure(
     let rows = Rows { ways: &ways, times: times(&ways, &outcome.samples), findings, outcome: &outcome, seed: *seed };
     let mut of_shadings = rows.shadings(&splits, frames.len());
     let budget = rows.budgets();
-    let by_time: Vec<(f64, &Results)> =
-        budget.iter().map(|row| row.per_frame.median).zip(rows.of_budgets().map(|(place, _)| &rows.findings[place])).collect();
+    let by_time: Vec<(f64, &Results)> = budget
+        .iter()
+        .map(|row| row.per_frame.median)
+        .zip(rows.of_budgets().map(|(place, _)| &rows.findings[place]))
+        .collect();
     let times = timed_rows(frames, renderer, &by_time, &spent(0.25), &|share| progress(Step::Goals, share))?;
     of_shadings.retain(|row| shadings.contains(&row.shading));
     let study = Study {

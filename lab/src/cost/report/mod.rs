@@ -20,10 +20,10 @@ mod page;
 mod pictures;
 mod shadings;
 mod summary;
-mod time_chart;
-mod times;
 #[cfg(test)]
 mod tests;
+mod time_chart;
+mod times;
 
 pub use budget_chart::budget_svg;
 pub use chart::chart_svg;

@@ -2,8 +2,10 @@
 
 use std::collections::HashSet;
 
-use super::{budget_svg, time_svg, budgets::verdict, chart_svg, html, summary};
-use crate::cost::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, TimeRow, Verdict};
+use super::{budget_svg, budgets::verdict, chart_svg, html, summary, time_svg};
+use crate::cost::{
+    Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, TimeRow, Verdict,
+};
 use mode13h::render::Shading;
 
 fn time(median: f64) -> Nanoseconds {
@@ -200,7 +202,8 @@ fn nothing_and_no_number_are_reported_too() {
     let mut strange = study(vec![nan, shading(Shading::Phong, 0.0, f64::INFINITY, -1.0)]);
     strange.budget = vec![budget(f64::NAN, f64::NAN, Some((Shading::Flat, f64::NAN))), budget(0.0, 0.0, None)];
     strange.budget[1].triangles.clear();
-    strange.times = vec![TimeRow { max_time: f64::NAN, largest: f64::INFINITY, ..TimeRow::default() }, TimeRow::default()];
+    strange.times =
+        vec![TimeRow { max_time: f64::NAN, largest: f64::INFINITY, ..TimeRow::default() }, TimeRow::default()];
     for study in [empty, strange] {
         let page = html(&study);
         parsed(&as_xml(&page));
