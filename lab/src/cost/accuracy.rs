@@ -12,6 +12,7 @@ use super::configuration::{BUDGETS, Configuration, Kind};
 use super::quantization::Entries;
 use super::{CostError, Errors, Probe};
 use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth};
+use mode13h::plan::Effect;
 use mode13h::render::{Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::Scene;
 
@@ -87,7 +88,7 @@ pub(super) struct Results {
     swim: Swim,
     /// Shades by which the worst pixel is beyond its shading's bound, negative where none is; `None` without a bound.
     pub(super) excess: Option<f64>,
-    /// The largest error of each frame against `lit`.
+    /// The largest error of each frame against `lit`, at pixels where light at the pixel itself is within rounding.
     pub(super) worst: Vec<f64>,
     /// The shades of the first frame; `error_map` holds its errors against `lit`.
     pub(super) picture: Vec<u8>,
@@ -163,13 +164,6 @@ pub(super) struct Referee<'a> {
     pub(super) frames: &'a [Scene],
     /// Frames 0.25° apart, for what swims.
     pub(super) steps: &'a [Scene],
-}
-
-/// The shades by which a shading is beyond what it promises: against exact linear shades its rounding, and against light
-/// at every pixel `linear_error` besides.
-fn excess(shading: Shading, linear_error: f64, numeric: f64, model: f64) -> Option<f64> {
-    let rounding = linear_rounding(shading)?;
-    Some((numeric - rounding).max(model - linear_error - rounding))
 }
 
 impl Referee<'_> {
@@ -255,10 +249,11 @@ impl Referee<'_> {
             };
             findings.gouraud.count(&numeric);
             findings.lit.count(&model);
-            findings.worst.push(model.figures().max);
+            let worst = model.errors().zip(&sure).filter(|(_, sure)| **sure).filter_map(|(error, _)| error);
+            let worst = worst.fold(0.0, f64::max);
+            findings.worst.push(worst);
             if let (Kind::Shading(shading), Some(linear_error)) = (way.kind, linear_error) {
-                let max = model.errors().zip(&sure).filter(|(_, sure)| **sure).filter_map(|(error, _)| error);
-                findings.excess = excess(shading, linear_error, numeric.figures().max, max.fold(0.0, f64::max));
+                findings.excess = linear_rounding(shading).map(|rounding| worst - linear_error - rounding);
             }
             for (kept, bound) in findings.kept.iter_mut().zip(BUDGETS) {
                 let keeps =
@@ -277,7 +272,7 @@ impl Referee<'_> {
     }
 
     /// The bound of linear shades in a frame that [`Renderer::linear_error`] states, against light at every pixel. `None`
-    /// where an object has none, and on 16.16 vertices.
+    /// where an object has none or is split, and on 16.16 vertices.
     fn linear_error(&self, scene: &Scene) -> Result<Option<f64>, CostError> {
         let mut renderer = (self.base)();
         if renderer.settings.vertex_path == VertexPath::Integer {
@@ -285,6 +280,9 @@ impl Referee<'_> {
         }
         renderer.settings.accuracy = Some(Shading::Gouraud88Reseeded.into());
         renderer.for_each_triangle(scene, Screen::MODE_13H, |_, _| {})?;
+        if renderer.plan().is_on_anywhere(Effect::Tessellation) {
+            return Ok(None);
+        }
         let seen = (0..scene.objects().len()).filter(|object| scene.is_visible(*object));
         Ok(seen
             .map(|object| renderer.linear_error(scene, object))

@@ -169,7 +169,8 @@ pub struct TimeRow {
     pub mean_error: f64,
     /// The greatest of them.
     pub max_error: f64,
-    /// The largest error of these frames against `lit`.
+    /// The largest error of these frames against `lit`, but for pixels where rounded vertices put light at the pixel itself
+    /// off.
     pub largest: f64,
 }
 

@@ -146,7 +146,7 @@ fn a_report_is_well_formed_and_says_everything() {
     for part in [
         "time limit is void",
         "The time for a frame",
-        "1,200",
+        "1\u{2009}200",
         "Cannot be told apart",
         "flat and float",
         "holds in part",

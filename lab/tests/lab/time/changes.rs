@@ -24,6 +24,7 @@ use crate::support::random::Random;
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
     accuracy: Option<Accuracy>,
+    max_time: Option<f32>,
     mapping: Option<Mapping>,
     mipmaps: Option<bool>,
     vertex_path: VertexPath,
@@ -37,6 +38,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             accuracy: None,
+            max_time: None,
             mapping: None,
             mipmaps: None,
             vertex_path: VertexPath::default(),
@@ -50,9 +52,10 @@ impl Default for Settings {
 impl Settings {
     /// A fresh renderer that is set so.
     pub(super) fn renderer(&self) -> Renderer {
-        let Self { accuracy, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
+        let Self { accuracy, max_time, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
         let mut renderer = Renderer::new();
         renderer.settings.accuracy = *accuracy;
+        renderer.settings.max_time = *max_time;
         renderer.settings.mapping = *mapping;
         renderer.settings.mipmaps = *mipmaps;
         renderer.settings.vertex_path = *vertex_path;
