@@ -7,13 +7,16 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::export::{FrameRate, Scale};
-use mode13h::render::{Renderer, Screen, Stats};
+use mode13h::render::{Accuracy, Renderer, Screen, Stats};
+use mode13h::span::Kernel;
 use mode13h::vga::Vga;
-use mode13h_lab::record::Record;
+use mode13h_lab::cost::{calibrate, time_frame};
+use mode13h_lab::record::{self, Record, RecordErrorKind};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::{Value, json};
 
+use crate::cost::clock;
 use crate::failure::{Failure, on_one_line};
 use crate::film::{self, Film, Kind};
 use crate::names::{Names, number_in};
@@ -80,6 +83,14 @@ pub(crate) struct Options {
     /// With --frames the name holds %04d or the like.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
+    /// Keep the error of each frame under --max-time, for --replay-errors
+    #[arg(long, value_name = "FILE")]
+    record_errors: Option<PathBuf>,
+    /// Draw each frame within the error that --record-errors kept
+    ///
+    /// The bytes are equal on every machine.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["shading", "max_error", "max_time", "record_errors"])]
+    replay_errors: Option<PathBuf>,
     /// Say what was drawn, a line for each frame, on standard error
     #[arg(long)]
     stats: bool,
@@ -132,20 +143,33 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let kernel = options.drawing.kernel()?;
     let progress = progress(frames);
     let motion = Motion::new(options, &out, &stage);
+    let run = Run::of(options, &motion, &stage, kernel)?;
+    if let Some(path) = &options.record_errors {
+        read_files::spare(path)?;
+        output::file(|| run.record().save(path)).map_err(Failure::from)?;
+    }
     let make = || Artist {
         renderer: options.shading.renderer(&options.drawing, kernel),
         stage: stage.clone(),
         vga: Vga::new(),
     };
     let renderer_pool = RendererPool::new(make);
-    let drawn: Mutex<Vec<(u32, Stats)>> = Mutex::default();
+    let drawn: Mutex<Vec<Drawn>> = Mutex::default();
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
-        let stats = artist.draw(&motion, number)?;
+        let mut stats = artist.draw(&motion, &run, number)?;
+        let timed = run.timed.get(number as usize);
+        if let Some(timed) = timed {
+            (stats.max_time, stats.fits) = (timed.max_time, timed.fits);
+        }
         if let Some(records) = &records {
             artist.record(&records.of(number))?;
         }
         if options.stats && options.json {
-            drawn.lock().unwrap_or_else(PoisonError::into_inner).push((number, stats));
+            drawn.lock().unwrap_or_else(PoisonError::into_inner).push((
+                number,
+                stats,
+                timed.map(|timed| timed.milliseconds),
+            ));
         } else if options.stats {
             progress.suspend(|| eprintln!("mode13h: frame {number}: {stats}"));
         }
@@ -193,8 +217,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// Lists the files that were written and, with --stats, the counts of drawing.
-fn as_json(options: &Options, out: &Out, film: Option<film::Figures>, mut drawn: Vec<(u32, Stats)>) -> Value {
-    drawn.sort_by_key(|(number, _)| *number);
+fn as_json(options: &Options, out: &Out, film: Option<film::Figures>, mut drawn: Vec<Drawn>) -> Value {
+    drawn.sort_by_key(|(number, ..)| *number);
     let mut json = json!({
         "schema": 1,
         "input": input::name_of(&options.input),
@@ -204,7 +228,14 @@ fn as_json(options: &Options, out: &Out, film: Option<film::Figures>, mut drawn:
         json["film"] = film.json;
     }
     if options.stats {
-        json["frames"] = drawn.iter().map(|(number, stats)| stats::json(*number, stats)).collect();
+        let frame = |(number, stats, milliseconds): &Drawn| {
+            let mut frame = stats::json(*number, stats);
+            if let Some(milliseconds) = milliseconds {
+                frame["milliseconds"] = (*milliseconds).into();
+            }
+            frame
+        };
+        json["frames"] = drawn.iter().map(frame).collect();
     }
     json
 }
@@ -316,6 +347,73 @@ impl Motion {
     }
 }
 
+/// Number and counts of a frame, and its milliseconds if it was timed.
+type Drawn = (u32, Stats, Option<f64>);
+
+/// A frame that was timed.
+struct Timed {
+    max_time: Option<f32>,
+    milliseconds: f64,
+    fits: bool,
+}
+
+/// Errors that the frames are drawn within. Where they are to fit in a time, every frame was drawn once for that, one
+/// after the other, before the first is written.
+#[derive(Default)]
+struct Run {
+    /// Errors of all frames, or none where the renderer is set otherwise.
+    errors: Vec<f32>,
+    /// Times of all frames, or none.
+    timed: Vec<Timed>,
+}
+
+impl Run {
+    fn of(options: &Options, motion: &Motion, stage: &Turntable, kernel: Kernel) -> Result<Run, Failure> {
+        let Options { replay_errors, record_errors, shading, drawing, .. } = options;
+        let frames = motion.frames as usize;
+        if let Some(path) = replay_errors {
+            let fault = |reason: &dyn std::fmt::Display| format!("{}: {reason}", path.display());
+            let run = record::Run::load(path).map_err(|error| match error.kind {
+                RecordErrorKind::Read(_) => Failure::file(fault(&error)),
+                _ => Failure::words(fault(&error)),
+            })?;
+            if run.errors.len() < frames {
+                return Err(Failure::words(fault(&format!("{} errors for {frames} frames", run.errors.len()))));
+            }
+            return Ok(Run { errors: run.errors, timed: Vec::new() });
+        }
+        let mut renderer = shading.renderer(drawing, kernel);
+        if renderer.settings.resolve(&stage.scene.preferences).max_time.is_none() {
+            return match record_errors {
+                Some(path) => Err(Failure::words(format!("{}: no --max-time chooses errors", path.display()))),
+                None => Ok(Run::default()),
+            };
+        }
+        let (mut stage, mut vga, mut run) = (stage.clone(), Vga::new(), Run::default());
+        for number in 0..motion.frames {
+            let (seconds, pose) = motion.of(number, &stage);
+            stage.show(seconds, pose);
+            if number == 0 {
+                calibrate(&mut renderer, &stage.scene, &mut vga, clock()).map_err(Failure::from)?;
+            }
+            let timed = time_frame(&mut renderer, &stage.scene, &mut vga, clock());
+            let (Stats { max_error, max_time, fits, .. }, milliseconds) = timed.map_err(Failure::from)?;
+            run.errors.extend(max_error);
+            run.timed.push(Timed { max_time, milliseconds, fits });
+        }
+        let late = run.timed.iter().filter(|frame| !frame.fits).count();
+        if late > 0 {
+            eprintln!("mode13h: even the greatest error takes longer than it may in {late} of {frames} frames");
+        }
+        Ok(run)
+    }
+
+    /// The errors as they are kept in a file.
+    fn record(&self) -> record::Run {
+        record::Run { errors: self.errors.clone() }
+    }
+}
+
 /// Artist: draws frames, one after the other. Each is drawn from its own number alone, never from the frame before it:
 /// that is why the order, and the number of threads, change nothing.
 struct Artist {
@@ -325,7 +423,11 @@ struct Artist {
 }
 
 impl Artist {
-    fn draw(&mut self, motion: &Motion, number: u32) -> Result<Stats, Failure> {
+    fn draw(&mut self, motion: &Motion, run: &Run, number: u32) -> Result<Stats, Failure> {
+        if let Some(error) = run.errors.get(number as usize) {
+            let settings = &mut self.renderer.settings;
+            (settings.accuracy, settings.max_time) = (Some(Accuracy::WithinError(*error)), None);
+        }
         let (seconds, pose) = motion.of(number, &self.stage);
         self.stage.show(seconds, pose);
         self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::from)

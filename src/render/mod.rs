@@ -13,6 +13,7 @@
 //! | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `settings` | settings of a renderer and of the scene drawn, and whose choice counts |
+//! | `time_budget` | the least error that fits in a time |
 //! | `stats` | counts of a frame |
 //! | `each_triangle` | every triangle of a frame with all that the raster would get, for the laboratory |
 //!
@@ -41,16 +42,19 @@ mod sinks;
 mod stats;
 mod tables;
 mod tessellate;
+mod time_budget;
 mod vertex;
 mod vertex_path;
 mod within;
 
 use alloc::vec::Vec;
+use core::time::Duration;
 
 use self::integer::IntegerPath;
 use self::object::ObjectState;
 use self::sinks::{DeferredFace, ForEachSink};
 use self::tables::Tables;
+use self::time_budget::TimeBudget;
 use crate::palette::{BIOS, Palette};
 pub use crate::plan::FaceShading;
 use crate::plan::{self, Change, Effect, Findings, Inputs, Plan, decide};
@@ -119,6 +123,10 @@ pub struct Renderer {
     far_to_near: Vec<(u64, usize)>,
     lists: Lists,
     drawing: Option<Drawing>,
+    /// Choice of the error, where that is to fit in a time.
+    time_budget: Option<TimeBudget>,
+    /// True if the last frame was not left as it was.
+    redrawn: bool,
     /// The machine's stamp after the last frame, and what it came to.
     last: Option<(u64, Stats)>,
 }
@@ -145,6 +153,8 @@ impl Renderer {
             far_to_near: Vec::new(),
             lists: Lists::default(),
             drawing: None,
+            time_budget: None,
+            redrawn: false,
             last: None,
         }
     }
@@ -153,7 +163,34 @@ impl Renderer {
     #[must_use]
     #[doc(hidden)]
     pub fn set_alike(&self) -> Self {
-        Self { settings: self.settings.clone(), ..Self::new() }
+        Self { settings: self.settings.clone(), time_budget: self.time_budget.clone(), ..Self::new() }
+    }
+
+    /// Tells how long the frame took that was drawn last: what [`Settings::max_time`] chooses the errors of the next
+    /// frames by. The errors follow from these times alone; the engine reads no clock.
+    ///
+    /// ```
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::render::Renderer;
+    /// use mode13h::scene::Scene;
+    /// use mode13h::vga::Vga;
+    /// use std::time::Instant;
+    ///
+    /// let (mut scene, mut renderer, mut vga) = (Scene::showing(shapes::torus(48, 24)), Renderer::new(), Vga::new());
+    /// renderer.settings.max_time = Some(5.0);
+    /// for _ in 0..40 {
+    ///     scene.objects_mut()[0].yaw += 0.02;
+    ///     let start = Instant::now();
+    ///     let stats = renderer.draw(&scene, &mut vga)?;
+    ///     renderer.frame_took(start.elapsed());
+    ///     assert!(stats.max_error <= Some(16.0));
+    /// }
+    /// # Ok::<(), mode13h::render::RenderError>(())
+    /// ```
+    pub fn frame_took(&mut self, time: Duration) {
+        if let Some(time_budget) = &mut self.time_budget {
+            time_budget.took(self.redrawn.then_some(time.as_secs_f32() * 1000.0));
+        }
     }
 
     /// Rounds projected vertices once more, to so many bits after the point: 8, as they are, or fewer, so to whole pixels
@@ -271,12 +308,14 @@ impl Renderer {
         }
         match self.last {
             Some((stamp, last)) if !changed && stamp == vga.stamp() && self.settings.keeps_frames() => {
+                self.redrawn = false;
                 stats.redrawn = false;
                 stats.hidden_surfaces = last.hidden_surfaces;
                 return Ok(stats);
             }
             _ => {}
         }
+        self.redrawn = true;
         self.fill(scene, &mut stats, Frame::from(&mut *vga));
         stats.allocated = self.bytes().saturating_sub(before) as u64;
         self.last = Some((vga.stamp(), stats));
@@ -297,7 +336,7 @@ impl Renderer {
         let rows = frame.rows();
         let before = self.bytes();
         let (mut stats, _) = self.prepare(scene, screen, None, rows.end - rows.start == frame.height())?;
-        self.last = None;
+        (self.last, self.redrawn) = (None, true);
         self.fill(scene, &mut stats, frame);
         stats.allocated = self.bytes().saturating_sub(before) as u64;
         Ok(stats)
@@ -363,6 +402,7 @@ impl Renderer {
         }
 
         let mut stats = Stats::new(&settings, self.settings.kernel, self.plan.hidden_surfaces());
+        stats.fits = self.time_budget.as_ref().is_none_or(TimeBudget::fits);
         for (i, (object, state)) in scene.objects().iter().zip(&mut self.states).enumerate() {
             let plan = &self.plan.objects[i];
             if !scene.is_visible(i) {
@@ -390,8 +430,7 @@ impl Renderer {
     /// The view of a scene in which nothing is wrong.
     fn checked(&self, scene: &Scene, screen: Screen) -> Result<View, RenderError> {
         check(scene)?;
-        let settings = self.settings.resolve(&scene.preferences);
-        settings.to_check(&scene.preferences).check().map_err(RenderError::Preferences)?;
+        self.settings.check(&scene.preferences).map_err(RenderError::Preferences)?;
         View::new(&scene.camera, screen).map_err(RenderError::Camera)
     }
 
@@ -400,7 +439,7 @@ impl Renderer {
         self.views.clear();
         let placed = |(i, object)| ObjectView::placed(view, object, &scene.placement(i));
         self.views.extend(scene.objects().iter().enumerate().map(placed));
-        let settings = self.settings.resolve(&scene.preferences);
+        let settings = self.settings_now(scene);
         self.states.resize_with(scene.objects().len(), ObjectState::default);
         self.change.clear();
         for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {
@@ -424,6 +463,21 @@ impl Renderer {
         };
         let states = &self.states;
         decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.plan);
+        settings
+    }
+
+    /// The settings for the next frame of a scene, with the error that fits in the time for it.
+    fn settings_now(&mut self, scene: &Scene) -> Resolved {
+        let mut settings = self.settings.resolve(&scene.preferences);
+        self.time_budget = match (settings.max_time, settings.accuracy) {
+            (Some(max_time), Accuracy::WithinError(max_error)) => {
+                let known = self.time_budget.take().filter(|known| known.is_of(max_time, max_error));
+                let time_budget = known.unwrap_or_else(|| TimeBudget::new(max_time, max_error));
+                settings.accuracy = Accuracy::WithinError(time_budget.error());
+                Some(time_budget)
+            }
+            _ => None,
+        };
         settings
     }
 

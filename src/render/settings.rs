@@ -81,6 +81,10 @@ pub enum ChosenBy {
 pub struct Settings {
     /// Accuracy of shades.
     pub accuracy: Option<Accuracy>,
+    /// Time for a frame in milliseconds, above 0: each frame is drawn within the least error that fits, as far as the
+    /// times tell that [`Renderer::frame_took`](super::Renderer::frame_took) is told. An error in `accuracy` is then the
+    /// greatest that is accepted. A shading there is a contradiction: an error when a scene is drawn.
+    pub max_time: Option<f32>,
     /// Method for hidden surfaces, right or wrong.
     pub hidden_surfaces: Option<HiddenSurfaces>,
     /// Mapping of textures.
@@ -107,6 +111,8 @@ pub struct Resolved {
     pub asked_by: ChosenBy,
     /// Accuracy that the vertex path offers for `asked`.
     pub accuracy: Accuracy,
+    /// Time for a frame in milliseconds, if the error is chosen by that: `accuracy` has the greatest error.
+    pub max_time: Option<f32>,
     /// Method for hidden surfaces; `None` leaves it to the plan.
     pub hidden_surfaces: Option<HiddenSurfaces>,
     /// Mapping of textures; `None` leaves it to the plan.
@@ -125,13 +131,17 @@ pub struct Resolved {
     pub keeps_vertices: bool,
 }
 
+/// The greatest error that is chosen to fit in a time, in shades.
+pub(super) const MAX_ERROR: f32 = 16.0;
+
 /// The shades to which faces are split that a scene says nothing about.
 const DEFAULT_TOLERANCE: f32 = 1.0;
 
 impl Settings {
-    /// Resolves the settings for a scene with these preferences. The settings count before the preferences. Among a
-    /// scene's preferences an error that is accepted counts before a shading. Vertices in 16.16 know no budget and not
-    /// every shading: there the shading is the nearest that they have.
+    /// Resolves the settings for a scene with these preferences. The settings count before the preferences: any accuracy
+    /// or time of theirs replaces the scene's shading, error and time. Among a scene's preferences an error or a time
+    /// counts before a shading. With a time an error is the greatest that is accepted, 16 shades where none is named.
+    /// Vertices in 16.16 know no budget and not every shading: there the shading is the nearest that they have.
     ///
     /// ```
     /// use mode13h::render::{Accuracy, ChosenBy, Settings, Shading};
@@ -147,11 +157,13 @@ impl Settings {
     #[must_use]
     #[doc(hidden)]
     pub fn resolve(&self, preferences: &Preferences) -> Resolved {
-        let of_scene = preferences.max_error.map(Accuracy::WithinError).or(preferences.shading.map(Accuracy::Shading));
-        let (asked, asked_by) = match (self.accuracy, of_scene) {
-            (Some(accuracy), _) => (accuracy, ChosenBy::Renderer),
-            (None, Some(accuracy)) => (accuracy, ChosenBy::Scene),
-            (None, None) => (Accuracy::default(), ChosenBy::Default),
+        let error_of_scene = preferences.max_error.or(preferences.max_time.map(|_| MAX_ERROR));
+        let of_scene = error_of_scene.map(Accuracy::WithinError).or(preferences.shading.map(Accuracy::Shading));
+        let own = self.accuracy.or(self.max_time.map(|_| Accuracy::WithinError(MAX_ERROR)));
+        let (asked, asked_by, max_time) = match (own, of_scene) {
+            (Some(accuracy), _) => (accuracy, ChosenBy::Renderer, self.max_time),
+            (None, Some(accuracy)) => (accuracy, ChosenBy::Scene, preferences.max_time),
+            (None, None) => (Accuracy::default(), ChosenBy::Default, None),
         };
         let accuracy = match (self.vertex_path, asked) {
             (VertexPath::Float, asked) => asked,
@@ -167,6 +179,7 @@ impl Settings {
             asked,
             asked_by,
             accuracy,
+            max_time: max_time.filter(|_| accuracy.max_error().is_some()),
             hidden_surfaces: self.hidden_surfaces.or(preferences.hidden_surfaces),
             mapping: self.mapping.or(preferences.mapping),
             mipmaps: self.mipmaps.or(preferences.mipmaps),
@@ -178,16 +191,20 @@ impl Settings {
         }
     }
 
+    /// Checks the settings and a scene's preferences; the error says what is wrong.
+    pub(super) fn check(&self, preferences: &Preferences) -> Result<(), &'static str> {
+        if self.max_time.is_some() && matches!(self.accuracy, Some(Accuracy::Shading(_))) {
+            return Err("a shading and a time for a frame contradict each other");
+        }
+        let replaces = self.accuracy.is_some() || self.max_time.is_some();
+        let max_time = if replaces { self.max_time } else { preferences.max_time };
+        let max_error = self.resolve(preferences).asked.max_error();
+        Preferences { max_error, max_time, ..*preferences }.check()
+    }
+
     /// Returns whether a frame that is there may stay where nothing has changed.
     pub(super) fn keeps_frames(&self) -> bool {
         self.overrides.get(Effect::Transform) != Some(true)
-    }
-}
-
-impl Resolved {
-    /// The preferences of a scene, with the accuracy that was asked for in place of the scene's own: what must be in range.
-    pub(super) fn to_check(self, preferences: &Preferences) -> Preferences {
-        Preferences { max_error: self.asked.max_error(), ..*preferences }
     }
 }
 
@@ -222,6 +239,51 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    /// Every combination of times and errors that a renderer and a scene may ask for: the renderer's replace the scene's
+    /// as a whole, and an error is the greatest that a time may choose.
+    #[test]
+    fn a_time_chooses_among_the_errors_up_to_the_greatest() {
+        let within = |error: f32| Accuracy::WithinError(error);
+        for own in [(None, None), (None, Some(2.0)), (Some(within(3.0)), Some(2.0)), (Some(within(3.0)), None)] {
+            for of_scene in [(None, None), (None, Some(5.0)), (Some(4.0), Some(5.0)), (Some(4.0), None)] {
+                let settings = Settings { accuracy: own.0, max_time: own.1, ..Settings::default() };
+                let preferences = Preferences {
+                    shading: Some(Shading::Flat),
+                    max_error: of_scene.0,
+                    max_time: of_scene.1,
+                    ..Preferences::default()
+                };
+                let (accuracy, max_time) = match (own, of_scene) {
+                    ((None, None), (None, None)) => (Shading::Flat.into(), None),
+                    ((None, None), (error, time)) => (within(error.unwrap_or(16.0)), time),
+                    ((accuracy, time), _) => (accuracy.unwrap_or(within(16.0)), time),
+                };
+                let resolved = settings.resolve(&preferences);
+                assert_eq!((resolved.accuracy, resolved.max_time), (accuracy, max_time), "{own:?} {of_scene:?}");
+                assert_eq!(settings.check(&preferences), Ok(()));
+                let integers = Settings { vertex_path: VertexPath::Integer, ..settings };
+                assert_eq!(integers.resolve(&preferences).max_time, None, "{own:?} {of_scene:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_time_beside_a_shading_or_out_of_range_is_refused() {
+        let check = |accuracy: Option<Accuracy>, own, of_scene| {
+            let settings = Settings { accuracy, max_time: own, ..Settings::default() };
+            settings.check(&Preferences { max_time: of_scene, ..Preferences::default() })
+        };
+        let phong = Some(Accuracy::Shading(Shading::Phong));
+        assert!(check(phong, Some(2.0), None).is_err_and(|what| what.contains("contradict")));
+        // The scene's is replaced.
+        assert_eq!(check(phong, None, Some(2.0)), Ok(()));
+        assert_eq!(check(phong, None, Some(-2.0)), Ok(()));
+        for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            assert!(check(None, Some(wrong), None).is_err_and(|what| what.contains("time for a frame")), "{wrong}");
+            assert!(check(None, None, Some(wrong)).is_err_and(|what| what.contains("time for a frame")), "{wrong}");
         }
     }
 

@@ -53,6 +53,9 @@ pub struct Preferences {
     /// The max error of shades, in 1/255 of full intensity; above 0. Each triangle then gets the cheapest shading that
     /// is known to keep within, whatever `shading` says.
     pub max_error: Option<f32>,
+    /// The time for a frame in milliseconds; above 0. Each frame is drawn within the least error that fits, at most
+    /// `max_error`, and otherwise 16 shades, whatever `shading` says.
+    pub max_time: Option<f32>,
     /// The palette is to be made from the scene's materials.
     pub auto_palette: bool,
 }
@@ -61,10 +64,12 @@ impl Preferences {
     /// Checks the preferences; the error says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         let legal = |number: Option<f32>| number.is_none_or(|n| n > 0.0 && n.is_finite());
-        if legal(self.tessellation) && legal(self.max_error) {
-            Ok(())
-        } else {
+        if !legal(self.tessellation) || !legal(self.max_error) {
             Err("a number of shades must be above 0 and finite")
+        } else if !legal(self.max_time) {
+            Err("a time for a frame must be above 0 and finite")
+        } else {
+            Ok(())
         }
     }
 }

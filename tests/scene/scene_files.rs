@@ -220,6 +220,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (cube("fog = { start = 2, end = 2 }"), "2:26: key `fog.end`: the fog ends no farther than it starts"),
         (cube("animation.cycle = [9, 8]"), "2:19: key `animation.cycle`: the first entry lies behind the last"),
         (cube("render.max-error = 0"), "2:20: key `render.max-error`: expected a number above 0, found 0"),
+        (cube("render.max-time = -1"), "2:19: key `render.max-time`: expected a number above 0, found -1"),
         // Names of nothing.
         (
             list("objects = [{ shape = 'toroid' }]"),
@@ -435,6 +436,7 @@ mapping = "every-16"
 tessellation = 1.5
 dither = true
 max-error = 2
+max-time = 2.5
 
 [[objects]]
 name = "bar"
@@ -490,6 +492,7 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert_eq!(scene.preferences.hidden_surfaces, Some(HiddenSurfaces::ScanLine));
     assert_eq!(scene.preferences.mapping, Some(Mapping::Every16));
     assert_eq!((scene.preferences.tessellation, scene.preferences.max_error), (Some(1.5), Some(2.0)));
+    assert_eq!(scene.preferences.max_time, Some(2.5));
     assert!(scene.preferences.dither && !scene.preferences.auto_palette);
 
     let [bar, first, second] = scene.objects() else { panic!("{} objects", scene.objects().len()) };

@@ -45,7 +45,7 @@ fn macos() -> Option<String> {
 }
 
 /// Clock that times are read from: how long this thread has run, where the system counts that.
-pub(super) fn clock() -> Clock {
+pub(crate) fn clock() -> Clock {
     #[cfg(unix)]
     if has_run().is_ok() {
         return Clock { name: "the time that the thread has run", now: || has_run().unwrap_or_default() };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, ShadingRow, Study, Verdict};
+use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, ShadingRow, Study, TimeRow, Verdict};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -15,6 +15,7 @@ pub(super) struct Json<'a> {
     rounds: usize,
     shadings: Vec<JsonShading>,
     budget: Vec<JsonBudget>,
+    times: Vec<JsonTime>,
     options: Vec<JsonOption<'a>>,
     claims: Vec<JsonClaim<'a>>,
     warnings: &'a [String],
@@ -70,6 +71,7 @@ struct JsonShading {
     error_lit: JsonErrors,
     error_palette: f64,
     cover_errors: u64,
+    beyond_bound: Option<f64>,
     swim: f64,
     efficient: bool,
     as_fast_as: Vec<&'static str>,
@@ -89,6 +91,23 @@ struct JsonBudget {
     ratio: Option<f64>,
     ratio_interval: Option<[f64; 2]>,
     triangles: BTreeMap<&'static str, u64>,
+}
+
+#[derive(Serialize)]
+struct JsonTime {
+    max_time_ns: f64,
+    frames: usize,
+    within: f64,
+    mean_error: f64,
+    max_error: f64,
+    largest: f64,
+}
+
+impl From<&TimeRow> for JsonTime {
+    fn from(row: &TimeRow) -> Self {
+        let TimeRow { max_time, frames, within, mean_error, max_error, largest, .. } = *row;
+        Self { max_time_ns: max_time, frames, within, mean_error, max_error, largest }
+    }
 }
 
 #[derive(Serialize)]
@@ -141,6 +160,7 @@ impl From<&ShadingRow> for JsonShading {
             error_lit: row.error_lit.into(),
             error_palette: row.error_palette,
             cover_errors: row.cover_errors,
+            beyond_bound: row.excess,
             swim: row.swim,
             efficient: row.efficient,
             as_fast_as: row.as_fast_as.iter().map(|shading| shading.name()).collect(),
@@ -212,6 +232,7 @@ pub(super) fn json<'a>(study: &'a Study, warnings: &'a [String]) -> Json<'a> {
         rounds: study.rounds,
         shadings: study.shadings.iter().map(JsonShading::from).collect(),
         budget: study.budget.iter().map(JsonBudget::from).collect(),
+        times: study.times.iter().map(JsonTime::from).collect(),
         options: study.options.iter().map(JsonOption::from).collect(),
         claims: study.claims.iter().map(JsonClaim::from).collect(),
         warnings,

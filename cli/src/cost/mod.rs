@@ -6,6 +6,8 @@ mod instructions;
 mod json;
 mod text;
 
+pub(crate) use host::clock;
+
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -153,9 +155,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     // Whatever became of the files, what was found out is not lost.
     output::print(&if *json { as_json } else { text::text(&study, written.as_deref()) })?;
     result?;
-    match cost::budgets_are_kept(&study) {
+    match cost::promises_are_kept(&study) {
         true => Ok(()),
-        false => Err(Failure::found("a budget has not kept its promise")),
+        false => Err(Failure::found("a budget or a shading has not kept its promise")),
     }
 }
 
@@ -201,6 +203,7 @@ impl Progress {
                 Step::Errors => "frames compared with the truth",
                 Step::Times => "of the time, frames being timed side by side",
                 Step::Split => "of the time, frames being timed part by part",
+                Step::Goals => "of the time, frames being drawn as well as a time allows",
                 Step::Claims => "of what the sources claim",
                 _ => "",
             });

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mode13h_lab::cost::{BudgetRow, OptionRow, ShadingRow, Study, Verdict};
+use mode13h_lab::cost::{BudgetRow, OptionRow, ShadingRow, Study, TimeRow, Verdict};
 
 /// The tables of shadings and budgets, and where the rest is.
 pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
@@ -17,6 +17,10 @@ pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
              mean square against lit\n\n";
     text += "  budget  within E  largest   µs/frame  best single shading        µs/frame  ratio\n";
     text.extend(study.budget.iter().map(budget));
+    if !study.times.is_empty() {
+        text += "\n  µs/frame given    frames  within 1.05  accepted  greatest  largest error\n";
+        text.extend(study.times.iter().map(time));
+    }
     if !study.options.is_empty() {
         text += &format!(
             "\n  {:50}{:>10}  {:>21}  {:>8}{:>8}{:>8}\n",
@@ -71,6 +75,18 @@ fn budget(row: &BudgetRow) -> String {
         row.within * 100.0,
         row.largest,
         row.per_frame.median / 1000.0
+    )
+}
+
+fn time(row: &TimeRow) -> String {
+    format!(
+        "  {:>14.1}  {:>8}  {:>10.2}%  {:>8.2}  {:>8}  {:>13.2}\n",
+        row.max_time / 1000.0,
+        row.frames,
+        row.within * 100.0,
+        row.mean_error,
+        row.max_error,
+        row.largest
     )
 }
 

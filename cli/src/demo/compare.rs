@@ -87,8 +87,9 @@ impl Compare {
         shading.set(renderer);
         let start = Instant::now();
         let stats = renderer.draw(scene, vga)?;
-        let taken = start.elapsed().as_secs_f64();
-        timing.add(stats.redrawn.then_some(taken), seconds);
+        let taken = start.elapsed();
+        renderer.frame_took(taken);
+        timing.add(stats.redrawn.then_some(taken.as_secs_f64()), seconds);
         Ok(stats.redrawn)
     }
 

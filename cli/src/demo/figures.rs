@@ -7,7 +7,7 @@ use super::Demo;
 use crate::overlay::Row;
 
 /// The keys, and what each does.
-const KEYS: [(&str, &str); 24] = [
+const KEYS: [(&str, &str); 25] = [
     ("Esc", "quit"),
     ("H", "these keys"),
     ("I", "figures of the picture"),
@@ -19,6 +19,7 @@ const KEYS: [(&str, &str); 24] = [
     ("0", "shade by a budget of error"),
     ("B", "a smaller budget"),
     ("Shift-B", "a greater one"),
+    ("F", "a time; Shift-F longer"),
     ("E", "error map"),
     ("C", "side by side, at the mouse"),
     ("Shift", "[ ] 1 to 9: the right side"),
@@ -55,8 +56,12 @@ impl Demo {
             Row::new("shading", self.shading.to_string()),
             Row::new("time", self.drawn()),
             Row::new("plan", format!("{:.1} µs", self.planning.frame * 1e6)),
-            Row::new("error", self.map.figures(self.number, self.seconds, self.shading.budget())),
+            Row::new("error", self.map.figures(self.number, self.seconds, self.shading.budget(self.stats.as_ref()))),
         ];
+        if let Some(Stats { max_error: Some(error), max_time: Some(_), fits, .. }) = &self.stats {
+            let late = if *fits { "" } else { ", takes longer" };
+            rows.push(Row::new("within", format!("{error} {}{late}", if *error == 1.0 { "shade" } else { "shades" })));
+        }
         if let Some(Stats { hidden_surfaces, vertices, drawn, raster, shares, .. }) = &self.stats {
             let mut head = "shadings";
             for share in of_shadings(shares) {

@@ -70,6 +70,8 @@ Keys in the window:
   1 to 9          The first nine shadings
   0               The budget of error
   B, Shift-B      A smaller budget, a greater one: 16, 8, 4, 2, 1, 1/2 shades
+  F, Shift-F      The least error that fits in a time: 16 to 1/4 ms a frame,
+                  a shorter time, a longer one
   E               Lay the error map over the picture
   C               Divide the window at the mouse: another shading on the right.
                   A click fixes the divider. Shift with [ ] and digits chooses
@@ -254,7 +256,7 @@ impl Demo {
             triangles: 0,
             wrong: None,
             renderer: shading.renderer(drawing, kernel),
-            shading: ShadingChoice::of(shading.accuracy_for(&Preferences::default())),
+            shading: ShadingChoice::of(shading.asked_for(&Preferences::default())),
             chose_shading: false,
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
             palettes: palettes(&stage, drawing),
@@ -335,7 +337,7 @@ impl Demo {
         self.stage = stage;
         if !self.chose_shading {
             let preferences = &self.stage.scene.preferences;
-            self.shading = ShadingChoice::of(shading.accuracy_for(preferences));
+            self.shading = ShadingChoice::of(shading.asked_for(preferences));
         }
         let before = std::mem::replace(&mut self.palettes, palettes(&self.stage, drawing));
         if keeps && self.chose_palette && self.palettes.choose(|(name, _)| *name == before.chosen().0) {
@@ -586,9 +588,10 @@ impl Demo {
         }
         let start = Instant::now();
         let stats = self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::from)?;
-        let taken = start.elapsed().as_secs_f64();
+        let taken = start.elapsed();
+        self.renderer.frame_took(taken);
         self.is_redrawn = stats.redrawn;
-        self.timing.add(stats.redrawn.then_some(taken), self.seconds);
+        self.timing.add(stats.redrawn.then_some(taken.as_secs_f64()), self.seconds);
         // What was counted is of the frame that is shown, if that was there already.
         if stats.redrawn || self.stats.is_none() {
             self.stats = Some(stats);

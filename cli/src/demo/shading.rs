@@ -1,14 +1,18 @@
-//! Choice of the shades by keys: a shading, or a budget of error.
+//! Choice of the shades by keys: a shading, a budget of error, or a time for a frame.
 
 use std::fmt;
 
-use mode13h::render::{Accuracy, Renderer, Shading};
+use mode13h::render::{Accuracy, Renderer, Shading, Stats};
 use mode13h::window::{Input, Key};
 
 /// The budgets that B goes through, in shades of 1/255 of full intensity.
 pub(super) const BUDGETS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
 /// The budget of a scene that asks for none.
 const USUAL: f32 = 2.0;
+
+/// The times that F goes through, in milliseconds, and that of a scene that asks for none.
+const TIMES: [f32; 7] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25];
+const USUAL_TIME: f32 = 1.0;
 
 /// The keys 1 to 9, in the top row and in the number pad, and what they type. The tenth shading has no digit.
 const DIGITS: [(Key, Key, char); 9] = [
@@ -38,6 +42,10 @@ enum Wish {
     Less,
     /// The budget, or where that is on a greater error.
     More,
+    /// The time, or where that is on a shorter one.
+    Shorter,
+    /// The time, or where that is on a longer one.
+    Longer,
 }
 
 /// Finds the user's request, if there is any.
@@ -57,6 +65,9 @@ fn wish(input: &Input) -> Option<Wish> {
     }
     if input.pressed(Key::B) {
         return Some(if input.pressed_with_shift(Key::B) { Wish::More } else { Wish::Less });
+    }
+    if input.pressed(Key::F) {
+        return Some(if input.pressed_with_shift(Key::F) { Wish::Longer } else { Wish::Shorter });
     }
     let without_shift = |key| input.pressed(key) && !input.pressed_with_shift(key);
     if without_shift(Key::LeftBracket) || typed('[') {
@@ -84,24 +95,43 @@ fn shifted_wish(input: &Input) -> Option<Wish> {
     input.pressed_with_shift(Key::RightBracket).then_some(Wish::Dearer)
 }
 
-/// A shading and a budget, one of which is in force.
+/// Means by which shades are chosen.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum By {
+    Shading,
+    Budget,
+    Time,
+}
+
+/// A shading, a budget and a time, one of which is in force.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct ShadingChoice {
     shading: Shading,
     /// Shades of error.
     budget: f32,
-    by_budget: bool,
+    /// In milliseconds.
+    time: f32,
+    /// The greatest error that a time may choose, if one was named.
+    max_error: Option<f32>,
+    by: By,
 }
 
 impl ShadingChoice {
     /// The budget, if there is one, or else the shading.
     pub(super) fn new(shading: Shading, budget: Option<f32>) -> ShadingChoice {
-        ShadingChoice { shading, budget: budget.unwrap_or(USUAL), by_budget: budget.is_some() }
+        let by = if budget.is_some() { By::Budget } else { By::Shading };
+        ShadingChoice { shading, budget: budget.unwrap_or(USUAL), time: USUAL_TIME, max_error: None, by }
     }
 
-    /// Makes the choice that draws with this accuracy.
-    pub(super) fn of(accuracy: Accuracy) -> ShadingChoice {
-        ShadingChoice::new(accuracy.shading(), accuracy.max_error())
+    /// Makes the choice that draws with this accuracy, or in this time.
+    pub(super) fn of((accuracy, time): (Accuracy, Option<f32>)) -> ShadingChoice {
+        match time {
+            None => ShadingChoice::new(accuracy.shading(), accuracy.max_error()),
+            Some(time) => {
+                let choice = ShadingChoice::new(accuracy.shading(), None);
+                ShadingChoice { time, max_error: accuracy.max_error(), by: By::Time, ..choice }
+            }
+        }
     }
 
     /// Follows the user's input. Returns whether there was a request.
@@ -119,8 +149,12 @@ impl ShadingChoice {
     }
 
     fn fulfil(&mut self, wish: Wish) {
-        let was_by_budget = self.by_budget;
-        self.by_budget = matches!(wish, Wish::Budget | Wish::Less | Wish::More);
+        let by = match wish {
+            Wish::Budget | Wish::Less | Wish::More => By::Budget,
+            Wish::Shorter | Wish::Longer => By::Time,
+            Wish::Shading(_) | Wish::Cheaper | Wish::Dearer => By::Shading,
+        };
+        let was = std::mem::replace(&mut self.by, by);
         // The variants are numbered in the order of ALL.
         let place = self.shading as usize;
         match wish {
@@ -128,7 +162,7 @@ impl ShadingChoice {
             Wish::Cheaper => self.shading = Shading::ALL[place.saturating_sub(1)],
             Wish::Dearer => self.shading = Shading::ALL[(place + 1).min(Shading::ALL.len() - 1)],
             Wish::Budget => {}
-            _ if !was_by_budget => {}
+            _ if was != by => {}
             // The next in the list, from whatever the command line or the scene says.
             Wish::Less => {
                 let less = BUDGETS.into_iter().find(|&budget| budget < self.budget);
@@ -138,29 +172,39 @@ impl ShadingChoice {
                 let more = BUDGETS.into_iter().rev().find(|&budget| budget > self.budget);
                 self.budget = more.unwrap_or(self.budget);
             }
+            Wish::Shorter => {
+                let less = TIMES.into_iter().find(|&time| time < self.time);
+                self.time = less.unwrap_or(self.time);
+            }
+            Wish::Longer => {
+                let more = TIMES.into_iter().rev().find(|&time| time > self.time);
+                self.time = more.unwrap_or(self.time);
+            }
         }
     }
 
     /// Sets a renderer to draw by it.
     pub(super) fn set(&self, renderer: &mut Renderer) {
-        renderer.settings.accuracy = Some(match self.by_budget {
-            true => Accuracy::WithinError(self.budget),
-            false => Accuracy::Shading(self.shading),
-        });
+        (renderer.settings.accuracy, renderer.settings.max_time) = match self.by {
+            By::Shading => (Some(Accuracy::Shading(self.shading)), None),
+            By::Budget => (Some(Accuracy::WithinError(self.budget)), None),
+            By::Time => (self.max_error.map(Accuracy::WithinError), Some(self.time)),
+        };
     }
 
-    /// The error that is or would be accepted, in shades.
-    pub(super) fn budget(&self) -> f32 {
-        self.budget
+    /// The error that is or would be accepted, in shades. A time chooses it: then that of the last frame.
+    pub(super) fn budget(&self, last: Option<&Stats>) -> f32 {
+        let chosen = if self.by == By::Time { last.and_then(|stats| stats.max_error) } else { None };
+        chosen.unwrap_or(self.budget)
     }
 }
 
 impl fmt::Display for ShadingChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.by_budget {
-            write!(f, "budget {} {}", self.budget, if self.budget == 1.0 { "shade" } else { "shades" })
-        } else {
-            f.write_str(self.shading.name())
+        match self.by {
+            By::Budget => write!(f, "budget {} {}", self.budget, if self.budget == 1.0 { "shade" } else { "shades" }),
+            By::Time => write!(f, "{} ms a frame", self.time),
+            By::Shading => f.write_str(self.shading.name()),
         }
     }
 }
@@ -198,9 +242,9 @@ mod tests {
             assert_eq!(shading.to_string(), format!("budget {budget} {shades}"));
             shading.fulfil(Wish::Less);
         }
-        assert_eq!(shading.budget(), 0.5);
+        assert_eq!(shading.budget(None), 0.5);
         shading.fulfil(Wish::More);
-        assert_eq!(shading.budget(), 1.0);
+        assert_eq!(shading.budget(None), 1.0);
         shading.fulfil(Wish::Shading(Shading::Phong));
         assert_eq!(shading.to_string(), "phong");
         shading.fulfil(Wish::Budget);
@@ -208,10 +252,34 @@ mod tests {
         // One that is not in the list.
         let mut shading = ShadingChoice::new(Shading::Flat, Some(3.0));
         shading.fulfil(Wish::More);
-        assert_eq!(shading.budget(), 4.0);
+        assert_eq!(shading.budget(None), 4.0);
         let mut shading = ShadingChoice::new(Shading::Flat, Some(0.1));
         shading.fulfil(Wish::Less);
-        assert_eq!(shading.budget(), 0.1);
+        assert_eq!(shading.budget(None), 0.1);
+    }
+
+    #[test]
+    fn f_goes_through_the_times_and_shift_f_back() {
+        let mut shading = ShadingChoice::new(Shading::Flat, Some(4.0));
+        shading.fulfil(Wish::Longer);
+        assert_eq!(shading.to_string(), "1 ms a frame");
+        (0..9).for_each(|_| shading.fulfil(Wish::Longer));
+        for time in TIMES {
+            assert_eq!(shading.to_string(), format!("{time} ms a frame"));
+            shading.fulfil(Wish::Shorter);
+        }
+        assert_eq!(shading.to_string(), "0.25 ms a frame");
+        shading.fulfil(Wish::Budget);
+        assert_eq!(shading.to_string(), "budget 4 shades");
+        // The command line's, with the greatest error that it names.
+        let shading = ShadingChoice::of((Accuracy::WithinError(8.0), Some(3.0)));
+        assert_eq!(shading.to_string(), "3 ms a frame");
+        let mut renderer = Renderer::new();
+        shading.set(&mut renderer);
+        let settings = &renderer.settings;
+        assert_eq!((settings.accuracy, settings.max_time), (Some(Accuracy::WithinError(8.0)), Some(3.0)));
+        ShadingChoice::new(Shading::Phong, None).set(&mut renderer);
+        assert_eq!(renderer.settings.max_time, None);
     }
 
     #[test]

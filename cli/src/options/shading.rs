@@ -1,11 +1,15 @@
-//! Shading of faces: `--shading` and `--max-error`.
+//! Shading of faces: `--shading`, `--max-error` and `--max-time`.
 
 use clap::Args;
 use mode13h::render::{Accuracy, Renderer, Settings, Shading};
-use mode13h::scene::Preferences;
+use mode13h::scene::{Preferences, Scene};
 use mode13h::span::Kernel;
+use mode13h::vga::Vga;
+use mode13h_lab::cost::calibrate;
 
 use super::{Drawing, one_of, shades};
+use crate::cost::clock;
+use crate::failure::Failure;
 
 /// How faces are shaded. The scene decides what is not said here, and the library what the scene leaves open.
 #[derive(Args, Clone)]
@@ -25,6 +29,20 @@ pub(crate) struct ShadingOptions {
     /// A shade is 1/255 of full intensity. Not beside --shading.
     #[arg(long, value_name = "E", value_parser = shades, conflicts_with = "shading")]
     max_error: Option<f32>,
+    /// Draw each frame within the least error that fits in T milliseconds
+    ///
+    /// The error is at most 16 shades, or that of --max-error. It is chosen by the times that frames take on this machine.
+    /// Not beside --shading.
+    #[arg(long, value_name = "T", value_parser = milliseconds, conflicts_with = "shading")]
+    max_time: Option<f32>,
+}
+
+/// A time for a frame on the command line.
+fn milliseconds(words: &str) -> Result<f32, String> {
+    match words.parse::<f32>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err("not a number of milliseconds above 0".to_string()),
+    }
 }
 
 impl ShadingOptions {
@@ -33,18 +51,34 @@ impl ShadingOptions {
         self.max_error.map(Accuracy::WithinError).or(self.shading.map(Accuracy::Shading))
     }
 
-    /// Accuracy that is asked for with these preferences of a scene.
-    pub(crate) fn accuracy_for(&self, preferences: &Preferences) -> Accuracy {
+    /// Accuracy and time that are asked for with these preferences of a scene.
+    pub(crate) fn asked_for(&self, preferences: &Preferences) -> (Accuracy, Option<f32>) {
         let mut settings = Settings::default();
-        settings.accuracy = self.accuracy();
-        settings.resolve(preferences).asked
+        (settings.accuracy, settings.max_time) = (self.accuracy(), self.max_time);
+        let resolved = settings.resolve(preferences);
+        (resolved.asked, resolved.max_time)
     }
 
     /// A renderer that is set as the command line says.
     pub(crate) fn renderer(&self, drawing: &Drawing, kernel: Kernel) -> Renderer {
         let mut renderer = drawing.renderer(kernel);
-        renderer.settings.accuracy = self.accuracy();
+        (renderer.settings.accuracy, renderer.settings.max_time) = (self.accuracy(), self.max_time);
         renderer
+    }
+
+    /// Where the error is to fit in a time, finds it for this scene, says so, and has the renderer draw within it.
+    pub(crate) fn settle(renderer: &mut Renderer, scene: &Scene) -> Result<(), Failure> {
+        let Some(max_time) = renderer.settings.resolve(&scene.preferences).max_time else { return Ok(()) };
+        let stats = calibrate(renderer, scene, &mut Vga::new(), clock()).map_err(Failure::from)?;
+        if let Some(error) = stats.max_error {
+            let accuracy = Accuracy::WithinError(error);
+            match stats.fits {
+                true => eprintln!("mode13h: {accuracy}, the least in {max_time} ms"),
+                false => eprintln!("mode13h: {accuracy}, which takes more than {max_time} ms"),
+            }
+            (renderer.settings.accuracy, renderer.settings.max_time) = (Some(accuracy), None);
+        }
+        Ok(())
     }
 }
 

@@ -117,6 +117,23 @@ fn everything_is_measured_and_written() {
         assert!(row["best_single_shading"].is_string() && number(&row["best_single_ns"]) > 0.0, "{row}");
     }
 
+    let times = json["times"].as_array().expect("a list");
+    assert_eq!(times.len(), 5);
+    for (i, row) in times.iter().enumerate() {
+        assert!(number(&row["frames"]) >= 200.0 && (0.0..=1.0).contains(&number(&row["within"])), "{row}");
+        let [mean, max] = ["mean_error", "max_error"].map(|key| number(&row[key]));
+        assert!((0.5..=16.0).contains(&mean) && mean <= max && BUDGETS.contains(&max), "{row}");
+        // Every frame keeps within the error that was chosen for it, or within what rounding needs.
+        assert!(number(&row["largest"]) > 0.0 && number(&row["largest"]) <= max.max(0.52), "{row}");
+        assert!(i == 0 || number(&times[i - 1]["max_time_ns"]) < number(&row["max_time_ns"]), "{row}");
+    }
+    // Shadings that are linear on the screen have a bound, and keep it.
+    for row in shadings {
+        let is_linear = ["gouraud-8.8", "gouraud-8.8-reseeded", "gouraud-16.16"]
+            .contains(&row["shading"].as_str().expect("a name"));
+        assert_eq!(row["beyond_bound"].as_f64().is_some_and(|beyond| beyond <= 0.0), is_linear, "{row}");
+    }
+
     let options = json["options"].as_array().expect("a list");
     options.iter().for_each(assert_time);
     options.iter().for_each(|row| assert_errors(&row["error_gouraud_unrounded"]));

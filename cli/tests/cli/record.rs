@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 
 use mode13h::palette::builtin;
 use mode13h::render::HiddenSurfaces;
-use mode13h_lab::record::Record;
+use mode13h_lab::record::{Record, Run};
 
 use crate::support::tried::Tried;
 
@@ -63,6 +63,41 @@ fn a_row_of_frames_is_a_row_of_records() {
     assert!(run(directory.path(), "render cube -o x.png --turn 30 --record alone.rec").status.success());
     let read = |name: &str| std::fs::read(directory.path().join(name)).expect(name);
     assert_eq!(read("alone.rec"), read("x0001.rec"), "frame 1 of 3 is turned by 30 degrees");
+}
+
+/// The errors that a time has chosen are kept, and give equal bytes without a clock.
+#[test]
+fn errors_are_recorded_and_replayed() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let pictures = |words: &str| -> Vec<Vec<u8>> {
+        let output = run(directory.path(), &format!("render torus -o %d.png --frames 4 --turn 40 {words}"));
+        assert!(output.status.success(), "{output:?}");
+        (0..4).map(|i| std::fs::read(directory.path().join(format!("{i}.png"))).expect("a picture")).collect()
+    };
+    let timed = pictures("--max-time 2 --record-errors a.run");
+    let recorded = Run::load(directory.path().join("a.run")).expect("a run");
+    assert_eq!(recorded.errors.len(), 4);
+    assert!(pictures("--replay-errors a.run") == timed);
+    // Errors that differ from frame to frame.
+    let errors = [16.0, 0.5, 4.0, 0.5];
+    Run { errors: errors.to_vec() }.save(directory.path().join("b.run")).expect("written");
+    let replayed = pictures("--replay-errors b.run --threads 3");
+    for (i, error) in errors.iter().enumerate() {
+        assert!(pictures(&format!("--max-error {error}"))[i] == replayed[i], "frame {i}");
+    }
+    std::fs::write(directory.path().join("c.run"), "mode13h run 1\n4\nfour\nend\n").expect("written");
+    let row = "render torus -o %d.png --frames 5";
+    for (words, status, says) in [
+        (format!("{row} --replay-errors b.run"), 2, "b.run: 4 errors for 5 frames"),
+        (format!("{row} --replay-errors c.run"), 2, "c.run: line 3: expected an error in shades above 0"),
+        (format!("{row} --replay-errors none.run"), 3, "none.run: No such file"),
+        (format!("{row} --record-errors d.run"), 2, "d.run: no --max-time chooses errors"),
+        (format!("{row} --max-time 2 --record-errors none/d.run"), 3, "none/d.run: "),
+    ] {
+        assert_fails(&run(directory.path(), &words), status, says);
+    }
+    let both = run(directory.path(), &format!("{row} --replay-errors b.run --max-time 2"));
+    assert_eq!(both.status.code(), Some(2));
 }
 
 #[test]

@@ -106,6 +106,57 @@ fn help_is_short_or_long_and_no_wider_than_the_terminal() {
     assert_ne!(help("render", "--help", "80"), help("render", "--help", "100"));
 }
 
+/// A time that every frame fits in chooses the least error, one that none fits in the greatest; what is asked for by key
+/// is what is asked for by option.
+#[test]
+fn a_time_chooses_an_error_and_says_so() {
+    let directory = directory();
+    let picture = |words: &str| {
+        let output = run(&directory, &format!("render {words} -o x.png"));
+        assert!(output.status.success(), "{output:?}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (fs::read(directory.path().join("x.png")).expect("a picture"), said)
+    };
+    let scene = "objects = [{ shape = 'torus' }]\nlights = [{ sun = [0, 0, 1] }]\n";
+    fs::write(directory.path().join("plain.toml"), scene).expect("written");
+    let of_error = |error: &str| picture(&format!("plain.toml --max-error {error}")).0;
+    assert!(of_error("0.5") != of_error("16"));
+    for (key, error, says) in [
+        ("max-time = 100000", "0.5", ""),
+        ("max-time = 0.0000001", "16", "mode13h: even the greatest error takes longer than it may in 1 of 1 frames\n"),
+    ] {
+        fs::write(directory.path().join("asks.toml"), format!("{scene}render.{key}\n")).expect("written");
+        let option = key.replace(" = ", " ");
+        for words in ["asks.toml".to_string(), format!("plain.toml --{option}")] {
+            let (bytes, said) = picture(&words);
+            assert!(bytes == of_error(error) && said == says, "{words}: {said}");
+        }
+    }
+    // The greatest error is the greatest that is accepted.
+    assert!(picture("plain.toml --max-time 0.0000001 --max-error 3").0 == of_error("3"));
+    let output = run(&directory, "render plain.toml -o x.png --max-time 100000 --stats --json");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let frame = &json["frames"][0];
+    assert_eq!((&frame["max_error"], &frame["max_time"], &frame["fits"]), (&0.5.into(), &1e5.into(), &true.into()));
+    assert!(frame["milliseconds"].as_f64().is_some_and(|time| time > 0.0), "{frame}");
+    for (words, says) in [
+        ("explain plain.toml --row 9 --max-time 100000", "mode13h: within 0.5 shades, the least in 100000 ms"),
+        ("plan plain.toml --max-time 0.0000001", "mode13h: within 16 shades, which takes more than 0.0000001 ms"),
+    ] {
+        let output = run(&directory, words);
+        assert!(output.status.success() && String::from_utf8_lossy(&output.stderr).contains(says), "{output:?}");
+    }
+    for (words, says) in [
+        ("render cube -o x.png --max-time 2 --shading phong", "cannot be used with"),
+        ("render cube -o x.png --max-time 0", "not a number of milliseconds above 0"),
+        ("render cube -o x.png --max-time NaN", "not a number of milliseconds above 0"),
+    ] {
+        let output = run(&directory, words);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && said.contains(says), "{said}");
+    }
+}
+
 #[test]
 fn whatever_draws_has_the_words_of_a_scene_file() {
     let keys: Vec<&str> = include_str!("../../../scenes/README.md")
@@ -123,7 +174,7 @@ fn whatever_draws_has_the_words_of_a_scene_file() {
         let known = options(&help(command, "-h", "100"));
         for key in keys.iter().chain(&["palette", "background", "arithmetic", "kernel", "zoom", "camera"]) {
             // It compares shadings and budgets, and takes several of the one.
-            let is_compared = command == "cost" && ["shading", "max-error"].contains(key);
+            let is_compared = command == "cost" && ["shading", "max-error", "max-time"].contains(key);
             assert_eq!(known.contains(&format!("--{key}")), !is_compared, "{command} --{key}");
         }
         let long = help(command, "--help", "100");

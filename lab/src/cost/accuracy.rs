@@ -12,6 +12,7 @@ use super::configuration::{BUDGETS, Configuration, Kind};
 use super::quantization::Entries;
 use super::{CostError, Errors, Probe};
 use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth};
+use mode13h::plan::Effect;
 use mode13h::render::{Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::Scene;
 
@@ -55,6 +56,17 @@ impl Against {
 /// Error of light at the pixel itself: a half, 1/512 of the vertices' shades, 1/100 of f32.
 const LIT: f64 = 0.52;
 
+/// The rounding of shades that are linear on the screen, over a frame of 320 columns: a half, 1/512 of the vertices'
+/// shades, and the drift of the sums. Other shadings are not linear on the screen.
+const fn linear_rounding(shading: Shading) -> Option<f64> {
+    match shading {
+        Shading::Gouraud88 => Some(1.752),
+        Shading::Gouraud88Reseeded => Some(0.752),
+        Shading::Gouraud1616 => Some(0.507),
+        _ => None,
+    }
+}
+
 /// Pixels of one way within a bound.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct Kept {
@@ -74,6 +86,10 @@ pub(super) struct Results {
     pub(super) kept: [Kept; BUDGETS.len()],
     entries: Entries,
     swim: Swim,
+    /// Shades by which the worst pixel is beyond its shading's bound, negative where none is; `None` without a bound.
+    pub(super) excess: Option<f64>,
+    /// The largest error of each frame against `lit`, at pixels where light at the pixel itself is within rounding.
+    pub(super) worst: Vec<f64>,
     /// The shades of the first frame; `error_map` holds its errors against `lit`.
     pub(super) picture: Vec<u8>,
     pub(super) error_map: Vec<f32>,
@@ -102,7 +118,8 @@ impl Results {
         self.unrounded.cover_errors
     }
 
-    /// The share of pixels within a bound of [`BUDGETS`] of `lit`, those counted in where vertices that are rounded put
+    /// The share of pixels within a bound of [`BUDGETS`] of `lit`, or within what rounding to a byte needs if that is more,
+    /// those counted in where vertices that are rounded put
     /// light at the pixel itself off; 1 if none was compared.
     pub(super) fn within(&self, bound: usize) -> f64 {
         let all = self.lit.pixels.count;
@@ -128,6 +145,8 @@ impl Results {
         }
         self.entries.add(other.entries);
         self.swim.join(&other.swim);
+        self.worst.extend(other.worst);
+        self.excess = [self.excess, other.excess].into_iter().flatten().reduce(f64::max);
         if self.picture.is_empty() {
             (self.picture, self.error_map) = (other.picture, other.error_map);
         }
@@ -214,6 +233,7 @@ impl Referee<'_> {
         let exact = ErrorMap::new(&lit, &probe.look(scene, Screen::MODE_13H)?);
         let sure: Vec<bool> =
             exact.iter().flat_map(ErrorMap::errors).map(|off| off.is_none_or(|off| off <= LIT)).collect();
+        let linear_error = self.linear_error(scene)?;
         let judged = |way: &Configuration<'_>| {
             let shown = self.look(way, scene, probe)?;
             let mut findings = Results::default();
@@ -229,8 +249,15 @@ impl Referee<'_> {
             };
             findings.gouraud.count(&numeric);
             findings.lit.count(&model);
+            let worst = model.errors().zip(&sure).filter(|(_, sure)| **sure).filter_map(|(error, _)| error);
+            let worst = worst.fold(0.0, f64::max);
+            findings.worst.push(worst);
+            if let (Kind::Shading(shading), Some(linear_error)) = (way.kind, linear_error) {
+                findings.excess = linear_rounding(shading).map(|rounding| worst - linear_error - rounding);
+            }
             for (kept, bound) in findings.kept.iter_mut().zip(BUDGETS) {
-                let keeps = |(error, sure): (Option<f64>, &bool)| error.is_some_and(|error| error <= bound || !sure);
+                let keeps =
+                    |(error, sure): (Option<f64>, &bool)| error.is_some_and(|error| error <= bound.max(LIT) || !sure);
                 kept.within = model.errors().zip(&sure).filter(|pair| keeps(*pair)).count() as u64;
                 kept.patch = model.largest_patch(bound);
             }
@@ -242,6 +269,24 @@ impl Referee<'_> {
             Ok(findings)
         };
         self.ways.iter().map(judged).collect()
+    }
+
+    /// The bound of linear shades in a frame that [`Renderer::linear_error`] states, against light at every pixel. `None`
+    /// where an object has none or is split, and on 16.16 vertices.
+    fn linear_error(&self, scene: &Scene) -> Result<Option<f64>, CostError> {
+        let mut renderer = (self.base)();
+        if renderer.settings.vertex_path == VertexPath::Integer {
+            return Ok(None);
+        }
+        renderer.settings.accuracy = Some(Shading::Gouraud88Reseeded.into());
+        renderer.for_each_triangle(scene, Screen::MODE_13H, |_, _| {})?;
+        if renderer.plan().is_on_anywhere(Effect::Tessellation) {
+            return Ok(None);
+        }
+        let seen = (0..scene.objects().len()).filter(|object| scene.is_visible(*object));
+        Ok(seen
+            .map(|object| renderer.linear_error(scene, object))
+            .try_fold(0.0_f64, |most, error| Some(most.max(error?))))
     }
 
     /// Judges the frames from one step to the next.

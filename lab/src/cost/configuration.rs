@@ -11,7 +11,7 @@ use mode13h::render::{Accuracy, HiddenSurfaces, Renderer, Shading, VertexPath};
 use mode13h::span::Kernel;
 
 /// The budgets that are measured, in shades, the greatest error first.
-pub const BUDGETS: [f64; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
+pub const BUDGETS: [f64; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
 
 /// The shading whose time is 1.
 pub(super) const REFERENCE: Shading = Shading::Gouraud88;
@@ -67,7 +67,7 @@ impl<'a> Configuration<'a> {
     }
 
     pub(super) fn budget(shades: f64) -> Self {
-        // Whole numbers up to 16.
+        // Powers of two.
         Self::accurate(Kind::Budget(shades), shades, Accuracy::WithinError(shades as f32))
     }
 

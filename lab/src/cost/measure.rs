@@ -10,6 +10,7 @@ use super::configuration::{BUDGETS, Configuration, Kind, REFERENCE};
 use super::interleaved::{Outcome, Samples, Spent, run_interleaved};
 use super::split::split;
 use super::statistics::{Ratio, Rng, quartiles};
+use super::timed::timed_rows;
 use super::{Aspect, BudgetRow, CostError, Host, OptionRow, ShadingRow, Split, Study};
 use mode13h::plan::Effect;
 use mode13h::render::{FaceShading, Renderer, Screen, Shading};
@@ -76,6 +77,8 @@ pub enum Step {
     Times,
     /// Finding out where the time goes.
     Split,
+    /// Drawing within the least error that fits in a time.
+    Goals,
     /// Measuring what the sources claim.
     Claims,
 }
@@ -134,6 +137,12 @@ pub fn measure(
     let rows = Rows { ways: &ways, times: times(&ways, &outcome.samples), findings, outcome: &outcome, seed: *seed };
     let mut of_shadings = rows.shadings(&splits, frames.len());
     let budget = rows.budgets();
+    let by_time: Vec<(f64, &Results)> = budget
+        .iter()
+        .map(|row| row.per_frame.median)
+        .zip(rows.of_budgets().map(|(place, _)| &rows.findings[place]))
+        .collect();
+    let times = timed_rows(frames, renderer, &by_time, &spent(0.25), &|share| progress(Step::Goals, share))?;
     of_shadings.retain(|row| shadings.contains(&row.shading));
     let study = Study {
         input: name.to_string(),
@@ -143,6 +152,7 @@ pub fn measure(
         rounds: outcome.samples.rounds(),
         shadings: of_shadings,
         budget,
+        times,
         options: rows.choices(),
         claims,
     };
@@ -238,6 +248,7 @@ impl Rows<'_> {
                 error_lit: findings.lit(),
                 error_palette: findings.palette(),
                 cover_errors: findings.cover_errors(),
+                excess: findings.excess,
                 swim: findings.swim(),
                 efficient: true,
                 as_fast_as: self.each_shading().filter_map(as_fast).collect(),
@@ -249,11 +260,15 @@ impl Rows<'_> {
         rows
     }
 
-    fn budgets(&self) -> Vec<BudgetRow> {
-        let budgets = self.ways.iter().enumerate().filter_map(|(i, way)| match way.kind {
+    /// The budgets' places and errors, in the order of [`BUDGETS`].
+    fn of_budgets(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.ways.iter().enumerate().filter_map(|(i, way)| match way.kind {
             Kind::Budget(shades) => Some((i, shades)),
             _ => None,
-        });
+        })
+    }
+
+    fn budgets(&self) -> Vec<BudgetRow> {
         let row = |(bound, (place, max_error)): (usize, (usize, f64))| {
             let findings = &self.findings[place];
             let keeps = |&(other, shading): &(usize, Shading)| {
@@ -278,7 +293,7 @@ impl Rows<'_> {
                 triangles: shares.filter(|(_, triangles)| *triangles > 0).collect(),
             }
         };
-        (0..BUDGETS.len()).zip(budgets).map(row).collect()
+        (0..BUDGETS.len()).zip(self.of_budgets()).map(row).collect()
     }
 
     fn choices(&self) -> Vec<OptionRow> {
@@ -320,8 +335,8 @@ fn mark_efficient(rows: &mut [ShadingRow]) {
     }
 }
 
-/// Warnings of a study, a line each: neighbours in time that cannot be told apart, and budgets that have not kept their
-/// promise.
+/// Warnings of a study, a line each: neighbours in time that cannot be told apart, and budgets and shadings that have not
+/// kept their promise.
 #[must_use]
 pub fn warnings(study: &Study) -> Vec<String> {
     let mut rows: Vec<&ShadingRow> = study.shadings.iter().collect();
@@ -334,12 +349,21 @@ pub fn warnings(study: &Study) -> Vec<String> {
         let error = row.max_error;
         alloc::format!("the budget of {error} keeps {share:.2} % of the pixels within {error} shades, not {promise} %")
     });
-    tied.chain(broken).collect()
+    let beyond = study.shadings.iter().filter(|row| is_broken(row)).map(|row| {
+        let (shading, excess) = (row.shading, row.excess.unwrap_or(0.0));
+        alloc::format!("{shading} is off by {excess:.2} shades more than its bound")
+    });
+    tied.chain(broken).chain(beyond).collect()
 }
 
-/// Returns whether each budget keeps the share of pixels within its error that it promises.
-pub fn budgets_are_kept(study: &Study) -> bool {
-    study.budget.iter().all(|row| row.within >= PROMISE)
+/// Returns whether a pixel is beyond the bound of a shading.
+fn is_broken(row: &ShadingRow) -> bool {
+    row.excess.is_some_and(|excess| excess > 0.0)
+}
+
+/// Returns whether each budget keeps every pixel within its error, and each shading that has a bound within that.
+pub fn promises_are_kept(study: &Study) -> bool {
+    study.budget.iter().all(|row| row.within >= PROMISE) && !study.shadings.iter().any(is_broken)
 }
 
 #[cfg(test)]
@@ -361,6 +385,7 @@ mod tests {
             error_lit: Errors { rms, ..Errors::default() },
             error_palette: 0.0,
             cover_errors: 0,
+            excess: None,
             swim: 0.0,
             efficient: true,
             as_fast_as: tied.to_vec(),
@@ -402,6 +427,7 @@ mod tests {
             rounds: ROUNDS,
             shadings,
             budget: Vec::new(),
+            times: Vec::new(),
             options: Vec::new(),
             claims: Vec::new(),
         };
@@ -450,7 +476,7 @@ mod tests {
             ratio: None,
             triangles: Vec::new(),
         };
-        let study = Study {
+        let mut study = Study {
             input: String::new(),
             host: Host::default(),
             kernel: String::new(),
@@ -458,11 +484,19 @@ mod tests {
             rounds: 25,
             shadings: alloc::vec![self::row(Shading::Flat, 1.0, 1.0, &[])],
             budget: alloc::vec![row(16.0, 1.0), row(8.0, PROMISE), row(0.5, 0.9956)],
+            times: Vec::new(),
             options: Vec::new(),
             claims: Vec::new(),
         };
         assert_eq!(warnings(&study), ["the budget of 0.5 keeps 99.56 % of the pixels within 0.5 shades, not 100 %"]);
-        assert!(!budgets_are_kept(&study));
+        assert!(!promises_are_kept(&study));
+        // A shading beyond its bound, and one at it.
+        study.budget.clear();
+        study.shadings.push(ShadingRow { excess: Some(0.0), ..self::row(Shading::Gouraud88, 1.0, 1.0, &[]) });
+        assert!(warnings(&study).is_empty() && promises_are_kept(&study));
+        study.shadings[1].excess = Some(0.125);
+        assert_eq!(warnings(&study), ["gouraud-8.8 is off by 0.12 shades more than its bound"]);
+        assert!(!promises_are_kept(&study));
     }
 
     #[test]

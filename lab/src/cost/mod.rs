@@ -9,6 +9,7 @@
 //! | `accuracy`, `quantization` | errors against each standard of truth; errors that ramp or palette add |
 //! | `error_levels` | the colours of an error map |
 //! | `clock`, `interleaved`, `split` | times, all configurations side by side; the parts of a frame's time |
+//! | `timed` | frames against the clock: the least error that fits in a time |
 //! | `claims` | the sources' claims, measured |
 //! | `statistics` | quartiles, ratios, and their ranges by chance |
 //! | `report` | a study as an HTML file and charts |
@@ -28,11 +29,15 @@ pub mod report;
 mod split;
 mod statistics;
 mod study;
+mod timed;
 
 pub use clock::Clock;
 pub use configuration::BUDGETS;
 pub use error::CostError;
 pub use interleaved::Samples;
-pub use measure::{Settings, Step, Subject, budgets_are_kept, measure, warnings};
+pub use measure::{Settings, Step, Subject, measure, promises_are_kept, warnings};
 pub use probe::{Probe, ProbeError};
-pub use study::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, Verdict};
+pub use study::{
+    Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, TimeRow, Verdict,
+};
+pub use timed::{calibrate, time_frame};

@@ -23,6 +23,8 @@ pub struct Study {
     pub shadings: Vec<ShadingRow>,
     /// A budget each, the greatest error first.
     pub budget: Vec<BudgetRow>,
+    /// A time each, the shortest first.
+    pub times: Vec<TimeRow>,
     /// Other choices, grouped by aspect.
     pub options: Vec<OptionRow>,
     /// Claims of the sources.
@@ -113,6 +115,9 @@ pub struct ShadingRow {
     pub error_palette: f64,
     /// Pixels that show another face than they should, over all frames, vertices rounded alike.
     pub cover_errors: u64,
+    /// Shades by which the worst pixel is beyond the shading's bound, negative if none is. Shadings that are linear on the
+    /// screen have one, where the plan states how far linear shades are off.
+    pub excess: Option<f64>,
     /// Change of errors from a frame to the next, root mean square.
     pub swim: f64,
     /// True if no other shading is as near to `lit` and faster, as far as times can be told apart.
@@ -148,6 +153,25 @@ pub struct BudgetRow {
     pub ratio: Option<(f64, (f64, f64))>,
     /// Triangles of all frames that each shading drew, those of none left out.
     pub triangles: Vec<(FaceShading, u64)>,
+}
+
+/// One time for a frame, by which the renderer chose the errors.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[non_exhaustive]
+pub struct TimeRow {
+    /// The time for a frame.
+    pub max_time: f64,
+    /// Frames that were drawn, those left out in which the errors were tried.
+    pub frames: usize,
+    /// The share of these within 1.05 times `max_time`, 0 to 1.
+    pub within: f64,
+    /// The mean of the errors that were accepted.
+    pub mean_error: f64,
+    /// The greatest of them.
+    pub max_error: f64,
+    /// The largest error of these frames against `lit`, but for pixels where rounded vertices put light at the pixel itself
+    /// off.
+    pub largest: f64,
 }
 
 /// Aspects that may be chosen beside the shading.

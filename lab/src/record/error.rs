@@ -27,6 +27,8 @@ pub enum RecordErrorKind {
     Read(io::Error),
     /// The first line is not that of a record.
     NoRecord,
+    /// The first line is not that of a run.
+    NoRun,
     /// A record of another version than this.
     Version {
         /// Text found there.
@@ -73,6 +75,7 @@ impl fmt::Display for RecordErrorKind {
         match self {
             Self::Read(error) => write!(f, "{error}"),
             Self::NoRecord => f.write_str("no record: it would begin with \"mode13h record\""),
+            Self::NoRun => f.write_str("no run: it would begin with \"mode13h run\""),
             Self::Version { found } => write!(f, "a record of version {found:?}; this program reads {VERSION}"),
             Self::NoText => f.write_str("no text, or too long a line"),
             Self::Expected { expected, found } => write!(f, "expected {expected}, found {found:?}"),

@@ -31,6 +31,7 @@
 
 mod error;
 mod read;
+mod run;
 mod write;
 
 use std::fs::File;
@@ -38,6 +39,7 @@ use std::io::{self, BufReader};
 use std::path::Path;
 
 pub use error::{RecordError, RecordErrorKind};
+pub use run::Run;
 
 use mode13h::export::{ExportError, write_atomically};
 use mode13h::palette::Palette;

@@ -13,7 +13,7 @@ use mode13h::render::HiddenSurfaces;
 const LONGEST_LINE: u64 = 1024;
 
 pub(super) fn read(reader: impl BufRead) -> Result<Record, RecordError> {
-    let mut lines = Lines { reader, number: 0, text: String::new() };
+    let mut lines = Lines::new(reader);
     let result = record(&mut lines);
     result.map_err(|kind| RecordError { line: lines.number, kind })
 }
@@ -124,7 +124,7 @@ fn triangle(fields: &mut Fields<'_>) -> Result<([Vertex; 3], Interpolation), Rec
 }
 
 /// The lines that count.
-struct Lines<R> {
+pub(super) struct Lines<R> {
     reader: R,
     /// The number of the line at hand, from 1.
     number: u64,
@@ -132,8 +132,22 @@ struct Lines<R> {
 }
 
 impl<R: BufRead> Lines<R> {
+    pub(super) fn new(reader: R) -> Self {
+        Self { reader, number: 0, text: String::new() }
+    }
+
+    /// Number of the line, counted from 1.
+    pub(super) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// The line without blanks before and after it.
+    pub(super) fn text(&self) -> &str {
+        self.text.trim()
+    }
+
     /// Steps to the next line; `false` if there is none.
-    fn next(&mut self) -> Result<bool, RecordErrorKind> {
+    pub(super) fn next(&mut self) -> Result<bool, RecordErrorKind> {
         loop {
             self.number += 1;
             self.text.clear();
@@ -153,7 +167,7 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// Steps to the next line, which there must be.
-    fn need(&mut self, expected: &'static str) -> Result<(), RecordErrorKind> {
+    pub(super) fn need(&mut self, expected: &'static str) -> Result<(), RecordErrorKind> {
         if self.next()? { Ok(()) } else { Err(RecordErrorKind::BrokenOff { expected }) }
     }
 
@@ -204,7 +218,7 @@ impl<'a> Fields<'a> {
 }
 
 /// Excerpt of a line, as far as a person wants to read it.
-fn excerpt(text: &str) -> String {
+pub(super) fn excerpt(text: &str) -> String {
     let mut found: String = text.chars().take(32).collect();
     if found.len() < text.len() {
         found.push('…');

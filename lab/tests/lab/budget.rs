@@ -338,6 +338,50 @@ fn the_budget_is_the_renderers_or_the_scenes() {
     }
 }
 
+/// A time chooses the errors by the times that the renderer is told, and nothing else: a frame has the bytes of the error
+/// that its counts name.
+#[test]
+fn a_time_draws_the_frames_of_the_errors_that_it_chooses() {
+    let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
+    let errors_of = |scene: &mut Scene, max_error: Option<f32>, cost: fn(f32) -> u64| {
+        let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+        renderer.settings.max_time = Some(5.0);
+        renderer.settings.accuracy = max_error.map(Accuracy::WithinError);
+        let mut errors = Vec::new();
+        for frame in 0_u8..60 {
+            scene.objects_mut()[0].angles[1] = Angle::from_degrees(f64::from(frame));
+            let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
+            let error = stats.max_error.expect("an error");
+            assert_eq!(stats.max_time, Some(5.0));
+            assert!(vga.pixels() == draw(&mut within(error), scene, &mut Vga::new()), "frame {frame}");
+            assert!(draw(&mut renderer.set_alike(), scene, &mut Vga::new()) == vga.pixels(), "frame {frame}");
+            renderer.frame_took(std::time::Duration::from_micros(cost(error)));
+            errors.push((error, stats.fits));
+        }
+        errors
+    };
+    let fast = errors_of(&mut scene, None, |_| 1_000);
+    assert_eq!((fast[0], fast[59]), ((16.0, true), (0.5, true)));
+    assert_eq!(errors_of(&mut scene, None, |_| 1_000), fast, "the times alone count");
+    let slow = errors_of(&mut scene, None, |_| 9_000);
+    assert!(slow.iter().all(|(error, _)| *error == 16.0) && !slow[59].1);
+    let mixed = errors_of(&mut scene, None, |error| if error < 4.0 { 9_000 } else { 2_000 });
+    assert_eq!(mixed[59], (4.0, true));
+    assert_eq!(errors_of(&mut scene, Some(3.0), |_| 9_000)[59], (3.0, false));
+    // Frames that stay as they were are told apart: a picture that stands still is refined.
+    let (mut renderer, mut vga, mut drawn) = (Renderer::new(), Vga::new(), 0);
+    renderer.settings.max_time = Some(5.0);
+    for _ in 0..60 {
+        drawn += u32::from(renderer.draw(&scene, &mut vga).expect("a legal scene").redrawn);
+        renderer.frame_took(std::time::Duration::from_millis(1));
+    }
+    assert_eq!(drawn, 6, "once within each error");
+    assert!(vga.pixels() == draw(&mut within(0.5), &scene, &mut Vga::new()));
+    // A shading leaves nothing to choose.
+    renderer.settings.accuracy = Some(Shading::Phong.into());
+    assert!(matches!(renderer.draw(&scene, &mut vga), Err(RenderError::Preferences(_))));
+}
+
 /// The 16.16 path has no budget, and says so.
 #[test]
 fn integers_know_no_budget() {

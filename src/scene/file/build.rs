@@ -214,6 +214,7 @@ fn preferences(layout: &RenderLayout) -> Preferences {
         tessellation: layout.tessellation.map(|shades| shades.0),
         dither: layout.dither.unwrap_or_default(),
         max_error: layout.max_error.map(|shades| shades.0),
+        max_time: layout.max_time.map(|milliseconds| milliseconds.0),
         auto_palette: false,
     }
 }

@@ -153,6 +153,7 @@ pub(super) struct RenderLayout {
     pub(super) tessellation: Option<Positive>,
     pub(super) dither: Option<bool>,
     pub(super) max_error: Option<Positive>,
+    pub(super) max_time: Option<Positive>,
 }
 
 /// `subdivisions`: a whole number, or several in a list.

@@ -4,10 +4,10 @@
 //! |---|---|
 //! | `summary` | two sentences |
 //! | `figures` | numbers and ratios as text |
-//! | `chart`, `budget_chart`, `labels` | error against time, time against budget |
+//! | `chart`, `budget_chart`, `time_chart`, `labels` | error against time, time against budget, error against a time that is given |
 //! | `pictures` | frames and error maps as PNG inside the file |
 //! | `page` | the file, section by section |
-//! | `shadings`, `budgets`, `choices`, `method` | the sections |
+//! | `shadings`, `budgets`, `times`, `choices`, `method` | the sections |
 
 mod budget_chart;
 mod budgets;
@@ -22,8 +22,11 @@ mod shadings;
 mod summary;
 #[cfg(test)]
 mod tests;
+mod time_chart;
+mod times;
 
 pub use budget_chart::budget_svg;
 pub use chart::chart_svg;
 pub use page::html;
 pub use summary::summary;
+pub use time_chart::time_svg;

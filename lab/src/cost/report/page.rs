@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
 use super::chart::points_json;
-use super::{budget_svg, budgets, chart_svg, choices, method, shadings, summary};
+use super::{budget_svg, budgets, chart_svg, choices, method, shadings, summary, time_svg, times};
 use crate::cost::Study;
 
 /// The report's own style, and what it shares with the page in the browser: colours, chart and divider.
@@ -57,6 +57,7 @@ pub fn html(study: &Study) -> String {
                     (shadings::tables(study))
                     (shadings::pictures(study))
                     (budgets::section(study, || chart(&budget_svg(study), "Time for a frame against the accepted error, both logarithmic; the table has the figures")))
+                    (times::section(study, || chart(&time_svg(study), "Largest error against the time that is given for a frame, both logarithmic; the table has the figures")))
                     (choices::options(study))
                     (choices::claims(study))
                     (method::section(study))

@@ -2,8 +2,10 @@
 
 use std::collections::HashSet;
 
-use super::{budget_svg, budgets::verdict, chart_svg, html, summary};
-use crate::cost::{Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, Verdict};
+use super::{budget_svg, budgets::verdict, chart_svg, html, summary, time_svg};
+use crate::cost::{
+    Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, TimeRow, Verdict,
+};
 use mode13h::render::Shading;
 
 fn time(median: f64) -> Nanoseconds {
@@ -29,6 +31,7 @@ fn shading(shading: Shading, ratio: f64, gouraud: f64, lit: f64) -> ShadingRow {
         error_lit: errors(lit),
         error_palette: 1.5,
         cover_errors: 0,
+        excess: None,
         swim: 0.4,
         efficient: true,
         as_fast_as: Vec::new(),
@@ -61,6 +64,7 @@ fn study(shadings: Vec<ShadingRow>) -> Study {
         rounds: 101,
         shadings,
         budget: Vec::new(),
+        times: Vec::new(),
         options: Vec::new(),
         claims: Vec::new(),
     }
@@ -75,6 +79,15 @@ fn whole() -> Study {
     study.shadings[2].as_fast_as = vec![Shading::Flat, Shading::Float];
     study.shadings[3].efficient = false;
     study.budget = vec![budget(8.0, 1.0, Some((Shading::Phong, 0.5))), budget(1.0, 0.93, None)];
+    let goal = |max_time, largest| TimeRow {
+        max_time,
+        frames: 1_200,
+        within: 0.996,
+        mean_error: 0.8 * largest,
+        max_error: 2.0 * largest,
+        largest,
+    };
+    study.times = vec![goal(1e5, 7.5), goal(1.2e5, 0.52)];
     let option = |aspect, name: &str| OptionRow {
         aspect,
         name: name.to_string(),
@@ -140,6 +153,8 @@ fn a_report_is_well_formed_and_says_everything() {
     let text: String = document.descendants().filter(|n| n.is_text()).filter_map(|n| n.text()).collect();
     for part in [
         "time limit is void",
+        "The time for a frame",
+        "1\u{2009}200",
         "Cannot be told apart",
         "flat and float",
         "holds in part",
@@ -205,6 +220,8 @@ fn charts_name_every_point() {
     assert!(names.contains(&"≤ 8".to_string()) && names.contains(&"≤ 1".to_string()), "{names:?}");
     assert!(!names.iter().any(|name| name.contains("drawn at")), "no error is below the floor");
     assert!(texts(&budget_svg(&study)).contains(&"phong".to_string()));
+    let names = texts(&time_svg(&study));
+    assert!(names.contains(&"7.5".to_string()) && names.contains(&"0.52".to_string()), "{names:?}");
     // An error of 0 has a place, and the axis says so.
     let exact = self::study(vec![shading(Shading::Phong, 1.0, 0.0, 0.0)]);
     assert!(texts(&chart_svg(&exact)).iter().any(|name| name.contains("below 0.01 drawn at 0.01")));
@@ -219,6 +236,8 @@ fn nothing_and_no_number_are_reported_too() {
     let mut strange = study(vec![nan, shading(Shading::Phong, 0.0, f64::INFINITY, -1.0)]);
     strange.budget = vec![budget(f64::NAN, f64::NAN, Some((Shading::Flat, f64::NAN))), budget(0.0, 0.0, None)];
     strange.budget[1].triangles.clear();
+    strange.times =
+        vec![TimeRow { max_time: f64::NAN, largest: f64::INFINITY, ..TimeRow::default() }, TimeRow::default()];
     for study in [empty, strange] {
         let page = html(&study);
         parsed(&as_xml(&page));

@@ -24,6 +24,7 @@ use crate::support::random::Random;
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
     accuracy: Option<Accuracy>,
+    max_time: Option<f32>,
     mapping: Option<Mapping>,
     mipmaps: Option<bool>,
     vertex_path: VertexPath,
@@ -37,6 +38,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             accuracy: None,
+            max_time: None,
             mapping: None,
             mipmaps: None,
             vertex_path: VertexPath::default(),
@@ -50,9 +52,10 @@ impl Default for Settings {
 impl Settings {
     /// A fresh renderer that is set so.
     pub(super) fn renderer(&self) -> Renderer {
-        let Self { accuracy, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
+        let Self { accuracy, max_time, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
         let mut renderer = Renderer::new();
         renderer.settings.accuracy = *accuracy;
+        renderer.settings.max_time = *max_time;
         renderer.settings.mapping = *mapping;
         renderer.settings.mipmaps = *mipmaps;
         renderer.settings.vertex_path = *vertex_path;
@@ -229,6 +232,8 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("Preferences.dither", |w, r| w.scene.preferences.dither = r.within(0, 1) == 1),
     seen("Preferences.max_error", |w, r| w.scene.preferences.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
+    // No frame says how long it took: all are drawn within 16 shades, or what the scene says.
+    seen("Preferences.max_time", |w, r| w.scene.preferences.max_time = sometimes(r, |r| between(r, 0.5, 16.0))),
     // The program makes it, no renderer.
     unseen("Preferences.auto_palette", |w, r| w.scene.preferences.auto_palette = r.within(0, 1) == 1),
     // Motions
@@ -379,6 +384,12 @@ pub(super) const CHANGES: &[Change] = &[
         };
         w.settings.accuracy = accuracy;
         w.kept.settings.accuracy = accuracy;
+        (w.settings.max_time, w.kept.settings.max_time) = (None, None);
+    }),
+    seen("Settings.max_time", |w, r| {
+        w.settings.accuracy = sometimes(r, |r| between(r, 0.5, 16.0)).map(Accuracy::WithinError);
+        w.settings.max_time = sometimes(r, |r| between(r, 0.5, 16.0));
+        (w.kept.settings.accuracy, w.kept.settings.max_time) = (w.settings.accuracy, w.settings.max_time);
     }),
     seen("Settings.mapping", |w, r| {
         // The plan's decision is the same for two of them, and the object's vertices are.

@@ -1,0 +1,120 @@
+//! Frames against the clock: a renderer that chooses the least error that fits in a time is told the times of its frames.
+
+use alloc::vec::Vec;
+
+use super::accuracy::Results;
+use super::clock::Clock;
+use super::configuration::BUDGETS;
+use super::interleaved::Spent;
+use super::{CostError, TimeRow};
+use mode13h::plan::Effect;
+use mode13h::render::{RenderError, Renderer, Stats};
+use mode13h::scene::Scene;
+use mode13h::vga::Vga;
+
+/// Frames after which every error has been tried.
+const CALIBRATION: usize = 32;
+
+/// Frames that are timed of one time, at least and at most.
+const FRAMES: (usize, usize) = (200, 20_000);
+
+/// Times that a study chooses errors by.
+const TIMES: i32 = 5;
+
+/// Share of its time that a frame may take beyond it.
+const TOLERANCE: f64 = 1.05;
+
+/// Draws a frame, tells the renderer how long that took, and returns the milliseconds.
+///
+/// # Errors
+/// As [`Renderer::draw`].
+pub fn time_frame(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    vga: &mut Vga,
+    clock: Clock,
+) -> Result<(Stats, f64), RenderError> {
+    let start = (clock.now)();
+    let stats = renderer.draw(scene, vga)?;
+    let time = (clock.now)().saturating_sub(start);
+    renderer.frame_took(time);
+    Ok((stats, time.as_secs_f64() * 1000.0))
+}
+
+/// Draws a frame as often as it takes to try every error, and says what the next frame is drawn within.
+///
+/// # Errors
+/// As [`Renderer::draw`].
+pub fn calibrate(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga, clock: Clock) -> Result<Stats, RenderError> {
+    // Every frame is drawn, though nothing moves.
+    renderer.force(Effect::Transform, Some(true));
+    let mut frames = (0..CALIBRATION).map(|_| time_frame(renderer, scene, vga, clock));
+    let last = frames.try_fold(None, |_, frame| frame.map(|(stats, _)| Some(stats)));
+    renderer.force(Effect::Transform, None);
+    match last? {
+        Some(stats) => Ok(stats),
+        None => renderer.draw(scene, vga),
+    }
+}
+
+/// Frames drawn by several times, from that of the cheapest budget to that of the dearest. None on vertices that know
+/// no budget.
+pub(super) fn timed_rows(
+    frames: &[Scene],
+    base: &dyn Fn() -> Renderer,
+    budgets: &[(f64, &Results)],
+    spent: &Spent,
+    progress: &dyn Fn(f64),
+) -> Result<Vec<TimeRow>, CostError> {
+    let shortest = budgets.iter().map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
+    let longest = 1.15 * budgets.iter().map(|(time, _)| *time).fold(0.0, f64::max);
+    let mut rows = Vec::new();
+    for i in 0..TIMES {
+        let share = f64::from(i) / f64::from(TIMES - 1);
+        let max_time = shortest * (longest / shortest).powf(share);
+        let mut renderer = base();
+        renderer.settings.accuracy = None;
+        renderer.settings.max_time = Some((max_time / 1e6) as f32);
+        if let Some(row) = timed_row(frames, &mut renderer, max_time, budgets, spent)? {
+            rows.push(row);
+        }
+        progress(f64::from(i + 1) / f64::from(TIMES));
+    }
+    Ok(rows)
+}
+
+fn timed_row(
+    frames: &[Scene],
+    renderer: &mut Renderer,
+    max_time: f64,
+    budgets: &[(f64, &Results)],
+    spent: &Spent,
+) -> Result<Option<TimeRow>, CostError> {
+    let mut vga = Vga::new();
+    renderer.force(Effect::Transform, Some(true));
+    let mut row = TimeRow { max_time, ..TimeRow::default() };
+    let (mut within, mut sum, mut taken) = (0, 0.0, 0.0);
+    for number in 0..CALIBRATION + FRAMES.1 {
+        let place = number % frames.len();
+        let (stats, milliseconds) = time_frame(renderer, &frames[place], &mut vga, spent.clock)?;
+        let Some(error) = stats.max_error.map(f64::from) else { return Ok(None) };
+        taken += milliseconds / 1000.0;
+        if number < CALIBRATION {
+            continue;
+        }
+        row.frames += 1;
+        within += usize::from(milliseconds * 1e6 <= TOLERANCE * max_time);
+        sum += error;
+        row.max_error = row.max_error.max(error);
+        let bound = BUDGETS.iter().position(|budget| *budget == error);
+        if let Some(worst) = bound.and_then(|bound| budgets.get(bound)?.1.worst.get(place)) {
+            row.largest = row.largest.max(*worst);
+        }
+        if row.frames >= FRAMES.0 && taken >= spent.seconds / f64::from(TIMES) {
+            break;
+        }
+    }
+    row.within = within as f64 / row.frames as f64;
+    row.mean_error = sum / row.frames as f64;
+    Ok(Some(row))
+}
