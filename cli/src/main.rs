@@ -11,6 +11,7 @@ mod explain;
 mod failure;
 mod film;
 mod generate;
+mod host;
 mod input;
 mod names;
 mod options;

@@ -16,9 +16,9 @@ use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::{Value, json};
 
-use crate::cost::clock;
 use crate::failure::{Failure, on_one_line};
 use crate::film::{self, Film, Kind};
+use crate::host::clock;
 use crate::names::{Names, number_in};
 use crate::options::{Drawing, Moment, ShadingOptions, finite};
 use crate::renderer_pool::RendererPool;

@@ -347,7 +347,8 @@ mod tests {
             let others: Vec<(f32, f32)> =
                 frames.iter().enumerate().skip(70).filter(|(i, _)| !is_late(*i)).map(|(_, frame)| *frame).collect();
             assert!(share(&others) >= 0.99, "seed {seed}: {}", share(&others));
-            // 2 shades take 2.9 ms, which leaves a tenth of the time even with noise, most of the time.
+            // 2 shades take 2.9 ms. 1 shade, which takes 3.8, is tried once in 512 frames. A tenth of its frames is late then,
+            // so two of three are with a chance of 0.028, which takes 36 frames in the mean: 7 % of all.
             let at_best = others.iter().filter(|(error, _)| *error == 2.0).count();
             assert!(at_best * 10 >= others.len() * 9, "seed {seed}: {at_best} of {}", others.len());
         }
@@ -407,7 +408,7 @@ mod tests {
             let is_drawn = shown != Some(error);
             shown = Some(error);
             drawn += u32::from(is_drawn);
-            is_drawn.then(|| if error < 1.0 { 5.0 } else { 2.0 })
+            is_drawn.then_some(if error < 1.0 { 5.0 } else { 2.0 })
         });
         assert!(frames[200..].iter().all(|(error, _)| *error == 1.0), "{:?}", &frames[..60]);
         assert!(drawn <= 8, "{drawn} drawn");

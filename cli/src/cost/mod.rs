@@ -1,12 +1,9 @@
 //! `mode13h cost`: what accuracy costs in time.
 
 mod files;
-mod host;
 mod instructions;
 mod json;
 mod text;
-
-pub(crate) use host::clock;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -23,7 +20,7 @@ use mode13h_lab::cost::{self, Settings, Step, Subject, report};
 use crate::failure::{Failure, on_one_line};
 use crate::options::{Drawing, finite, one_of};
 use crate::turntable::Turntable;
-use crate::{input, output};
+use crate::{host, input, output};
 
 /// Frames that follow each other 0.25° apart, for what swims.
 const STEPS: u32 = 5;

@@ -8,8 +8,8 @@ use mode13h::vga::Vga;
 use mode13h_lab::cost::calibrate;
 
 use super::{Drawing, one_of, shades};
-use crate::cost::clock;
 use crate::failure::Failure;
+use crate::host::clock;
 
 /// How faces are shaded. The scene decides what is not said here, and the library what the scene leaves open.
 #[derive(Args, Clone)]

@@ -9,7 +9,7 @@ use mode13h_lab::cost::{Clock, Host};
 const FEATURES: [(&str, bool); 2] = [("asm", cfg!(feature = "asm")), ("simd", cfg!(feature = "simd"))];
 
 /// Machine and program that measure.
-pub(super) fn host() -> Host {
+pub(crate) fn host() -> Host {
     let features: Vec<&str> = FEATURES.iter().filter(|(_, on)| *on).map(|(name, _)| *name).collect();
     let features = if features.is_empty() { "none of asm, simd".to_string() } else { features.join(", ") };
     let mut host = Host::default();
