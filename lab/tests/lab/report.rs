@@ -25,5 +25,5 @@ fn what_was_measured_is_reported() {
         assert!(page.contains(&format!("frame of {}", row.shading)), "{}", row.shading);
     }
     assert_eq!(page.matches("data:image/png;base64,").count(), 2 * study.shadings.len());
-    assert_eq!(page.matches("<svg").count(), 2, "both charts");
+    assert_eq!(page.matches("<svg").count(), 3, "three charts");
 }

@@ -138,20 +138,57 @@ fn points(study: &Study) -> Vec<Point> {
     points
 }
 
-/// The points as `shared/chart.js` takes them, in JSON: names are those of shadings, which need no escapes.
+/// A point as `shared/chart.js` takes it: nanoseconds, an error, and JSON of its kind and name.
+type JsonPoint = (f64, f64, String);
+
+/// Points in JSON.
+fn json(points: impl Iterator<Item = JsonPoint>) -> String {
+    let shown = points.filter(|(ns, error, _)| ns.is_finite() && error.is_finite());
+    let shown: Vec<String> =
+        shown.map(|(ns, error, rest)| format!(r#"{{"ms":{},"error":{error},{rest}}}"#, ns / 1e6)).collect();
+    format!("[{}]", shown.join(","))
+}
+
+/// A shading's mark. Names are those of shadings, which need no escapes.
+fn shading_mark(shading: impl std::fmt::Display, efficient: bool) -> String {
+    format!(r#""kind":"shading","name":"{shading}","efficient":{efficient}"#)
+}
+
+/// A budget's mark.
+fn budget_mark(name: &str, budget: f64) -> String {
+    format!(r#""kind":"budget","name":"{name}","budget":{budget}"#)
+}
+
+fn budget_name(row: &crate::cost::BudgetRow) -> String {
+    format!("≤ {}", asked(row.max_error))
+}
+
+/// The points of [`chart_svg`].
 pub(super) fn points_json(study: &Study) -> String {
-    let shading = |row: &ShadingRow| {
-        let (ms, error) = (row.per_frame.median / 1e6, row.error_lit.rms);
-        (ms, error, format!(r#""kind":"shading","name":"{}","efficient":{}"#, row.shading, row.efficient))
-    };
+    let shading =
+        |row: &ShadingRow| (row.per_frame.median, row.error_lit.rms, shading_mark(row.shading, row.efficient));
+    let budget =
+        |row: &crate::cost::BudgetRow| (row.per_frame.median, row.rms, budget_mark(&budget_name(row), row.max_error));
+    json(study.shadings.iter().map(shading).chain(study.budget.iter().map(budget)))
+}
+
+/// The points of [`budget_svg`](super::budget_svg).
+pub(super) fn budget_points_json(study: &Study) -> String {
     let budget = |row: &crate::cost::BudgetRow| {
-        let (ms, error, most) = (row.per_frame.median / 1e6, row.rms, row.max_error);
-        (ms, error, format!(r#""kind":"budget","name":"≤ {}","budget":{most}"#, asked(most)))
+        (row.per_frame.median, row.max_error, budget_mark(&budget_name(row), row.max_error))
     };
-    let all = study.shadings.iter().map(shading).chain(study.budget.iter().map(budget));
-    let all = all.filter(|(ms, error, _)| ms.is_finite() && error.is_finite());
-    let all: Vec<String> = all.map(|(ms, error, rest)| format!(r#"{{"ms":{ms},"error":{error},{rest}}}"#)).collect();
-    format!("[{}]", all.join(","))
+    let single = |row: &crate::cost::BudgetRow| {
+        Some((row.best_single?.median, row.max_error, shading_mark(row.best_single_shading?, false)))
+    };
+    json(study.budget.iter().map(budget).chain(study.budget.iter().filter_map(single)))
+}
+
+/// The points of [`time_svg`](super::time_svg).
+pub(super) fn time_points_json(study: &Study) -> String {
+    json(study.times.iter().map(|row| {
+        let name = asked((100.0 * row.largest).round() / 100.0);
+        (row.max_time, row.largest, budget_mark(&name, row.largest))
+    }))
 }
 
 /// Budgets that lie at the same place, as far as can be seen, get one name.

@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
-use super::chart::points_json;
+use super::chart::{budget_points_json, points_json, time_points_json};
 use super::{budget_svg, budgets, chart_svg, choices, method, shadings, summary, time_svg, times};
 use crate::cost::Study;
 
@@ -17,7 +17,7 @@ const SCRIPTS: [&str; 2] = [include_str!("shared/chart.js"), include_str!("share
 const MOUNT: &str = r#"
 for (const chart of document.querySelectorAll("[data-points]")) {
   const points = JSON.parse(chart.dataset.points);
-  new ResizeObserver(() => drawChart(chart, points, { height: 420, description: chart.ariaLabel })).observe(chart);
+  new ResizeObserver(() => drawChart(chart, points, { ...chart.dataset, height: 420, description: chart.ariaLabel })).observe(chart);
 }
 for (const pair of document.querySelectorAll(".pair")) divide(pair, pair.dataset.label);
 "#;
@@ -56,8 +56,8 @@ pub fn html(study: &Study) -> String {
                     }
                     (shadings::tables(study))
                     (shadings::pictures(study))
-                    (budgets::section(study, || chart(&budget_svg(study), "Time for a frame against the accepted error, both logarithmic; the table has the figures")))
-                    (times::section(study, || chart(&time_svg(study), "Largest error against the time that is given for a frame, both logarithmic; the table has the figures")))
+                    (budgets::section(study, || budget_chart(study)))
+                    (times::section(study, || time_chart(study)))
                     (choices::options(study))
                     (choices::claims(study))
                     (method::section(study))
@@ -69,12 +69,13 @@ pub fn html(study: &Study) -> String {
     page.into_string()
 }
 
-/// Error against time: the chart of the page in the browser or, without scripts, an SVG.
+/// Error against time.
 fn error_chart(study: &Study) -> Markup {
     let description = "Error against lit and time for a frame of every shading and budget, both logarithmic; the table \
                        below has the figures";
+    let axes = ["time for a frame", "error in shades, r.m.s."];
     markup! {
-        figure.chart role="img" aria-label=(description) data-points=(points_json(study)) { (PreEscaped(chart_svg(study))) }
+        (chart(description, axes, &points_json(study), &chart_svg(study)))
         p.key {
             span { "Filled and joined: efficient shadings, of which none is as near and surely faster." }
             span { "Triangles: budgets, errors up to so many shades accepted." }
@@ -82,6 +83,30 @@ fn error_chart(study: &Study) -> Markup {
     }
 }
 
-fn chart(svg: &str, description: &str) -> Markup {
-    markup! { figure.chart role="img" aria-label=(description) { (PreEscaped(svg)) } }
+fn budget_chart(study: &Study) -> Markup {
+    let description = "Accepted error against the time for a frame, both logarithmic; the table has the figures";
+    let axes = ["time for a frame", "accepted error in shades"];
+    markup! {
+        (chart(description, axes, &budget_points_json(study), &budget_svg(study)))
+        p.key {
+            span { "Triangles: the budget, face by face." }
+            span { "Circles: the cheapest single shading that keeps the same promise." }
+        }
+    }
+}
+
+fn time_chart(study: &Study) -> Markup {
+    let description =
+        "Largest error against the time that is given for a frame, both logarithmic; the table has the figures";
+    let axes = ["time that is given for a frame", "largest error in shades"];
+    chart(description, axes, &time_points_json(study), &time_svg(study))
+}
+
+/// The chart of the page in the browser or, without scripts, an SVG.
+fn chart(description: &str, [across, down]: [&str; 2], points: &str, svg: &str) -> Markup {
+    markup! {
+        figure.chart role="img" aria-label=(description) data-points=(points) data-across=(across) data-down=(down) {
+            (PreEscaped(svg))
+        }
+    }
 }

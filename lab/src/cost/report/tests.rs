@@ -198,6 +198,22 @@ fn the_chart_that_scripts_draw_has_every_point() {
         let end = format!(r#""budget":{}}}"#, row.max_error);
         assert!(points.contains(&end), "{end} in {points}");
     }
+    // The budgets' chart has its time and, where there is one, that of a single shading; the times' chart has each time.
+    let charts: Vec<&str> = document.descendants().filter_map(|n| n.attribute("data-points")).collect();
+    let singles =
+        study.budget.iter().filter(|row| row.best_single.is_some() && row.best_single_shading.is_some()).count();
+    let expected = [charts[0].matches(r#""ms""#).count(), study.budget.len() + singles, study.times.len()];
+    assert!(expected.iter().all(|count| *count > 0));
+    let counts: Vec<usize> = charts.iter().map(|points| points.matches(r#""ms""#).count()).collect();
+    assert_eq!(counts, expected);
+    for row in &study.budget {
+        let (ms, error) = (row.per_frame.median / 1e6, row.max_error);
+        assert!(charts[1].contains(&format!(r#"{{"ms":{ms},"error":{error},"kind":"budget""#)), "{}", charts[1]);
+    }
+    for row in &study.times {
+        let point = format!(r#"{{"ms":{},"error":{},"kind":"budget""#, row.max_time / 1e6, row.largest);
+        assert!(charts[2].contains(&point), "{point} in {}", charts[2]);
+    }
     // A study that nobody has timed.
     let mut untimed = self::study(vec![shading(Shading::Flat, f64::NAN, 0.0, 0.0)]);
     untimed.budget.clear();

@@ -32,9 +32,10 @@ function logSpan(numbers) {
  * Draws the chart into an element, at its width.
  *
  * A point is { ms, error, name, kind, efficient, budget, title }: `kind` is "shading", "budget", "now" or "second".
- * Efficient shadings are joined, and so are budgets, in the order of their errors that are accepted. A click on a point that has `choose` calls it.
+ * Efficient shadings are joined, and so are budgets, in the order of `budget`. A click on a point that has `choose` calls it.
+ * `across` and `down` name the axes.
  */
-function drawChart(element, points, { height = 260, description = "Error against time" } = {}) {
+function drawChart(element, points, { height = 260, description = "Error against time", across: acrossName = "time for a frame", down: downName = "error in shades, r.m.s." } = {}) {
   const SVG = "http://www.w3.org/2000/svg";
   const make = (name, attributes, parent, text) => {
     const made = document.createElementNS(SVG, name);
@@ -61,8 +62,8 @@ function drawChart(element, points, { height = 260, description = "Error against
     make("line", { class: "chart-grid", x1: left, x2: right, y1: y(tick), y2: y(tick) }, svg);
     make("text", { class: "chart-tick", x: left - 6, y: y(tick) + 4, "text-anchor": "end" }, svg, `${Number(tick.toPrecision(2))}`);
   }
-  make("text", { class: "chart-name", x: right, y: height - 6, "text-anchor": "end" }, svg, "time for a frame →");
-  make("text", { class: "chart-name", x: 12, y: top + 2, transform: `rotate(-90 12 ${top + 2})`, "text-anchor": "end" }, svg, "error in shades, r.m.s. →");
+  make("text", { class: "chart-name", x: right, y: height - 6, "text-anchor": "end" }, svg, `${acrossName} →`);
+  make("text", { class: "chart-name", x: 12, y: top + 2, transform: `rotate(-90 12 ${top + 2})`, "text-anchor": "end" }, svg, `${downName} →`);
 
   const around = (cx, cy, size) => ({ x0: cx - size, x1: cx + size, y0: cy - size, y1: cy + size });
   const taken = points.map((point) => around(x(point.ms), y(point.error), 5));
@@ -84,7 +85,7 @@ function drawChart(element, points, { height = 260, description = "Error against
   for (const point of [...points].sort((a, b) => order[a.kind] - order[b.kind])) {
     const at = { x: x(point.ms), y: y(point.error) };
     const group = make("g", { class: `chart-point ${point.kind}${point.efficient ? " efficient" : ""}` }, svg);
-    make("title", {}, group, point.title ?? `${point.name}: ${timeText(point.ms)}, off by ${point.error.toPrecision(2)} shades r.m.s.`);
+    make("title", {}, group, point.title ?? `${point.name}: ${acrossName} ${timeText(point.ms)}, ${downName} ${point.error.toPrecision(2)}`);
     if (point.kind === "budget") make("path", { d: `M${at.x} ${at.y - 5}l5 9h-10z` }, group);
     else make("circle", { cx: at.x, cy: at.y, r: point.kind === "shading" ? 4.5 : 7 }, group);
     if (point.choose) {
