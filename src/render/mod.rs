@@ -170,6 +170,7 @@ impl Renderer {
     /// frames by. The errors follow from these times alone; the engine reads no clock.
     ///
     /// ```
+    /// use mode13h::Angle;
     /// use mode13h::mesh::shapes;
     /// use mode13h::render::Renderer;
     /// use mode13h::scene::Scene;
@@ -179,7 +180,7 @@ impl Renderer {
     /// let (mut scene, mut renderer, mut vga) = (Scene::showing(shapes::torus(48, 24)), Renderer::new(), Vga::new());
     /// renderer.settings.max_time = Some(5.0);
     /// for _ in 0..40 {
-    ///     scene.objects_mut()[0].yaw += 0.02;
+    ///     scene.objects_mut()[0].rotate_y(Angle::from_degrees(1.0));
     ///     let start = Instant::now();
     ///     let stats = renderer.draw(&scene, &mut vga)?;
     ///     renderer.frame_took(start.elapsed());
