@@ -1,21 +1,21 @@
-//! What triangles are drawn with, and the tables and the image for it: everybody has the same.
+//! Drawings that are compared, with the tables and the image that all candidates share.
 
-/// What is done to the pixels of a triangle.
+/// Drawing of a triangle's pixels.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Drawing {
     /// One shade a triangle: its first vertex's.
     Flat,
     /// Shades linear on the screen.
     Gouraud,
-    /// The same with a depth buffer.
+    /// Shades linear on the screen, with a depth buffer.
     GouraudDepth,
     /// An image, linear on the screen.
     Affine,
-    /// The same, each texel looked up by its shade.
+    /// An image, linear on the screen, each texel looked up by its shade.
     AffineLit,
     /// An image, linear on the face.
     Perspective,
-    /// The same, each texel looked up by its shade.
+    /// An image, linear on the face, each texel looked up by its shade.
     PerspectiveLit,
     /// An image, linear on the face, with a depth buffer.
     PerspectiveDepth,

@@ -72,7 +72,7 @@ pub fn start_mesa(material: &Material) -> Result<String, Box<dyn Error>> {
     if name.contains("llvmpipe") { Ok(name) } else { Err(format!("Mesa renders by {name}, not by llvmpipe").into()) }
 }
 
-/// What is done to the pixels of a lit mesh.
+/// Drawing of a lit mesh's pixels.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Stages {
     pub textured: bool,

@@ -26,7 +26,7 @@ use mode13h::palette::Ramp;
 use mode13h::raster::{DepthBuffer, Frame, Raster};
 use mode13h::span::Kernel;
 
-/// What a film begins with: its version is the last byte.
+/// First bytes of a film: its version is the last of them.
 pub(crate) const MAGIC: u32 = u32::from_le_bytes(*b"M13\x01");
 
 /// Pixels of a frame.
