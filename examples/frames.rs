@@ -1,6 +1,7 @@
 //! Draws frames of a shipped scene, 35 a second, and prints what they come to: a hash of all of them, and the effects
 //! that were on for any object in any of them. `sphere` is a turning one of 79,600 faces. A fourth word is an error budget
-//! in shades, or a shading.
+//! in shades, or a shading. A fifth one is another number of frames a second; the camera then goes round a scene that does
+//! not move.
 //!
 //!     cargo run --release --example frames -- fog 35 portable
 //!
@@ -11,6 +12,7 @@ use std::collections::BTreeSet;
 use std::error::Error;
 
 use mode13h::Angle;
+use mode13h::glam::Quat;
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
 use mode13h::plan::Effect;
@@ -52,11 +54,10 @@ fn sphere() -> Scene {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let (name, frames, kernel, max_error) = match words.as_slice() {
-        [name, frames, kernel] => (name, frames, kernel, None),
-        [name, frames, kernel, max_error] => (name, frames, kernel, Some(max_error)),
-        _ => return Err("usage: frames SCENE FRAMES KERNEL [MAX_ERROR | SHADING]".into()),
+    let [name, frames, kernel, more @ ..] = words.as_slice() else {
+        return Err("usage: frames SCENE FRAMES KERNEL [MAX_ERROR | SHADING [RATE]]".into());
     };
+    let (max_error, rate) = (more.first(), more.get(1).map(|rate| rate.parse::<f64>()).transpose()?);
     let mut scene = match shipped::by_name(name) {
         Some(shipped) => shipped.load()?.scene,
         None if name == "sphere" => sphere(),
@@ -72,7 +73,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let (mut all, mut on) = (0xcbf2_9ce4_8422_2325, BTreeSet::new());
     for frame in 0..frames.parse::<u32>()? {
-        scene.set_time(f64::from(frame) / 35.0);
+        scene.set_time(f64::from(frame) / rate.unwrap_or(35.0));
+        if rate.is_some() && scene.motions.is_empty() {
+            let around = scene.camera.eye - scene.camera.target;
+            scene.camera.eye = scene.camera.target + Quat::from_rotation_y(0.5).mul_vec3(around);
+        }
         let draw = if frame == 0 { first_frame } else { next_frame };
         draw(&mut renderer, &scene, &mut vga)?;
         all = hash(all, vga.pixels().iter().copied());

@@ -36,9 +36,9 @@ impl Findings {
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct FaceCounts {
     /// Each shading that any face had, from cheap to exact, with the number of its faces.
-    pub drawn: Vec<(FaceShading, usize)>,
+    pub drawn: Vec<(FaceShading, u64)>,
     /// The number of faces without a decision, because they are not seen.
-    pub not_drawn: usize,
+    pub not_drawn: u64,
 }
 
 /// Each count with its reason, and last those that were not drawn.

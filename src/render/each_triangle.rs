@@ -106,11 +106,9 @@ impl Renderer {
                 };
                 self.integer.triangles(stats.shading, (object, of_scene), &mut stats, &mut plain);
             } else if let Some(faces) = self.states[object].faces(of_scene, &self.plan.objects[object]) {
-                // What is decided here, of faces that cover no pixel too, is not kept.
-                let mut decided = self.states[object].decided().clone();
                 let triangle_surfaces = faces.geometry.triangle_surfaces;
                 let mut visitor = Visitor { pipelines, object, triangle_surfaces, visit: &mut *visit };
-                faces.draw(self.states[object].budget(), &mut decided, &mut stats, &mut visitor);
+                faces.draw(self.states[object].budget(), &mut stats, &mut visitor);
             }
         }
         Ok(stats)

@@ -5,13 +5,14 @@
 //! test for it.
 
 use super::Stats;
-use super::budget::{Budget, Decided};
+use super::budget::Budget;
 use super::clip::{Carried, Corner, WithEffects, clip};
 use super::cull::face_queue::FaceQueue;
 use super::cull::{self, CullMasks, Culler};
 use super::faces::Faces;
 use super::lit::{Face, LitVertex, ShadedVertices};
 use super::paint::SurfaceMaterial;
+use super::stats::Shares;
 use super::vertex::Geometry;
 use crate::fixed::U8F8;
 use crate::light::both_sides;
@@ -51,18 +52,19 @@ pub(super) trait Sink {
 }
 
 impl Faces<'_> {
-    /// Hands the faces that are to be drawn to `sink`. With a budget each is decided on; `decided` is what that led to.
-    pub(super) fn draw(&self, budget: Option<&Budget>, decided: &mut Decided, stats: &mut Stats, sink: &mut impl Sink) {
+    /// Hands the faces that are to be drawn to `sink`. With a budget each is decided on; returns the counts of that.
+    pub(super) fn draw(&self, budget: Option<&Budget>, stats: &mut Stats, sink: &mut impl Sink) -> Shares {
+        let mut counts = Shares::default();
         stats.faces += self.geometry.triangles.len() as u64;
         let effects = !self.extras.is_empty();
         if let Some(budget) = budget {
-            let decided = (budget, decided);
-            return match (self.culls, effects) {
-                (false, false) => self.each_within::<false, false>(decided, stats, sink),
-                (true, false) => self.each_within::<true, false>(decided, stats, sink),
-                (false, true) => self.each_within::<false, true>(decided, stats, sink),
-                (true, true) => self.each_within::<true, true>(decided, stats, sink),
-            };
+            match (self.culls, effects) {
+                (false, false) => self.each_within::<false, false>(budget, &mut counts, stats, sink),
+                (true, false) => self.each_within::<true, false>(budget, &mut counts, stats, sink),
+                (false, true) => self.each_within::<false, true>(budget, &mut counts, stats, sink),
+                (true, true) => self.each_within::<true, true>(budget, &mut counts, stats, sink),
+            }
+            return counts;
         }
         let before = stats.drawn;
         match (self.culls, effects) {
@@ -72,6 +74,7 @@ impl Faces<'_> {
             (true, true) => self.each::<true, true>(stats, sink),
         }
         stats.shares.add(self.shading.into(), stats.drawn - before);
+        counts
     }
 
     /// Finds those of a chunk of up to 64 triangles that lie back to back with others.

@@ -6,6 +6,7 @@ use super::cull::Culler;
 use super::object::ObjectState;
 use super::pipelines::Pipelines;
 use super::sinks::{Batched, BatchedEffects, DeferredFace, DeferredSink, ForEachSink, ImmediateSink, depth_of};
+use super::stats::Shares;
 use super::{HiddenSurfaces, Renderer, Stats, VertexPath};
 use crate::plan::{Effect, ObjectPlan, far_to_near};
 use crate::raster::{Batch, DrawStats, Frame, Interpolation, Raster, Vertex};
@@ -49,7 +50,7 @@ impl Renderer {
         for &object in &self.plan.order {
             let plan = &self.plan.objects[object];
             let mut drawn = DrawStats::default();
-            let mut decided = self.states[object].take_decided();
+            let mut counts = Shares::default();
             let pipelines = Pipelines {
                 scene,
                 plan: &self.plan,
@@ -69,16 +70,16 @@ impl Renderer {
                 if plan.is_on(Effect::ScreenClipping) {
                     let batched = Batched::<true> { raster, batch, drawn };
                     let mut sink = ImmediateSink::new(batched, effects, transparent);
-                    faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
+                    counts = faces.draw(self.states[object].budget(), stats, &mut sink);
                     sink.finish();
                 } else {
                     let batched = Batched::<false> { raster, batch, drawn };
                     let mut sink = ImmediateSink::new(batched, effects, transparent);
-                    faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
+                    counts = faces.draw(self.states[object].budget(), stats, &mut sink);
                     sink.finish();
                 }
             }
-            self.states[object].put_decided(decided);
+            self.states[object].counts = counts;
             stats.raster += drawn;
         }
         if self.plan.is_on_anywhere(Effect::Transparency) {
@@ -118,14 +119,14 @@ impl Renderer {
         sink: &mut ForEachSink<impl FnMut(&[Vertex; 3], Interpolation)>,
     ) {
         for &object in &self.plan.order {
-            let mut decided = self.states[object].take_decided();
+            let mut counts = Shares::default();
             if self.settings.vertex_path == VertexPath::Integer {
                 self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut sink.0);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                faces.draw(self.states[object].budget(), &mut decided, stats, sink);
+                counts = faces.draw(self.states[object].budget(), stats, sink);
             }
-            self.states[object].put_decided(decided);
+            self.states[object].counts = counts;
         }
     }
 
@@ -140,7 +141,7 @@ impl Renderer {
         self.kept.reserve(self.most_faces(scene, |_, state| state.may_have_effects()));
         self.transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
         for &object in &self.plan.order {
-            let mut decided = self.states[object].take_decided();
+            let mut counts = Shares::default();
             if self.settings.vertex_path == VertexPath::Integer {
                 let mut plain = |vertices: &[Vertex; 3], interpolation| {
                     self.triangles.push((*vertices, interpolation));
@@ -165,9 +166,9 @@ impl Renderer {
                     object,
                     culler,
                 };
-                faces.draw(self.states[object].budget(), &mut decided, stats, &mut sink);
+                counts = faces.draw(self.states[object].budget(), stats, &mut sink);
             }
-            self.states[object].put_decided(decided);
+            self.states[object].counts = counts;
         }
     }
 

@@ -242,7 +242,11 @@ impl Renderer {
     #[doc(hidden)]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         self.plan.rows_with(scene, |object| Findings {
-            face_counts: self.states.get(object).and_then(ObjectState::face_counts),
+            face_counts: self
+                .states
+                .get(object)
+                .zip(scene.objects().get(object))
+                .and_then(|(of, at)| of.face_counts(at)),
             linear_error: self.linear_error(scene, object),
         })
     }

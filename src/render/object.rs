@@ -6,19 +6,20 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::Stats;
-use super::budget::{Budget, Decided, Projected};
+use super::budget::{Budget, Projected};
 use super::faces::Faces;
 use super::lit::ShadedVertices;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
 use super::settings::{Accuracy, Resolved};
+use super::stats::Shares;
 use super::tessellate::Tessellated;
 use super::vertex::{self, Geometry, VertexAttributes};
 use crate::light::{Beam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
 use crate::palette::{Lut64K, Palette};
 use crate::plan::stages::{Lamps, Lighting, LitAt, VertexStage};
-use crate::plan::{Change, Effect, FaceCounts, ObjectPlan};
+use crate::plan::{Change, Effect, FaceCounts, FaceShading, ObjectPlan};
 use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
@@ -144,10 +145,10 @@ pub(super) struct ObjectState {
     normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Lut64K)>,
     /// Lights that the vertices would be made from now.
     beams: Vec<Beam>,
-    /// Data of a budget's decisions, and those that were made, one for each triangle.
+    /// Data of a budget's decisions, and the faces that got each shading when the object was drawn last.
     budget: Budget,
     has_budget: bool,
-    decided: Decided,
+    pub(super) counts: Shares,
 }
 
 impl ObjectState {
@@ -204,9 +205,6 @@ impl ObjectState {
         if stages.vertices == VertexStage::Keep && self.made_by == Some(on) {
             return false;
         }
-        // Made again by force they are what they were. What was decided on is decided again, too, as it would be of an
-        // object that moves: force is there to do, and to measure, all the work.
-        let changed = self.stale || self.made_by != Some(on) || stages.vertices == VertexStage::MakeAnew;
         (self.made_by, self.stale) = (Some(on), false);
         if self.source.is_none() {
             return false;
@@ -217,7 +215,7 @@ impl ObjectState {
         self.project(&made, stats);
         self.light_vertices(&made, stats);
         self.add_attributes(&made);
-        self.bound_errors(&made, changed, stats);
+        self.bound_errors(&made);
         self.prepare_pixels(&made);
         true
     }
@@ -313,10 +311,10 @@ impl ObjectState {
     }
 
     /// Prepares a budget's decisions on faces, if there is one.
-    fn bound_errors(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>, changed: bool, stats: &mut Stats) {
+    fn bound_errors(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>) {
         let Some(source) = &self.source else { return };
         self.has_budget = plan.max_error().is_some();
-        let Some(max_error) = plan.max_error() else { return self.decided.clear() };
+        let Some(max_error) = plan.max_error() else { return };
         let (geometry, lights) =
             (drawn_geometry(self.is_tessellated, &self.tessellated, object), source.lights(&self.lamps, plan));
         let object = Projected {
@@ -327,10 +325,7 @@ impl ObjectState {
             paints: &self.paints,
             kernel,
         };
-        if changed {
-            stats.decided += 1;
-            self.budget.renew(max_error, &object, &mut self.decided);
-        }
+        self.budget.renew(max_error, &object);
     }
 
     /// Prepares light for the pixels, where all are lit.
@@ -430,7 +425,7 @@ impl ObjectState {
             channels: stages.lighting == Lighting::Channels,
             affine: stages.mapping == Mapping::Affine,
             lights_pixels: plan.is_on(Effect::Phong),
-            kernel: self.budget().map_or(Kernel::PORTABLE, Budget::kernel),
+            kernel: self.budget().and_then(|budget| budget.kernel).unwrap_or(Kernel::PORTABLE),
         })
     }
 
@@ -449,23 +444,15 @@ impl ObjectState {
         !self.extras.is_empty() || self.has_budget
     }
 
-    /// The budget's decisions, to be completed while faces are drawn, and then put back.
-    pub(super) fn take_decided(&mut self) -> Decided {
-        core::mem::take(&mut self.decided)
-    }
-
-    /// Counts the triangles by the way in which they were shaded, by a budget's choices; `None` without a budget.
-    pub(super) fn face_counts(&self) -> Option<FaceCounts> {
-        self.has_budget.then(|| self.decided.counts())
-    }
-
-    /// The budget's decisions, as they are.
-    pub(super) fn decided(&self) -> &Decided {
-        &self.decided
-    }
-
-    pub(super) fn put_decided(&mut self, decided: Decided) {
-        self.decided = decided;
+    /// Counts the faces by the way in which they were shaded, by a budget's choices; `None` without a budget.
+    pub(super) fn face_counts(&self, object: &Object) -> Option<FaceCounts> {
+        self.has_budget.then(|| {
+            let drawn: Vec<(FaceShading, u64)> = self.counts.iter().collect();
+            // Below 2³².
+            let faces = self.most_faces(object) as u64;
+            let not_drawn = faces.saturating_sub(drawn.iter().map(|(_, count)| count).sum());
+            FaceCounts { drawn, not_drawn }
+        })
     }
 
     /// Bytes that it holds.
@@ -479,7 +466,6 @@ impl ObjectState {
             + self.normal_tables.len() * Lut64K::BYTES
             + self.beams.capacity() * size_of::<Beam>()
             + self.budget.bytes()
-            + self.decided.bytes()
     }
 }
 

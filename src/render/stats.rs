@@ -30,7 +30,7 @@ pub struct Stats {
     pub redrawn: bool,
     /// Objects whose vertices are last frame's.
     pub kept: u64,
-    /// Objects whose triangles an error budget was shared out among anew.
+    /// Objects whose faces were drawn by the choices of an error budget.
     pub decided: u64,
     /// Bytes allocated for this frame.
     pub allocated: u64,

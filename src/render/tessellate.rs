@@ -44,7 +44,7 @@ pub(super) struct Tessellated {
     /// A bit for each triangle whose mesh's triangle lies back to back with another; empty if there is none.
     twins: Vec<u64>,
     /// True if each triangle's edges have been looked at, and none of them bent.
-    settled: Vec<bool>,
+    straight: Vec<bool>,
     /// The light of each vertex, and how far what it mirrors is from each light.
     known: Known,
     /// The edges that are split, by their points, and the number of the new point.
@@ -92,8 +92,8 @@ impl Tessellated {
         self.points.extend_from_slice(points);
         self.twins.clear();
         self.twins.extend_from_slice(twins);
-        self.settled.clear();
-        self.settled.resize(self.triangles.len(), false);
+        self.straight.clear();
+        self.straight.resize(self.triangles.len(), false);
         self.known.light.clear();
         self.known.angles.clear();
         let has_highlights = paints.iter().any(|paint| paint.answer.specular != 0.0);
@@ -132,7 +132,7 @@ impl Tessellated {
             + self.triangles.capacity() * size_of::<[u32; 3]>()
             + self.points.capacity() * 4
             + self.twins.capacity() * 8
-            + self.settled.capacity()
+            + self.straight.capacity()
             + self.known.light.capacity() * size_of::<(f64, f64)>()
             + self.known.angles.capacity() * size_of::<f64>()
             + self.halved.bytes()
@@ -153,9 +153,9 @@ impl Tessellated {
         halved.clear();
         // Below 2³¹, as a mesh's vertices are, and splitting ends before there are twice as many.
         let mut points = self.points.iter().max().map_or(0, |last| last + 1);
-        for (&[a, b, c], settled) in self.triangles.iter().zip(&self.settled) {
+        for (&[a, b, c], straight) in self.triangles.iter().zip(&self.straight) {
             // What did not bend does not bend now.
-            if *settled {
+            if *straight {
                 continue;
             }
             for (a, b) in [(a, b), (b, c), (c, a)] {
@@ -196,7 +196,7 @@ impl Tessellated {
             let mut parts: [Option<[u32; 3]>; 4] = [None; 4];
             match (ab, bc, ca) {
                 (None, None, None) => {
-                    self.settled[i] = true;
+                    self.straight[i] = true;
                     continue;
                 }
                 (Some(ab), Some(bc), Some(ca)) => {
@@ -212,7 +212,7 @@ impl Tessellated {
             for (k, part) in parts.into_iter().flatten().enumerate() {
                 if k == 0 {
                     self.triangles[i] = part;
-                    self.settled[i] = false;
+                    self.straight[i] = false;
                 } else {
                     if !self.twins.is_empty() {
                         let new = self.triangles.len();
@@ -220,7 +220,7 @@ impl Tessellated {
                         self.twins[new / 64] |= (self.twins[i / 64] >> (i % 64) & 1) << (new % 64);
                     }
                     self.triangles.push(part);
-                    self.settled.push(false);
+                    self.straight.push(false);
                     self.triangle_surfaces.push(surface);
                 }
             }

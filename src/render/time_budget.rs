@@ -123,7 +123,8 @@ impl TimeBudget {
             return;
         }
         // A frame that stays as it was changes no time.
-        let is_tight = is_known && (time.is_some() || self.frames == TRIAL) && self.typical() * self.late > self.max_time;
+        let is_tight =
+            is_known && (time.is_some() || self.frames == TRIAL) && self.typical() * self.late > self.max_time;
         if self.is_slow() || is_tight {
             self.learn();
             self.relax();

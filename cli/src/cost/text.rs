@@ -15,7 +15,7 @@ pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
     text.extend(study.shadings.iter().map(shading));
     text += "\n* none is as near to lit and faster, as far as times can be told apart. Errors in shades of 1/255: largest against gouraud, largest and root\n  \
              mean square against lit\n\n";
-    text += "  budget  within E  largest   µs/frame  best single shading        µs/frame  ratio\n";
+    text += "  budget  within E  largest    swim   µs/frame  best single shading        µs/frame  ratio\n";
     text.extend(study.budget.iter().map(budget));
     if !study.times.is_empty() {
         text += "\n  µs/frame given    frames  within 1.05  accepted  greatest  largest error\n";
@@ -70,10 +70,11 @@ fn budget(row: &BudgetRow) -> String {
     let time = row.best_single.map_or(String::new(), |time| format!("{:.1}", time.median / 1000.0));
     let ratio = row.ratio.map_or(String::new(), |(ratio, (low, high))| format!("{ratio:.3} ({low:.3} to {high:.3})"));
     format!(
-        "  {:>6}  {:>7.3}%  {:>7.2}  {:>9.1}  {best:22}  {time:>12}  {ratio}\n",
+        "  {:>6}  {:>7.3}%  {:>7.2}  {:>6.2}  {:>9.1}  {best:22}  {time:>12}  {ratio}\n",
         row.max_error,
         row.within * 100.0,
         row.largest,
+        row.swim,
         row.per_frame.median / 1000.0
     )
 }

@@ -111,6 +111,7 @@ fn everything_is_measured_and_written() {
     for row in budgets {
         assert_time(row);
         assert!((0.0..=1.0).contains(&number(&row["within"])) && number(&row["largest"]) > 0.0, "{row}");
+        assert!(number(&row["swim"]) > 0.0, "{row}");
         let triangles = row["triangles"].as_object().expect("numbers by shading");
         assert!(!triangles.is_empty() && triangles.values().all(|count| count.as_u64() > Some(0)), "{row}");
         // Phong is within a shade of its own model.

@@ -299,7 +299,7 @@ impl Referee<'_> {
         let mut all = Vec::new();
         for way in self.ways {
             let mut findings = Results::default();
-            if let Kind::Shading(_) = way.kind {
+            if !matches!(way.kind, Kind::Choice(_)) {
                 let mut maps = Vec::new();
                 for (scene, truth) in scenes.iter().zip(&truths) {
                     maps.extend(ErrorMap::new(truth, &self.look(way, scene, probe)?));

@@ -143,6 +143,8 @@ pub struct BudgetRow {
     pub rms: f64,
     /// The pixels of the largest connected patch beyond it.
     pub patch: usize,
+    /// Change of errors from a frame to the next, root mean square: what choices that change with the frame add is seen here.
+    pub swim: f64,
     /// Time for a frame.
     pub per_frame: Nanoseconds,
     /// The cheapest shading with exact cover that keeps every pixel within; none may.

@@ -6,11 +6,12 @@
 use core::fmt;
 
 use crate::support::random::Random;
+use crate::support::shipped;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
-use mode13h::mesh::{Mesh, shapes};
+use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::builtin;
 use mode13h::render::{Accuracy, Renderer, Shading};
 use mode13h::scene::{Object, Scene};
@@ -152,6 +153,24 @@ fn colored(genes: &mut Genes, low: f64) -> [f32; 3] {
     [0.0; 3].map(|_| genes.between(low, 1.0) as f32)
 }
 
+/// The object's faces on two materials or three, in patches that part clusters or leave them whole.
+fn with_materials(object: &Object, genes: &mut Genes) -> Object {
+    let (count, length) = (genes.between(2.0, 4.0) as usize, genes.log(1.0, 40.0) as usize);
+    let of_face = |face: usize| (face / length % count) as u16;
+    let mesh = Mesh::clone(object.mesh());
+    let faces = mesh.triangles().len();
+    let mesh = mesh.with_surfaces(vec![Surface::default(); count], (0..faces).map(of_face).collect());
+    let mut several = Object::new(mesh.expect("an index for each face"));
+    let first = &object.materials[0];
+    several.materials = (0..count).map(|_| first.clone()).collect();
+    for material in &mut several.materials[1..] {
+        (material.ambient, material.diffuse) = (genes.between(0.0, 0.4) as f32, genes.between(0.0, 1.0) as f32);
+        material.specular = if genes.chance(0.5) { genes.log(0.01, 10.0) as f32 } else { 0.0 };
+        material.shininess = genes.log(0.1, 300.0) as f32;
+    }
+    several
+}
+
 /// A scene of a kind.
 fn scene(kind: Kind, genes: &mut Genes) -> Scene {
     genes.next = 0;
@@ -236,7 +255,8 @@ fn scene(kind: Kind, genes: &mut Genes) -> Scene {
         }
         scene.add_light(light);
     }
-    scene.add(object);
+    let several = (mixed || is(Kind::Several)) && genes.chance(0.5);
+    scene.add(if several { with_materials(&object, genes) } else { object });
     scene
 }
 
@@ -353,7 +373,8 @@ fn climbing_towards_the_worst_finds_no_pixel_beyond() {
     let mut random = Random::named("climbing");
     while tried.cases() < scenes {
         let kind = random.one_of(&Kind::ALL);
-        let (screen, mut best) = (Screen { width: 64, height: 48, ..Screen::MODE_13H }, Genes::new(&mut random));
+        let [width, height] = [(); 2].map(|()| random.within(9, 97) as u32);
+        let (screen, mut best) = (Screen { width, height, ..Screen::MODE_13H }, Genes::new(&mut random));
         let mut most = worst(&scene(kind, &mut best), screen).beyond;
         tried.add(1);
         for _ in 0..24 {
@@ -373,5 +394,29 @@ fn climbing_towards_the_worst_finds_no_pixel_beyond() {
             );
         }
         tried.worst("beyond", most.max(-99.0));
+    }
+}
+
+/// The shipped scenes, all round, at sizes that nobody has. What does not move is seen from all sides.
+#[test]
+#[ignore = "the long run: 18 scenes, 24 poses, two sizes"]
+fn no_pixel_of_a_turn_is_beyond() {
+    let mut tried = Tried::new("no_pixel_of_a_turn_is_beyond", 10_000_000);
+    for (name, mut scene) in shipped::scenes() {
+        for pose in 0_u8..24 {
+            if scene.motions.is_empty() {
+                let (sin, cos) = (core::f32::consts::TAU / 24.0).sin_cos();
+                let Vec3 { x, y, z } = scene.camera.eye - scene.camera.target;
+                scene.camera.eye = scene.camera.target + Vec3::new(x * cos + z * sin, y, z * cos - x * sin);
+            } else {
+                scene.set_time((f64::from(pose) + 0.37) / 24.0 * scene.duration);
+            }
+            for (width, height) in [(131, 97), (317, 211)] {
+                let worst = worst(&scene, Screen { width, height, ..Screen::MODE_13H });
+                assert!(worst.beyond <= 0.0, "{name}, pose {pose}, {width} × {height}: {worst}");
+                tried.add(worst.pixels);
+                tried.worst("beyond", worst.beyond);
+            }
+        }
     }
 }

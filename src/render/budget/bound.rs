@@ -4,7 +4,7 @@
 //! A patch is a face, or many faces of which no figure exceeds the patch's. Eight patches are bounded at a time in plain
 //! arrays that the compiler vectorises.
 
-use super::ranges::{Patches, greater, lesser, square_root};
+use super::ranges::{Patches, Sight, each, greater, lesser, square_root};
 use crate::lanes::{LANES, Lanes};
 use crate::light::{Lights, Reflectance};
 
@@ -232,67 +232,72 @@ fn falling(y: f32) -> f32 {
     1.0 / (1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y / 120.0)))))
 }
 
+/// One term on eight patches: error, range, most and least.
+type Terms = [Lanes<f32>; 4];
+
+#[inline(always)]
+fn terms(of_lane: impl Fn(usize) -> Term) -> Terms {
+    let mut terms = [[0.0; LANES]; 4];
+    for lane in 0..LANES {
+        let Term { error, range, most, least } = of_lane(lane);
+        (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) = (error, range, most, least);
+    }
+    terms
+}
+
+/// The eye of a surface with highlights: their power, where the eye is seen, and what its direction turns by.
+struct Eye<D> {
+    lobe: Lobe,
+    sight: Sight<D>,
+    turn: Lanes<f32>,
+}
+
 /// Sums of all terms on the patches, for each channel.
 struct Sums<const N: usize> {
-    error: [Lanes<f32>; N],
-    range: [Lanes<f32>; N],
-    most: [Lanes<f32>; N],
-    least: [Lanes<f32>; N],
+    of: [Terms; N],
+    normals: [Normals; LANES],
+    below: bool,
 }
 
 impl<const N: usize> Sums<N> {
     #[inline(always)]
-    fn add(&mut self, strengths: &[f32; N], terms: &[Lanes<f32>; 4]) {
-        let [error, range, most, least] = terms;
-        for (channel, &strength) in strengths.iter().enumerate() {
+    fn add(&mut self, strengths: &[f32; N], terms: &Terms) {
+        for (sums, &strength) in self.of.iter_mut().zip(strengths) {
             let size = strength.abs();
             let (above, below) = (strength.max(0.0), strength.min(0.0));
             for lane in 0..LANES {
-                self.error[channel][lane] += size * (error[lane] + ROUNDING);
-                self.range[channel][lane] += size * (range[lane] + ROUNDING);
-                self.most[channel][lane] += above * most[lane] + below * least[lane] + size * ROUNDING;
-                self.least[channel][lane] += above * least[lane] + below * most[lane] - size * ROUNDING;
+                let [error, range, most, least] = [terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]];
+                sums[0][lane] += size * (error + ROUNDING);
+                sums[1][lane] += size * (range + ROUNDING);
+                sums[2][lane] += above * most + below * least + size * ROUNDING;
+                sums[3][lane] += above * least + below * most - size * ROUNDING;
             }
         }
     }
-}
 
-/// Ranges in the light of one source: n·l, the same times the fall-off, and r·v; the greatest and the least.
-struct Ranges<'a> {
-    facing: &'a [Lanes<f32>; 2],
-    weighted: &'a [Lanes<f32>; 2],
-    along: Option<&'a [Lanes<f32>; 3]>,
-    falls: &'a [FallOff; LANES],
-}
-
-impl<const N: usize> Sums<N> {
-    /// Adds the terms of one light. `eye` has the highlight's power, and what the direction to the eye turns by.
+    /// Adds the terms of one light. `weighted` is the range of n·l times its fall-off, if it has one.
     #[inline(always)]
-    fn add_light<const WHOLE: bool>(
+    fn add_light<const WHOLE: bool, P: Patches>(
         &mut self,
-        ranges: &Ranges<'_>,
-        normals: &[Normals; LANES],
-        eye: Option<(&Lobe, &Lanes<f32>)>,
+        patches: &P,
+        directions: &P::Directions,
+        (weighted, falls): (Option<[Lanes<f32>; 2]>, &[FallOff; LANES]),
+        eye: Option<&Eye<P::Directions>>,
         strength: &Strength<N>,
-        below: bool,
     ) {
-        let Ranges { facing, weighted, along, falls } = *ranges;
-        let mut terms = [[0.0; LANES]; 4];
-        for lane in 0..LANES {
-            let term = body::<WHOLE>(normals[lane], (weighted[0][lane], weighted[1][lane]), falls[lane], below);
-            (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) =
-                (term.error, term.range, term.most, term.least);
-        }
-        self.add(&strength.body, &terms);
-        let (Some(along), Some((lobe, eye_turn))) = (along, eye) else { return };
-        for lane in 0..LANES {
+        let (normals, below) = (self.normals, self.below);
+        let facing = patches.facing(directions);
+        let [most, least] = weighted.unwrap_or(facing);
+        let bodies = terms(|lane| body::<WHOLE>(normals[lane], (most[lane], least[lane]), falls[lane], below));
+        self.add(&strength.body, &bodies);
+        let Some(Eye { lobe, sight, turn }) = eye else { return };
+        let turns = each(|lane| turn[lane] + falls[lane].turn);
+        let along = patches.mirrored(directions, &sight.directions, &turns);
+        let highlights = terms(|lane| {
             let along = (along[0][lane], along[1][lane], along[2][lane]);
-            let facing = (facing[0][lane], facing[1][lane]);
-            let term = highlight(normals[lane], lobe, along, facing, falls[lane], eye_turn[lane]);
-            (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) =
-                (term.error, term.range, term.most, term.least);
-        }
-        self.add(&strength.highlight, &terms);
+            highlight(normals[lane], lobe, along, (facing[0][lane], facing[1][lane]), falls[lane], turn[lane])
+        });
+        self.add(&strength.highlight, &highlights);
     }
 }
 
@@ -341,46 +346,28 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
     if !incident.is_moderate::<N>() {
         return Bounds { on_screen: [HUGE; LANES], on_face: [HUGE; LANES] };
     }
-    let shines = incident.answer.specular != 0.0;
-    let lobe = Lobe::new(incident.answer.shininess);
-    let mut normals = [Normals { spread: 0.0, deficit: 0.0, part: 0.0 }; LANES];
-    for (lane, normals) in normals.iter_mut().enumerate() {
+    let normals = core::array::from_fn(|lane| {
         let spread = shapes.spread[lane];
         let length = square_root(greater(1.0 - spread * spread, 1e-6));
         let deficit = if spread < CANCELS { (1.0 - length) / length } else { HUGE };
-        *normals = Normals { spread, deficit, part: shapes.part[lane] };
-    }
+        Normals { spread, deficit, part: shapes.part[lane] }
+    });
     let ambient = incident.answer.ambient as f32;
-    let ambient: [f32; N] =
-        core::array::from_fn(|channel| if N == 1 { ambient } else { ambient * incident.answer.color[channel] as f32 });
-    let mut sums = Sums::<N> {
-        error: [[0.0; LANES]; N],
-        range: [[0.0; LANES]; N],
-        most: ambient.map(|ambient| [ambient; LANES]),
-        least: ambient.map(|ambient| [ambient; LANES]),
-    };
-    let eye = shines.then(|| {
+    let of = core::array::from_fn(|channel| {
+        let ambient = if N == 1 { ambient } else { ambient * incident.answer.color[channel] as f32 };
+        [[0.0; LANES], [0.0; LANES], [ambient; LANES], [ambient; LANES]]
+    });
+    let mut sums = Sums::<N> { of, normals, below: incident.below };
+    let eye = (incident.answer.specular != 0.0).then(|| {
         let sight = patches.point(narrow(eye), blur(eye), &shapes.edge);
-        let mut turn = [0.0; LANES];
-        for (lane, turn) in turn.iter_mut().enumerate() {
-            *turn = lesser(shapes.edge[lane] / sight.near[lane], GREATEST_TURN);
-        }
-        (sight, turn)
+        let turn = each(|lane| lesser(shapes.edge[lane] / sight.near[lane], GREATEST_TURN));
+        Eye { lobe: Lobe::new(incident.answer.shininess), sight, turn }
     });
     for sun in suns {
         let directions = patches.sun(sun.towards.to_array());
-        let facing = patches.facing(&directions);
-        let along = eye.as_ref().map(|(sight, turn)| patches.mirrored(&directions, &sight.directions, turn));
         let strength = incident.strength::<N>(sun.intensity, sun.channels);
-        let ranges =
-            Ranges { facing: &facing, weighted: &facing, along: along.as_ref(), falls: &[FallOff::NONE; LANES] };
-        sums.add_light::<WHOLE>(
-            &ranges,
-            &normals,
-            eye.as_ref().map(|(_, turn)| (&lobe, turn)),
-            &strength,
-            incident.below,
-        );
+        let falls = (None, &[FallOff::NONE; LANES]);
+        sums.add_light::<WHOLE, P>(patches, &directions, falls, eye.as_ref(), &strength);
     }
     for lamp in lamps {
         let inverse_range = (libm::sqrt(lamp.inverse_square) as f32).min(HUGE);
@@ -389,34 +376,15 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
         for (lane, fall) in falls.iter_mut().enumerate() {
             *fall = FallOff::new(sight.near[lane], sight.far[lane], shapes.edge[lane], inverse_range);
         }
-        let facing = patches.facing(&sight.directions);
-        let mut ends = [[0.0; LANES]; 2];
-        for lane in 0..LANES {
-            (ends[0][lane], ends[1][lane]) = (falls[lane].most, falls[lane].least);
-        }
+        let ends = [each(|lane| falls[lane].most), each(|lane| falls[lane].least)];
         let weighted = patches.weighted(&sight, &ends, inverse_range);
-        let along = eye.as_ref().map(|(of_eye, turn)| {
-            let mut turns = *turn;
-            for lane in 0..LANES {
-                turns[lane] += falls[lane].turn;
-            }
-            patches.mirrored(&sight.directions, &of_eye.directions, &turns)
-        });
-        let ranges = Ranges { facing: &facing, weighted: &weighted, along: along.as_ref(), falls: &falls };
         let strength = incident.strength::<N>(lamp.intensity, lamp.channels);
-        sums.add_light::<WHOLE>(
-            &ranges,
-            &normals,
-            eye.as_ref().map(|(_, turn)| (&lobe, turn)),
-            &strength,
-            incident.below,
-        );
+        sums.add_light::<WHOLE, P>(patches, &sight.directions, (Some(weighted), &falls), eye.as_ref(), &strength);
     }
     let mut bounds = Bounds { on_screen: [0.0; LANES], on_face: [0.0; LANES] };
-    for channel in 0..N {
+    for [errors, ranges, most, least] in sums.of {
         for lane in 0..LANES {
-            let (most, least) = (sums.most[channel][lane], sums.least[channel][lane]);
-            let (error, range) = (sums.error[channel][lane], sums.range[channel][lane]);
+            let (error, range, most, least) = (errors[lane], ranges[lane], most[lane], least[lane]);
             // Lemma 4: what is cut off at 1 and at 0.
             let cut = lesser(range / 4.0, greater(most - 1.0, 0.0)) + lesser(range / 4.0, greater(-least, 0.0));
             // Both lie between the greatest and the least light.

@@ -1,13 +1,14 @@
 //! The bound, tested as a bound: on random patches in random light no sampled error is greater than that of the face, of the
-//! part, or of the node that the face is in. `cargo test` tries 32,000 faces, the long run 3,200,000.
+//! part, or of the cluster that the face is in. `cargo test` tries 32,000 faces, the long run 3,200,000.
 
 use std::vec::Vec;
 
 use glam::Vec3;
+use proptest::prelude::*;
 
 use super::bound::{Bounds, Incident, Shapes, interpolation_error};
-use super::ranges::{EightFaces, EightNodes, ZERO};
-use super::tree::Tree;
+use super::clusters::{Clusters, radius};
+use super::ranges::{EightFaces, ZERO};
 use crate::lanes::LANES;
 use crate::light::{Beam, LampBeam, Lights, Reflectance};
 use crate::mesh::normals::unit;
@@ -171,8 +172,8 @@ impl Case {
         Incident { lights: self.lights(), answer: &self.answer, extent, below: false }
     }
 
-    fn tree(&self) -> Tree {
-        Tree::new(&self.triangles, &[0; LANES], &self.positions, &self.normals)
+    fn clusters(&self) -> Clusters {
+        Clusters::new(&self.triangles, &[0; LANES], &self.positions, &self.normals)
     }
 
     fn faces(&self) -> EightFaces {
@@ -188,29 +189,28 @@ impl Case {
         faces
     }
 
-    /// Bounds of the faces, of their parts, and of the node that they are in.
+    /// Bounds of the faces, of their parts, and of the cluster that they are in.
     fn bounds(&self) -> (Bounds, Bounds, Bounds) {
-        let tree = self.tree();
+        let clusters = self.clusters();
         let mut shapes = Shapes { spread: ZERO, edge: ZERO, part: [1.0; LANES], bend: ZERO };
-        for (lane, facet) in tree.facets.iter().enumerate() {
+        for (lane, facet) in clusters.facets.iter().enumerate() {
             (shapes.spread[lane], shapes.edge[lane]) = (facet.spread, facet.edge);
         }
-        let (faces, incident) = (self.faces(), self.incident(tree.extent));
+        let (faces, incident) = (self.faces(), self.incident(clusters.extent));
         let parts = Shapes { part: [self.part; LANES], ..shapes };
-        let siblings = &tree.levels[0][0];
-        let of_nodes = Shapes { spread: siblings.spread, edge: siblings.edge, part: [1.0; LANES], bend: ZERO };
-        let nodes: &EightNodes = &siblings.nodes;
+        let chunk = &clusters.chunks[0];
+        let of_chunk = Shapes { spread: chunk.spread, edge: chunk.edge, part: [1.0; LANES], bend: ZERO };
         if self.in_color {
             (
                 interpolation_error::<3, true, _>(&faces, &shapes, &incident),
                 interpolation_error::<3, false, _>(&faces, &parts, &incident),
-                interpolation_error::<3, true, _>(nodes, &of_nodes, &incident),
+                interpolation_error::<3, true, _>(&chunk.clusters, &of_chunk, &incident),
             )
         } else {
             (
                 interpolation_error::<1, true, _>(&faces, &shapes, &incident),
                 interpolation_error::<1, false, _>(&faces, &parts, &incident),
-                interpolation_error::<1, true, _>(nodes, &of_nodes, &incident),
+                interpolation_error::<1, true, _>(&chunk.clusters, &of_chunk, &incident),
             )
         }
     }
@@ -256,7 +256,7 @@ const ROUNDING: f64 = 4e-7;
 
 /// Tries one case; returns bound over error of each face where there is an error to speak of.
 fn try_case(case: &Case, random: &mut Random, points: u32) -> Vec<f64> {
-    let (whole, parts, nodes) = case.bounds();
+    let (whole, parts, clusters) = case.bounds();
     let mut ratios = Vec::new();
     for lane in 0..LANES {
         let bound = f64::from(whole.on_face[lane]);
@@ -273,8 +273,8 @@ fn try_case(case: &Case, random: &mut Random, points: u32) -> Vec<f64> {
             )
         };
         assert!(error <= bound + ROUNDING, "{error} beyond {bound}: {}", what());
-        let of_node = f64::from(nodes.on_face[0]);
-        assert!(error <= of_node + ROUNDING, "{error} beyond {of_node} of the node: {}", what());
+        let of_cluster = f64::from(clusters.on_face[0]);
+        assert!(error <= of_cluster + ROUNDING, "{error} beyond {of_cluster} of the cluster: {}", what());
         assert!(whole.on_screen[lane] >= whole.on_face[lane]);
         if error > 1.0 / 255.0 {
             ratios.push(bound / error);
@@ -319,25 +319,50 @@ fn bounds_do_not_depend_on_the_kernel() {
     let mut random = Random(15);
     for _ in 0..200 {
         let case = Case::new(&mut random);
-        let tree = case.tree();
-        let siblings = &tree.levels[0][0];
+        let clusters = case.clusters();
         let shapes = Shapes {
-            spread: [tree.facets[0].spread; LANES],
-            edge: [tree.facets[0].edge; LANES],
+            spread: [clusters.facets[0].spread; LANES],
+            edge: [clusters.facets[0].edge; LANES],
             part: [0.25; LANES],
             bend: [0.1; LANES],
         };
-        let (faces, incident) = (case.faces(), case.incident(tree.extent));
+        let (faces, incident) = (case.faces(), case.incident(clusters.extent));
         let bits = |bounds: Bounds| (bounds.on_screen.map(f32::to_bits), bounds.on_face.map(f32::to_bits));
         let all = |kernel: Kernel| {
             let of_faces = at_best_level!(kernel, interpolation_error::<3, false, _>(&faces, &shapes, &incident));
-            let of_nodes =
-                at_best_level!(kernel, interpolation_error::<1, true, _>(&siblings.nodes, &shapes, &incident));
+            let of_nodes = at_best_level!(
+                kernel,
+                interpolation_error::<1, true, _>(&clusters.chunks[0].clusters, &shapes, &incident)
+            );
             (bits(of_faces), bits(of_nodes))
         };
         let portable = all(Kernel::PORTABLE);
         for kernel in Kernel::available() {
             assert_eq!(all(kernel), portable);
         }
+    }
+}
+
+proptest! {
+    /// Lemma 1: no point of a triangle has a greater mean square distance from the corners, weighted, and one has
+    /// nearly as much.
+    #[test]
+    fn radii_are_of_the_smallest_balls(points in prop::array::uniform3(prop::array::uniform3(-1.0_f32..1.0)), thin in 0.0_f32..1.0) {
+        let points = points.map(|p| Vec3::from(p) * Vec3::new(1.0, thin * thin, 0.3));
+        let square = |weights: [f32; 3]| {
+            let [ab, bc, ca] = [(0, 1), (1, 2), (2, 0)].map(|(i, j): (usize, usize)| {
+                f64::from((points[i] - points[j]).length_squared()) * f64::from(weights[i] * weights[j])
+            });
+            ab + bc + ca
+        };
+        let mut most = 0.0_f64;
+        for a in 0..=60_u8 {
+            for b in 0..=60 - a {
+                most = most.max(square([a, b, 60 - a - b].map(|share| f32::from(share) / 60.0)));
+            }
+        }
+        let radius = f64::from(radius(points));
+        prop_assert!(most <= radius * radius, "{most} of {radius}");
+        prop_assert!(radius * radius <= most * 1.01 + 1e-12, "{radius}² of {most}");
     }
 }

@@ -1,4 +1,4 @@
-//! The fit: linear and quadratic functions of the screen, tried on points of one face.
+//! The fit: a quadratic function of the screen, tried on points of one face.
 //!
 //! Light at a grid of points, which divides each edge on the screen in n, says how far a function is from the light. With
 //! f the light, q the function, and off the greatest |f − q| at these points, they differ in any of the n² parts by no
@@ -11,12 +11,16 @@
 //! it would go on below the horizon (on the other side of the face as much is added as here is missing), and where it is
 //! below the shade without light that one is drawn: so the bend is where it should be.
 
+use core::array;
+
 use glam::Vec3;
 
-use super::{Budget, Choice, EXACT_ROUNDING, LINEAR_ROUNDING};
+use super::ranges::each;
+use super::{Budget, EXACT_ROUNDING, PHONG};
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Lanes, Points};
 use crate::light::Reflectance;
+use crate::plan::FaceShading;
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::{Attributes, Limits, SampleSpacing};
@@ -24,22 +28,18 @@ use crate::render::faces::Faces;
 use crate::render::lit::Face;
 use crate::render::paint::SurfaceMaterial;
 use crate::simd::at_best_level;
-use crate::span::Kernel;
 
 /// Pixels for each point of the finer grids, at least, for it to be worth it. (The spheres of `phong` within 2 shades: at 10
 /// 1.04 of the time of the shading, at 5 0.99, at 3 0.95; a grid that is lit in vain is dearer the finer it is.)
 const PIXELS_A_POINT: f32 = 4.0;
 
-/// Pixels from which on a quadratic function pays. (From 64 on the torus takes 0.86 of the time of `phong` within 2 shades, from 32
+/// Pixels from which on a face is tried. (From 64 on the torus takes 0.86 of the time of `phong` within 2 shades, from 32
 /// on 0.78, from 16 on 0.75; from 10 on 0.77.)
-pub(in crate::render) const WORTH_CURVE: u64 = 16;
+const WORTH_CURVE: f32 = 16.0;
 
 /// Share of the allowed error up to which light may be off between the points of a grid for it to be worth lighting.
 /// (With 0.5 the torus within 1 shade takes 1.00 of `phong`, with 0.9 0.93.)
 const MODEL: f32 = 0.9;
-
-/// That share for linear functions.
-pub(super) const LINEAR_MODEL: f32 = 0.67;
 
 /// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
 const WORTH_KNOTS: f32 = 16.0;
@@ -99,33 +99,20 @@ struct OnScreen<'a> {
     answer: &'a Reflectance,
     /// True if its light goes on below the horizon.
     below: bool,
-    kernel: Kernel,
 }
 
 impl OnScreen<'_> {
     /// Normals, of any length, and positions.
     #[inline]
     fn points(&self, weights: &Weights, turned: bool) -> Points {
-        let mut on_face = *weights;
-        for (weights, depth) in on_face.iter_mut().zip(self.depths) {
-            weights.iter_mut().for_each(|weight| *weight *= depth);
-        }
+        let on_face: Weights = array::from_fn(|corner| weights[corner].map(|weight| weight * self.depths[corner]));
         let [wa, wb, wc] = &on_face;
-        let mut shares = [0.0; LANES];
-        for (lane, share) in shares.iter_mut().enumerate() {
-            *share = 1.0 / (wa[lane] + wb[lane] + wc[lane]);
-        }
-        let mut points = [[0.0; LANES]; 6];
+        let shares = each(|lane| 1.0 / (wa[lane] + wb[lane] + wc[lane]));
+        let between = |[a, b, c]: [f32; 3]| each(|lane| (a * wa[lane] + b * wb[lane] + c * wc[lane]) * shares[lane]);
         let side = if turned { -1.0 } else { 1.0 };
-        for axis in 0..3 {
-            let [a, b, c] = self.normals.map(|normal| side * normal[axis]);
-            let [pa, pb, pc] = self.positions.map(|position| position[axis]);
-            for lane in 0..LANES {
-                points[axis][lane] = (a * wa[lane] + b * wb[lane] + c * wc[lane]) * shares[lane];
-                points[axis + 3][lane] = (pa * wa[lane] + pb * wb[lane] + pc * wc[lane]) * shares[lane];
-            }
-        }
-        points
+        let normal = |axis: usize| between(self.normals.map(|normal| side * normal[axis]));
+        let position = |axis: usize| between(self.positions.map(|position| position[axis]));
+        [normal(0), normal(1), normal(2), position(0), position(1), position(2)]
     }
 }
 
@@ -145,21 +132,14 @@ impl Quadratic {
     }
 
     /// Bounds its distance from some values.
-    #[inline]
-    fn off(&self, weights: &Weights, values: &Lanes<f32>, kernel: Kernel) -> f32 {
-        at_best_level!(kernel, self.off_lanes(weights, values))
-    }
-
     #[inline(always)]
-    fn off_lanes(&self, [a, b, c]: &Weights, values: &Lanes<f32>) -> f32 {
+    fn off(&self, [a, b, c]: &Weights, values: &Lanes<f32>) -> f32 {
         let ([fa, fb, fc], [da, db, dc]) = (self.corners, self.bends);
-        let mut off = [0.0_f32; LANES];
-        for lane in 0..LANES {
+        greatest(each(|lane| {
             let (a, b, c) = (a[lane], b[lane], c[lane]);
             let q = (fa * a + fb * b + fc * c) - (da * (b * c) + db * (c * a) + dc * (a * b));
-            off[lane] = (q - values[lane]).abs();
-        }
-        greatest(off)
+            (q - values[lane]).abs()
+        }))
     }
 
     /// What it bends by between the points of a grid that divides each edge in `n`.
@@ -177,12 +157,7 @@ fn greatest<const N: usize>(values: [f32; N]) -> f32 {
 
 impl Faces<'_> {
     /// A face whose light may go on below the horizon.
-    fn on_screen(
-        &self,
-        Face { indices, surface, back_facing, .. }: Face,
-        depths: [u32; 3],
-        kernel: Kernel,
-    ) -> OnScreen<'_> {
+    fn on_screen(&self, Face { indices, surface, back_facing, .. }: Face, depths: [u32; 3]) -> OnScreen<'_> {
         let normals = indices.map(|i| self.geometry.normals[i as usize]);
         let positions = indices.map(|i| self.geometry.positions[i as usize]);
         let answer = &self.paints[usize::from(surface)].answer;
@@ -203,7 +178,6 @@ impl Faces<'_> {
             depths: depths.map(|depth| depth as f32),
             answer,
             below,
-            kernel,
         }
     }
 
@@ -216,13 +190,8 @@ impl Faces<'_> {
         }
         // One side has the light, the other what is there without it, which is the lesser.
         let back = self.front(face, weights, true);
-        let mut both = front;
-        for (both, back) in both.iter_mut().zip(&back) {
-            for (both, back) in both.iter_mut().zip(back) {
-                *both = *both - *back + both.min(*back);
-            }
-        }
-        both
+        let both = |front: f32, back: f32| front - back + front.min(back);
+        array::from_fn(|channel| each(|lane| both(front[channel][lane], back[channel][lane])))
     }
 
     #[inline]
@@ -231,23 +200,24 @@ impl Faces<'_> {
         // Beyond f32 infinite.
         let narrow = |wide: [f64; LANES]| wide.map(|intensity| intensity as f32);
         if self.channels {
-            self.lights.front_of_three_channels(face.answer, &points, face.kernel).map(narrow)
+            self.lights.front_of_three_channels(face.answer, &points, self.kernel).map(narrow)
         } else {
-            let one = narrow(self.lights.front_of_one_channel(face.answer, &points, face.kernel));
+            let one = narrow(self.lights.front_of_one_channel(face.answer, &points, self.kernel));
             [one, [0.0; LANES], [0.0; LANES]]
         }
     }
 
     /// The cheapest shading of a face that is known to keep within the budget by light at some points of it.
     #[inline(never)]
-    pub(in crate::render) fn fit(&self, budget: &Budget, face: Face, vertices: &[Vertex; 3]) -> Choice {
-        let depths = vertices.each_ref().map(Vertex::depth);
+    pub(in crate::render) fn fit(&self, budget: &Budget, face: Face, vertices: &[Vertex; 3]) -> FaceShading {
+        let (depths, spare) = (vertices.each_ref().map(Vertex::depth), budget.spare(EXACT_ROUNDING));
         let (near, far) = (depths[0].max(depths[1]).max(depths[2]), depths[0].min(depths[1]).min(depths[2]));
-        if far == 0 || !self.lights_pixels {
-            return Choice::Phong;
-        }
         let (ratio, pixels, width) = (near as f32 / far as f32, pixels_of(vertices), width_of(vertices));
-        // The sizes of parts: three grids, then three spacings; the others are of no use.
+        // Where rounding takes all that is allowed, nothing fits.
+        if far == 0 || pixels < WORTH_CURVE || !self.lights_pixels || spare <= 0.0 {
+            return PHONG;
+        }
+        // The sizes of parts: four grids, then three spacings; the last is of no use.
         let (mut part, mut bend) = ([1.0; LANES], [1.0; LANES]);
         for (lane, (n, _)) in GRIDS.iter().enumerate() {
             part[lane] = (2.155 * ratio - 1.155).min(1.155 * ratio) / n;
@@ -257,107 +227,54 @@ impl Faces<'_> {
             let share = spacing.pixels() as f32 / width.max(1.0);
             (part[lane], bend[lane]) = (share * ratio, (ratio - 1.0) / 4.0 * share);
         }
-        let mut on_screen = self.on_screen(face, depths, budget.kernel());
+        let mut on_screen = self.on_screen(face, depths);
         // Quadratic functions are of light that adds.
         on_screen.below &= budget.adds;
-        let bounds = self.bounds_of_parts(budget, face, (part, bend), false).on_screen;
-        let smooth =
-            if on_screen.below { self.bounds_of_parts(budget, face, (part, bend), true).on_screen } else { bounds };
-        let is_part = |lane: usize| part[lane] < 1.0;
-        let choice = self.fit_grid(
-            budget,
-            &on_screen,
-            pixels,
-            [&bounds, &smooth].map(|of| {
-                move |grid: usize| {
-                    if is_part(grid) { of[grid] } else { f32::INFINITY }
-                }
-            }),
-        );
-        if choice != Choice::Phong {
-            return choice;
+        let bounds = |below: bool| self.bounds_of_parts(budget, face, (part, bend), below).on_screen;
+        let of_light = bounds(false);
+        let smooth = if on_screen.below { bounds(true) } else { of_light };
+        let left = each(|lane| if part[lane] < 1.0 { spare - smooth[lane] } else { 0.0 });
+        if budget.adds && self.is_quadratic(&on_screen, pixels, (spare, &left)) {
+            return FaceShading::Quadratic;
         }
-        let spare = budget.spare(EXACT_ROUNDING);
         let is_linear = |(lane, spacing): &(usize, SampleSpacing)| {
             let pays = width >= WORTH_KNOTS.max(1.5 * spacing.pixels() as f32);
-            pays && part[*lane] <= 0.75 && bounds[*lane] <= spare
+            pays && part[*lane] <= 0.75 && of_light[*lane] <= spare
         };
         let spacings = (GRIDS.len()..).zip(SampleSpacing::ALL);
-        spacings.filter(is_linear).last().map_or(Choice::Phong, |(_, spacing)| Choice::PhongEvery(spacing))
+        spacings.filter(is_linear).last().map_or(PHONG, |(_, spacing)| FaceShading::PhongEvery(spacing))
     }
 
-    /// Tries the functions on grids, from coarse to fine. `bounds` of light, and of light that goes on below the horizon,
-    /// say by how much linear shades are off on a part of each grid.
-    fn fit_grid(
-        &self,
-        budget: &Budget,
-        face: &OnScreen<'_>,
-        pixels: f32,
-        [bounds, smooth]: [impl Fn(usize) -> f32; 2],
-    ) -> Choice {
-        let (linear, exact) = (budget.spare(LINEAR_ROUNDING), budget.spare(EXACT_ROUNDING));
+    /// Tries the quadratic function on grids, from coarse to fine. `left` says how far it may be off at the points of each,
+    /// of what is allowed in all.
+    fn is_quadratic(&self, face: &OnScreen<'_>, pixels: f32, (spare, left): (f32, &Lanes<f32>)) -> bool {
         let channels = if self.channels { 3 } else { 1 };
-        // Exact.
-        let may_curve = pixels >= WORTH_CURVE as f32 && budget.adds;
         // Eight points at a time, and the nodes.
         let pays = |points: &[Weights]| (LANES * (points.len() + 1)) as f32 * PIXELS_A_POINT <= pixels;
-        let dark = self.dark(face.answer);
         let mut curves = None;
-        for (grid, (n, points)) in GRIDS.iter().enumerate() {
-            if grid > 1 && !pays(points) {
-                break;
-            }
-            let mut left = [linear - bounds(grid), exact - smooth(grid)];
-            let mut may = [left[0] > (1.0 - LINEAR_MODEL) * linear, may_curve && left[1] > (1.0 - MODEL) * exact];
-            if may == [false; 2] {
+        for (grid, (n, points)) in GRIDS.iter().enumerate().take_while(|(grid, of)| *grid < 2 || pays(of.1)) {
+            let is_worth = left[grid] > (1.0 - MODEL) * spare;
+            if !is_worth {
                 continue;
             }
             let curves = curves.get_or_insert_with(|| self.light_at(face, &NODES).map(|nodes| Quadratic::new(&nodes)));
-            // What is drawn of light below the horizon is the shade without light.
-            let shown = |light: f32, channel: usize| {
-                (if face.below { light.max(dark[channel]) } else { light }).clamp(0.0, 1.0)
-            };
-            let mut lines = *curves;
-            for (channel, line) in lines.iter_mut().enumerate() {
-                line.corners = line.corners.map(|corner| shown(corner, channel));
-                line.bends = [0.0; 3];
-            }
-            left[1] -= curves[..channels].iter().map(|curve| curve.between(*n)).fold(0.0, f32::max);
-            may[1] &= left[1] > 0.0;
-            for weights in core::iter::once(&NODES).chain(points.iter()) {
-                if may == [false; 2] {
-                    break;
-                }
+            let between = greatest(curves.map(|curve| curve.between(*n)));
+            let fits = |weights: &Weights| {
                 let light = self.light_at(face, weights);
-                for channel in 0..channels {
-                    if may[0] {
-                        let mut drawn = light[channel];
-                        drawn.iter_mut().for_each(|light| *light = shown(*light, channel));
-                        may[0] = lines[channel].off(weights, &drawn, face.kernel) <= left[0];
-                    }
-                    may[1] = may[1] && curves[channel].off(weights, &light[channel], face.kernel) <= left[1];
-                }
-            }
-            if may[0] {
-                return Choice::Linear;
-            }
-            if may[1] {
-                return Choice::Curved;
+                let off = |channel: usize| at_best_level!(self.kernel, curves[channel].off(weights, &light[channel]));
+                (0..channels).all(|channel| off(channel) <= left[grid] - between)
+            };
+            if between < left[grid] && points.iter().all(fits) {
+                return true;
             }
         }
-        Choice::Phong
-    }
-
-    /// The shade without light, on each channel.
-    fn dark(&self, answer: &Reflectance) -> [f32; 3] {
-        let ambient = answer.ambient;
-        if self.channels { answer.color.map(|color| (ambient * color) as f32) } else { [ambient as f32; 3] }
+        false
     }
 
     /// Puts the quadratic attributes of a face's corners: see `Attributes::lit`.
     #[inline(never)]
     pub(in crate::render) fn put_curve(&self, attributes: &mut [Attributes; 3], face: Face, vertices: &[Vertex; 3]) {
-        let on_screen = self.on_screen(face, vertices.each_ref().map(Vertex::depth), self.kernel);
+        let on_screen = self.on_screen(face, vertices.each_ref().map(Vertex::depth));
         let light = self.light_at(&on_screen, &NODES);
         let ramp = self.paints[usize::from(face.surface)].ramp;
         let (first, units) = (f32::from(ramp.first()) * 256.0, f32::from(ramp.entries().saturating_sub(1)) * 256.0);

@@ -1,43 +1,43 @@
 //! The error budget: for each triangle the cheapest shading that is known to keep within it.
 //!
-//! One bound says how far linear shades are from the model's light on a patch of a surface (`bound`). It is asked of the
-//! nodes of a tree, from many faces to few, of eight faces at a time, and of parts of one face. What it leaves open is
-//! lit at some points (`fit`). `docs/budget.md` has the proofs.
+//! One bound says how far linear shades are from the model's light on a patch of a surface (`bound`). It is asked of
+//! clusters of eight faces, of eight faces one by one, and of parts of one face. What it leaves open is lit at some points
+//! (`fit`). `docs/budget.md` has the proofs.
 //!
 //! | file | what |
 //! |---|---|
 //! | `bound` | the bound |
 //! | `ranges` | ranges of cosines and distances, from corners or from boxes and cones |
-//! | `tree` | nodes over the faces of a mesh |
-//! | `descent` | which faces of a chunk are linear |
+//! | `clusters` | eight faces each, with a box and a cone of normals |
+//! | `classify` | which faces of a chunk are linear |
 //! | `fit` | linear and quadratic functions, tried on points of a face |
-//! | `decided` | what is decided |
 //! | `bound_tests` | the bound against sampled light |
 
 mod bound;
 #[cfg(all(test, feature = "std"))]
 mod bound_tests;
-mod decided;
-mod descent;
+mod classify;
+mod clusters;
 mod fit;
 mod ranges;
-mod tree;
 
-pub(super) use self::decided::{Choice, Decided};
-pub(super) use self::descent::Settled;
-pub(super) use self::fit::{WORTH_CURVE, limits};
-use self::tree::Tree;
+use self::clusters::Clusters;
+pub(super) use self::fit::limits;
 use super::paint::SurfaceMaterial;
 use super::vertex::Geometry;
 use crate::light::Lights;
 use crate::mesh::Mesh;
+use crate::plan::FaceShading;
+use crate::scene::Shading;
 use crate::shared::Shared;
 use crate::span::Kernel;
 use crate::view::ObjectView;
 
-/// Pixels from which on it pays to light a face at some points before it is lit at all of them. (With 12 `still` takes 2 % less,
-/// and `two-lights` within 2 shades 25 % more.)
-pub(super) const WORTH_SAMPLES: u64 = 5;
+/// Shading of faces that are linear on the screen, of those that are linear on the face, and of those that are lit at every
+/// pixel.
+pub(super) const LINEAR: FaceShading = FaceShading::By(Shading::Gouraud88Reseeded);
+pub(super) const FLOAT: FaceShading = FaceShading::By(Shading::Float);
+pub(super) const PHONG: FaceShading = FaceShading::By(Shading::Phong);
 
 /// Rounding of a linear shade that starts anew every 64 pixels: a half, 1/512 of the vertices' shades, a quarter of drift,
 /// and 1/2,000 of the bound itself.
@@ -62,11 +62,11 @@ pub(super) struct Projected<'a> {
 /// Error budget of an object: the data that its decisions are made from.
 #[derive(Debug, Default)]
 pub(super) struct Budget {
-    /// Whose tree this is; of a mesh that was split, none.
+    /// Whose clusters these are; of a mesh that was split, none.
     mesh: Option<Shared<Mesh>>,
-    tree: Tree,
+    clusters: Clusters,
     /// The kernel of the frame that is drawn.
-    kernel: Option<Kernel>,
+    pub(super) kernel: Option<Kernel>,
     /// In shades.
     allowed: f32,
     /// True if no light and no material takes light away.
@@ -83,39 +83,28 @@ struct Depths {
     near: f32,
     /// Size of the object's unit.
     scale: f32,
-    /// The least distance of a vertex, in these units, and no less than the near plane's.
-    nearest: f32,
 }
 
 impl Depths {
-    fn new(view: &ObjectView, tree: &Tree) -> Self {
+    fn new(view: &ObjectView) -> Self {
         let (row, offset) = view.along_view();
-        let (near, scale) = (view.near(), view.scale() as f32);
-        let slack = 1e-5 * (offset.abs() + tree.extent * row.iter().map(|c| c.abs()).sum::<f32>());
-        let nearest = (tree.least_along(row) + offset - slack).max(near) / scale;
-        Self { row, offset, near, scale, nearest }
+        Self { row, offset, near: view.near(), scale: view.scale() as f32 }
     }
 }
 
 impl Budget {
-    /// Kernel that light is worked out by.
-    pub(super) fn kernel(&self) -> Kernel {
-        self.kernel.unwrap_or(Kernel::PORTABLE)
-    }
-
-    /// Takes on an object, or the same as it is now, and forgets what was decided on it.
+    /// Takes on an object as it is now.
     #[inline(never)]
-    pub(super) fn renew(&mut self, allowed: f32, object: &Projected<'_>, decided: &mut Decided) {
+    pub(super) fn renew(&mut self, allowed: f32, object: &Projected<'_>) {
         let Projected { geometry, mesh, view, lights, paints, kernel } = *object;
         (self.allowed, self.kernel) = (allowed, Some(kernel));
         self.adds = adds(lights, paints);
         if !matches!((&self.mesh, mesh), (Some(known), Some(mesh)) if Shared::ptr_eq(known, mesh)) {
             self.mesh = mesh.map(Shared::clone);
             let Geometry { triangles, triangle_surfaces, positions, normals, .. } = *geometry;
-            self.tree = Tree::new(triangles, triangle_surfaces, positions, normals);
+            self.clusters = Clusters::new(triangles, triangle_surfaces, positions, normals);
         }
-        self.depths = Depths::new(view, &self.tree);
-        decided.forget(geometry.triangles.len());
+        self.depths = Depths::new(view);
     }
 
     /// Light that may be off, in shares of full intensity, where a shade is off by `rounding` shades besides.
@@ -125,7 +114,7 @@ impl Budget {
 
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
-        self.tree.bytes()
+        self.clusters.bytes()
     }
 }
 

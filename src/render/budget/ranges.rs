@@ -1,5 +1,5 @@
 //! Ranges of the cosines and distances that light on a patch depends on: from the three corners of each of eight faces,
-//! or from the boxes and cones of eight nodes of the tree.
+//! or from the boxes and cones of eight clusters.
 
 use crate::lanes::{LANES, Lanes};
 
@@ -61,73 +61,54 @@ impl Patches for EightFaces {
 
     #[inline(always)]
     fn sun(&self, towards: [f32; 3]) -> FromCorners {
-        FromCorners { directions: [spread(towards); 3], distances: [ZERO; 3], off: [ROUNDING; LANES] }
+        FromCorners { directions: [towards.map(|c| [c; LANES]); 3], distances: [ZERO; 3], off: [ROUNDING; LANES] }
     }
 
     #[inline(always)]
     fn point(&self, at: [f32; 3], blur: f32, edge: &Lanes<f32>) -> Sight<FromCorners> {
-        let mut directions = self.positions;
-        let mut distances = [ZERO; 3];
-        for (ways, distances) in directions.iter_mut().zip(&mut distances) {
-            for (values, to) in ways.iter_mut().zip(at) {
-                values.iter_mut().for_each(|value| *value = to - *value);
-            }
-            let squares = dot(ways, ways);
-            for lane in 0..LANES {
-                distances[lane] = square_root(squares[lane]);
-            }
-            for values in ways {
-                for lane in 0..LANES {
-                    values[lane] /= distances[lane];
-                }
-            }
+        let (mut directions, mut distances) = ([[ZERO; 3]; 3], [ZERO; 3]);
+        for corner in 0..3 {
+            let ways = vectors(|axis, lane| at[axis] - self.positions[corner][axis][lane]);
+            (directions[corner], distances[corner]) = units(&ways);
         }
-        let (mut near, mut far, mut off) = (ZERO, ZERO, ZERO);
-        for lane in 0..LANES {
-            let [a, b, c] = [distances[0][lane], distances[1][lane], distances[2][lane]];
-            let least = lesser(a, lesser(b, c)) * (1.0 - ROUNDING) - blur;
-            // Lemma 1, of the squares of distances.
-            let square = least * least - edge[lane] * edge[lane];
-            near[lane] = if least > 0.0 { square_root(greater(square, 0.0)) } else { 0.0 };
-            far[lane] = lesser(greater(a, greater(b, c)) * (1.0 + ROUNDING) + blur, FARTHEST);
-            off[lane] = ROUNDING + lesser(4.0 * blur / least.abs(), 2.0);
-        }
+        let [a, b, c] = &distances;
+        let least = each(|lane| lesser(a[lane], lesser(b[lane], c[lane])) * (1.0 - ROUNDING) - blur);
+        // Lemma 1, of the squares of distances.
+        let near = each(|lane| {
+            let square = least[lane] * least[lane] - edge[lane] * edge[lane];
+            if least[lane] > 0.0 { square_root(greater(square, 0.0)) } else { 0.0 }
+        });
+        let far = each(|lane| lesser(greater(a[lane], greater(b[lane], c[lane])) * (1.0 + ROUNDING) + blur, FARTHEST));
+        let off = each(|lane| ROUNDING + lesser(4.0 * blur / least[lane].abs(), 2.0));
         Sight { directions: FromCorners { directions, distances, off }, near, far }
     }
 
     #[inline(always)]
     fn facing(&self, to: &FromCorners) -> [Lanes<f32>; 2] {
-        let [a, b, c] = &self.normals;
-        let [to_a, to_b, to_c] = &to.directions;
-        ends(&[dot(a, to_a), dot(b, to_b), dot(c, to_c)], &to.off)
+        ends(&[0, 1, 2].map(|corner| dot(&self.normals[corner], &to.directions[corner])), &to.off)
     }
 
     #[inline(always)]
     fn weighted(&self, sight: &Sight<FromCorners>, _: &[Lanes<f32>; 2], inverse_range: f32) -> [Lanes<f32>; 2] {
         let to = &sight.directions;
-        let mut cosines = [ZERO; 3];
-        for (corner, cosines) in cosines.iter_mut().enumerate() {
-            *cosines = dot(&self.normals[corner], &to.directions[corner]);
-            for (cosine, distance) in cosines.iter_mut().zip(&to.distances[corner]) {
-                let away = distance * inverse_range;
+        let cosines = [0, 1, 2].map(|corner| {
+            let cosines = dot(&self.normals[corner], &to.directions[corner]);
+            each(|lane| {
+                let away = to.distances[corner][lane] * inverse_range;
                 let left = greater(1.0 - away * away, 0.0);
-                *cosine *= left * left;
-            }
-        }
+                cosines[lane] * (left * left)
+            })
+        });
         ends(&cosines, &to.off)
     }
 
     #[inline(always)]
     fn mirrored(&self, light: &FromCorners, eye: &FromCorners, turns: &Lanes<f32>) -> [Lanes<f32>; 3] {
-        let mut off = ZERO;
-        for (lane, off) in off.iter_mut().enumerate() {
-            *off = 3.0 * (light.off[lane] + eye.off[lane]);
-        }
-        let mut cosines = [ZERO; 3];
-        for (corner, cosines) in cosines.iter_mut().enumerate() {
+        let off = each(|lane| 3.0 * (light.off[lane] + eye.off[lane]));
+        let cosines = [0, 1, 2].map(|corner| {
             let (light, eye, normals) = (&light.directions[corner], &eye.directions[corner], &self.normals[corner]);
-            *cosines = mirror(&dot(normals, light), &dot(normals, eye), &dot(light, eye));
-        }
+            mirror(&dot(normals, light), &dot(normals, eye), &dot(light, eye))
+        });
         let [most, least] = ends(&cosines, &off);
         [most, least, self.highest(light, eye, &off, turns)]
     }
@@ -138,49 +119,30 @@ impl EightFaces {
     /// 11): what the normals have across h is a flat triangle, which lies no nearer to 0 than in any one direction.
     #[inline(always)]
     fn highest(&self, light: &FromCorners, eye: &FromCorners, off: &Lanes<f32>, turns: &Lanes<f32>) -> Lanes<f32> {
-        let mut half_way = [ZERO; 3];
-        for (axis, values) in half_way.iter_mut().enumerate() {
-            for (lane, value) in values.iter_mut().enumerate() {
-                *value = light.directions[0][axis][lane] + eye.directions[0][axis][lane];
-            }
-        }
-        let squares = dot(&half_way, &half_way);
-        for values in &mut half_way {
-            for lane in 0..LANES {
-                values[lane] /= square_root(squares[lane]);
-            }
-        }
-        let (mut across, mut sum) = (self.normals, [ZERO; 3]);
-        for vectors in &mut across {
-            let along = dot(vectors, &half_way);
-            for axis in 0..3 {
-                for lane in 0..LANES {
-                    vectors[axis][lane] -= along[lane] * half_way[axis][lane];
-                    sum[axis][lane] += vectors[axis][lane];
-                }
-            }
-        }
-        let (lengths, [a, b, c]) =
-            (dot(&sum, &sum), [dot(&across[0], &sum), dot(&across[1], &sum), dot(&across[2], &sum)]);
-        let mut highest = ZERO;
-        for lane in 0..LANES {
+        let sums = vectors(|axis, lane| light.directions[0][axis][lane] + eye.directions[0][axis][lane]);
+        let (squares, (half_way, _)) = (dot(&sums, &sums), units(&sums));
+        let across = self.normals.each_ref().map(|normals| {
+            let along = dot(normals, &half_way);
+            vectors(|axis, lane| normals[axis][lane] - along[lane] * half_way[axis][lane])
+        });
+        let sum = vectors(|axis, lane| across[0][axis][lane] + across[1][axis][lane] + across[2][axis][lane]);
+        let (lengths, [a, b, c]) = (dot(&sum, &sum), across.each_ref().map(|across| dot(across, &sum)));
+        each(|lane| {
             let least = lesser(a[lane], lesser(b[lane], c[lane])) / square_root(lengths[lane]) - off[lane];
             let sine = greater(least, 0.0);
             // |l + v|²/2 is 1 + l·v.
-            let cosine = 1.0 - 0.5 * squares[lane] * sine * sine + off[lane];
-            let cosine = if cosine < 1.0 { cosine } else { 1.0 };
+            let cosine = lesser(1.0 - 0.5 * squares[lane] * sine * sine + off[lane], 1.0);
             let turn = 2.0 * turns[lane];
             let more =
                 turn * square_root(greater(1.0 - cosine * cosine, 0.0)) + 0.5 * turn * turn * greater(-cosine, 0.0);
-            highest[lane] = lesser(cosine + more, 1.0);
-        }
-        highest
+            lesser(cosine + more, 1.0)
+        })
     }
 }
 
-/// Eight nodes: a box that all their corners lie in, and a cone that all their normals lie in.
+/// Eight clusters: a box that all their corners lie in, and a cone that all their normals lie in.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct EightNodes {
+pub(super) struct EightClusters {
     pub(super) centres: Vectors,
     /// Halves of the boxes' sides.
     pub(super) halves: Vectors,
@@ -195,102 +157,104 @@ pub(super) struct FromBoxes {
     turns: Lanes<f32>,
 }
 
-impl Patches for EightNodes {
+impl Patches for EightClusters {
     type Directions = FromBoxes;
 
     #[inline(always)]
     fn sun(&self, towards: [f32; 3]) -> FromBoxes {
-        FromBoxes { directions: spread(towards), turns: ZERO }
+        FromBoxes { directions: towards.map(|c| [c; LANES]), turns: ZERO }
     }
 
     #[inline(always)]
     fn point(&self, at: [f32; 3], blur: f32, _: &Lanes<f32>) -> Sight<FromBoxes> {
-        let (mut directions, mut nearest, mut farthest) = (self.centres, [ZERO; 3], [ZERO; 3]);
-        for axis in 0..3 {
-            for lane in 0..LANES {
-                let way = at[axis] - self.centres[axis][lane];
-                let half = self.halves[axis][lane] + blur;
-                directions[axis][lane] = way;
-                nearest[axis][lane] = greater(way.abs() - half, 0.0);
-                farthest[axis][lane] = way.abs() + half;
-            }
-        }
+        let ways = vectors(|axis, lane| at[axis] - self.centres[axis][lane]);
+        let half = |axis: usize, lane: usize| self.halves[axis][lane] + blur;
+        let nearest = vectors(|axis, lane| greater(ways[axis][lane].abs() - half(axis, lane), 0.0));
+        let farthest = vectors(|axis, lane| ways[axis][lane].abs() + half(axis, lane));
         let (near, far) = (dot(&nearest, &nearest), dot(&farthest, &farthest));
-        let (away, radius) = (dot(&directions, &directions), dot(&self.halves, &self.halves));
-        let mut sight = Sight { directions: FromBoxes { directions, turns: ZERO }, near, far };
-        for lane in 0..LANES {
-            sight.near[lane] = square_root(near[lane]) * (1.0 - ROUNDING);
-            sight.far[lane] = lesser(square_root(far[lane]) * (1.0 + ROUNDING), FARTHEST);
-            // The sine of the greatest turn is the box's radius over the distance, and no more than its tangent.
+        let (away, radius) = (dot(&ways, &ways), dot(&self.halves, &self.halves));
+        // The sine of the greatest turn is the box's radius over the distance, and no more than its tangent.
+        let turns = each(|lane| {
             let radius = square_root(radius[lane]) + blur;
             let square = away[lane] * (1.0 - ROUNDING) - radius * radius;
-            let tangent = radius / square_root(greater(square, 0.0));
-            sight.directions.turns[lane] = lesser(tangent, 4.0);
-            let distance = square_root(away[lane]);
-            for values in &mut sight.directions.directions {
-                values[lane] /= distance;
-            }
+            lesser(radius / square_root(greater(square, 0.0)), 4.0)
+        });
+        Sight {
+            directions: FromBoxes { directions: units(&ways).0, turns },
+            near: each(|lane| square_root(near[lane]) * (1.0 - ROUNDING)),
+            far: each(|lane| lesser(square_root(far[lane]) * (1.0 + ROUNDING), FARTHEST)),
         }
-        sight
     }
 
     #[inline(always)]
     fn facing(&self, to: &FromBoxes) -> [Lanes<f32>; 2] {
-        self.turned(&dot(&self.axes, &to.directions), |lane| self.angles[lane] + to.turns[lane])
+        turned(&dot(&self.axes, &to.directions), |lane| self.angles[lane] + to.turns[lane])
     }
 
     #[inline(always)]
-    fn weighted(&self, sight: &Sight<FromBoxes>, falls: &[Lanes<f32>; 2], _: f32) -> [Lanes<f32>; 2] {
-        let mut ends = self.facing(&sight.directions);
-        for lane in 0..LANES {
-            let (most, least) = (falls[0][lane], falls[1][lane]);
-            ends[0][lane] *= if ends[0][lane] > 0.0 { most } else { least };
-            ends[1][lane] *= if ends[1][lane] > 0.0 { least } else { most };
-        }
-        ends
+    fn weighted(&self, sight: &Sight<FromBoxes>, [most, least]: &[Lanes<f32>; 2], _: f32) -> [Lanes<f32>; 2] {
+        let [above, below] = self.facing(&sight.directions);
+        [
+            each(|lane| above[lane] * if above[lane] > 0.0 { most[lane] } else { least[lane] }),
+            each(|lane| below[lane] * if below[lane] > 0.0 { least[lane] } else { most[lane] }),
+        ]
     }
 
     #[inline(always)]
     fn mirrored(&self, light: &FromBoxes, eye: &FromBoxes, _: &Lanes<f32>) -> [Lanes<f32>; 3] {
         let (of_light, of_eye) = (dot(&self.axes, &light.directions), dot(&self.axes, &eye.directions));
         let along = mirror(&of_light, &of_eye, &dot(&light.directions, &eye.directions));
-        let [most, least] = self.turned(&along, |lane| 2.0 * self.angles[lane] + light.turns[lane] + eye.turns[lane]);
+        let [most, least] = turned(&along, |lane| 2.0 * self.angles[lane] + light.turns[lane] + eye.turns[lane]);
         [most, least, most]
     }
 }
 
-impl EightNodes {
-    /// Range of cosines of angles that are so far from these.
-    #[inline(always)]
-    fn turned(&self, cosines: &Lanes<f32>, turn: impl Fn(usize) -> f32) -> [Lanes<f32>; 2] {
-        let mut ends = [[1.0; LANES], [-1.0; LANES]];
-        for lane in 0..LANES {
-            let (cosine, turn) = (cosines[lane], turn(lane));
-            let sine = square_root(greater(1.0 - cosine * cosine, 0.0));
-            // cos(μ ∓ t) by Taylor's series; the second term has the sign of a cosine between both.
-            let half = 0.5 * turn * turn;
-            let most = cosine + turn * sine + half * greater(-cosine, 0.0) + ROUNDING;
-            let least = cosine - turn * sine - half * greater(cosine, 0.0) - ROUNDING;
-            (ends[0][lane], ends[1][lane]) = (lesser(most, 1.0), greater(least, -1.0));
-        }
-        ends
-    }
+/// Range of cosines of angles that are so far from these.
+#[inline(always)]
+fn turned(cosines: &Lanes<f32>, turn: impl Fn(usize) -> f32) -> [Lanes<f32>; 2] {
+    let sine = each(|lane| square_root(greater(1.0 - cosines[lane] * cosines[lane], 0.0)));
+    // cos(μ ∓ t) by Taylor's series; the second term has the sign of a cosine between both.
+    let half = each(|lane| 0.5 * turn(lane) * turn(lane));
+    [
+        each(|lane| {
+            let most = cosines[lane] + turn(lane) * sine[lane] + half[lane] * greater(-cosines[lane], 0.0) + ROUNDING;
+            lesser(most, 1.0)
+        }),
+        each(|lane| {
+            let least = cosines[lane] - turn(lane) * sine[lane] - half[lane] * greater(cosines[lane], 0.0) - ROUNDING;
+            greater(least, -1.0)
+        }),
+    ]
 }
 
-/// One vector in all lanes.
+/// Eight numbers, by lane.
 #[inline(always)]
-pub(super) fn spread([x, y, z]: [f32; 3]) -> Vectors {
-    [[x; LANES], [y; LANES], [z; LANES]]
+pub(super) fn each(value: impl Fn(usize) -> f32) -> Lanes<f32> {
+    let mut lanes = ZERO;
+    for (lane, of_lane) in lanes.iter_mut().enumerate() {
+        *of_lane = value(lane);
+    }
+    lanes
+}
+
+/// Eight vectors, by axis and lane.
+#[inline(always)]
+fn vectors(value: impl Fn(usize, usize) -> f32) -> Vectors {
+    [each(|lane| value(0, lane)), each(|lane| value(1, lane)), each(|lane| value(2, lane))]
+}
+
+/// Unit vectors of these directions, and the lengths that they had.
+#[inline(always)]
+fn units(of: &Vectors) -> (Vectors, Lanes<f32>) {
+    let squares = dot(of, of);
+    let lengths = each(|lane| square_root(squares[lane]));
+    (vectors(|axis, lane| of[axis][lane] / lengths[lane]), lengths)
 }
 
 /// r·v of n·l, n·v and l·v.
 #[inline(always)]
 fn mirror(light: &Lanes<f32>, eye: &Lanes<f32>, between: &Lanes<f32>) -> Lanes<f32> {
-    let mut along = ZERO;
-    for lane in 0..LANES {
-        along[lane] = 2.0 * light[lane] * eye[lane] - between[lane];
-    }
-    along
+    each(|lane| 2.0 * light[lane] * eye[lane] - between[lane])
 }
 
 /// The greatest and the least of three cosines, each off by no more than `off`. What is not a number may be any.
@@ -321,11 +285,7 @@ pub(super) fn lesser(a: f32, b: f32) -> f32 {
 
 #[inline(always)]
 pub(super) fn dot(a: &Vectors, b: &Vectors) -> Lanes<f32> {
-    let mut sums = ZERO;
-    for (lane, sum) in sums.iter_mut().enumerate() {
-        *sum = a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane];
-    }
-    sums
+    each(|lane| a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane])
 }
 
 /// Both are the number nearest to the root, so they are one number. The compiler makes vectors of the first.

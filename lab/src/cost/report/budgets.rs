@@ -24,7 +24,7 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
             (chart())
             div.wide { table {
                 thead { tr {
-                    th { "budget, shades" } th { "within it" } th { "largest error" } th { "r.m.s." } th { "largest patch beyond, pixels" } th { "a frame" } th { "quartiles" }
+                    th { "budget, shades" } th { "within it" } th { "largest error" } th { "r.m.s." } th { "largest patch beyond, pixels" } th { "swim" } th { "a frame" } th { "quartiles" }
                     th.text { "best single shading" } th { "its time" } th { "ratio" } th { "95 % interval" } th.text { "verdict" }
                 } }
                 tbody { @for row in &study.budget { (line(row)) } }
@@ -44,7 +44,7 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
 fn line(row: &BudgetRow) -> Markup {
     html! { tr {
         th scope="row" { (asked(row.max_error)) }
-        td { (percent(row.within)) } td { (shades(row.largest)) } td { (shades(row.rms)) } td { (count(row.patch)) }
+        td { (percent(row.within)) } td { (shades(row.largest)) } td { (shades(row.rms)) } td { (count(row.patch)) } td { (shades(row.swim)) }
         td { (time(row.per_frame.median)) }
         td.soft { (time(row.per_frame.lower_quartile)) " – " (time(row.per_frame.upper_quartile)) }
         @match (row.best_single_shading, row.best_single) {

@@ -47,6 +47,7 @@ fn budget(max_error: f64, within: f64, best: Option<(Shading, f64)>) -> BudgetRo
         largest: 1.1 * max_error,
         rms: 0.2 * max_error,
         patch: 12,
+        swim: 0.3,
         per_frame: time(1.2e5),
         best_single_shading: best.map(|(shading, _)| shading),
         best_single: best.map(|(_, ratio)| time(1.2e5 / ratio)),

@@ -1,0 +1,102 @@
+//! Clusters of a mesh: eight faces that follow each other, with a box and a cone of normals. Eight clusters are a chunk.
+
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use super::ranges::{EightClusters, ZERO};
+use crate::lanes::{LANES, Lanes};
+use crate::render::cull;
+
+const PI: f32 = core::f32::consts::PI;
+
+/// Radii of a face (Lemma 1), whatever the light.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Facet {
+    /// Radius of its normals.
+    pub(super) spread: f32,
+    /// Radius of its positions.
+    pub(super) edge: f32,
+}
+
+/// Radius of the smallest ball that three points lie in.
+pub(super) fn radius(points: [Vec3; 3]) -> f32 {
+    let square = |(i, j): (usize, usize)| f64::from((points[i] - points[j]).length_squared());
+    let [a, b, c] = [(0, 1), (1, 2), (2, 0)].map(square);
+    let longest = a.max(b).max(c);
+    let others = a + b + c - longest;
+    // That of the longest edge, or, of an acute triangle, the circumcircle: R² = a²b²c² / 16K², by the squares of the
+    // sides. That is a third of the longest edge's at most.
+    let around = a * b * c / (2.0 * (a * b + b * c + c * a) - (a * a + b * b + c * c));
+    let square = if others > longest && around <= longest / 3.0 { around.max(longest / 4.0) } else { longest / 3.0 };
+    let square = if others <= longest { longest / 4.0 } else { square };
+    libm::sqrt(square) as f32 * (1.0 + 1e-5)
+}
+
+/// The eight clusters of a chunk. Of those that are missing all is zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chunk {
+    pub(super) clusters: EightClusters,
+    pub(super) spread: Lanes<f32>,
+    pub(super) edge: Lanes<f32>,
+    /// The surface of each cluster's faces, if it is the same.
+    pub(super) surfaces: [Option<u16>; LANES],
+}
+
+impl Chunk {
+    fn new(facets: &[Facet], triangles: &[[u32; 3]], surfaces: &[u16], positions: &[Vec3], normals: &[Vec3]) -> Self {
+        let clusters = EightClusters { centres: [ZERO; 3], halves: [ZERO; 3], axes: [ZERO; 3], angles: ZERO };
+        let mut chunk = Self { clusters, spread: ZERO, edge: ZERO, surfaces: [None; LANES] };
+        let parts = facets.chunks(LANES).zip(triangles.chunks(LANES)).zip(surfaces.chunks(LANES));
+        for (lane, ((facets, triangles), surfaces)) in parts.enumerate() {
+            let (mut min, mut max, mut sum) = (Vec3::INFINITY, Vec3::NEG_INFINITY, Vec3::ZERO);
+            let corners = || triangles.iter().flatten().map(|&i| i as usize);
+            for i in corners() {
+                (min, max, sum) = (min.min(positions[i]), max.max(positions[i]), sum + normals[i]);
+            }
+            let cone = sum.normalize_or_zero();
+            let cosine = corners().map(|i| normals[i].dot(cone)).fold(1.0, f32::min);
+            for axis in 0..3 {
+                // Half of each, as their sum might overflow.
+                let (min, max) = (min[axis] * 0.5, max[axis] * 0.5);
+                chunk.clusters.centres[axis][lane] = min + max;
+                chunk.clusters.halves[axis][lane] = (max - min) * (1.0 + 1e-5) + 1e-6 * (min.abs() + max.abs());
+                chunk.clusters.axes[axis][lane] = cone[axis];
+            }
+            // A thousandth for the rounding of cosines near 1.
+            chunk.clusters.angles[lane] = if cosine > 0.0 { libm::acosf(cosine) + 1e-3 } else { PI };
+            chunk.spread[lane] = facets.iter().map(|facet| facet.spread).fold(0.0, f32::max);
+            chunk.edge[lane] = facets.iter().map(|facet| facet.edge).fold(0.0, f32::max);
+            chunk.surfaces[lane] = surfaces.first().copied().filter(|first| surfaces.iter().all(|of| of == first));
+        }
+        chunk
+    }
+}
+
+/// Radii of a mesh's faces, and the clusters of each chunk.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Clusters {
+    pub(super) facets: Vec<Facet>,
+    pub(super) chunks: Vec<Chunk>,
+    /// The greatest coordinate.
+    pub(super) extent: f32,
+}
+
+impl Clusters {
+    pub(super) fn new(triangles: &[[u32; 3]], surfaces: &[u16], positions: &[Vec3], normals: &[Vec3]) -> Self {
+        let corners = |of: &[Vec3], indices: [u32; 3]| indices.map(|i| of[i as usize]);
+        let facet =
+            |&i: &[u32; 3]| Facet { spread: radius(corners(normals, i)).min(1.0), edge: radius(corners(positions, i)) };
+        let facets: Vec<Facet> = triangles.iter().map(facet).collect();
+        let parts = facets.chunks(cull::CHUNK).zip(triangles.chunks(cull::CHUNK)).zip(surfaces.chunks(cull::CHUNK));
+        let chunk = |((facets, triangles), surfaces)| Chunk::new(facets, triangles, surfaces, positions, normals);
+        let chunks = parts.map(chunk).collect();
+        let extent = positions.iter().fold(0.0, |most: f32, at| most.max(at.abs().max_element()));
+        Self { facets, chunks, extent }
+    }
+
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        self.facets.capacity() * size_of::<Facet>() + self.chunks.capacity() * size_of::<Chunk>()
+    }
+}
