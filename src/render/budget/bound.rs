@@ -238,9 +238,11 @@ type Terms = [Lanes<f32>; 4];
 #[inline(always)]
 fn terms(of_lane: impl Fn(usize) -> Term) -> Terms {
     let mut terms = [[0.0; LANES]; 4];
-    for lane in 0..LANES {
-        let Term { error, range, most, least } = of_lane(lane);
-        (terms[0][lane], terms[1][lane], terms[2][lane], terms[3][lane]) = (error, range, most, least);
+    let [errors, ranges, most, least] = &mut terms;
+    let lanes = errors.iter_mut().zip(ranges).zip(most.iter_mut().zip(least)).enumerate();
+    for (lane, ((error, range), (most, least))) in lanes {
+        let term = of_lane(lane);
+        (*error, *range, *most, *least) = (term.error, term.range, term.most, term.least);
     }
     terms
 }
