@@ -447,7 +447,7 @@ impl ObjectState {
     /// Counts the faces by the way in which they were shaded, by a budget's choices; `None` without a budget.
     pub(super) fn face_counts(&self, object: &Object) -> Option<FaceCounts> {
         self.has_budget.then(|| {
-            let drawn: Vec<(FaceShading, u64)> = self.counts.iter().collect();
+            let drawn: Vec<(FaceShading, u64)> = self.counts.into_iter().collect();
             // Below 2³².
             let faces = self.most_faces(object) as u64;
             let not_drawn = faces.saturating_sub(drawn.iter().map(|(_, count)| count).sum());
