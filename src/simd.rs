@@ -21,6 +21,8 @@ mod portable;
     )
 ))]
 mod quarters;
+#[cfg(feature = "alloc")]
+mod singles;
 #[cfg(test)]
 mod tests;
 
@@ -40,6 +42,8 @@ mod wasm;
 pub(crate) use lanes::Lanes8;
 pub(crate) use packed::Packed;
 pub(crate) use portable::Portable;
+#[cfg(feature = "alloc")]
+pub(crate) use singles::Singles8;
 
 #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
 pub(crate) const NEON: quarters::Quarters<neon::Neon> = quarters::Quarters(neon::Neon);

@@ -20,7 +20,9 @@ use crate::scene::framing::{axes, dot, unit, widen};
 use crate::scene::object::Placement;
 use crate::scene::{Camera, Object, matrix_product};
 
-pub(crate) mod lanes;
+mod narrow;
+
+pub(crate) use narrow::Narrow;
 
 /// The screen: size in pixels, and the shape of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

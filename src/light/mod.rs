@@ -16,7 +16,6 @@
 //! | `source` | [`Light`]: suns, and lamps with a position and a fall-off (the Russian textbook) |
 //! | `material` | [`Material`]: what a surface answers |
 //! | `intensity` | the sum |
-//! | `suns` | that of suns on matt surfaces at eight vertices at a time |
 //! | `lanes` | the same at eight points at a time |
 //! | `power` | how narrow a highlight is |
 
@@ -26,10 +25,8 @@ mod material;
 mod power;
 mod response;
 mod source;
-mod suns;
 
 pub(crate) use intensity::{Beam, LampBeam, Lights, Reflectance, both_sides, lamp_reaches};
 pub use material::{Blend, Material, RampChoice};
 pub use response::LightResponse;
 pub use source::Light;
-pub(crate) use suns::both_sides_of_eight;

@@ -2,6 +2,11 @@
 
 use core::arch::x86_64::*;
 
+#[cfg(feature = "alloc")]
+use glam::Vec3;
+
+#[cfg(feature = "alloc")]
+use super::singles::{Singles8, singles_of_256_bits};
 use super::{Avx2, Lanes8};
 
 // Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
@@ -240,5 +245,17 @@ impl Lanes8 for Avx2 {
                 }
             }
         }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Singles8 for Avx2 {
+    singles_of_256_bits! {
+        fn is_at_least(a: __m256, b: __m256) -> __m256i { _mm256_castps_si256(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) }
+        fn widen(from: __m256) -> F64 {
+            [_mm256_cvtps_pd(_mm256_castps256_ps128(from)), _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(from))]
+        }
+        fn narrow(from: F64) -> __m256 { _mm256_set_m128(_mm256_cvtpd_ps(from[1]), _mm256_cvtpd_ps(from[0])) }
+        fn whole(from: F64) -> __m256i { _mm256_set_m128i(_mm256_cvttpd_epi32(from[1]), _mm256_cvttpd_epi32(from[0])) }
     }
 }

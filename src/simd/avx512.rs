@@ -2,6 +2,11 @@
 
 use core::arch::x86_64::*;
 
+#[cfg(feature = "alloc")]
+use glam::Vec3;
+
+#[cfg(feature = "alloc")]
+use super::singles::{Singles8, singles_of_256_bits};
 use super::{Avx512, Lanes8};
 
 // Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
@@ -123,5 +128,15 @@ impl Lanes8 for Avx512 {
             // SAFETY: likewise.
             unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, from)) }
         }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Singles8 for Avx512 {
+    singles_of_256_bits! {
+        fn is_at_least(a: __m256, b: __m256) -> __mmask8 { _mm256_cmp_ps_mask::<_CMP_GE_OQ>(a, b) }
+        fn widen(from: __m256) -> __m512d { _mm512_cvtps_pd(from) }
+        fn narrow(from: __m512d) -> __m256 { _mm512_cvtpd_ps(from) }
+        fn whole(from: __m512d) -> __m256i { _mm512_cvttpd_epi32(from) }
     }
 }

@@ -2,6 +2,11 @@
 
 use core::arch::aarch64::*;
 
+#[cfg(feature = "alloc")]
+use glam::Vec3;
+
+#[cfg(feature = "alloc")]
+use super::quarters::Singles128;
 use super::quarters::Vector128;
 
 /// The level that the target has.
@@ -88,6 +93,35 @@ impl Vector128 for Neon {
         }
         fn zip_high_i64(a: int32x4_t, b: int32x4_t) -> int32x4_t {
             vreinterpretq_s32_s64(vzip2q_s64(vreinterpretq_s64_s32(a), vreinterpretq_s64_s32(b)))
+        }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Singles128 for Neon {
+    type S = float32x4_t;
+
+    vectors! {
+        fn all_f32(value: f32) -> float32x4_t { vdupq_n_f32(value) }
+        fn vectors(from: &[Vec3; 4]) -> [float32x4_t; 3] {
+            const { assert!(size_of::<Vec3>() == 12) };
+            // 12 f32: `Vec3` is three in this order, without anything between.
+            let float32x4x3_t(x, y, z) = vld3q_f32(from.as_ptr().cast());
+            [x, y, z]
+        }
+        fn add_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vaddq_f32(a, b) }
+        fn sub_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vsubq_f32(a, b) }
+        fn mul_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vmulq_f32(a, b) }
+        fn div_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vdivq_f32(a, b) }
+        fn max_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vbslq_f32(vcgtq_f32(a, b), a, b) }
+        fn min_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vbslq_f32(vcltq_f32(a, b), a, b) }
+        fn is_at_least(a: float32x4_t, b: float32x4_t) -> int32x4_t { vreinterpretq_s32_u32(vcgeq_f32(a, b)) }
+        fn bits_of_f32(from: float32x4_t) -> int32x4_t { vreinterpretq_s32_f32(from) }
+        fn widen_low(from: float32x4_t) -> float64x2_t { vcvt_f64_f32(vget_low_f32(from)) }
+        fn widen_high(from: float32x4_t) -> float64x2_t { vcvt_high_f64_f32(from) }
+        fn narrow(low: float64x2_t, high: float64x2_t) -> float32x4_t { vcvt_high_f32_f64(vcvt_f32_f64(low), high) }
+        fn whole(low: float64x2_t, high: float64x2_t) -> int32x4_t {
+            vmovn_high_s64(vmovn_s64(vcvtq_s64_f64(low)), vcvtq_s64_f64(high))
         }
     }
 }

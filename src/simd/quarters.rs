@@ -1,6 +1,11 @@
 //! [`Lanes8`] by vectors of 128 bits: four of 64-bit lanes, two of 32-bit ones. One body for SSE2, NEON and wasm.
 
+#[cfg(feature = "alloc")]
+use glam::Vec3;
+
 use super::Lanes8;
+#[cfg(feature = "alloc")]
+use super::singles::Singles8;
 
 /// Vectors of 128 bits: a pair of f64, or four i32, or two i64.
 ///
@@ -71,6 +76,29 @@ pub(crate) trait Vector128: Copy {
     fn zip_low_i64(self, a: Self::I, b: Self::I) -> Self::I;
     /// `[a1, b1]` of i64
     fn zip_high_i64(self, a: Self::I, b: Self::I) -> Self::I;
+}
+
+/// Vectors of four f32 beside them. What is said of [`Singles8`] holds here, too.
+#[cfg(feature = "alloc")]
+pub(crate) trait Singles128: Vector128 {
+    type S: Copy;
+
+    fn all_f32(self, value: f32) -> Self::S;
+    fn vectors(self, from: &[Vec3; 4]) -> [Self::S; 3];
+    fn add_f32(self, a: Self::S, b: Self::S) -> Self::S;
+    fn sub_f32(self, a: Self::S, b: Self::S) -> Self::S;
+    fn mul_f32(self, a: Self::S, b: Self::S) -> Self::S;
+    fn div_f32(self, a: Self::S, b: Self::S) -> Self::S;
+    fn max_f32(self, a: Self::S, b: Self::S) -> Self::S;
+    fn min_f32(self, a: Self::S, b: Self::S) -> Self::S;
+    fn is_at_least(self, a: Self::S, b: Self::S) -> Self::I;
+    fn bits_of_f32(self, from: Self::S) -> Self::I;
+    /// The first two of four.
+    fn widen_low(self, from: Self::S) -> Self::F;
+    /// The last two.
+    fn widen_high(self, from: Self::S) -> Self::F;
+    fn narrow(self, low: Self::F, high: Self::F) -> Self::S;
+    fn whole(self, low: Self::F, high: Self::F) -> Self::I;
 }
 
 /// Four vectors for eight lanes of 64 bits, two for eight of 32.
@@ -403,5 +431,64 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
             }
             count += (bits >> lane & 1) as usize;
         }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<V: Singles128> Singles8 for Quarters<V> {
+    type F32 = [V::S; 2];
+
+    #[inline(always)]
+    fn all_f32(self, value: f32) -> Self::F32 {
+        [self.0.all_f32(value); 2]
+    }
+    #[inline(always)]
+    fn vectors(self, from: &[Vec3; 8]) -> [Self::F32; 3] {
+        let [low, high] = two!(i => self.0.vectors(&from.as_chunks::<4>().0[i]));
+        [[low[0], high[0]], [low[1], high[1]], [low[2], high[2]]]
+    }
+    #[inline(always)]
+    fn add_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
+        two!(i => self.0.add_f32(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn sub_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
+        two!(i => self.0.sub_f32(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn mul_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
+        two!(i => self.0.mul_f32(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn div_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
+        two!(i => self.0.div_f32(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn max_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
+        two!(i => self.0.max_f32(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn min_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
+        two!(i => self.0.min_f32(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn is_at_least(self, a: Self::F32, b: Self::F32) -> Self::Mask {
+        two!(i => self.0.is_at_least(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn bits_of_f32(self, from: Self::F32) -> Self::I32 {
+        two!(i => self.0.bits_of_f32(from[i]))
+    }
+    #[inline(always)]
+    fn widen(self, [a, b]: Self::F32) -> Self::F64 {
+        [self.0.widen_low(a), self.0.widen_high(a), self.0.widen_low(b), self.0.widen_high(b)]
+    }
+    #[inline(always)]
+    fn narrow(self, [a, b, c, d]: Self::F64) -> Self::F32 {
+        [self.0.narrow(a, b), self.0.narrow(c, d)]
+    }
+    #[inline(always)]
+    fn whole(self, [a, b, c, d]: Self::F64) -> Self::I32 {
+        [self.0.whole(a, b), self.0.whole(c, d)]
     }
 }

@@ -2,6 +2,11 @@
 
 use core::arch::x86_64::*;
 
+#[cfg(feature = "alloc")]
+use glam::Vec3;
+
+#[cfg(feature = "alloc")]
+use super::quarters::Singles128;
 use super::quarters::Vector128;
 
 /// The level that every x86-64 has.
@@ -86,5 +91,35 @@ impl Vector128 for Sse2 {
         fn mul_low(a: __m128i, b: __m128i) -> __m128i { _mm_mul_epu32(a, b) }
         fn zip_low_i64(a: __m128i, b: __m128i) -> __m128i { _mm_unpacklo_epi64(a, b) }
         fn zip_high_i64(a: __m128i, b: __m128i) -> __m128i { _mm_unpackhi_epi64(a, b) }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Singles128 for Sse2 {
+    type S = __m128;
+
+    vectors! {
+        fn all_f32(value: f32) -> __m128 { _mm_set1_ps(value) }
+        fn vectors(from: &[Vec3; 4]) -> [__m128; 3] {
+            const { assert!(size_of::<Vec3>() == 12) };
+            // 12 f32: `Vec3` is three in this order, without anything between.
+            let from: *const f32 = from.as_ptr().cast();
+            let (a, b, c) = (_mm_loadu_ps(from), _mm_loadu_ps(from.add(4)), _mm_loadu_ps(from.add(8)));
+            super::singles::apart!(_mm_shuffle_ps, a, b, c)
+        }
+        fn add_f32(a: __m128, b: __m128) -> __m128 { _mm_add_ps(a, b) }
+        fn sub_f32(a: __m128, b: __m128) -> __m128 { _mm_sub_ps(a, b) }
+        fn mul_f32(a: __m128, b: __m128) -> __m128 { _mm_mul_ps(a, b) }
+        fn div_f32(a: __m128, b: __m128) -> __m128 { _mm_div_ps(a, b) }
+        fn max_f32(a: __m128, b: __m128) -> __m128 { _mm_max_ps(a, b) }
+        fn min_f32(a: __m128, b: __m128) -> __m128 { _mm_min_ps(a, b) }
+        fn is_at_least(a: __m128, b: __m128) -> __m128i { _mm_castps_si128(_mm_cmpge_ps(a, b)) }
+        fn bits_of_f32(from: __m128) -> __m128i { _mm_castps_si128(from) }
+        fn widen_low(from: __m128) -> __m128d { _mm_cvtps_pd(from) }
+        fn widen_high(from: __m128) -> __m128d { _mm_cvtps_pd(_mm_movehl_ps(from, from)) }
+        fn narrow(low: __m128d, high: __m128d) -> __m128 { _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high)) }
+        fn whole(low: __m128d, high: __m128d) -> __m128i {
+            _mm_unpacklo_epi64(_mm_cvttpd_epi32(low), _mm_cvttpd_epi32(high))
+        }
     }
 }

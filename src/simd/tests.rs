@@ -2,6 +2,11 @@
 
 use super::*;
 
+#[cfg(not(feature = "alloc"))]
+use Lanes8 as Eights;
+#[cfg(feature = "alloc")]
+use Singles8 as Eights;
+
 /// Numbers of all sizes, signs and bit patterns.
 struct Random(u64);
 
@@ -64,7 +69,8 @@ impl<S: Lanes8> Checker<S> {
     }
 }
 
-fn check<S: Lanes8>(s: S, name: &'static str) {
+fn check<S: Eights>(s: S, name: &'static str) {
+    check_singles(s, name);
     let c = Checker { s, name };
     let p = Portable;
     let mut random = Random(15);
@@ -163,6 +169,73 @@ fn check<S: Lanes8>(s: S, name: &'static str) {
         }
     }
 }
+
+/// f32 of all kinds: NaN, infinities, zeros of both signs, denormals.
+#[cfg(feature = "alloc")]
+impl Random {
+    fn f32s(&mut self) -> [f32; 8] {
+        let odd = [0.0, -0.0, 0.5, -1.5, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, 1e-40];
+        [(); 8].map(|()| match self.bits() % 4 {
+            0 => odd[(self.bits() % 9) as usize],
+            1 => f32::from_bits(self.bits() as u32),
+            _ => (self.bits() % 4_096) as f32 / 16.0 - 128.0,
+        })
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Singles8> Checker<S> {
+    fn f32s(&self, what: &str, found: S::F32, expected: [f32; 8]) {
+        let mut lanes = [0; 8];
+        self.s.put_i32s(self.s.bits_of_f32(found), &mut lanes);
+        for (found, expected) in lanes.into_iter().zip(expected) {
+            // Which NaN it is says no level.
+            let found = f32::from_bits(found.cast_unsigned());
+            let same = found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan();
+            assert!(same, "{what} of {}: {found:?} for {expected:?}", self.name);
+        }
+    }
+}
+
+#[cfg(feature = "alloc")]
+fn check_singles<S: Singles8>(s: S, name: &'static str) {
+    use glam::Vec3;
+
+    let c = Checker { s, name };
+    let p = Portable;
+    let mut random = Random(32);
+    let apart = |of: [f32; 8]| s.vectors(&of.map(Vec3::splat))[0];
+    for _ in 0..2_000 {
+        let (a, b) = (random.f32s(), random.f32s());
+        let (fa, fb) = (apart(a), apart(b));
+        let points: [Vec3; 8] = core::array::from_fn(|i| Vec3::new(a[i], b[i], a[7 - i]));
+        for (found, expected) in s.vectors(&points).into_iter().zip(p.vectors(&points)) {
+            c.f32s("vectors", found, expected);
+        }
+        c.f32s("all_f32", s.all_f32(a[0]), [a[0]; 8]);
+        c.f32s("add_f32", s.add_f32(fa, fb), p.add_f32(a, b));
+        c.f32s("sub_f32", s.sub_f32(fa, fb), p.sub_f32(a, b));
+        c.f32s("mul_f32", s.mul_f32(fa, fb), p.mul_f32(a, b));
+        c.f32s("div_f32", s.div_f32(fa, fb), p.div_f32(a, b));
+        c.f32s("max_f32", s.max_f32(fa, fb), p.max_f32(a, b));
+        c.f32s("min_f32", s.min_f32(fa, fb), p.min_f32(a, b));
+        c.mask("is_at_least", s.is_at_least(fa, fb), p.is_at_least(a, b));
+        c.mask("is_at_least, equal", s.is_at_least(fa, fa), p.is_at_least(a, a));
+        let numbers = a.map(|x| if x.is_nan() { 1.0 } else { x });
+        c.f64s("widen", s.widen(apart(numbers)), p.widen(numbers));
+        // Halves between two f32, and what is beyond them all.
+        let wide: [f64; 8] = core::array::from_fn(|i| {
+            let next = f64::from(f32::from_bits(numbers[i].to_bits() + 1));
+            if next.is_finite() { f64::midpoint(numbers[i].into(), next) } else { f64::MAX }
+        });
+        c.f32s("narrow", s.narrow(s.f64s(&wide)), p.narrow(wide));
+        let positive = random.i32s().map(|n| f64::from(n.unsigned_abs() >> 1) + (n & 3) as f64 / 4.0);
+        c.i32s("whole", s.whole(s.f64s(&positive)), positive.map(|x| x as i32));
+    }
+}
+
+#[cfg(not(feature = "alloc"))]
+fn check_singles<S: Lanes8>(_: S, _: &'static str) {}
 
 #[test]
 fn every_level_has_the_operations_of_plain_arrays() {

@@ -2,6 +2,11 @@
 
 use core::arch::wasm32::*;
 
+#[cfg(feature = "alloc")]
+use glam::Vec3;
+
+#[cfg(feature = "alloc")]
+use super::quarters::Singles128;
 use super::quarters::Vector128;
 
 /// The level that the target has.
@@ -75,5 +80,42 @@ impl Vector128 for Simd128 {
         }
         fn zip_low_i64(a: v128, b: v128) -> v128 { i64x2_shuffle::<0, 2>(a, b) }
         fn zip_high_i64(a: v128, b: v128) -> v128 { i64x2_shuffle::<1, 3>(a, b) }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Singles128 for Simd128 {
+    type S = v128;
+
+    vectors! {
+        fn all_f32(value: f32) -> v128 { f32x4_splat(value) }
+        fn vectors(from: &[Vec3; 4]) -> [v128; 3] {
+            const { assert!(size_of::<Vec3>() == 12) };
+            // 12 f32: `Vec3` is three in this order, without anything between. x y z x | y z x y | z x y z
+            let from: *const v128 = from.as_ptr().cast();
+            let (a, b, c) = (v128_load(from), v128_load(from.add(1)), v128_load(from.add(2)));
+            [
+                i32x4_shuffle::<0, 1, 2, 5>(i32x4_shuffle::<0, 3, 6, 0>(a, b), c),
+                i32x4_shuffle::<0, 1, 2, 6>(i32x4_shuffle::<1, 4, 7, 0>(a, b), c),
+                i32x4_shuffle::<0, 1, 4, 7>(i32x4_shuffle::<2, 5, 0, 0>(a, b), c),
+            ]
+        }
+        fn add_f32(a: v128, b: v128) -> v128 { f32x4_add(a, b) }
+        fn sub_f32(a: v128, b: v128) -> v128 { f32x4_sub(a, b) }
+        fn mul_f32(a: v128, b: v128) -> v128 { f32x4_mul(a, b) }
+        fn div_f32(a: v128, b: v128) -> v128 { f32x4_div(a, b) }
+        // Of `pmax(x, y)` y is taken where it is greater, otherwise x.
+        fn max_f32(a: v128, b: v128) -> v128 { f32x4_pmax(b, a) }
+        fn min_f32(a: v128, b: v128) -> v128 { f32x4_pmin(b, a) }
+        fn is_at_least(a: v128, b: v128) -> v128 { f32x4_ge(a, b) }
+        fn bits_of_f32(from: v128) -> v128 { from }
+        fn widen_low(from: v128) -> v128 { f64x2_promote_low_f32x4(from) }
+        fn widen_high(from: v128) -> v128 { f64x2_promote_low_f32x4(i64x2_shuffle::<1, 0>(from, from)) }
+        fn narrow(low: v128, high: v128) -> v128 {
+            i64x2_shuffle::<0, 2>(f32x4_demote_f64x2_zero(low), f32x4_demote_f64x2_zero(high))
+        }
+        fn whole(low: v128, high: v128) -> v128 {
+            i64x2_shuffle::<0, 2>(i32x4_trunc_sat_f64x2_zero(low), i32x4_trunc_sat_f64x2_zero(high))
+        }
     }
 }

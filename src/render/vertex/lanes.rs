@@ -1,29 +1,43 @@
 //! The commonest stages of vertices, eight at a time: f32 serves, and suns light matt surfaces.
+//!
+//! Each vertex gets the numbers that it gets alone, by [`ObjectView::project`] and
+//! [`both_sides`](crate::light::both_sides): the operations and their order are the same, and each rounds alike in a vector
+//! and alone.
 
 use glam::Vec3;
 
 use super::Geometry;
 use crate::fixed::U8F8;
-use crate::light::{Lights, both_sides, both_sides_of_eight};
+use crate::lanes::LANES;
+use crate::light::{Lights, both_sides};
 use crate::render::lit::{ScreenPos, ShadedVertices};
 use crate::render::paint::SurfaceMaterial;
-use crate::view::ObjectView;
-use crate::view::lanes::{LANES, Narrow};
+use crate::simd::{Singles8, compiled_for_each_level};
+use crate::view::{Narrow, ObjectView};
 
-/// [`project_inside`](super::project_inside), or [`project_tested`](super::project_tested), by `eight`.
+compiled_for_each_level! {
+    /// [`project_inside`](super::project_inside), or [`project_tested`](super::project_tested).
+    pub(super) fn project[const TESTED: bool][TESTED](
+        view: &ObjectView,
+        narrow: &Narrow,
+        positions: &[Vec3],
+        lit: &mut ShadedVertices,
+    ) = project_by;
+}
+
 #[inline(always)]
-pub(super) fn project<const TESTED: bool>(
+fn project_by<S: Singles8, const TESTED: bool>(
+    s: S,
     view: &ObjectView,
     narrow: &Narrow,
     positions: &[Vec3],
     lit: &mut ShadedVertices,
-    eight: impl Fn(&Narrow, &[Vec3; LANES], &mut [ScreenPos; LANES], &mut [u32; LANES]),
 ) {
     let (eights, rest) = positions.as_chunks::<LANES>();
     let (places, _) = lit.places.as_chunks_mut::<LANES>();
     let (depths, _) = lit.depths.as_chunks_mut::<LANES>();
     for ((points, places), depths) in eights.iter().zip(places).zip(depths) {
-        eight(narrow, points, places, depths);
+        project_eight(s, narrow, points, places, depths);
     }
     // Those that are left; or, of an object that is said to lie inside and does not, all.
     let whole = positions.len() - rest.len();
@@ -33,32 +47,75 @@ pub(super) fn project<const TESTED: bool>(
 
 /// Eight vertices, with a mark on those that need clipping.
 #[inline(always)]
-pub(super) fn project_eight(
+fn project_eight<S: Singles8>(
+    s: S,
     narrow: &Narrow,
     points: &[Vec3; LANES],
     places: &mut [ScreenPos; LANES],
     depths: &mut [u32; LANES],
 ) {
-    let eight = narrow.project(points);
-    for (i, place) in places.iter_mut().enumerate() {
-        let within = eight.within[i];
-        *place = ScreenPos::new((eight.x[i] & within) | (ScreenPos::BEYOND & !within), eight.y[i] & within);
+    let at = s.vectors(points);
+    let w = row(s, narrow, at, 2);
+    let inverse = s.div_f32(s.all_f32(1.0), w);
+    let x = s.add_f32(s.all_f32(narrow.centre.0), s.mul_f32(row(s, narrow, at, 0), inverse));
+    let y = s.add_f32(s.all_f32(narrow.centre.1), s.mul_f32(row(s, narrow, at, 1), inverse));
+    let within = s.both(s.is_at_least(w, s.all_f32(narrow.near)), s.both(is_near(s, x), is_near(s, y)));
+    let nothing = s.all_i32(0);
+    let x = s.select_i32(within, units(s, x), s.all_i32(ScreenPos::BEYOND));
+    let y = s.select_i32(within, units(s, y), nothing);
+    // As `ObjectView::depth`: 1 to 2³⁰ of what is within.
+    let part = s.mul(s.div(s.all_f64(narrow.near.into()), s.widen(w)), s.all_f64(1_073_741_824.0));
+    let depth = s.max_i32(s.whole(s.add(part, s.all_f64(0.5))), s.all_i32(1));
+
+    let mut pairs = [[0; LANES]; 2];
+    let [low, high] = s.zip_i32(x, y);
+    s.put_i32s(low, &mut pairs[0]);
+    s.put_i32s(high, &mut pairs[1]);
+    for (&[x, y], place) in pairs.as_flattened().as_chunks::<2>().0.iter().zip(places) {
+        *place = ScreenPos::new(x, y);
     }
-    for (i, depth) in depths.iter_mut().enumerate() {
-        *depth = (eight.depth[i] & eight.within[i]).cast_unsigned();
-    }
+    let mut numbers = [0; LANES];
+    s.put_i32s(s.select_i32(within, depth, nothing), &mut numbers);
+    *depths = numbers.map(i32::cast_unsigned);
 }
 
-/// Calls `project_eight` and is never inlined: from loops over eights the compiler makes vectors of the same lane of
-/// eight eights, which takes twice as long.
-#[inline(never)]
-pub(super) fn project_eight_apart(
-    narrow: &Narrow,
-    points: &[Vec3; LANES],
-    places: &mut [ScreenPos; LANES],
-    depths: &mut [u32; LANES],
-) {
-    project_eight(narrow, points, places, depths);
+/// Coordinate `k` of points seen from the eye. As glam has it: column by column.
+#[inline(always)]
+fn row<S: Singles8>(s: S, narrow: &Narrow, at: [S::F32; 3], k: usize) -> S::F32 {
+    // No closures, and no functions of the standard library that take them: they would be compiled for no level.
+    let Narrow { matrix, offset, .. } = narrow;
+    let a = s.mul_f32(s.all_f32(matrix.x_axis.to_array()[k]), at[0]);
+    let b = s.mul_f32(s.all_f32(matrix.y_axis.to_array()[k]), at[1]);
+    let c = s.mul_f32(s.all_f32(matrix.z_axis.to_array()[k]), at[2]);
+    s.add_f32(s.add_f32(s.add_f32(a, b), c), s.all_f32(offset.to_array()[k]))
+}
+
+/// Within the limit. NaN is not.
+#[inline(always)]
+fn is_near<S: Singles8>(s: S, c: S::F32) -> S::Mask {
+    s.both(s.is_at_least(c, s.all_f32(-Narrow::LIMIT)), s.is_at_least(s.all_f32(Narrow::LIMIT), c))
+}
+
+/// `floor(256·pixels + ½)` for coordinates within the limit; some number for others. It stays in f32, where such a
+/// coordinate is exact, and so is 256 times that:
+///
+/// ```text
+/// s = 256·x        |s| < 2²⁰
+/// n = (s + 1.5·2²³) − 1.5·2²³        the nearest whole number, halves to even: below 2²² f32 holds no halves there
+/// floor(s + ½) = n + 1 if s − n = ½, else n
+/// ```
+///
+/// s − n is exact: below 1 in magnitude and a multiple of the lesser of both units in the last place. It lies within
+/// ±½, and −½ is a half that was rounded up already.
+#[inline(always)]
+fn units<S: Singles8>(s: S, pixels: S::F32) -> S::I32 {
+    let magic = s.all_f32(12_582_912.0);
+    let scaled = s.mul_f32(pixels, s.all_f32(256.0));
+    let sum = s.add_f32(scaled, magic);
+    // The number is in the low bits of the sum.
+    let nearest = s.sub_i32(s.bits_of_f32(sum), s.bits_of_f32(magic));
+    let is_less = s.is_at_least(s.sub_f32(scaled, s.sub_f32(sum, magic)), s.all_f32(0.5));
+    s.add_i32(nearest, s.select_i32(is_less, s.all_i32(1), s.all_i32(0)))
 }
 
 /// The definition, of vertices from number `first` on.
@@ -74,21 +131,30 @@ pub(super) fn one_by_one<const TESTED: bool>(
     }
 }
 
-/// [`light_suns`](super::light_suns), by `eight`.
+compiled_for_each_level! {
+    /// [`light_suns`](super::light_suns).
+    pub(super) fn light_suns[const BOTH: bool][BOTH](
+        geometry: &Geometry<'_>,
+        paints: &[SurfaceMaterial],
+        lights: &Lights<'_>,
+        lit: &mut ShadedVertices,
+    ) = light_suns_by;
+}
+
 #[inline(always)]
-pub(super) fn light_suns<const BOTH: bool>(
+fn light_suns_by<S: Singles8, const BOTH: bool>(
+    s: S,
     geometry: &Geometry<'_>,
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     lit: &mut ShadedVertices,
-    eight: impl Fn(&SurfaceMaterial, &Lights<'_>, &[Vec3; LANES], &mut [[U8F8; 2]; LANES]),
 ) {
     let (eights, rest) = geometry.normals.as_chunks::<LANES>();
     let (shades, rest_shades) = lit.shades.as_chunks_mut::<LANES>();
     let (surfaces, rest_surfaces) = geometry.vertex_surfaces.as_chunks::<LANES>();
     for ((normals, shades), surfaces) in eights.iter().zip(shades).zip(surfaces) {
         if *surfaces == [surfaces[0]; LANES] {
-            eight(&paints[usize::from(surfaces[0])], lights, normals, shades);
+            light_eight::<S, BOTH>(s, &paints[usize::from(surfaces[0])], lights, normals, shades);
         } else {
             light_one_by_one::<BOTH>(normals, surfaces, paints, lights, shades);
         }
@@ -114,30 +180,45 @@ fn light_one_by_one<const BOTH: bool>(
 
 /// Eight vertices of one surface.
 #[inline(always)]
-pub(super) fn light_eight<const BOTH: bool>(
+fn light_eight<S: Singles8, const BOTH: bool>(
+    s: S,
     paint: &SurfaceMaterial,
     lights: &Lights<'_>,
     normals: &[Vec3; LANES],
     shades: &mut [[U8F8; 2]; LANES],
 ) {
-    let (ambient, diffuse) = (paint.answer.ambient, paint.answer.diffuse);
-    let [front, back] = both_sides_of_eight::<BOTH>(ambient, diffuse, lights.suns, normals);
-    let front = paint.shade_of_eight(&front);
-    let back = if BOTH { paint.shade_of_eight(&back) } else { [U8F8::default(); LANES] };
-    for (lane, shades) in shades.iter_mut().enumerate() {
-        *shades = [front[lane], back[lane]];
+    let [nx, ny, nz] = s.vectors(normals);
+    let dark = s.all_f32(0.0);
+    let (mut front, mut back) = (s.all_f64(0.0), s.all_f64(0.0));
+    for sun in lights.suns {
+        let towards = sun.towards;
+        let (x, y) = (s.mul_f32(nx, s.all_f32(towards.x)), s.mul_f32(ny, s.all_f32(towards.y)));
+        // As glam has it.
+        let cosine = s.add_f32(s.add_f32(x, y), s.mul_f32(nz, s.all_f32(towards.z)));
+        let intensity = s.all_f64(sun.intensity.into());
+        // A light without effect adds zero, which changes no sum: none is −0, as each begins at +0. NaN is without effect.
+        front = s.add(front, s.mul(intensity, s.widen(s.max_f32(cosine, dark))));
+        if BOTH {
+            back = s.sub(back, s.mul(intensity, s.widen(s.min_f32(cosine, dark))));
+        }
     }
+    let front = shade(s, paint, front);
+    let both = if BOTH { s.or_i32(front, s.shl_i32(shade(s, paint, back), 16)) } else { front };
+    let mut pairs = [0; LANES];
+    s.put_i32s(both, &mut pairs);
+    // The front's shade in the lower half.
+    *shades = pairs.map(|both| [both as u16, (both >> 16) as u16].map(U8F8::from_bits));
 }
 
-/// Calls `light_eight` and is never inlined, for the reason that `project_eight_apart` gives.
-#[inline(never)]
-pub(super) fn light_eight_apart<const BOTH: bool>(
-    paint: &SurfaceMaterial,
-    lights: &Lights<'_>,
-    normals: &[Vec3; LANES],
-    shades: &mut [[U8F8; 2]; LANES],
-) {
-    light_eight::<BOTH>(paint, lights, normals, shades);
+/// [`SurfaceMaterial::shade`] of these sums of light.
+#[inline(always)]
+fn shade<S: Singles8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
+    let light = s.add(s.all_f64(paint.answer.ambient), s.mul(s.all_f64(paint.answer.diffuse), light));
+    // Of what is no number the second of both: 0.
+    let clamped = s.min_f32(s.max_f32(s.narrow(light), s.all_f32(0.0)), s.all_f32(1.0));
+    let units = s.all_f64(f64::from(paint.ramp.entries().saturating_sub(1)) * 256.0);
+    let above = s.whole(s.add(s.mul(s.widen(clamped), units), s.all_f64(0.5)));
+    s.min_i32(s.add_i32(s.all_i32(i32::from(paint.ramp.first()) * 256), above), s.all_i32(0xFF00))
 }
 
 #[cfg(test)]

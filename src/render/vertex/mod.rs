@@ -17,9 +17,6 @@ use crate::span::Kernel;
 use crate::view::ObjectView;
 
 mod lanes;
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-#[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-mod x86;
 
 /// Geometry drawn of an object: its mesh, or the result of tessellation.
 #[derive(Clone, Copy, Debug)]
@@ -92,12 +89,7 @@ fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Ke
     let Some(narrow) = view.narrow() else {
         return lanes::one_by_one::<TESTED>(view, positions, 0, lit);
     };
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    if let Some(avx2) = kernel.avx2() {
-        return x86::project::<TESTED>(avx2, (view, &narrow), positions, lit);
-    }
-    let _ = kernel;
-    lanes::project::<TESTED>(view, &narrow, positions, lit, lanes::project_eight_apart);
+    lanes::project::<TESTED>(kernel.simd_level(), view, &narrow, positions, lit);
 }
 
 /// Vertices that are rounded already rounded again, to fewer bits after the point, half up.
@@ -128,17 +120,10 @@ pub(super) fn light_suns(
     (both, kernel): (bool, Kernel),
     lit: &mut ShadedVertices,
 ) {
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    if let Some(avx2) = kernel.avx2() {
-        return match both {
-            true => x86::light_suns::<true>(avx2, geometry, paints, lights, lit),
-            false => x86::light_suns::<false>(avx2, geometry, paints, lights, lit),
-        };
-    }
-    let _ = kernel;
+    let level = kernel.simd_level();
     match both {
-        true => lanes::light_suns::<true>(geometry, paints, lights, lit, lanes::light_eight_apart::<true>),
-        false => lanes::light_suns::<false>(geometry, paints, lights, lit, lanes::light_eight_apart::<false>),
+        true => lanes::light_suns::<true>(level, geometry, paints, lights, lit),
+        false => lanes::light_suns::<false>(level, geometry, paints, lights, lit),
     }
 }
 

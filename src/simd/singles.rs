@@ -1,0 +1,146 @@
+//! Eight lanes of f32 beside those of [`Lanes8`]: what the stages of vertices are written in.
+
+use glam::Vec3;
+
+use super::{Lanes8, Portable};
+use crate::fixed::whole_part;
+
+/// Operations on eight lanes of f32. Each rounds once, like the operation on one number.
+pub(crate) trait Singles8: Lanes8 {
+    /// Eight f32.
+    type F32: Copy;
+
+    fn all_f32(self, value: f32) -> Self::F32;
+    /// x, y and z of eight vectors.
+    fn vectors(self, from: &[Vec3; 8]) -> [Self::F32; 3];
+    fn add_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    fn sub_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    fn mul_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    fn div_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// `a` where it is greater than `b`, otherwise `b`: also where one is NaN.
+    fn max_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// `a` where it is less than `b`, otherwise `b`: also where one is NaN.
+    fn min_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// NaN is at least nothing.
+    fn is_at_least(self, a: Self::F32, b: Self::F32) -> Self::Mask;
+    fn bits_of_f32(self, from: Self::F32) -> Self::I32;
+    fn widen(self, from: Self::F32) -> Self::F64;
+    /// To the nearest f32, halves to even.
+    fn narrow(self, from: Self::F64) -> Self::F32;
+    /// The whole parts of values of at least 0 and below 2³¹; of others some number.
+    fn whole(self, from: Self::F64) -> Self::I32;
+}
+
+macro_rules! each {
+    ($lane:ident => $value:expr) => {{
+        let mut to = [Default::default(); 8];
+        for ($lane, to) in to.iter_mut().enumerate() {
+            *to = $value;
+        }
+        to
+    }};
+}
+
+impl Singles8 for Portable {
+    type F32 = [f32; 8];
+
+    #[inline(always)]
+    fn all_f32(self, value: f32) -> [f32; 8] {
+        [value; 8]
+    }
+    #[inline(always)]
+    fn vectors(self, from: &[Vec3; 8]) -> [[f32; 8]; 3] {
+        [each!(i => from[i].x), each!(i => from[i].y), each!(i => from[i].z)]
+    }
+    #[inline(always)]
+    fn add_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each!(i => a[i] + b[i])
+    }
+    #[inline(always)]
+    fn sub_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each!(i => a[i] - b[i])
+    }
+    #[inline(always)]
+    fn mul_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each!(i => a[i] * b[i])
+    }
+    #[inline(always)]
+    fn div_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each!(i => a[i] / b[i])
+    }
+    #[inline(always)]
+    fn max_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each!(i => if a[i] > b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn min_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each!(i => if a[i] < b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn is_at_least(self, a: [f32; 8], b: [f32; 8]) -> [i32; 8] {
+        each!(i => -i32::from(a[i] >= b[i]))
+    }
+    #[inline(always)]
+    fn bits_of_f32(self, from: [f32; 8]) -> [i32; 8] {
+        each!(i => from[i].to_bits().cast_signed())
+    }
+    #[inline(always)]
+    fn widen(self, from: [f32; 8]) -> [f64; 8] {
+        each!(i => f64::from(from[i]))
+    }
+    #[inline(always)]
+    fn narrow(self, from: [f64; 8]) -> [f32; 8] {
+        each!(i => from[i] as f32)
+    }
+    #[inline(always)]
+    fn whole(self, from: [f64; 8]) -> [i32; 8] {
+        each!(i => whole_part(from[i]))
+    }
+}
+
+/// Four vectors' x, y and z, from three vectors of four numbers that hold them in their order. `$shuffle::<N>(a, b)` takes two
+/// numbers of each, by two bits of `N` each, the lowest first; wider vectors do so in each 128 bits.
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+macro_rules! apart {
+    ($shuffle:ident, $a:expr, $b:expr, $c:expr) => {{
+        // x y z x | y z x y | z x y z
+        let (a, b, c) = ($a, $b, $c);
+        let xy = $shuffle::<0b10_01_11_10>(b, c);
+        let yz = $shuffle::<0b01_00_10_01>(a, b);
+        [$shuffle::<0b10_00_11_00>(a, xy), $shuffle::<0b11_01_10_00>(yz, xy), $shuffle::<0b11_00_11_01>(yz, c)]
+    }};
+}
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+pub(super) use apart;
+
+/// The operations of AVX2 and AVX-512 that are the same: on 256 bits.
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+macro_rules! singles_of_256_bits {
+    ($($rest:tt)*) => {
+        type F32 = __m256;
+
+        lanes! {
+            fn all_f32(value: f32) -> __m256 { _mm256_set1_ps(value) }
+            fn vectors(from: &[Vec3; 8]) -> [__m256; 3] {
+                const { assert!(size_of::<Vec3>() == 12) };
+                // 24 f32: `Vec3` is three in this order, without anything between. Four each are loaded from numbers 0, 4, 8,
+                // 12, 16 and 20 on.
+                let from: *const f32 = from.as_ptr().cast();
+                let a = _mm256_set_m128(_mm_loadu_ps(from.add(12)), _mm_loadu_ps(from));
+                let b = _mm256_set_m128(_mm_loadu_ps(from.add(16)), _mm_loadu_ps(from.add(4)));
+                let c = _mm256_set_m128(_mm_loadu_ps(from.add(20)), _mm_loadu_ps(from.add(8)));
+                crate::simd::singles::apart!(_mm256_shuffle_ps, a, b, c)
+            }
+            fn add_f32(a: __m256, b: __m256) -> __m256 { _mm256_add_ps(a, b) }
+            fn sub_f32(a: __m256, b: __m256) -> __m256 { _mm256_sub_ps(a, b) }
+            fn mul_f32(a: __m256, b: __m256) -> __m256 { _mm256_mul_ps(a, b) }
+            fn div_f32(a: __m256, b: __m256) -> __m256 { _mm256_div_ps(a, b) }
+            fn max_f32(a: __m256, b: __m256) -> __m256 { _mm256_max_ps(a, b) }
+            fn min_f32(a: __m256, b: __m256) -> __m256 { _mm256_min_ps(a, b) }
+            fn bits_of_f32(from: __m256) -> __m256i { _mm256_castps_si256(from) }
+            $($rest)*
+        }
+    };
+}
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+pub(super) use singles_of_256_bits;
