@@ -275,10 +275,10 @@ fn shares_are_of_all_triangles() {
     }
 }
 
-/// Decisions that are kept give the frames that new ones give, whatever changes in between.
+/// A renderer that has drawn gives the frames of a new one, whatever changes in between.
 #[test]
-fn kept_decisions_are_those_that_would_be_made() {
-    let mut tried = Tried::new("kept_decisions_are_those_that_would_be_made", 200);
+fn a_kept_renderer_decides_as_a_fresh_one() {
+    let mut tried = Tried::new("a_kept_renderer_decides_as_a_fresh_one", 200);
     for (name, mut scene) in scenes::all() {
         let mut renderer = within(4.0);
         let mut vga = Vga::new();
