@@ -130,7 +130,7 @@ pub(super) const CHANGES: &[Change] = &[
             w.scene.remove_light(id);
         }
     }),
-    seen("Scene::index_mut", |w, r| {
+    seen("a light, by its id", |w, r| {
         if let Some(&id) = one_of_few(w.scene.light_ids(), r) {
             w.scene[id] = light(r);
         }
