@@ -23,7 +23,7 @@ compiled() {
     needs rustc-web cargo-web rust-web-src rust-web-llvm
     # rust-lld names the linker that belongs to this compiler, and links for all of these processors.
     needs "$(basename "$(readlink /usr/bin/rust-lld)")"
-    local flags="$* -C linker=rust-lld -C linker-flavor=${linker:-ld.lld} -C relocation-model=static"
+    local flags="$* -C linker=rust-lld -C linker-flavor=${linker:-ld.lld} -C relocation-model=${relocation:-static}"
     RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 RUSTFLAGS=$flags /usr/bin/cargo build -q --release \
         --manifest-path "$root/machines/frames/Cargo.toml" --target-dir "$machines" --target "$target" \
         -Z build-std=core,alloc -Z build-std-features=compiler-builtins-mem
