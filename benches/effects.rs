@@ -55,7 +55,7 @@ type Float = fn(&mut [u8], i32, [f32; 2], [f32; 2], [f32; 2]);
 /// A loop under its name; a portable one comes before its twin. Each is called by its address, which the
 /// compiler is not told: so that none is inlined and made for these numbers alone, and `nm -S` shows its size.
 const LOOPS: [(&str, Draw); 16] = [
-    ("span", |m, start, n| Kernel::fastest().fill(&mut m.row[start..start + n], 0x1234, 0x56)),
+    ("span", |m, start, n| Kernel::default().fill(&mut m.row[start..start + n], 0x1234, 0x56)),
     ("16.16", |m, start, n| black_box(fill_16_16 as Fixed16)(&mut m.row[start..start + n], 0x12_3456, 0x5678)),
     ("dither portable", |m, start, n| dither(fill_dithered_portable, m, start, n)),
     ("dither", |m, start, n| dither(fill_dithered, m, start, n)),

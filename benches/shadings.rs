@@ -32,7 +32,7 @@ fn main() {
     println!("{:>10} {:>24} {:>12} {:>10} {:>10}", "scene", "shading", "ns/frame", "pixels", "ns/pixel");
     let mut vga = Vga::new();
     for name in names.split(',') {
-        let scene = shipped::by_name(name).expect("a shipped scene").load().expect("it loads").scene;
+        let scene = name.parse::<shipped::Shipped>().expect("a shipped scene").load().expect("it loads").scene;
         let frames: Vec<Scene> = (0..MOMENTS)
             .map(|i| {
                 let mut scene = scene.clone();

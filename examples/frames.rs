@@ -57,13 +57,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         [name, frames, kernel, max_error] => (name, frames, kernel, Some(max_error)),
         _ => return Err("usage: frames SCENE FRAMES KERNEL [MAX_ERROR | SHADING]".into()),
     };
-    let mut scene = match shipped::by_name(name) {
-        Some(shipped) => shipped.load()?.scene,
-        None if name == "sphere" => sphere(),
-        None => return Err("no such scene".into()),
+    let mut scene = match name.parse::<shipped::Shipped>() {
+        Ok(shipped) => shipped.load()?.scene,
+        Err(_) if name == "sphere" => sphere(),
+        Err(_) => return Err("no such scene".into()),
     };
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-    renderer.settings.kernel = Kernel::by_name(kernel)?;
+    renderer.settings.kernel = kernel.parse::<Kernel>()?;
     if let Some(accuracy) = max_error {
         renderer.settings.accuracy = Some(match accuracy.parse() {
             Ok(shades) => Accuracy::WithinError(shades),

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let step = (seconds - last).min(0.1);
         last = seconds;
         let turns = f64::from(input.held(Key::Left)) - f64::from(input.held(Key::Right));
-        scene[ship].rotate_z(Angle::TURN / 2.0 * step * turns);
+        scene[ship].rotate_z(Angle::from_degrees(180.0) * step * turns);
         if input.pressed(Key::Space) {
             let towards = scene[ship].rotation() * Vec3::Y;
             shots.push((add(&mut scene, Object::new(shapes::cube()), Vec3::ZERO, 0.1), towards * 6.0));

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let drawn = vga.stamp();
     for _ in 0..retraces {
         vga.advance(vga.beam().nanoseconds_to_retrace());
-        assert_ne!(vga.read_port(Vga::INPUT_STATUS) & timing::VERTICAL_RETRACE, 0);
+        assert_ne!(vga.read_port(0x3DA) & timing::VERTICAL_RETRACE, 0);
         vga.cycle(.., 1);
     }
     assert_eq!(vga.stamp(), drawn, "no byte was touched");

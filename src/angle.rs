@@ -6,7 +6,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 ///
 /// ```
 /// use mode13h::Angle;
-/// let eighth = Angle::TURN / 8.0;
+/// let eighth = Angle::from_degrees(45.0);
 /// assert_eq!(eighth + eighth, Angle::from_degrees(90.0));
 /// assert_eq!(eighth.to_degrees(), 45.0);
 /// assert_eq!(eighth.to_radians(), std::f64::consts::FRAC_PI_4);
@@ -16,7 +16,7 @@ pub struct Angle(f64);
 
 impl Angle {
     /// A whole turn: 360°.
-    pub const TURN: Self = Self(core::f64::consts::TAU);
+    pub(crate) const TURN: Self = Self(core::f64::consts::TAU);
 
     /// An angle of so many degrees.
     #[must_use]

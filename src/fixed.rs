@@ -51,9 +51,17 @@ pub(crate) fn whole_part(x: f64) -> i32 {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub struct I24F8(i32);
 
+/// Whole pixels.
+impl From<i16> for I24F8 {
+    #[inline]
+    fn from(pixels: i16) -> Self {
+        Self(i32::from(pixels) * Self::ONE)
+    }
+}
+
 impl I24F8 {
     /// Units in a pixel.
-    pub const ONE: i32 = 256;
+    pub(crate) const ONE: i32 = 256;
     /// The distance from the pixel's left edge to its centre, in units.
     #[doc(hidden)]
     pub const HALF: i32 = 128;
@@ -68,12 +76,6 @@ impl I24F8 {
     #[must_use]
     pub const fn to_bits(self) -> i32 {
         self.0
-    }
-
-    /// Makes a coordinate from whole pixels, −2²³ to 2²³ − 1; wraps beyond.
-    #[must_use]
-    pub const fn from_pixels(pixels: i32) -> Self {
-        Self(pixels.wrapping_mul(Self::ONE))
     }
 
     /// `floor(256·pixels + ½)`, exactly: the one rounding that a projected coordinate goes through.
@@ -145,6 +147,14 @@ impl I24F8 {
 #[repr(transparent)]
 pub struct U8F8(u16);
 
+/// A whole shade, 0 to 255.
+impl From<u8> for U8F8 {
+    #[inline]
+    fn from(shade: u8) -> Self {
+        Self(u16::from(shade) << 8)
+    }
+}
+
 impl U8F8 {
     /// The greatest shade that a vertex may have: 255.0.
     #[doc(hidden)]
@@ -160,12 +170,6 @@ impl U8F8 {
     #[must_use]
     pub const fn to_bits(self) -> u16 {
         self.0
-    }
-
-    /// Makes a shade from a whole one, 0 to 255.
-    #[must_use]
-    pub const fn from_shade(shade: u8) -> Self {
-        Self((shade as u16) << 8)
     }
 
     /// The nearest whole shade, halves upward: `(u + 128) >> 8`. 255.5 and above stay at 255.

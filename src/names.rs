@@ -2,21 +2,51 @@
 
 use core::fmt;
 
-/// An unknown name. Its text lists the known ones.
+/// The number of kernels that there are on all machines.
+pub(crate) const KERNELS: usize = 10;
+
+/// An unknown name, or that of a kernel that this machine or build lacks. Its text lists those that there are.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub struct UnknownName {
-    /// The thing to be chosen.
-    pub(crate) what: &'static str,
-    pub(crate) names: &'static [&'static str],
+pub struct UnknownName(Unknown);
+
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+enum Unknown {
+    /// What is to be chosen, and its names.
+    Of(&'static str, &'static [&'static str]),
+    /// A kernel: its name if other machines or builds have it, and the names of those that are here.
+    Kernel(Option<&'static str>, [Option<&'static str>; KERNELS]),
+}
+
+impl UnknownName {
+    /// No such name of `what`.
+    pub(crate) const fn of(what: &'static str, names: &'static [&'static str]) -> Self {
+        Self(Unknown::Of(what, names))
+    }
+
+    /// No such kernel here; `lacking` is its name if there is such a kernel elsewhere.
+    pub(crate) const fn kernel(lacking: Option<&'static str>, here: [Option<&'static str>; KERNELS]) -> Self {
+        Self(Unknown::Kernel(lacking, here))
+    }
 }
 
 impl fmt::Display for UnknownName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown {}; there are", self.what)?;
-        for (i, name) in self.names.iter().enumerate() {
-            write!(f, "{} {name}", if i == 0 { "" } else { "," })?;
+        fn list(f: &mut fmt::Formatter<'_>, names: impl Iterator<Item = &'static str>) -> fmt::Result {
+            names.enumerate().try_for_each(|(i, name)| write!(f, "{} {name}", if i == 0 { "" } else { "," }))
         }
-        Ok(())
+        match self.0 {
+            Unknown::Of(what, names) => {
+                write!(f, "unknown {what}; there are")?;
+                list(f, names.iter().copied())
+            }
+            Unknown::Kernel(lacking, here) => {
+                match lacking {
+                    Some(name) => write!(f, "this machine or build lacks the kernel {name}; it has")?,
+                    None => f.write_str("no such kernel; this machine has")?,
+                }
+                list(f, here.into_iter().flatten())
+            }
+        }
     }
 }
 
@@ -59,7 +89,7 @@ macro_rules! named {
             type Err = $crate::UnknownName;
 
             fn from_str(name: &str) -> Result<Self, Self::Err> {
-                let unknown = $crate::UnknownName { what: $what, names: &[$($name),*] };
+                let unknown = $crate::UnknownName::of($what, &[$($name),*]);
                 Self::ALL.into_iter().find(|choice| choice.name() == name).ok_or(unknown)
             }
         }

@@ -95,7 +95,7 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
             };
             Ok(if on { usual - switched } else { switched - usual })
         })?;
-        if switched.renderer.plan().is_on(object, effect) == on {
+        if switched.renderer.plan().objects()[object].is_on(effect) == on {
             return Ok(None);
         }
         Ok(Some(above_noise(differences)))

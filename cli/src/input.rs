@@ -11,7 +11,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::mesh::{Mesh, Weight, obj, shapes};
 use mode13h::model;
 use mode13h::palette::{Palette, builtin, file};
-use mode13h::scene::{self, Scene, Shared, shipped};
+use mode13h::scene::shipped::Shipped;
+use mode13h::scene::{self, Scene, Shared};
 use mode13h::texture::Texture;
 
 use crate::failure::{Failure, on_one_line};
@@ -56,7 +57,7 @@ pub(crate) fn name_of(words: &OsStr) -> String {
 /// The scene or the model of a file or of a name; of a name that both have, the scene. Warnings go to standard error, a
 /// line each.
 pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Failure> {
-    let loaded = if let Some(shipped) = words.to_str().and_then(shipped::by_name) {
+    let loaded = if let Some(shipped) = words.to_str().and_then(|name| name.parse::<Shipped>().ok()) {
         shipped.load()
     } else if has_extension(Path::new(words), "toml") {
         scene::file::load(words)

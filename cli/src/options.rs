@@ -117,7 +117,7 @@ struct Pipeline {
     #[arg(
         long,
         value_name = "NAME",
-        value_parser = Kernel::by_name,
+        value_parser = str::parse::<Kernel>,
         help = "The span kernel",
         long_help = long_help_on_kernels(),
     )]
@@ -173,9 +173,9 @@ impl Drawing {
         match std::env::var_os(KERNEL_VARIABLE) {
             Some(name) if !name.is_empty() => {
                 let name = name.to_string_lossy();
-                Kernel::by_name(&name).map_err(|error| Failure::words(format!("{KERNEL_VARIABLE}={name}: {error}")))
+                name.parse::<Kernel>().map_err(|error| Failure::words(format!("{KERNEL_VARIABLE}={name}: {error}")))
             }
-            _ => Ok(Kernel::fastest()),
+            _ => Ok(Kernel::default()),
         }
     }
 
@@ -373,6 +373,6 @@ fn long_help_on_kernels() -> String {
         "The span kernel: {}. All draw the same bytes.\n\n[default: the environment variable {KERNEL_VARIABLE}, otherwise \
          the fastest, {}]",
         names.join(", "),
-        Kernel::fastest().name()
+        Kernel::default().name()
     )
 }

@@ -103,7 +103,7 @@ fn list_json() -> Value {
 }
 
 fn as_json(name: &str, palette: &Palette, made: &[Made]) -> Value {
-    let colors = palette.colors().iter().map(|color| format!("#{:06x}", color.to_u32()));
+    let colors = palette.colors().iter().map(|color| format!("#{:06x}", color));
     let made = made.iter().map(|made| {
         let Made { material, what, first, last } = made;
         json!({ "material": material, "what": what, "first": first, "last": last })
@@ -182,7 +182,7 @@ fn chart(palette: &Palette, out: &Path) -> Result<(), export::ExportError> {
         height: 16,
         pitch: 16,
         palette: palette.colors(),
-        shape: PixelShape::SQUARE,
+        shape: PixelShape::default(),
     };
     Png { scale: Scale::To { width: 256, height: 256 }, rgb: false }.save(&squares, out)
 }
@@ -207,7 +207,7 @@ fn look(name: &str, palette: &Palette) -> String {
             text += &if painted {
                 format!("\x1b[48;2;{};{};{}m  ", color.r, color.g, color.b)
             } else {
-                format!(" {:06x}", color.to_u32())
+                format!(" {:06x}", color)
             };
         }
         text += if painted { "\x1b[0m\n" } else { "\n" };

@@ -265,7 +265,7 @@ impl Out {
             if kind != Kind::Stream && out.file_name().and_then(|name| number_in(name.to_str()?)).is_some() {
                 return Err(wrong(&"a film is one file: its name needs no number"));
             }
-            let rate = fps.map_or(Ok(FrameRate::default()), FrameRate::new).map_err(|error| wrong(&error))?;
+            let rate = fps.map_or(Ok(FrameRate::default()), FrameRate::try_from).map_err(|error| wrong(&error))?;
             Ok(Out::Film(Film::new(kind, out, *frames, rate, *scale)))
         } else {
             Err(wrong(&"no kind of picture that can be written: the name must end in .png, .gif or .apng"))

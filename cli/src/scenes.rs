@@ -34,17 +34,17 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Some(name) = copy else {
         return if *json { output::print_json(&list_json()) } else { output::print(&list()) };
     };
-    let Some(scene) = shipped::by_name(name) else {
+    let Ok(scene) = name.parse::<Shipped>() else {
         let near = typo::nearest(name, shipped::ALL.iter().map(|scene| scene.name));
         let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
         return Err(Failure::words(format!("{name}: no such scene{near} (mode13h scenes lists them)")));
     };
     match out {
-        Some(out) => write(scene, out),
+        Some(out) => write(&scene, out),
         None => {
             let out = PathBuf::from(format!("{name}.toml"));
             output::refuse_overwriting(&out, *force)?;
-            write(scene, &out)
+            write(&scene, &out)
         }
     }
 }

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 /// The figures of a frame.
 pub(crate) fn json(number: u32, stats: &Stats) -> Value {
     let shares: Map<String, Value> =
-        stats.shares.iter().map(|(shading, triangles)| (shading.name().to_string(), triangles.into())).collect();
+        stats.shares.into_iter().map(|(shading, triangles)| (shading.name().to_string(), triangles.into())).collect();
     let DrawStats {
         spans, covered, pixels, tested, textured, mipmapped, dithered, fogged, blended, mixed, lit, ..
     } = stats.raster;

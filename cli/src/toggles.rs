@@ -165,7 +165,7 @@ mod tests {
     /// shades in order, not the entries of the palette one after the other.
     #[test]
     fn a_model_without_its_image_is_shaded_in_order() {
-        let texture = Texture::by_name("crate").map(mode13h::scene::Shared::new);
+        let texture = "crate".parse::<Texture>().ok().map(mode13h::scene::Shared::new);
         let cube = builtin::by_name("cube").expect("built in").palette.clone();
         for colors in [Colors::Auto, cube.into()] {
             let mut stage = Turntable::of_model(shapes::cube(), UpAxis::Y, std::slice::from_ref(&texture));
@@ -175,7 +175,7 @@ mod tests {
             let mut draw = |stage: &Turntable, renderer: &mut Renderer| {
                 renderer.draw(&stage.scene, &mut vga).expect("a legal scene");
                 let palette = vga.palette();
-                vga.pixels().iter().map(|&pixel| palette.color(pixel)).collect::<Vec<Rgb>>()
+                vga.pixels().iter().map(|&pixel| palette[pixel]).collect::<Vec<Rgb>>()
             };
             let with = draw(&stage, &mut renderer);
             Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");

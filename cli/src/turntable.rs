@@ -190,7 +190,7 @@ impl Turntable {
         let is_plain = |material: &Material| material.texture.is_none() && material.environment.is_none();
         if on
             && self.materials.iter().flatten().all(is_plain)
-            && let Some(checker) = Texture::by_name("checker").map(Shared::new)
+            && let Some(checker) = "checker".parse::<Texture>().ok().map(Shared::new)
         {
             for (object, materials) in self.scene.objects().iter().zip(&mut self.materials) {
                 let has_coordinates = object.mesh().texcoords().is_some();
@@ -350,7 +350,7 @@ mod tests {
     fn the_scene_of_the_torus_is_the_model_on_its_stage() {
         let mesh = mode13h::mesh::shapes::by_name("torus").expect("a shape");
         let mut model = Turntable::of_model(mesh, UpAxis::Y, &[]);
-        let scene = shipped::by_name("torus").expect("a scene").load().expect("a scene that loads").scene;
+        let scene = "torus".parse::<shipped::Shipped>().expect("a scene").load().expect("a scene that loads").scene;
         let mut scene = Turntable::of_scene(scene);
         let mut renderer = mode13h::render::Renderer::new();
         let mut frame = |stage: &Turntable| {
@@ -369,7 +369,7 @@ mod tests {
 
     #[test]
     fn a_scene_that_moves_goes_on_and_another_is_gone_round() {
-        let torus = shipped::by_name("torus").expect("a scene").load().expect("a scene that loads").scene;
+        let torus = "torus".parse::<shipped::Shipped>().expect("a scene").load().expect("a scene that loads").scene;
         assert_eq!(Turntable::of_scene(torus.clone()).turned(1.0, 90.0), (2.0, Pose::FIRST));
         let mut still = torus;
         still.motions.clear();

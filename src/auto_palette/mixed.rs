@@ -45,7 +45,7 @@ pub(super) fn colors(scene: &Scene, own: &[OwnColors]) -> Result<Vec<(Rgb, f32)>
         let (red, green, blue) = (red.at(seconds)?, green.at(seconds)?, blue.at(seconds)?);
         for (i, number) in numbers.iter().enumerate() {
             if number.is_some_and(|number| everywhere || shines[number]) {
-                let [r, g, b] = [red[i], green[i], blue[i]].map(|index| grey.color(index).r);
+                let [r, g, b] = [red[i], green[i], blue[i]].map(|index| grey[index].r);
                 *counts.entry(Rgb::new(r, g, b)).or_default() += 1;
             }
         }

@@ -140,7 +140,7 @@ fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
         for seconds in moments(scene) {
             moved.set_time(seconds);
             let plan = renderer.make_plan(&moved, Screen::MODE_13H)?;
-            any.iter_mut().enumerate().for_each(|(object, any)| *any |= plan.is_on(object, Effect::Mipmaps));
+            any.iter_mut().enumerate().for_each(|(object, any)| *any |= plan.objects()[object].is_on(Effect::Mipmaps));
         }
     }
     Ok(any)
@@ -223,7 +223,7 @@ impl Body {
 fn colors_of_ramp(material: &Material, palette: &Palette) -> Option<Vec<Rgb>> {
     let ramp = material.ramp.in_palette(Some(palette));
     let is_named = matches!(material.ramp, RampChoice::Entries(_)) || palette.ramps() > 0;
-    let colors: Vec<Rgb> = ramp.range().map(|entry| palette.color(entry)).collect();
+    let colors: Vec<Rgb> = ramp.range().map(|entry| palette[entry]).collect();
     let has_color = colors.iter().any(|color| color.r != color.g || color.g != color.b);
     (is_named && material.ramp != RampChoice::Nearest && has_color && colors.len() > 1).then_some(colors)
 }

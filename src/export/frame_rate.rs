@@ -1,7 +1,6 @@
 //! Frames a second, and how long each frame then stays in hundredths of a second, the unit of GIF.
 
-use std::error::Error;
-use std::fmt;
+use super::picture::{FRAME_RATES, PictureError};
 
 /// A film's frames per second, 0.1 to 50.
 ///
@@ -10,26 +9,26 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameRate(f64);
 
+/// So many frames a second: 0.1 to 50.
+impl TryFrom<f64> for FrameRate {
+    type Error = PictureError;
+
+    fn try_from(frames_per_second: f64) -> Result<FrameRate, PictureError> {
+        // NaN lies in no range.
+        match FRAME_RATES.contains(&frames_per_second) {
+            true => Ok(FrameRate(frames_per_second)),
+            false => Err(PictureError::FrameRate { frames_per_second }),
+        }
+    }
+}
+
 impl FrameRate {
     /// The lowest rate: a frame stays for ten seconds.
     #[doc(hidden)]
-    pub const LOWEST: FrameRate = FrameRate(0.1);
+    pub const LOWEST: FrameRate = FrameRate(*FRAME_RATES.start());
     /// The highest rate.
     #[doc(hidden)]
-    pub const HIGHEST: FrameRate = FrameRate(50.0);
-
-    /// Makes a rate of so many frames a second.
-    ///
-    /// # Errors
-    ///
-    /// [`FrameRateError`] if that is not 0.1 to 50.
-    pub fn new(frames_per_second: f64) -> Result<FrameRate, FrameRateError> {
-        // NaN lies in no range.
-        match (Self::LOWEST.0..=Self::HIGHEST.0).contains(&frames_per_second) {
-            true => Ok(FrameRate(frames_per_second)),
-            false => Err(FrameRateError { frames_per_second }),
-        }
-    }
+    pub const HIGHEST: FrameRate = FrameRate(*FRAME_RATES.end());
 
     /// Returns the rate in frames a second.
     #[doc(hidden)]
@@ -42,8 +41,8 @@ impl FrameRate {
     /// ```
     /// use mode13h::export::FrameRate;
     /// assert_eq!(FrameRate::default().fraction(), (35, 1));
-    /// assert_eq!(FrameRate::new(29.97)?.fraction(), (2997, 100));
-    /// # Ok::<(), mode13h::export::FrameRateError>(())
+    /// assert_eq!(FrameRate::try_from(29.97)?.fraction(), (2997, 100));
+    /// # Ok::<(), mode13h::export::PictureError>(())
     /// ```
     #[doc(hidden)]
     pub fn fraction(self) -> (u16, u16) {
@@ -96,27 +95,3 @@ fn fraction(number: f64) -> (u16, u16) {
         rest = 1.0 / (rest - whole);
     }
 }
-
-/// The error of a rate that is no [`FrameRate`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameRateError {
-    frames_per_second: f64,
-}
-
-impl fmt::Display for FrameRateError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "a film shows {} to {} frames a second, not {}",
-            FrameRate::LOWEST.0,
-            FrameRate::HIGHEST.0,
-            self.frames_per_second
-        )?;
-        match self.frames_per_second > FrameRate::HIGHEST.0 {
-            true => f.write_str(": browsers slow down anything faster"),
-            false => Ok(()),
-        }
-    }
-}
-
-impl Error for FrameRateError {}

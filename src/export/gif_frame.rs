@@ -97,7 +97,7 @@ impl GifFrame {
     /// The frame as a picture.
     pub(super) fn picture(&self) -> Picture<'_> {
         let GifFrame { pixels, width, height, palette, .. } = self;
-        Picture { pixels, width: *width, height: *height, pitch: *width, palette, shape: PixelShape::SQUARE }
+        Picture { pixels, width: *width, height: *height, pitch: *width, palette, shape: PixelShape::default() }
     }
 
     pub(super) fn palette(&self) -> &[Rgb; 256] {

@@ -35,7 +35,7 @@ pub use self::apng::{ApngFile, ApngFrame, FilmColors};
 pub use self::gif::{Film, GifError, GifWriter};
 pub use atomic::{ExportError, ExportErrorKind, check_writable, write_atomically};
 #[cfg(any(feature = "gif", feature = "png"))]
-pub use frame_rate::{FrameRate, FrameRateError};
+pub use frame_rate::FrameRate;
 #[cfg(feature = "gif")]
 pub use gif_file::GifFile;
 #[cfg(feature = "gif")]
@@ -45,6 +45,6 @@ pub use picture::{MAX_SIDE, Picture, PictureError, PixelShape};
 #[cfg(feature = "png")]
 pub use png_file::{Png, png};
 #[cfg(any(feature = "png", feature = "gif"))]
-pub use scale::{Scale, ScaleError};
+pub use scale::Scale;
 #[cfg(any(feature = "png", feature = "gif"))]
 pub use y4m::{y4m_frame, y4m_header};

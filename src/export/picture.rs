@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::fmt;
+use std::ops::RangeInclusive;
 
 use crate::palette::{Palette, Rgb};
 
@@ -18,13 +19,20 @@ pub struct PixelShape {
     pub height: u16,
 }
 
-impl PixelShape {
-    /// A pixel as wide as it is high.
-    pub const SQUARE: PixelShape = PixelShape { width: 1, height: 1 };
-
-    /// 5:6, which makes 320 × 200 pixels a 4:3 screen.
-    pub const MODE_13H: PixelShape = PixelShape { width: 5, height: 6 };
+/// A pixel as wide as it is high.
+impl Default for PixelShape {
+    fn default() -> PixelShape {
+        PixelShape { width: 1, height: 1 }
+    }
 }
+
+impl PixelShape {
+    /// 5:6, which makes 320 × 200 pixels a 4:3 screen.
+    pub(crate) const MODE_13H: PixelShape = PixelShape { width: 5, height: 6 };
+}
+
+/// The frames per second that a film may show.
+pub(super) const FRAME_RATES: RangeInclusive<f64> = 0.1..=50.0;
 
 /// A picture of palette indices, as it is exported.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +79,7 @@ impl<'a> Picture<'a> {
 }
 
 /// The errors of a picture that cannot be exported.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PictureError {
     /// A side of no pixels or of more than 16,384, or a pixel of no size.
@@ -97,6 +105,13 @@ pub enum PictureError {
         /// Pixels in a row, and rows, of this frame.
         now: (usize, usize),
     },
+    /// The words are no [`Scale`](super::Scale).
+    Scale,
+    /// The rate is no [`FrameRate`](super::FrameRate).
+    FrameRate {
+        /// The rate that was given.
+        frames_per_second: f64,
+    },
     /// The picture does not fit in memory.
     Memory {
         /// The number of bytes that were requested.
@@ -116,6 +131,14 @@ impl fmt::Display for PictureError {
             PictureError::OtherColors => f.write_str("a frame in a colour that the film's palette has not"),
             PictureError::OtherSize { first, now } => {
                 write!(f, "a frame of {} x {} pixels in a film that began with {} x {}", now.0, now.1, first.0, first.1)
+            }
+            PictureError::Scale => {
+                write!(f, "a scale is 1, 2, 5x6, or a width and height of 1 to {MAX_SIDE} such as 640x480")
+            }
+            PictureError::FrameRate { frames_per_second: given } => {
+                let (lowest, highest) = FRAME_RATES.into_inner();
+                let too_fast = if *given > highest { ": browsers slow down anything faster" } else { "" };
+                write!(f, "a film shows {lowest} to {highest} frames a second, not {given}{too_fast}")
             }
             PictureError::Memory { bytes } => write!(f, "no memory for a picture of {bytes} bytes"),
         }

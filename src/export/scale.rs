@@ -1,12 +1,11 @@
 //! Enlarging for programs that show square pixels only.
 
-use std::error::Error;
 use std::fmt;
 #[cfg(any(feature = "gif", feature = "png"))]
 use std::ops::Range;
 use std::str::FromStr;
 
-use super::{MAX_SIDE, Picture, PixelShape};
+use super::{MAX_SIDE, Picture, PictureError, PixelShape};
 
 /// The enlargement of a picture when it is exported. Each pixel of the result is one pixel of the frame, never a
 /// mixture, so an indexed picture stays indexed.
@@ -44,18 +43,18 @@ impl Scale {
 
 /// `1`, `2`, `5x6`, or a width and a height as `640x480`. The two sides that are `5x6` mean [`Scale::FiveBySix`].
 impl FromStr for Scale {
-    type Err = ScaleError;
+    type Err = PictureError;
 
-    fn from_str(words: &str) -> Result<Scale, ScaleError> {
+    fn from_str(words: &str) -> Result<Scale, PictureError> {
         match words {
             "1" => Ok(Scale::One),
             "2" => Ok(Scale::Double),
             _ => {
                 let side = |digits: &str| match digits.parse::<u16>() {
                     Ok(side) if (1..=MAX_SIDE).contains(&side) && !digits.starts_with('+') => Ok(side),
-                    _ => Err(ScaleError),
+                    _ => Err(PictureError::Scale),
                 };
-                let (width, height) = words.split_once('x').ok_or(ScaleError)?;
+                let (width, height) = words.split_once('x').ok_or(PictureError::Scale)?;
                 // Whatever zeros stand before them.
                 match (side(width)?, side(height)?) {
                     (5, 6) => Ok(Scale::FiveBySix),
@@ -77,18 +76,6 @@ impl fmt::Display for Scale {
     }
 }
 
-/// The error of a word that is no [`Scale`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ScaleError;
-
-impl fmt::Display for ScaleError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a scale is 1, 2, 5x6, or a width and height of 1 to {MAX_SIDE} such as 640x480")
-    }
-}
-
-impl Error for ScaleError {}
-
 /// A picture and the size that it is exported at, with the source of each pixel of the result.
 pub(super) struct Scaled<'a> {
     picture: Picture<'a>,
@@ -103,10 +90,10 @@ pub(super) struct Scaled<'a> {
 }
 
 impl<'a> Scaled<'a> {
-    pub(super) fn new(picture: &Picture<'a>, scale: Scale) -> Result<Scaled<'a>, super::PictureError> {
+    pub(super) fn new(picture: &Picture<'a>, scale: Scale) -> Result<Scaled<'a>, PictureError> {
         picture.check()?;
         let (width, height) = scale.size(picture.width, picture.height);
-        let too_large = super::PictureError::Size { width, height };
+        let too_large = PictureError::Size { width, height };
         let limit = 1..=u32::from(MAX_SIDE);
         match (u32::try_from(width), u32::try_from(height)) {
             (Ok(w), Ok(h)) if limit.contains(&w) && limit.contains(&h) => {
@@ -128,10 +115,10 @@ impl<'a> Scaled<'a> {
 
     /// The palette indices of a part of the result, row by row. The part lies within the result.
     #[cfg(any(feature = "gif", feature = "png"))]
-    pub(super) fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<u8>, super::PictureError> {
+    pub(super) fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<u8>, PictureError> {
         let bytes = columns.len() * rows.len();
         let mut part = Vec::new();
-        part.try_reserve_exact(bytes).map_err(|_| super::PictureError::Memory { bytes })?;
+        part.try_reserve_exact(bytes).map_err(|_| PictureError::Memory { bytes })?;
         for &y in &self.rows[rows] {
             let row = self.picture.row(y);
             part.extend(self.columns[columns.clone()].iter().map(|&x| row[x]));

@@ -88,7 +88,7 @@ mod tests {
         let palette = std::array::from_fn(|i| if i == 1 { Rgb::WHITE } else { Rgb::BLACK });
         let pixels = [0, 1];
         let picture =
-            Picture { pixels: &pixels, width: 2, height: 1, pitch: 2, palette: &palette, shape: PixelShape::SQUARE };
+            Picture { pixels: &pixels, width: 2, height: 1, pitch: 2, palette: &palette, shape: PixelShape::default() };
         let frame = y4m_frame(&picture, Scale::Double).expect("a frame");
         assert_eq!(frame[..6], *b"FRAME\n");
         assert_eq!(frame[6..14], [16, 16, 235, 235, 16, 16, 235, 235]);

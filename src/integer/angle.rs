@@ -75,6 +75,22 @@ static FINE_SINES: [[i32; 2]; FINE] = {
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct BinaryAngle(u16);
 
+/// An angle in 65,536ths of a turn.
+impl From<u16> for BinaryAngle {
+    #[inline]
+    fn from(steps: u16) -> Self {
+        Self(steps)
+    }
+}
+
+/// The angle in 65,536ths of a turn.
+impl From<BinaryAngle> for u16 {
+    #[inline]
+    fn from(angle: BinaryAngle) -> Self {
+        angle.0
+    }
+}
+
 impl BinaryAngle {
     /// A quarter of a turn.
     #[doc(hidden)]
@@ -82,18 +98,6 @@ impl BinaryAngle {
     /// Half a turn.
     #[doc(hidden)]
     pub const HALF: Self = Self(0x8000);
-
-    /// Makes an angle from 65,536ths of a turn.
-    #[must_use]
-    pub const fn from_bits(steps: u16) -> Self {
-        Self(steps)
-    }
-
-    /// Returns the angle in 65,536ths of a turn.
-    #[must_use]
-    pub const fn to_bits(self) -> u16 {
-        self.0
-    }
 
     /// The angle nearest to so many whole degrees, any number of turns in either direction.
     #[must_use]

@@ -167,8 +167,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
     }
 
     /// Counts the vertices: a stage needs room for so many.
-    #[must_use]
-    pub fn vertices(&self) -> usize {
+    pub(crate) fn vertices(&self) -> usize {
         self.positions.len()
     }
 

@@ -54,7 +54,7 @@ impl Lens {
         field_of_view: BinaryAngle,
     ) -> Result<Self, IntegerError> {
         if field_of_view == BinaryAngle::default()
-            || field_of_view.to_bits() >= BinaryAngle::HALF.to_bits()
+            || u16::from(field_of_view) >= u16::from(BinaryAngle::HALF)
             || pixel_aspect.0 == 0
         {
             return Err(IntegerError::FieldOfView);

@@ -82,15 +82,16 @@ pub enum Blend {
     Add,
 }
 
+/// A material that gives back all light, matt, in the palette's first ramp.
+impl Default for Material {
+    fn default() -> Self {
+        Self::from_surface(&Surface::default(), 0)
+    }
+}
+
 impl Material {
     /// The share of white light that a white surface gives back as ambient light; the rest is diffuse.
     const AMBIENT_SHARE: f32 = 0.15;
-
-    /// A material that gives back all light, matt, in the palette's first ramp.
-    #[must_use]
-    pub fn white() -> Self {
-        Self::from_surface(&Surface::default(), 0)
-    }
 
     /// Makes a material from an MTL file's, on one channel: Kd's and Ks's luminance, and a seventh of Kd's as ambient.
     /// `number` chooses the ramp. The texture is left to the caller, who can read files: [`with_map`](Self::with_map).
@@ -191,11 +192,5 @@ fn hue(color: [f32; 3]) -> [f32; 3] {
         hue
     } else {
         [1.0; 3]
-    }
-}
-
-impl Default for Material {
-    fn default() -> Self {
-        Self::white()
     }
 }

@@ -120,7 +120,7 @@ const FARTHER_THAN_ANY: u32 = 400_000;
 ///     unreachable!("two ramps");
 /// };
 /// assert!(ramp.entries() > other.entries());
-/// assert_eq!(automatic.palette.color(ramp.last()), roof.color.nearest_on_dac());
+/// assert_eq!(automatic.palette[ramp.last()], roof.color.nearest_on_dac());
 /// ```
 #[must_use]
 pub fn share(uses: &[Use<'_>]) -> Automatic {

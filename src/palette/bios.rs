@@ -109,7 +109,7 @@ mod tests {
             (248, [0x00, 0x00, 0x00]),
             (255, [0x00, 0x00, 0x00]),
         ] {
-            assert_eq!(BIOS.color(index), Rgb::from_dac(six), "entry {index}");
+            assert_eq!(BIOS[index], Rgb::from_dac(six), "entry {index}");
         }
     }
 

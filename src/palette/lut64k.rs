@@ -61,7 +61,7 @@ impl Lut64K {
         let search = NearestColors::of_shown(palette);
         Self::from_fn(|level, byte| match level {
             0 => byte,
-            _ => search.nearest(shown.color(byte).mix(fog, level)),
+            _ => search.nearest(shown[byte].mix(fog, level)),
         })
     }
 
@@ -76,7 +76,7 @@ impl Lut64K {
             255 => new,
             0 => old,
             _ if new == old => new,
-            _ => search.nearest(shown.color(old).mix(shown.color(new), opacity)),
+            _ => search.nearest(shown[old].mix(shown[new], opacity)),
         })
     }
 
@@ -87,7 +87,7 @@ impl Lut64K {
     pub fn add(palette: &Palette) -> Self {
         let shown = palette.on_dac();
         let search = NearestColors::of_shown(palette);
-        Self::from_fn(|new, old| match (shown.color(new), shown.color(old)) {
+        Self::from_fn(|new, old| match (shown[new], shown[old]) {
             (Rgb::BLACK, _) => old,
             (_, Rgb::BLACK) => new,
             (new, old) => search.nearest(new.saturating_add(old)),

@@ -38,6 +38,8 @@ mod nearest_colors;
 mod ramp;
 mod rgb;
 
+use core::ops::Index;
+
 pub use bios::BIOS;
 #[cfg(feature = "alloc")]
 pub use inverse_colormap::InverseColormap;
@@ -65,6 +67,16 @@ pub struct Palette {
     colors: [Rgb; 256],
     // 0, or a power of two up to 256.
     ramps: u16,
+}
+
+/// The colour of an entry.
+impl Index<u8> for Palette {
+    type Output = Rgb;
+
+    #[inline]
+    fn index(&self, entry: u8) -> &Rgb {
+        &self.colors[usize::from(entry)]
+    }
 }
 
 impl Palette {
@@ -116,13 +128,6 @@ impl Palette {
     #[inline]
     pub const fn colors(&self) -> &[Rgb; 256] {
         &self.colors
-    }
-
-    /// The colour of an entry.
-    #[must_use]
-    #[inline]
-    pub const fn color(&self, index: u8) -> Rgb {
-        self.colors[index as usize]
     }
 
     /// The number of equal ramps that the entries form; 0 if they are no ramps.

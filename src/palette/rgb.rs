@@ -1,5 +1,7 @@
 //! One colour, and the way between its 8 bits and the DAC's 6.
 
+use core::fmt;
+
 /// A colour of 8 bits a channel.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub struct Rgb {
@@ -39,6 +41,29 @@ const fn nearest_six(v: u8) -> u8 {
 /// Between `a` and `b`, so it fits in 8 bits; the sums stay below 2¹⁷.
 const fn mix(a: u8, b: u8, share: u8) -> u8 {
     ((a as u32 * (255 - share as u32) + b as u32 * share as u32 + 127) / 255) as u8
+}
+
+/// `0x00RRGGBB`; the top byte is dropped.
+impl From<u32> for Rgb {
+    #[inline]
+    fn from(rgb: u32) -> Self {
+        Self::from_u32(rgb)
+    }
+}
+
+/// Six digits: `{:06x}`.
+impl fmt::LowerHex for Rgb {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::LowerHex::fmt(&self.to_u32(), f)
+    }
+}
+
+/// Packs the colour as `0x00RRGGBB`.
+impl From<Rgb> for u32 {
+    #[inline]
+    fn from(color: Rgb) -> Self {
+        color.to_u32()
+    }
 }
 
 impl Rgb {
@@ -140,7 +165,7 @@ impl Rgb {
     /// Makes a colour from `0x00RRGGBB`; the top byte is dropped.
     #[must_use]
     #[inline]
-    pub const fn from_u32(rgb: u32) -> Self {
+    pub(crate) const fn from_u32(rgb: u32) -> Self {
         let [_, r, g, b] = rgb.to_be_bytes();
         Self::new(r, g, b)
     }
@@ -148,7 +173,7 @@ impl Rgb {
     /// Packs the colour as `0x00RRGGBB`.
     #[must_use]
     #[inline]
-    pub const fn to_u32(self) -> u32 {
+    pub(crate) const fn to_u32(self) -> u32 {
         u32::from_be_bytes([0, self.r, self.g, self.b])
     }
 

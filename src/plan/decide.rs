@@ -300,7 +300,7 @@ impl Rules<'_> {
         match (count, in_range) {
             (0, _) => Decision::off(Reason::NoLamp),
             (_, 0) => Decision::off(Reason::LampsOutOfRange { count }),
-            _ if !before.is_on(Effect::Lighting) => Decision::off(before.decision(Effect::Lighting).reason),
+            _ if !before.is_on(Effect::Lighting) => Decision::off(before[Effect::Lighting].reason),
             _ => Decision::on(Reason::LampsInRange { count: in_range }),
         }
     }
@@ -308,7 +308,7 @@ impl Rules<'_> {
     fn specular(&self, before: &ObjectPlan) -> Decision {
         let decision = self.material_has(Material::is_specular);
         if decision.on && !before.is_on(Effect::Lighting) {
-            return Decision::off(before.decision(Effect::Lighting).reason);
+            return Decision::off(before[Effect::Lighting].reason);
         }
         decision
     }
@@ -343,7 +343,7 @@ impl Rules<'_> {
     fn phong(&self, before: &ObjectPlan) -> Decision {
         if let Some(max_error) = self.inputs.max_error {
             return if !before.is_on(Effect::Lighting) {
-                Decision::off(before.decision(Effect::Lighting).reason)
+                Decision::off(before[Effect::Lighting].reason)
             } else if self.is_lit_by_face(before) {
                 Decision::off(Reason::Faceted)
             } else {
@@ -359,7 +359,7 @@ impl Rules<'_> {
     fn tessellation(&self, before: &ObjectPlan) -> Decision {
         // Faces are split for their shades alone.
         if !before.is_on(Effect::Lighting) {
-            Decision::off(before.decision(Effect::Lighting).reason)
+            Decision::off(before[Effect::Lighting].reason)
         } else if self.inputs.max_error.is_some() {
             Decision::off(Reason::LeftToBudget)
         } else if self.inputs.tessellates {
@@ -408,7 +408,7 @@ impl Rules<'_> {
 
     fn mipmaps(&self, before: &ObjectPlan) -> Decision {
         if !before.is_on(Effect::Texture) {
-            return Decision::off(before.decision(Effect::Texture).reason);
+            return Decision::off(before[Effect::Texture].reason);
         }
         if !self.object.materials.iter().any(|material| material.texture.is_some()) {
             return Decision::off(Reason::NoImage);
@@ -469,7 +469,7 @@ fn forced_choice(on: bool, planned: Choice) -> Choice {
 
 /// The mapping of texture coordinates.
 fn mapping(plan: &ObjectPlan) -> Mapping {
-    match plan.decision(Effect::Perspective).choice {
+    match plan[Effect::Perspective].choice {
         _ if !plan.is_on(Effect::Perspective) => Mapping::Affine,
         Choice::Mapping(mapping) => mapping,
         _ => Mapping::Perspective,

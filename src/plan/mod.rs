@@ -11,7 +11,7 @@
 //! | `hidden` | which way to leave out hidden surfaces |
 //!
 //! A plan is made once a frame: some comparisons and a few products an object, nothing for a vertex. The renderer goes
-//! by [`Plan::is_on`]; [`Plan::rows`] tells people the decisions. An effect that is off costs nothing per vertex,
+//! by [`ObjectPlan::is_on`]; [`Plan::rows`] tells people the decisions. An effect that is off costs nothing per vertex,
 //! triangle, span or pixel, and no memory; that of one which was on is kept for when it is on again.
 
 mod decide;
@@ -24,6 +24,7 @@ pub(crate) mod stages;
 
 use alloc::string::String;
 use alloc::vec::Vec;
+use core::ops::Index;
 
 pub use crate::raster::effects::SampleSpacing;
 pub use effect::{Class, Effect};
@@ -74,6 +75,16 @@ pub struct ObjectPlan {
     stages: Stages,
 }
 
+/// The decision on an effect.
+impl Index<Effect> for ObjectPlan {
+    type Output = Decision;
+
+    fn index(&self, effect: Effect) -> &Decision {
+        // One for each.
+        &self.decisions[effect.index()]
+    }
+}
+
 impl ObjectPlan {
     /// A plan without decisions yet, for an object that is not drawn.
     fn new(shading: Shading) -> Self {
@@ -97,19 +108,12 @@ impl ObjectPlan {
         &self.stages
     }
 
-    /// The decision on an effect.
-    #[must_use]
-    pub fn decision(&self, effect: Effect) -> &Decision {
-        // One for each.
-        &self.decisions[effect.index()]
-    }
-
     /// Returns whether an effect is on.
     #[inline]
     #[must_use]
     #[doc(hidden)]
     pub fn is_on(&self, effect: Effect) -> bool {
-        !effect.is_left_out() && self.decision(effect).on
+        !effect.is_left_out() && self[effect].on
     }
 
     /// The shading of the object.
@@ -213,12 +217,6 @@ impl Plan {
         &self.objects
     }
 
-    /// Returns whether an effect is on for an object, by its place; `false` for one that does not exist.
-    #[must_use]
-    pub fn is_on(&self, object: usize, effect: Effect) -> bool {
-        self.objects.get(object).is_some_and(|plan| plan.is_on(effect))
-    }
-
     /// Returns whether an effect is on for any object.
     #[must_use]
     pub fn is_on_anywhere(&self, effect: Effect) -> bool {
@@ -239,7 +237,7 @@ impl Plan {
         for (place, plan) in self.objects.iter().enumerate() {
             let findings = findings(place);
             for effect in Effect::ALL {
-                let Decision { on, choice, reason } = *plan.decision(effect);
+                let Decision { on, choice, reason } = plan[effect];
                 let reason = reason.words(scene, place) + &findings.words(effect, on);
                 rows.push(Row {
                     place,

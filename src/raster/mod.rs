@@ -33,7 +33,7 @@
 //!
 //! let mut bytes = [0_u8; 8 * 4];
 //! let mut raster = Raster::new(Frame::new(&mut bytes, 8, 4, 8)?);
-//! let at = |x, y, shade| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(shade), 0);
+//! let at = |x, y, shade| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(shade), 0);
 //! let drawn = raster.triangle(&[at(0, 0, 40)?, at(8, 0, 200)?, at(0, 4, 40)?], Interpolation::default());
 //! assert_eq!(drawn.pixels, 16);
 //! assert_eq!(&bytes[..8], &[50, 70, 90, 110, 130, 150, 170, 0]);

@@ -216,7 +216,7 @@ impl<D: Cell> Raster<'_, D> {
     /// use mode13h::fixed::{I24F8, U8F8};
     /// use mode13h::raster::{Frame, Raster, Interpolation, Vertex, polygon::TableRow};
     ///
-    /// let at = |x, y, shade| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(shade), 0);
+    /// let at = |x, y, shade| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(shade), 0);
     /// let quad = [at(0, 0, 10)?, at(4, 0, 90)?, at(4, 2, 90)?, at(0, 2, 10)?];
     /// let mut bytes = [0; 4 * 2];
     /// let mut raster = Raster::new(Frame::new(&mut bytes, 4, 2, 4)?);

@@ -225,8 +225,8 @@ mod tests {
     /// right, 20 from pixel to pixel. In row 0 the exact shade of pixel x is 50 + 20·x.
     fn shade_trace(interpolation: Interpolation, shades: [u8; 3], x: i32) -> ShadeTrace {
         let at = |x, y, shade, depth| {
-            let (x, y) = (I24F8::from_pixels(x), I24F8::from_pixels(y));
-            Vertex::new(x, y, U8F8::from_shade(shade), depth).expect("a legal vertex")
+            let (x, y) = (I24F8::from(x), I24F8::from(y));
+            Vertex::new(x, y, U8F8::from(shade), depth).expect("a legal vertex")
         };
         let [a, b, c] = shades;
         let triangle = SortedTriangle::new(&[at(0, 0, a, 100), at(8, 0, b, 100), at(0, 4, c, 100)]);

@@ -24,7 +24,7 @@ impl<'a> Raster<'a> {
     /// A raster over all that `frame` holds, without a depth buffer, with the fastest kernel.
     #[must_use]
     pub fn new(frame: Frame<'a>) -> Self {
-        Self { clip: frame.bounds(), frame, depth: None, kernel: Kernel::fastest() }
+        Self { clip: frame.bounds(), frame, depth: None, kernel: Kernel::default() }
     }
 
     /// Draws with a depth buffer of its own, cleared, in `values`, which is made as long as needed.

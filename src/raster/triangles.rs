@@ -16,7 +16,7 @@ impl<D: Cell> Raster<'_, D> {
     /// use mode13h::fixed::{I24F8, U8F8};
     /// use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
     ///
-    /// let at = |x, y| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(9), 0);
+    /// let at = |x, y| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(9), 0);
     /// let [a, b, c, d] = [at(0, 0)?, at(8, 0)?, at(8, 4)?, at(0, 4)?];
     /// let mut bytes = [0_u8; 8 * 4];
     /// let drawn = Raster::new(Frame::new(&mut bytes, 8, 4, 8)?)

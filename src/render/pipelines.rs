@@ -102,7 +102,7 @@ impl Pipelines<'_> {
 
     /// Returns whether a surface shines through.
     pub(super) fn is_transparent(&self, object: usize, surface: u16) -> bool {
-        self.plan.is_on(object, Effect::Transparency)
+        self.plan.objects().get(object).is_some_and(|plan| plan.is_on(Effect::Transparency))
             && self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
     }
 

@@ -1,6 +1,8 @@
 //! Counts of drawing a frame.
 
-use core::fmt;
+use core::iter::Flatten;
+use core::ops::Index;
+use core::{array, fmt};
 
 use super::settings::{Accuracy, Resolved};
 use super::{HiddenSurfaces, Shading, VertexPath};
@@ -66,16 +68,28 @@ impl Shares {
     pub(super) fn complete(&mut self, shading: FaceShading, drawn: u64) {
         self.add(shading, drawn - self.0.iter().sum::<u64>());
     }
+}
 
-    /// The triangles that were shaded so.
-    #[must_use]
-    pub fn of(&self, shading: impl Into<FaceShading>) -> u64 {
-        self.0[shading.into().index()]
+/// The number of triangles that were shaded so.
+impl<S: Into<FaceShading>> Index<S> for Shares {
+    type Output = u64;
+
+    fn index(&self, shading: S) -> &u64 {
+        &self.0[shading.into().index()]
     }
+}
 
-    /// Each way in which any were shaded, from cheap to exact, and how many.
-    pub fn iter(&self) -> impl Iterator<Item = (FaceShading, u64)> {
-        FaceShading::ALL.into_iter().zip(self.0).filter(|(_, triangles)| *triangles > 0)
+/// Each way in which any were shaded, from cheap to exact, and how many.
+impl IntoIterator for Shares {
+    type Item = (FaceShading, u64);
+    type IntoIter = Flatten<array::IntoIter<Option<Self::Item>, { FaceShading::ALL.len() }>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        let counted = |shading: FaceShading| (shading, self[shading]);
+        FaceShading::ALL
+            .map(|shading| Some(counted(shading)).filter(|(_, triangles)| *triangles > 0))
+            .into_iter()
+            .flatten()
     }
 }
 
@@ -119,10 +133,10 @@ impl fmt::Display for Stats {
             None => {}
         }
         if max_error.is_some() {
-            for (i, (shading, triangles)) in self.shares.iter().enumerate() {
+            for (i, (shading, triangles)) in self.shares.into_iter().enumerate() {
                 write!(f, "{}{triangles} {shading}", if i == 0 { " (" } else { ", " })?;
             }
-            f.write_str(if self.shares.iter().next().is_some() { ")" } else { "" })?;
+            f.write_str(if self.shares.into_iter().next().is_some() { ")" } else { "" })?;
         }
         write!(
             f,

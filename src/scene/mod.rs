@@ -232,7 +232,7 @@ impl Scene {
     }
 
     /// A light, to change it; `None` if it was removed.
-    pub fn light_mut(&mut self, id: LightId) -> Option<&mut Light> {
+    fn light_mut(&mut self, id: LightId) -> Option<&mut Light> {
         let index = self.light_ids.binary_search(&id).ok()?;
         self.lights.get_mut(index)
     }
@@ -329,6 +329,24 @@ impl Index<ObjectId> for Scene {
     /// If the object was removed, or `id` is of another scene. [`get`](Scene::get) does not panic.
     fn index(&self, id: ObjectId) -> &Object {
         self.get(id).expect("an object that is in the scene")
+    }
+}
+
+impl Index<LightId> for Scene {
+    type Output = Light;
+
+    /// # Panics
+    /// If the light was removed, or `id` is of another scene.
+    fn index(&self, id: LightId) -> &Light {
+        &self.lights[self.light_ids.binary_search(&id).expect("a light that is in the scene")]
+    }
+}
+
+impl IndexMut<LightId> for Scene {
+    /// # Panics
+    /// If the light was removed, or `id` is of another scene.
+    fn index_mut(&mut self, id: LightId) -> &mut Light {
+        self.light_mut(id).expect("a light that is in the scene")
     }
 }
 

@@ -3,9 +3,11 @@
 
 use std::io;
 use std::path::Path;
+use std::str::FromStr;
 
 use super::Scene;
 use super::file::{Loaded, SceneError};
+use crate::UnknownName;
 
 /// A scene that is compiled in.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -20,27 +22,32 @@ pub struct Shipped {
 /// The table of scenes, a row each: its file's name without the extension.
 macro_rules! shipped {
     ($($name:literal)*) => {
-        [$(Shipped { name: $name, text: include_str!(concat!("../../scenes/", $name, ".toml")) }),*]
+        /// All scenes that are compiled in, in the order in which they are best looked at.
+        pub static ALL: [Shipped; NAMES.len()] =
+            [$(Shipped { name: $name, text: include_str!(concat!("../../scenes/", $name, ".toml")) }),*];
+        const NAMES: [&str; [$($name),*].len()] = [$($name),*];
     };
 }
 
-/// All scenes that are compiled in, in the order in which they are best looked at.
-pub static ALL: [Shipped; 18] = shipped! {
+shipped! {
     "torus" "cube" "teapot" "cone" "phong" "phong-table" "flash" "flash-tessellated" "two-lights" "fog" "rgb" "crate"
     "mirror" "interlock" "glenz" "fade" "cycle" "still"
-};
+}
 
-/// The scene of a name, exactly as in [`ALL`]. Returns `None` if there is none.
+/// The scene of a name, exactly as in [`ALL`].
 ///
 /// ```
-/// use mode13h::scene::shipped;
-/// let torus = shipped::by_name("torus").expect("it is shipped").load()?.scene;
+/// use mode13h::scene::shipped::Shipped;
+/// let torus = "torus".parse::<Shipped>()?.load()?.scene;
 /// assert_eq!(torus.objects().len(), 1);
-/// # Ok::<(), mode13h::scene::file::SceneError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[must_use]
-pub fn by_name(name: &str) -> Option<&'static Shipped> {
-    ALL.iter().find(|shipped| shipped.name == name)
+impl FromStr for Shipped {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        ALL.into_iter().find(|shipped| shipped.name == name).ok_or(UnknownName::of("scene", &NAMES))
+    }
 }
 
 impl Shipped {

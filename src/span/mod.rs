@@ -46,7 +46,9 @@
 
 use core::fmt;
 use core::hash::{Hash, Hasher};
+use core::str::FromStr;
 
+use crate::names::{KERNELS, UnknownName};
 use crate::simd::Level;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 use crate::simd::{Avx2, Avx512};
@@ -107,10 +109,10 @@ type Fill = fn(row: &mut [u8], shade: u16, step: u16);
 /// use mode13h::span::Kernel;
 ///
 /// let mut row = [0; 4];
-/// Kernel::fastest().fill(&mut row, 0x1080, 0x0100); // from 16.5, up by 1 a pixel
+/// Kernel::default().fill(&mut row, 0x1080, 0x0100); // from 16.5, up by 1 a pixel
 /// assert_eq!(row, [0x10, 0x11, 0x12, 0x13]);
 ///
-/// Kernel::fastest().fill(&mut row, 0x0100, 0xFF80); // from 1, down by ½: wraps below 0
+/// Kernel::default().fill(&mut row, 0x0100, 0xFF80); // from 1, down by ½: wraps below 0
 /// assert_eq!(row, [0x01, 0x00, 0x00, 0xFF]);
 /// ```
 #[derive(Clone, Copy)]
@@ -137,7 +139,7 @@ impl Listed {
 }
 
 /// Every kernel there is, portable first.
-static LISTED: [Listed; 10] = [
+static LISTED: [Listed; KERNELS] = [
     Listed { name: "portable", find: || Some((Level::Portable, portable::fill)) },
     Listed { name: "asm", find: find_asm },
     Listed { name: "asm-unrolled", find: find_asm_unrolled },
@@ -221,29 +223,6 @@ impl Kernel {
     /// `simd` is one of the `simd-…` levels under the name that programs ask for.
     pub fn available() -> impl Iterator<Item = Self> + Clone {
         LISTED.iter().filter_map(Listed::kernel)
-    }
-
-    /// The fastest kernel of this machine and this build.
-    ///
-    /// Costs a few loads: what the processor has is found out once a program.
-    #[must_use]
-    pub fn fastest() -> Self {
-        // Not the assembly: the compiler makes vectors of the portable loop, and they beat it at every length.
-        match find_simd() {
-            Some((level, fill)) => Self { name: "simd", level, fill },
-            None => Self::PORTABLE,
-        }
-    }
-
-    /// The kernel of that name, as [`name`](Self::name) gives it.
-    ///
-    /// # Errors
-    /// [`UnknownKernel`] if no kernel has this name, or if this machine or build lacks it.
-    pub fn by_name(name: &str) -> Result<Self, UnknownKernel> {
-        match LISTED.iter().find(|listed| listed.name == name) {
-            Some(listed) => listed.kernel().ok_or(UnknownKernel { lacking: Some(listed.name) }),
-            None => Err(UnknownKernel { lacking: None }),
-        }
     }
 
     /// Its name in the table, such as `simd`.
@@ -335,10 +314,29 @@ impl fmt::Display for Kernel {
     }
 }
 
-/// The [fastest](Kernel::fastest).
+/// The kernel of a name, as [`Kernel::name`] gives it. [`UnknownName`] if no kernel has it, or if this machine or build
+/// lacks that kernel.
+impl FromStr for Kernel {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        let listed = LISTED.iter().find(|listed| listed.name == name);
+        listed.and_then(Listed::kernel).ok_or_else(|| {
+            let here = LISTED.each_ref().map(|listed| listed.kernel().map(Kernel::name));
+            UnknownName::kernel(listed.map(|listed| listed.name), here)
+        })
+    }
+}
+
+/// The fastest kernel of this machine and this build. It costs a few loads: what the processor has is found out once a
+/// program.
 impl Default for Kernel {
     fn default() -> Self {
-        Self::fastest()
+        // Not the assembly: the compiler makes vectors of the portable loop, and they beat it at every length.
+        match find_simd() {
+            Some((level, fill)) => Self { name: "simd", level, fill },
+            None => Self::PORTABLE,
+        }
     }
 }
 
@@ -362,27 +360,3 @@ impl fmt::Debug for Kernel {
         write!(f, "Kernel({self})")
     }
 }
-
-/// A kernel was asked for that does not exist, or that this machine or build lacks.
-///
-/// Its text lists those that there are.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct UnknownKernel {
-    /// The name, if there is such a kernel elsewhere.
-    lacking: Option<&'static str>,
-}
-
-impl fmt::Display for UnknownKernel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.lacking {
-            Some(name) => write!(f, "this machine or build lacks the kernel {name}; it has")?,
-            None => f.write_str("no such kernel; this machine has")?,
-        }
-        for (i, kernel) in Kernel::available().enumerate() {
-            write!(f, "{} {}", if i == 0 { "" } else { "," }, kernel.name())?;
-        }
-        Ok(())
-    }
-}
-
-impl core::error::Error for UnknownKernel {}

@@ -2,34 +2,39 @@
 //! `bricks` repeat without a seam; `crate` is one side of a box, and `sky` is looked up by a normal.
 
 use alloc::vec::Vec;
+use core::str::FromStr;
 
 use super::Texture;
+use crate::UnknownName;
 use crate::palette::gradient::{Stop, fill};
 use crate::palette::{Ramp, Rgb};
+
+/// The texture of a name, of those that are compiled in.
+///
+/// | name | texels | what |
+/// |---|---|---|
+/// | `crate` | 128 × 128 | the side of a wooden crate: planks, a frame, a brace across |
+/// | `checker` | 64 × 64 | squares of 8 × 8, light and dark |
+/// | `bricks` | 128 × 128 | a wall in running bond, eight courses |
+/// | `sky` | 128 × 128 | what a mirror sees outdoors, as a sphere map: a bright horizon, the sun, dark ground |
+impl FromStr for Texture {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        match name {
+            "crate" => Ok(wooden_crate()),
+            "checker" => Ok(checker()),
+            "bricks" => Ok(bricks()),
+            "sky" => Ok(sky()),
+            _ => Err(UnknownName::of("texture", &Self::NAMES)),
+        }
+    }
+}
 
 impl Texture {
     /// The names of the textures that are compiled in.
     #[doc(hidden)]
     pub const NAMES: [&'static str; 4] = ["crate", "checker", "bricks", "sky"];
-
-    /// The texture of a name in [`NAMES`](Self::NAMES). Returns `None` if there is none.
-    ///
-    /// | name | texels | what |
-    /// |---|---|---|
-    /// | `crate` | 128 × 128 | the side of a wooden crate: planks, a frame, a brace across |
-    /// | `checker` | 64 × 64 | squares of 8 × 8, light and dark |
-    /// | `bricks` | 128 × 128 | a wall in running bond, eight courses |
-    /// | `sky` | 128 × 128 | what a mirror sees outdoors, as a sphere map: a bright horizon, the sun, dark ground |
-    #[must_use]
-    pub fn by_name(name: &str) -> Option<Self> {
-        match name {
-            "crate" => Some(wooden_crate()),
-            "checker" => Some(checker()),
-            "bricks" => Some(bricks()),
-            "sky" => Some(sky()),
-            _ => None,
-        }
-    }
 
     /// A square of 2^`bits` texels a side; `texel(x, y)` with y from the bottom up.
     fn square(bits: u32, colors: [Rgb; 256], texel: impl Fn(i32, i32) -> u8) -> Self {

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`Texture`] | texels of powers of two, and up to 256 colours of their own |
 //! | [`Texture::from_rgb`] | from a picture of any size: resampled, its colours reduced |
-//! | [`Texture::by_name`] | those that are compiled in: crate, checker, bricks, sky |
+//! | `name.parse::<Texture>()` | those that are compiled in: crate, checker, bricks, sky |
 //! | [`Mipmap`] | a texture's smaller copies, for where it is far away |
 //! | `load`, `decode` | from a PNG file (feature `image`) |
 //!
@@ -20,6 +20,7 @@ mod resample;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
+use core::ops::Index;
 
 use crate::palette::median_cut::MedianCut;
 use crate::palette::{NearestColors, Rgb};
@@ -85,7 +86,7 @@ impl core::error::Error for TextureError {}
 /// let (sky, grass) = (Rgb::new(90, 150, 255), Rgb::new(40, 160, 30));
 /// let texture = Texture::from_rgb(2, 2, &[sky, sky, grass, grass])?;
 /// assert_eq!((texture.width(), texture.height()), (2, 2));
-/// assert_eq!((texture.color(0, 0), texture.color(0, 1)), (grass, sky));
+/// assert_eq!((texture[(0, 0)], texture[(0, 1)]), (grass, sky));
 /// # Ok::<(), mode13h::texture::TextureError>(())
 /// ```
 #[derive(Clone, PartialEq, Eq)]
@@ -94,6 +95,16 @@ pub struct Texture {
     colors: [Rgb; 256],
     width_bits: u32,
     height_bits: u32,
+}
+
+/// The colour of texel (x, y); beyond the sides the texture repeats.
+impl Index<(u32, u32)> for Texture {
+    type Output = Rgb;
+
+    fn index(&self, (x, y): (u32, u32)) -> &Rgb {
+        let (x, y) = (x & (self.width() - 1), y & (self.height() - 1));
+        &self.colors[usize::from(self.texels[(y << self.width_bits | x) as usize])]
+    }
 }
 
 impl Texture {
@@ -231,13 +242,6 @@ impl Texture {
     #[inline]
     pub fn height(&self) -> u32 {
         1 << self.height_bits
-    }
-
-    /// The colour of a texel; beyond the sides the texture repeats.
-    #[must_use]
-    pub fn color(&self, x: u32, y: u32) -> Rgb {
-        let (x, y) = (x & (self.width() - 1), y & (self.height() - 1));
-        self.colors[usize::from(self.texels[(y << self.width_bits | x) as usize])]
     }
 
     /// Counts the texels of each colour.

@@ -123,7 +123,7 @@ impl Dac {
         // At most 255·256, so the shifted sum is a byte. Rounded down, as the DAC rounds.
         let mix = |a: u8, b: u8| ((u32::from(a) * (256 - t) + u32::from(b) * t) >> 8) as u8;
         for index in 0..=255 {
-            let (a, b) = (from.color(index), to.color(index));
+            let (a, b) = (from[index], to[index]);
             self.set(index, Rgb::new(mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)));
         }
     }

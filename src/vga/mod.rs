@@ -36,7 +36,7 @@ use stamp::Stamp;
 /// for (port, value) in [(0x3C8, 40), (0x3C9, 0), (0x3C9, 63), (0x3C9, 0)] {
 ///     vga.write_port(port, value);
 /// }
-/// assert_eq!(vga.palette().color(40), Rgb::new(0, 255, 0));
+/// assert_eq!(vga.palette()[40], Rgb::new(0, 255, 0));
 /// ```
 #[derive(Clone, Debug)]
 pub struct Vga {
@@ -158,7 +158,7 @@ impl Vga {
     }
 
     /// Input status: bit 3 vertical retrace, bit 0 not displaying.
-    pub const INPUT_STATUS: u16 = 0x3DA;
+    const INPUT_STATUS: u16 = 0x3DA;
 
     /// Lets time pass for port 3DAh. Any number of calls ends where one call with their sum would:
     /// nothing is rounded.
@@ -215,9 +215,9 @@ impl Vga {
     /// let mut vga = Vga::new();
     /// let before = vga.palette();
     /// vga.cycle(32..56, 1);
-    /// assert_eq!(vga.palette().color(33), before.color(32));
-    /// assert_eq!(vga.palette().color(32), before.color(55));
-    /// assert_eq!(vga.palette().color(56), before.color(56));
+    /// assert_eq!(vga.palette()[33], before.color(32));
+    /// assert_eq!(vga.palette()[32], before.color(55));
+    /// assert_eq!(vga.palette()[56], before.color(56));
     /// ```
     pub fn cycle(&mut self, range: impl RangeBounds<u8>, steps: i32) {
         self.dac.cycle(range, steps);

@@ -146,7 +146,7 @@ fn soups(mut tried: Tried) {
             faces.push((vertices, interpolation));
             if random.within(0, 5) == 0 {
                 // Again, and turned round, in other shades.
-                let [a, b, c] = vertices.map(|v| v.with_shade(U8F8::from_shade(77)));
+                let [a, b, c] = vertices.map(|v| v.with_shade(U8F8::from(77)));
                 faces.push((random.one_of(&[[a, b, c], [c, b, a]]), interpolation));
             }
         }

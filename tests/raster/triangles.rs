@@ -322,7 +322,7 @@ fn r14_shades_at_both_ends() {
     }
     for above in 0xFF01..=0xFFFF {
         let shade = U8F8::from_bits(above);
-        let refused = Vertex::new(I24F8::from_pixels(1), I24F8::from_pixels(1), shade, 0);
+        let refused = Vertex::new(I24F8::from(1), I24F8::from(1), shade, 0);
         assert_eq!(refused, Err(VertexError::ShadeAbove255 { shade }));
     }
 }

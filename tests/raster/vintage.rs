@@ -233,7 +233,7 @@ fn neighbours_share_no_pixel() {
         if one * other >= 0 {
             continue;
         }
-        let shade = U8F8::from_shade(200);
+        let shade = U8F8::from(200);
         let count = |third: Vertex| draw(&[a, b, third].map(|v| v.with_shade(shade)), VINTAGE, 64, 24, None, 0);
         let (first, second) = (count(c), count(d));
         for place in 0..first.len() {

@@ -28,7 +28,7 @@ fn decided(renderer: &Renderer) -> Decided {
     let decision = |&Decision { on, choice, .. }: &Decision| (on, choice);
     let objects = plan.objects().iter().map(|object| {
         let others = Effect::ALL.into_iter().filter(|effect| *effect != Effect::Transform);
-        others.map(|effect| decision(object.decision(effect))).collect()
+        others.map(|effect| decision(&object[effect])).collect()
     });
     (objects.collect(), plan.hidden_surfaces())
 }
@@ -150,7 +150,7 @@ fn nor_of_a_fine_body_or_one_that_is_cut() {
 fn an_allocation_is_counted() {
     assert_eq!(measure(|| drop(std::hint::black_box(vec![1_u8]))).count_total, 1);
     // The first frame of a renderer, and nothing of the second.
-    let mut scene = shipped::by_name("torus").expect("it is shipped").load().expect("it loads").scene;
+    let mut scene = "torus".parse::<shipped::Shipped>().expect("it is shipped").load().expect("it loads").scene;
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     let (first, _) = draw(&mut renderer, &mut scene, &mut vga, 0.0);
     let (second, _) = draw(&mut renderer, &mut scene, &mut vga, 1.0);

@@ -177,7 +177,7 @@ fn the_plan_names_the_shading_that_is_drawn() {
                 .for_each_triangle(&scene, Screen::MODE_13H, |_, interpolation| interpolations.push(interpolation))
                 .expect("a legal scene");
             assert_eq!(stats.shading, drawn);
-            let decision = renderer.plan().objects()[0].decision(Effect::Gouraud);
+            let decision = &renderer.plan().objects()[0][Effect::Gouraud];
             let shades_run = drawn != Shading::Flat && !drawn.lights_pixels();
             assert_eq!(decision.on, shades_run, "{path}, {shading}");
             if shades_run {

@@ -35,11 +35,11 @@ fn any(random: &mut Random, most: i32) -> i32 {
 fn every_angles_sine_is_the_nearest() {
     let mut tried = Tried::new("every_angles_sine_is_the_nearest", 65_536);
     for steps in 0..=u16::MAX {
-        let angle = BinaryAngle::from_bits(steps);
+        let angle = BinaryAngle::from(steps);
         let exact = f64::sin(f64::from(steps) * TAU / 65_536.0) * 65_536.0;
         // f64's own error is below 2⁻³⁴ of a unit here.
         assert!((f64::from(angle.sin().to_bits()) - exact).abs() <= 0.5 + 1e-9, "{steps}");
-        let quarter = BinaryAngle::from_bits(steps.wrapping_add(0x4000));
+        let quarter = BinaryAngle::from(steps.wrapping_add(0x4000));
         assert_eq!(angle.cos(), quarter.sin());
         let half = angle + BinaryAngle::HALF;
         assert_eq!(half.sin().to_bits(), -angle.sin().to_bits());
@@ -47,7 +47,7 @@ fn every_angles_sine_is_the_nearest() {
     }
     for degrees in -1000..1000_i32 {
         let exact = f64::from(degrees.rem_euclid(360)) / 360.0 * 65_536.0;
-        assert_eq!(u32::from(BinaryAngle::from_degrees(degrees).to_bits()), (exact + 0.5).floor() as u32 % 65_536);
+        assert_eq!(u32::from(u16::from(BinaryAngle::from_degrees(degrees))), (exact + 0.5).floor() as u32 % 65_536);
     }
 }
 
@@ -151,7 +151,7 @@ fn t1_the_turn_stays_orthonormal() {
     let mut tried = Tried::new("t1_the_turn_stays_orthonormal", 1_000_000);
     let mut random = Random::named("t1 integer");
     let check = |tried: &mut Tried, angles: [u16; 3]| {
-        let rows = turn(angles.map(BinaryAngle::from_bits)).map(|row| row.map(|c| i64::from(c.to_bits())));
+        let rows = turn(angles.map(BinaryAngle::from)).map(|row| row.map(|c| i64::from(c.to_bits())));
         for i in 0..3 {
             for j in i..3 {
                 let product: i64 = (0..3).map(|k| rows[i][k] * rows[j][k]).sum();
@@ -179,7 +179,7 @@ fn the_turn_is_the_f64_turn() {
     let mut object = scene::Object::new(shapes::cube());
     while tried.more() {
         let steps = [0; 3].map(|_| random.next_u64() as u16);
-        let rows = turn(steps.map(BinaryAngle::from_bits)).map(real);
+        let rows = turn(steps.map(BinaryAngle::from)).map(real);
         object.angles = steps.map(|a| f64::from(a) * TAU / 65_536.0).map(Angle::from_radians);
         let exact = object.rotation().transpose().to_cols_array_2d();
         for (row, exact) in rows.iter().flatten().zip(exact.as_flattened()) {
@@ -199,7 +199,8 @@ fn triangles(
     object: Object<'_, u16>,
     suns: &[Sun],
 ) -> Result<Vec<([Vertex; 3], Interpolation)>, IntegerError> {
-    let (mut lit, mut beams) = (vec![Default::default(); object.mesh.vertices()], vec![Default::default(); suns.len()]);
+    let (mut lit, mut beams) =
+        (vec![Default::default(); object.mesh.parts().positions.len()], vec![Default::default(); suns.len()]);
     let stage = VertexStage::new(view, object, suns, Shading::default(), &mut lit, &mut beams)?;
     let mut triangles = Vec::new();
     let faces = stage.faces(|vertices, interpolation| triangles.push((*vertices, interpolation)));
@@ -342,7 +343,7 @@ fn vertices_are_where_f64_has_them() {
         let placement = Placement {
             position: bits(position),
             pivot: bits(pivot),
-            angles: steps.map(BinaryAngle::from_bits),
+            angles: steps.map(BinaryAngle::from),
             scale: I16F16::from_bits(scale),
         };
         let object = Object { mesh: mesh.with_exponent(exponent), placement, paints: &[PAINT] };
@@ -614,7 +615,7 @@ fn r7_any_legal_input_is_quiet() {
         let placement = Placement {
             position: vector(&mut random, most),
             pivot: vector(&mut random, most),
-            angles: [0; 3].map(|_| BinaryAngle::from_bits(random.next_u64() as u16)),
+            angles: [0; 3].map(|_| BinaryAngle::from(random.next_u64() as u16)),
             scale: I16F16::from_bits((number(&mut random, most).unsigned_abs() >> random.within(0, 31)) as i32),
         };
         let paint = Paint {

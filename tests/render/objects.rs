@@ -62,7 +62,7 @@ fn a_kept_renderer_hides_and_shows() {
         scene[torus].visible = turn % 2 == 0;
         renderer.draw(&scene, &mut vga).expect("a legal scene");
         assert!(vga.pixels() == drawn(&scene), "{turn}");
-        assert_eq!(renderer.plan().is_on(0, Effect::Gouraud), turn % 2 == 0);
+        assert_eq!(renderer.plan().objects()[0].is_on(Effect::Gouraud), turn % 2 == 0);
     }
 }
 
@@ -194,7 +194,7 @@ fn a_constant_response_is_one_shade() {
         // A colour of three channels is looked up by the upper five bits of each: within 8.
         let room = if colored { 8 } else { 0 };
         let near = |a: Rgb, b: Rgb| [(a.r, b.r), (a.g, b.g), (a.b, b.b)].iter().all(|(a, b)| a.abs_diff(*b) <= room);
-        let wrong = seen.find(|byte| !near(palette.color(*byte), shown));
-        assert_eq!(wrong.map(|byte| palette.color(byte)), None, "{colored}, {constant}");
+        let wrong = seen.find(|byte| !near(palette[*byte], shown));
+        assert_eq!(wrong.map(|byte| palette[byte]), None, "{colored}, {constant}");
     }
 }

@@ -391,9 +391,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
         let (affine, _, renderer) = frame(false);
         let (perspective, _, _) = frame(true);
         let free = draw(&scene, |_| ()).2;
-        let mode13h::plan::Reason::AffineError { texels } =
-            free.plan().objects()[0].decision(Effect::Perspective).reason
-        else {
+        let mode13h::plan::Reason::AffineError { texels } = free.plan().objects()[0][Effect::Perspective].reason else {
             panic!("the plan prints the error");
         };
         assert!(!called_for(&renderer, Effect::Perspective));
@@ -413,7 +411,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
 fn mipmaps_change_nothing_of_what_is_near() {
     let mut tried = Tried::new("mipmaps_change_nothing_of_what_is_near", 60);
     for name in mode13h::texture::Texture::NAMES {
-        let texture = mode13h::scene::Shared::new(mode13h::texture::Texture::by_name(name).expect("listed"));
+        let texture = mode13h::scene::Shared::new(name.parse::<mode13h::texture::Texture>().expect("listed"));
         for (angle, mapping) in
             [0.0, 0.3, -0.6].into_iter().flat_map(|angle| Mapping::ALL.map(|mapping| (angle, mapping)))
         {
@@ -448,7 +446,7 @@ fn mipmaps_change_nothing_of_what_is_near() {
 #[test]
 fn mipmaps_are_called_for_by_texels_to_a_pixel() {
     let mut tried = Tried::new("mipmaps_are_called_for_by_texels_to_a_pixel", 40);
-    let texture = mode13h::scene::Shared::new(mode13h::texture::Texture::by_name("bricks").expect("listed"));
+    let texture = mode13h::scene::Shared::new("bricks".parse::<mode13h::texture::Texture>().expect("listed"));
     for step in 0..40 {
         let mut scene = crate::support::scenes::framed(mode13h::mesh::shapes::wall(1, 1));
         let object = &mut scene.objects_mut()[0];
@@ -456,7 +454,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
         let distance = 0.4 * 1.12_f32.powi(step);
         scene.camera.eye = mode13h::glam::Vec3::new(0.0, 0.0, distance);
         let (bytes, _, renderer) = draw(&scene, |_| ());
-        let decision = *renderer.plan().objects()[0].decision(Effect::Mipmaps);
+        let decision = renderer.plan().objects()[0][Effect::Mipmaps];
         let mode13h::plan::Reason::TexelsToPixel { texels } = decision.reason else { panic!("the plan says how many") };
         // 128 texels on √2 units; a pixel is higher than it is wide, and half of the screen's rows lie within half the angle.
         let expected =
@@ -499,7 +497,7 @@ type Picture = Vec<[f64; 3]>;
 /// The colours of a frame as the card shows them.
 fn shown(scene: &Scene, bytes: &[u8]) -> Picture {
     let palette = scene.palette.as_ref().unwrap_or(&mode13h::palette::BIOS).on_dac();
-    let color = |byte: &u8| palette.color(*byte);
+    let color = |byte: &u8| palette[*byte];
     bytes.iter().map(color).map(|c| [c.r, c.g, c.b].map(f64::from)).collect()
 }
 

@@ -149,7 +149,7 @@ fn highlight() -> Scene {
     scene.clear_lights();
     scene.add_light(Light::sun([0.0, 0.0, 1.0]));
     scene.ambient = 0.0;
-    let material = Material { diffuse: 0.2, specular: 0.8, shininess: 120.0, ..Material::white() };
+    let material = Material { diffuse: 0.2, specular: 0.8, shininess: 120.0, ..Material::default() };
     scene.objects_mut()[0].materials = vec![material];
     scene
 }

@@ -118,7 +118,7 @@ fn enlarged_pictures_stay_indexed_and_keep_their_shape() {
         let rgb = decode(&Png { scale, rgb: true }.encode(&picture).expect("encoded"));
         assert_eq!((rgb.width, rgb.height), (width, height), "{scale}");
         assert_eq!(rgb.color, ColorType::Rgb, "{scale}");
-        let colors: Vec<Rgb> = expected.iter().map(|&index| palette.color(index)).collect();
+        let colors: Vec<Rgb> = expected.iter().map(|&index| palette[index]).collect();
         assert!(rgb.data == bytes_of(&colors), "{scale}");
         assert_eq!(rgb.density, Some(density), "{scale}");
     }
@@ -163,7 +163,7 @@ fn a_part_of_a_larger_frame_is_exported_by_its_pitch() {
         height: 2,
         pitch: 16,
         palette: palette.colors(),
-        shape: PixelShape::SQUARE,
+        shape: PixelShape::default(),
     };
     let decoded = decode(&Png { scale: Scale::One, rgb: false }.encode(&picture).expect("encoded"));
     assert_eq!(decoded.data, [17, 18, 19, 33, 34, 35]);
@@ -211,7 +211,7 @@ fn pictures_whose_sizes_do_not_fit_are_refused() {
         height: 10,
         pitch: 10,
         palette: palette.colors(),
-        shape: PixelShape::MODE_13H,
+        shape: PixelShape { width: 5, height: 6 },
     };
     assert!(Png { scale: Scale::One, rgb: false }.encode(&good).is_ok());
     let side = usize::from(MAX_SIDE) + 1;

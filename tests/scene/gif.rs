@@ -34,7 +34,7 @@ struct Given {
 impl Given {
     fn picture(&self) -> Picture<'_> {
         let Given { pixels, width, height, pitch, palette } = self;
-        Picture { pixels, width: *width, height: *height, pitch: *pitch, palette, shape: PixelShape::SQUARE }
+        Picture { pixels, width: *width, height: *height, pitch: *pitch, palette, shape: PixelShape::default() }
     }
 
     /// The colour of each pixel of the film at this scale.
@@ -194,7 +194,7 @@ fn noise(random: &mut Random, width: usize, height: usize, pitch: usize) -> Give
 }
 
 fn random_palette(random: &mut Random) -> [Rgb; 256] {
-    std::array::from_fn(|_| Rgb::from_u32(random.next_u64() as u32 & 0xFF_FFFF))
+    std::array::from_fn(|_| Rgb::from(random.next_u64() as u32 & 0xFF_FFFF))
 }
 
 /// The next frame of a random film: nothing changes, or some pixels, or all, or the palette, or both, or the indices
@@ -212,7 +212,7 @@ fn next(random: &mut Random, before: &Given) -> Given {
         1 | 2 => some_pixels(random, &mut frame),
         3 => frame.pixels.iter_mut().for_each(|pixel| *pixel = random.next_u64() as u8),
         4 => frame.palette = random_palette(random),
-        5 => frame.palette[random.within(0, 255) as usize] = Rgb::from_u32(random.next_u64() as u32 & 0xFF_FFFF),
+        5 => frame.palette[random.within(0, 255) as usize] = Rgb::from(random.next_u64() as u32 & 0xFF_FFFF),
         6 => {
             frame.palette = random_palette(random);
             some_pixels(random, &mut frame);
@@ -248,7 +248,7 @@ fn random_films_show_what_was_given() {
         let (width, height) = (random.within(1, 24) as usize, random.within(1, 24) as usize);
         let pitch = width + random.within(0, 3) as usize;
         let scale = random_scale(&mut random);
-        let rate = FrameRate::new(random.one_of(&[50.0, 49.9, 35.0, 30.0, 29.97, 24.0, 12.5, 7.0, 0.25, 0.1]));
+        let rate = FrameRate::try_from(random.one_of(&[50.0, 49.9, 35.0, 30.0, 29.97, 24.0, 12.5, 7.0, 0.25, 0.1]));
         let mut frames = vec![noise(&mut random, width, height, pitch)];
         for _ in 1..random.within(1, 12) {
             frames.push(next(&mut random, &frames[frames.len() - 1]));
@@ -462,7 +462,7 @@ fn delays_add_up_to_the_exact_time() {
         let number = random.log_uniform(63) as u64;
         let exact = BigRational::from_float(rate).expect("finite");
         let begins = |number: u64| (BigRational::from_integer(100 * BigInt::from(number)) / &exact).ceil();
-        let delay = FrameRate::new(rate).expect("a rate").delay(number);
+        let delay = FrameRate::try_from(rate).expect("a rate").delay(number);
         assert!((2..=1_000).contains(&delay), "{rate}, frame {number}: {delay}");
         let expected = begins(number + 1) - begins(number);
         assert_eq!(BigRational::from_integer(BigInt::from(delay)), expected, "{rate}, frame {number}");
@@ -481,11 +481,11 @@ fn rates_that_no_gif_has_are_refused() {
         (-35.0, "not -35"),
         (f64::NAN, "not NaN"),
     ] {
-        let error = FrameRate::new(rate).expect_err("refused").to_string();
+        let error = FrameRate::try_from(rate).expect_err("refused").to_string();
         assert!(error.contains(says), "{error}");
     }
     for rate in [FrameRate::LOWEST, FrameRate::HIGHEST] {
-        assert_eq!(FrameRate::new(rate.frames_per_second()), Ok(rate));
+        assert_eq!(FrameRate::try_from(rate.frames_per_second()), Ok(rate));
     }
     assert_eq!((FrameRate::LOWEST.delay(5), FrameRate::HIGHEST.delay(5)), (1_000, 2));
 }

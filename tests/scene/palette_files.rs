@@ -20,7 +20,7 @@ fn palette_of(color: impl Fn(u8) -> Rgb) -> Palette {
 }
 
 fn hash_like(i: u8, seed: u32) -> Rgb {
-    Rgb::from_u32((u32::from(i) + 1).wrapping_mul(0x9E37_79B9).wrapping_mul(seed | 1) >> 7)
+    Rgb::from((u32::from(i) + 1).wrapping_mul(0x9E37_79B9).wrapping_mul(seed | 1) >> 7)
 }
 
 // P1
@@ -120,8 +120,8 @@ fn packed_forms_are_what_their_names_say() {
         (Rgb::new(0, 255, 0), 0x0000_FF00, 0x07E0),
         (Rgb::new(0, 0, 255), 0x0000_00FF, 0x001F),
     ] {
-        assert_eq!((color.to_u32(), color.to_rgb565()), (packed, rgb565));
-        assert_eq!(Rgb::from_u32(packed | 0xAB00_0000), color);
+        assert_eq!((u32::from(color), color.to_rgb565()), (packed, rgb565));
+        assert_eq!(Rgb::from(packed | 0xAB00_0000), color);
     }
     assert_eq!(Rgb::WHITE.brightness(), 255_000);
     assert_eq!(Rgb::WHITE.distance_squared(Rgb::BLACK), 3 * 255 * 255);
@@ -187,13 +187,13 @@ fn gradients_of_odd_keys_end_well() {
 fn nearest_is_the_first_of_the_nearest() {
     let palette = palette_of(|i| hash_like(i / 2, 77));
     for i in 0..=255 {
-        let found = palette.nearest(palette.color(i));
-        assert_eq!(palette.color(found), palette.color(i));
+        let found = palette.nearest(palette[i]);
+        assert_eq!(palette[found], palette[i]);
         assert!(found <= i);
     }
     for seed in 0..200 {
         let color = hash_like(seed, 12345);
-        let naive = (0..=255).min_by_key(|&i| palette.color(i).distance_squared(color)).unwrap();
+        let naive = (0..=255).min_by_key(|&i| palette[i].distance_squared(color)).unwrap();
         assert_eq!(palette.nearest(color), naive);
     }
 }
@@ -210,7 +210,7 @@ fn the_cube_finds_its_nearest_without_a_search() {
         .flat_map(|&r| values.iter().flat_map(move |&g| (0..=255).step_by(5).map(move |b| Rgb::new(r, g, b))));
     for color in greys.chain(mixtures) {
         assert_eq!(cube::nearest(color), cube::CUBE.nearest(color), "{color:?}");
-        let among_mixtures = (0..216).min_by_key(|&i| cube::CUBE.color(i).distance_squared(color)).unwrap();
+        let among_mixtures = (0..216).min_by_key(|&i| cube::CUBE[i].distance_squared(color)).unwrap();
         assert_eq!(cube::nearest_mixture(color), among_mixtures, "{color:?}");
     }
 }
@@ -219,7 +219,7 @@ fn the_cube_finds_its_nearest_without_a_search() {
 #[ignore = "16,777,216 searches: run it in release"]
 fn the_cube_finds_the_nearest_of_every_colour() {
     for rgb in 0..=0xFF_FFFF {
-        let color = Rgb::from_u32(rgb);
+        let color = Rgb::from(rgb);
         assert_eq!(cube::nearest(color), cube::CUBE.nearest(color), "{color:?}");
     }
 }
@@ -228,7 +228,7 @@ fn the_cube_finds_the_nearest_of_every_colour() {
 fn the_cube_is_exact_on_the_dac_and_has_no_colour_twice() {
     assert_eq!(cube::CUBE.on_dac(), cube::CUBE);
     assert_eq!(distinct(cube::CUBE.colors()), 256);
-    assert_eq!(cube::CUBE.color(36 + 12 + 3), Rgb::from_dac([13, 25, 38]));
+    assert_eq!(cube::CUBE[36 + 12 + 3], Rgb::from_dac([13, 25, 38]));
     assert!(cube::CUBE.colors()[216..].is_sorted_by(|a, b| a.brightness() < b.brightness()));
 }
 
@@ -380,7 +380,7 @@ fn a_raw_file_with_a_value_over_63_has_eight_bits() {
     for at in [0, 767] {
         bytes[at] = 64;
         let palette = format("vga").read(&bytes).unwrap();
-        assert_eq!(palette.color(1), Rgb::new(63, 63, 63), "64 at {at}");
+        assert_eq!(palette[1], Rgb::new(63, 63, 63), "64 at {at}");
         bytes[at] = 63;
     }
 }
@@ -408,7 +408,7 @@ fn extensions_lead_to_formats() {
 #[test]
 fn a_name_decides_where_bytes_cannot() {
     let dark: Vec<u8> = (0..768).map(|i| (i % 64) as u8).collect();
-    let second = |name| file::parse_named(name, &dark).unwrap().color(1);
+    let second = |name| file::parse_named(name, &dark).unwrap()[1];
     assert_eq!(second("a.act"), Rgb::new(3, 4, 5));
     for name in ["a.vga", "a.raw", "a.col", "a.lmp", "a.pal", "a", "a.bin"] {
         assert_eq!(second(name), Rgb::from_dac([3, 4, 5]), "{name}");

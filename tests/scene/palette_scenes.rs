@@ -49,7 +49,7 @@ fn random_material(random: &mut Random) -> Material {
         ambient: share(0.05, 0.3),
         diffuse: share(0.3, 0.7),
         color: [share(0.1, 1.0), share(0.1, 1.0), share(0.0, 1.0)],
-        ..Material::white()
+        ..Material::default()
     }
 }
 
@@ -81,13 +81,13 @@ fn shown(scene: &Scene) -> (Vec<Rgb>, Vec<Option<usize>>) {
     let mut vga = Vga::new();
     Renderer::new().draw(scene, &mut vga).expect("a legal scene");
     let palette = vga.palette();
-    let colors = vga.pixels().iter().map(|&index| palette.color(index)).collect();
+    let colors = vga.pixels().iter().map(|&index| palette[index]).collect();
     let mut numbered = scene.clone();
     numbered.clear_lights();
     (numbered.fog, numbered.palette, numbered.background) = (None, None, 0);
     for (number, object) in (1..).zip(numbered.objects_mut()) {
         let ramp = RampChoice::Entries(Ramp::single(number));
-        object.materials.fill(Material { ramp, ..Material::white() });
+        object.materials.fill(Material { ramp, ..Material::default() });
     }
     Renderer::new().draw(&numbered, &mut vga).expect("a legal scene");
     (colors, vga.pixels().iter().map(|&number| usize::from(number).checked_sub(1)).collect())
@@ -121,7 +121,7 @@ fn assert_shown(
 /// Half a step of the ramp, on the channel with the widest, and rounding.
 fn half_a_step(palette: &Palette, entries: Entries) -> f64 {
     let Entries::Ramp { ramp, .. } = entries else { panic!("{entries:?}") };
-    let Rgb { r, g, b } = palette.color(ramp.last());
+    let Rgb { r, g, b } = palette[ramp.last()];
     f64::from(r.max(g).max(b)) / f64::from(ramp.entries() - 1) / 2.0 + ROUNDING
 }
 
@@ -226,7 +226,7 @@ fn fog_is_shown_in_its_colours() {
     let mut random = Random::named("fog");
     while tried.more() {
         let mut scene = walls(&mut random, random_material);
-        let haze = Rgb::from_u32(random.next_u64() as u32);
+        let haze = Rgb::from(random.next_u64() as u32);
         let fog = Fog { color: haze, start: 8.0, end: 20.0 };
         (scene.fog, scene.background_color) = (Some(fog), Some(haze));
         let mut expected = Vec::new();
@@ -239,7 +239,7 @@ fn fog_is_shown_in_its_colours() {
         }
         let made = made(&mut scene);
         assert_has(&made.palette, &expected, rounded(1));
-        assert_eq!(made.palette.color(scene.background), haze.nearest_on_dac());
+        assert_eq!(made.palette[scene.background], haze.nearest_on_dac());
         let allowed = |i: usize| nearest_to_mixture(half_a_step(&made.palette, made.entries[i][0]), rounded(1));
         let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), allowed);
         tried.add(count);
@@ -371,7 +371,7 @@ fn an_automatic_palette_has_the_colours_of_mipmaps() {
     let farthest = |scene: &Scene| {
         let palette = auto_palette::of_scene(scene).expect("a legal scene").palette.on_dac();
         let mean = Rgb::new(128, 128, 0);
-        palette.color(palette.nearest(mean)).distance_squared(mean)
+        palette[palette.nearest(mean)].distance_squared(mean)
     };
     // A level of the DAC is 4 units, of which three are off.
     assert!(farthest(&scene) <= 3 * 16, "{}", farthest(&scene));

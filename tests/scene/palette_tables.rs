@@ -40,7 +40,7 @@ fn naive_mix(a: Rgb, b: Rgb, share: u8) -> Rgb {
 // What is tried
 
 fn random_color(random: &mut Random) -> Rgb {
-    Rgb::from_u32(random.next_u64() as u32)
+    Rgb::from(random.next_u64() as u32)
 }
 
 /// The built-in palettes, and such as have little or much in them: one colour, two, twelve over and over,
@@ -235,13 +235,13 @@ fn full_fog_and_full_light_show_their_own_colours() {
     let fog = Rgb::new(255, 203, 101);
     let table = Lut64K::fog(palette, fog);
     for byte in 0..=255 {
-        assert_eq!(palette.on_dac().color(table.get(255, byte)), fog, "a colour that the palette has");
+        assert_eq!(palette.on_dac()[table.get(255, byte)], fog, "a colour that the palette has");
     }
     let shades = Lut64K::shades(palette, palette.on_dac().colors());
     for texel in 0..=255 {
-        let color = palette.on_dac().color(shades.get(255, texel));
-        assert_eq!(color, palette.on_dac().color(texel));
-        assert_eq!(palette.color(shades.get(0, texel)), Rgb::BLACK);
+        let color = palette.on_dac()[shades.get(255, texel)];
+        assert_eq!(color, palette.on_dac()[texel]);
+        assert_eq!(palette[shades.get(0, texel)], Rgb::BLACK);
     }
 }
 

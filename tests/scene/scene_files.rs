@@ -476,7 +476,7 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert_eq!((scene.name.as_str(), scene.duration, scene.ambient), ("everything", 8.0, 0.25));
     assert_eq!(scene.picture, -2.5);
     let palette = scene.palette.as_ref().expect("a palette");
-    assert_eq!(palette.color(0), Rgb::new(0x10, 0x20, 0x30));
+    assert_eq!(palette[0], Rgb::new(0x10, 0x20, 0x30));
     assert_eq!((scene.background, scene.background_color), (0, Some(Rgb::new(0x10, 0x20, 0x30))));
     let copper = builtin::COPPER.clone();
     assert_eq!(scene.palette_animation, Some(PaletteAnimation::Fade { to: copper, period: 4.0 }));
@@ -618,7 +618,7 @@ fn fog_and_background_are_one_color_unless_both_are_given() {
 fn a_palette_is_a_name_a_file_or_left_to_the_program() {
     let palette = |text: &str| scene(&format!("{CUBE}palette = {text}"));
     assert_eq!(palette("'copper'").palette, Some(builtin::COPPER.clone()));
-    assert_eq!(palette("'two.hex'").palette.map(|palette| palette.color(1)), Some(Rgb::WHITE));
+    assert_eq!(palette("'two.hex'").palette.map(|palette| palette[1]), Some(Rgb::WHITE));
     assert!(palette("'auto'").preferences.auto_palette);
 }
 
@@ -767,7 +767,7 @@ fn a_texture_is_a_png_beside_the_scene() {
     for object in scene.objects() {
         let texture = object.materials[0].texture.as_ref().expect("a texture");
         assert_eq!((texture.width(), texture.height()), (2, 1));
-        assert_eq!((texture.color(0, 0), texture.color(1, 0)), (Rgb::new(255, 0, 0), Rgb::new(0, 0, 255)));
+        assert_eq!((texture[(0, 0)], texture[(1, 0)]), (Rgb::new(255, 0, 0), Rgb::new(0, 0, 255)));
     }
 }
 

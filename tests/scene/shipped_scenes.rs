@@ -16,7 +16,7 @@ use mode13h::scene::shipped::{self, Shipped};
 use mode13h::vga::Vga;
 
 fn scene(name: &str) -> Scene {
-    load(shipped::by_name(name).unwrap_or_else(|| panic!("no scene {name}")))
+    load(&name.parse().unwrap_or_else(|error| panic!("{name}: {error}")))
 }
 
 fn load(shipped: &Shipped) -> Scene {

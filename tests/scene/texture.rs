@@ -15,12 +15,12 @@ use mode13h::texture::{Mipmap, Texture, TextureError};
 use mode13h::vga::Vga;
 
 fn random_color(random: &mut Random) -> Rgb {
-    Rgb::from_u32(random.next_u64() as u32)
+    Rgb::from(random.next_u64() as u32)
 }
 
 /// The colours of a texture as a picture has them: from the top row down.
 fn picture(texture: &Texture) -> Vec<Rgb> {
-    (0..texture.height()).rev().flat_map(|y| (0..texture.width()).map(move |x| texture.color(x, y))).collect()
+    (0..texture.height()).rev().flat_map(|y| (0..texture.width()).map(move |x| texture[(x, y)])).collect()
 }
 
 fn used_colors(texture: &Texture) -> BTreeSet<Rgb> {
@@ -33,7 +33,7 @@ fn used_colors(texture: &Texture) -> BTreeSet<Rgb> {
 fn images_far_from_their_corner_are_brought_back() {
     let offsets = [1.0, 100.0, 250.0, 257.0, 300.0, 511.0, 513.0, 520.0, 600.0, 1_000.0, 15_000.0];
     let mut tried = Tried::new("images_far_from_their_corner_are_brought_back", 2 * 3 * offsets.len() as u64);
-    let texture = Shared::new(Texture::by_name("crate").expect("compiled in"));
+    let texture = Shared::new("crate".parse::<Texture>().expect("compiled in"));
     let size = texture.width() as f32;
     assert!(offsets.iter().any(|k| k * size < 16_384.0) && offsets.iter().any(|k| k * size > 32_768.0));
     let frame = |mapping: Mapping, at: Vec2| {
@@ -146,7 +146,7 @@ fn v_runs_up_and_texels_repeat() {
     for (i, &color) in (0_u32..).zip(&pixels) {
         let (x, y) = (i % 8, 3 - i / 8);
         assert_eq!(texture.colors()[usize::from(texture.texels()[(y << texture.width_bits() | x) as usize])], color);
-        assert_eq!(texture.color(x + 8 * 5, y + 4 * 3), color);
+        assert_eq!(texture[(x + 8 * 5, y + 4 * 3)], color);
     }
 }
 
@@ -184,7 +184,7 @@ fn more_colours_are_reduced_and_each_texel_has_the_nearest() {
 /// The more colours the less error; each is the mean of a part, so one colour is the mean of all.
 #[test]
 fn one_colour_is_the_mean_and_more_are_nearer() {
-    let crate_ = Texture::by_name("crate").expect("built in");
+    let crate_ = "crate".parse::<Texture>().expect("built in");
     let pixels = picture(&crate_);
     let off =
         |texture: &Texture| -> u32 { picture(texture).iter().zip(&pixels).map(|(a, b)| a.distance_squared(*b)).sum() };
@@ -227,7 +227,7 @@ fn what_is_no_texture_is_refused() {
 fn every_name_has_a_texture_of_its_own() {
     let mut seen = Vec::new();
     for name in Texture::NAMES {
-        let texture = Texture::by_name(name).expect("listed");
+        let texture = name.parse::<Texture>().expect("listed");
         assert!(used_colors(&texture).len() >= 2, "{name}");
         assert_eq!(texture.histogram().iter().sum::<u32>(), texture.width() * texture.height());
         for (texel, &count) in texture.histogram().iter().enumerate() {
@@ -236,7 +236,7 @@ fn every_name_has_a_texture_of_its_own() {
         assert!(!seen.contains(&texture), "{name}");
         seen.push(texture);
     }
-    assert!(Texture::by_name("marble").is_none());
+    assert!("marble".parse::<Texture>().is_err());
 }
 
 /// Side by side, a wall goes on: over the seam its colours change no more than at the most abrupt line
@@ -244,11 +244,11 @@ fn every_name_has_a_texture_of_its_own() {
 #[test]
 fn walls_repeat_without_a_seam() {
     for name in ["checker", "bricks"] {
-        let texture = Texture::by_name(name).expect("built in");
+        let texture = name.parse::<Texture>().expect("built in");
         let change =
             |of: &dyn Fn(u32) -> [Rgb; 2]| -> u32 { (0..128).map(of).map(|[a, b]| a.distance_squared(b)).sum() };
-        let right_of = |x: u32| change(&|y| [texture.color(x, y), texture.color(x + 1, y)]);
-        let above = |y: u32| change(&|x| [texture.color(x, y), texture.color(x, y + 1)]);
+        let right_of = |x: u32| change(&|y| [texture[(x, y)], texture[(x + 1, y)]]);
+        let above = |y: u32| change(&|x| [texture[(x, y)], texture[(x, y + 1)]]);
         let (last_column, last_row) = (texture.width() - 1, texture.height() - 1);
         assert!(right_of(last_column) <= (0..last_column).map(right_of).max().expect("columns"), "{name}");
         assert!(above(last_row) <= (0..last_row).map(above).max().expect("rows"), "{name}");
@@ -258,14 +258,14 @@ fn walls_repeat_without_a_seam() {
 /// What a mirror that faces up a little sees is bright, down a little dark: the horizon.
 #[test]
 fn the_sky_has_a_bright_horizon_over_dark_ground() {
-    let sky = Texture::by_name("sky").expect("built in");
+    let sky = "sky".parse::<Texture>().expect("built in");
     let half = sky.height() / 2;
     for x in 0..sky.width() {
-        let (above, below) = (sky.color(x, half), sky.color(x, half - 1));
+        let (above, below) = (sky[(x, half)], sky[(x, half - 1)]);
         assert!(above.brightness() > 230_000 && below.brightness() < 64_000, "{x}: {above:?} over {below:?}");
     }
     // Straight up, half way to the top, it is bluest.
-    let up = sky.color(sky.width() / 2, half + sky.height() * 45 / 128);
+    let up = sky[(sky.width() / 2, half + sky.height() * 45 / 128)];
     assert!(u32::from(up.b) > 2 * u32::from(up.r), "{up:?}");
 }
 
@@ -277,10 +277,8 @@ fn a_plain_texture_has_one_colour() {
     let palette = Palette::from_colors(core::array::from_fn(|i| Rgb::BLACK.mix(Rgb::new(200, 100, 0), i as u8)));
     let (table, shown) = (Lut64K::shades(&palette, plain.colors()), palette.on_dac());
     for shade in 0..=255 {
-        let color = shown.color(table.get(shade, 0));
-        assert!(
-            color.distance_squared(palette.color(shade)) <= shown.color(shade).distance_squared(palette.color(shade))
-        );
+        let color = shown[table.get(shade, 0)];
+        assert!(color.distance_squared(palette[shade]) <= shown[shade].distance_squared(palette[shade]));
     }
 }
 
@@ -292,7 +290,7 @@ fn naive_mean(texture: &Texture, level: u32, (x, y): (u32, u32)) -> Rgb {
     let (width, height) = (texture.width(), texture.height());
     let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     let parts: Vec<Rgb> =
-        all.filter(|&(i, j)| is_part(i, width, x) && is_part(j, height, y)).map(|(i, j)| texture.color(i, j)).collect();
+        all.filter(|&(i, j)| is_part(i, width, x) && is_part(j, height, y)).map(|(i, j)| texture[(i, j)]).collect();
     let mean = |channel: fn(&Rgb) -> u8| {
         let sum: usize = parts.iter().map(|color| usize::from(channel(color))).sum();
         ((2 * sum + parts.len()) / (2 * parts.len())) as u8

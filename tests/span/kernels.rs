@@ -293,7 +293,7 @@ macro_rules! stamp {
     (@each $name:literal: $($test:ident),*) => {
         $(#[test]
         fn $test() {
-            match mode13h::span::Kernel::by_name($name) {
+            match $name.parse::<mode13h::span::Kernel>() {
                 Ok(kernel) => super::$test(kernel),
                 Err(error) => println!("not tried: {error}"),
             }
@@ -362,7 +362,7 @@ fn every_kernel_is_tested() {
 #[test]
 fn kernels_are_chosen_by_name() {
     for kernel in Kernel::available() {
-        let again = Kernel::by_name(kernel.name()).expect("an available kernel");
+        let again = kernel.name().parse::<Kernel>().expect("an available kernel");
         assert_eq!((again.name(), again.level()), (kernel.name(), kernel.level()));
     }
     assert_eq!(Kernel::available().next().map(Kernel::name), Some("portable"));
@@ -378,20 +378,20 @@ fn kernels_are_chosen_by_name() {
             best = level;
         }
     }
-    if let Ok(simd) = Kernel::by_name("simd") {
+    if let Ok(simd) = "simd".parse::<Kernel>() {
         assert_eq!((simd.level(), simd.to_string()), (best, format!("simd ({best})")));
         assert_eq!(format!("{simd:?}"), format!("Kernel(simd ({best}))"));
     }
     let names: Vec<_> = Kernel::available().map(Kernel::name).collect();
-    let error = Kernel::by_name("mmx").expect_err("no such kernel").to_string();
+    let error = "mmx".parse::<Kernel>().expect_err("no such kernel").to_string();
     assert_eq!(error, format!("no such kernel; this machine has {}", names.join(", ")));
     for name in STAMPED.iter().filter(|name| !names.contains(name)) {
-        let error = Kernel::by_name(name).expect_err("a kernel that is not here").to_string();
+        let error = name.parse::<Kernel>().expect_err("a kernel that is not here").to_string();
         assert_eq!(error, format!("this machine or build lacks the kernel {name}; it has {}", names.join(", ")));
     }
-    assert!(names.contains(&Kernel::fastest().name()));
+    assert!(names.contains(&Kernel::default().name()));
     if cfg!(feature = "simd") {
-        assert_eq!(Kernel::fastest().name(), "simd");
+        assert_eq!(Kernel::default().name(), "simd");
     }
 }
 
@@ -650,7 +650,7 @@ fn levels_that_are_missing_are_said() {
     let mut tried = Tried::new("levels_that_are_missing_are_said", 6);
     let all = ["asm", "asm-unrolled", "simd-arrays", "simd-sse2", "simd-avx2", "simd-avx512"];
     for name in all {
-        is_here(name, Kernel::by_name(name).is_ok());
+        is_here(name, name.parse::<Kernel>().is_ok());
         tried.add(1);
     }
     let known = |kernel: &Kernel| all.contains(&kernel.name()) || ["portable", "simd"].contains(&kernel.name());

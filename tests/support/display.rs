@@ -21,7 +21,7 @@ impl Display {
     pub fn draw(&mut self, mark: char, corners: [(f64, f64); 3]) -> &mut Self {
         let vertices = corners.map(|(x, y)| {
             let coordinate = |pixels| I24F8::round_from_f64(pixels).expect("a coordinate");
-            Vertex::new(coordinate(x), coordinate(y), U8F8::from_shade(0), 0).expect("inside the guard band")
+            Vertex::new(coordinate(x), coordinate(y), U8F8::from(0), 0).expect("inside the guard band")
         });
         let mut bytes = vec![0_u8; self.marks.len()];
         let frame = Frame::new(&mut bytes, self.width, self.height, self.width as usize).expect("a small frame");

@@ -12,7 +12,7 @@ pub fn normal(intensity: f64) -> Vec3 {
 
 /// The same scene under a sun along z, on a background of its own.
 pub fn lit(mut scene: Scene) -> Scene {
-    scene.objects_mut()[0].materials = vec![Material { ambient: 0.0, diffuse: 1.0, ..Material::white() }];
+    scene.objects_mut()[0].materials = vec![Material { ambient: 0.0, diffuse: 1.0, ..Material::default() }];
     scene.add_light(Light::sun([0.0, 0.0, 1.0]));
     scene.background = 7;
     scene

@@ -33,7 +33,7 @@ pub fn showing(shape: &str) -> Scene {
 }
 
 fn texture(name: &str) -> Option<Shared<Texture>> {
-    Some(Shared::new(Texture::by_name(name).expect("compiled in")))
+    Some(Shared::new(name.parse::<Texture>().expect("compiled in")))
 }
 
 fn material(scene: &mut Scene, object: usize) -> &mut Material {

@@ -36,7 +36,7 @@ pub trait Candidate {
 
 /// Our kernels, of those that the machine has: a column each.
 pub fn kernels() -> Vec<Kernel> {
-    let named = ["portable", "simd-sse2", "simd-avx2", "simd-avx512"].map(Kernel::by_name);
+    let named = ["portable", "simd-sse2", "simd-avx2", "simd-avx512"].map(str::parse::<Kernel>);
     named.into_iter().flatten().collect()
 }
 

@@ -155,7 +155,7 @@ pub fn measure(
         ours.push((renderer, Box::new(Vga::new())));
     }
     // An open mesh shows its other side, too.
-    let both = !ours[0].0.make_plan(&scene, Screen::MODE_13H)?.is_on(0, Effect::BackFaceCulling);
+    let both = !ours[0].0.make_plan(&scene, Screen::MODE_13H)?.objects()[0].is_on(Effect::BackFaceCulling);
     let (start, end) = if stages.fogged { (start * scale, end * scale) } else { (0.0, 0.0) };
     // SAFETY: Mesa has been started; the arrays outlive the frames drawn here, and every index is below their number.
     unsafe {

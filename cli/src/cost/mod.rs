@@ -115,7 +115,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     directory.as_deref().map_or(Ok(()), |directory| files::check(directory, overwrites))?;
     let counts = if *instructions { Some(instructions::count(&shadings, frames.len())?) } else { None };
     if let Some(counts) = &counts {
-        kernel = Kernel::by_name(&counts.kernel).map_err(Failure::words)?;
+        kernel = counts.kernel.parse::<Kernel>().map_err(Failure::words)?;
     }
 
     let renderer = || drawing.renderer(kernel);

@@ -33,7 +33,8 @@ struct Level {
 }
 
 const fn level(below: f64, label: &'static str, color: u32) -> Level {
-    Level { below, label, color: Rgb::from_u32(color) }
+    let [_, r, g, b] = color.to_be_bytes();
+    Level { below, label, color: Rgb::new(r, g, b) }
 }
 
 /// Levels from right to wrong. The last is for pixels that show another face than they should.

@@ -88,7 +88,7 @@ impl Demo {
     fn effects_on(&self) -> Vec<String> {
         let objects = self.renderer.plan().objects();
         let entry = |effect: Effect| {
-            let on: Vec<_> = objects.iter().map(|plan| plan.decision(effect)).filter(|decision| decision.on).collect();
+            let on: Vec<_> = objects.iter().map(|plan| &plan[effect]).filter(|decision| decision.on).collect();
             let mut entry = effect.name().to_string();
             let is_said = matches!(effect, Effect::HiddenSurfaces | Effect::Gouraud | Effect::Phong);
             let first = on.first()?;
@@ -106,7 +106,7 @@ impl Demo {
 
 /// Words on the shares of the shadings.
 fn of_shadings(shares: &Shares) -> Vec<String> {
-    shares.iter().map(|(shading, triangles)| format!("{shading} {triangles}")).collect()
+    shares.into_iter().map(|(shading, triangles)| format!("{shading} {triangles}")).collect()
 }
 
 #[cfg(test)]
@@ -136,7 +136,7 @@ mod tests {
         let Words { drawing, shading } = Words::parse_from(["mode13h"]);
         let inputs = Arc::new(Inputs { drawing, shading, words: vec![name.into()] });
         let first = loader::load(&inputs, 0, &[]);
-        let mut demo = Demo::new(inputs, Kernel::fastest());
+        let mut demo = Demo::new(inputs, Kernel::default());
         demo.put_on(first).expect("a shipped scene");
         demo.draw().expect("a legal scene");
         demo

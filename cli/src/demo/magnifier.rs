@@ -209,7 +209,7 @@ impl Magnifier {
             last.map_or(&[][..], |answer| &answer.edges).iter().map(|edge| edge.map(moved)).collect();
         enlarged.edges(&mut frame, &edges, Ink::Edge.index());
         for (x, y, byte) in cells.each() {
-            let is_light = |byte: u8| palette.color(entries[usize::from(byte)]).brightness() > 110_000;
+            let is_light = |byte: u8| palette[entries[usize::from(byte)]].brightness() > 110_000;
             let ink = if byte.is_some_and(is_light) { Ink::CentreOnLight } else { Ink::CentreOnDark };
             enlarged.centre(&mut frame, x, y, ink.index());
         }
@@ -311,7 +311,7 @@ fn make_room(vga: &mut Vga, cells: &Cells) -> [u8; 256] {
         entries[byte] = searched.nearest(shown.colors()[byte]);
     }
     for (color, ink) in colors[Ink::FIRST..].iter_mut().zip(Ink::COLORS) {
-        *color = Rgb::from_u32(ink);
+        *color = Rgb::from(ink);
     }
     vga.set_palette(&Palette::from_colors(colors));
     vga.pixels_mut().iter_mut().for_each(|byte| *byte = entries[usize::from(*byte)]);

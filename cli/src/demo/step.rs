@@ -217,8 +217,8 @@ mod tests {
     /// Eight pixels wide at the top, one at the bottom, four rows high; the shade of pixel x of row 0 is 50 + 20·x.
     fn traced(interpolation: Interpolation) -> Traced {
         let corner = |x, y, shade| {
-            let (x, y) = (I24F8::from_pixels(x), I24F8::from_pixels(y));
-            Vertex::new(x, y, U8F8::from_shade(shade), 100).expect("a legal vertex")
+            let (x, y) = (I24F8::from(x), I24F8::from(y));
+            Vertex::new(x, y, U8F8::from(shade), 100).expect("a legal vertex")
         };
         let corners = [corner(10, 20, 40), corner(18, 20, 200), corner(10, 24, 40)];
         let name = "body, triangle 7".to_string();

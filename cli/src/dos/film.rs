@@ -62,7 +62,7 @@ impl Writer {
         out.word(i32::from(exponent).cast_unsigned());
         out.vectors(&[placement.position, placement.pivot]);
         out.fixed(placement.scale);
-        placement.angles.iter().for_each(|angle| out.word(angle.to_bits().into()));
+        placement.angles.iter().for_each(|angle| out.word(u16::from(*angle).into()));
         out.count(paints.len())?;
         for paint in *paints {
             out.fixed(paint.ambient);

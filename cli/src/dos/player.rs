@@ -176,7 +176,7 @@ impl<'a> Player<'a> {
     /// Makes room for all that any frame needs; `None` if a mesh is not sound.
     pub(crate) fn new(film: &'a Film<'a>, kernel: Kernel) -> Option<Self> {
         let meshes = film.meshes.iter().map(Numbers::mesh).collect::<Option<Vec<_>>>()?;
-        let vertices = meshes.iter().map(FixedMesh::vertices).max().unwrap_or(0);
+        let vertices = meshes.iter().map(|mesh| mesh.parts().positions.len()).max().unwrap_or(0);
         let (lit, depths) = (alloc::vec![LitVertex::default(); vertices], alloc::vec![0; PIXELS]);
         let (suns, paints) = (Vec::with_capacity(16), Vec::with_capacity(64));
         Some(Self { film, kernel, meshes, lit, beams: Vec::with_capacity(16), suns, paints, depths })
@@ -243,7 +243,7 @@ impl<'a> Player<'a> {
 }
 
 fn angle(input: &mut Input<'_>) -> Option<BinaryAngle> {
-    u16::try_from(input.word()?).ok().map(BinaryAngle::from_bits)
+    u16::try_from(input.word()?).ok().map(BinaryAngle::from)
 }
 
 /// FNV-1a, 64 bits, of bytes that follow those of `before`.

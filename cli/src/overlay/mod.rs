@@ -390,7 +390,7 @@ pub(crate) mod tests {
         sheet.line((10, 10), (10, 12), TEXT, 1);
         let mut pixels = vec![0; 40 * 30];
         sheet.draw(&mut Canvas::new(&mut pixels, 40, 30).expect("its size"));
-        let at = |x: usize, y: usize| Rgb::from_u32(pixels[y * 40 + x]);
+        let at = |x: usize, y: usize| Rgb::from(pixels[y * 40 + x]);
         assert_eq!([at(5, 6), at(6, 7), at(7, 6), at(8, 7)], [Rgb::WHITE, Rgb::WHITE, HEAD, HEAD]);
         assert_eq!([at(1, 1), at(10, 11), at(9, 6), at(2, 0)], [WRONG, TEXT, Rgb::BLACK, Rgb::BLACK]);
     }

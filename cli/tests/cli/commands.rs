@@ -499,7 +499,7 @@ fn films_are_the_same_whatever_the_number_of_threads() {
             assert!(bytes == one.1, "{name} {look:?}: {threads} threads draw another film than one");
             tried.add(1);
         }
-        let scene = shipped::by_name(name).expect("shipped").load().expect("a scene").scene;
+        let scene = name.parse::<shipped::Shipped>().expect("shipped").load().expect("a scene").scene;
         fades += u32::from(scene.palette_animation.is_some() && one.0.images.iter().any(|image| image.has_palette));
         fogs += u32::from(scene.fog.is_some());
         let textured = |object: &mode13h::scene::Object| object.materials.iter().any(|m| m.texture.is_some());
@@ -801,7 +801,8 @@ fn a_plan_is_a_table_of_a_hundred_columns() {
     for scene in shipped::ALL.iter().map(|shipped| shipped.name).chain(["sphere"]) {
         let text = printed(&directory, &["plan", scene]);
         // The moment of its picture.
-        let at = shipped::by_name(scene).map_or(0.0, |shipped| shipped.load().expect("a scene").scene.picture);
+        let at =
+            scene.parse::<shipped::Shipped>().map_or(0.0, |shipped| shipped.load().expect("a scene").scene.picture);
         assert!(text.starts_with(&format!("{scene} at {at} s, 1/35 s after the frame before it: ")), "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= 100 && line.trim_end() == line), "{text}");
         assert!(text.contains("making the plan takes "), "{text}");
@@ -935,8 +936,7 @@ fn palettes_are_looked_at() {
         assert!(text.starts_with(&format!("{}: ", builtin.name)), "{text}");
         let shown: Vec<String> =
             text.lines().skip(1).flat_map(|line| line.split_whitespace().skip(1)).map(String::from).collect();
-        let colors: Vec<String> =
-            builtin.palette.colors().iter().map(|color| format!("{:06x}", color.to_u32())).collect();
+        let colors: Vec<String> = builtin.palette.colors().iter().map(|color| format!("{:06x}", color)).collect();
         assert_eq!(shown, colors, "{}", builtin.name);
     }
     succeed(&directory, &["palette", "cube", "-o", "chart.png"]);
@@ -953,7 +953,7 @@ fn palettes_are_made_for_models() {
     succeed(&directory, &["palette", "--from", "torus", "-o", "chart.png"]);
     let [upright, lying] = ["house.gpl", "lying.gpl"].map(|name| {
         let palette = file::parse_named(name, &read(&directory, name)).expect("a palette");
-        assert_eq!((palette.color(0), palette.color(255)), (Rgb::BLACK, Rgb::WHITE));
+        assert_eq!((palette[0], palette[255]), (Rgb::BLACK, Rgb::WHITE));
         palette
     });
     assert_ne!(upright.colors(), lying.colors(), "other sides are seen");
@@ -1173,7 +1173,7 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
     succeed(&directory, &["scenes", "--copy", "fog"]);
     succeed(&directory, &["scenes", "--copy", "fog", "-o", "other.toml"]);
     assert_eq!(names_in(directory.path()), ["fog.toml", "other.toml"]);
-    let text = shipped::by_name("fog").expect("a scene").text;
+    let text = "fog".parse::<shipped::Shipped>().expect("a scene").text;
     assert!(read(&directory, "fog.toml") == text.as_bytes() && read(&directory, "other.toml") == text.as_bytes());
     fs::write(directory.path().join("fog.toml"), "what stood there").expect("written");
     assert_fails(&run(&directory, &["scenes", "--copy", "fog"]), 3, "fog.toml: exists already; --force");
@@ -1197,7 +1197,7 @@ fn every_shipped_scene_is_drawn_and_a_scene_comes_before_a_shape() {
     succeed(&directory, &["render", "teapot", "-o", "x.png"]);
     let png = read(&directory, "x.png");
     let reader = png::Decoder::new(Cursor::new(&png)).read_info().expect("a PNG");
-    let Rgb { r, g, b } = builtin::COPPER.on_dac().color(200);
+    let Rgb { r, g, b } = builtin::COPPER.on_dac()[200];
     assert_eq!(reader.info().palette.as_deref().map(|palette| palette[3 * 200..3 * 201].to_vec()), Some(vec![r, g, b]));
 }
 
@@ -1303,7 +1303,7 @@ fn scenes_are_drawn_at_their_time() {
 #[test]
 fn explain_says_why_a_pixel_has_its_byte() {
     let directory = directory();
-    let mut scene = shipped::by_name("cone").expect("a scene").load().expect("a scene that loads").scene;
+    let mut scene = "cone".parse::<shipped::Shipped>().expect("a scene").load().expect("a scene that loads").scene;
     scene.set_time(0.0);
     let mut vga = Vga::new();
     Renderer::new().draw(&scene, &mut vga).expect("a legal scene");

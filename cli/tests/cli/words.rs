@@ -99,7 +99,7 @@ fn help_is_short_or_long_and_no_wider_than_the_terminal() {
         // The names of scenes are in `scenes` alone.
         let long = help(command, "--help", "100");
         for scene in ["two-lights", "flash-tessellated", "interlock", "glenz"] {
-            assert!(shipped::by_name(scene).is_some() && !long.contains(scene), "{command}: {long}");
+            assert!(scene.parse::<shipped::Shipped>().is_ok() && !long.contains(scene), "{command}: {long}");
         }
     }
     // One terminal wider than the other: lines are wrapped, not only short.

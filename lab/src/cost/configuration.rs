@@ -113,7 +113,7 @@ impl<'a> Configuration<'a> {
         for (bits, name) in [(8, "1/256 pixel"), (4, "1/16 pixel"), (0, "whole pixels")] {
             ways.push(with_shading(Aspect::VertexRounding, &name, Box::new(move |r| hooks::set_vertex_bits(r, bits))));
         }
-        let fastest = Kernel::fastest();
+        let fastest = Kernel::default();
         let others = Kernel::available().filter(|kernel| kernel.level() != fastest.level());
         for kernel in core::iter::once(fastest).chain(others) {
             ways.push(with_shading(Aspect::Kernel, &kernel, Box::new(move |r| r.settings.kernel = kernel)));

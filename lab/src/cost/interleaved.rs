@@ -101,7 +101,7 @@ pub(super) struct Work {
 impl Work {
     fn add_shares(&mut self, shares: &Shares) {
         for (count, shading) in self.shares.iter_mut().zip(FaceShading::ALL) {
-            *count += shares.of(shading);
+            *count += shares[shading];
         }
     }
 }

@@ -33,7 +33,7 @@ impl Entries {
         // A scene that was drawn has a plan.
         let Ok(plan) = renderer.make_plan(scene, Screen::MODE_13H) else { return };
         let channels: alloc::vec::Vec<bool> =
-            (0..scene.objects().len()).map(|object| plan.is_on(object, Effect::RgbChannels)).collect();
+            (0..scene.objects().len()).map(|object| plan.objects()[object].is_on(Effect::RgbChannels)).collect();
         let palette = scene.palette.as_ref().unwrap_or(&BIOS);
         let mut ramps: BTreeMap<(usize, u16), Option<Ramp>> = BTreeMap::new();
         for (face, shades) in shown.faces.iter().zip(&shown.shades) {
@@ -85,7 +85,7 @@ fn ramp_error(ramp: Ramp, shade: f64) -> f64 {
 
 /// Distance of a palette's nearest entry from a colour, on the channel where it is farthest.
 fn nearest_error(palette: &Palette, [r, g, b]: [u8; 3]) -> f64 {
-    let near = palette.color(palette.nearest(Rgb::new(r, g, b)));
+    let near = palette[palette.nearest(Rgb::new(r, g, b))];
     let off = [r.abs_diff(near.r), g.abs_diff(near.g), b.abs_diff(near.b)];
     f64::from(off.into_iter().max().unwrap_or(0))
 }

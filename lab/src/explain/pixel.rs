@@ -228,8 +228,8 @@ fn shading_why(settings: &Resolved) -> String {
 
 /// A triangle, with its place in the mesh.
 fn here(renderer: &Renderer, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> FaceHere {
-    let is_part =
-        renderer.settings.vertex_path == VertexPath::Float && renderer.plan().is_on(met.object, Effect::Tessellation);
+    let is_part = renderer.settings.vertex_path == VertexPath::Float
+        && renderer.plan().objects()[met.object].is_on(Effect::Tessellation);
     let triangle = if is_part || met.face.is_none() { nearest(truth, met, x, y) } else { met.face };
     FaceHere {
         object: met.object,

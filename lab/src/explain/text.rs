@@ -23,8 +23,7 @@ impl fmt::Display for Pixel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut text = Text(String::new());
         let Self { x, y, byte, color, .. } = self;
-        let in_hex = color.to_u32();
-        text.line(&format!("pixel ({x}, {y}): byte {byte} ({byte:#04x}), which the palette shows as #{in_hex:06x}"));
+        text.line(&format!("pixel ({x}, {y}): byte {byte} ({byte:#04x}), which the palette shows as #{color:06x}"));
         if self.seen.is_empty() {
             let words =
                 format!("the background: no triangle covers its centre; the frame was cleared to {}", self.background);
@@ -49,7 +48,7 @@ impl Pixel {
     #[must_use]
     pub fn lines(&self, width: usize) -> Vec<String> {
         let Self { x, y, byte, color, .. } = self;
-        let mut lines = Vec::from([format!("({x}, {y}) byte {byte} #{:06x}", color.to_u32())]);
+        let mut lines = Vec::from([format!("({x}, {y}) byte {byte} #{:06x}", color)]);
         match self.front() {
             None => lines.push("background: no face is here".into()),
             Some((face, seen)) => {

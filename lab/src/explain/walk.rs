@@ -57,7 +57,7 @@ pub struct Step {
 /// use mode13h::render::Screen;
 ///
 /// let corner = |x, y, shade| {
-///     Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::from_shade(shade), 1)
+///     Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(shade), 1)
 /// };
 /// let triangle = [corner(0, 0, 40)?, corner(8, 0, 200)?, corner(0, 4, 40)?];
 /// let walk = Walk::new(&triangle, Interpolation::Gouraud, true, Screen::MODE_13H);

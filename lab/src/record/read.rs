@@ -91,7 +91,7 @@ fn palette(lines: &mut Lines<impl BufRead>) -> Result<Palette, RecordErrorKind> 
         for color in eight {
             let hex = fields.next("a colour rrggbb")?;
             *color = match u32::from_str_radix(hex, 16) {
-                Ok(rgb) if hex.len() == 6 && !hex.starts_with('+') => Rgb::from_u32(rgb),
+                Ok(rgb) if hex.len() == 6 && !hex.starts_with('+') => Rgb::from(rgb),
                 _ => return Err(fields.not("a colour rrggbb")),
             };
         }

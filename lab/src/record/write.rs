@@ -16,7 +16,7 @@ pub(super) fn write(record: &Record, out: &mut dyn Write) -> io::Result<()> {
     if let Some(palette) = &record.palette {
         writeln!(out, "palette {}", palette.ramps())?;
         for eight in palette.colors().chunks(8) {
-            let colors: Vec<String> = eight.iter().map(|color| format!("{:06x}", color.to_u32())).collect();
+            let colors: Vec<String> = eight.iter().map(|color| format!("{:06x}", color)).collect();
             writeln!(out, "{}", colors.join(" "))?;
         }
     }

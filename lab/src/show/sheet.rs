@@ -91,7 +91,7 @@ impl Inks {
         let mut inks = Self { of_byte: [0; 256], light: [false; 256], colors: [Rgb::BLACK; 256] };
         let mut known: Vec<Rgb> = Vec::new();
         for byte in (0..=255_u8).filter(|byte| used[usize::from(*byte)]) {
-            let color = palette.color(byte);
+            let color = palette[byte];
             let place = known.iter().position(|there| *there == color).unwrap_or(known.len());
             // There is room for 242; should a case ever have more, the rest share the last.
             let index = place.min(usize::from(Ink::FIRST) - 1);
@@ -103,7 +103,7 @@ impl Inks {
             inks.light[usize::from(byte)] = color.brightness() > Rgb::new(110, 110, 110).brightness();
         }
         for (entry, color) in inks.colors[usize::from(Ink::FIRST)..].iter_mut().zip(Ink::COLORS) {
-            *entry = Rgb::from_u32(color);
+            *entry = Rgb::from(color);
         }
         inks
     }
@@ -158,7 +158,7 @@ pub(super) fn png(case: &Case, comparison: &Comparison) -> Result<Vec<u8>, Pictu
         let legend = "dots: pixel centres; blue lines: the true edges; dark blue: not drawn; one pixel is 16 x 16";
         words(&mut frame, MARGIN, height - MARGIN - 15, legend, Ink::Words, &FONT_9X15);
     }
-    let shape = PixelShape::SQUARE;
+    let shape = PixelShape::default();
     Png::default().encode(&Picture { pixels: &pixels, width: w, height: h, pitch: w, palette: &inks.colors, shape })
 }
 

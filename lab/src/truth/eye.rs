@@ -32,7 +32,7 @@ impl Eye {
         if !(near > 0.0 && near.is_finite()) {
             return Err("its near distance must be above 0 and finite");
         }
-        if !(field_of_view > Angle::default() && field_of_view < Angle::TURN / 2.0) {
+        if !(field_of_view > Angle::default() && field_of_view < Angle::from_degrees(180.0)) {
             return Err("its field of view must lie between 0 and π");
         }
         let (at, up) = (wide(eye), wide(up));

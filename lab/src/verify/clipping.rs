@@ -190,13 +190,13 @@ fn odd_views(group: &mut Group, random: &mut Random, project: Project<'_>) {
         if case >= 6 {
             // The depth buffer alone, against the scan-line method: the oracle takes its time.
             let ways = [HiddenSurfaces::DepthBuffer, HiddenSurfaces::ScanLine];
-            let [depth, line] = ways.map(|way| drawing::draw(&record, Configuration::new(way, Kernel::fastest())));
+            let [depth, line] = ways.map(|way| drawing::draw(&record, Configuration::new(way, Kernel::default())));
             group
                 .check(depth.is_ok() && depth == line, || format!("c4 {:?}: depth buffer and scan-line", scene.camera));
             continue;
         }
         record.palette = None;
-        let way = Configuration::new(HiddenSurfaces::DepthBuffer, Kernel::fastest());
+        let way = Configuration::new(HiddenSurfaces::DepthBuffer, Kernel::default());
         group.check_record("c4", &record, &|record| replay::against_oracle(record, way, &drawing::draw));
     }
 }

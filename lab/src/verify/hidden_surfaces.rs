@@ -84,7 +84,7 @@ fn convex(group: &mut Group, random: &mut Random, draw: Draw<'_>) {
             group.check_record("d4", &record, &|record| {
                 let by_definition = oracle::frame(record, oracle::NEAREST);
                 HiddenSurfaces::ALL.into_iter().find_map(|hidden_surfaces| {
-                    let way = Configuration::new(hidden_surfaces, Kernel::fastest());
+                    let way = Configuration::new(hidden_surfaces, Kernel::default());
                     let mut drawn = match draw(record, way) {
                         Ok(drawn) => drawn,
                         Err(stray) => return Some(format!("{way}: {stray}")),

@@ -131,7 +131,7 @@ fn ports(group: &mut Group, random: &mut Random, out: Out<'_>) {
     }
     let mut shown = vec![0; Vga::SHOWN];
     vga.scan_out(&mut shown);
-    let scanned = shown.iter().zip(colors.iter().cycle()).all(|(is, color)| *is == color.to_u32());
+    let scanned = shown.iter().zip(colors.iter().cycle()).all(|(is, color)| *is == u32::from(*color));
     group.check(scanned && vga.palette().colors() == &colors, || "p1 the picture is not in the DAC's colours".into());
     let set = Palette::from_colors(colors);
     vga.set_palette(&set);

@@ -142,7 +142,7 @@ fn facing(random: &mut Random) -> Option<(Scene, Ramp)> {
     let first = random.below(256) as u8;
     let ramp = Ramp::new(first, 1 + random.below(256 - u32::from(first)) as u16)?;
     scene.objects_mut()[0].pivot = Vec3::ZERO;
-    scene.objects_mut()[0].materials = vec![Material { ramp: RampChoice::Entries(ramp), ..Material::white() }];
+    scene.objects_mut()[0].materials = vec![Material { ramp: RampChoice::Entries(ramp), ..Material::default() }];
     Some((scene, ramp))
 }
 

@@ -55,7 +55,7 @@ fn turned(angles: [f64; 3]) -> [[f64; 3]; 3] {
 
 /// The matrix of the 16.16 path; the angles are in 65,536ths of a turn.
 fn integer_turn(steps: [f64; 3]) -> [[f64; 3]; 3] {
-    let rows = integer::turn(steps.map(|steps| BinaryAngle::from_bits(steps as u16)));
+    let rows = integer::turn(steps.map(|steps| BinaryAngle::from(steps as u16)));
     rows.map(|row| row.map(|c: I16F16| f64::from(c.to_bits()) / 65_536.0))
 }
 

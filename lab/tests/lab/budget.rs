@@ -242,7 +242,7 @@ fn r12_neighbours_on_different_shadings_leave_no_crack() {
         for max_error in [8.0, 4.0, 1.5] {
             let (within_budget, of_budget) = cover(within(max_error), &scene);
             tried.add(1);
-            let is_mixed = of_budget.shares.iter().filter(|(_, triangles)| *triangles > 0).count() > 1;
+            let is_mixed = of_budget.shares.into_iter().filter(|(_, triangles)| *triangles > 0).count() > 1;
             mixed += u64::from(is_mixed);
             let differ = drawn.iter().zip(&within_budget).filter(|(a, b)| a != b).count();
             assert_eq!(differ, 0, "{name} within {max_error}: pixels drawn by one alone");
@@ -265,13 +265,13 @@ fn shares_are_of_all_triangles() {
     for (name, scene) in scenes::all() {
         for mut renderer in [Renderer::new(), within(4.0), within(0.3)] {
             let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
-            let shared: u64 = stats.shares.iter().map(|(_, triangles)| triangles).sum();
+            let shared: u64 = stats.shares.into_iter().map(|(_, triangles)| triangles).sum();
             assert_eq!(shared, stats.drawn, "{name}: {stats}");
         }
         let mut flat = Renderer::new();
         flat.settings.accuracy = Some(Shading::Flat.into());
         let stats = flat.draw(&scene, &mut Vga::new()).expect("a legal scene");
-        assert_eq!(stats.shares.of(Shading::Flat), stats.drawn, "{name}");
+        assert_eq!(stats.shares[Shading::Flat], stats.drawn, "{name}");
     }
 }
 
@@ -312,7 +312,11 @@ fn a_wider_budget_lights_fewer_pixels() {
     for (name, scene) in scenes::all() {
         let lit = BUDGETS.map(|max_error| {
             let shares = within(max_error).draw(&scene, &mut Vga::new()).expect("a legal scene").shares;
-            shares.iter().filter(|(shading, _)| shading.lights_pixels()).map(|(_, triangles)| triangles).sum::<u64>()
+            shares
+                .into_iter()
+                .filter(|(shading, _)| shading.lights_pixels())
+                .map(|(_, triangles)| triangles)
+                .sum::<u64>()
         });
         assert!(lit.is_sorted(), "{name}: {lit:?}");
     }
@@ -331,7 +335,7 @@ fn the_budget_is_the_renderers_or_the_scenes() {
     assert_eq!(renderer.settings.accuracy.replace(Shading::Phong.into()), Some(Accuracy::WithinError(5.0)));
     assert_eq!(drawn_by(&renderer), Accuracy::Shading(Shading::Phong));
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
-    assert_eq!((stats.max_error, stats.shares.of(Shading::Phong)), (None, stats.drawn));
+    assert_eq!((stats.max_error, stats.shares[Shading::Phong]), (None, stats.drawn));
     for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         let drawn = within(wrong).draw(&scene, &mut Vga::new());
         assert!(matches!(drawn, Err(RenderError::Preferences(_))), "{wrong}");
@@ -390,7 +394,7 @@ fn integers_know_no_budget() {
     renderer.settings.vertex_path = VertexPath::Integer;
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     assert_eq!(stats.max_error, None);
-    assert_eq!(stats.shares.of(Shading::Gouraud88Reseeded), stats.drawn);
+    assert_eq!(stats.shares[Shading::Gouraud88Reseeded], stats.drawn);
     assert_eq!(renderer.plan().objects()[0].max_error(), None);
 }
 
@@ -402,7 +406,7 @@ fn approximations_are_counted_apart() {
         for max_error in [16.0, 4.0, 1.0] {
             let mut renderer = within(max_error);
             let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
-            counts.iter_mut().for_each(|(shading, count)| *count += stats.shares.of(*shading));
+            counts.iter_mut().for_each(|(shading, count)| *count += stats.shares[*shading]);
             for row in renderer.rows(&scene) {
                 for shading in FaceShading::ALL {
                     let said = row.reason.matches(&format!(" {shading} (")).count();

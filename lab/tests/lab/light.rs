@@ -37,7 +37,7 @@ fn shade(normal: Vec3, material: Material, ambient: f32, lights: &[Light]) -> U8
 }
 
 fn material(ambient: f32, diffuse: f32) -> Material {
-    Material { ambient, diffuse, ..Material::white() }
+    Material { ambient, diffuse, ..Material::default() }
 }
 
 #[test]
@@ -159,7 +159,7 @@ fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
         scene.ambient = 0.5;
         let object = scene.add(Object::new(mesh));
         let shininess = random.one_of(&[1.0, 8.0, 60.0]);
-        let material = Material { ambient: 0.25, diffuse: 0.5, specular: 0.5, shininess, ..Material::white() };
+        let material = Material { ambient: 0.25, diffuse: 0.5, specular: 0.5, shininess, ..Material::default() };
         scene[object].materials = vec![material.clone()];
         for _ in 0..random.within(1, 3) {
             let middle = (corners[0] + corners[1] * 2.0 + corners[2]) / 4.0;
@@ -231,7 +231,7 @@ fn n5_lights_from_any_direction_on_three_channels() {
         let object = scene.add(Object::new(mesh));
         let color = [0.9, 0.5, 0.7];
         scene[object].materials =
-            vec![Material { ambient: 0.2, diffuse: 0.8, color, ramp: RampChoice::Nearest, ..Material::white() }];
+            vec![Material { ambient: 0.2, diffuse: 0.8, color, ramp: RampChoice::Nearest, ..Material::default() }];
         scene.ambient = 0.5;
         let wild = [f32::MAX, f32::MIN, 1.0, -1.0, 1e30, -1e30, 0.0, f32::MIN_POSITIVE];
         let shares = [1.0, -1.0, 0.0, -0.0, 1e-30, -0.5, f32::MIN_POSITIVE];

@@ -113,7 +113,7 @@ fn f5_broken_records_are_refused_by_their_line() {
         .palette
         .colors()
         .chunks(8)
-        .map(|eight| eight.iter().map(|color| format!("{:06x} ", color.to_u32())).collect::<String>() + "\n");
+        .map(|eight| eight.iter().map(|color| format!("{:06x} ", color)).collect::<String>() + "\n");
     let text = SMALL.replace("triangles", &format!("palette 3\n{}triangles", ramps.collect::<String>()));
     let error = Record::read(text.as_bytes()).expect_err("three ramps").to_string();
     assert_eq!(error, "line 6: a palette has 0, 1, 2, 4 … 256 ramps, not 3");

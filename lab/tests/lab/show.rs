@@ -220,7 +220,7 @@ fn show_pixels_are_16_times_enlarged_and_have_their_colour() {
             let due = match right.writes()[y * right.width() + x] {
                 0 => empty,
                 _ => {
-                    let color = comparison.palette.on_dac().color(right.pixels()[y * right.width() + x]);
+                    let color = comparison.palette.on_dac()[right.pixels()[y * right.width() + x]];
                     [color.r, color.g, color.b]
                 }
             };

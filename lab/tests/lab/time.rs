@@ -37,8 +37,7 @@ fn from_orthonormal(matrix: Mat3) -> f32 {
 /// The matrix of the integer path, whose angles are the nearest 65,536ths of a turn. A number of 16.16
 /// up to 1 is an f32.
 fn turn_in_16_16(angles: [f64; 3]) -> Mat3 {
-    let steps =
-        angles.map(|angle| BinaryAngle::from_bits(((angle / TAU).rem_euclid(1.0) * 65_536.0).round() as u32 as u16));
+    let steps = angles.map(|angle| BinaryAngle::from(((angle / TAU).rem_euclid(1.0) * 65_536.0).round() as u32 as u16));
     Mat3::from_cols_array_2d(&integer::turn(steps).map(|row| row.map(|c| c.to_bits() as f32 / 65_536.0)))
 }
 

@@ -32,7 +32,7 @@ fn scene(side: u32, mesh: Mesh) -> Scene {
     let mut scene = Scene::new();
     scene.camera = camera(side);
     let object = scene.add(Object::new(mesh));
-    scene[object].materials[0] = Material { ambient: 0.0, diffuse: 1.0, ..Material::white() };
+    scene[object].materials[0] = Material { ambient: 0.0, diffuse: 1.0, ..Material::default() };
     scene
 }
 
@@ -142,7 +142,7 @@ fn a_lamp_falls_off_and_shines_aslant() {
 fn a_highlight_straight_ahead() {
     let mut scene = scene(64, square(4.0));
     scene.add_light(Light::sun([0.0, 0.0, 2.0]));
-    let shiny = Material { ambient: 0.0, diffuse: 0.0, specular: 0.5, shininess: 4.0, ..Material::white() };
+    let shiny = Material { ambient: 0.0, diffuse: 0.0, specular: 0.5, shininess: 4.0, ..Material::default() };
     scene.objects_mut()[0].materials[0] = shiny;
     // The ray through the pixel right and below of the middle is at ±1/16, and its cosine to the normal squared
     // is 16 / (16 + 2/256).

@@ -400,8 +400,8 @@ fn the_probe_shows_what_is_drawn() {
             scene.preferences.dither = false;
             for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
                 *material = Material { texture: None, environment: None, ..material.clone() };
-                material.ramp = Material::white().ramp;
-                material.blend = Material::white().blend;
+                material.ramp = Material::default().ramp;
+                material.blend = Material::default().blend;
             }
             renderer.draw(&scene, &mut vga).expect("a legal scene");
             (vga.pixels().to_vec(), renderer.plan().is_on_anywhere(Effect::RgbChannels))
@@ -515,7 +515,7 @@ fn triangle(corners: [([f64; 2], f64, f64); 3], near: f32) -> Scene {
     let normal = |(_, _, i): ([f64; 2], f64, f64)| Vec3::new(f64::sqrt(1.0 - i * i) as f32, 0.0, i as f32);
     let mesh = Mesh::with_normals(corners.map(position).to_vec(), corners.map(normal).to_vec(), vec![[0, 1, 2]]);
     let object = scene.add(Object::new(mesh.expect("a mesh")));
-    scene[object].materials[0] = Material { ambient: 0.0, diffuse: 1.0, ..Material::white() };
+    scene[object].materials[0] = Material { ambient: 0.0, diffuse: 1.0, ..Material::default() };
     scene.add_light(Light::sun([0.0, 0.0, 1.0]));
     scene
 }
@@ -555,7 +555,7 @@ fn n7_a_highlight_inside_a_face_against_the_truth() {
     let mut scene = Scene::new();
     let wall = scene.add(Object::new(shapes::wall(1, 1)));
     scene[wall].materials[0] =
-        Material { ambient: 0.1, diffuse: 0.2, specular: 0.6, shininess: 60.0, ..Material::white() };
+        Material { ambient: 0.1, diffuse: 0.2, specular: 0.6, shininess: 60.0, ..Material::default() };
     scene.add_light(Light::sun([0.2, 0.1, 1.0]));
     for angle in [0.0, 0.05, 0.1, 0.15] {
         scene[wall].angles = [0.5 * angle, angle, 2.0 * angle].map(Angle::from_radians);

@@ -39,7 +39,7 @@ fn run(words: &str) -> bool {
             Some(("step", number)) if number.parse().is_ok_and(|number: u64| number > 0) => {
                 step = number.parse().unwrap_or(1);
             }
-            Some(("kernel", name)) => match Kernel::by_name(name) {
+            Some(("kernel", name)) => match name.parse::<Kernel>() {
                 Ok(kernel) => kernels = [kernel].into(),
                 Err(error) => {
                     system::print(&format!("{name}: {error}\n"));

@@ -147,7 +147,7 @@ impl<D: Cell> Raster<'_, D> {
     /// use mode13h::fixed::{I24F8, U8F8};
     /// use mode13h::raster::{Frame, Raster, Interpolation, Vertex, scan_line};
     ///
-    /// let at = |x, y, depth| Vertex::new(I24F8::from_pixels(x), I24F8::from_pixels(y), U8F8::default(), depth);
+    /// let at = |x, y, depth| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::default(), depth);
     /// let faces = [
     ///     ([at(0, 0, 500)?, at(4, 0, 500)?, at(0, 4, 500)?], Interpolation::Flat(1)),
     ///     ([at(4, 0, 900)?, at(4, 4, 900)?, at(0, 0, 100)?], Interpolation::Flat(2)), // through the first

@@ -15,7 +15,6 @@ use super::object::Objects;
 use super::value::{Background, FileName, List, OneOrThree};
 use super::{SceneErrorKind, motion};
 use crate::light::Light;
-use crate::palette::Palette;
 use crate::scene::framing::{Swept, Turning};
 use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Preferences, Scene};
 
@@ -114,7 +113,7 @@ impl<'a> Builder<'a> {
         let color = match (fog_color, self.scene.background_color) {
             (Some(color), _) => color.rgb(),
             (None, Some(color)) => color,
-            (None, None) => Palette::color(&palette, self.scene.background),
+            (None, None) => palette[self.scene.background],
         };
         let fog = Fog { color, start: start.map_or(0.0, |start| start.0), end: end.get_ref().0 };
         if fog.end <= fog.start {

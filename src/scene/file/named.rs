@@ -84,9 +84,9 @@ impl<'a> Named<'a> {
         if let Some(known) = self.textures.get(&path) {
             return Ok(known.clone());
         }
-        let texture = match Texture::by_name(&name.get_ref().0) {
-            Some(builtin) => builtin,
-            None => {
+        let texture = match name.get_ref().0.parse() {
+            Ok(builtin) => builtin,
+            Err(_) => {
                 let bytes = self.bytes(&path, name, LONGEST_TEXTURE)?;
                 texture::decode(Cursor::new(bytes)).map_err(|kind| {
                     Fault::of(name.span(), SceneErrorKind::Texture(LoadError { path: path.clone(), kind }))

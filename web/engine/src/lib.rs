@@ -109,7 +109,7 @@ extern "C" fn about() {
         "shadings": mode13h::render::Shading::ALL.map(mode13h::render::Shading::name),
         "levels": levels.collect::<Value>(),
         "notTaken": format!("#{:06x}", error_levels::NOT_TAKEN),
-        "kernel": mode13h::span::Kernel::fastest().name(),
+        "kernel": mode13h::span::Kernel::default().name(),
         "version": env!("CARGO_PKG_VERSION"),
     });
     say(as_text(&about));

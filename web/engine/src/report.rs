@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 /// The counts of a frame.
 pub(crate) fn counts(stats: &Stats) -> Value {
-    let shares: Vec<Value> = stats.shares.iter().map(|(shading, faces)| json!([shading.name(), faces])).collect();
+    let shares: Vec<Value> = stats.shares.into_iter().map(|(shading, faces)| json!([shading.name(), faces])).collect();
     json!({
         "shading": stats.shading.name(), "maxError": stats.max_error, "hidden": stats.hidden_surfaces.name(),
         "kernel": stats.kernel, "redrawn": stats.redrawn, "faces": stats.faces, "drawn": stats.drawn,
@@ -32,7 +32,7 @@ pub(crate) fn plan(rows: &[Row]) -> Value {
 pub(crate) fn pixel(renderer: &mut Renderer, scene: &Scene, x: u32, y: u32) -> Result<Value, String> {
     let pixel = explain::pixel(renderer, scene, Screen::MODE_13H, x, y).map_err(|error| error.to_string())?;
     let mut account = json!({
-        "x": x, "y": y, "byte": pixel.byte, "color": format!("#{:06x}", pixel.color.to_u32()), "text": pixel.to_string(),
+        "x": x, "y": y, "byte": pixel.byte, "color": format!("#{:06x}", pixel.color), "text": pixel.to_string(),
         "shading": pixel.shading.name(),
     });
     if let Some(seen) = pixel.seen.last() {

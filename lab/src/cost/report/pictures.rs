@@ -20,9 +20,9 @@ pub(super) fn frame(greys: &[u8]) -> Option<String> {
 
 /// An error map in the colours of its levels, as a URI.
 pub(super) fn error_map(errors: &[f32]) -> Option<String> {
-    let mut colors = [Rgb::from_u32(NOT_TAKEN); 256];
+    let mut colors = [Rgb::from(NOT_TAKEN); 256];
     for (color, level) in colors.iter_mut().zip(LEVELS) {
-        *color = Rgb::from_u32(level.color);
+        *color = Rgb::from(level.color);
     }
     let bytes: Vec<u8> = errors.iter().map(|&error| index_of(error)).collect();
     uri(&bytes, colors)

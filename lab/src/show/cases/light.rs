@@ -31,7 +31,7 @@ pub(super) fn scene(mesh: Option<Mesh>, view: View) -> Scene {
     };
     if let Some(mesh) = mesh {
         let mut object = Object::new(mesh);
-        object.materials = vec![Material { ambient: 0.0, diffuse: 1.0, ..Material::white() }];
+        object.materials = vec![Material { ambient: 0.0, diffuse: 1.0, ..Material::default() }];
         scene.add(object);
     }
     scene

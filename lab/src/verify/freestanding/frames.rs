@@ -40,7 +40,7 @@ impl Frames {
 /// ```
 /// use mode13h::span::Kernel;
 /// use mode13h_lab::verify::{Frames, frames};
-/// assert_eq!(frames(Kernel::fastest()), Frames::EXPECTED);
+/// assert_eq!(frames(Kernel::default()), Frames::EXPECTED);
 /// ```
 #[must_use]
 pub fn frames(kernel: Kernel) -> Frames {

@@ -371,7 +371,7 @@ pub fn words(bytes: &[u8]) {
         Ok(shading) => assert_eq!(shading.name(), words),
         Err(error) => assert_one_line(&error.to_string()),
     }
-    match Kernel::by_name(&words) {
+    match words.parse::<Kernel>() {
         Ok(kernel) => assert_eq!(kernel.name(), words),
         Err(error) => assert_one_line(&error.to_string()),
     }
@@ -433,7 +433,7 @@ pub fn texture(bytes: &[u8]) {
 pub fn gif(bytes: &[u8]) {
     let [width, height, rate, pixels @ ..] = bytes else { return };
     let [width, height] = [width, height].map(|side| 1 + usize::from(*side) % 12);
-    let rate = FrameRate::new(1.0 + f64::from(*rate) % 50.0).expect("1 to 50 a second");
+    let rate = FrameRate::try_from(1.0 + f64::from(*rate) % 50.0).expect("1 to 50 a second");
     let colors = |number: u8| -> [Rgb; 256] {
         core::array::from_fn(|i| {
             let i = i as u8;
@@ -453,7 +453,7 @@ pub fn gif(bytes: &[u8]) {
     }
     let mut film = GifWriter::new(Vec::new(), Scale::One, rate);
     for (palette, pixels) in &frames {
-        let picture = Picture { pixels, width, height, pitch: width, palette, shape: PixelShape::SQUARE };
+        let picture = Picture { pixels, width, height, pitch: width, palette, shape: PixelShape::default() };
         film.add(&picture).expect("a legal picture");
     }
     let (file, _) = film.finish().expect("a vector takes all");

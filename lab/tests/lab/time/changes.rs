@@ -21,7 +21,7 @@ use mode13h_lab::explain;
 use crate::support::random::Random;
 
 /// How a renderer is set: what a fresh one is given, so that it draws the same frame.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Settings {
     accuracy: Option<Accuracy>,
     max_time: Option<f32>,
@@ -32,21 +32,6 @@ pub(super) struct Settings {
     hidden_surfaces: Option<HiddenSurfaces>,
     /// For one object or for every object, in the order in which they were forced.
     forced: Vec<(Option<usize>, Effect, Option<bool>)>,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            accuracy: None,
-            max_time: None,
-            mapping: None,
-            mipmaps: None,
-            vertex_path: VertexPath::default(),
-            kernel: Kernel::fastest(),
-            hidden_surfaces: None,
-            forced: Vec::new(),
-        }
-    }
 }
 
 impl Settings {
@@ -145,9 +130,9 @@ pub(super) const CHANGES: &[Change] = &[
             w.scene.remove_light(id);
         }
     }),
-    seen("Scene::light_mut", |w, r| {
+    seen("Scene::index_mut", |w, r| {
         if let Some(&id) = one_of_few(w.scene.light_ids(), r) {
-            *w.scene.light_mut(id).expect("there") = light(r);
+            w.scene[id] = light(r);
         }
     }),
     seen("Scene::remove", |w, r| {
@@ -687,7 +672,7 @@ fn object(random: &mut Random) -> Object {
 }
 
 fn material(random: &mut Random) -> Material {
-    let mut material = Material { ambient: 0.2, diffuse: 0.6, ..Material::white() };
+    let mut material = Material { ambient: 0.2, diffuse: 0.6, ..Material::default() };
     match random.within(0, 5) {
         0 => (material.specular, material.shininess) = (0.5, 8.0),
         1 => material.texture = Some(texture(random)),

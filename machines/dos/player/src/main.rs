@@ -49,7 +49,7 @@ fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static
     const BROKEN: &str = "The scene in this program is broken.\n";
     let bytes = unpack(bytes).ok_or(BROKEN)?;
     let film = Film::read(&bytes).ok_or(BROKEN)?;
-    let kernel = Kernel::by_name("asm").unwrap_or(Kernel::PORTABLE);
+    let kernel = "asm".parse::<Kernel>().unwrap_or(Kernel::PORTABLE);
     let mut player = Player::new(&film, kernel).ok_or(BROKEN)?;
     let mut pixels = vec![0; PIXELS];
     let words = core::str::from_utf8(words).unwrap_or_default();
