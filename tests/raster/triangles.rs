@@ -604,8 +604,8 @@ fn the_last_rows_of_the_largest_frame_are_drawn() {
         let (x, y) = (random.within(0, 1 << 20), random.within(i64::from(FIRST - 8) << 8, 1 << 20));
         vertex(x, y, random.within(0, 0xFF00), random.within(1, u32::MAX.into()))
     };
-    let (mut all, mut all_depths) = (vec![0; side * side], vec![0; side * side]);
-    let (mut band, mut band_depths) = (vec![0; side * side - kept], vec![0; side * side - kept]);
+    let (mut all, mut all_depths) = (vec![0; side * side], vec![0_u32; side * side]);
+    let (mut band, mut band_depths) = (vec![0; side * side - kept], vec![0_u32; side * side - kept]);
     for interpolation in interpolations() {
         for _ in 0..4 {
             let vertices = [(); 3].map(|()| corner(&mut random));

@@ -175,8 +175,14 @@ fn a_part_of_a_larger_frame_is_exported_by_its_pitch() {
 fn a_png_begins_with_these_bytes() {
     let bytes = [7; 258 * 3];
     let palette = palette_of_steps();
-    let picture =
-        Picture { pixels: &bytes, width: 258, height: 3, pitch: 258, palette: &palette, shape: PixelShape::MODE_13H };
+    let picture = Picture {
+        pixels: &bytes,
+        width: 258,
+        height: 3,
+        pitch: 258,
+        palette: &palette,
+        shape: PixelShape { width: 5, height: 6 },
+    };
     let file = Png { scale: Scale::One, rgb: false }.encode(&picture).expect("encoded");
     let heading = b"\x89PNG\r\n\x1A\n\0\0\0\x0DIHDR\0\0\x01\x02\0\0\0\x03\x08\x03\0\0\0";
     assert_eq!(file[..heading.len()], *heading);

@@ -316,7 +316,7 @@ fn one_frame_is_a_film() {
 #[test]
 fn a_film_has_these_bytes() {
     let frame = Given { pixels: vec![0; 258 * 3], width: 258, height: 3, pitch: 258, palette: grey() };
-    let rate = FrameRate::new(1.0).expect("a rate");
+    let rate = FrameRate::try_from(1.0).expect("a rate");
     let (file, _) = write(&[frame.clone(), frame.clone(), frame], Scale::One, rate);
     // 258 = 102h columns, 3 rows.
     assert_eq!(file[..10], *b"GIF89a\x02\x01\x03\0");
