@@ -23,7 +23,7 @@ compiled() {
     needs rustc-web cargo-web rust-web-src rust-web-llvm
     # rust-lld names the linker that belongs to this compiler, and links for all of these processors.
     needs "$(basename "$(readlink /usr/bin/rust-lld)")"
-    local flags="$* -C linker=rust-lld -C linker-flavor=${linker:-ld.lld} -C relocation-model=static"
+    local flags="$* -C linker=rust-lld -C linker-flavor=${linker:-ld.lld} -C relocation-model=${relocation:-static}"
     RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 RUSTFLAGS=$flags /usr/bin/cargo build -q --release \
         --manifest-path "$root/machines/frames/Cargo.toml" --target-dir "$machines" --target "$target" \
         -Z build-std=core,alloc -Z build-std-features=compiler-builtins-mem
@@ -33,6 +33,16 @@ compiled() {
 host() {
     cargo build -q --release --manifest-path "$root/machines/frames/Cargo.toml" --features std --target-dir "$machines"
     "$machines/release/frames" "$@"
+}
+
+# part STEP: the line of every STEP-th frame, drawn on this machine. Where MACHINES_REFERENCE says so, WebAssembly draws it,
+# which has drawn all frames just before, so that nothing need be built for it.
+part() {
+    if [ "${MACHINES_REFERENCE:-}" = wasm ]; then
+        node "$root/machines/wasm/run.mjs" "$machines/wasm32-unknown-unknown/release/frames.wasm" "step=$1" kernel=portable
+    else
+        host "step=$1" kernel=portable
+    fi
 }
 
 # drawn MACHINE STEP COMMAND...: runs the program, which prints a line for each kernel, and prints
@@ -47,7 +57,7 @@ drawn() {
             "$root/lab/src/verify/freestanding/frames.rs")
         expected=$(tr -d _ <<<"${expected,,}")
     else
-        expected=$(host "step=$step" kernel=portable)
+        expected=$(part "$step")
         expected=${expected#*: }
     fi
     then=${EPOCHREALTIME/./}
@@ -59,7 +69,7 @@ drawn() {
         printf '%s, %s: %s, %s, %d.%d s, %s\n' "$machine" "$kernel" "${rest##* }" "${rest%%,*}" \
             $(((now - then) / 1000000)) $(((now - then) / 100000 % 10)) "$verdict"
         then=$now
-    done < <("$@" "step=$step" 2>&1 || echo "the program: failed, with status $?")
+    done < <("$@" "step=$step" "${words[@]}" 2>&1 || echo "the program: failed, with status $?")
     if [ $lines = 0 ]; then
         echo "$machine: nothing was drawn"
         wrong=1
@@ -74,6 +84,8 @@ spans() {
     printf '%s, %s, %d s, %s\n' "$machine" "$said" $((SECONDS - then)) "$verdict"
 }
 
-# The step of a machine: every frame, or what the first argument says.
+# The step of a machine: every frame, or what the first argument says. Words that follow are the program's, such as
+# kernel=portable.
 step=${1:-1}
+words=("${@:2}")
 trap '[ $? = 0 ] && exit $wrong' EXIT

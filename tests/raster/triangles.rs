@@ -590,3 +590,33 @@ fn a_list_is_drawn_as_triangle_by_triangle() {
     }
     assert!(pixels > 100_000, "{pixels}");
 }
+
+/// The last rows of the largest frame are those of a band that holds them alone. A frame has 16 MB and its depths have 64:
+/// offsets that a `usize` of 32 bits holds.
+#[test]
+fn the_last_rows_of_the_largest_frame_are_drawn() {
+    const SIDE: u32 = Frame::MAX_SIDE;
+    const FIRST: u32 = SIDE - 40;
+    assert!(u64::from(SIDE).pow(2) * size_of::<u32>() as u64 <= i32::MAX as u64);
+    let (side, kept) = (SIDE as usize, (FIRST * SIDE) as usize);
+    let mut random = Random::named("the_last_rows_of_the_largest_frame_are_drawn");
+    let corner = |random: &mut Random| {
+        let (x, y) = (random.within(0, 1 << 20), random.within(i64::from(FIRST - 8) << 8, 1 << 20));
+        vertex(x, y, random.within(0, 0xFF00), random.within(1, u32::MAX.into()))
+    };
+    let (mut all, mut all_depths) = (vec![0; side * side], vec![0_u32; side * side]);
+    let (mut band, mut band_depths) = (vec![0; side * side - kept], vec![0_u32; side * side - kept]);
+    for interpolation in interpolations() {
+        for _ in 0..4 {
+            let vertices = [(); 3].map(|()| corner(&mut random));
+            let frame = Frame::new(&mut all, SIDE, SIDE, side).unwrap();
+            let depth = DepthBuffer::new(&mut all_depths, &frame).unwrap();
+            Raster::new(frame).with_depth(depth).triangle(&vertices, interpolation);
+            let frame = Frame::band(&mut band, SIDE, SIDE, side, FIRST..SIDE).unwrap();
+            let depth = DepthBuffer::new(&mut band_depths, &frame).unwrap();
+            Raster::new(frame).with_depth(depth).triangle(&vertices, interpolation);
+        }
+    }
+    assert!(all[kept..] == band && all_depths[kept..] == band_depths);
+    assert!(band[side * 39..].iter().any(|&byte| byte != 0), "nothing is in the last row");
+}

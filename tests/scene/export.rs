@@ -170,6 +170,43 @@ fn a_part_of_a_larger_frame_is_exported_by_its_pitch() {
     assert_eq!(decoded.density, Some((1, 1)));
 }
 
+/// A file is the same on a machine that has the high byte of a number first in memory.
+#[test]
+fn a_png_begins_with_these_bytes() {
+    let bytes = [7; 258 * 3];
+    let palette = palette_of_steps();
+    let picture = Picture {
+        pixels: &bytes,
+        width: 258,
+        height: 3,
+        pitch: 258,
+        palette: &palette,
+        shape: PixelShape { width: 5, height: 6 },
+    };
+    let file = Png { scale: Scale::One, rgb: false }.encode(&picture).expect("encoded");
+    let heading = b"\x89PNG\r\n\x1A\n\0\0\0\x0DIHDR\0\0\x01\x02\0\0\0\x03\x08\x03\0\0\0";
+    assert_eq!(file[..heading.len()], *heading);
+    let chunk = |name: &[u8]| {
+        let at = file.windows(4).position(|four| four == name).expect("a chunk");
+        &file[at - 4..]
+    };
+    // Pixels of 5:6 lie 6:5 as densely; then the check of the chunk.
+    assert_eq!(chunk(b"pHYs")[..17], *b"\0\0\0\x09pHYs\0\0\0\x06\0\0\0\x05\0");
+    assert_eq!(chunk(b"PLTE")[..14], *b"\0\0\x03\0PLTE\0\x01\x02\x01\x02\x03");
+    assert_eq!(chunk(b"IEND"), b"\0\0\0\0IEND\xAEB\x60\x82");
+}
+
+/// The largest picture in three planes or in true colour has an offset for each byte on a machine of 32 bits.
+#[test]
+fn the_largest_picture_has_offsets_of_32_bits() {
+    assert!(3 * u64::from(MAX_SIDE).pow(2) + 1_000_000 <= i32::MAX as u64);
+}
+
+/// A palette whose entry i is (i, i + 1, i + 2).
+fn palette_of_steps() -> [Rgb; 256] {
+    core::array::from_fn(|i| Rgb::new(i as u8, (i + 1) as u8, (i + 2) as u8))
+}
+
 #[test]
 fn pictures_whose_sizes_do_not_fit_are_refused() {
     let palette = Palette::default();

@@ -312,6 +312,23 @@ fn one_frame_is_a_film() {
     }
 }
 
+/// A file is the same on a machine that has the high byte of a number first in memory.
+#[test]
+fn a_film_has_these_bytes() {
+    let frame = Given { pixels: vec![0; 258 * 3], width: 258, height: 3, pitch: 258, palette: grey() };
+    let rate = FrameRate::try_from(1.0).expect("a rate");
+    let (file, _) = write(&[frame.clone(), frame.clone(), frame], Scale::One, rate);
+    // 258 = 102h columns, 3 rows.
+    assert_eq!(file[..10], *b"GIF89a\x02\x01\x03\0");
+    let at = |bytes: &[u8]| file.windows(bytes.len()).position(|part| part == bytes);
+    // It stands for 300 = 12Ch hundredths of a second; the image has 102h columns and 3 rows, too.
+    let control = at(b"!\xF9\x04").expect("a delay");
+    assert_eq!(file[control + 4..control + 6], *b"\x2C\x01");
+    let image = at(b",\0\0\0\0").expect("an image");
+    assert_eq!(file[image + 5..image + 9], *b"\x02\x01\x03\0");
+    assert!(file.ends_with(b";"));
+}
+
 /// Of few indices, so that the encoder's codes begin short.
 #[test]
 fn frames_of_few_colors() {

@@ -101,8 +101,16 @@ fn mesh_bytes(parts: &FixedMeshParts<'_, u32>) -> Result<Vec<u8>, String> {
     out.word(has_surfaces.into());
     out.vectors(parts.positions);
     out.vectors(parts.normals);
-    let index = |&index: &u32| u16::try_from(index).map_err(|_| "a mesh has more than 65,536 vertices");
-    out.shorts(&parts.triangles.iter().flatten().map(index).collect::<Result<Vec<_>, _>>()?);
+    let mut before = [0; 3];
+    let mut steps = Vec::with_capacity(3 * parts.triangles.len());
+    for triangle in parts.triangles {
+        for (&index, before) in triangle.iter().zip(&mut before) {
+            let index = u16::try_from(index).map_err(|_| "a mesh has more than 65,536 vertices")?;
+            steps.push(index.wrapping_sub(*before));
+            *before = index;
+        }
+    }
+    out.shorts(&steps);
     out.0.extend(parts.twins.iter().flat_map(|word| word.to_le_bytes()));
     if has_surfaces {
         out.shorts(parts.vertex_surfaces);

@@ -1,11 +1,13 @@
 //! `mode13h dos`: a scene as a program for DOS, which draws it in the mode 13h of a real VGA.
 //!
 //! The program is a header of DOS, a stub of 16 bits, a flat image of the engine for a 386, and a film: one round of the
-//! scene in 16.16 ([`player`]). Stub and image are at hand as bytes, so that no assembler is needed here; their source is
+//! scene in 16.16 ([`player`]), packed ([`unpack`]). Stub and image are at hand as bytes, so that no assembler is needed here; their source is
 //! in `machines/dos`, whose `build` makes the bytes anew.
 
 mod film;
+mod pack;
 mod player;
+mod unpack;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -14,12 +16,14 @@ use clap::Args;
 use mode13h::export;
 use mode13h::hooks;
 use mode13h::palette::{BIOS, Palette};
-use mode13h::render::{HiddenSurfaces, Renderer, Screen, VertexPath};
+use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading, VertexPath};
 
+use self::pack::pack;
 use self::player::{EMPTY, Film, PIXELS, Player, hash};
+use self::unpack::unpack;
 use crate::failure::Failure;
 use crate::input;
-use crate::options::Drawing;
+use crate::options::{Drawing, one_of};
 use crate::output;
 use crate::turntable::Turntable;
 
@@ -54,12 +58,25 @@ pub(crate) struct Options {
     /// The number of frames of a round
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u16).range(1..=1024))]
     frames: u16,
+    /// The shading of every face, of those that integers draw
+    #[arg(long, value_name = "NAME", value_parser = one_of(SHADINGS, Shading::name))]
+    shading: Option<Shading>,
     #[command(flatten)]
     drawing: Drawing,
 }
 
+/// The shadings that a film may have.
+const SHADINGS: [Shading; 6] = [
+    Shading::Flat,
+    Shading::GouraudVintage,
+    Shading::Gouraud88,
+    Shading::Gouraud88Reseeded,
+    Shading::Gouraud1616,
+    Shading::GouraudHyperbolic,
+];
+
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, out, force, frames, drawing } = options;
+    let Options { input, out, force, frames, shading, drawing } = options;
     let kernel = drawing.kernel()?;
     let name = input::name_of(input);
     let out = match out {
@@ -73,11 +90,16 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut stage = drawing.stage(drawing.input(input)?)?;
     let mut renderer = Renderer::new();
     renderer.settings.kernel = kernel;
+    renderer.settings.accuracy = shading.map(Into::into);
     let (film, vertices) = film_of(&mut stage, &mut renderer, *frames)?;
-    let body = body(&film, vertices)?;
+    let packed = pack(&film);
+    let body = body(&packed, film.len(), vertices)?;
     let is_floppy = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("img"));
     let program = if is_floppy { floppy(&body) } else { program(&body) };
-    let sum = hash_of(&film).ok_or_else(|| Failure::words("a mesh of the scene is not sound in 16.16"))?;
+    // What is drawn is what the program unpacks.
+    let sum = unpack(&packed)
+        .and_then(|film| hash_of(&film))
+        .ok_or_else(|| Failure::words("a mesh of the scene is not sound in 16.16"))?;
     output::file(|| export::write_atomically(&out, |file| file.write_all(&program)))?;
     output::print(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
 }
@@ -112,15 +134,16 @@ fn show(stage: &mut Turntable, renderer: &mut Renderer, number: u16, frames: u16
     }
 }
 
-/// Stub, image and film, as they are in memory.
-fn body(film: &[u8], vertices: usize) -> Result<Vec<u8>, Failure> {
+/// Stub, image and packed film, as they are in memory. The film has so many bytes when unpacked.
+fn body(film: &[u8], unpacked: usize, vertices: usize) -> Result<Vec<u8>, Failure> {
     let mut body = PLAYER.to_vec();
     body.resize(body.len().next_multiple_of(16), 0);
     let start = body.len();
     body.extend(film);
     body.resize(body.len().next_multiple_of(16), 0);
-    // The film's lists may be copied as they grow; a vertex takes less than 64 bytes.
-    let heap = 4 * film.len() + 5 * PIXELS + 64 * vertices + 65_536;
+    // The film is unpacked, and its meshes are taken apart with two copies of their indices. A vertex takes less than 64
+    // bytes.
+    let heap = 4 * unpacked + 5 * PIXELS + 64 * vertices + 65_536;
     if body.len() > MAX_SIZE {
         let line = format!("the program would have {} bytes, and DOS has room for {MAX_SIZE}", body.len());
         return Err(Failure::words(line));
@@ -211,10 +234,23 @@ mod tests {
         }
     }
 
+    /// Every shipped scene is a program of at most 200 kB, whose film is unpacked to the byte.
+    #[test]
+    fn shipped_scenes_are_small() {
+        for shipped in &shipped::ALL {
+            let Ok(loaded) = shipped.load() else { panic!("{}", shipped.name) };
+            let (film, vertices) = film_of(&mut Turntable::of_scene(loaded.scene), &mut Renderer::new(), 128).unwrap();
+            let packed = pack(&film);
+            assert!(unpack(&packed) == Some(film.clone()), "{}", shipped.name);
+            let size = program(&body(&packed, film.len(), vertices).unwrap()).len();
+            assert!(size <= 200_000, "{}: {size} bytes", shipped.name);
+        }
+    }
+
     /// DOS and the boot sector load all that there is, and what DOS cannot load is refused.
     #[test]
     fn headers_say_what_follows() {
-        let bytes = body(b"a film", 3).unwrap();
+        let bytes = body(b"a film", 6, 3).unwrap();
         let table = |i: usize| u32::from_le_bytes(bytes[TABLE + 4 * i..][..4].try_into().unwrap()) as usize;
         assert_eq!(bytes[table(0)..][..table(1)], *b"a film");
         assert!(table(2) == bytes.len() + STACK && table(3) * 1024 > 5 * PIXELS);
@@ -229,7 +265,29 @@ mod tests {
         assert_eq!((floppy.len(), &floppy[510..512]), (1_474_560, &[0x55, 0xAA][..]));
         assert!(floppy[512..].starts_with(&bytes));
         assert_eq!(usize::from(u16::from_le_bytes([floppy[4], floppy[5]])), bytes.len().div_ceil(512));
-        assert!(body(&vec![0; MAX_SIZE], 0).is_err());
+        assert!(body(&vec![0; MAX_SIZE], 0, 0).is_err());
+    }
+
+    /// A film has each of its shadings, and there is no other that integers draw.
+    #[test]
+    fn every_shading_of_integers_is_drawn() {
+        assert!(Shading::ALL.into_iter().filter(|shading| shading.in_integers() == *shading).eq(SHADINGS));
+        let mut stage = Turntable::of_scene(shipped::ALL[0].load().unwrap().scene);
+        let (mut pixels, mut vga) = (vec![0; PIXELS], Vga::new());
+        let mut hashes = Vec::new();
+        for shading in SHADINGS {
+            let mut renderer = Renderer::new();
+            renderer.settings.accuracy = Some(shading.into());
+            let (film, _) = film_of(&mut stage, &mut renderer, 1).unwrap();
+            let read = Film::read(&film).unwrap();
+            Player::new(&read, mode13h::span::Kernel::PORTABLE).unwrap().draw(0, &mut pixels).unwrap();
+            renderer.draw(&stage.scene, &mut vga).unwrap();
+            assert!(pixels == *vga.pixels(), "{shading}");
+            hashes.push(hash(EMPTY, &pixels));
+        }
+        // On this torus, spans are too short for 8.8 to drift and to be started anew.
+        hashes.dedup();
+        assert_eq!(hashes.len(), 5, "{hashes:x?}");
     }
 
     #[test]

@@ -7,7 +7,7 @@
 //! MAGIC, index of the shading, meshes, frames
 //! 768 bytes: the DAC, 256 entries of three times 6 bits
 //! a mesh: vertices, triangles, closed, words of twins, surfaces given (0 or 1)
-//!     positions, normals (16.16); indices (u16); twins (u64);
+//!     positions, normals (16.16); indices (u16), less those of the triangle before; twins (u64);
 //!     if surfaces are given: of each vertex, of each triangle (u16)
 //! a frame: bytes that follow, background, depth-tested
 //!     eye, target, up, near, focal lengths (16.16)
@@ -17,6 +17,7 @@
 //! ```
 
 use alloc::vec::Vec;
+use core::array::from_fn;
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
     Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Shading, Sun, Vector, VertexStage,
@@ -27,7 +28,7 @@ use mode13h::raster::{DepthBuffer, Frame, Raster};
 use mode13h::span::Kernel;
 
 /// First bytes of a film: its version is the last of them.
-pub(crate) const MAGIC: u32 = u32::from_le_bytes(*b"M13\x01");
+pub(crate) const MAGIC: u32 = u32::from_le_bytes(*b"M13\x02");
 
 /// Pixels of a frame.
 pub(crate) const PIXELS: usize = 320 * 200;
@@ -62,9 +63,13 @@ impl<'a> Input<'a> {
     }
 
     fn vectors(&mut self, count: usize) -> Option<Vec<Vector>> {
-        // So many bytes are there, before room is made for them.
+        // So many bytes are there, before room is made for them, and no more room than that.
         let mut bytes = Input(self.bytes(count.checked_mul(12)?)?);
-        (0..count).map(|_| bytes.vector()).collect()
+        let mut vectors = Vec::with_capacity(count);
+        for _ in 0..count {
+            vectors.push(bytes.vector()?);
+        }
+        Some(vectors)
     }
 
     fn shorts(&mut self, count: usize) -> Option<Vec<u16>> {
@@ -90,7 +95,15 @@ impl Numbers {
         Some(Self {
             positions: input.vectors(vertices)?,
             normals: input.vectors(vertices)?,
-            triangles: input.shorts(triangles.checked_mul(3)?)?.as_chunks().0.to_vec(),
+            triangles: {
+                let steps = input.shorts(triangles.checked_mul(3)?)?;
+                let mut indices = [0_u16; 3];
+                let triangle = |step: &[u16; 3]| {
+                    indices = from_fn(|i| indices[i].wrapping_add(step[i]));
+                    indices
+                };
+                steps.as_chunks().0.iter().map(triangle).collect()
+            },
             closed: closed? != 0,
             twins: {
                 let bytes = input.bytes(twins?.checked_mul(8)?)?;
@@ -113,7 +126,7 @@ impl Numbers {
     }
 }
 
-/// A film that was read.
+/// A film that was read, from bytes that were unpacked.
 pub(crate) struct Film<'a> {
     shading: Shading,
     /// The DAC: 256 entries of red, green and blue, 6 bits each.

@@ -360,6 +360,8 @@ fn every_command_ends_with_the_status_that_help_names() {
             "dos",
             &[
                 ("dos cube --frames 2 -o CUBE.EXE", 0),
+                ("dos cube --frames 2 --shading flat -o FLAT.EXE", 0),
+                ("dos cube --shading phong -o PHONG.EXE", 2),
                 ("dos cube --frames 0", 2),
                 ("dos bogus", 2),
                 ("dos broken.toml", 2),

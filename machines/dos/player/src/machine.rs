@@ -156,6 +156,37 @@ impl Machine {
         }
     }
 
+    /// Ticks of the timer in a second.
+    pub(crate) const TICKS: u32 = 1_193_182;
+
+    /// Has the timer count down from 65,536, one at a tick.
+    pub(crate) fn start_timer(&mut self) {
+        output(0x43, 0x34);
+        output(0x40, 0);
+        output(0x40, 0);
+    }
+
+    /// Returns whether the clock has begun another second since this was last asked.
+    pub(crate) fn is_second_over(&mut self) -> bool {
+        output(0x70, 0x0C);
+        input(0x71) & 0x10 != 0
+    }
+
+    /// Waits until the clock begins a second; returns the ticks of the timer that took.
+    pub(crate) fn rest_of_second(&mut self) -> u32 {
+        let count = || {
+            output(0x43, 0);
+            u16::from_le_bytes([input(0x40), input(0x40)])
+        };
+        let (mut ticks, mut last) = (0_u32, count());
+        while !self.is_second_over() {
+            let now = count();
+            ticks += u32::from(last.wrapping_sub(now));
+            last = now;
+        }
+        ticks
+    }
+
     /// Writes what the card holds into SCREEN.BIN: the bytes of video memory, then the DAC.
     pub(crate) fn write_screen(&mut self) -> bool {
         const NAME: &[u8] = b"SCREEN.BIN\0";

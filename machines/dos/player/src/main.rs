@@ -4,7 +4,9 @@
 //! | word | what |
 //! |---|---|
 //! | none | the scene, round after round, until Esc |
-//! | `/B` | draws all frames once for their hash, then as many as it can in ten seconds; prints both |
+//! | `/H` | draws all frames once, and prints their hash |
+//! | `/B` | does so, then draws as many as it can in ten seconds, and prints how many a second |
+//! | `/T` | draws all frames once, and prints the time of a frame by the timer |
 //! | `/W n` | shows frame n, and writes what the card then holds into SCREEN.BIN: 64,000 bytes and 768 of the DAC |
 #![no_std]
 #![no_main]
@@ -14,12 +16,15 @@ extern crate alloc;
 #[path = "../../../../cli/src/dos/player.rs"]
 mod film;
 mod machine;
+#[path = "../../../../cli/src/dos/unpack.rs"]
+mod unpack;
 
 use alloc::format;
 use alloc::vec;
 use film::{EMPTY, Film, PIXELS, Player, hash};
 use machine::{Machine, Parameters};
 use mode13h::span::Kernel;
+use unpack::unpack;
 
 /// Called by the stub, which stands before it; returns the status of the program.
 ///
@@ -42,7 +47,8 @@ unsafe extern "C" fn play(parameters: *mut Parameters) -> u32 {
 
 fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static str> {
     const BROKEN: &str = "The scene in this program is broken.\n";
-    let film = Film::read(bytes).ok_or(BROKEN)?;
+    let bytes = unpack(bytes).ok_or(BROKEN)?;
+    let film = Film::read(&bytes).ok_or(BROKEN)?;
     let kernel = "asm".parse::<Kernel>().unwrap_or(Kernel::PORTABLE);
     let mut player = Player::new(&film, kernel).ok_or(BROKEN)?;
     let mut pixels = vec![0; PIXELS];
@@ -66,7 +72,7 @@ fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static
             machine.fade(film.dac, true);
             machine.set_mode(Machine::TEXT);
         }
-        ("/B" | "/b", None) => {
+        ("/H" | "/h" | "/B" | "/b", None) => {
             machine.set_mode(Machine::MODE_13H);
             machine.set_dac(film.dac, 64);
             let mut sum = EMPTY;
@@ -75,6 +81,12 @@ fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static
                 sum = hash(sum, &pixels);
             }
             sum = hash(sum, film.dac);
+            let said = format!("{} frames, {sum:016x}", film.frames());
+            if word.eq_ignore_ascii_case("/H") {
+                machine.set_mode(Machine::TEXT);
+                machine.print(&format!("{said}\n"));
+                return Ok(());
+            }
             // From one change of the clock's second to another, ten seconds later or more.
             let (mut frames, mut seconds) = (0_u32, 0);
             let mut last = machine.seconds();
@@ -89,9 +101,29 @@ fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static
                 last = now;
             }
             machine.set_mode(Machine::TEXT);
-            let tenths = frames * 10 / seconds;
+            let hundredths = frames * 100 / seconds;
+            machine.print(&format!("{said}, {}.{:02} a second\n", hundredths / 100, hundredths % 100));
+        }
+        ("/T" | "/t", None) => {
+            machine.set_mode(Machine::MODE_13H);
+            machine.set_dac(film.dac, 64);
+            machine.start_timer();
+            let mut ticks = 0;
+            for number in 0..film.frames() {
+                machine.rest_of_second();
+                player.draw(number, &mut pixels).ok_or(BROKEN)?;
+                machine.show(&pixels);
+                if machine.is_second_over() {
+                    return Err("A frame takes more than a second.\n");
+                }
+                // A second less what is left of it.
+                ticks += Machine::TICKS - machine.rest_of_second().min(Machine::TICKS);
+            }
+            machine.set_mode(Machine::TEXT);
             let count = film.frames();
-            machine.print(&format!("{count} frames, {sum:016x}, {}.{} a second\n", tenths / 10, tenths % 10));
+            // At most 1,024 frames, so both products are below 2³².
+            let microseconds = ticks / count as u32 * 1000 / (Machine::TICKS / 1000);
+            machine.print(&format!("{count} frames, {microseconds} microseconds each\n"));
         }
         ("/W" | "/w", Some(number)) if number.parse::<usize>().is_ok() => {
             machine.set_mode(Machine::MODE_13H);
@@ -104,7 +136,11 @@ fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static
                 return Err("SCREEN.BIN cannot be written.\n");
             }
         }
-        _ => return Err("Without a word: the scene, until Esc. /B: frames a second. /W n: frame n to SCREEN.BIN.\n"),
+        _ => {
+            return Err(
+                "Without a word: the scene, until Esc. /B: frames a second. /H: hash. /W n: frame n to SCREEN.BIN.\n",
+            );
+        }
     }
     Ok(())
 }
