@@ -600,15 +600,17 @@ fn the_last_rows_of_the_largest_frame_are_drawn() {
     assert!(u64::from(SIDE).pow(2) * size_of::<u32>() as u64 <= i32::MAX as u64);
     let (side, kept) = (SIDE as usize, (FIRST * SIDE) as usize);
     let mut random = Random::named("the_last_rows_of_the_largest_frame_are_drawn");
-    let corner = |random: &mut Random| {
-        let (x, y) = (random.within(0, 1 << 20), random.within(i64::from(FIRST - 8) << 8, 1 << 20));
+    // One corner of each is at the frame's lower edge.
+    let corner = |random: &mut Random, highest: i64| {
+        let (x, y) = (random.within(0, 1 << 20), random.within(highest, 1 << 20));
         vertex(x, y, random.within(0, 0xFF00), random.within(1, u32::MAX.into()))
     };
+    let tops = [FIRST - 8, FIRST - 8, SIDE].map(|row| i64::from(row) << 8);
     let (mut all, mut all_depths) = (vec![0; side * side], vec![0_u32; side * side]);
     let (mut band, mut band_depths) = (vec![0; side * side - kept], vec![0_u32; side * side - kept]);
     for interpolation in interpolations() {
         for _ in 0..4 {
-            let vertices = [(); 3].map(|()| corner(&mut random));
+            let vertices = tops.map(|top| corner(&mut random, top));
             let frame = Frame::new(&mut all, SIDE, SIDE, side).unwrap();
             let depth = DepthBuffer::new(&mut all_depths, &frame).unwrap();
             Raster::new(frame).with_depth(depth).triangle(&vertices, interpolation);
