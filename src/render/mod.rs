@@ -279,7 +279,7 @@ impl Renderer {
     /// let scene = Scene::showing(shapes::torus(48, 24));
     /// let mut renderer = Renderer::new();
     /// let plan = renderer.make_plan(&scene, Screen::MODE_13H)?;
-    /// assert!(plan.is_on(0, Effect::HiddenSurfaces) && !plan.is_on(0, Effect::Fog));
+    /// assert!(plan.objects()[0][Effect::HiddenSurfaces].on && !plan.is_on_anywhere(Effect::Fog));
     /// # Ok::<(), mode13h::render::RenderError>(())
     /// ```
     ///

@@ -215,9 +215,9 @@ impl Vga {
     /// let mut vga = Vga::new();
     /// let before = vga.palette();
     /// vga.cycle(32..56, 1);
-    /// assert_eq!(vga.palette()[33], before.color(32));
-    /// assert_eq!(vga.palette()[32], before.color(55));
-    /// assert_eq!(vga.palette()[56], before.color(56));
+    /// assert_eq!(vga.palette()[33], before[32]);
+    /// assert_eq!(vga.palette()[32], before[55]);
+    /// assert_eq!(vga.palette()[56], before[56]);
     /// ```
     pub fn cycle(&mut self, range: impl RangeBounds<u8>, steps: i32) {
         self.dac.cycle(range, steps);

@@ -21,7 +21,7 @@
 //! ```
 //! use mode13h::palette::file;
 //! let palette = file::parse_named("two.hex", b"000000\r\nff8000\r\n")?;
-//! assert_eq!(palette[1], Rgb::from(0xFF8000));
+//! assert_eq!(palette[1], 0xFF8000.into());
 //!
 //! let error = file::parse(b"JASC-PAL\n0100\n2\n0 0 0\nred 0 0\n").unwrap_err();
 //! assert_eq!(error.to_string(), "line 5: expected three numbers 0 to 255, found \"red 0 0\"");
