@@ -19,6 +19,8 @@ macro_rules! each {
         to
     }};
 }
+#[cfg(feature = "alloc")]
+pub(super) use each;
 
 impl Lanes8 for Portable {
     type F64 = F64;

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::portable::each;
 use super::{Lanes8, Portable};
 use crate::fixed::whole_part;
 
@@ -29,16 +30,6 @@ pub(crate) trait Singles8: Lanes8 {
     fn narrow(self, from: Self::F64) -> Self::F32;
     /// The whole parts of values of at least 0 and below 2³¹; of others some number.
     fn whole(self, from: Self::F64) -> Self::I32;
-}
-
-macro_rules! each {
-    ($lane:ident => $value:expr) => {{
-        let mut to = [Default::default(); 8];
-        for ($lane, to) in to.iter_mut().enumerate() {
-            *to = $value;
-        }
-        to
-    }};
 }
 
 impl Singles8 for Portable {
