@@ -12,7 +12,9 @@ needs() {
     for package; do
         dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
     done
-    [ ${#missing[@]} = 0 ] || apt-get install -q -y --no-install-recommends "${missing[@]}" >&2
+    # Another machine may be installing at this moment.
+    [ ${#missing[@]} = 0 ] ||
+        apt-get -o DPkg::Lock::Timeout=600 install -q -y --no-install-recommends "${missing[@]}" >&2
 }
 
 # compiled TARGET [RUSTFLAGS...]: builds the program for a target with core and alloc, and nothing else. Debian's
