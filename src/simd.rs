@@ -162,18 +162,6 @@ impl Avx2 {
         let found = cfg!(all(target_feature = "avx2", target_feature = "fma", target_feature = "popcnt"));
         found.then_some(Self(()))
     }
-
-    /// Runs `body`, compiled for AVX2: eight f32 or four f64 at a time where SSE2 has half of that. Functions that it
-    /// calls are compiled for AVX2 as far as they are inlined.
-    #[inline(always)]
-    pub(crate) fn run<R>(self, body: impl FnOnce() -> R) -> R {
-        #[target_feature(enable = "avx2")]
-        fn avx2<R>(body: impl FnOnce() -> R) -> R {
-            body()
-        }
-        // SAFETY: the processor has AVX2, says `self`.
-        unsafe { avx2(body) }
-    }
 }
 
 /// Proof that the processor has F, BW, DQ and VL of AVX-512, BMI2 and what [`Avx2`] stands for.
@@ -205,9 +193,8 @@ impl Avx512 {
 
 /// A function that takes a proof and calls another, which is inlined and so compiled for AVX2.
 ///
-/// For results of many bytes, which a closure copies: with [`Avx2::run`] light at every pixel took 12 % more instructions a
-/// frame.
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+/// Where the portable form is another one; [`at_best_level`] is for one form.
+#[cfg(all(feature = "simd", feature = "alloc", target_arch = "x86_64"))]
 macro_rules! compiled_for_avx2 {
     (fn $name:ident $(<const $constant:ident: bool>)? ($($argument:ident: $type:ty),*) -> $result:ty { $body:expr }) => {
         #[inline]
@@ -222,27 +209,35 @@ macro_rules! compiled_for_avx2 {
         }
     };
 }
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(all(feature = "simd", feature = "alloc", target_arch = "x86_64"))]
 pub(crate) use compiled_for_avx2;
 
-/// An expression, compiled for the best level that a kernel may use. What it calls has to be inlined.
+/// A function that is compiled for AVX2, too, and whose kernel says which of both runs.
 ///
-/// A macro, as a closure that is called in two places is inlined in neither.
+/// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }`. What the body calls has to be inlined.
+/// (Not a closure: one of 3,000 instructions was not inlined, and so was compiled for no level.)
 macro_rules! at_best_level {
-    ($kernel:expr, $body:expr) => {{
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        {
-            match $kernel.avx2() {
-                Some(avx2) => avx2.run(|| $body),
-                None => $body,
+    ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
+        ($kernel:ident: $kind:ty, $($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? { $body:expr }) => {
+        $(#[$attribute])*
+        #[cfg_attr(
+            all(feature = "simd", target_arch = "x86_64"),
+            expect(unsafe_code, reason = "code for processors found only when the program runs")
+        )]
+        $visibility fn $name<$($parameters)*>($kernel: $kind, $($argument: $type),*) $(-> $result)? {
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            if $kernel.avx2().is_some() {
+                #[target_feature(enable = "avx2")]
+                fn avx2<$($parameters)*>($($argument: $type),*) $(-> $result)? {
+                    $body
+                }
+                // SAFETY: the processor has AVX2, says the proof.
+                return unsafe { avx2::<$($names)*>($($argument),*) };
             }
-        }
-        #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
-        {
             let _ = $kernel;
             $body
         }
-    }};
+    };
 }
 pub(crate) use at_best_level;
 

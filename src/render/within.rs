@@ -1,7 +1,7 @@
 //! The stage of an object's faces within an error budget: each is drawn by the shading that is decided for it.
 
 use super::Stats;
-use super::budget::{Budget, FLOAT, LINEAR};
+use super::budget::{Budget, FLOAT, Fit, LINEAR};
 use super::clip::WithEffects;
 use super::cull;
 use super::face::{Sink, is_turned_away};
@@ -75,7 +75,8 @@ impl Faces<'_> {
                 } else if is(masks.clipped) {
                     self.clipped_within::<true, EFFECTS>(face, budget, stats, sink)
                 } else {
-                    self.one_within::<EFFECTS>(face, (budget, is(classes.float)), stats, sink)
+                    let error = (!is(classes.float)).then_some(classes.errors[at]);
+                    self.one_within::<EFFECTS>(face, (budget, error), stats, sink)
                 };
                 counts.add(shading, 1);
             }
@@ -87,23 +88,25 @@ impl Faces<'_> {
         counts.add(LINEAR, linear);
     }
 
-    /// A face that bounds alone do not make linear on the screen.
+    /// A face that bounds alone do not make linear on the screen. `error` is its bound, if it is not linear on the face
+    /// either.
     #[inline(never)]
     fn one_within<const EFFECTS: bool>(
         &self,
         face: Face,
-        (budget, is_float): (&Budget, bool),
+        (budget, error): (&Budget, Option<f32>),
         stats: &mut Stats,
         sink: &mut impl Sink,
     ) -> FaceShading {
         let Face { index, indices, surface, back_facing: turned } = face;
         let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
-        let shading = if is_float { FLOAT } else { self.fit(budget, face, &vertices) };
+        let fit = error.map_or(Fit::of(FLOAT), |error| self.fit(budget, (face, error), &vertices));
+        let shading = fit.shading;
         stats.shares.add(shading, 1);
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || shading.lights_pixels() {
             let mut attributes = self.attributes::<EFFECTS>(indices, turned, shading);
             if shading == FaceShading::Quadratic {
-                self.put_curve(&mut attributes, face, &vertices);
+                self.put_curve(&mut attributes, surface, &fit.nodes);
             }
             sink.with_effects(index, &vertices, &attributes, surface, shading);
         } else {

@@ -41,6 +41,13 @@ impl Kernel {
     #[inline]
     #[doc(hidden)]
     pub fn curve(self, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
-        at_best_level!(self, curve_inlined(shades, parabola, least, most));
+        curve_at_best(self, shades, parabola, least, most);
+    }
+}
+
+at_best_level! {
+    #[inline]
+    fn curve_at_best[][](kernel: Kernel, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
+        curve_inlined(shades, parabola, least, most)
     }
 }

@@ -2,8 +2,7 @@
 
 use super::Kernel;
 use crate::lanes::{LANES, Lanes, Points};
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-use crate::simd::compiled_for_avx2;
+use crate::simd::at_best_level;
 
 /// Six numbers at each of eight pixels of a row, from pixel `first` on, each the quotient of two that change
 /// linearly along it:
@@ -105,11 +104,7 @@ impl Kernel {
     #[must_use]
     #[doc(hidden)]
     pub fn numerators(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if let Some(avx2) = self.avx2() {
-            return numerators_avx2(avx2, places, a, da, d, dd);
-        }
-        numerators(places, a, da, d, dd)
+        numerators_at_best(self, places, a, da, d, dd)
     }
 
     /// [`divide`] as the kernel's processor does it best: the same numbers.
@@ -117,11 +112,7 @@ impl Kernel {
     #[must_use]
     #[doc(hidden)]
     pub fn divide(self, numerators: &Numerators) -> Points {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if let Some(avx2) = self.avx2() {
-            return divide_avx2(avx2, numerators);
-        }
-        divide(numerators)
+        divide_at_best(self, numerators)
     }
 
     /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
@@ -129,31 +120,31 @@ impl Kernel {
     #[must_use]
     #[doc(hidden)]
     pub fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-        if let Some(avx2) = self.avx2() {
-            return interpolate_at_avx2(avx2, places, a, da, d, dd);
-        }
-        interpolate_at(places, a, da, d, dd)
+        interpolate_at_best(self, places, a, da, d, dd)
     }
 }
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-compiled_for_avx2! {
-    fn numerators_avx2(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
+at_best_level! {
+    #[inline]
+    fn numerators_at_best[][](
+        kernel: Kernel, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
+    ) -> Numerators {
         numerators_inlined(places, a, da, d, dd)
     }
 }
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-compiled_for_avx2! {
-    fn divide_avx2(numerators: &Numerators) -> Points {
+at_best_level! {
+    #[inline]
+    fn divide_at_best[][](kernel: Kernel, numerators: &Numerators) -> Points {
         divide_inlined(numerators)
     }
 }
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-compiled_for_avx2! {
-    fn interpolate_at_avx2(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+at_best_level! {
+    #[inline]
+    fn interpolate_at_best[][](
+        kernel: Kernel, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
+    ) -> Points {
         interpolate_inlined(places, a, da, d, dd)
     }
 }

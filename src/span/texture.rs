@@ -371,15 +371,22 @@ pub(crate) fn show_estimated(
     let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
     let mut places = [0; PIECE];
     let n = row.len().min(PIECE);
-    if !is_sure
-        || !at_best_level!(kernel, find_places(&mut places[..n.next_multiple_of(LANES)], texels, numerators, [d, dd]))
-    {
+    if !is_sure || !places_at_best(kernel, &mut places[..n.next_multiple_of(LANES)], texels, numerators, [d, dd]) {
         return false;
     }
     for (pixel, place) in row.iter_mut().zip(&places) {
         shown.show(pixel, texels.bytes[usize::from(*place)]);
     }
     true
+}
+
+at_best_level! {
+    #[inline]
+    fn places_at_best[][](
+        kernel: Kernel, places: &mut [u16], texels: Texels<'_>, numerators: [[f64; 2]; 2], divisors: [f64; 2],
+    ) -> bool {
+        find_places(places, texels, numerators, divisors)
+    }
 }
 
 /// The places of the texels, [`Texels::place`]. Returns whether all are sure. What lies beyond the end of a row may be

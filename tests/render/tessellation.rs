@@ -143,15 +143,20 @@ fn r12_creases_are_split_alike_from_both_sides() {
     }
 }
 
-/// A wall of two triangles with a highlight in its middle.
-fn highlight() -> Scene {
-    let mut scene = crate::support::scenes::framed(shapes::wall(1, 1));
+/// A body with a highlight by one light.
+fn lit_by(mesh: Mesh, light: Light, shininess: f32) -> Scene {
+    let mut scene = crate::support::scenes::framed(mesh);
     scene.clear_lights();
-    scene.add_light(Light::sun([0.0, 0.0, 1.0]));
+    scene.add_light(light);
     scene.ambient = 0.0;
-    let material = Material { diffuse: 0.2, specular: 0.8, shininess: 120.0, ..Material::default() };
+    let material = Material { diffuse: 0.2, specular: 0.8, shininess, ..Material::default() };
     scene.objects_mut()[0].materials = vec![material];
     scene
+}
+
+/// A wall of two triangles with a highlight in its middle.
+fn highlight() -> Scene {
+    lit_by(shapes::wall(1, 1), Light::sun([0.0, 0.0, 1.0]), 120.0)
 }
 
 fn middle(scene: &Scene, shading: Shading) -> u8 {
@@ -182,6 +187,19 @@ fn n7_a_highlight_inside_a_face() {
 }
 
 /// N3: normals that point apart at the two ends of an edge.
+/// A highlight splits the faces that it is on, and none on the other side of a sphere.
+#[test]
+fn faces_far_from_a_highlight_are_not_split() {
+    let mut scene = lit_by(shapes::sphere(48, 24), Light::sun([-0.6, 0.3, 0.7]), 100.0);
+    let (whole, _) = triangles(&scene);
+    scene.preferences.tessellation = Some(2.0);
+    let (split, _) = triangles(&scene);
+    assert!(split.len() > whole.len(), "{} of {}", split.len(), whole.len());
+    let right = |corners: &&[Vertex; 3]| corners.iter().all(|corner| point(corner).0 > 200 * 256);
+    assert!(whole.iter().filter(right).count() > 50);
+    assert_eq!(split.iter().filter(right).count(), whole.iter().filter(right).count());
+}
+
 #[test]
 fn n3_opposite_normals_at_two_ends_of_an_edge() {
     // Of none of the ramp's entries.

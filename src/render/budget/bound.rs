@@ -7,6 +7,8 @@
 use super::ranges::{Patches, Sight, each, greater, lesser, square_root};
 use crate::lanes::{LANES, Lanes};
 use crate::light::{Lights, Reflectance};
+use crate::simd::at_best_level;
+use crate::span::Kernel;
 
 /// Greatest number that stands for "no bound": its square is still finite.
 const HUGE: f32 = 1e15;
@@ -236,15 +238,9 @@ fn falling(y: f32) -> f32 {
 type Terms = [Lanes<f32>; 4];
 
 #[inline(always)]
-fn terms(of_lane: impl Fn(usize) -> Term) -> Terms {
-    let mut terms = [[0.0; LANES]; 4];
-    let [errors, ranges, most, least] = &mut terms;
-    let lanes = errors.iter_mut().zip(ranges).zip(most.iter_mut().zip(least)).enumerate();
-    for (lane, ((error, range), (most, least))) in lanes {
-        let term = of_lane(lane);
-        (*error, *range, *most, *least) = (term.error, term.range, term.most, term.least);
-    }
-    terms
+fn put(terms: &mut Terms, lane: usize, term: Term) {
+    let [errors, ranges, most, least] = terms;
+    (errors[lane], ranges[lane], most[lane], least[lane]) = (term.error, term.range, term.most, term.least);
 }
 
 /// The eye of a surface with highlights: their power, where the eye is seen, and what its direction turns by.
@@ -290,15 +286,21 @@ impl<const N: usize> Sums<N> {
         let (normals, below) = (self.normals, self.below);
         let facing = patches.facing(directions);
         let [most, least] = weighted.unwrap_or(facing);
-        let bodies = terms(|lane| body::<WHOLE>(normals[lane], (most[lane], least[lane]), falls[lane], below));
+        // Loops, as closures are not inlined eight times.
+        let mut bodies = Terms::default();
+        for lane in 0..LANES {
+            put(&mut bodies, lane, body::<WHOLE>(normals[lane], (most[lane], least[lane]), falls[lane], below));
+        }
         self.add(&strength.body, &bodies);
         let Some(Eye { lobe, sight, turn }) = eye else { return };
         let turns = each(|lane| turn[lane] + falls[lane].turn);
         let along = patches.mirrored(directions, &sight.directions, &turns);
-        let highlights = terms(|lane| {
-            let along = (along[0][lane], along[1][lane], along[2][lane]);
-            highlight(normals[lane], lobe, along, (facing[0][lane], facing[1][lane]), falls[lane], turn[lane])
-        });
+        let mut highlights = Terms::default();
+        for lane in 0..LANES {
+            let (along, facing) =
+                ((along[0][lane], along[1][lane], along[2][lane]), (facing[0][lane], facing[1][lane]));
+            put(&mut highlights, lane, highlight(normals[lane], lobe, along, facing, falls[lane], turn[lane]));
+        }
         self.add(&strength.highlight, &highlights);
     }
 }
@@ -331,6 +333,16 @@ impl Incident<'_> {
     }
 }
 
+at_best_level! {
+    /// [`interpolation_error`] as the kernel's processor does it best: the same numbers.
+    #[inline(never)]
+    pub(super) fn error_at_best[const N: usize, const WHOLE: bool, P: Patches][N, WHOLE, P](
+        kernel: Kernel, patches: &P, shapes: &Shapes, incident: &Incident<'_>,
+    ) -> Bounds {
+        interpolation_error::<N, WHOLE, P>(patches, shapes, incident)
+    }
+}
+
 /// Bounds the distance of linear shades from the model's light, rounding to bytes aside, on each of eight patches. `WHOLE`
 /// is of whole faces, the corners of which have unit normals; otherwise the bound is of any part of the faces of the
 /// size that `shapes` says, between light at the part's own corners.
@@ -348,23 +360,26 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
     if !incident.is_moderate::<N>() {
         return Bounds { on_screen: [HUGE; LANES], on_face: [HUGE; LANES] };
     }
-    let normals = core::array::from_fn(|lane| {
+    let mut normals = [Normals { spread: 0.0, deficit: 0.0, part: 0.0 }; LANES];
+    for (lane, normals) in normals.iter_mut().enumerate() {
         let spread = shapes.spread[lane];
         let length = square_root(greater(1.0 - spread * spread, 1e-6));
         let deficit = if spread < CANCELS { (1.0 - length) / length } else { HUGE };
-        Normals { spread, deficit, part: shapes.part[lane] }
-    });
+        *normals = Normals { spread, deficit, part: shapes.part[lane] };
+    }
     let ambient = incident.answer.ambient as f32;
     let of = core::array::from_fn(|channel| {
         let ambient = if N == 1 { ambient } else { ambient * incident.answer.color[channel] as f32 };
         [[0.0; LANES], [0.0; LANES], [ambient; LANES], [ambient; LANES]]
     });
     let mut sums = Sums::<N> { of, normals, below: incident.below };
-    let eye = (incident.answer.specular != 0.0).then(|| {
+    let eye = if incident.answer.specular != 0.0 {
         let sight = patches.point(narrow(eye), blur(eye), &shapes.edge);
         let turn = each(|lane| lesser(shapes.edge[lane] / sight.near[lane], GREATEST_TURN));
-        Eye { lobe: Lobe::new(incident.answer.shininess), sight, turn }
-    });
+        Some(Eye { lobe: Lobe::new(incident.answer.shininess), sight, turn })
+    } else {
+        None
+    };
     for sun in suns {
         let directions = patches.sun(sun.towards.to_array());
         let strength = incident.strength::<N>(sun.intensity, sun.channels);

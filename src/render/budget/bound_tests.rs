@@ -1,12 +1,12 @@
 //! The bound, tested as a bound: on random patches in random light no sampled error is greater than that of the face, of the
-//! part, or of the cluster that the face is in. `cargo test` tries 32,000 faces, the long run 3,200,000.
+//! part, or of the cluster that the face is in. `cargo test` tries 36,000 faces, the long run 3,200,000.
 
 use std::vec::Vec;
 
 use glam::Vec3;
 use proptest::prelude::*;
 
-use super::bound::{Bounds, Incident, Shapes, interpolation_error};
+use super::bound::{Bounds, Incident, Shapes, error_at_best, interpolation_error};
 use super::clusters::{Clusters, radius};
 use super::ranges::{EightFaces, ZERO};
 use crate::lanes::LANES;
@@ -116,6 +116,29 @@ impl Case {
         let triangles = (0..LANES as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let in_color = random.chance(0.4);
         Self { triangles, positions, normals, suns, lamps, eye: wide(eye_at), answer, part, in_color }
+    }
+
+    /// Faces that one lamp grazes, seen from the other side: all corners are lit, the first one's least of all, and what is
+    /// between may be dark. A highlight is at its greatest there, and ends at once.
+    fn grazing(random: &mut Random) -> Self {
+        let mut case = Self::new(random);
+        let spread = random.log(0.01, 0.5) as f32;
+        for normal in &mut case.normals {
+            *normal = unit(Vec3::Z + random.vector() * Vec3::new(1.0, 1.0, 0.0) * spread).unwrap_or(Vec3::Z);
+        }
+        let along = random.direction() * Vec3::new(1.0, 1.0, 0.0);
+        let away = along * random.log(2.0, 100.0) as f32;
+        // The least height above the face at which all of its corners are lit, and a little more.
+        let needed = (0..3).map(|i| -case.normals[i].dot(away - case.positions[i]) / case.normals[i].z);
+        let height = needed.fold(f32::MIN, f32::max) + random.log(1e-5, 1e-2) as f32;
+        let wide = |v: Vec3| [v.x, v.y, v.z].map(f64::from);
+        let (intensity, channels) = (1.0, [1.0; 3]);
+        let lamp = LampBeam { position: wide(away + Vec3::Z * height), intensity, channels, inverse_square: 1e-12 };
+        (case.suns, case.lamps) = (Vec::new(), [lamp].into());
+        let eye = away * -random.log(0.5, 2.0) as f32 + Vec3::Z * random.log(1e-3, 1.0) as f32;
+        case.eye = wide(eye);
+        (case.answer.specular, case.answer.shininess) = (1.0, random.log(2.0, 20.0));
+        case
     }
 
     fn lights(&self) -> Lights<'_> {
@@ -294,10 +317,15 @@ fn no_sampled_error_is_beyond_its_bound() {
         let case = Case::new(&mut random);
         ratios.extend(try_case(&case, &mut random, 12));
     }
+    for _ in 0..500 {
+        try_case(&Case::grazing(&mut random), &mut random, 12);
+    }
     ratios.sort_by(f64::total_cmp);
     let at = |share: f64| ratios[(share * (ratios.len() - 1) as f64) as usize];
     std::println!("{} faces: bound over error {:.2} in the median, {:.2} at 95 %", ratios.len(), at(0.5), at(0.95));
     assert!(ratios.len() > 5_000);
+    // What it was when this was written, and 2 % for other machines' powers: a looser bound is a slower budget.
+    assert!(at(0.5) < 3.71 && at(0.95) < 43.6, "a looser bound: {:.2} and {:.2}", at(0.5), at(0.95));
 }
 
 /// A hundred times as many.
@@ -306,7 +334,7 @@ fn no_sampled_error_is_beyond_its_bound() {
 fn bound_of_many_more_patches() {
     let mut random = Random(14);
     for _ in 0..400_000 {
-        let case = Case::new(&mut random);
+        let case = if random.chance(0.1) { Case::grazing(&mut random) } else { Case::new(&mut random) };
         try_case(&case, &mut random, 12);
     }
 }
@@ -314,7 +342,6 @@ fn bound_of_many_more_patches() {
 /// Every kernel finds the same bounds.
 #[test]
 fn bounds_do_not_depend_on_the_kernel() {
-    use crate::simd::at_best_level;
     use crate::span::Kernel;
     let mut random = Random(15);
     for _ in 0..200 {
@@ -329,11 +356,8 @@ fn bounds_do_not_depend_on_the_kernel() {
         let (faces, incident) = (case.faces(), case.incident(clusters.extent));
         let bits = |bounds: Bounds| (bounds.on_screen.map(f32::to_bits), bounds.on_face.map(f32::to_bits));
         let all = |kernel: Kernel| {
-            let of_faces = at_best_level!(kernel, interpolation_error::<3, false, _>(&faces, &shapes, &incident));
-            let of_nodes = at_best_level!(
-                kernel,
-                interpolation_error::<1, true, _>(&clusters.chunks[0].clusters, &shapes, &incident)
-            );
+            let of_faces = error_at_best::<3, false, _>(kernel, &faces, &shapes, &incident);
+            let of_nodes = error_at_best::<1, true, _>(kernel, &clusters.chunks[0].clusters, &shapes, &incident);
             (bits(of_faces), bits(of_nodes))
         };
         let portable = all(Kernel::PORTABLE);

@@ -1,6 +1,6 @@
 //! Classification: which faces of a chunk are linear, by the bound on clusters, and on eight faces at a time.
 
-use super::bound::{Bounds, Incident, Shapes, interpolation_error};
+use super::bound::{Bounds, Incident, Shapes, error_at_best};
 use super::clusters::Clusters;
 use super::ranges::{EightClusters, EightFaces, Patches, ZERO, dot, each, greater, lesser};
 use super::{Budget, Depths, EXACT_ROUNDING, FLOAT, LINEAR_ROUNDING, PHONG};
@@ -9,15 +9,16 @@ use crate::plan::FaceShading;
 use crate::render::cull;
 use crate::render::faces::Faces;
 use crate::render::lit::Face;
-use crate::simd::at_best_level;
 
 /// Classes of the faces of a chunk, a bit for each.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub(in crate::render) struct Classes {
     /// Faces that are linear on the screen.
     pub(in crate::render) linear: u64,
     /// Others that are linear on the face.
     pub(in crate::render) float: u64,
+    /// Bounds of the others, of shades that are linear on the face, in shares of full intensity.
+    pub(in crate::render) errors: [f32; cull::CHUNK],
 }
 
 impl Depths {
@@ -50,7 +51,6 @@ impl Depths {
 
 impl Faces<'_> {
     /// Bounds of eight patches of a surface.
-    #[inline(never)]
     fn bounds<const WHOLE: bool, P: Patches>(
         &self,
         budget: &Budget,
@@ -60,11 +60,10 @@ impl Faces<'_> {
     ) -> Bounds {
         let answer = &self.paints[usize::from(surface)].answer;
         let incident = Incident { lights: self.lights, answer, extent: budget.clusters.extent, below };
-        let kernel = self.kernel;
         if self.channels {
-            at_best_level!(kernel, interpolation_error::<3, WHOLE, P>(patches, shapes, &incident))
+            error_at_best::<3, WHOLE, P>(self.kernel, patches, shapes, &incident)
         } else {
-            at_best_level!(kernel, interpolation_error::<1, WHOLE, P>(patches, shapes, &incident))
+            error_at_best::<1, WHOLE, P>(self.kernel, patches, shapes, &incident)
         }
     }
 
@@ -100,7 +99,7 @@ impl Faces<'_> {
     /// those that show their other side.
     #[inline]
     pub(in crate::render) fn classify(&self, budget: &Budget, (first, back): (usize, u64), left: u64) -> Classes {
-        let mut classes = Classes::default();
+        let mut classes = Classes { linear: 0, float: 0, errors: [0.0; cull::CHUNK] };
         if budget.spare(EXACT_ROUNDING) <= 0.0 {
             return classes;
         }
@@ -140,6 +139,7 @@ impl Faces<'_> {
                 let is_linear = on_screen <= linear;
                 classes.linear |= u64::from(is_linear) << at;
                 classes.float |= u64::from(!is_linear && on_face <= exact) << at;
+                classes.errors[at] = on_face;
             }
         }
     }

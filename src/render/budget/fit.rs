@@ -28,14 +28,20 @@ use crate::render::faces::Faces;
 use crate::render::lit::Face;
 use crate::render::paint::SurfaceMaterial;
 use crate::simd::at_best_level;
+use crate::span::Kernel;
 
 /// Pixels for each point of the finer grids, at least, for it to be worth it. (The spheres of `phong` within 2 shades: at 10
 /// 1.04 of the time of the shading, at 5 0.99, at 3 0.95; a grid that is lit in vain is dearer the finer it is.)
 const PIXELS_A_POINT: f32 = 4.0;
 
-/// Pixels from which on a face is tried. (From 64 on the torus takes 0.86 of the time of `phong` within 2 shades, from 32
-/// on 0.78, from 16 on 0.75; from 10 on 0.77.)
-const WORTH_CURVE: f32 = 16.0;
+/// Pixels from which on a face is tried. (Instructions of a frame within 1 shade, from 16 on, 32 and 48: `rgb` 1.06, 1.02 and
+/// 1 times as many, `torus` 1.04, 1.00 and 1, `teapot` 1.02, 1 and 1; `torus` within 2 takes 1.01, 0.99 and 1.)
+const WORTH_CURVE: f32 = 48.0;
+
+/// Share of the allowed error that the face's bound, times the square of the smallest part's size, may come to for it to be
+/// worth asking for the bound of parts: an estimate. (Instructions of a frame within 1 shade with it: `phong` 0.94, `rgb` 0.92;
+/// with 0.5 in its place `rgb` 0.97.)
+const HOPE: f32 = 0.25;
 
 /// Share of the allowed error up to which light may be off between the points of a grid for it to be worth lighting.
 /// (With 0.5 the torus within 1 shade takes 1.00 of `phong`, with 0.9 0.93.)
@@ -90,6 +96,22 @@ static SIXTEENTHS: [Weights; 19] = grid(16);
 
 /// Divisions of an edge: the number of parts, and the points.
 const GRIDS: [(f32, &[Weights]); 4] = [(2.0, &[]), (4.0, &FOURTHS), (8.0, &EIGHTHS), (16.0, &SIXTEENTHS)];
+
+/// Light at the nodes, on each channel.
+type Nodes = [Lanes<f32>; 3];
+
+/// The shading of a face, and if it is quadratic the light that its function goes through.
+pub(in crate::render) struct Fit {
+    pub(in crate::render) shading: FaceShading,
+    pub(in crate::render) nodes: Nodes,
+}
+
+impl Fit {
+    /// A shading that is not quadratic.
+    pub(in crate::render) fn of(shading: FaceShading) -> Self {
+        Self { shading, nodes: Nodes::default() }
+    }
+}
 
 /// A face on the screen.
 struct OnScreen<'a> {
@@ -150,6 +172,12 @@ impl Quadratic {
     }
 }
 
+at_best_level! {
+    fn off_at_best[][](kernel: Kernel, curve: &Quadratic, weights: &Weights, values: &Lanes<f32>) -> f32 {
+        curve.off(weights, values)
+    }
+}
+
 /// Returns the greatest value; not a number if one of them is not.
 fn greatest<const N: usize>(values: [f32; N]) -> f32 {
     values.into_iter().fold(0.0, |most, value| if value <= most { most } else { value })
@@ -207,15 +235,16 @@ impl Faces<'_> {
         }
     }
 
-    /// The cheapest shading of a face that is known to keep within the budget by light at some points of it.
+    /// The cheapest shading of a face that is known to keep within the budget by light at some points of it. `error` bounds
+    /// that of shades that are linear on the face.
     #[inline(never)]
-    pub(in crate::render) fn fit(&self, budget: &Budget, face: Face, vertices: &[Vertex; 3]) -> FaceShading {
+    pub(in crate::render) fn fit(&self, budget: &Budget, (face, error): (Face, f32), vertices: &[Vertex; 3]) -> Fit {
         let (depths, spare) = (vertices.each_ref().map(Vertex::depth), budget.spare(EXACT_ROUNDING));
         let (near, far) = (depths[0].max(depths[1]).max(depths[2]), depths[0].min(depths[1]).min(depths[2]));
         let (ratio, pixels, width) = (near as f32 / far as f32, pixels_of(vertices), width_of(vertices));
         // Where rounding takes all that is allowed, nothing fits.
         if far == 0 || pixels < WORTH_CURVE || !self.lights_pixels || spare <= 0.0 {
-            return PHONG;
+            return Fit::of(PHONG);
         }
         // The sizes of parts: four grids, then three spacings; the last is of no use.
         let (mut part, mut bend) = ([1.0; LANES], [1.0; LANES]);
@@ -230,56 +259,67 @@ impl Faces<'_> {
         let mut on_screen = self.on_screen(face, depths);
         // Quadratic functions are of light that adds.
         on_screen.below &= budget.adds;
+        // Eight points at a time, and the nodes.
+        let pays = |points: &[Weights]| (LANES * (points.len() + 1)) as f32 * PIXELS_A_POINT <= pixels;
+        let grids = GRIDS.iter().enumerate().take_while(|(grid, of)| *grid < 2 || pays(of.1)).count();
+        let spaced = |lane: usize, spacing: SampleSpacing| {
+            width >= WORTH_KNOTS.max(1.5 * spacing.pixels() as f32) && part[lane] <= 0.75
+        };
+        let spacings = (GRIDS.len()..).zip(SampleSpacing::ALL).filter(|(lane, spacing)| spaced(*lane, *spacing));
+        let least = spacings.clone().map(|(lane, _)| part[lane]).fold(part[grids - 1], f32::min);
+        // Of light that goes on below the horizon the face's bound says little.
+        if !on_screen.below && error * least * least > HOPE * spare {
+            return Fit::of(PHONG);
+        }
         let bounds = |below: bool| self.bounds_of_parts(budget, face, (part, bend), below).on_screen;
         let of_light = bounds(false);
         let smooth = if on_screen.below { bounds(true) } else { of_light };
         let left = each(|lane| if part[lane] < 1.0 { spare - smooth[lane] } else { 0.0 });
-        if budget.adds && self.is_quadratic(&on_screen, pixels, (spare, &left)) {
-            return FaceShading::Quadratic;
+        if budget.adds
+            && let Some(nodes) = self.quadratic(&on_screen, &GRIDS[..grids], (spare, &left))
+        {
+            return Fit { shading: FaceShading::Quadratic, nodes };
         }
-        let is_linear = |(lane, spacing): &(usize, SampleSpacing)| {
-            let pays = width >= WORTH_KNOTS.max(1.5 * spacing.pixels() as f32);
-            pays && part[*lane] <= 0.75 && of_light[*lane] <= spare
-        };
-        let spacings = (GRIDS.len()..).zip(SampleSpacing::ALL);
-        spacings.filter(is_linear).last().map_or(PHONG, |(_, spacing)| FaceShading::PhongEvery(spacing))
+        let spacing = spacings.filter(|(lane, _)| of_light[*lane] <= spare).last();
+        Fit::of(spacing.map_or(PHONG, |(_, spacing)| FaceShading::PhongEvery(spacing)))
     }
 
-    /// Tries the quadratic function on grids, from coarse to fine. `left` says how far it may be off at the points of each,
-    /// of what is allowed in all.
-    fn is_quadratic(&self, face: &OnScreen<'_>, pixels: f32, (spare, left): (f32, &Lanes<f32>)) -> bool {
+    /// Tries the quadratic function on grids, from coarse to fine; returns the light that it goes through, if it fits.
+    /// `left` says how far it may be off at the points of each, of what is allowed in all.
+    fn quadratic(
+        &self,
+        face: &OnScreen<'_>,
+        grids: &[(f32, &[Weights])],
+        (spare, left): (f32, &Lanes<f32>),
+    ) -> Option<Nodes> {
         let channels = if self.channels { 3 } else { 1 };
-        // Eight points at a time, and the nodes.
-        let pays = |points: &[Weights]| (LANES * (points.len() + 1)) as f32 * PIXELS_A_POINT <= pixels;
-        let mut curves = None;
-        for (grid, (n, points)) in GRIDS.iter().enumerate().take_while(|(grid, of)| *grid < 2 || pays(of.1)) {
+        let mut known = None;
+        for (grid, (n, points)) in grids.iter().enumerate() {
             let is_worth = left[grid] > (1.0 - MODEL) * spare;
             if !is_worth {
                 continue;
             }
-            let curves = curves.get_or_insert_with(|| self.light_at(face, &NODES).map(|nodes| Quadratic::new(&nodes)));
+            let nodes: &Nodes = known.get_or_insert_with(|| self.light_at(face, &NODES));
+            let curves = nodes.each_ref().map(Quadratic::new);
             let between = greatest(curves.map(|curve| curve.between(*n)));
             let fits = |weights: &Weights| {
                 let light = self.light_at(face, weights);
-                let off = |channel: usize| at_best_level!(self.kernel, curves[channel].off(weights, &light[channel]));
+                let off = |channel: usize| off_at_best(self.kernel, &curves[channel], weights, &light[channel]);
                 (0..channels).all(|channel| off(channel) <= left[grid] - between)
             };
             if between < left[grid] && points.iter().all(fits) {
-                return true;
+                return known;
             }
         }
-        false
+        None
     }
 
     /// Puts the quadratic attributes of a face's corners: see `Attributes::lit`.
-    #[inline(never)]
-    pub(in crate::render) fn put_curve(&self, attributes: &mut [Attributes; 3], face: Face, vertices: &[Vertex; 3]) {
-        let on_screen = self.on_screen(face, vertices.each_ref().map(Vertex::depth));
-        let light = self.light_at(&on_screen, &NODES);
-        let ramp = self.paints[usize::from(face.surface)].ramp;
+    pub(in crate::render) fn put_curve(&self, attributes: &mut [Attributes; 3], surface: u16, nodes: &Nodes) {
+        let ramp = self.paints[usize::from(surface)].ramp;
         let (first, units) = (f32::from(ramp.first()) * 256.0, f32::from(ramp.entries().saturating_sub(1)) * 256.0);
         for (corner, attributes) in attributes.iter_mut().enumerate() {
-            for (channel, light) in light.iter().enumerate() {
+            for (channel, light) in nodes.iter().enumerate() {
                 attributes.lit[channel] = first + light[corner] * units;
                 attributes.lit[channel + 3] = first + light[corner + 3] * units;
             }

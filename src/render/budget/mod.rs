@@ -22,7 +22,7 @@ mod fit;
 mod ranges;
 
 use self::clusters::Clusters;
-pub(super) use self::fit::limits;
+pub(super) use self::fit::{Fit, limits};
 use super::paint::SurfaceMaterial;
 use super::vertex::Geometry;
 use crate::light::Lights;
