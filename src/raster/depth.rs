@@ -187,3 +187,24 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
         self.values.get_mut(start..start.checked_add(width)?)
     }
 }
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use super::*;
+
+    /// What lies outside the rectangle stays, also where whole rows are cleared and in a band.
+    #[test]
+    fn a_rectangle_is_cleared_and_no_more() {
+        for (x0, x1) in [(0, 5), (1, 4)] {
+            let (mut pixels, mut values) = ([0_u8; 20], [7_u32; 20]);
+            let band = Frame::band(&mut pixels, 5, 10, 5, 3..7).unwrap();
+            let mut depth = DepthBuffer::new(&mut values, &band).unwrap();
+            depth.clear_within(Rect { x0, y0: 4, x1, y1: 6 });
+            for (at, value) in (0_u32..).zip(values) {
+                let (x, y) = (at % 5, 3 + at / 5);
+                let is_inside = (x0..x1).contains(&x) && (4..6).contains(&y);
+                assert_eq!(value == 0, is_inside, "{x}, {y}");
+            }
+        }
+    }
+}

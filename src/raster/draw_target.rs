@@ -110,5 +110,24 @@ mod tests {
             }
             prop_assert_eq!(filled, expected);
         }
+
+        /// Pixels that the band holds are drawn, a later one over an earlier; others are left out.
+        #[test]
+        fn pixels_are_drawn_where_the_band_holds_them(
+            places in prop::collection::vec(((-3_i32..16, -3_i32..15), 1_u8..), 0..60),
+            (first, end) in (0_u32..10, 1_u32..10),
+        ) {
+            const PITCH: usize = 16;
+            let rows = first..(first + end).min(12);
+            let (mut drawn, mut expected) = (vec![0; PITCH * rows.len()], vec![0; PITCH * rows.len()]);
+            let mut band = Frame::band(&mut drawn, 13, 12, PITCH, rows.clone()).expect("a band");
+            let Ok(()) = band.draw_iter(places.iter().map(|&((x, y), index)| Pixel(Point::new(x, y), Index(index))));
+            for ((x, y), index) in places {
+                if let (0..13, Some(row)) = (x, u32::try_from(y).ok().filter(|y| rows.contains(y))) {
+                    expected[(row - rows.start) as usize * PITCH + x as usize] = index;
+                }
+            }
+            prop_assert_eq!(drawn, expected);
+        }
     }
 }

@@ -170,3 +170,22 @@ pub(super) fn clip<C: Carried>(
     // Asked for corners of the polygon alone.
     Some((polygon, move |place: usize| left.as_slice().get(place).unwrap_or(&corners[0]).carried))
 }
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use super::*;
+
+    /// Coordinates and shades of a cut are the nearest to the exact ones; halves go up.
+    #[test]
+    fn attributes_of_a_cut_are_the_nearest() {
+        let corner = |texture: [i32; 2], fog: u16| WithEffects {
+            attributes: Attributes { texture, fog: U8F8::from_bits(fog), ..Attributes::default() },
+            affine: false,
+        };
+        let (from, to) = (corner([0, -3], 0), corner([1, 0], 3));
+        for (part, texture, fog) in [(0.25, [0, -2], 1), (0.5, [1, -1], 2), (0.875, [1, 0], 3), (1.0, [1, 0], 3)] {
+            let cut = from.between(&to, Parts { on_face: part, on_screen: part, of_shades: part });
+            assert_eq!((cut.attributes.texture, cut.attributes.fog.to_bits()), (texture, fog), "{part}");
+        }
+    }
+}

@@ -145,6 +145,18 @@ pub(super) struct IntegerPath {
 }
 
 impl IntegerPath {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        let vectors = |mesh: &Converted| mesh.positions.capacity() + mesh.normals.capacity();
+        self.meshes.capacity() * size_of::<Converted>()
+            + self.meshes.iter().map(vectors).sum::<usize>() * size_of::<Vector>()
+            + self.objects.capacity() * size_of::<Prepared>()
+            + self.paints.capacity() * size_of::<Paint>()
+            + self.suns.capacity() * size_of::<Sun>()
+            + self.lit.capacity() * size_of::<LitVertex>()
+            + self.beams.capacity() * size_of::<Beam>()
+    }
+
     /// Converts a scene whose numbers are finite. A scene that passes can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();

@@ -491,6 +491,7 @@ impl Renderer {
         self.views.capacity() * size_of::<ObjectView>()
             + self.states.iter().map(ObjectState::bytes).sum::<usize>()
             + self.tables.bytes()
+            + self.integer.bytes()
             + self.depths.capacity() * 4
             + self.effects.bytes()
             + self.triangles.capacity() * size_of::<([Vertex; 3], Interpolation)>()

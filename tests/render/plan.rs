@@ -379,6 +379,8 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
     let texture = mode13h::texture::Texture::new(64, 1, (0..64).collect(), colors).expect("sound");
     let texture = mode13h::scene::Shared::new(texture);
     let mut random = crate::support::random::Random::named("perspective");
+    // The greatest share of what was printed that was seen.
+    let mut seen = 0.0_f64;
     while tried.more() {
         let pieces = random.within(1, 24) as u32;
         let mut scene = crate::support::scenes::framed(mode13h::mesh::shapes::wall(pieces, pieces));
@@ -402,8 +404,10 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
             let apart = f64::from(apart.min(64 - apart));
             // The coordinates are apart by so much; the texels that they lie in by less than one more.
             assert!(apart < texels + 1.0, "{apart} texels apart, {texels:.3} printed");
+            seen = seen.max((apart - 1.0) / texels);
         }
     }
+    assert!(seen > 0.3, "the bound says little: at most {seen:.2} of it was seen");
 }
 
 /// Proof (a) for mipmaps: where no more than a texel goes to a pixel they change no byte, though levels are chosen.
