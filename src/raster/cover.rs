@@ -20,28 +20,31 @@ impl SortedTriangle {
     #[must_use]
     #[inline]
     pub fn new(vertices: &[Vertex; 3]) -> Self {
-        let [mut top, mut middle, mut bottom] = *vertices;
-        let key = |v: &Vertex| (v.y(), v.x());
-        if key(&middle) < key(&top) {
-            core::mem::swap(&mut top, &mut middle);
-        }
-        if key(&bottom) < key(&middle) {
-            core::mem::swap(&mut middle, &mut bottom);
-            if key(&middle) < key(&top) {
-                core::mem::swap(&mut top, &mut middle);
-            }
-        }
-        let vertices = [top, middle, bottom];
-        let [(x0, y0), (x1, y1), (x2, y2)] = vertices.map(|v| point(&v));
+        Self::with_order(vertices).0
+    }
+
+    /// Puts three vertices in order, and says which of them stands in each place. Without branches: which corner is the
+    /// top is anybody's guess.
+    #[inline]
+    pub(super) fn with_order(vertices: &[Vertex; 3]) -> (Self, [usize; 3]) {
+        let key = |v: &Vertex| (i64::from(v.y().to_bits()) << 32) + i64::from(v.x().to_bits());
+        let [a, b, c] = [key(&vertices[0]), key(&vertices[1]), key(&vertices[2])];
+        let (b_before_a, c_before_b) = (b < a, c < b);
+        let first = usize::from(b_before_a | (c < a)) * (1 + usize::from(c_before_b));
+        let last = if (c < a) | c_before_b { usize::from(!b_before_a) } else { 2 };
+        let order = [first, 3 - first - last, last];
+        let vertices = [vertices[order[0]], vertices[order[1]], vertices[order[2]]];
+        let [(x0, y0), (x1, y1), (x2, y2)] = [point(&vertices[0]), point(&vertices[1]), point(&vertices[2])];
         let doubled_area = i64::from(x1 - x0) * i64::from(y2 - y0) - i64::from(x2 - x0) * i64::from(y1 - y0);
-        Self { vertices, doubled_area }
+        (Self { vertices, doubled_area }, order)
     }
 
     /// The shades of the vertices, in 1/256.
     #[must_use]
     #[inline]
     pub fn shades(&self) -> [i64; 3] {
-        self.vertices.each_ref().map(|v| i64::from(v.shade().to_bits()))
+        let shade = |corner: usize| i64::from(self.vertices[corner].shade().to_bits());
+        [shade(0), shade(1), shade(2)]
     }
 
     /// The area doubled, positive.
@@ -63,8 +66,9 @@ impl SortedTriangle {
     #[must_use]
     #[inline]
     pub fn gradient(&self, values: [i64; 3]) -> (i64, i64) {
-        let [(x0, y0), (x1, y1), (x2, y2)] =
-            self.vertices.each_ref().map(|v| (i64::from(v.x().to_bits()), i64::from(v.y().to_bits())));
+        let [a, b, c] = &self.vertices;
+        let wide = |v: &Vertex| (i64::from(v.x().to_bits()), i64::from(v.y().to_bits()));
+        let ((x0, y0), (x1, y1), (x2, y2)) = (wide(a), wide(b), wide(c));
         let (v1, v2) = (values[1] - values[0], values[2] - values[0]);
         let gx = v1 * (y2 - y0) - v2 * (y1 - y0);
         let gy = v2 * (x1 - x0) - v1 * (x2 - x0);

@@ -37,20 +37,14 @@ impl WholeWeights {
     #[inline]
     pub(super) fn at(&self, x: i32, y: i32) -> [i64; 3] {
         let (x, y) = (i64::from(x), i64::from(y));
-        core::array::from_fn(|i| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y)
+        let at = |i: usize| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y;
+        [at(0), at(1), at(2)]
     }
 
     /// Change of the weights from one pixel to the next. They add up to 0, and are within 2³⁰.
     #[inline]
     pub(super) fn per_column(&self) -> [i64; 3] {
         self.per_column
-    }
-
-    /// Change of the weights from one row to the next. They add up to 0, and are within 2³⁰.
-    #[cfg(feature = "alloc")]
-    #[inline]
-    pub(super) fn per_row(&self) -> [i64; 3] {
-        self.per_row
     }
 }
 
@@ -77,7 +71,8 @@ impl Weights {
     #[inline]
     pub(super) fn at(&self, x: i32, y: i32) -> [f64; 3] {
         let (x, y) = (f64::from(x), f64::from(y));
-        core::array::from_fn(|i| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y)
+        let at = |i: usize| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y;
+        [at(0), at(1), at(2)]
     }
 
     /// Change of the weights from one pixel to the next; they add up to 0.

@@ -32,6 +32,8 @@ use crate::span::list::SpanList;
 mod class;
 pub(crate) mod cull;
 #[cfg(feature = "alloc")]
+pub(super) mod found;
+#[cfg(feature = "alloc")]
 pub(crate) mod indexed;
 mod rows;
 mod setup;

@@ -223,6 +223,19 @@ fn eight_rows<S: Lanes8, const DEPTHS: bool>(
     (ends, spans)
 }
 
+/// Eight rows of small triangle `i` from number `first` on: the first column that is covered, the one behind the last, and
+/// the first shade with the step above it.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+pub(super) fn find_eight_rows<S: Lanes8>(s: S, setup: &TriangleSetup8, (i, first): (usize, i32)) -> [S::I32; 3] {
+    let lane = OneTriangle(i);
+    let number = s.add_i32(s.all_i32(first), s.i32s(&NUMBERS));
+    let ends = RowEnds::of(s, lane, setup, s.to_f64(number), number);
+    let column = lane.i32s(s, &setup.column);
+    let [left, right] = [s.add_i32(column, s.low_bits(ends.left)), s.add_i32(column, s.low_bits(ends.right))];
+    [left, right, ends.paint(s, lane, setup, ends.left)]
+}
+
 /// Lists eight rows of small triangle `i` from number `first` on. There is room for eight.
 #[inline(always)]
 pub(super) fn list_eight_rows<S: Lanes8, const DEPTHS: bool>(

@@ -8,11 +8,15 @@
 //! write      all of it, or where nearer
 //! ```
 //!
-//! An [`EffectBatch`] holds faces of one [`PixelPipeline`]. A stage is one loop over up to 64 pieces of its faces, so a
-//! stage that the pipeline does not have costs one question for all of them. Pieces are written in the order of their
-//! faces; so what one face leaves in the frame is what the next one blends with. Pieces begin at the row's first covered pixel
-//! inside the frame and every 64 pixels from there, where every value is exact; so a pixel's byte
-//! depends on no clip rectangle. Without any effect [`Raster::triangle`] gives the same bytes sooner.
+//! An [`EffectBatch`] holds faces of one [`PixelPipeline`]. They are culled as the triangles of a plain batch are, and the
+//! rows of small ones inside the clip rectangle are found by the same set-up, eight faces at a time. The rows of others are
+//! walked down: they are long, so finding them is little of their time.
+//!
+//! A stage is one loop over up to 64 pieces of the batch's faces, so a stage that the pipeline does not have costs one
+//! question for all of them. Pieces are written in the order of their faces; so what one face leaves in the frame is what
+//! the next one blends with. Pieces begin at the row's first covered pixel inside the frame and every 64 pixels from there,
+//! where every value is exact; so a pixel's byte depends on no clip rectangle. Without any effect [`Raster::triangle`] gives
+//! the same bytes sooner.
 //!
 //! Shades and channels are what the [`Interpolation`](super::Interpolation) makes of them; fog and the table's normals
 //! are linear, started anew with every piece, whatever the shading, and keep the guarantees of [`shade`](super::shade): no
@@ -29,14 +33,17 @@ mod texture;
 
 use alloc::vec::Vec;
 
-use self::pieces::{Bytes, CAPACITY, Face, PIECE, Piece, Pieces, Shades};
+use self::pieces::{Bytes, CAPACITY, Face, PIECE, Piece, Pieces, Shades, Sorted};
 pub use self::pipeline::{
     Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
 };
+use super::batch::Batch;
+use super::batch::found::{Finder, Found, index};
 use super::cover::{Row, SortedTriangle};
 use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::draw_stats::DrawStats;
 use super::frame::Frame;
+use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
 use super::triangle::Raster;
 use super::vertex::Vertex;
@@ -51,6 +58,8 @@ const HALVES: [[u8; 8]; 8] = [[128; 8]; 8];
 #[derive(Clone, Debug, Default)]
 pub struct EffectBatch {
     faces: Vec<Face>,
+    /// Their corners once more, as culling and set-up take them.
+    corners: Batch,
     pieces: Pieces,
     buffers: Buffers,
 }
@@ -92,7 +101,7 @@ impl EffectBatch {
     /// A batch without faces. When it is drawn for the first time it takes 60 kB.
     #[must_use]
     pub const fn new() -> Self {
-        Self { faces: Vec::new(), pieces: Pieces::EMPTY, buffers: Buffers::EMPTY }
+        Self { faces: Vec::new(), corners: Batch::new(), pieces: Pieces::EMPTY, buffers: Buffers::EMPTY }
     }
 
     /// Bytes that it holds.
@@ -130,6 +139,7 @@ impl EffectBatch {
                 self.faces.reserve_exact(Self::CAPACITY);
             }
             self.faces.push(Face { vertices: *vertices, attributes: *attributes });
+            self.corners.push(vertices, Interpolation::GouraudReseeded);
         }
         fits
     }
@@ -144,23 +154,26 @@ impl EffectBatch {
         kernel: Kernel,
         drawn: &mut DrawStats,
     ) {
-        self.faces.clear();
+        self.clear();
         self.push(vertices, attributes);
-        let triangle = SortedTriangle::new(vertices);
-        let mut target = Target { rows: OneRow(pixels), depth: None::<&mut DepthBuffer<'_, u32>>, kernel };
-        let Self { faces, pieces, buffers } = self;
+        let triangle = SortedTriangle::with_order(vertices);
+        let Self { faces, pieces, buffers, .. } = self;
         make_room(pieces, buffers);
-        cut(row, |piece| {
-            if pieces.len() == CAPACITY {
-                pieces.close(&triangle, 0, vertices);
-                target.draw(faces, (pieces, buffers), pipeline, drawn);
-            }
-            pieces.push(piece);
-        });
-        pieces.close(&triangle, 0, vertices);
-        target.draw(faces, (pieces, buffers), pipeline, drawn);
-        count(pipeline, (row.x1 - row.x0) as u32, drawn);
+        let (rows, depth) = (OneRow(pixels), None::<&mut DepthBuffer<'_, u32>>);
+        let mut drawing =
+            Drawing { rows, depth, kernel, pipeline, faces, pieces, buffers, drawn: DrawStats::default() };
+        let plane = drawing.shade_plane(&triangle.0);
+        drawing.add_row(row, (&triangle, 0), plane.as_ref());
+        drawing.pieces.close(&triangle, 0);
+        // The caller has counted what is covered.
+        *drawn += DrawStats { covered: 0, ..drawing.finish((row.x1 - row.x0) as u32) };
+        self.clear();
+    }
+
+    /// Takes all faces out.
+    fn clear(&mut self) {
         self.faces.clear();
+        self.corners.clear();
     }
 }
 
@@ -170,19 +183,6 @@ fn make_room(pieces: &mut Pieces, buffers: &mut Buffers) {
     if buffers.bytes.is_empty() {
         pieces.make_room();
         buffers.make_room();
-    }
-}
-
-/// Cuts the drawn part of a row into pieces.
-#[inline]
-fn cut(row: &Row, mut piece: impl FnMut(Piece)) {
-    let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
-    let mut x = row.x0;
-    while x < row.x1 {
-        let end = row.x1.min(seed + RESEED);
-        piece(Piece { row: *row, seed, x, end });
-        seed += RESEED;
-        x = end;
     }
 }
 
@@ -222,34 +222,61 @@ impl Rows for OneRow<'_> {
     }
 }
 
-/// Target of drawing, and its settings.
-struct Target<'a, 'b, R, D: Cell> {
+/// Drawing of faces: the target, the stages, the pieces that wait for them, and what was done.
+struct Drawing<'a, 'b, R, D: Cell> {
     rows: R,
     depth: Option<&'a mut DepthBuffer<'b, D>>,
     kernel: Kernel,
+    pipeline: &'a PixelPipeline<'a>,
+    faces: &'a [Face],
+    pieces: &'a mut Pieces,
+    buffers: &'a mut Buffers,
+    drawn: DrawStats,
 }
 
-impl<R: Rows, D: Cell> Target<'_, '_, R, D> {
+impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
+    /// The shades of pieces, if the pipeline takes them from there.
+    fn shade_plane(&self, triangle: &SortedTriangle) -> Option<ShadePlane> {
+        self.pipeline.takes_paint().then(|| ShadePlane::new(triangle))
+    }
+
+    /// Adds the drawn part of a row of a face, cut into pieces.
+    fn add_row(&mut self, row: &Row, of: (&Sorted, usize), plane: Option<&ShadePlane>) {
+        let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
+        let mut x = row.x0;
+        while x < row.x1 {
+            let end = row.x1.min(seed + RESEED);
+            let paint = |plane: &ShadePlane| u32::from(plane.start(seed, row.y)) | u32::from(plane.step()) << 16;
+            self.add_piece(Piece { row: *row, seed, x, end, paint: plane.map_or(0, paint) }, of);
+            seed += RESEED;
+            x = end;
+        }
+    }
+
+    /// Adds a piece of a face. Those that wait are drawn when there is no more room.
+    #[inline(always)]
+    fn add_piece(&mut self, piece: Piece, (triangle, face): (&Sorted, usize)) {
+        if self.pieces.len() == CAPACITY {
+            self.pieces.close(triangle, face);
+            self.draw();
+        }
+        self.pieces.push(piece);
+    }
+
     /// Passes pieces through the stages, writes them, and clears their list.
     #[inline(never)]
-    fn draw(
-        &mut self,
-        faces: &[Face],
-        (pieces, buffers): (&mut Pieces, &mut Buffers),
-        pipeline: &PixelPipeline<'_>,
-        drawn: &mut DrawStats,
-    ) {
+    fn draw(&mut self) {
+        let Self { pieces, buffers, pipeline, faces, kernel, .. } = self;
         let n = pieces.len();
         if n == 0 {
             return;
         }
-        pieces.shade(faces, buffers, pipeline, self.kernel);
+        pieces.shade(faces, buffers, pipeline, *kernel);
         if let Some(table) = pipeline.fog() {
-            let (kernel, bytes) = (self.kernel, &mut buffers.bytes);
-            let plane = |triangle: &SortedTriangle, corners: [&Attributes; 3]| {
-                ShadePlane::of_values(triangle, corners.map(|corner| i64::from(corner.fog.to_bits())))
+            let plane = |triangle: &SortedTriangle, [a, b, c]: [&Attributes; 3]| {
+                ShadePlane::of_values(triangle, [a, b, c].map(|corner| i64::from(corner.fog.to_bits())))
             };
-            pieces.each(faces, &mut bytes[..n], plane, |plane, piece, bytes| {
+            pieces.each(faces, &mut buffers.bytes[..n], plane, |plane, piece, bytes| {
                 let mut levels: Bytes = [0; PIECE];
                 let levels = &mut levels[..piece.len()];
                 kernel.fill(levels, plane.start(piece.seed, piece.row.y), plane.step());
@@ -257,27 +284,22 @@ impl<R: Rows, D: Cell> Target<'_, '_, R, D> {
             });
         }
         match pipeline.blend() {
-            None => self.write::<false>(faces, (pieces, buffers), pipeline, drawn),
-            Some(_) => self.write::<true>(faces, (pieces, buffers), pipeline, drawn),
+            None => self.write::<false>(),
+            Some(_) => self.write::<true>(),
         }
-        pieces.clear();
+        self.pieces.clear();
     }
 
     /// Writes pieces, all of each or where it is nearer.
     #[inline(never)]
-    fn write<const BLENDS: bool>(
-        &mut self,
-        faces: &[Face],
-        (pieces, buffers): (&Pieces, &mut Buffers),
-        pipeline: &PixelPipeline<'_>,
-        drawn: &mut DrawStats,
-    ) {
-        let bytes = &mut buffers.bytes[..pieces.len()];
-        let (rows, table) = (&mut self.rows, pipeline.blend().filter(|_| BLENDS));
+    fn write<const BLENDS: bool>(&mut self) {
+        let Self { rows, pieces, drawn, pipeline, .. } = self;
+        let bytes = &mut self.buffers.bytes[..pieces.len()];
+        let table = pipeline.blend().filter(|_| BLENDS);
         let Some(depth) = &mut self.depth else {
             for (piece, bytes) in pieces.pieces().iter().zip(bytes) {
                 let Some((pixels, bytes)) = visible(rows, piece, bytes, table) else { continue };
-                pixels.copy_from_slice(bytes);
+                copy(pixels, bytes);
                 drawn.spans += 1;
                 // At most 64.
                 drawn.pixels += pixels.len() as u32;
@@ -285,7 +307,7 @@ impl<R: Rows, D: Cell> Target<'_, '_, R, D> {
             return;
         };
         let plane = |triangle: &SortedTriangle, _: [&Attributes; 3]| DepthPlane::new(triangle);
-        pieces.each(faces, bytes, plane, |plane, piece, bytes| {
+        pieces.each(self.faces, bytes, plane, |plane, piece, bytes| {
             let Some(depths) = depth.row_mut(piece.row.y as u32) else { return };
             let Some((pixels, bytes)) = visible(rows, piece, bytes, table) else { return };
             drawn.spans += 1;
@@ -298,6 +320,14 @@ impl<R: Rows, D: Cell> Target<'_, '_, R, D> {
                 copy_before(pixels, depths, bytes, z, plane.step())
             };
         });
+    }
+
+    /// Draws the pieces that wait, and returns what was done, so many pixels being covered.
+    fn finish(mut self, covered: u32) -> DrawStats {
+        self.draw();
+        let mut drawn = DrawStats { covered, ..self.drawn };
+        count(self.pipeline, covered, &mut drawn);
+        drawn
     }
 }
 
@@ -320,6 +350,22 @@ fn visible<'a>(
         bytes.copy_from_slice(behind);
     }
     Some((pixels, bytes))
+}
+
+/// Copies bytes to as many pixels: mostly few, for which a call costs more than they do.
+#[inline(always)]
+fn copy(pixels: &mut [u8], bytes: &[u8]) {
+    if bytes.len() > 8 {
+        pixels.copy_from_slice(bytes);
+    } else if let (Some(first), Some(last)) = (bytes.first_chunk::<4>(), bytes.last_chunk::<4>()) {
+        // They overlap.
+        pixels.first_chunk_mut().into_iter().for_each(|pixels| *pixels = *first);
+        pixels.last_chunk_mut().into_iter().for_each(|pixels| *pixels = *last);
+    } else {
+        for (pixel, byte) in pixels.iter_mut().zip(bytes.iter().take(3)) {
+            *pixel = *byte;
+        }
+    }
 }
 
 impl<D: Cell> Raster<'_, D> {
@@ -354,38 +400,54 @@ impl<D: Cell> Raster<'_, D> {
 
     #[inline(never)]
     fn draw_effects<const CLIPS: bool>(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
-        let mut drawn = DrawStats::default();
-        let (width, clip) = (self.frame.width(), self.clip);
+        let (width, clip, bounds) = (self.frame.width(), self.clip, self.frame.bounds());
         let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-        let mut target = Target { rows: &mut self.frame, depth, kernel: self.kernel };
-        let EffectBatch { faces, pieces, buffers } = batch;
+        let EffectBatch { faces, corners, pieces, buffers } = &mut *batch;
         make_room(pieces, buffers);
-        for (index, Face { vertices, .. }) in faces.iter().enumerate() {
-            let triangle = SortedTriangle::new(vertices);
-            let each_row = |row: Row| {
-                drawn.covered += (row.x1 - row.x0) as u32;
-                // Columns of a frame, of which there are at most 4,096.
-                if !CLIPS && (row.x0 < 0 || row.x1 > width as i32) {
-                    return;
-                }
-                cut(&row, |piece| {
-                    if pieces.len() == CAPACITY {
-                        pieces.close(&triangle, index, vertices);
-                        target.draw(faces, (pieces, buffers), pipeline, &mut drawn);
+        let (rows, kernel, drawn) = (&mut self.frame, self.kernel, DrawStats::default());
+        let mut drawing = Drawing { rows, depth, kernel, pipeline, faces, pieces, buffers, drawn };
+        let mut finder = Finder::new(kernel.simd_level(), corners, if CLIPS { clip } else { bounds });
+        let mut covered = 0;
+        while let Some(found) = finder.next() {
+            match found {
+                Found::Small(triangles, rows) => {
+                    for (lane, &number) in triangles.iter().enumerate() {
+                        let face = index(number);
+                        let triangle = SortedTriangle::with_order(&faces[face].vertices);
+                        for (row, paint) in rows.of(lane) {
+                            if row.x0 < row.x1 {
+                                covered += (row.x1 - row.x0) as u32;
+                                let piece = Piece { row, seed: row.x0, x: row.x0, end: row.x1, paint };
+                                drawing.add_piece(piece, (&triangle, face));
+                            }
+                        }
+                        drawing.pieces.close(&triangle, face);
                     }
-                    pieces.push(piece);
-                });
-            };
-            if CLIPS {
-                triangle.rows(width, clip, each_row);
-            } else {
-                triangle.rows_inside(each_row);
+                }
+                Found::Another(face) => {
+                    let triangle = SortedTriangle::with_order(&faces[face].vertices);
+                    if triangle.0.doubled_area == 0 {
+                        continue;
+                    }
+                    let plane = drawing.shade_plane(&triangle.0);
+                    let each_row = |row: Row| {
+                        covered += (row.x1 - row.x0) as u32;
+                        // Columns of a frame, of which there are at most 4,096.
+                        if CLIPS || (row.x0 >= 0 && row.x1 <= width as i32) {
+                            drawing.add_row(&row, (&triangle, face), plane.as_ref());
+                        }
+                    };
+                    if CLIPS {
+                        triangle.0.rows(width, clip, each_row);
+                    } else {
+                        triangle.0.rows_inside(each_row);
+                    }
+                    drawing.pieces.close(&triangle, face);
+                }
             }
-            pieces.close(&triangle, index, vertices);
         }
-        target.draw(faces, (pieces, buffers), pipeline, &mut drawn);
-        faces.clear();
-        count(pipeline, drawn.covered, &mut drawn);
+        let drawn = drawing.finish(covered);
+        batch.clear();
         drawn
     }
 }

@@ -36,6 +36,9 @@ pub(super) struct Piece {
     /// The columns that are drawn: from this one, up to the second.
     pub(super) x: i32,
     pub(super) end: i32,
+    /// Linear shades: the first one, and above it the step. The pipelines that take them are
+    /// [those that say so](super::PixelPipeline::takes_paint).
+    pub(super) paint: u32,
 }
 
 impl Piece {
@@ -72,6 +75,9 @@ impl Piece {
         &pattern[(self.row.y & 7) as usize]
     }
 }
+
+/// A face's triangle, and which of its corners stands in each place.
+pub(super) type Sorted = (SortedTriangle, [usize; 3]);
 
 /// A triangle that has pieces.
 #[derive(Clone, Copy, Debug)]
@@ -123,17 +129,11 @@ impl Pieces {
 
     /// Makes the pieces behind those of the last triangle a triangle's, if there are any.
     #[inline]
-    pub(super) fn close(&mut self, triangle: &SortedTriangle, face: usize, vertices: &[Vertex; 3]) {
+    pub(super) fn close(&mut self, (triangle, order): &Sorted, face: usize) {
         let end = self.pieces.len();
-        if self.triangles.last().map_or(0, |last| last.end) == end {
-            return;
+        if self.triangles.last().map_or(0, |last| last.end) != end {
+            self.triangles.push(Covered { triangle: *triangle, face, order: *order, end });
         }
-        // No two corners of a triangle that has area are in one place.
-        let order = triangle.vertices.each_ref().map(|corner| {
-            let same = |v: &Vertex| v.x() == corner.x() && v.y() == corner.y();
-            vertices.iter().position(same).unwrap_or(0)
-        });
-        self.triangles.push(Covered { triangle: *triangle, face, order, end });
     }
 
     /// One stage: for every triangle `plane` makes what its values are over it, from its corners top to bottom; for every
@@ -149,7 +149,7 @@ impl Pieces {
         let mut first = 0;
         for Covered { triangle, face, order, end } in &self.triangles {
             let attributes = &faces[*face].attributes;
-            let plane = plane(triangle, order.map(|corner| &attributes[corner]));
+            let plane = plane(triangle, [&attributes[order[0]], &attributes[order[1]], &attributes[order[2]]]);
             for (piece, out) in self.pieces[first..*end].iter().zip(&mut out[first..*end]) {
                 fill(&plane, piece, out);
             }

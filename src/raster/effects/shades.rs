@@ -36,6 +36,12 @@ impl Pieces {
             }
             return self.mix(buffers, mix, pipeline.dither().unwrap_or(&HALVES));
         }
+        if let (Some(stage), ShadeSource::Shaded(Interpolation::Flat(shade))) = (pipeline.texture(), pipeline.source) {
+            // The table's row.
+            if let Some(row) = stage.tables[0].as_chunks::<256>().0.get(usize::from(shade)) {
+                return self.texels(row, faces, (stage, pipeline.levels()), &mut buffers.bytes[..n], kernel);
+            }
+        }
         self.shade_bytes(faces, buffers, pipeline, kernel);
         if let Some(stage) = pipeline.texture() {
             self.texels(stage.tables[0], faces, (stage, pipeline.levels()), &mut buffers.bytes[..n], kernel);
@@ -54,11 +60,10 @@ impl Pieces {
                 let plane = |triangle: &SortedTriangle, _: [&Attributes; 3]| RowShader::new(triangle, interpolation);
                 match (interpolation, pipeline.dither()) {
                     (Interpolation::GouraudReseeded, None) => {
-                        let plane = |triangle: &SortedTriangle, _: [&Attributes; 3]| ShadePlane::new(triangle);
-                        self.each(faces, bytes, plane, |plane, piece, bytes| {
-                            let start = plane.start(piece.seed, piece.row.y);
-                            kernel.fill(&mut bytes[..piece.len()], start, plane.step());
-                        });
+                        for (piece, bytes) in self.pieces().iter().zip(bytes) {
+                            // The halves.
+                            kernel.fill(&mut bytes[..piece.len()], piece.paint as u16, (piece.paint >> 16) as u16);
+                        }
                     }
                     (_, None) => self.each(faces, bytes, plane, |shader, piece, bytes| {
                         shader.piece(&piece.row, piece.seed, &mut bytes[..piece.len()], None, kernel);

@@ -5,6 +5,7 @@ use super::pieces::{Bytes, Face, PIECE, Piece, Pieces};
 use super::pipeline::{Attributes, TextureMapping, TextureStage};
 use crate::fixed::{HAS_F64, nearest_whole};
 use crate::raster::cover::SortedTriangle;
+use crate::raster::quotient::Divisor;
 use crate::raster::weights::WholeWeights;
 use crate::span::Kernel;
 use crate::span::texture::{Levels, Shown, Texels, show_affine, show_estimated, show_perspective_portable};
@@ -13,31 +14,43 @@ use crate::span::texture::{Levels, Shown, Texels, show_affine, show_estimated, s
 const EVERY: usize = EVERY_WHOLE as usize;
 const EVERY_WHOLE: i32 = 16;
 
-/// The mappings as constants of the loops, so that no piece asks which it is.
-const AFFINE: u8 = TextureMapping::Affine as u8;
-const EVERY_16: u8 = TextureMapping::Every16 as u8;
-const PERSPECTIVE: u8 = TextureMapping::Perspective as u8;
-
 impl Pieces {
     /// The texels of every piece, from the levels of the image where there are any, and what is shown of them.
     pub(super) fn texels(
         &self,
         shown: impl Shown,
         faces: &[Face],
-        (stage, levels): (&TextureStage<'_>, Option<Levels<'_>>),
+        of: (&TextureStage<'_>, Option<Levels<'_>>),
         out: &mut [Bytes],
         kernel: Kernel,
     ) {
-        match stage.mapping {
-            TextureMapping::Affine => self.texels_by::<AFFINE>(shown, faces, (stage, levels), out, kernel),
-            TextureMapping::Every16 => self.texels_by::<EVERY_16>(shown, faces, (stage, levels), out, kernel),
-            TextureMapping::Perspective => self.texels_by::<PERSPECTIVE>(shown, faces, (stage, levels), out, kernel),
+        // A function for each, so that none is compiled otherwise where another is left out.
+        match of.0.mapping {
+            TextureMapping::Affine => self.affine_texels(shown, faces, of, out),
+            TextureMapping::Every16 => self.perspective_texels::<true>(shown, faces, of, out, kernel),
+            TextureMapping::Perspective => self.perspective_texels::<false>(shown, faces, of, out, kernel),
         }
     }
 
-    /// A function for each, so that none is compiled otherwise where another is left out.
     #[inline(never)]
-    fn texels_by<const MAPPING: u8>(
+    fn affine_texels(
+        &self,
+        shown: impl Shown,
+        faces: &[Face],
+        (stage, levels): (&TextureStage<'_>, Option<Levels<'_>>),
+        out: &mut [Bytes],
+    ) {
+        let plane = |triangle: &SortedTriangle, corners| AffineTexture::new(triangle, corners, (stage.texels, levels));
+        self.each(faces, out, plane, |AffineTexture { texels, planes: [u, v] }, piece, pixels| {
+            let (x, y) = piece.start();
+            // The wrap is meant: texels repeat.
+            let steps = [u.step as u32, v.step as u32];
+            show_affine(shown, &mut pixels[..piece.len()], *texels, [u.start(x, y), v.start(x, y)], steps);
+        });
+    }
+
+    #[inline(never)]
+    fn perspective_texels<const EVERY_16: bool>(
         &self,
         shown: impl Shown,
         faces: &[Face],
@@ -46,67 +59,161 @@ impl Pieces {
         kernel: Kernel,
     ) {
         let image = stage.texels;
-        let plane = |triangle: &SortedTriangle, corners| TexturePlane::new(triangle, corners, stage.mapping, levels);
+        let plane = |triangle: &SortedTriangle, corners: [&Attributes; 3]| PerspectiveTexture::new(triangle, corners);
         let Some(levels) = levels else {
-            return self.each(faces, out, plane, |plane, piece, texels| {
-                plane.fill_level::<MAPPING>(shown, (image, 0), piece, piece.seed, &mut texels[..piece.len()], kernel);
+            return self.each(faces, out, plane, |plane, piece, pixels| {
+                plane.fill_level::<EVERY_16>(shown, (image, 0), piece, piece.seed, &mut pixels[..piece.len()], kernel);
             });
         };
-        self.each(faces, out, plane, |plane, piece, texels| {
-            let texels = &mut texels[..piece.len()];
-            match &plane.level {
-                Level::OfFace(level) => {
-                    let of_level = levels.get(*level).unwrap_or(image);
-                    plane.fill_level::<MAPPING>(shown, (of_level, 0), piece, piece.seed, texels, kernel);
-                }
-                Level::OfPixels(of_pixels) => {
-                    plane.fill_by_levels::<MAPPING>(shown, (of_pixels, levels), image, piece, texels, kernel);
-                }
-            }
+        let plane = |triangle: &SortedTriangle, corners: [&Attributes; 3]| {
+            let depths = |corner: usize| i128::from(depth(triangle, corner));
+            let levels = LevelPlane::new(triangle, corners.map(|c| c.texture), [depths(0), depths(1), depths(2)]);
+            (plane(triangle, corners), levels)
+        };
+        self.each(faces, out, plane, |(plane, of_pixels), piece, pixels| {
+            let pixels = &mut pixels[..piece.len()];
+            plane.fill_by_levels::<EVERY_16>(shown, (of_pixels, levels), image, piece, pixels, kernel);
         });
     }
 }
 
-/// Texture coordinates over a triangle.
+/// The depth of a corner, at least 1.
+#[inline]
+fn depth(triangle: &SortedTriangle, corner: usize) -> i64 {
+    i64::from(triangle.vertices[corner].depth().max(1))
+}
+
+/// Texture coordinates that are linear on the screen, and the level of the image that is shown.
+#[derive(Clone, Copy, Debug)]
+struct AffineTexture<'a> {
+    texels: Texels<'a>,
+    planes: [AffinePlane; 2],
+}
+
+impl<'a> AffineTexture<'a> {
+    #[inline]
+    fn new(
+        triangle: &SortedTriangle,
+        [a, b, c]: [&Attributes; 3],
+        (image, levels): (Texels<'a>, Option<Levels<'a>>),
+    ) -> Self {
+        let area = Divisor::new(triangle.area());
+        let plane = |i: usize| AffinePlane::new(triangle, area, [a.texture[i], b.texture[i], c.texture[i]]);
+        let planes = [plane(0), plane(1)];
+        let Some(levels) = levels else { return Self { texels: image, planes } };
+        let change = |direction: usize| [0, 1].map(|i| 256 * i128::from(planes[i].gradient[direction]));
+        let level = level::of_face(change(0), change(1), area.get(), levels.last());
+        Self { texels: levels.get(level).unwrap_or(image), planes: planes.map(|plane| plane.of_level(level)) }
+    }
+}
+
+/// A texture coordinate that is linear on the screen.
+///
+/// With c the first corner's coordinate, A twice the area, and the numerators g of the gradient,
+///
+/// ```text
+/// u(x, y) = c + (gx·(256·x + 128 − x₀) + gy·(256·y + 128 − y₀)) / A
+/// ```
+///
+/// It is rounded back toward where it comes from, as shades are, so no sum leaves the range of the corners. Inside the
+/// triangle the fraction's value is at most D, by which the corners differ most. Where D·A is below 2⁶¹, which it is for
+/// triangles of half a million pixels and 4,096 texels, its numerator is right modulo 2⁶⁴ whatever its terms are.
+///
+/// Level n has c and the quotient, rounded already, divided by 2ⁿ and rounded once more: the same as if it were rounded once.
+#[derive(Clone, Copy, Debug)]
+struct AffinePlane {
+    area: Divisor,
+    /// c.
+    coordinate: i64,
+    /// (x₀, y₀) from the centre of pixel (0, 0).
+    corner: [i64; 2],
+    /// (gx, gy), each within 2⁵⁵.
+    gradient: [i64; 2],
+    /// D·A is below 2⁶¹.
+    fits: bool,
+    /// What is added to the numerator and to the quotient so that they round up: A − 1 and 2ⁿ − 1, or 0.
+    bias: [i64; 2],
+    /// n.
+    level: u32,
+    /// Change from one pixel to the next, rounded toward zero.
+    step: i64,
+}
+
+impl AffinePlane {
+    #[inline]
+    fn new(triangle: &SortedTriangle, area: Divisor, [a, b, c]: [i32; 3]) -> Self {
+        let (gx, gy) = triangle.gradient([a.into(), b.into(), c.into()]);
+        let first = &triangle.vertices[0];
+        let range = a.max(b).max(c).abs_diff(a.min(b).min(c));
+        let most = u64::from(range).saturating_mul(area.get().unsigned_abs());
+        let fits = most < 1 << 61;
+        // In a row of two pixels or more it is within D, and gx·256 within D·A. In a row of one it is not used.
+        let step = if !fits {
+            (256 * i128::from(gx) / i128::from(area.get())) as i64
+        } else if gx.unsigned_abs() <= most >> 8 {
+            area.truncate(gx * 256)
+        } else {
+            0
+        };
+        Self {
+            area,
+            coordinate: a.into(),
+            corner: [i64::from(first.x().to_bits()) - 128, i64::from(first.y().to_bits()) - 128],
+            gradient: [gx, gy],
+            fits,
+            bias: [if gx < 0 { area.get() - 1 } else { 0 }, 0],
+            level: 0,
+            step,
+        }
+    }
+
+    /// The coordinate in level n of the image.
+    fn of_level(self, n: u32) -> Self {
+        let bias = (1 << n) - 1;
+        let upward = if self.gradient[0] < 0 { bias } else { 0 };
+        Self { bias: [self.bias[0], upward], level: n, step: (self.step + upward) >> n, ..self }
+    }
+
+    /// The coordinate at a pixel whose centre lies in the triangle; 16.16.
+    #[inline]
+    fn start(&self, x: i32, y: i32) -> u32 {
+        let ([gx, gy], [bias, of_level]) = (self.gradient, self.bias);
+        let (dx, dy) = (i64::from(x) * 256 - self.corner[0], i64::from(y) * 256 - self.corner[1]);
+        let quotient = if self.fits {
+            self.area.floor(gx.wrapping_mul(dx).wrapping_add(gy.wrapping_mul(dy)).wrapping_add(bias))
+        } else {
+            let n = i128::from(gx) * i128::from(dx) + i128::from(gy) * i128::from(dy) + i128::from(bias);
+            // Within D.
+            n.div_euclid(self.area.get().into()) as i64
+        };
+        // Modulo 2³².
+        ((self.coordinate + quotient + of_level) >> self.level) as u32
+    }
+}
+
+/// Texture coordinates that are linear on the face.
 ///
 /// ```text
 /// u(x, y) = Σ λᵢ·dᵢ·uᵢ / Σ λᵢ·dᵢ
 /// ```
 ///
-/// with λ the [weights](WholeWeights) of the corners and d their depths; all dᵢ are 1 where coordinates are linear on the
-/// screen. No λ is negative at a covered centre, so a numerator in f64 is off by at most 4 parts in 2⁵³ of 2³¹ · Σ λᵢ·dᵢ,
-/// however much of it cancels, and u by less than 2⁻¹⁹.
+/// with λ the [weights](WholeWeights) of the corners and d their depths. No λ is negative at a covered centre, so a
+/// numerator in f64 is off by at most 4 parts in 2⁵³ of 2³¹ · Σ λᵢ·dᵢ, however much of it cancels, and u by less than 2⁻¹⁹.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TexturePlane {
+struct PerspectiveTexture {
     weights: WholeWeights,
-    /// Each corner's coordinates and 1, times its depth: below 2⁶³.
+    /// Each corner's u, v and 1, times its depth; below 2⁶³.
     values: [[i64; 3]; 3],
     estimated: [[f64; 3]; 3],
-    /// Σ λᵢ times 2ⁿ for level n, and its reciprocal: the divisor of affine coordinates, which are the level's.
-    divisor: i64,
-    reciprocal: f64,
-    /// Change of affine coordinates from one pixel to the next, rounded toward zero.
-    steps: [u32; 2],
-    /// Where affine coordinates fall.
-    falls: [bool; 2],
-    /// Level whose texels are shown, if the image has several.
-    level: Level,
-}
-
-/// The level of a mipmap that is shown.
-#[derive(Clone, Copy, Debug)]
-enum Level {
-    /// One all over the face; 0 for an image without levels.
-    OfFace(u32),
-    /// One for every 16 pixels.
-    OfPixels(LevelPlane),
+    /// Change of the sums from one pixel to the next, in f64.
+    steps: [f64; 3],
 }
 
 /// The sum over the corners of weights times values, exact.
 #[inline]
-fn exact(weights: [i64; 3], values: [i64; 3]) -> i128 {
-    let product = |corner: usize| i128::from(weights[corner]) * i128::from(values[corner]);
-    product(0) + product(1) + product(2)
+fn exact([wa, wb, wc]: [i64; 3], [a, b, c]: [i64; 3]) -> i128 {
+    let product = |weight: i64, value: i64| i128::from(weight) * i128::from(value);
+    product(wa, a) + product(wb, b) + product(wc, c)
 }
 
 /// Weights in f64, which is exact: they are at most 2⁴⁴.
@@ -133,46 +240,31 @@ fn floor(estimate: f64, n: i128, d: i128) -> i64 {
     near - i64::from(n < i128::from(near) * d)
 }
 
-impl TexturePlane {
-    pub(super) fn new(
-        triangle: &SortedTriangle,
-        corners: [&Attributes; 3],
-        mapping: TextureMapping,
-        levels: Option<Levels<'_>>,
-    ) -> Self {
-        let affine = mapping == TextureMapping::Affine;
-        let depths = if affine { [1; 3] } else { triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1))) };
-        let [u, v] = [0, 1].map(|i| [0, 1, 2].map(|k| i64::from(corners[k].texture[i]) * depths[k]));
+impl PerspectiveTexture {
+    #[inline]
+    fn new(triangle: &SortedTriangle, [a, b, c]: [&Attributes; 3]) -> Self {
+        let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
+        let times =
+            |[a, b, c]: [i32; 3]| [i64::from(a) * depths[0], i64::from(b) * depths[1], i64::from(c) * depths[2]];
+        let of = |i: usize| times([a.texture[i], b.texture[i], c.texture[i]]);
+        let values = [of(0), of(1), depths];
         let weights = WholeWeights::new(triangle);
-        let area = triangle.area();
-        // Weights change by at most 2³⁰.
-        let per_column = [u, v].map(|values| exact(weights.per_column(), values));
-        let level = match levels {
-            None => Level::OfFace(0),
-            Some(levels) if affine => {
-                let per_row = [u, v].map(|values| exact(weights.per_row(), values));
-                Level::OfFace(level::of_face(per_column, per_row, area, levels.last()))
+        let (mut estimated, mut steps) = ([[0.0; 3]; 3], [0.0; 3]);
+        if HAS_F64 {
+            let per_column = in_f64(weights.per_column());
+            for (i, [a, b, c]) in values.into_iter().enumerate() {
+                estimated[i] = [a as f64, b as f64, c as f64];
+                steps[i] = estimate(per_column, estimated[i]);
             }
-            Some(_) => {
-                let coordinates = corners.map(|corner| corner.texture);
-                Level::OfPixels(LevelPlane::new(triangle, coordinates, depths.map(i128::from)))
-            }
-        };
-        let divisor = if let Level::OfFace(level) = level { area << level } else { area };
-        // Of affine coordinates below 2⁶³. The wrap is meant: in a row of two pixels or more the step is that of two
-        // coordinates; in a row of one it is never used.
-        let steps = if affine { per_column.map(|n| (n as i64 / divisor) as u32) } else { [0; 2] };
-        let values = [u, v, depths];
-        let estimated = values.map(|values| values.map(|value| if HAS_F64 { value as f64 } else { 0.0 }));
-        let reciprocal = if HAS_F64 { 1.0 / divisor as f64 } else { 0.0 };
-        Self { weights, values, estimated, divisor, reciprocal, steps, falls: per_column.map(|n| n < 0), level }
+        }
+        Self { weights, values, estimated, steps }
     }
 
     /// Fills `texels` from levels, one of which is chosen for every 16 pixels.
     /// The middle one of these decides, or the row's last inside the frame if that comes before, whatever the clip
     /// rectangle.
     #[inline(never)]
-    fn fill_by_levels<const MAPPING: u8>(
+    fn fill_by_levels<const EVERY_16: bool>(
         &self,
         shown: impl Shown,
         (plane, levels): (&LevelPlane, Levels<'_>),
@@ -196,7 +288,7 @@ impl TexturePlane {
             (part, rest) = rest.split_at_mut((alike.len() * EVERY).min(rest.len()));
             let level = alike[0];
             let of_level = levels.get(level).unwrap_or(image);
-            self.fill_level::<MAPPING>(shown, (of_level, level), piece, x, part, kernel);
+            self.fill_level::<EVERY_16>(shown, (of_level, level), piece, x, part, kernel);
             // At most 64.
             x += part.len() as i32;
         }
@@ -204,7 +296,7 @@ impl TexturePlane {
 
     /// The texels of one level, from pixel `x` on. Coordinates are divided by 2^`shift`.
     #[inline]
-    fn fill_level<const MAPPING: u8>(
+    fn fill_level<const EVERY_16: bool>(
         &self,
         shown: impl Shown,
         (texels, shift): (Texels<'_>, u32),
@@ -214,41 +306,36 @@ impl TexturePlane {
         kernel: Kernel,
     ) {
         let y = piece.row.y;
-        match MAPPING {
-            AFFINE => {
-                show_affine(shown, pixels, texels, [self.start(0, x, y), self.start(1, x, y)], self.steps);
-            }
-            PERSPECTIVE => self.fill_perspective(shown, (texels, shift), (x, y), pixels, kernel),
-            _ => {
-                let at = |x: i32| self.at(x, y).map(|coordinate| coordinate >> shift);
-                let mut from = at(x);
-                for pixels in pixels.chunks_mut(EVERY) {
-                    // The row's last pixel inside the frame, whatever the clip rectangle: beyond the
-                    // triangle there may be no coordinates at all.
-                    let next = (x + EVERY as i32).min(piece.row.last).max(x);
-                    let to = at(next);
-                    let step = |i: usize| {
-                        // The wrap is meant: texels repeat.
-                        let change = to[i].wrapping_sub(from[i]);
-                        match next - x {
-                            0 => 0,
-                            // A shift, and what makes it round toward zero.
-                            EVERY_WHOLE => (change / EVERY_WHOLE) as u32,
-                            // Not −2³¹ by −1.
-                            pixels => (change / pixels) as u32,
-                        }
-                    };
-                    // The wrap is meant here, too.
-                    show_affine(shown, pixels, texels, [from[0] as u32, from[1] as u32], [step(0), step(1)]);
-                    (x, from) = (next, to);
+        if !EVERY_16 {
+            return self.fill_exact(shown, (texels, shift), (x, y), pixels, kernel);
+        }
+        let at = |x: i32| self.at(x, y).map(|coordinate| coordinate >> shift);
+        let mut from = at(x);
+        for pixels in pixels.chunks_mut(EVERY) {
+            // The row's last pixel inside the frame, whatever the clip rectangle: beyond the
+            // triangle there may be no coordinates at all.
+            let next = (x + EVERY as i32).min(piece.row.last).max(x);
+            let to = at(next);
+            let step = |i: usize| {
+                // The wrap is meant: texels repeat.
+                let change = to[i].wrapping_sub(from[i]);
+                match next - x {
+                    0 => 0,
+                    // A shift, and what makes it round toward zero.
+                    EVERY_WHOLE => (change / EVERY_WHOLE) as u32,
+                    // Not −2³¹ by −1.
+                    pixels => (change / pixels) as u32,
                 }
-            }
+            };
+            // The wrap is meant here, too.
+            show_affine(shown, pixels, texels, [from[0] as u32, from[1] as u32], [step(0), step(1)]);
+            (x, from) = (next, to);
         }
     }
 
     /// The texels of one level, each at its exact place.
-    #[inline(never)]
-    fn fill_perspective(
+    #[inline]
+    fn fill_exact(
         &self,
         shown: impl Shown,
         (texels, shift): (Texels<'_>, u32),
@@ -256,15 +343,29 @@ impl TexturePlane {
         pixels: &mut [u8],
         kernel: Kernel,
     ) {
-        let (weights, step) = (self.weights.at(x, y), self.weights.per_column());
+        let weights = self.weights.at(x, y);
         if HAS_F64 {
-            let [at, step] = [in_f64(weights), in_f64(step)];
-            let [u, v, [d, dd]] = self.estimated.map(|values| [estimate(at, values), estimate(step, values)]);
+            let at = in_f64(weights);
+            let sum = |i: usize| [estimate(at, self.estimated[i]), self.steps[i]];
             let size = f64::from(1_u32 << shift);
-            if show_estimated(shown, kernel, pixels, texels, [u, v], [d * size, dd * size]) {
+            let [d, dd] = sum(2);
+            if show_estimated(shown, kernel, pixels, texels, [sum(0), sum(1)], [d * size, dd * size]) {
                 return;
             }
         }
+        self.fill_exactly(shown, (texels, shift), weights, pixels);
+    }
+
+    /// [`fill_exact`](Self::fill_exact) in whole numbers, for where an estimate cannot decide.
+    #[inline(never)]
+    fn fill_exactly(
+        &self,
+        shown: impl Shown,
+        (texels, shift): (Texels<'_>, u32),
+        weights: [i64; 3],
+        pixels: &mut [u8],
+    ) {
+        let step = self.weights.per_column();
         let [u, v, [d, dd]] = self.values.map(|values| [exact(weights, values), exact(step, values)]);
         show_perspective_portable(shown, pixels, texels, [u, v], [d << shift, dd << shift]);
     }
@@ -282,17 +383,63 @@ impl TexturePlane {
         };
         [of(0), of(1)]
     }
+}
 
-    /// An affine coordinate at a pixel, rounded back toward where it comes from, as shades are; 16.16.
-    /// So no sum leaves the range of the corners.
-    #[inline]
-    fn start(&self, of: usize, x: i32, y: i32) -> u32 {
-        let weights = self.weights.at(x, y);
-        let bias = if self.falls[of] { self.divisor - 1 } else { 0 };
-        let estimate = match HAS_F64 {
-            true => (estimate(in_f64(weights), self.estimated[of]) + bias as f64) * self.reciprocal,
-            false => 0.0,
-        };
-        floor(estimate, exact(weights, self.values[of]) + i128::from(bias), i128::from(self.divisor)) as u32
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::fixed::{I24F8, U8F8};
+    use crate::raster::frame::Rect;
+    use crate::raster::vertex::Vertex;
+
+    /// The definition, in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.
+    fn defined(triangle: &SortedTriangle, coordinates: [i32; 3], level: u32, (x, y): (i32, i32)) -> u32 {
+        let weights = WholeWeights::new(triangle);
+        let values = coordinates.map(i64::from);
+        let (n, d) = (exact(weights.at(x, y), values), i128::from(triangle.area()) << level);
+        let falls = exact(weights.per_column(), values) < 0;
+        (if falls { -(-n).div_euclid(d) } else { n.div_euclid(d) }) as u32
+    }
+
+    fn corner(side: i32) -> impl Strategy<Value = (i32, i32)> {
+        (0..side, 0..side)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        /// Starts and steps are those of the definition, from triangles of a pixel to those of a whole frame, and from flat
+        /// coordinates to those of which numerators take more than 64 bits.
+        #[test]
+        fn affine_coordinates_are_the_definition(
+            (corners, (left, top)) in prop::sample::select(&[300, 5_000, 80_000, 1 << 20][..]).prop_flat_map(|side| {
+                let place = (-side / 2..80_000, -side / 2..50_000);
+                ([corner(side), corner(side), corner(side)], place)
+            }),
+            (bits, coordinates) in (0_u32..32, any::<[i32; 3]>()),
+            level in 0_u32..9,
+        ) {
+            let vertex = |(x, y): (i32, i32)| {
+                let at = |n: i32| I24F8::from_bits(n.clamp(-Vertex::GUARD_BAND, Vertex::GUARD_BAND));
+                Vertex::new(at(left + x), at(top + y), U8F8::default(), 1).expect("inside the guard band")
+            };
+            let triangle = SortedTriangle::new(&corners.map(vertex));
+            prop_assume!(triangle.doubled_area != 0);
+            let coordinates = coordinates.map(|coordinate| coordinate >> bits);
+            let plane = AffinePlane::new(&triangle, Divisor::new(triangle.area()), coordinates).of_level(level);
+            let mut rows = std::vec::Vec::new();
+            triangle.rows(4_096, Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 }, |row| rows.push(row));
+            let (gx, _) = triangle.gradient(coordinates.map(i64::from));
+            let step = 256 * i128::from(gx) / (i128::from(triangle.area()) << level);
+            for row in rows.iter().step_by(1 + rows.len() / 8) {
+                for x in [row.x0, i32::midpoint(row.x0, row.last), row.last] {
+                    prop_assert_eq!(plane.start(x, row.y), defined(&triangle, coordinates, level, (x, row.y)));
+                }
+                if row.x0 < row.last {
+                    prop_assert_eq!(plane.step as u32, step as u32);
+                }
+            }
+        }
     }
 }
