@@ -345,8 +345,9 @@ fn fill_perspective_estimated(
 /// Pixels that [`show_estimated`] fills at most.
 const PIECE: usize = 64;
 
-/// Pixels that are estimated together.
+/// Pixels that are estimated together, and those of a row that is no longer.
 const LANES: usize = 8;
+const FEW: usize = 4;
 
 /// Fills `row`, at most 64 pixels, by quotients in f64. Returns `false` if one of them cannot decide; the row is then
 /// as it was.
@@ -379,7 +380,14 @@ pub(crate) fn show_estimated(
     let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
     let mut places = [0; PIECE];
     let n = row.len().min(PIECE);
-    if !is_sure || !places_at_best(kernel, &mut places[..n.next_multiple_of(LANES)], texels, numerators, [d, dd]) {
+    let estimated = |places: &mut [u16]| {
+        if n <= FEW {
+            places_at_best::<FEW>(kernel, &mut places[..FEW], texels, numerators, [d, dd])
+        } else {
+            places_at_best::<LANES>(kernel, &mut places[..n.next_multiple_of(LANES)], texels, numerators, [d, dd])
+        }
+    };
+    if !is_sure || !estimated(&mut places) {
         return false;
     }
     for (pixel, place) in row.iter_mut().zip(&places) {
@@ -390,23 +398,28 @@ pub(crate) fn show_estimated(
 
 at_best_level! {
     #[inline]
-    fn places_at_best[][](
+    fn places_at_best[const N: usize][N](
         kernel: Kernel, places: &mut [u16], texels: Texels<'_>, numerators: [[f64; 2]; 2], divisors: [f64; 2],
     ) -> bool {
-        find_places(places, texels, numerators, divisors)
+        find_places::<N>(places, texels, numerators, divisors)
     }
 }
 
-/// The places of the texels, [`Texels::place`]. Returns whether all are sure. What lies beyond the end of a row may be
-/// unsure, too.
+/// The places of the texels, [`Texels::place`], `N` at a time. Returns whether all are sure. What lies beyond the end of a row
+/// may be unsure, too.
 #[inline(always)]
-fn find_places(places: &mut [u16], texels: Texels<'_>, [[u, du], [v, dv]]: [[f64; 2]; 2], [d, dd]: [f64; 2]) -> bool {
+fn find_places<const N: usize>(
+    places: &mut [u16],
+    texels: Texels<'_>,
+    [[u, du], [v, dv]]: [[f64; 2]; 2],
+    [d, dd]: [f64; 2],
+) -> bool {
     // `Texels::place` in u32, for twice the lanes.
     let columns = (1_u32 << texels.ubits) - 1;
     let rows = ((1_u32 << texels.vbits) - 1) << texels.ubits;
     let to_row = 16 - texels.ubits;
-    let (blocks, _) = places.as_chunks_mut::<LANES>();
-    let mut k = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+    let (blocks, _) = places.as_chunks_mut::<N>();
+    let mut k: [f64; N] = core::array::from_fn(|k| k as f64);
     let mut unsure = 0;
     for block in blocks {
         for (place, k) in block.iter_mut().zip(&mut k) {
@@ -417,7 +430,7 @@ fn find_places(places: &mut [u16], texels: Texels<'_>, [[u, du], [v, dv]]: [[f64
             // At most columns + rows, which is below 65,536.
             *place = (((v >> to_row) & rows) | ((u >> 16) & columns)) as u16;
             unsure |= u32::from(u & 0xFFFF == 0) | u32::from(v & 0xFFFF == 0);
-            *k += LANES as f64;
+            *k += N as f64;
         }
     }
     unsure == 0
