@@ -334,7 +334,7 @@ impl PerspectiveTexture {
     }
 
     /// The texels of one level, each at its exact place.
-    #[inline]
+    #[inline(never)]
     fn fill_exact(
         &self,
         shown: impl Shown,
