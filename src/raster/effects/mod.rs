@@ -156,15 +156,14 @@ impl EffectBatch {
     ) {
         self.clear();
         self.push(vertices, attributes);
-        let triangle = SortedTriangle::with_order(vertices);
         let Self { faces, pieces, buffers, .. } = self;
         make_room(pieces, buffers);
         let (rows, depth) = (OneRow(pixels), None::<&mut DepthBuffer<'_, u32>>);
         let mut drawing =
             Drawing { rows, depth, kernel, pipeline, faces, pieces, buffers, drawn: DrawStats::default() };
-        let plane = drawing.shade_plane(&triangle.0);
-        drawing.add_row(row, (&triangle, 0), plane.as_ref());
-        drawing.pieces.close(&triangle, 0);
+        let triangle = Sorted::new(faces, 0, false);
+        drawing.add_row(row, &triangle);
+        drawing.pieces.close(&triangle);
         // The caller has counted what is covered.
         *drawn += DrawStats { covered: 0, ..drawing.finish((row.x1 - row.x0) as u32) };
         self.clear();
@@ -235,19 +234,14 @@ struct Drawing<'a, 'b, R, D: Cell> {
 }
 
 impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
-    /// The shades of pieces, if the pipeline takes them from there.
-    fn shade_plane(&self, triangle: &SortedTriangle) -> Option<ShadePlane> {
-        self.pipeline.takes_paint().then(|| ShadePlane::new(triangle))
-    }
-
     /// Adds the drawn part of a row of a face, cut into pieces.
-    fn add_row(&mut self, row: &Row, of: (&Sorted, usize), plane: Option<&ShadePlane>) {
+    #[inline]
+    fn add_row(&mut self, row: &Row, of: &Sorted) {
         let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
         let mut x = row.x0;
         while x < row.x1 {
             let end = row.x1.min(seed + RESEED);
-            let paint = |plane: &ShadePlane| u32::from(plane.start(seed, row.y)) | u32::from(plane.step()) << 16;
-            self.add_piece(Piece { row: *row, seed, x, end, paint: plane.map_or(0, paint) }, of);
+            self.add_piece(Piece { row: *row, seed, x, end, paint: 0 }, of);
             seed += RESEED;
             x = end;
         }
@@ -255,9 +249,9 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
 
     /// Adds a piece of a face. Those that wait are drawn when there is no more room.
     #[inline(always)]
-    fn add_piece(&mut self, piece: Piece, (triangle, face): (&Sorted, usize)) {
+    fn add_piece(&mut self, piece: Piece, of: &Sorted) {
         if self.pieces.len() == CAPACITY {
-            self.pieces.close(triangle, face);
+            self.pieces.close(of);
             self.draw();
         }
         self.pieces.push(piece);
@@ -412,37 +406,32 @@ impl<D: Cell> Raster<'_, D> {
             match found {
                 Found::Small(triangles, rows) => {
                     for (lane, &number) in triangles.iter().enumerate() {
-                        let face = index(number);
-                        let triangle = SortedTriangle::with_order(&faces[face].vertices);
+                        let triangle = Sorted::new(faces, index(number), true);
                         for (row, paint) in rows.of(lane) {
-                            if row.x0 < row.x1 {
-                                covered += (row.x1 - row.x0) as u32;
-                                let piece = Piece { row, seed: row.x0, x: row.x0, end: row.x1, paint };
-                                drawing.add_piece(piece, (&triangle, face));
+                            let (x, end) = (row.x0, row.x1);
+                            if x < end {
+                                covered += (end - x) as u32;
+                                drawing.add_piece(Piece { row, seed: x, x, end, paint }, &triangle);
                             }
                         }
-                        drawing.pieces.close(&triangle, face);
+                        drawing.pieces.close(&triangle);
                     }
                 }
                 Found::Another(face) => {
-                    let triangle = SortedTriangle::with_order(&faces[face].vertices);
-                    if triangle.0.doubled_area == 0 {
-                        continue;
-                    }
-                    let plane = drawing.shade_plane(&triangle.0);
+                    let sorted = Sorted::new(faces, face, false);
                     let each_row = |row: Row| {
                         covered += (row.x1 - row.x0) as u32;
                         // Columns of a frame, of which there are at most 4,096.
                         if CLIPS || (row.x0 >= 0 && row.x1 <= width as i32) {
-                            drawing.add_row(&row, (&triangle, face), plane.as_ref());
+                            drawing.add_row(&row, &sorted);
                         }
                     };
                     if CLIPS {
-                        triangle.0.rows(width, clip, each_row);
+                        sorted.triangle.rows(width, clip, each_row);
                     } else {
-                        triangle.0.rows_inside(each_row);
+                        sorted.triangle.rows_inside(each_row);
                     }
-                    drawing.pieces.close(&triangle, face);
+                    drawing.pieces.close(&sorted);
                 }
             }
         }

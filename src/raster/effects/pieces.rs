@@ -4,8 +4,9 @@ use alloc::vec::Vec;
 
 use super::pipeline::Attributes;
 use crate::raster::cover::{Row, SortedTriangle};
-use crate::raster::shade::RESEED;
+use crate::raster::shade::{RESEED, ShadePlane};
 use crate::raster::vertex::Vertex;
+use crate::span::Kernel;
 
 /// Pixels in a piece, at most.
 pub(super) const PIECE: usize = RESEED as usize;
@@ -36,8 +37,7 @@ pub(super) struct Piece {
     /// The columns that are drawn: from this one, up to the second.
     pub(super) x: i32,
     pub(super) end: i32,
-    /// Linear shades: the first one, and above it the step. The pipelines that take them are
-    /// [those that say so](super::PixelPipeline::takes_paint).
+    /// Linear shades of a face that is [set up](Sorted::has_paint): the first one, and above it the step.
     pub(super) paint: u32,
 }
 
@@ -76,17 +76,30 @@ impl Piece {
     }
 }
 
-/// A face's triangle, and which of its corners stands in each place.
-pub(super) type Sorted = (SortedTriangle, [usize; 3]);
+/// The triangle of a face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sorted {
+    pub(super) triangle: SortedTriangle,
+    /// Which corner of the face stands in each place.
+    order: [usize; 3],
+    /// The index of the face.
+    pub(super) face: usize,
+    /// Its pieces have their [paint](Piece::paint).
+    has_paint: bool,
+}
+
+impl Sorted {
+    #[inline(always)]
+    pub(super) fn new(faces: &[Face], face: usize, has_paint: bool) -> Self {
+        let (triangle, order) = SortedTriangle::with_order(&faces[face].vertices);
+        Self { triangle, order, face, has_paint }
+    }
+}
 
 /// A triangle that has pieces.
 #[derive(Clone, Copy, Debug)]
 struct Covered {
-    triangle: SortedTriangle,
-    /// The index of its face.
-    face: usize,
-    /// Order of the corners: which one of the face is which of the triangle.
-    order: [usize; 3],
+    of: Sorted,
     /// The index of the piece behind its last one.
     end: usize,
 }
@@ -129,10 +142,26 @@ impl Pieces {
 
     /// Makes the pieces behind those of the last triangle a triangle's, if there are any.
     #[inline]
-    pub(super) fn close(&mut self, (triangle, order): &Sorted, face: usize) {
+    pub(super) fn close(&mut self, triangle: &Sorted) {
         let end = self.pieces.len();
         if self.triangles.last().map_or(0, |last| last.end) != end {
-            self.triangles.push(Covered { triangle: *triangle, face, order: *order, end });
+            self.triangles.push(Covered { of: *triangle, end });
+        }
+    }
+
+    /// The stage of linear shades that start anew with every piece.
+    pub(super) fn fill_linear(&self, out: &mut [Bytes], kernel: Kernel) {
+        let mut first = 0;
+        for Covered { of, end } in &self.triangles {
+            let plane = if of.has_paint { None } else { Some(ShadePlane::new(&of.triangle)) };
+            for (piece, bytes) in self.pieces[first..*end].iter().zip(&mut out[first..*end]) {
+                // The halves.
+                let paint = (piece.paint as u16, (piece.paint >> 16) as u16);
+                let at = |plane: &ShadePlane| (plane.start(piece.seed, piece.row.y), plane.step());
+                let (start, step) = plane.as_ref().map_or(paint, at);
+                kernel.fill(&mut bytes[..piece.len()], start, step);
+            }
+            first = *end;
         }
     }
 
@@ -147,7 +176,7 @@ impl Pieces {
         mut fill: impl FnMut(&P, &Piece, &mut T),
     ) {
         let mut first = 0;
-        for Covered { triangle, face, order, end } in &self.triangles {
+        for Covered { of: Sorted { triangle, order, face, .. }, end } in &self.triangles {
             let attributes = &faces[*face].attributes;
             let plane = plane(triangle, [&attributes[order[0]], &attributes[order[1]], &attributes[order[2]]]);
             for (piece, out) in self.pieces[first..*end].iter().zip(&mut out[first..*end]) {

@@ -154,13 +154,6 @@ pub struct PixelPipeline<'a> {
 
 /// The stages. One that a build leaves out (`plan::Effect::is_left_out`) is not there, and the compiler knows.
 impl<'a> PixelPipeline<'a> {
-    /// Returns whether its shades are linear and start anew with every piece.
-    #[inline]
-    pub(super) fn takes_paint(&self) -> bool {
-        let is_linear = matches!(self.source, ShadeSource::Shaded(Interpolation::GouraudReseeded));
-        is_linear && self.channels().is_none() && self.dither().is_none()
-    }
-
     #[inline]
     pub(super) fn channels(&self) -> Option<Mix<'a>> {
         self.channels.filter(|_| !cfg!(mode13h_leave_out = "rgb-channels"))

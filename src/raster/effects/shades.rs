@@ -59,12 +59,7 @@ impl Pieces {
             ShadeSource::Shaded(interpolation) => {
                 let plane = |triangle: &SortedTriangle, _: [&Attributes; 3]| RowShader::new(triangle, interpolation);
                 match (interpolation, pipeline.dither()) {
-                    (Interpolation::GouraudReseeded, None) => {
-                        for (piece, bytes) in self.pieces().iter().zip(bytes) {
-                            // The halves.
-                            kernel.fill(&mut bytes[..piece.len()], piece.paint as u16, (piece.paint >> 16) as u16);
-                        }
-                    }
+                    (Interpolation::GouraudReseeded, None) => self.fill_linear(bytes, kernel),
                     (_, None) => self.each(faces, bytes, plane, |shader, piece, bytes| {
                         shader.piece(&piece.row, piece.seed, &mut bytes[..piece.len()], None, kernel);
                     }),
