@@ -192,7 +192,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
 mod tests {
     use super::*;
 
-    /// What lies outside the rectangle stays, also where whole rows are cleared and in a band.
+    /// Cells outside the rectangle stay, also where whole rows are cleared and in a band.
     #[test]
     fn a_rectangle_is_cleared_and_no_more() {
         for (x0, x1) in [(0, 5), (1, 4)] {

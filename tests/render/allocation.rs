@@ -6,7 +6,7 @@
 //! and grow with what is seen: triangles that tessellation splits, and the parts of those that planes cut. There a frame
 //! may allocate that has more of them than any before; a second turn, which has no more than the first, may not.
 //!
-//! What a frame says that it allocated is what the allocator kept of it, but for the plan.
+//! Bytes that a frame says it allocated are those that the allocator kept of it, but for the plan.
 
 use crate::support::tried::Tried;
 use allocation_counter::measure;

@@ -4,6 +4,15 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
+/** Removes a browser's folder. Its last processes may still write there: then it stays in the system's temporary folder. */
+export function removeProfile(profile) {
+  try {
+    rmSync(profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 });
+  } catch (error) {
+    console.log(`${profile} stays: ${error.code}`);
+  }
+}
+
 export class Browser {
   #number = 0;
   #asked = new Map();
@@ -60,7 +69,7 @@ export class Browser {
   async close() {
     await this.ask("Browser.close").catch(() => {});
     await new Promise((resolve) => (this.process.exitCode === null ? this.process.once("exit", resolve) : resolve()));
-    rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
+    removeProfile(this.profile);
   }
 }
 

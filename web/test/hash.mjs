@@ -5,10 +5,11 @@
 // FRAMES.wasm is machines/frames, built for WebAssembly. A BROWSER is a program such as chromium or firefox-esr. It opens
 // a page of this computer, which draws the frames and says what came of it.
 import { spawn } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
+import { removeProfile } from "./devtools.mjs";
 
 const [file, ...browsers] = process.argv.slice(2);
 const source = readFileSync(new URL("../../lab/src/verify/freestanding/frames.rs", import.meta.url), "utf8");
@@ -44,7 +45,7 @@ function ask(program) {
       server.close();
       server.closeAllConnections?.();
       running.once("exit", () => {
-        rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+        removeProfile(profile);
         resolve(said);
       });
       running.kill();

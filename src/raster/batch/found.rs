@@ -44,7 +44,7 @@ pub(in crate::raster) struct Finder<'a> {
     rows: FoundRows,
 }
 
-/// What comes next.
+/// Triangles that come next.
 pub(in crate::raster) enum Found<'a> {
     /// Triangles whose rows are found: lane i has those of the i-th.
     Small(&'a [u32], &'a FoundRows),

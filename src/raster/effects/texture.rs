@@ -131,7 +131,7 @@ struct AffinePlane {
     gradient: [i64; 2],
     /// D·A is below 2⁶¹.
     fits: bool,
-    /// What is added to the numerator and to the quotient so that they round up: A − 1 and 2ⁿ − 1, or 0.
+    /// Added to the numerator and to the quotient so that they round up: A − 1 and 2ⁿ − 1, or 0.
     bias: [i64; 2],
     /// n.
     level: u32,
