@@ -181,3 +181,29 @@ impl Row {
 pub(super) fn point(v: &Vertex) -> (i32, i32) {
     (v.x().to_bits(), v.y().to_bits())
 }
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use super::*;
+    use crate::fixed::{I24F8, U8F8};
+
+    /// Corners stand by (y, x), and each stands where it is said to, for all triples of nine points that reach both ends of
+    /// the guard band, equal ones among them.
+    #[test]
+    fn corners_are_in_order_and_known() {
+        const ENDS: [i32; 3] = [-Vertex::GUARD_BAND, 0, Vertex::GUARD_BAND];
+        // The shade tells equal points apart.
+        let vertex = |place: usize, shade: u16| {
+            let [x, y] = [ENDS[place % 3], ENDS[place / 3]].map(I24F8::from_bits);
+            Vertex::new(x, y, U8F8::from_bits(shade), 0).expect("in the guard band")
+        };
+        for triple in 0..9 * 9 * 9 {
+            let given = [vertex(triple % 9, 1), vertex(triple / 9 % 9, 2), vertex(triple / 81, 3)];
+            let mut sorted = given;
+            sorted.sort_by_key(|v| (v.y(), v.x()));
+            let (triangle, order) = SortedTriangle::with_order(&given);
+            assert_eq!(triangle.vertices, sorted, "{given:?}");
+            assert_eq!(order.map(|corner| given[corner]), sorted, "{given:?}");
+        }
+    }
+}
