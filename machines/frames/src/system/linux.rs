@@ -16,6 +16,17 @@ global_asm!(
     "call {entry}",
     entry = sym entry
 );
+// A section of its own: machines/avx512 has it begin the image.
+#[cfg(target_arch = "x86_64")]
+global_asm!(
+    ".section .text._start, \"ax\"",
+    ".globl _start",
+    "_start:",
+    "mov rdi, rsp",
+    "and rsp, -16",
+    "call {entry}",
+    entry = sym entry
+);
 #[cfg(target_arch = "aarch64")]
 global_asm!(".globl _start", "_start:", "mov x0, sp", "b {entry}", entry = sym entry);
 #[cfg(target_arch = "riscv64")]
@@ -84,9 +95,13 @@ pub(crate) fn exit(passed: bool) -> ! {
 const WRITE: usize = 64;
 #[cfg(any(target_arch = "aarch64", target_arch = "riscv64"))]
 const EXIT: usize = 93;
-#[cfg(not(any(target_arch = "aarch64", target_arch = "riscv64")))]
+#[cfg(target_arch = "x86_64")]
+const WRITE: usize = 1;
+#[cfg(target_arch = "x86_64")]
+const EXIT: usize = 60;
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "riscv64")))]
 const WRITE: usize = 4;
-#[cfg(not(any(target_arch = "aarch64", target_arch = "riscv64")))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "riscv64")))]
 const EXIT: usize = 1;
 
 /// A system call with three arguments.
@@ -96,6 +111,8 @@ unsafe fn call(number: usize, a: usize, b: usize, c: usize) -> usize {
     unsafe {
         #[cfg(target_arch = "x86")]
         asm!("int 0x80", inout("eax") number => result, in("ebx") a, in("ecx") b, in("edx") c);
+        #[cfg(target_arch = "x86_64")]
+        asm!("syscall", inout("rax") number => result, in("rdi") a, in("rsi") b, in("rdx") c, out("rcx") _, out("r11") _);
         #[cfg(target_arch = "aarch64")]
         asm!("svc 0", in("x8") number, inout("x0") a => result, in("x1") b, in("x2") c);
         #[cfg(target_arch = "riscv64")]
