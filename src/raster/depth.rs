@@ -176,6 +176,14 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
         self.values
     }
 
+    /// The depths from column `x` of row `y` on, those of later rows among them, or `None` if the buffer does not hold the row.
+    #[cfg(feature = "alloc")]
+    #[inline]
+    pub(super) fn starting_at(&mut self, x: usize, y: u32) -> Option<&mut [D]> {
+        let start = (y.checked_sub(self.first_row)? as usize).checked_mul(self.width as usize)?.checked_add(x)?;
+        self.values.get_mut(start..)
+    }
+
     /// The depths of row `y`, or `None` if the buffer does not hold it.
     #[must_use]
     #[inline]

@@ -214,6 +214,14 @@ impl<'a> Frame<'a> {
         self.pixels.get_mut(start..start + self.width as usize)
     }
 
+    /// The pixels from column `x` of row `y` on, those of later rows among them, or `None` if the frame does not hold the row.
+    #[cfg(feature = "alloc")]
+    #[inline]
+    pub(super) fn starting_at(&mut self, x: usize, y: u32) -> Option<&mut [u8]> {
+        let start = self.offset_of(y)?.checked_add(x)?;
+        self.pixels.get_mut(start..)
+    }
+
     /// All pixels that it holds, and the bytes from one row to the next.
     #[inline]
     pub(super) fn pixels_mut(&mut self) -> (&mut [u8], usize) {

@@ -9,7 +9,7 @@ use mode13h::palette::Rgb;
 use mode13h::palette::cube;
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::curve::curve;
-use mode13h::span::depth::{Cell, copy_before, copy_nearer};
+use mode13h::span::depth::{Cell, copy_before, copy_by, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
 use mode13h::span::fixed16::fill_16_16;
 use mode13h::span::float::fill_float;
@@ -777,7 +777,7 @@ mod mixed {
 mod depth_tested {
     use super::*;
 
-    type Copy<D> = fn(&mut [u8], &mut [D], &[u8], i64, i64) -> u32;
+    type Copy<D> = dyn Fn(&mut [u8], &mut [D], &[u8], i64, i64) -> u32;
 
     /// What a cell holds of a depth, as `Cell` documents it.
     trait Naive: Cell + Debug {
@@ -803,7 +803,7 @@ mod depth_tested {
         }
     }
 
-    fn check<D: Naive>(copy: Copy<D>, keeps: bool) -> Result<u64, String> {
+    fn check<D: Naive>(copy: &Copy<D>, keeps: bool) -> Result<u64, String> {
         on_every_shape("depth", |random, canvas, shape| {
             let before = bytes(random, shape.length);
             let drawn = other_row(random, shape.length);
@@ -838,21 +838,52 @@ mod depth_tested {
 
     #[test]
     fn copies_with_a_depth_test_are_the_definition() {
-        assert_right("copy_nearer u32", SHAPES, check::<u32>(copy_nearer, false));
-        assert_right("copy_nearer u16", SHAPES, check::<u16>(copy_nearer, false));
-        assert_right("copy_before u32", SHAPES, check::<u32>(|r, d, b, z, dz| copy_before(r, d, b, z, dz), true));
-        assert_right("copy_before u16", SHAPES, check::<u16>(|r, d, b, z, dz| copy_before(r, d, b, z, dz), true));
+        assert_right("copy_nearer u32", SHAPES, check::<u32>(&copy_nearer, false));
+        assert_right("copy_nearer u16", SHAPES, check::<u16>(&copy_nearer, false));
+        assert_right("copy_before u32", SHAPES, check::<u32>(&|r, d, b, z, dz| copy_before(r, d, b, z, dz), true));
+        assert_right("copy_before u16", SHAPES, check::<u16>(&|r, d, b, z, dz| copy_before(r, d, b, z, dz), true));
+    }
+
+    /// A copy by a kernel of as many pixels as there are, with cells and bytes behind them, which have to stay.
+    fn by<D: Naive, const KEEPS: bool>(kernel: Kernel) -> impl Fn(&mut [u8], &mut [D], &[u8], i64, i64) -> u32 {
+        move |row, depth, bytes, z, dz| {
+            let length = row.len().min(depth.len()).min(bytes.len());
+            let (mut cells, mut bytes) = (depth.to_vec(), bytes.to_vec());
+            // As many as a turn takes, or fewer. Whatever is drawn is nearer than these cells.
+            cells.extend((0..length % 10).map(|_| D::default()));
+            bytes.extend((0..length / 10 % 10).map(|_| 0xEE));
+            let behind = cells[length..].to_vec();
+            let written = copy_by::<D, KEEPS>(kernel, length, row, &mut cells, &bytes, z, dz);
+            assert!(cells[length..] == behind, "cells behind {length} have changed");
+            let kept = depth.len();
+            depth.copy_from_slice(&cells[..kept]);
+            written
+        }
+    }
+
+    #[test]
+    fn copies_by_every_kernel_are_the_definition() {
+        for kernel in Kernel::available() {
+            assert_right(&format!("{kernel}, nearer, u32"), SHAPES, check::<u32>(&by::<_, true>(kernel), false));
+            assert_right(&format!("{kernel}, before, u32"), SHAPES, check::<u32>(&by::<_, false>(kernel), true));
+            assert_right(&format!("{kernel}, nearer, u16"), SHAPES, check::<u16>(&by::<_, true>(kernel), false));
+        }
     }
 
     #[test]
     fn wrong_copies_are_caught() {
-        assert_caught("the depths are not kept", check::<u32>(copy_nearer, true));
-        assert_caught("the depths are kept", check::<u16>(|r, d, b, z, dz| copy_before(r, d, b, z, dz), false));
-        let equal: Copy<u32> = |row, depth, bytes, z, dz| {
+        assert_caught("the depths are not kept", check::<u32>(&copy_nearer, true));
+        assert_caught("the depths are kept", check::<u16>(&|r, d, b, z, dz| copy_before(r, d, b, z, dz), false));
+        let equal = |row: &mut [u8], depth: &mut [u32], bytes: &[u8], z, dz| {
             let lower: Vec<u32> = depth.iter().map(|d| d.saturating_sub(1)).collect();
             copy_before(row, &lower, bytes, z, dz)
         };
-        assert_caught("an equal depth counts as nearer", check(equal, true));
+        assert_caught("an equal depth counts as nearer", check(&equal, true));
+        let one_more = |row: &mut [u8], depth: &mut [u32], bytes: &[u8], z, dz| {
+            let length = (row.len().min(depth.len()).min(bytes.len()) + 1).min(row.len());
+            copy_by::<_, true>(Kernel::PORTABLE, length, row, depth, &[bytes, &[0xEE]].concat(), z, dz)
+        };
+        assert_caught("a pixel behind the last", check(&one_more, false));
     }
 }
 

@@ -33,7 +33,7 @@ mod texture;
 
 use alloc::vec::Vec;
 
-use self::pieces::{Bytes, CAPACITY, Face, PIECE, Piece, Pieces, Shades, Sorted};
+use self::pieces::{Bytes, CAPACITY, Covered, Face, PIECE, Piece, Pieces, Shades, Sorted};
 pub use self::pipeline::{
     Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
 };
@@ -47,7 +47,8 @@ use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
 use super::triangle::Raster;
 use super::vertex::Vertex;
-use crate::span::depth::{copy_before, copy_nearer};
+use crate::simd::at_best_level;
+use crate::span::depth::copy_by;
 use crate::span::{Kernel, lookup};
 
 /// A half for every pixel: no dither.
@@ -200,14 +201,14 @@ fn count(pipeline: &PixelPipeline<'_>, pixels: u32, drawn: &mut DrawStats) {
 
 /// Rows of a frame.
 trait Rows {
-    /// A row's pixels, from column 0 on.
-    fn row_mut(&mut self, y: u32) -> Option<&mut [u8]>;
+    /// The pixels from column `x` of row `y` on.
+    fn starting_at(&mut self, x: usize, y: u32) -> Option<&mut [u8]>;
 }
 
 impl Rows for &mut Frame<'_> {
     #[inline]
-    fn row_mut(&mut self, y: u32) -> Option<&mut [u8]> {
-        Frame::row_mut(self, y)
+    fn starting_at(&mut self, x: usize, y: u32) -> Option<&mut [u8]> {
+        Frame::starting_at(self, x, y)
     }
 }
 
@@ -216,8 +217,8 @@ struct OneRow<'a>(&'a mut [u8]);
 
 impl Rows for OneRow<'_> {
     #[inline]
-    fn row_mut(&mut self, _: u32) -> Option<&mut [u8]> {
-        Some(self.0)
+    fn starting_at(&mut self, x: usize, _: u32) -> Option<&mut [u8]> {
+        self.0.get_mut(x..)
     }
 }
 
@@ -287,33 +288,26 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
     /// Writes pieces, all of each or where it is nearer.
     #[inline(never)]
     fn write<const BLENDS: bool>(&mut self) {
-        let Self { rows, pieces, drawn, pipeline, .. } = self;
+        let Self { rows, pieces, drawn, pipeline, kernel, .. } = self;
         let bytes = &mut self.buffers.bytes[..pieces.len()];
-        let table = pipeline.blend().filter(|_| BLENDS);
-        let Some(depth) = &mut self.depth else {
-            for (piece, bytes) in pieces.pieces().iter().zip(bytes) {
-                let Some((pixels, bytes)) = visible(rows, piece, bytes, table) else { continue };
-                copy(pixels, bytes);
-                drawn.spans += 1;
-                // At most 64.
-                drawn.pixels += pixels.len() as u32;
+        let blend = pipeline.blend().filter(|_| BLENDS);
+        *drawn += match &mut self.depth {
+            None => {
+                let mut drawn = DrawStats::default();
+                for (piece, bytes) in pieces.pieces().iter().zip(bytes) {
+                    let Some((pixels, bytes)) = visible(rows, piece, bytes, blend) else { continue };
+                    copy(&mut pixels[..piece.visible()], &bytes[..piece.visible()]);
+                    drawn.spans += 1;
+                    // At most 64.
+                    drawn.pixels += piece.visible() as u32;
+                }
+                drawn
             }
-            return;
+            Some(depth) if pipeline.keeps_depth => {
+                write_nearer::<R, D, BLENDS, true>(*kernel, *kernel, rows, depth, pieces, bytes, blend)
+            }
+            Some(depth) => write_nearer::<R, D, BLENDS, false>(*kernel, *kernel, rows, depth, pieces, bytes, blend),
         };
-        let plane = |triangle: &SortedTriangle, _: [&Attributes; 3]| DepthPlane::new(triangle);
-        pieces.each(self.faces, bytes, plane, |plane, piece, bytes| {
-            let Some(depths) = depth.row_mut(piece.row.y as u32) else { return };
-            let Some((pixels, bytes)) = visible(rows, piece, bytes, table) else { return };
-            drawn.spans += 1;
-            let Some(depths) = depths.get_mut(piece.range()) else { return };
-            let z = plane.fixed_at(piece.x, piece.row.y);
-            drawn.tested += pixels.len() as u32;
-            drawn.pixels += if pipeline.keeps_depth {
-                copy_nearer(pixels, depths, bytes, z, plane.step())
-            } else {
-                copy_before(pixels, depths, bytes, z, plane.step())
-            };
-        });
     }
 
     /// Draws the pieces that wait, and returns what was done, so many pixels being covered.
@@ -325,7 +319,51 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
     }
 }
 
-/// The pixels of a piece that are drawn, and the bytes for them: with a table, what it makes of them and of what is there.
+at_best_level! {
+    /// Writes pieces where they are nearer; with `KEEPS` their depths are kept.
+    fn write_nearer[R: Rows, D: Cell, const BLENDS: bool, const KEEPS: bool][R, D, BLENDS, KEEPS](
+        level: Kernel,
+        kernel: Kernel,
+        rows: &mut R,
+        depth: &mut DepthBuffer<'_, D>,
+        pieces: &Pieces,
+        bytes: &mut [Bytes],
+        blend: Option<&[u8; 65_536]>,
+    ) -> DrawStats {
+        write_each::<R, D, BLENDS, KEEPS>(kernel, rows, depth, pieces, bytes, blend)
+    }
+}
+
+#[inline(always)]
+fn write_each<R: Rows, D: Cell, const BLENDS: bool, const KEEPS: bool>(
+    kernel: Kernel,
+    rows: &mut R,
+    depth: &mut DepthBuffer<'_, D>,
+    pieces: &Pieces,
+    bytes: &mut [Bytes],
+    blend: Option<&[u8; 65_536]>,
+) -> DrawStats {
+    let mut drawn = DrawStats::default();
+    let mut first = 0;
+    // Not by a closure, which would not be compiled for the level.
+    for Covered { of, end } in pieces.triangles() {
+        let plane = DepthPlane::new(&of.triangle);
+        for (piece, bytes) in pieces.pieces()[first..*end].iter().zip(&mut bytes[first..*end]) {
+            let Some((pixels, bytes)) = visible(rows, piece, bytes, blend.filter(|_| BLENDS)) else { continue };
+            let Some(depths) = depth.starting_at(piece.range().start, piece.row.y as u32) else { continue };
+            let (n, z) = (piece.visible(), plane.fixed_at(piece.x, piece.row.y));
+            drawn.spans += 1;
+            // At most 64.
+            drawn.tested += n as u32;
+            drawn.pixels += copy_by::<D, KEEPS>(kernel, n, pixels, depths, bytes, z, plane.step());
+        }
+        first = *end;
+    }
+    drawn
+}
+
+/// The pixels from the first of a piece that is drawn on, and the bytes from there on: with a table, what it makes of them
+/// and of what is there.
 #[inline(always)]
 fn visible<'a>(
     rows: &'a mut impl Rows,
@@ -333,17 +371,19 @@ fn visible<'a>(
     bytes: &'a mut Bytes,
     blend: Option<&[u8; 65_536]>,
 ) -> Option<(&'a mut [u8], &'a [u8])> {
-    let pixels = rows.row_mut(piece.row.y as u32)?.get_mut(piece.range())?;
-    let bytes = &mut bytes[(piece.x - piece.seed) as usize..piece.len()];
+    let row = rows.starting_at(piece.range().start, piece.row.y as u32)?;
+    let pixels = row.get(..piece.visible())?;
+    let first = (piece.x - piece.seed) as usize;
     if let Some(table) = blend {
         // The table's row is the face's own index.
         let mut behind: Bytes = [0; PIECE];
         let behind = &mut behind[..pixels.len()];
         behind.copy_from_slice(pixels);
+        let bytes = &mut bytes[first..piece.len()];
         lookup(behind, bytes, table);
         bytes.copy_from_slice(behind);
     }
-    Some((pixels, bytes))
+    Some((row, &bytes[first..]))
 }
 
 /// Copies bytes to as many pixels: mostly few, for which a call costs more than they do.

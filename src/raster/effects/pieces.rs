@@ -56,6 +56,12 @@ impl Piece {
         self.x as usize..self.end as usize
     }
 
+    /// Pixels that are drawn: 1 to 64.
+    #[inline]
+    pub(super) fn visible(&self) -> usize {
+        (self.end - self.x) as usize
+    }
+
     /// Place of the first pixel.
     #[inline]
     pub(super) fn start(&self) -> (i32, i32) {
@@ -98,10 +104,10 @@ impl Sorted {
 
 /// A triangle that has pieces.
 #[derive(Clone, Copy, Debug)]
-struct Covered {
-    of: Sorted,
+pub(super) struct Covered {
+    pub(super) of: Sorted,
     /// The index of the piece behind its last one.
-    end: usize,
+    pub(super) end: usize,
 }
 
 /// Pieces of faces, in the order in which they are drawn.
@@ -184,6 +190,12 @@ impl Pieces {
             }
             first = *end;
         }
+    }
+
+    /// The triangles that have pieces.
+    #[inline]
+    pub(super) fn triangles(&self) -> &[Covered] {
+        &self.triangles
     }
 
     /// The pieces.

@@ -1,4 +1,4 @@
-//! The span with a depth test by AVX2: eight pixels a turn, or four where that is enough.
+//! The span with a depth test by AVX2, of shades and of bytes: eight pixels a turn, or four where that is enough.
 //!
 //! Pixels of a turn that a span does not have are given depth 0, which is nearer than nothing, so that they are written as
 //! they were read: AVX2 has masked stores of 32 bits alone, and on some processors they are slow. So as many pixels and
@@ -61,35 +61,166 @@ fn fill(pixels: &mut [u8], cells: &mut [u32], spans: impl Iterator<Item = (Span,
     turned.wrapping_add_signed(_mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4))))
 }
 
-/// One span, in turns of eight. Returns of each lane the pixels that were not written, as a number below 0.
+/// Copies the first `length` bytes as [`copy_nearer`](super::super::depth::copy_nearer) does, or without `KEEPS` as
+/// [`copy_before`](super::super::depth::copy_before). Returns the number of pixels written; `None`, with nothing done, where
+/// something is shorter than the turns.
+#[inline]
+pub(crate) fn copy<const KEEPS: bool>(
+    _: Avx2,
+    length: usize,
+    row: &mut [u8],
+    cells: &mut [u32],
+    bytes: &[u8],
+    z: i64,
+    dz: i64,
+) -> Option<u32> {
+    // With 32 fraction bits.
+    let (z, dz) = (z << 8, dz << 8);
+    if length <= FOUR {
+        let (row, cells, bytes) = (row.first_chunk_mut()?, cells.first_chunk_mut()?, bytes.first_chunk()?);
+        // SAFETY: the processor has AVX2, says the token.
+        return Some(unsafe { copy_four::<KEEPS>(length, row, cells, bytes, z, dz) });
+    }
+    let whole = length.next_multiple_of(EIGHT);
+    let (row, cells, bytes) = (row.get_mut(..whole)?, cells.get_mut(..whole)?, bytes.get(..whole)?);
+    // SAFETY: the processor has AVX2, says the token.
+    Some(unsafe { copy_eights::<KEEPS>(length, row, cells, bytes, z, dz) })
+}
+
 #[inline]
 #[target_feature(enable = "avx2")]
-fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> __m256i {
-    let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-    // So arranged that the upper halves of both are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
-    let dz = _mm256_set1_epi64x(depth.dz);
-    let odd = _mm256_and_si256(dz, _mm256_setr_epi64x(0, -1, 0, -1));
-    let later = _mm256_and_si256(_mm256_slli_epi64(dz, 2), _mm256_setr_epi64x(0, 0, -1, -1));
-    let mut z0 = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(depth.z), odd), later);
-    let mut z1 = _mm256_add_epi64(z0, _mm256_slli_epi64(dz, 1));
-    let next_z = _mm256_slli_epi64(dz, 3);
-    // shade + k·step, of which bits 8 to 15 count.
-    let numbered = _mm256_or_si256(_mm256_slli_epi32(lanes, 16), _mm256_set1_epi32(1));
-    let mut shades = _mm256_madd_epi16(_mm256_set1_epi32(span.paint.cast_signed()), numbered);
-    let next_shade = _mm256_set1_epi32((span.paint >> 16 << 3).cast_signed());
+fn copy_four<const KEEPS: bool>(
+    length: usize,
+    row: &mut [u8; FOUR],
+    cells: &mut [u32; FOUR],
+    bytes: &[u8; FOUR],
+    z: i64,
+    dz: i64,
+) -> u32 {
+    // At most four.
+    let stay = four_stay::<KEEPS>(cells, z, dz, length as i32);
+    // The lowest byte of each, and zeros.
+    let stays = _mm_shuffle_epi8(stay, _mm_setr_epi32(0x0C08_0400, -1, -1, -1));
+    let [before, after] = [*row, *bytes].map(|bytes| _mm_cvtsi32_si128(i32::from_le_bytes(bytes)));
+    *row = _mm_cvtsi128_si32(_mm_blendv_epi8(after, before, stays)).to_le_bytes();
+    FOUR as u32 - ones(stays)
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn copy_eights<const KEEPS: bool>(
+    length: usize,
+    row: &mut [u8],
+    cells: &mut [u32],
+    bytes: &[u8],
+    z: i64,
+    dz: i64,
+) -> u32 {
     // Below 2³¹, as that many pixels are there.
-    let mut left = span.length as i32;
-    let mut stayed = _mm256_setzero_si256();
-    for (pixels, cells) in row.as_chunks_mut::<EIGHT>().0.iter_mut().zip(cells.as_chunks_mut::<EIGHT>().0) {
+    let mut depths = Depths::new(z, dz, length as i32);
+    let mut written = 0;
+    let turns = row.as_chunks_mut::<EIGHT>().0.iter_mut().zip(cells.as_chunks_mut::<EIGHT>().0);
+    for ((row, cells), bytes) in turns.zip(bytes.as_chunks::<EIGHT>().0) {
+        let stay = depths.stay::<KEEPS>(cells);
+        // The lowest byte of each.
+        let stays = _mm256_shuffle_epi8(stay, _mm256_set1_epi32(0x0C08_0400));
+        let stays = _mm_unpacklo_epi32(_mm256_castsi256_si128(stays), _mm256_extracti128_si256(stays, 1));
+        let before = _mm_cvtsi64_si128(i64::from_le_bytes(*row));
+        let after = _mm_cvtsi64_si128(i64::from_le_bytes(*bytes));
+        *row = _mm_cvtsi128_si64(_mm_blendv_epi8(after, before, stays)).to_le_bytes();
+        written += EIGHT as u32 - ones(stays);
+    }
+    written
+}
+
+/// How many of the lower eight bytes are −1, the others being 0.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn ones(bytes: __m128i) -> u32 {
+    let zero = _mm_setzero_si128();
+    _mm_cvtsi128_si32(_mm_sad_epu8(_mm_sub_epi8(zero, bytes), zero)).cast_unsigned()
+}
+
+/// The depths of eight pixels a turn.
+struct Depths {
+    /// With 32 fraction bits, so arranged that the upper halves of both are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
+    z: [__m256i; 2],
+    /// From a turn to the next one.
+    step: __m256i,
+    /// Pixels from this turn on.
+    left: i32,
+}
+
+impl Depths {
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn new(z: i64, dz: i64, length: i32) -> Self {
+        let dz = _mm256_set1_epi64x(dz);
+        let odd = _mm256_and_si256(dz, _mm256_setr_epi64x(0, -1, 0, -1));
+        let later = _mm256_and_si256(_mm256_slli_epi64(dz, 2), _mm256_setr_epi64x(0, 0, -1, -1));
+        let z = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(z), odd), later);
+        let z = [z, _mm256_add_epi64(z, _mm256_slli_epi64(dz, 1))];
+        Self { z, step: _mm256_slli_epi64(dz, 3), left: length }
+    }
+
+    /// One turn: −1 where a pixel stays, because it is not nearer than its cell, or is none of the span. With `KEEPS` the
+    /// cells keep what is nearer.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn stay<const KEEPS: bool>(&mut self, cells: &mut [u32; EIGHT]) -> __m256i {
+        let [z0, z1] = self.z;
         let upper = _mm256_shuffle_ps(_mm256_castsi256_ps(z0), _mm256_castsi256_ps(z1), 0b11_01_11_01);
-        let are_there = _mm256_cmpgt_epi32(_mm256_set1_epi32(left), lanes);
+        let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+        let are_there = _mm256_cmpgt_epi32(_mm256_set1_epi32(self.left), lanes);
         let depths = _mm256_and_si256(_mm256_castps_si256(upper), are_there);
         // SAFETY: eight u32; the load asks for no alignment.
         let before = unsafe { _mm256_loadu_si256(cells.as_ptr().cast()) };
         let after = _mm256_max_epu32(before, depths);
-        let stay = _mm256_cmpeq_epi32(before, after);
-        // SAFETY: eight u32; the store asks for no alignment.
-        unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), after) };
+        if KEEPS {
+            // SAFETY: eight u32; the store asks for no alignment.
+            unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), after) };
+        }
+        self.z = [_mm256_add_epi64(z0, self.step), _mm256_add_epi64(z1, self.step)];
+        self.left -= EIGHT as i32;
+        _mm256_cmpeq_epi32(before, after)
+    }
+}
+
+/// −1 where one of up to four pixels stays; with `KEEPS` as [`Depths::stay`].
+#[inline]
+#[target_feature(enable = "avx2")]
+fn four_stay<const KEEPS: bool>(cells: &mut [u32; FOUR], z: i64, dz: i64, length: i32) -> __m128i {
+    let lanes = _mm_setr_epi32(0, 1, 2, 3);
+    let dz = _mm_set1_epi64x(dz);
+    let z0 = _mm_add_epi64(_mm_set1_epi64x(z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
+    let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
+    let upper = _mm_shuffle_ps(_mm_castsi128_ps(z0), _mm_castsi128_ps(z1), 0b11_01_11_01);
+    let are_there = _mm_cmpgt_epi32(_mm_set1_epi32(length), lanes);
+    let depths = _mm_and_si128(_mm_castps_si128(upper), are_there);
+    // SAFETY: four u32; the load asks for no alignment.
+    let before = unsafe { _mm_loadu_si128(cells.as_ptr().cast()) };
+    let after = _mm_max_epu32(before, depths);
+    if KEEPS {
+        // SAFETY: four u32; the store asks for no alignment.
+        unsafe { _mm_storeu_si128(cells.as_mut_ptr().cast(), after) };
+    }
+    _mm_cmpeq_epi32(before, after)
+}
+
+/// One span, in turns of eight. Returns of each lane the pixels that were not written, as a number below 0.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> __m256i {
+    // Below 2³¹, as that many pixels are there.
+    let mut depths = Depths::new(depth.z, depth.dz, span.length as i32);
+    // shade + k·step, of which bits 8 to 15 count.
+    let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    let numbered = _mm256_or_si256(_mm256_slli_epi32(lanes, 16), _mm256_set1_epi32(1));
+    let mut shades = _mm256_madd_epi16(_mm256_set1_epi32(span.paint.cast_signed()), numbered);
+    let next_shade = _mm256_set1_epi32((span.paint >> 16 << 3).cast_signed());
+    let mut stayed = _mm256_setzero_si256();
+    for (pixels, cells) in row.as_chunks_mut::<EIGHT>().0.iter_mut().zip(cells.as_chunks_mut::<EIGHT>().0) {
+        let stay = depths.stay::<true>(cells);
         // SAFETY: eight bytes; the load asks for no alignment.
         let bytes = _mm256_cvtepu8_epi32(unsafe { _mm_loadl_epi64(pixels.as_ptr().cast()) });
         let bytes = _mm256_blendv_epi8(_mm256_srli_epi32(shades, 8), bytes, stay);
@@ -99,9 +230,7 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> __
         // SAFETY: eight bytes; the store asks for no alignment.
         unsafe { _mm_storel_epi64(pixels.as_mut_ptr().cast(), eight) };
         stayed = _mm256_add_epi32(stayed, stay);
-        (z0, z1) = (_mm256_add_epi64(z0, next_z), _mm256_add_epi64(z1, next_z));
         shades = _mm256_add_epi32(shades, next_shade);
-        left -= EIGHT as i32;
     }
     stayed
 }
@@ -110,22 +239,10 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> __
 #[inline]
 #[target_feature(enable = "avx2")]
 fn four(row: &mut [u8; FOUR], cells: &mut [u32; FOUR], span: Span, depth: SpanDepth) -> __m128i {
-    let lanes = _mm_setr_epi32(0, 1, 2, 3);
-    let dz = _mm_set1_epi64x(depth.dz);
-    let z0 = _mm_add_epi64(_mm_set1_epi64x(depth.z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
-    let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
-    let numbered = _mm_or_si128(_mm_slli_epi32(lanes, 16), _mm_set1_epi32(1));
-    let shades = _mm_madd_epi16(_mm_set1_epi32(span.paint.cast_signed()), numbered);
-    let upper = _mm_shuffle_ps(_mm_castsi128_ps(z0), _mm_castsi128_ps(z1), 0b11_01_11_01);
     // At most four.
-    let are_there = _mm_cmpgt_epi32(_mm_set1_epi32(span.length as i32), lanes);
-    let depths = _mm_and_si128(_mm_castps_si128(upper), are_there);
-    // SAFETY: four u32; the load asks for no alignment.
-    let before = unsafe { _mm_loadu_si128(cells.as_ptr().cast()) };
-    let after = _mm_max_epu32(before, depths);
-    let stay = _mm_cmpeq_epi32(before, after);
-    // SAFETY: four u32; the store asks for no alignment.
-    unsafe { _mm_storeu_si128(cells.as_mut_ptr().cast(), after) };
+    let stay = four_stay::<true>(cells, depth.z, depth.dz, span.length as i32);
+    let numbered = _mm_or_si128(_mm_slli_epi32(_mm_setr_epi32(0, 1, 2, 3), 16), _mm_set1_epi32(1));
+    let shades = _mm_madd_epi16(_mm_set1_epi32(span.paint.cast_signed()), numbered);
     let bytes = _mm_cvtepu8_epi32(_mm_cvtsi32_si128(i32::from_le_bytes(*row)));
     let bytes = _mm_blendv_epi8(_mm_srli_epi32(shades, 8), bytes, stay);
     // The lowest byte of each.
