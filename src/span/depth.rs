@@ -8,8 +8,6 @@
 //! The first that was drawn of equal depths stays. A cell of the buffer may be narrower than a depth:
 //! then `d` is narrowed first ([`Cell`]).
 
-use super::Kernel;
-
 mod sealed {
     pub trait Sealed: Sized {
         /// The cells as `u32`, if they are of 32 bits: those have kernels of their own.
@@ -106,34 +104,6 @@ pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i6
 #[inline]
 pub fn copy_before<D: Cell>(row: &mut [u8], depth: &[D], bytes: &[u8], z: i64, dz: i64) -> u32 {
     copy_where(row, depth, bytes, z, dz, |nearest, d: D| d > *nearest)
-}
-
-/// Copies the first `length` bytes as a kernel does it: as [`copy_nearer`] with `KEEPS`, otherwise as [`copy_before`].
-/// Returns the number of pixels written.
-///
-/// Row, cells and bytes may be longer, and what lies behind in the row and in the cells stays as it was: vectors take
-/// whole turns where there is room for them. Pixels beyond the shortest of the three are left alone.
-#[inline]
-#[doc(hidden)]
-pub fn copy_by<D: Cell, const KEEPS: bool>(
-    kernel: Kernel,
-    length: usize,
-    row: &mut [u8],
-    depth: &mut [D],
-    bytes: &[u8],
-    z: i64,
-    dz: i64,
-) -> u32 {
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    if let Some(avx2) = kernel.avx2()
-        && let Some(cells) = D::as_u32(depth)
-        && let Some(written) = super::simd::nearer::copy::<KEEPS>(avx2, length, row, cells, bytes, z, dz)
-    {
-        return written;
-    }
-    let _ = kernel;
-    let bytes = &bytes[..length.min(bytes.len())];
-    if KEEPS { copy_nearer(row, depth, bytes, z, dz) } else { copy_before(row, depth, bytes, z, dz) }
 }
 
 /// Copies `bytes` where `nearer` says so of the cell and the depth.

@@ -283,6 +283,33 @@ impl Kernel {
         spans.each_nearer(pixels, cells)
     }
 
+    /// Copies the first `length` bytes as [`depth::copy_nearer`] with `KEEPS`, otherwise as [`depth::copy_before`]. Returns the
+    /// number of pixels written.
+    ///
+    /// Row, cells and bytes may be longer, and what lies behind in the row and in the cells stays as it was: vectors take
+    /// whole turns where there is room for them. Pixels beyond the shortest of the three are left alone.
+    #[inline]
+    #[doc(hidden)]
+    pub fn copy_where_nearer<D: depth::Cell, const KEEPS: bool>(
+        self,
+        length: usize,
+        row: &mut [u8],
+        cells: &mut [D],
+        bytes: &[u8],
+        z: i64,
+        dz: i64,
+    ) -> u32 {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(avx2) = self.avx2()
+            && let Some(cells) = D::as_u32(cells)
+            && let Some(written) = simd::nearer::copy::<KEEPS>(avx2, length, row, cells, bytes, z, dz)
+        {
+            return written;
+        }
+        let bytes = &bytes[..length.min(bytes.len())];
+        if KEEPS { depth::copy_nearer(row, cells, bytes, z, dz) } else { depth::copy_before(row, cells, bytes, z, dz) }
+    }
+
     /// The level that it draws with.
     #[inline]
     pub(crate) const fn simd_level(self) -> Level {

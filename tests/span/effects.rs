@@ -9,7 +9,7 @@ use mode13h::palette::Rgb;
 use mode13h::palette::cube;
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::curve::curve;
-use mode13h::span::depth::{Cell, copy_before, copy_by, copy_nearer};
+use mode13h::span::depth::{Cell, copy_before, copy_nearer};
 use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
 use mode13h::span::fixed16::fill_16_16;
 use mode13h::span::float::fill_float;
@@ -853,7 +853,7 @@ mod depth_tested {
             cells.extend((0..length % 10).map(|_| D::default()));
             bytes.extend((0..length / 10 % 10).map(|_| 0xEE));
             let behind = cells[length..].to_vec();
-            let written = copy_by::<D, KEEPS>(kernel, length, row, &mut cells, &bytes, z, dz);
+            let written = kernel.copy_where_nearer::<D, KEEPS>(length, row, &mut cells, &bytes, z, dz);
             assert!(cells[length..] == behind, "cells behind {length} have changed");
             let kept = depth.len();
             depth.copy_from_slice(&cells[..kept]);
@@ -881,7 +881,7 @@ mod depth_tested {
         assert_caught("an equal depth counts as nearer", check(&equal, true));
         let one_more = |row: &mut [u8], depth: &mut [u32], bytes: &[u8], z, dz| {
             let length = (row.len().min(depth.len()).min(bytes.len()) + 1).min(row.len());
-            copy_by::<_, true>(Kernel::PORTABLE, length, row, depth, &[bytes, &[0xEE]].concat(), z, dz)
+            Kernel::PORTABLE.copy_where_nearer::<_, true>(length, row, depth, &[bytes, &[0xEE]].concat(), z, dz)
         };
         assert_caught("a pixel behind the last", check(&one_more, false));
     }

@@ -48,7 +48,6 @@ use super::shade::{RESEED, ShadePlane};
 use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::simd::at_best_level;
-use crate::span::depth::copy_by;
 use crate::span::{Kernel, lookup};
 
 /// A half for every pixel: no dither.
@@ -355,7 +354,7 @@ fn write_each<R: Rows, D: Cell, const BLENDS: bool, const KEEPS: bool>(
             drawn.spans += 1;
             // At most 64.
             drawn.tested += n as u32;
-            drawn.pixels += copy_by::<D, KEEPS>(kernel, n, pixels, depths, bytes, z, plane.step());
+            drawn.pixels += kernel.copy_where_nearer::<D, KEEPS>(n, pixels, depths, bytes, z, plane.step());
         }
         first = *end;
     }
