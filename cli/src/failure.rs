@@ -16,7 +16,7 @@ use mode13h_lab::explain::ExplainError;
 pub(crate) const EXIT_STATUS: &str = "\
 Exit status:
   0    Done
-  1    A check found something: `verify` a fault, `cost` a broken budget
+  1    A check found something: `verify` a fault, `cost` a broken promise
   2    The words on the command line or the input are wrong
   3    A file could not be read or written
   130  Interrupted";

@@ -15,7 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::render::Shading;
 use mode13h::scene::Scene;
 use mode13h::span::Kernel;
-use mode13h_lab::cost::{self, Settings, Step, Subject, report};
+use mode13h_lab::cost::{self, Settings, Step, Study, Subject, report};
 
 use crate::failure::{Failure, on_one_line};
 use crate::options::{Drawing, finite, one_of};
@@ -152,7 +152,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     // Whatever became of the files, what was found out is not lost.
     output::print(&if *json { as_json } else { text::text(&study, written.as_deref()) })?;
     result?;
-    match cost::promises_are_kept(&study) {
+    verdict(&study)
+}
+
+/// Fails where a budget or a shading has not kept its promise.
+fn verdict(study: &Study) -> Result<(), Failure> {
+    match cost::promises_are_kept(study) {
         true => Ok(()),
         false => Err(Failure::found("a budget or a shading has not kept its promise")),
     }
@@ -207,5 +212,39 @@ impl Progress {
         }
         // 0 to 1.
         self.bar.set_position((share * 1000.0) as u64);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mode13h::mesh::shapes;
+    use mode13h::render::Renderer;
+
+    use super::*;
+
+    /// A study in which all promises are kept, then with the promise of a budget or of a shading broken by hand: each is
+    /// one warning more, in the JSON too, and the exit status 1.
+    #[test]
+    fn a_broken_promise_of_a_budget_or_a_shading_is_a_warning_and_status_1() {
+        let frames = [Scene::showing(shapes::wall(3, 2))];
+        let subject = Subject { name: "wall", frames: &frames, steps: &[], renderer: &Renderer::new };
+        let mut settings = Settings { shadings: vec![Shading::Gouraud88], ..Settings::default() };
+        (settings.choices, settings.claims, settings.seconds, settings.at_most) = (false, false, 0.0, true);
+        let (kept, _) = cost::measure(&subject, &settings, &|_, _| {}).expect("a legal scene");
+        assert!(cost::warnings(&kept).is_empty() && verdict(&kept) == Ok(()));
+        let beyond = kept.shadings[0].excess.expect("a shading that is linear on the screen has a bound");
+        assert!(beyond <= 0.0, "{beyond}");
+        let (mut budget, mut shading) = (kept.clone(), kept);
+        (budget.budget[0].within, shading.shadings[0].excess) = (0.99, Some(0.25));
+        for (study, says) in [
+            (budget, "the budget of 16 keeps 99.00 % of the pixels within 16 shades, not 100 %"),
+            (shading, "gouraud-8.8 is off by 0.25 shades more than its bound"),
+        ] {
+            let warnings = cost::warnings(&study);
+            assert_eq!(warnings, [says]);
+            let json = output::json(&json::json(&study, &warnings)).expect("JSON");
+            assert!(json.contains(says));
+            assert_eq!(verdict(&study).map_err(|failure| failure.status()), Err(1));
+        }
     }
 }

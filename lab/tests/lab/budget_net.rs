@@ -269,6 +269,8 @@ fn look(renderer: Renderer, scene: &Scene, screen: Screen) -> Shown {
 #[derive(Clone, Copy)]
 struct Worst {
     beyond: f64,
+    /// The greatest error of any pixel as a ratio to its budget.
+    ratio: f64,
     budget: f32,
     place: (u32, u32),
     pixels: u64,
@@ -302,7 +304,7 @@ fn worst(scene: &Scene, screen: Screen) -> Worst {
     let mut phong = Renderer::new();
     phong.settings.accuracy = Some(Shading::Phong.into());
     let lit: Vec<_> = ErrorMap::new(&truth, &look(phong, scene, screen)).expect("of one size").errors().collect();
-    let mut worst = Worst { beyond: f64::NEG_INFINITY, budget: 0.0, place: (0, 0), pixels: 0 };
+    let mut worst = Worst { beyond: f64::NEG_INFINITY, ratio: 0.0, budget: 0.0, place: (0, 0), pixels: 0 };
     for budget in BUDGETS {
         let mut renderer = Renderer::new();
         renderer.settings.accuracy = Some(Accuracy::WithinError(budget));
@@ -314,6 +316,7 @@ fn worst(scene: &Scene, screen: Screen) -> Worst {
             }
             worst.pixels += 1;
             let beyond = error - f64::from(budget) - moved;
+            worst.ratio = worst.ratio.max((error - moved) / f64::from(budget));
             if beyond > worst.beyond {
                 let place = (place as u32 % screen.width, place as u32 / screen.width);
                 worst = Worst { beyond, budget, place, ..worst };
@@ -392,13 +395,17 @@ fn climbing_towards_the_worst_finds_no_pixel_beyond() {
         let kind = random.one_of(&Kind::ALL);
         let [width, height] = [(); 2].map(|()| random.within(9, 97) as u32);
         let (screen, mut best) = (Screen { width, height, ..Screen::MODE_13H }, Genes::new(&mut random));
-        let mut most = worst(&scene(kind, &mut best), screen).beyond;
+        let first = worst(&scene(kind, &mut best), screen);
+        assert!(first.beyond <= 0.0, "{kind:?}, before any step: {first}");
+        let mut most = first.beyond;
         tried.add(1);
+        tried.worst("error by budget", first.ratio);
         for _ in 0..24 {
             let mut genes = best.mutated(&mut random);
             let at = scene(kind, &mut genes);
             let found = worst(&at, screen);
             tried.add(1);
+            tried.worst("error by budget", found.ratio);
             if found.beyond > most {
                 (most, best) = (found.beyond, genes);
             }
@@ -434,6 +441,32 @@ fn no_pixel_of_a_turn_is_beyond() {
                 tried.add(worst.pixels);
                 tried.worst("beyond", worst.beyond);
             }
+        }
+    }
+}
+
+/// A lamp so far away that the square of its distance is no f32, and scenes whose coordinates have no squares in f32, too
+/// great or too small.
+#[test]
+fn no_pixel_is_beyond_at_any_size() {
+    let mut tried = Tried::new("no_pixel_is_beyond_at_any_size", 10_000);
+    for size in [1e-30, 1e-20, 1e-17, 1e-12, 1.0, 1e12, 1e17, 1e20, 1e30] {
+        let mut lamp_alone = Scene::new();
+        lamp_alone.add(Object::new(shapes::sphere(12, 6)));
+        lamp_alone.camera.eye = Vec3::Z * 5.0;
+        lamp_alone.add_light(Light::lamp(Vec3::Z * size * 10.0, size * 1e5));
+        let mut all = Scene::new();
+        let sphere = shapes::sphere(12, 6);
+        let positions = sphere.positions().iter().map(|at| *at * size).collect();
+        let normals = sphere.normals().to_vec();
+        all.add(Object::new(Mesh::with_normals(positions, normals, sphere.triangles().to_vec()).expect("legal")));
+        (all.camera.eye, all.camera.near) = (Vec3::Z * 5.0 * size, 0.1 * size);
+        all.add_light(Light::lamp(Vec3::Z * 3.0 * size, 4.0 * size));
+        for (what, scene) in [("a lamp", lamp_alone), ("all", all)] {
+            let screen = Screen { width: 96, height: 64, ..Screen::MODE_13H };
+            let worst = worst(&scene, screen);
+            tried.add(worst.pixels);
+            assert!(worst.beyond <= 0.0, "{what} of size {size}: {worst}");
         }
     }
 }

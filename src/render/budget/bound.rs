@@ -4,17 +4,14 @@
 //! A patch is a face, or many faces of which no figure exceeds the patch's. Eight patches are bounded at a time in plain
 //! arrays that the compiler vectorises.
 
-use super::ranges::{Patches, Sight, each, greater, lesser, square_root};
+use super::ranges::{HUGE, Patches, Sight, each, greater, lesser, square_root};
 use crate::lanes::{LANES, Lanes};
 use crate::light::{Lights, Reflectance};
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 
-/// Greatest number that stands for "no bound": its square is still finite.
-const HUGE: f32 = 1e15;
-
 /// Greatest turn of a direction, in radians, that is told from any other.
-pub(super) const GREATEST_TURN: f32 = 1e4;
+const GREATEST_TURN: f32 = 1e4;
 
 /// Length of the second derivative of a unit vector, in squares of what it turns by: 2/√3 (Lemma 5).
 const BEND: f32 = 1.154_701;
@@ -306,10 +303,16 @@ impl<const N: usize> Sums<N> {
 }
 
 impl Incident<'_> {
-    /// Returns whether all strengths together are so small that their sums are numbers.
+    /// Returns whether all strengths together are so small that their sums are numbers, and places and inverse ranges so
+    /// small that their squares are.
     fn is_moderate<const N: usize>(&self) -> bool {
         const MODERATE: f32 = 1e6;
-        let Lights { suns, lamps, .. } = self.lights;
+        let Lights { suns, lamps, eye } = self.lights;
+        let is_near = |at: [f64; 3]| at.iter().all(|c| c.abs() < f64::from(HUGE));
+        let lamps_are_near = lamps.iter().all(|lamp| is_near(lamp.position) && lamp.inverse_square < 1e30);
+        if self.extent >= HUGE || !lamps_are_near || (self.answer.specular != 0.0 && !is_near(eye)) {
+            return false;
+        }
         let suns = suns.iter().map(|sun| self.strength::<N>(sun.intensity, sun.channels));
         let lamps = lamps.iter().map(|lamp| self.strength::<N>(lamp.intensity, lamp.channels));
         let size = |of: Strength<N>| of.body.iter().chain(&of.highlight).map(|share| share.abs()).sum::<f32>();
@@ -387,7 +390,7 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
         sums.add_light::<WHOLE, P>(patches, &directions, falls, eye.as_ref(), &strength);
     }
     for lamp in lamps {
-        let inverse_range = (libm::sqrt(lamp.inverse_square) as f32).min(HUGE);
+        let inverse_range = libm::sqrt(lamp.inverse_square) as f32;
         let sight = patches.point(narrow(lamp.position), blur(lamp.position), &shapes.edge);
         let mut falls = [FallOff::NONE; LANES];
         for (lane, fall) in falls.iter_mut().enumerate() {

@@ -12,6 +12,7 @@ use super::ranges::{EightFaces, ZERO};
 use crate::lanes::LANES;
 use crate::light::{Beam, LampBeam, Lights, Reflectance};
 use crate::mesh::normals::unit;
+use crate::render::vertex::Geometry;
 
 /// SplitMix64.
 struct Random(u64);
@@ -196,7 +197,14 @@ impl Case {
     }
 
     fn clusters(&self) -> Clusters {
-        Clusters::new(&self.triangles, &[0; LANES], &self.positions, &self.normals)
+        Clusters::new(&Geometry {
+            positions: &self.positions,
+            normals: &self.normals,
+            texcoords: None,
+            vertex_surfaces: &[],
+            triangles: &self.triangles,
+            triangle_surfaces: &[0; LANES],
+        })
     }
 
     fn faces(&self) -> EightFaces {

@@ -3,12 +3,13 @@
 use super::bound::{Bounds, Incident, Shapes, error_at_best};
 use super::clusters::Clusters;
 use super::ranges::{EightClusters, EightFaces, Patches, ZERO, dot, each, greater, lesser};
-use super::{Budget, Depths, EXACT_ROUNDING, FLOAT, LINEAR_ROUNDING, PHONG};
+use super::{Budget, EXACT_ROUNDING, FLOAT, LINEAR_ROUNDING, PHONG};
 use crate::lanes::{LANES, Lanes};
 use crate::plan::FaceShading;
 use crate::render::cull;
 use crate::render::faces::Faces;
 use crate::render::lit::Face;
+use crate::view::ObjectView;
 
 /// Classes of the faces of a chunk, a bit for each.
 #[derive(Clone, Copy)]
@@ -21,32 +22,31 @@ pub(in crate::render) struct Classes {
     pub(in crate::render) errors: [f32; cull::CHUNK],
 }
 
-impl Depths {
-    /// Share of a shade's range that perspective moves it along on each of eight clusters: (ρ − 1) / 4 (Lemma 9).
-    #[inline(always)]
-    fn bend_of_clusters(&self, clusters: &EightClusters, edge: &Lanes<f32>) -> Lanes<f32> {
-        let middle = dot(&clusters.centres, &self.row.map(|c| [c; LANES]));
-        let half = dot(&clusters.halves, &self.row.map(|c| [c.abs(); LANES]));
-        each(|lane| {
-            let slack = 1e-5 * (middle[lane].abs() + half[lane] + self.offset.abs());
-            let near = greater(middle[lane] + self.offset - half[lane] - slack, self.near);
-            lesser(edge[lane] * self.scale / (2.0 * near), 1.0)
-        })
-    }
+/// Share of a shade's range that perspective moves it along on each of eight clusters: (ρ − 1) / 4 (Lemma 9). Nothing that
+/// is drawn unclipped is nearer than the near plane.
+#[inline(always)]
+fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f32>) -> Lanes<f32> {
+    let ((row, offset), scale) = (view.along_view(), view.scale() as f32);
+    let middle = dot(&clusters.centres, &row.map(|c| [c; LANES]));
+    let half = dot(&clusters.halves, &row.map(|c| [c.abs(); LANES]));
+    each(|lane| {
+        let slack = 1e-5 * (middle[lane].abs() + half[lane] + offset.abs());
+        let near = greater(middle[lane] + offset - half[lane] - slack, view.near());
+        lesser(edge[lane] * scale / (2.0 * near), 1.0)
+    })
+}
 
-    /// That share on each of eight faces.
-    #[inline(always)]
-    fn bend_of_faces(&self, faces: &EightFaces) -> Lanes<f32> {
-        let row = self.row.map(|c| [c; LANES]);
-        let [a, b, c] = faces.positions.each_ref().map(|at| dot(at, &row));
-        each(|lane| {
-            let (most, least) =
-                (greater(a[lane], greater(b[lane], c[lane])), lesser(a[lane], lesser(b[lane], c[lane])));
-            let slack = 1e-6 * (most.abs() + least.abs() + self.offset.abs());
-            let near = greater(least + self.offset - slack, self.near);
-            lesser((most - least + slack) / near / 4.0, 1.0)
-        })
-    }
+/// That share on each of eight faces.
+#[inline(always)]
+fn bend_of_faces(view: &ObjectView, faces: &EightFaces) -> Lanes<f32> {
+    let (row, offset) = view.along_view();
+    let [a, b, c] = faces.positions.each_ref().map(|at| dot(at, &row.map(|c| [c; LANES])));
+    each(|lane| {
+        let (most, least) = (greater(a[lane], greater(b[lane], c[lane])), lesser(a[lane], lesser(b[lane], c[lane])));
+        let slack = 1e-6 * (most.abs() + least.abs() + offset.abs());
+        let near = greater(least + offset - slack, view.near());
+        lesser((most - least + slack) / near / 4.0, 1.0)
+    })
 }
 
 impl Faces<'_> {
@@ -75,20 +75,19 @@ impl Faces<'_> {
         if back {
             clusters.axes.iter_mut().flatten().for_each(|axis| *axis = -*axis);
         }
-        let bend = budget.depths.bend_of_clusters(&clusters, &chunk.edge);
+        let bend = bend_of_clusters(self.view, &clusters, &chunk.edge);
         let shapes = Shapes { spread: chunk.spread, edge: chunk.edge, part: [1.0; LANES], bend };
         let spare = budget.spare(LINEAR_ROUNDING);
-        let (mut linear, mut known) = (0, 0_u8);
-        for (lane, surface) in chunk.surfaces.iter().enumerate() {
-            let Some(surface) = *surface else { continue };
-            if known >> lane & 1 == 1 {
+        let mut linear = 0;
+        for (first, of) in chunk.surfaces.iter().enumerate() {
+            let Some(surface) = *of else { continue };
+            if chunk.surfaces[..first].contains(of) {
                 continue;
             }
             let bounds = self.bounds::<true, _>(budget, (&clusters, &shapes), surface, false);
-            for (other, of) in chunk.surfaces.iter().enumerate() {
-                if *of == Some(surface) {
-                    known |= 1 << other;
-                    linear |= if bounds.on_screen[other] <= spare { 0xFF << (LANES * other) } else { 0 };
+            for lane in first..LANES {
+                if chunk.surfaces[lane] == *of && bounds.on_screen[lane] <= spare {
+                    linear |= 0xFF << (LANES * lane);
                 }
             }
         }
@@ -167,7 +166,7 @@ impl Faces<'_> {
                 }
             }
         }
-        shapes.bend = budget.depths.bend_of_faces(&faces);
+        shapes.bend = bend_of_faces(self.view, &faces);
         (faces, shapes)
     }
 
@@ -195,26 +194,21 @@ impl Faces<'_> {
     /// Bounds the error of linear shades, wherever on the object, in shades, and rounding aside.
     #[inline(never)]
     pub(in crate::render) fn linear_error(&self) -> f64 {
-        let geometry = &self.geometry;
-        let clusters =
-            Clusters::new(geometry.triangles, geometry.triangle_surfaces, geometry.positions, geometry.normals);
-        let (depths, kernel) = (Depths::new(self.view), Some(self.kernel));
-        let budget = Budget { clusters, depths, kernel, ..Budget::default() };
+        let budget = Budget { clusters: Clusters::new(&self.geometry), ..Budget::default() };
         let sides: &[bool] = if self.culls { &[false] } else { &[false, true] };
-        let mut most = 0.0_f32;
-        for (at, surfaces) in geometry.triangle_surfaces.chunks(LANES).enumerate() {
+        let (mut first, mut most) = (0, 0.0_f32);
+        let of_one_surface = self.geometry.triangle_surfaces.chunk_by(|a, b| a == b);
+        for surfaces in of_one_surface.flat_map(|run| run.chunks(LANES)) {
             for &back in sides {
-                let (faces, shapes) = self.eight(&budget, at * LANES, (0..surfaces.len()).map(|face| (face, back)));
-                for (i, &surface) in surfaces.iter().enumerate() {
-                    if i > 0 && surfaces[i - 1] == surface {
-                        continue;
-                    }
-                    let bounds = self.bounds::<true, _>(&budget, (&faces, &shapes), surface, false);
-                    let here = bounds.on_screen.iter().zip(surfaces).filter(|(_, of)| **of == surface);
-                    most = here.fold(most, |most, (error, _)| if *error <= most { most } else { *error });
-                }
+                let eight = (0..surfaces.len()).map(|face| (face, back));
+                let (faces, shapes) = self.eight(&budget, first, eight);
+                let bounds = self.bounds::<true, _>(&budget, (&faces, &shapes), surfaces[0], false);
+                let errors = bounds.on_screen.iter().take(surfaces.len());
+                most = errors.fold(most, |most, error| if *error <= most { most } else { *error });
             }
+            first += surfaces.len();
         }
-        f64::from(most) * 255.0
+        // No two shades are farther apart.
+        f64::from(most.min(1.0)) * 255.0
     }
 }

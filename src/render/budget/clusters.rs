@@ -7,8 +7,7 @@ use glam::Vec3;
 use super::ranges::{EightClusters, ZERO};
 use crate::lanes::{LANES, Lanes};
 use crate::render::cull;
-
-const PI: f32 = core::f32::consts::PI;
+use crate::render::vertex::Geometry;
 
 /// Radii of a face (Lemma 1), whatever the light.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,7 +43,8 @@ pub(super) struct Chunk {
 }
 
 impl Chunk {
-    fn new(facets: &[Facet], triangles: &[[u32; 3]], surfaces: &[u16], positions: &[Vec3], normals: &[Vec3]) -> Self {
+    fn new(facets: &[Facet], triangles: &[[u32; 3]], surfaces: &[u16], geometry: &Geometry<'_>) -> Self {
+        let Geometry { positions, normals, .. } = *geometry;
         let clusters = EightClusters { centres: [ZERO; 3], halves: [ZERO; 3], axes: [ZERO; 3], angles: ZERO };
         let mut chunk = Self { clusters, spread: ZERO, edge: ZERO, surfaces: [None; LANES] };
         let parts = facets.chunks(LANES).zip(triangles.chunks(LANES)).zip(surfaces.chunks(LANES));
@@ -64,7 +64,7 @@ impl Chunk {
                 chunk.clusters.axes[axis][lane] = cone[axis];
             }
             // A thousandth for the rounding of cosines near 1.
-            chunk.clusters.angles[lane] = if cosine > 0.0 { libm::acosf(cosine) + 1e-3 } else { PI };
+            chunk.clusters.angles[lane] = if cosine > 0.0 { libm::acosf(cosine) + 1e-3 } else { core::f32::consts::PI };
             chunk.spread[lane] = facets.iter().map(|facet| facet.spread).fold(0.0, f32::max);
             chunk.edge[lane] = facets.iter().map(|facet| facet.edge).fold(0.0, f32::max);
             chunk.surfaces[lane] = surfaces.first().copied().filter(|first| surfaces.iter().all(|of| of == first));
@@ -83,14 +83,16 @@ pub(super) struct Clusters {
 }
 
 impl Clusters {
-    pub(super) fn new(triangles: &[[u32; 3]], surfaces: &[u16], positions: &[Vec3], normals: &[Vec3]) -> Self {
+    pub(super) fn new(geometry: &Geometry<'_>) -> Self {
+        let Geometry { triangles, triangle_surfaces, positions, normals, .. } = *geometry;
         let corners = |of: &[Vec3], indices: [u32; 3]| indices.map(|i| of[i as usize]);
         let facet =
             |&i: &[u32; 3]| Facet { spread: radius(corners(normals, i)).min(1.0), edge: radius(corners(positions, i)) };
         let facets: Vec<Facet> = triangles.iter().map(facet).collect();
-        let parts = facets.chunks(cull::CHUNK).zip(triangles.chunks(cull::CHUNK)).zip(surfaces.chunks(cull::CHUNK));
-        let chunk = |((facets, triangles), surfaces)| Chunk::new(facets, triangles, surfaces, positions, normals);
-        let chunks = parts.map(chunk).collect();
+        let chunks = facets.chunks(cull::CHUNK).zip(triangles.chunks(cull::CHUNK));
+        let chunks = chunks.zip(triangle_surfaces.chunks(cull::CHUNK));
+        let chunk = |((facets, triangles), surfaces)| Chunk::new(facets, triangles, surfaces, geometry);
+        let chunks = chunks.map(chunk).collect();
         let extent = positions.iter().fold(0.0, |most: f32, at| most.max(at.abs().max_element()));
         Self { facets, chunks, extent }
     }

@@ -1,15 +1,9 @@
-//! The fit: a quadratic function of the screen, tried on points of one face.
-//!
-//! Light at a grid of points, which divides each edge on the screen in n, says how far a function is from the light. With
-//! f the light, q the function, and off the greatest |f − q| at these points, they differ in any of the n² parts by no
-//! more than off, what the bound says of a part of the face, and what q itself bends by (`docs/budget.md`, Lemma 10).
+//! The fit: a quadratic function of the screen, tried on a grid of points of one face (`docs/budget.md`, Lemma 10).
 //!
 //! The quadratic function goes through the light at six points: the corners and the middles of the edges (see
 //! `raster::effects::ShadeSource::Curved`). It is of light that is not cut off above 1: cut off both differ by no more.
 //!
-//! **The horizon.** A matt face in one light is dark beyond a line. There the quadratic function goes through the light as
-//! it would go on below the horizon (on the other side of the face as much is added as here is missing), and where it is
-//! below the shade without light that one is drawn: so the bend is where it should be.
+//! The light of a matt face in one source goes on below the horizon, less than none by as much as the other side has more.
 
 use core::array;
 
@@ -69,12 +63,7 @@ const fn grid<const EIGHTS: usize>(n: usize) -> [Weights; EIGHTS] {
         let mut b = 0;
         while a + b <= n {
             let c = n - a - b;
-            let half = n / 2;
-            let is_node = a == n
-                || b == n
-                || c == n
-                || (a == half && b == half)
-                || (a + b == half && c == half && (a == 0 || b == 0));
+            let is_node = a.is_multiple_of(n / 2) && b.is_multiple_of(n / 2);
             if !is_node {
                 let eight = &mut eights[at / LANES];
                 eight[0][at % LANES] = a as f32 / n as f32;
@@ -241,7 +230,7 @@ impl Faces<'_> {
     pub(in crate::render) fn fit(&self, budget: &Budget, (face, error): (Face, f32), vertices: &[Vertex; 3]) -> Fit {
         let (depths, spare) = (vertices.each_ref().map(Vertex::depth), budget.spare(EXACT_ROUNDING));
         let (near, far) = (depths[0].max(depths[1]).max(depths[2]), depths[0].min(depths[1]).min(depths[2]));
-        let (ratio, pixels, width) = (near as f32 / far as f32, pixels_of(vertices), width_of(vertices));
+        let (ratio, (pixels, width)) = (near as f32 / far as f32, size_of(vertices));
         // Where rounding takes all that is allowed, nothing fits.
         if far == 0 || pixels < WORTH_CURVE || !self.lights_pixels || spare <= 0.0 {
             return Fit::of(PHONG);
@@ -327,17 +316,13 @@ impl Faces<'_> {
     }
 }
 
-/// The area of a triangle on the screen, in pixels.
-fn pixels_of(vertices: &[Vertex; 3]) -> f32 {
+/// The area of a triangle on the screen, and its widest row, in pixels.
+fn size_of(vertices: &[Vertex; 3]) -> (f32, f32) {
     // In 1/256 pixel, and twice.
-    doubled_area(vertices).unsigned_abs() as f32 / 131_072.0
-}
-
-/// The widest row of a triangle, in pixels.
-fn width_of(vertices: &[Vertex; 3]) -> f32 {
+    let area = doubled_area(vertices).unsigned_abs() as f32 / 131_072.0;
     let [a, b, c] = vertices.each_ref().map(|vertex| vertex.y().to_bits());
     let height = a.max(b).max(c) - a.min(b).min(c);
-    if height == 0 { 0.0 } else { 512.0 * pixels_of(vertices) / height as f32 }
+    (area, if height == 0 { 0.0 } else { 512.0 * area / height as f32 })
 }
 
 /// Between which shades quadratic ones are held: that without light, as no light takes any away, and the last.

@@ -31,7 +31,6 @@ use crate::plan::FaceShading;
 use crate::scene::Shading;
 use crate::shared::Shared;
 use crate::span::Kernel;
-use crate::view::ObjectView;
 
 /// Shading of faces that are linear on the screen, of those that are linear on the face, and of those that are lit at every
 /// pixel.
@@ -47,18 +46,6 @@ const LINEAR_ROUNDING: f32 = 0.7525;
 /// bound's.
 const EXACT_ROUNDING: f32 = 0.5125;
 
-/// An object, projected.
-#[derive(Clone, Copy)]
-pub(super) struct Projected<'a> {
-    pub(super) geometry: &'a Geometry<'a>,
-    /// Its mesh, if that is what is drawn.
-    pub(super) mesh: Option<&'a Shared<Mesh>>,
-    pub(super) view: &'a ObjectView,
-    pub(super) lights: &'a Lights<'a>,
-    pub(super) paints: &'a [SurfaceMaterial],
-    pub(super) kernel: Kernel,
-}
-
 /// Error budget of an object: the data that its decisions are made from.
 #[derive(Debug, Default)]
 pub(super) struct Budget {
@@ -71,40 +58,24 @@ pub(super) struct Budget {
     allowed: f32,
     /// True if no light and no material takes light away.
     adds: bool,
-    depths: Depths,
-}
-
-/// Distances along the view.
-#[derive(Clone, Copy, Debug, Default)]
-struct Depths {
-    row: [f32; 3],
-    offset: f32,
-    /// The near plane: nothing that is drawn unclipped is nearer.
-    near: f32,
-    /// Size of the object's unit.
-    scale: f32,
-}
-
-impl Depths {
-    fn new(view: &ObjectView) -> Self {
-        let (row, offset) = view.along_view();
-        Self { row, offset, near: view.near(), scale: view.scale() as f32 }
-    }
 }
 
 impl Budget {
-    /// Takes on an object as it is now.
+    /// Takes on an object as it is now. `mesh` is the object's, if that is what is drawn.
     #[inline(never)]
-    pub(super) fn renew(&mut self, allowed: f32, object: &Projected<'_>) {
-        let Projected { geometry, mesh, view, lights, paints, kernel } = *object;
+    pub(super) fn renew(
+        &mut self,
+        (allowed, kernel): (f32, Kernel),
+        geometry: &Geometry<'_>,
+        mesh: Option<&Shared<Mesh>>,
+        (lights, paints): (&Lights<'_>, &[SurfaceMaterial]),
+    ) {
         (self.allowed, self.kernel) = (allowed, Some(kernel));
         self.adds = adds(lights, paints);
         if !matches!((&self.mesh, mesh), (Some(known), Some(mesh)) if Shared::ptr_eq(known, mesh)) {
             self.mesh = mesh.map(Shared::clone);
-            let Geometry { triangles, triangle_surfaces, positions, normals, .. } = *geometry;
-            self.clusters = Clusters::new(triangles, triangle_surfaces, positions, normals);
+            self.clusters = Clusters::new(geometry);
         }
-        self.depths = Depths::new(view);
     }
 
     /// Light that may be off, in shares of full intensity, where a shade is off by `rounding` shades besides.

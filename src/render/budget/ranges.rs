@@ -11,8 +11,8 @@ pub(super) const ZERO: Lanes<f32> = [0.0; LANES];
 /// Cosines of f32 are off by less.
 const ROUNDING: f32 = 4e-6;
 
-/// Greatest distance that is told from any other.
-const FARTHEST: f32 = 1e15;
+/// Greatest number that is told from any other, as distance or as bound: its square is still finite.
+pub(super) const HUGE: f32 = 1e15;
 
 /// A point, seen from eight patches.
 pub(super) struct Sight<D> {
@@ -78,7 +78,7 @@ impl Patches for EightFaces {
             let square = least[lane] * least[lane] - edge[lane] * edge[lane];
             if least[lane] > 0.0 { square_root(greater(square, 0.0)) } else { 0.0 }
         });
-        let far = each(|lane| lesser(greater(a[lane], greater(b[lane], c[lane])) * (1.0 + ROUNDING) + blur, FARTHEST));
+        let far = each(|lane| lesser(greater(a[lane], greater(b[lane], c[lane])) * (1.0 + ROUNDING) + blur, HUGE));
         let off = each(|lane| ROUNDING + lesser(4.0 * blur / least[lane].abs(), 2.0));
         Sight { directions: FromCorners { directions, distances, off }, near, far }
     }
@@ -182,7 +182,7 @@ impl Patches for EightClusters {
         Sight {
             directions: FromBoxes { directions: units(&ways).0, turns },
             near: each(|lane| square_root(near[lane]) * (1.0 - ROUNDING)),
-            far: each(|lane| lesser(square_root(far[lane]) * (1.0 + ROUNDING), FARTHEST)),
+            far: each(|lane| lesser(square_root(far[lane]) * (1.0 + ROUNDING), HUGE)),
         }
     }
 
