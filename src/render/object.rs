@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::Stats;
-use super::budget::{Budget, Projected};
+use super::budget::Budget;
 use super::faces::Faces;
 use super::lit::ShadedVertices;
 use super::paint::SurfaceMaterial;
@@ -315,17 +315,10 @@ impl ObjectState {
         let Some(source) = &self.source else { return };
         self.has_budget = plan.max_error().is_some();
         let Some(max_error) = plan.max_error() else { return };
-        let (geometry, lights) =
-            (drawn_geometry(self.is_tessellated, &self.tessellated, object), source.lights(&self.lamps, plan));
-        let object = Projected {
-            geometry: &geometry,
-            mesh: (!self.is_tessellated).then(|| object.shared_mesh()),
-            view: &source.view,
-            lights: &lights,
-            paints: &self.paints,
-            kernel,
-        };
-        self.budget.renew(max_error, &object);
+        let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
+        let mesh = (!self.is_tessellated).then(|| object.shared_mesh());
+        let lights = (&source.lights(&self.lamps, plan), self.paints.as_slice());
+        self.budget.renew((max_error, kernel), &geometry, mesh, lights);
     }
 
     /// Prepares light for the pixels, where all are lit.

@@ -14,9 +14,8 @@
 
 use core::fmt;
 
-use super::Kernel;
-use crate::fixed::{HAS_F64, nearest_whole};
-use crate::simd::at_best_level;
+use crate::fixed::{HAS_F64, ROUND_MAGIC};
+use crate::simd::{BASELINE, Lanes8};
 
 /// A texture's bytes, row by row, with their shape.
 #[derive(Clone, Copy, Debug)]
@@ -187,12 +186,15 @@ impl core::error::Error for TexelsError {}
 /// `u` and `v` are those of the first pixel, `du` and `dv` what each pixel adds; the sums wrap, so a
 /// negative number is given in two's complement (`as u32`).
 ///
-/// Tried and given up, at 64 pixels, where this takes 45 ns: all places of 64 pixels first, in vectors, and
-/// then the look-ups, 40, but 8 instead of 4 at one pixel; `pext` (BMI2), 37, and said to be slow on the first
+/// Tried and given up, at 64 pixels, where this takes 45 ns: `pext` (BMI2), 37, and said to be slow on the first
 /// two generations of Zen; eight gathered loads a turn (AVX2), 26, and processors patched against gather data
 /// sampling are said to be much slower at it.
-pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, u: u32, v: u32, du: u32, dv: u32) {
-    show_affine((), row, texels, [u, v], [du, dv]);
+pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, mut u: u32, mut v: u32, du: u32, dv: u32) {
+    for pixel in row {
+        *pixel = texels.at(u, v);
+        u = u.wrapping_add(du);
+        v = v.wrapping_add(dv);
+    }
 }
 
 /// What becomes of a texel.
@@ -225,30 +227,86 @@ impl Shown for &[u8; 65_536] {
     }
 }
 
-/// [`fill_affine`], with what becomes of a texel.
-#[inline(always)]
-pub(crate) fn show_affine(
-    shown: impl Shown,
-    row: &mut [u8],
-    texels: Texels<'_>,
-    [mut u, mut v]: [u32; 2],
-    [du, mut dv]: [u32; 2],
-) {
-    // Never so: it tells the compiler that there is a last texel, and `at` needs no check.
+/// Shows the texels at these places, [`Texels::place`].
+pub(crate) fn show(shown: impl Shown, row: &mut [u8], texels: Texels<'_>, places: &[i32]) {
+    // Never so: it tells the compiler that there is a last texel, and the masked place needs no check.
     if texels.bytes.is_empty() {
         return;
     }
-    // v times the width, so that both are shifted by the same: what is lost of it no mask has.
-    (v, dv) = (v << texels.ubits, dv << texels.ubits);
     let last = texels.bytes.len() - 1;
-    let columns = texels.width() - 1;
-    let rows = last & !columns;
-    for pixel in row {
-        let place = ((v >> 16) as usize & rows) | ((u >> 16) as usize & columns);
-        // The compiler sees from `last` that there is such a byte, and leaves out the check.
-        shown.show(pixel, texels.bytes[place & last]);
-        u = u.wrapping_add(du);
-        v = v.wrapping_add(dv);
+    for (pixel, &place) in row.iter_mut().zip(places) {
+        // Not negative.
+        shown.show(pixel, texels.bytes[place as usize & last]);
+    }
+}
+
+/// Places of texels that are found together.
+pub(crate) const LANES: usize = 8;
+
+const NUMBERS: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7];
+
+/// Places of texels in vectors.
+#[derive(Clone, Copy)]
+struct PlaceLanes<S: Lanes8> {
+    s: S,
+    columns: S::I32,
+    rows: S::I32,
+}
+
+impl<S: Lanes8> PlaceLanes<S> {
+    #[inline(always)]
+    fn new(s: S, texels: Texels<'_>) -> Self {
+        let columns = (1 << texels.ubits) - 1;
+        let rows = ((1 << texels.vbits) - 1) << texels.ubits;
+        Self { s, columns: s.all_i32(columns), rows: s.all_i32(rows) }
+    }
+
+    /// [`Texels::place`] of u, and of v times the width: what is lost of that no mask has.
+    #[inline(always)]
+    fn at(self, u: S::I32, v: S::I32) -> S::I32 {
+        let s = self.s;
+        s.or_i32(s.and_i32(s.sar_i32(v, 16), self.rows), s.and_i32(s.sar_i32(u, 16), self.columns))
+    }
+}
+
+/// Lines through a texture with the same step, as [`fill_affine`] has them.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy)]
+pub(crate) struct AffineLines<S: Lanes8> {
+    places: PlaceLanes<S>,
+    /// The logarithm of the width.
+    ubits: u32,
+    /// From the first pixel to each of eight, ...
+    first: [S::I32; 2],
+    /// ... and from eight to the next eight.
+    next: [S::I32; 2],
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Lanes8> AffineLines<S> {
+    #[inline(always)]
+    pub(crate) fn new(s: S, texels: Texels<'_>, [du, dv]: [u32; 2]) -> Self {
+        let places = PlaceLanes::new(s, texels);
+        let [du, dv] = [du, dv << texels.ubits].map(u32::cast_signed);
+        let numbers = s.i32s(&NUMBERS);
+        Self {
+            places,
+            ubits: texels.ubits,
+            first: [s.mul_i32(s.all_i32(du), numbers), s.mul_i32(s.all_i32(dv), numbers)],
+            next: [s.all_i32(du.wrapping_mul(LANES as i32)), s.all_i32(dv.wrapping_mul(LANES as i32))],
+        }
+    }
+
+    /// The places of the first `n` texels from (`u`, `v`) on, and of up to seven more, for which there is room.
+    #[inline(always)]
+    pub(crate) fn places(&self, places: &mut [i32], n: usize, [u, v]: [u32; 2]) {
+        let s = self.places.s;
+        let mut u = s.add_i32(s.all_i32(u.cast_signed()), self.first[0]);
+        let mut v = s.add_i32(s.all_i32((v << self.ubits).cast_signed()), self.first[1]);
+        for block in places.as_chunks_mut::<LANES>().0.iter_mut().take(n.div_ceil(LANES)) {
+            s.put_i32s(self.places.at(u, v), block);
+            (u, v) = (s.add_i32(u, self.next[0]), s.add_i32(v, self.next[1]));
+        }
     }
 }
 
@@ -287,23 +345,31 @@ pub fn fill_perspective_portable(
     d: i128,
     dd: i128,
 ) {
-    show_perspective_portable((), row, texels, [[numerators[0], steps[0]], [numerators[1], steps[1]]], [d, dd]);
+    let [u, v] = [0, 1].map(|i| [numerators[i], steps[i]]);
+    each_exact_place(row, texels, [u, v], [d, dd], |pixel, place| *pixel = texels.bytes[place]);
 }
 
-/// [`fill_perspective_portable`], with what becomes of a texel. Of each number the first value is given, and what each
+/// The places of texels, as [`fill_perspective_portable`] has them. Of each number the first value is given, and what each
 /// pixel adds.
+#[cfg(feature = "alloc")]
+pub(crate) fn exact_places(places: &mut [i32], texels: Texels<'_>, numerators: [[i128; 2]; 2], divisors: [i128; 2]) {
+    // Below 65,536.
+    each_exact_place(places, texels, numerators, divisors, |to, place| *to = place as i32);
+}
+
+/// Calls `put` for each with the place of its texel.
 #[inline(never)]
-pub(crate) fn show_perspective_portable(
-    shown: impl Shown,
-    row: &mut [u8],
+fn each_exact_place<T>(
+    row: &mut [T],
     texels: Texels<'_>,
     [[mut u, du], [mut v, dv]]: [[i128; 2]; 2],
     [mut d, dd]: [i128; 2],
+    put: impl Fn(&mut T, usize),
 ) {
-    for pixel in row {
+    for to in row {
         let divisor = d.max(1);
         // Modulo 2³²: the mask leaves less of it.
-        shown.show(pixel, texels.at(u.div_euclid(divisor) as u32, v.div_euclid(divisor) as u32));
+        put(to, texels.place(u.div_euclid(divisor) as u32, v.div_euclid(divisor) as u32));
         // What is added after the last pixel may be anything.
         u = u.wrapping_add(du);
         v = v.wrapping_add(dv);
@@ -313,7 +379,7 @@ pub(crate) fn show_perspective_portable(
 
 /// Fills `row` like [`fill_perspective`], by quotients in f64, exact where they cannot decide.
 ///
-/// The bound of [`show_estimated`] holds: with ε = 2⁻⁵³, the error of one rounding,
+/// The bound of [`perspective_places`] holds: with ε = 2⁻⁵³, the error of one rounding,
 ///
 /// 1. over a piece of the row let N be the largest |n| of a numerator and D the largest divisor. All are linear, so N and
 ///    D are found at the piece's ends, and |k·dn| ≤ 2N.
@@ -332,7 +398,10 @@ fn fill_perspective_estimated(
     for piece in row.chunks_mut(PIECE) {
         let [first_u, first_v] = [u, v].map(|first| first as f64);
         let along = [[first_u, steps_in_f64[0]], [first_v, steps_in_f64[1]]];
-        if !show_estimated((), Kernel::PORTABLE, piece, texels, along, [d as f64, dd as f64]) {
+        let mut places = [0; PIECE];
+        if perspective_places(BASELINE, &mut places, piece.len(), texels, along, [d as f64, dd as f64]) {
+            show((), piece, texels, &places);
+        } else {
             fill_perspective_portable(piece, texels, [u, v], steps, d, dd);
         }
         // At most PIECE.
@@ -342,15 +411,14 @@ fn fill_perspective_estimated(
     }
 }
 
-/// Pixels that [`show_estimated`] fills at most.
+/// Pixels of a piece of a row, at most.
 const PIECE: usize = 64;
 
-/// Pixels that are estimated together, and those of a row that is no longer.
-const LANES: usize = 8;
-const FEW: usize = 4;
+/// The most that the largest divisor of a row may be of the smallest one for an estimate to decide.
+const MAX_RATIO: f64 = 32_768.0;
 
-/// Fills `row`, at most 64 pixels, by quotients in f64. Returns `false` if one of them cannot decide; the row is then
-/// as it was.
+/// The places of the first `n` texels by quotients in f64, at most 64, and of up to seven more, for which there is room.
+/// Returns `false` if one of the quotients cannot decide.
 ///
 /// Of each numerator and of the divisor the first value is given, and what each pixel adds.
 ///
@@ -364,74 +432,41 @@ const FEW: usize = 4;
 /// 2. The quotient is off by 2³²·12εR for the numerator, the same for the divisor, and 2ε of itself for the reciprocal and
 ///    the product: less than 2³²·ε·(24R + 3) altogether.
 /// 3. For R ≤ 2¹⁵ that is 0.38. Where R is larger nothing is filled.
-pub(crate) fn show_estimated(
-    shown: impl Shown,
-    kernel: Kernel,
-    row: &mut [u8],
-    texels: Texels<'_>,
-    numerators: [[f64; 2]; 2],
-    [d, dd]: [f64; 2],
-) -> bool {
-    const MAX_RATIO: f64 = 32_768.0;
-
-    // At most PIECE.
-    let last = d + (row.len() as f64 - 1.0) * dd;
-    // False for what is not a number, too.
-    let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
-    let mut places = [0; PIECE];
-    let n = row.len().min(PIECE);
-    let estimated = |places: &mut [u16]| {
-        if n <= FEW {
-            places_at_best::<FEW>(kernel, &mut places[..FEW], texels, numerators, [d, dd])
-        } else {
-            places_at_best::<LANES>(kernel, &mut places[..n.next_multiple_of(LANES)], texels, numerators, [d, dd])
-        }
-    };
-    if !is_sure || !estimated(&mut places) {
-        return false;
-    }
-    for (pixel, place) in row.iter_mut().zip(&places) {
-        shown.show(pixel, texels.bytes[usize::from(*place)]);
-    }
-    true
-}
-
-at_best_level! {
-    #[inline]
-    fn places_at_best[const N: usize][N](
-        kernel: Kernel, places: &mut [u16], texels: Texels<'_>, numerators: [[f64; 2]; 2], divisors: [f64; 2],
-    ) -> bool {
-        find_places::<N>(places, texels, numerators, divisors)
-    }
-}
-
-/// The places of the texels, [`Texels::place`], `N` at a time. Returns whether all are sure. What lies beyond the end of a row
-/// may be unsure, too.
 #[inline(always)]
-fn find_places<const N: usize>(
-    places: &mut [u16],
+pub(crate) fn perspective_places<S: Lanes8>(
+    s: S,
+    places: &mut [i32],
+    n: usize,
     texels: Texels<'_>,
     [[u, du], [v, dv]]: [[f64; 2]; 2],
     [d, dd]: [f64; 2],
 ) -> bool {
-    // `Texels::place` in u32, for twice the lanes.
-    let columns = (1_u32 << texels.ubits) - 1;
-    let rows = ((1_u32 << texels.vbits) - 1) << texels.ubits;
-    let to_row = 16 - texels.ubits;
-    let (blocks, _) = places.as_chunks_mut::<N>();
-    let mut k: [f64; N] = core::array::from_fn(|k| k as f64);
+    // At most PIECE.
+    let last = d + (n as f64 - 1.0) * dd;
+    // False for what is not a number, too.
+    let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
+    if !is_sure {
+        return false;
+    }
+    let at = PlaceLanes::new(s, texels);
+    let (magic, fraction) = (s.all_f64(ROUND_MAGIC), s.all_i32(0xFFFF));
+    let mut numbers = s.i32s(&NUMBERS);
+    let end = s.all_i32(n as i32);
+    let width = s.all_i32(1 << texels.ubits);
     let mut unsure = 0;
-    for block in blocks {
-        for (place, k) in block.iter_mut().zip(&mut k) {
-            let reciprocal = 1.0 / (d + *k * dd);
-            // Modulo 2³². Lanes beyond the piece may hold anything.
-            let u = nearest_whole((u + *k * du) * reciprocal) as u32;
-            let v = nearest_whole((v + *k * dv) * reciprocal) as u32;
-            // At most columns + rows, which is below 65,536.
-            *place = (((v >> to_row) & rows) | ((u >> 16) & columns)) as u16;
-            unsure |= u32::from(u & 0xFFFF == 0) | u32::from(v & 0xFFFF == 0);
-            *k += N as f64;
-        }
+    for block in places.as_chunks_mut::<LANES>().0.iter_mut().take(n.div_ceil(LANES)) {
+        let k = s.to_f64(numbers);
+        let reciprocal = s.div(s.all_f64(1.0), s.mul_add(k, s.all_f64(dd), s.all_f64(d)));
+        // Modulo 2³². Lanes beyond the last may hold anything.
+        let u = s.low_bits(s.mul_add(s.mul_add(k, s.all_f64(du), s.all_f64(u)), reciprocal, magic));
+        let v = s.low_bits(s.mul_add(s.mul_add(k, s.all_f64(dv), s.all_f64(v)), reciprocal, magic));
+        let is_there = s.is_greater(end, numbers);
+        let zero = s.all_i32(0);
+        unsure |= s.mask_bits(s.both(is_there, s.is_equal(s.and_i32(u, fraction), zero)));
+        unsure |= s.mask_bits(s.both(is_there, s.is_equal(s.and_i32(v, fraction), zero)));
+        // By a product: shifts are by constants.
+        s.put_i32s(at.at(u, s.mul_i32(v, width)), block);
+        numbers = s.add_i32(numbers, s.all_i32(LANES as i32));
     }
     unsure == 0
 }

@@ -37,6 +37,8 @@ pub(super) mod found;
 pub(crate) mod indexed;
 mod rows;
 mod setup;
+#[cfg(feature = "alloc")]
+pub(super) mod texture;
 mod triangles;
 
 pub use triangles::Batch;

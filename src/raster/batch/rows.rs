@@ -61,9 +61,9 @@ impl<S: Lanes8> Lane<S> for OneTriangle {
 }
 
 /// The ends of eight rows.
-struct RowEnds<S: Lanes8> {
+pub(super) struct RowEnds<S: Lanes8> {
     /// Columns from the box's first on, as sums with `ROUND_MAGIC`: the first pixel, and the one behind the last.
-    left: S::F64,
+    pub(super) left: S::F64,
     right: S::F64,
     /// The numerator of the shade at the box's first column.
     shade_n: S::F64,
@@ -223,17 +223,17 @@ fn eight_rows<S: Lanes8, const DEPTHS: bool>(
     (ends, spans)
 }
 
-/// Eight rows of small triangle `i` from number `first` on: the first column that is covered, the one behind the last, and
-/// the first shade with the step above it.
+/// Row `number` of each of eight small triangles: its ends, and the first column that is covered, the one behind the last,
+/// and the first shade with the step above it.
 #[cfg(feature = "alloc")]
 #[inline(always)]
-pub(super) fn find_eight_rows<S: Lanes8>(s: S, setup: &TriangleSetup8, (i, first): (usize, i32)) -> [S::I32; 3] {
-    let lane = OneTriangle(i);
-    let number = s.add_i32(s.all_i32(first), s.i32s(&NUMBERS));
-    let ends = RowEnds::of(s, lane, setup, s.to_f64(number), number);
-    let column = lane.i32s(s, &setup.column);
+pub(super) fn find_row<S: Lanes8>(s: S, setup: &TriangleSetup8, number: i32) -> (RowEnds<S>, [S::I32; 3]) {
+    let lane = EachTriangle;
+    let ends = RowEnds::of(s, lane, setup, s.all_f64(f64::from(number)), s.all_i32(number));
+    let column = s.i32s(&setup.column);
     let [left, right] = [s.add_i32(column, s.low_bits(ends.left)), s.add_i32(column, s.low_bits(ends.right))];
-    [left, right, ends.paint(s, lane, setup, ends.left)]
+    let paint = ends.paint(s, lane, setup, ends.left);
+    (ends, [left, right, paint])
 }
 
 /// Lists eight rows of small triangle `i` from number `first` on. There is room for eight.

@@ -97,6 +97,7 @@ impl Corners8 {
 }
 
 /// An edge: the first pixel on it or right of it in row j is `nearest((n + j·per_row) · inverse)`.
+#[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Edges {
     pub(super) n: Floats,
@@ -122,6 +123,7 @@ impl Edges {
 }
 
 /// Eight triangles, ready for their rows.
+#[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct TriangleSetup8 {
     pub(super) long: Edges,
@@ -201,8 +203,14 @@ impl TriangleSetup8 {
     }
 
     /// Sets up eight triangles of which no box has more than 2¹⁸ pixels; with `DEPTHS` the depth planes of small ones, too.
+    /// Returns what other planes are set up from.
     #[inline(always)]
-    pub(super) fn set_up<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, corners: &Corners8, layout: FrameLayout) {
+    pub(super) fn set_up<S: Lanes8, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        corners: &Corners8,
+        layout: FrameLayout,
+    ) -> Basis<S> {
         let [ax, bx, cx] = [s.i32s(&corners.x[0]), s.i32s(&corners.x[1]), s.i32s(&corners.x[2])];
         let [ay, by, cy] = [s.i32s(&corners.y[0]), s.i32s(&corners.y[1]), s.i32s(&corners.y[2])];
         let top = s.min_i32(s.min_i32(ay, by), cy);
@@ -246,15 +254,14 @@ impl TriangleSetup8 {
         self.upper.set_up(s, (fx0, fy0), (dx1, dy1));
         self.lower.set_up(s, (fx1, fy1), (s.sub(fx2, fx1), s.sub(fy2, fy1)));
 
-        // `SortedTriangle::gradient`.
         let signed = s.neg_mul_add(dx2, dy1, s.mul(dx1, dy2));
         let area = s.flip(signed, signed);
         let inverse = s.div(s.all_f64(1.0), area);
+        let basis = Basis { order, first: [fx0, fy0], second: [dx1, dy1], third: [dx2, dy2], signed, area, inverse };
         let shade = s.to_f64(s0);
-        let (ds1, ds2) = (s.to_f64(s.sub_i32(s1, s0)), s.to_f64(s.sub_i32(s2, s0)));
+        let [gx, gy] = basis.gradient(s, [s.to_f64(s.sub_i32(s1, s0)), s.to_f64(s.sub_i32(s2, s0))]);
         // +0 and no −0: its sign chooses the rounding.
-        let gx = s.add(s.flip(s.neg_mul_add(ds2, dy1, s.mul(ds1, dy2)), signed), s.all_f64(0.0));
-        let gy = s.flip(s.neg_mul_add(ds1, dx2, s.mul(ds2, dx1)), signed);
+        let gx = s.add(gx, s.all_f64(0.0));
         // `ShadePlane::start`: the floor, or the ceiling of falling shades, and half a shade.
         let half = s.mul_add(area, s.all_f64(0.5), s.all_f64(-0.5));
         let n = s.mul(s.add(shade, s.all_f64(128.0)), area);
@@ -276,11 +283,10 @@ impl TriangleSetup8 {
 
         if DEPTHS {
             let [d0, d1, d2] =
-                order.sort(s, [s.i32s(&corners.depth[0]), s.i32s(&corners.depth[1]), s.i32s(&corners.depth[2])]);
+                basis.order.sort(s, [s.i32s(&corners.depth[0]), s.i32s(&corners.depth[1]), s.i32s(&corners.depth[2])]);
             let depth = s.unsigned_to_f64(d0);
             let (dd1, dd2) = (s.sub(s.unsigned_to_f64(d1), depth), s.sub(s.unsigned_to_f64(d2), depth));
-            let nx = s.flip(s.neg_mul_add(dd2, dy1, s.mul(dd1, dy2)), signed);
-            let ny = s.flip(s.neg_mul_add(dd1, dx2, s.mul(dd2, dx1)), signed);
+            let [nx, ny] = basis.gradient(s, [dd1, dd2]);
             let gx = depth_gradient(s, nx, area, inverse);
             let gy = depth_gradient(s, ny, area, inverse);
             // The plane is that through the first corner by (y, x).
@@ -293,11 +299,37 @@ impl TriangleSetup8 {
             s.put_i64s(s.shl_i64(gx, 16), &mut self.z_per_column);
             s.put_i64s(s.shl_i64(gy, 16), &mut self.z_per_row);
         }
+        basis
+    }
+}
+
+/// Numbers that planes over eight triangles are set up from. All numbers are integers, but for the last.
+#[cfg_attr(not(feature = "alloc"), expect(dead_code, reason = "texture coordinates are set up from it"))]
+pub(super) struct Basis<S: Lanes8> {
+    pub(super) order: Order<S>,
+    /// The first corner by height, from the centre of the box's first pixel, ...
+    pub(super) first: [S::F64; 2],
+    /// ... and the others from there.
+    pub(super) second: [S::F64; 2],
+    pub(super) third: [S::F64; 2],
+    /// Twice the area, negative if the second corner lies left of the edge from the first to the third.
+    pub(super) signed: S::F64,
+    pub(super) area: S::F64,
+    pub(super) inverse: S::F64,
+}
+
+impl<S: Lanes8> Basis<S> {
+    /// `SortedTriangle::gradient` of a value, by its differences from the first corner to the second and to the third.
+    #[inline(always)]
+    pub(super) fn gradient(&self, s: S, [d1, d2]: [S::F64; 2]) -> [S::F64; 2] {
+        let ([dx1, dy1], [dx2, dy2]) = (self.second, self.third);
+        let gx = s.flip(s.neg_mul_add(d2, dy1, s.mul(d1, dy2)), self.signed);
+        [gx, s.flip(s.neg_mul_add(d1, dx2, s.mul(d2, dx1)), self.signed)]
     }
 }
 
 /// Which corners are the first and the last by height.
-struct Order<S: Lanes8> {
+pub(super) struct Order<S: Lanes8> {
     first_is_a: S::Mask,
     first_is_b: S::Mask,
     last_is_b: S::Mask,
@@ -307,7 +339,7 @@ struct Order<S: Lanes8> {
 impl<S: Lanes8> Order<S> {
     /// A number of each corner, in the order of heights.
     #[inline(always)]
-    fn sort(&self, s: S, [a, b, c]: [S::I32; 3]) -> [S::I32; 3] {
+    pub(super) fn sort(&self, s: S, [a, b, c]: [S::I32; 3]) -> [S::I32; 3] {
         let first = s.select_i32(self.first_is_a, a, s.select_i32(self.first_is_b, b, c));
         let last = s.select_i32(self.last_is_c, c, s.select_i32(self.last_is_b, b, a));
         // What is left. Sums wrap.

@@ -1,6 +1,6 @@
 //! Light at the pixels: at each of them, or at some of a row with shades that are linear between.
 
-use super::pieces::{Bytes, Face, PIECE, Piece, Pieces, Shades};
+use super::pieces::{Face, PIECE, Piece, Pieces};
 use super::pipeline::{Attributes, Lighting, SampleSpacing};
 use crate::lanes::{LANES, Lanes, Points};
 use crate::raster::cover::SortedTriangle;
@@ -77,8 +77,8 @@ fn places(first: usize) -> Lanes<f64> {
 struct Waiting {
     /// Those of the first eight are whole; behind them is room for what one more row adds.
     numerators: [[f64; 2 * LANES]; 7],
-    /// The piece of each, and the pixel in it.
-    places: [(usize, usize); 2 * LANES],
+    /// The place of each among the pixels of all pieces.
+    places: [usize; 2 * LANES],
     count: usize,
 }
 
@@ -86,32 +86,32 @@ impl Waiting {
     fn new() -> Self {
         let mut numerators = [[0.0; 2 * LANES]; 7];
         numerators[6] = [1.0; 2 * LANES];
-        Self { numerators, places: [(0, 0); 2 * LANES], count: 0 }
+        Self { numerators, places: [0; 2 * LANES], count: 0 }
     }
 
     /// Puts up to seven pixels, from `first` on, behind those that wait.
     #[inline]
-    fn push(&mut self, numerators: &Numerators, piece: usize, pixels: core::ops::Range<usize>) {
+    fn push(&mut self, numerators: &Numerators, pixels: core::ops::Range<usize>) {
         for (waiting, new) in self.numerators.iter_mut().zip(numerators) {
             waiting[self.count..self.count + LANES].copy_from_slice(new);
         }
         for pixel in pixels {
-            self.places[self.count] = (piece, pixel);
+            self.places[self.count] = pixel;
             self.count += 1;
         }
     }
 
     /// Lights the first eight.
     #[inline]
-    fn light<const N: usize>(&mut self, kernel: Kernel, light: &impl Lit<N>, out: &mut [&mut [Shades]; N]) {
+    fn light<const N: usize>(&mut self, kernel: Kernel, light: &impl Lit<N>, out: &mut [&mut [u16]; N]) {
         let mut numerators = [[0.0; LANES]; 7];
         for (eight, waiting) in numerators.iter_mut().zip(&self.numerators) {
             eight.copy_from_slice(&waiting[..LANES]);
         }
         let lit = light.at(&kernel.divide(&numerators));
-        for (lane, &(piece, pixel)) in self.places[..self.count.min(LANES)].iter().enumerate() {
+        for (lane, &pixel) in self.places[..self.count.min(LANES)].iter().enumerate() {
             for (out, lit) in out.iter_mut().zip(&lit) {
-                out[piece][pixel] = lit[lane];
+                out[pixel] = lit[lane];
             }
         }
     }
@@ -136,31 +136,29 @@ impl Pieces {
         faces: &[Face],
         kernel: Kernel,
         light: &impl Lit<N>,
-        mut out: [&mut [Shades]; N],
+        mut out: [&mut [u16]; N],
     ) {
         let mut waiting = Waiting::new();
-        let mut index = 0;
-        let mut nothing = [(); super::pieces::CAPACITY];
-        self.each(faces, &mut nothing[..self.len()], LitPlane::new, |plane, piece, ()| {
-            let ((a, d), (da, dd)) = (plane.at(piece.start()), &plane.step);
+        let mut nothing = [(); super::pieces::PIXELS];
+        self.each(faces, &mut nothing, LitPlane::new, |plane, piece, _| {
+            let ((a, d), (da, dd)) = (plane.at(piece.place()), &plane.step);
             let length = piece.len();
             let mut first = 0;
             while length - first >= LANES {
                 let lit = light.at(&kernel.interpolate_at(&places(first), &a, da, d, *dd));
                 for (out, lit) in out.iter_mut().zip(&lit) {
-                    out[index][first..first + LANES].copy_from_slice(lit);
+                    out[piece.first() + first..piece.first() + first + LANES].copy_from_slice(lit);
                 }
                 first += LANES;
             }
             if first < length {
                 let numerators = kernel.numerators(&places(first), &a, da, d, *dd);
-                waiting.push(&numerators, index, first..length);
+                waiting.push(&numerators, piece.first() + first..piece.first() + length);
                 if waiting.count >= LANES {
                     waiting.light(kernel, light, &mut out);
                     waiting.advance();
                 }
             }
-            index += 1;
         });
         if waiting.count > 0 {
             waiting.light(kernel, light, &mut out);
@@ -175,11 +173,10 @@ impl Pieces {
         kernel: Kernel,
         (spacing, light): (SampleSpacing, &impl Lit<N>),
         pattern: &[[u8; 8]; 8],
-        mut out: [&mut [Bytes]; N],
+        mut out: [&mut [u8]; N],
     ) {
-        let mut index = 0;
-        let mut nothing = [(); super::pieces::CAPACITY];
-        self.each(faces, &mut nothing[..self.len()], LitPlane::new, |plane, piece, ()| {
+        let mut nothing = [(); super::pieces::PIXELS];
+        self.each(faces, &mut nothing, LitPlane::new, |plane, piece, _| {
             let knots = Knots::new(piece, spacing);
             let mut lit = [[0; KNOTS]; N];
             knots.light(plane, piece, kernel, |first, points| {
@@ -188,9 +185,8 @@ impl Pieces {
                 }
             });
             for (lit, out) in lit.iter().zip(&mut out) {
-                knots.fill(lit, piece.thresholds(pattern), piece.column(), &mut out[index][..piece.len()]);
+                knots.fill(lit, piece.thresholds(pattern), piece.column(), &mut out[piece.pixels()]);
             }
-            index += 1;
         });
     }
 }
@@ -220,7 +216,7 @@ impl Knots {
 
     /// Lights them, eight at a time, and hands the eight on with the number of the first.
     fn light(&self, plane: &LitPlane, piece: &Piece, kernel: Kernel, mut light: impl FnMut(usize, &Points)) {
-        let ((a, d), (da, dd)) = (plane.at(piece.start()), &plane.step);
+        let ((a, d), (da, dd)) = (plane.at(piece.place()), &plane.step);
         for (first, eight) in self.places[..self.count].chunks(LANES).enumerate() {
             let mut places = [0.0; LANES];
             for (to, place) in places.iter_mut().zip(eight) {

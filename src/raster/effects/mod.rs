@@ -33,21 +33,23 @@ mod texture;
 
 use alloc::vec::Vec;
 
-use self::pieces::{Bytes, CAPACITY, Covered, Face, PIECE, Piece, Pieces, Shades, Sorted};
+use self::pieces::{CAPACITY, Face, FaceSetup, PIXELS, Piece, Pieces};
 pub use self::pipeline::{
     Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
 };
 use super::batch::Batch;
-use super::batch::found::{Finder, Found, index};
+use super::batch::found::{Coordinates, Finder, Found, FoundRows, MAX_FOUND, Wanted, index};
+use super::batch::texture::TextureCorners;
 use super::cover::{Row, SortedTriangle};
 use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::draw_stats::DrawStats;
-use super::frame::Frame;
+use super::frame::{Frame, Rect};
 use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
 use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::simd::at_best_level;
+use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
 
 /// A half for every pixel: no dither.
@@ -55,26 +57,31 @@ const HALVES: [[u8; 8]; 8] = [[128; 8]; 8];
 
 /// Faces that are drawn by one pixel pipeline, and room for their pieces. Filled and drawn again and again it allocates
 /// nothing.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct EffectBatch {
     faces: Vec<Face>,
     /// Their corners once more, as culling and set-up take them.
     corners: Batch,
+    texture: TextureCorners<MAX_FOUND>,
+    /// Room for rows of eight faces.
+    rows: Vec<FoundRows>,
     pieces: Pieces,
     buffers: Buffers,
 }
 
-/// Output of the stages for pieces: a row for each.
+/// Output of the stages: a number for each pixel of all pieces.
 #[derive(Clone, Debug, Default)]
 struct Buffers {
     /// The bytes that are drawn in the end.
-    bytes: Vec<Bytes>,
-    /// Texels, or levels of fog.
-    other: Vec<Bytes>,
+    bytes: Vec<u8>,
+    /// Texels, levels of fog, or rows of a table.
+    other: Vec<u8>,
     /// Red, green and blue.
-    channels: [Vec<Bytes>; 3],
+    channels: [Vec<u8>; 3],
     /// One shade in 8.8, or three channels.
-    shades: [Vec<Shades>; 3],
+    shades: [Vec<u16>; 3],
+    /// Places of texels in their image.
+    places: Vec<i32>,
 }
 
 impl Buffers {
@@ -83,36 +90,59 @@ impl Buffers {
         other: Vec::new(),
         channels: [const { Vec::new() }; 3],
         shades: [const { Vec::new() }; 3],
+        places: Vec::new(),
     };
 
-    /// Makes room for as many pieces as there may be.
+    /// Makes room for as many pixels as there may be.
     fn make_room(&mut self) {
-        self.bytes.resize(CAPACITY, [0; PIECE]);
-        self.other.resize(CAPACITY, [0; PIECE]);
-        self.channels.iter_mut().for_each(|channel| channel.resize(CAPACITY, [0; PIECE]));
-        self.shades.iter_mut().for_each(|shades| shades.resize(CAPACITY, [0; PIECE]));
+        let Self { bytes, other, channels, shades, places } = self;
+        for bytes in [bytes, other].into_iter().chain(channels) {
+            bytes.resize(PIXELS, 0);
+        }
+        for shades in shades {
+            shades.resize(PIXELS, 0);
+        }
+        places.resize(PIXELS, 0);
+    }
+
+    /// Bytes that it holds.
+    fn bytes(&self) -> usize {
+        let Self { bytes, other, channels, shades, places } = self;
+        let bytes = bytes.capacity() + other.capacity() + channels.iter().map(Vec::capacity).sum::<usize>();
+        let shades = shades.iter().map(Vec::capacity).sum::<usize>();
+        bytes + shades * size_of::<u16>() + places.capacity() * size_of::<i32>()
+    }
+}
+
+impl Default for EffectBatch {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
 impl EffectBatch {
     /// Faces that it holds at most.
-    pub const CAPACITY: usize = 64;
+    pub const CAPACITY: usize = MAX_FOUND;
 
-    /// A batch without faces. When it is drawn for the first time it takes 60 kB.
+    /// A batch without faces. When it is drawn for the first time it takes 90 kB.
     #[must_use]
     pub const fn new() -> Self {
-        Self { faces: Vec::new(), corners: Batch::new(), pieces: Pieces::EMPTY, buffers: Buffers::EMPTY }
+        Self {
+            faces: Vec::new(),
+            corners: Batch::new(),
+            texture: TextureCorners::NONE,
+            rows: Vec::new(),
+            pieces: Pieces::EMPTY,
+            buffers: Buffers::EMPTY,
+        }
     }
 
     /// Bytes that it holds.
     pub(crate) fn bytes(&self) -> usize {
-        let Buffers { bytes, other, channels, shades } = &self.buffers;
-        let rows = bytes.capacity() + other.capacity() + channels.iter().map(Vec::capacity).sum::<usize>();
-        let shades = shades.iter().map(Vec::capacity).sum::<usize>();
         self.faces.capacity() * size_of::<Face>()
+            + self.rows.capacity() * size_of::<FoundRows>()
             + self.pieces.bytes()
-            + rows * size_of::<Bytes>()
-            + shades * size_of::<Shades>()
+            + self.buffers.bytes()
     }
 
     /// Returns whether the batch holds no face.
@@ -138,6 +168,7 @@ impl EffectBatch {
             if self.faces.capacity() == 0 {
                 self.faces.reserve_exact(Self::CAPACITY);
             }
+            self.texture.put(self.faces.len(), attributes.each_ref().map(|corner| corner.texture));
             self.faces.push(Face { vertices: *vertices, attributes: *attributes });
             self.corners.push(vertices, Interpolation::GouraudReseeded);
         }
@@ -161,9 +192,8 @@ impl EffectBatch {
         let (rows, depth) = (OneRow(pixels), None::<&mut DepthBuffer<'_, u32>>);
         let mut drawing =
             Drawing { rows, depth, kernel, pipeline, faces, pieces, buffers, drawn: DrawStats::default() };
-        let triangle = Sorted::new(faces, 0, false);
-        drawing.add_row(row, &triangle);
-        drawing.pieces.close(&triangle);
+        drawing.add_row(row, 0);
+        drawing.pieces.close(0, None);
         // The caller has counted what is covered.
         *drawn += DrawStats { covered: 0, ..drawing.finish((row.x1 - row.x0) as u32) };
         self.clear();
@@ -235,34 +265,106 @@ struct Drawing<'a, 'b, R, D: Cell> {
 
 impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
     /// Adds the drawn part of a row of a face, cut into pieces.
-    #[inline]
-    fn add_row(&mut self, row: &Row, of: &Sorted) {
+    #[inline(always)]
+    fn add_row(&mut self, row: &Row, face: usize) {
+        if row.x1 - row.origin > RESEED {
+            return self.add_pieces(row, face);
+        }
+        self.make_space(face, None);
+        self.pieces.push(row, row.origin, row.x0..row.x1, 0);
+    }
+
+    /// Adds more than one.
+    #[inline(never)]
+    fn add_pieces(&mut self, row: &Row, face: usize) {
         let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
         let mut x = row.x0;
         while x < row.x1 {
             let end = row.x1.min(seed + RESEED);
-            self.add_piece(Piece { row: *row, seed, x, end, paint: 0 }, of);
+            self.make_space(face, None);
+            self.pieces.push(row, seed, x..end, 0);
             seed += RESEED;
             x = end;
         }
     }
 
-    /// Adds a piece of a face. Those that wait are drawn when there is no more room.
+    /// Adds the rows of a small face that lies inside the clip rectangle. Returns how many pixels are covered.
     #[inline(always)]
-    fn add_piece(&mut self, piece: Piece, of: &Sorted) {
-        if self.pieces.len() == CAPACITY {
-            self.pieces.close(of);
-            self.draw();
+    fn add_small(&mut self, face: usize, rows: &FoundRows, lane: usize, wanted: Wanted<'_>) -> u32 {
+        let mut setup = FaceSetup { affine: None, perspective: [0.0; 3], depth: 0 };
+        match wanted.texture {
+            None => {}
+            Some((Coordinates::Affine, _)) => setup.affine = rows.affine_step(lane),
+            Some((Coordinates::Perspective, _)) => setup.perspective = rows.perspective_step(lane),
         }
-        self.pieces.push(piece);
+        if wanted.depths {
+            setup.depth = rows.depth_step(lane);
+        }
+        let mut covered = 0;
+        for j in 0..rows.count(lane) {
+            let (row, paint) = rows.row(lane, j);
+            let (x, end) = (row.x0, row.x1);
+            if x >= end {
+                continue;
+            }
+            covered += (end - x) as u32;
+            self.make_space(face, Some(&setup));
+            let Some(start) = self.pieces.push(&row, x, x..end, paint) else { continue };
+            match wanted.texture {
+                None => {}
+                Some((Coordinates::Affine, _)) => start.affine = rows.affine_start(lane, j),
+                Some((Coordinates::Perspective, _)) => start.perspective = rows.perspective_start(lane, j),
+            }
+            if wanted.depths {
+                start.depth = rows.depth(lane, j, x);
+            }
+        }
+        self.pieces.close(face, Some(&setup));
+        covered
+    }
+
+    /// Adds the rows of a face, walking down its edges. Returns how many pixels are covered.
+    #[inline(never)]
+    fn add_large<const CLIPS: bool>(&mut self, face: usize, width: u32, clip: Rect) -> u32 {
+        let (triangle, _) = SortedTriangle::with_order(&self.faces[face].vertices);
+        let mut covered = 0;
+        let each_row = |row: Row| {
+            covered += (row.x1 - row.x0) as u32;
+            // Columns of a frame, of which there are at most 4,096.
+            if CLIPS || (row.x0 >= 0 && row.x1 <= width as i32) {
+                self.add_row(&row, face);
+            }
+        };
+        if CLIPS {
+            triangle.rows(width, clip, each_row);
+        } else {
+            triangle.rows_inside(each_row);
+        }
+        self.pieces.close(face, None);
+        covered
+    }
+
+    /// Draws the pieces that wait if there is no room for one more of a face.
+    #[inline(always)]
+    fn make_space(&mut self, face: usize, setup: Option<&FaceSetup>) {
+        if self.pieces.len() == CAPACITY {
+            self.draw_full(face, setup);
+        }
+    }
+
+    /// Draws the pieces that wait, of which the last are this face's.
+    #[cold]
+    #[inline(never)]
+    fn draw_full(&mut self, face: usize, setup: Option<&FaceSetup>) {
+        self.pieces.close(face, setup);
+        self.draw();
     }
 
     /// Passes pieces through the stages, writes them, and clears their list.
     #[inline(never)]
     fn draw(&mut self) {
         let Self { pieces, buffers, pipeline, faces, kernel, .. } = self;
-        let n = pieces.len();
-        if n == 0 {
+        if pieces.len() == 0 {
             return;
         }
         pieces.shade(faces, buffers, pipeline, *kernel);
@@ -270,12 +372,11 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
             let plane = |triangle: &SortedTriangle, [a, b, c]: [&Attributes; 3]| {
                 ShadePlane::of_values(triangle, [a, b, c].map(|corner| i64::from(corner.fog.to_bits())))
             };
-            pieces.each(faces, &mut buffers.bytes[..n], plane, |plane, piece, bytes| {
-                let mut levels: Bytes = [0; PIECE];
-                let levels = &mut levels[..piece.len()];
+            let Buffers { bytes, other: levels, .. } = &mut **buffers;
+            pieces.each(faces, levels, plane, |plane, piece, levels| {
                 kernel.fill(levels, plane.start(piece.seed, piece.row.y), plane.step());
-                lookup(&mut bytes[..piece.len()], levels, table);
             });
+            lookup(&mut bytes[..pieces.pixels()], levels, table);
         }
         match pipeline.blend() {
             None => self.write::<false>(),
@@ -287,25 +388,31 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
     /// Writes pieces, all of each or where it is nearer.
     #[inline(never)]
     fn write<const BLENDS: bool>(&mut self) {
-        let Self { rows, pieces, drawn, pipeline, kernel, .. } = self;
-        let bytes = &mut self.buffers.bytes[..pieces.len()];
+        let Self { rows, pieces, faces, drawn, pipeline, kernel, .. } = self;
+        let bytes = &mut self.buffers.bytes[..];
         let blend = pipeline.blend().filter(|_| BLENDS);
         *drawn += match &mut self.depth {
             None => {
                 let mut drawn = DrawStats::default();
-                for (piece, bytes) in pieces.pieces().iter().zip(bytes) {
-                    let Some((pixels, bytes)) = visible(rows, piece, bytes, blend) else { continue };
-                    copy(&mut pixels[..piece.visible()], &bytes[..piece.visible()]);
+                for piece in pieces.pieces() {
+                    let Some(pixels) = rows.starting_at(piece.range().start, piece.row.y as u32) else { continue };
+                    let n = piece.visible();
+                    if n > pixels.len() {
+                        continue;
+                    }
+                    copy(pixels, &mut bytes[piece.first_visible()..], n, blend);
                     drawn.spans += 1;
                     // At most 64.
-                    drawn.pixels += piece.visible() as u32;
+                    drawn.pixels += n as u32;
                 }
                 drawn
             }
             Some(depth) if pipeline.keeps_depth => {
-                write_nearer::<R, D, BLENDS, true>(*kernel, *kernel, rows, depth, pieces, bytes, blend)
+                write_nearer::<R, D, BLENDS, true>(*kernel, *kernel, rows, depth, (pieces, faces), bytes, blend)
             }
-            Some(depth) => write_nearer::<R, D, BLENDS, false>(*kernel, *kernel, rows, depth, pieces, bytes, blend),
+            Some(depth) => {
+                write_nearer::<R, D, BLENDS, false>(*kernel, *kernel, rows, depth, (pieces, faces), bytes, blend)
+            }
         };
     }
 
@@ -320,13 +427,14 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
 
 at_best_level! {
     /// Writes pieces where they are nearer; with `KEEPS` their depths are kept.
+    #[inline(never)]
     fn write_nearer[R: Rows, D: Cell, const BLENDS: bool, const KEEPS: bool][R, D, BLENDS, KEEPS](
         level: Kernel,
         kernel: Kernel,
         rows: &mut R,
         depth: &mut DepthBuffer<'_, D>,
-        pieces: &Pieces,
-        bytes: &mut [Bytes],
+        pieces: (&Pieces, &[Face]),
+        bytes: &mut [u8],
         blend: Option<&[u8; 65_536]>,
     ) -> DrawStats {
         write_each::<R, D, BLENDS, KEEPS>(kernel, rows, depth, pieces, bytes, blend)
@@ -338,25 +446,28 @@ fn write_each<R: Rows, D: Cell, const BLENDS: bool, const KEEPS: bool>(
     kernel: Kernel,
     rows: &mut R,
     depth: &mut DepthBuffer<'_, D>,
-    pieces: &Pieces,
-    bytes: &mut [Bytes],
+    (pieces, faces): (&Pieces, &[Face]),
+    bytes: &mut [u8],
     blend: Option<&[u8; 65_536]>,
 ) -> DrawStats {
     let mut drawn = DrawStats::default();
     let mut first = 0;
     // Not by a closure, which would not be compiled for the level.
-    for Covered { of, end } in pieces.triangles() {
-        let plane = DepthPlane::new(&of.triangle);
-        for (piece, bytes) in pieces.pieces()[first..*end].iter().zip(&mut bytes[first..*end]) {
+    for covered in pieces.triangles() {
+        let range = first..covered.end;
+        first = covered.end;
+        let plane = covered.setup.is_none().then(|| DepthPlane::new(&covered.triangle(faces).0));
+        let dz = plane.map_or(covered.setup.map_or(0, |setup| setup.depth), |plane| plane.step());
+        for (piece, start) in pieces.with_starts(range) {
             let Some((pixels, bytes)) = visible(rows, piece, bytes, blend.filter(|_| BLENDS)) else { continue };
             let Some(depths) = depth.starting_at(piece.range().start, piece.row.y as u32) else { continue };
-            let (n, z) = (piece.visible(), plane.fixed_at(piece.x, piece.row.y));
+            let n = piece.visible();
+            let z = plane.map_or(start.depth, |plane| plane.fixed_at(piece.x, piece.row.y));
             drawn.spans += 1;
             // At most 64.
             drawn.tested += n as u32;
-            drawn.pixels += kernel.copy_where_nearer::<D, KEEPS>(n, pixels, depths, bytes, z, plane.step());
+            drawn.pixels += kernel.copy_where_nearer::<D, KEEPS>(n, pixels, depths, bytes, z, dz);
         }
-        first = *end;
     }
     drawn
 }
@@ -367,38 +478,58 @@ fn write_each<R: Rows, D: Cell, const BLENDS: bool, const KEEPS: bool>(
 fn visible<'a>(
     rows: &'a mut impl Rows,
     piece: &Piece,
-    bytes: &'a mut Bytes,
+    bytes: &'a mut [u8],
     blend: Option<&[u8; 65_536]>,
 ) -> Option<(&'a mut [u8], &'a [u8])> {
     let row = rows.starting_at(piece.range().start, piece.row.y as u32)?;
     let pixels = row.get(..piece.visible())?;
-    let first = (piece.x - piece.seed) as usize;
+    let bytes = &mut bytes[piece.first_visible()..];
     if let Some(table) = blend {
         // The table's row is the face's own index.
-        let mut behind: Bytes = [0; PIECE];
-        let behind = &mut behind[..pixels.len()];
-        behind.copy_from_slice(pixels);
-        let bytes = &mut bytes[first..piece.len()];
-        lookup(behind, bytes, table);
-        bytes.copy_from_slice(behind);
-    }
-    Some((row, &bytes[first..]))
-}
-
-/// Copies bytes to as many pixels: mostly few, for which a call costs more than they do.
-#[inline(always)]
-fn copy(pixels: &mut [u8], bytes: &[u8]) {
-    if bytes.len() > 8 {
-        pixels.copy_from_slice(bytes);
-    } else if let (Some(first), Some(last)) = (bytes.first_chunk::<4>(), bytes.last_chunk::<4>()) {
-        // They overlap.
-        pixels.first_chunk_mut().into_iter().for_each(|pixels| *pixels = *first);
-        pixels.last_chunk_mut().into_iter().for_each(|pixels| *pixels = *last);
-    } else {
-        for (pixel, byte) in pixels.iter_mut().zip(bytes.iter().take(3)) {
-            *pixel = *byte;
+        for (byte, &there) in bytes.iter_mut().zip(pixels) {
+            table.show(byte, there);
         }
     }
+    Some((row, bytes))
+}
+
+/// Copies the first `n` bytes to the first `n` pixels, of which there are as many; with a table, what it makes of both.
+#[inline(always)]
+fn copy(pixels: &mut [u8], bytes: &mut [u8], n: usize, blend: Option<&[u8; 65_536]>) {
+    // Mostly few, whose number no processor foretells. Those behind them are written as they were.
+    if n <= 4
+        && let (Some(pixels), Some(bytes)) = (pixels.first_chunk_mut(), bytes.first_chunk())
+    {
+        let there = *pixels;
+        let own = u32::from_le_bytes(blended::<4>(*bytes, there, blend));
+        let mask = !(u32::MAX << 1 << (8 * n - 1));
+        *pixels = (own & mask | u32::from_le_bytes(there) & !mask).to_le_bytes();
+    } else if n <= 8
+        && let (Some(pixels), Some(bytes)) = (pixels.first_chunk_mut(), bytes.first_chunk())
+    {
+        let there = *pixels;
+        let own = u64::from_le_bytes(blended::<8>(*bytes, there, blend));
+        let mask = !(u64::MAX << 1 << (8 * n - 1));
+        *pixels = (own & mask | u64::from_le_bytes(there) & !mask).to_le_bytes();
+    } else {
+        let (pixels, bytes) = (&mut pixels[..n], &mut bytes[..n]);
+        if let Some(table) = blend {
+            lookup(pixels, bytes, table);
+        } else {
+            pixels.copy_from_slice(bytes);
+        }
+    }
+}
+
+/// Looks bytes (rows) and what is there (columns) up in a table.
+#[inline(always)]
+fn blended<const N: usize>(mut bytes: [u8; N], there: [u8; N], table: Option<&[u8; 65_536]>) -> [u8; N] {
+    if let Some(table) = table {
+        for (byte, there) in bytes.iter_mut().zip(there) {
+            table.show(byte, there);
+        }
+    }
+    bytes
 }
 
 impl<D: Cell> Raster<'_, D> {
@@ -435,43 +566,34 @@ impl<D: Cell> Raster<'_, D> {
     fn draw_effects<const CLIPS: bool>(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
         let (width, clip, bounds) = (self.frame.width(), self.clip, self.frame.bounds());
         let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-        let EffectBatch { faces, corners, pieces, buffers } = &mut *batch;
+        let EffectBatch { faces, corners, texture, rows: found_rows, pieces, buffers } = &mut *batch;
         make_room(pieces, buffers);
+        if found_rows.is_empty() {
+            found_rows.push(FoundRows::NONE);
+        }
+        let Some(found_rows) = found_rows.first_mut() else { return DrawStats::default() };
+        let coordinates = match pipeline.texture() {
+            Some(stage) if pipeline.levels().is_none() => match stage.mapping {
+                TextureMapping::Affine => Some(Coordinates::Affine),
+                TextureMapping::Perspective => Some(Coordinates::Perspective),
+                TextureMapping::Every16 => None,
+            },
+            _ => None,
+        };
+        let wanted = Wanted { depths: depth.is_some(), texture: coordinates.map(|which| (which, &*texture)) };
         let (rows, kernel, drawn) = (&mut self.frame, self.kernel, DrawStats::default());
         let mut drawing = Drawing { rows, depth, kernel, pipeline, faces, pieces, buffers, drawn };
-        let mut finder = Finder::new(kernel.simd_level(), corners, if CLIPS { clip } else { bounds });
+        let mut finder =
+            Finder::new(kernel.simd_level(), corners, wanted, if CLIPS { clip } else { bounds }, found_rows);
         let mut covered = 0;
         while let Some(found) = finder.next() {
             match found {
                 Found::Small(triangles, rows) => {
                     for (lane, &number) in triangles.iter().enumerate() {
-                        let triangle = Sorted::new(faces, index(number), true);
-                        for (row, paint) in rows.of(lane) {
-                            let (x, end) = (row.x0, row.x1);
-                            if x < end {
-                                covered += (end - x) as u32;
-                                drawing.add_piece(Piece { row, seed: x, x, end, paint }, &triangle);
-                            }
-                        }
-                        drawing.pieces.close(&triangle);
+                        covered += drawing.add_small(index(number), rows, lane, wanted);
                     }
                 }
-                Found::Another(face) => {
-                    let sorted = Sorted::new(faces, face, false);
-                    let each_row = |row: Row| {
-                        covered += (row.x1 - row.x0) as u32;
-                        // Columns of a frame, of which there are at most 4,096.
-                        if CLIPS || (row.x0 >= 0 && row.x1 <= width as i32) {
-                            drawing.add_row(&row, &sorted);
-                        }
-                    };
-                    if CLIPS {
-                        sorted.triangle.rows(width, clip, each_row);
-                    } else {
-                        sorted.triangle.rows_inside(each_row);
-                    }
-                    drawing.pieces.close(&sorted);
-                }
+                Found::Another(face) => covered += drawing.add_large::<CLIPS>(face, width, clip),
             }
         }
         let drawn = drawing.finish(covered);

@@ -1,15 +1,16 @@
 //! The first stages of a piece: shades from their source, with an image, or mixed of three channels.
 
 use super::curve::CurvePlane;
-use super::pieces::{Bytes, Face, Piece, Pieces};
+use super::pieces::{Face, Pieces};
 use super::pipeline::{Attributes, Mix, PixelPipeline, ShadeSource};
-use super::{Buffers, HALVES, PIECE};
+use super::{Buffers, HALVES};
 use crate::fixed::U8F8;
 use crate::raster::cover::SortedTriangle;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::{RowShader, to_bytes};
 use crate::raster::shade::ShadePlane;
 use crate::span::channels::{mix_cube, mix_nearest};
+use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
 
 /// A value of the three corners, as planes take them.
@@ -20,81 +21,89 @@ fn values(corners: [&Attributes; 3], value: impl Fn(&Attributes) -> U8F8) -> [i6
 impl Pieces {
     /// The bytes of all pieces before fog and blending.
     pub(super) fn shade(&self, faces: &[Face], buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
-        let n = self.len();
-        if let Some(mix) = pipeline.channels() {
-            self.shade_channels(faces, buffers, pipeline, kernel);
-            if let Some(stage) = pipeline.texture() {
-                let Buffers { other, channels, .. } = &mut *buffers;
-                self.texels((), faces, (stage, pipeline.levels()), &mut other[..n], kernel);
-                for (channel, table) in channels.iter_mut().zip(stage.tables) {
-                    for ((piece, texels), channel) in self.pieces().iter().zip(&*other).zip(channel) {
-                        let mut shown = *texels;
-                        lookup(&mut shown[..piece.len()], &channel[..piece.len()], table);
-                        *channel = shown;
-                    }
+        let n = self.pixels();
+        let Some(stage) = pipeline.texture() else {
+            match pipeline.channels() {
+                None => self.shade_bytes(faces, buffers, pipeline, kernel),
+                Some(mix) => {
+                    self.shade_channels(faces, buffers, pipeline, kernel);
+                    self.mix(buffers, mix, pipeline.dither());
                 }
             }
-            return self.mix(buffers, mix, pipeline.dither().unwrap_or(&HALVES));
-        }
-        if let (Some(stage), ShadeSource::Shaded(Interpolation::Flat(shade))) = (pipeline.texture(), pipeline.source) {
-            // The table's row.
-            if let Some(row) = stage.tables[0].as_chunks::<256>().0.get(usize::from(shade)) {
-                return self.texels(row, faces, (stage, pipeline.levels()), &mut buffers.bytes[..n], kernel);
+            return;
+        };
+        let image = (stage, pipeline.levels());
+        if let Some(mix) = pipeline.channels() {
+            self.shade_channels(faces, buffers, pipeline, kernel);
+            let Buffers { other, channels, places, .. } = &mut *buffers;
+            self.texels((), faces, image, (&mut other[..n], places), kernel);
+            for (channel, table) in channels.iter_mut().zip(stage.tables) {
+                for (byte, &texel) in channel[..n].iter_mut().zip(&*other) {
+                    table.show(byte, texel);
+                }
             }
+            return self.mix(buffers, mix, pipeline.dither());
         }
-        self.shade_bytes(faces, buffers, pipeline, kernel);
-        if let Some(stage) = pipeline.texture() {
-            self.texels(stage.tables[0], faces, (stage, pipeline.levels()), &mut buffers.bytes[..n], kernel);
+        let row = match pipeline.source {
+            // The table's row.
+            ShadeSource::Shaded(Interpolation::Flat(shade)) => {
+                stage.tables[0].as_chunks::<256>().0.get(usize::from(shade))
+            }
+            _ => None,
+        };
+        if row.is_none() {
+            self.shade_bytes(faces, buffers, pipeline, kernel);
+        }
+        let Buffers { bytes, places, .. } = buffers;
+        match row {
+            Some(row) => self.texels(row, faces, image, (&mut bytes[..n], places), kernel),
+            None => self.texels(stage.tables[0], faces, image, (&mut bytes[..n], places), kernel),
         }
     }
 
     /// The bytes of shades, of which there is one at a pixel.
     #[inline(never)]
     fn shade_bytes(&self, faces: &[Face], buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
-        let n = self.len();
-        let Buffers { bytes, shades: [shades, ..], .. } = buffers;
-        let (bytes, shades) = (&mut bytes[..n], &mut shades[..n]);
-        let pattern = pipeline.dither().unwrap_or(&HALVES);
+        let Buffers { bytes, other, shades: [shades, ..], .. } = buffers;
         match pipeline.source {
             ShadeSource::Shaded(interpolation) => {
                 let plane = |triangle: &SortedTriangle, _: [&Attributes; 3]| RowShader::new(triangle, interpolation);
                 match (interpolation, pipeline.dither()) {
-                    (Interpolation::GouraudReseeded, None) => self.fill_linear(bytes, kernel),
+                    (Interpolation::GouraudReseeded, None) => self.fill_linear(faces, bytes, kernel),
                     (_, None) => self.each(faces, bytes, plane, |shader, piece, bytes| {
-                        shader.piece(&piece.row, piece.seed, &mut bytes[..piece.len()], None, kernel);
+                        shader.piece(&piece.row, piece.seed, bytes, None, kernel);
                     }),
                     (_, Some(pattern)) => self.each(faces, bytes, plane, |shader, piece, bytes| {
                         let thresholds = Some(piece.thresholds(pattern));
-                        shader.piece(&piece.row, piece.seed, &mut bytes[..piece.len()], thresholds, kernel);
+                        shader.piece(&piece.row, piece.seed, bytes, thresholds, kernel);
                     }),
                 }
             }
             ShadeSource::NormalTable(table) => {
-                let plane = |triangle: &SortedTriangle, corners| {
-                    let slope = |i: usize| ShadePlane::of_values(triangle, values(corners, |corner| corner.slope[i]));
-                    [slope(0), slope(1)]
-                };
-                self.each(faces, bytes, plane, |[across, down], piece, bytes| {
-                    let mut rows: Bytes = [0; PIECE];
-                    let (rows, bytes) = (&mut rows[..piece.len()], &mut bytes[..piece.len()]);
-                    kernel.fill(bytes, across.start(piece.seed, piece.row.y), across.step());
-                    kernel.fill(rows, down.start(piece.seed, piece.row.y), down.step());
-                    lookup(bytes, rows, table);
-                });
+                for (i, out) in [&mut *bytes, other].into_iter().enumerate() {
+                    let plane = |triangle: &SortedTriangle, corners| {
+                        ShadePlane::of_values(triangle, values(corners, |corner| corner.slope[i]))
+                    };
+                    self.each(faces, out, plane, |plane, piece, out| {
+                        kernel.fill(out, plane.start(piece.seed, piece.row.y), plane.step());
+                    });
+                }
+                lookup(&mut bytes[..self.pixels()], other, table);
             }
             ShadeSource::Lit(light) => {
                 self.light_each::<1>(faces, kernel, &light, [shades]);
-                self.round(shades, pattern, bytes);
+                self.round(shades, pipeline.dither(), bytes);
             }
             ShadeSource::LitEvery(spacing, light) => {
+                let pattern = pipeline.dither().unwrap_or(&HALVES);
                 self.light_some::<1>(faces, kernel, (spacing, &light), pattern, [bytes]);
             }
             ShadeSource::Curved(limits) => {
                 let plane = |triangle: &SortedTriangle, corners| CurvePlane::new(triangle, corners, limits, 1);
                 self.each(faces, shades, plane, |plane, piece, shades| {
-                    plane.fill(piece.start(), 0, &mut shades[..piece.len()], kernel);
+                    plane.fill(piece.place(), 0, shades, kernel);
                 });
-                self.round(shades, pattern, bytes);
+                self.round(shades, pipeline.dither(), bytes);
             }
         }
     }
@@ -102,10 +111,9 @@ impl Pieces {
     /// The bytes of three channels.
     #[inline(never)]
     fn shade_channels(&self, faces: &[Face], buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
-        let n = self.len();
         let Buffers { channels, shades, .. } = buffers;
-        let mut bytes = channels.each_mut().map(|channel| &mut channel[..n]);
-        let mut shades = shades.each_mut().map(|shades| &mut shades[..n]);
+        let mut bytes = channels.each_mut().map(|channel| &mut channel[..]);
+        let mut shades = shades.each_mut().map(|shades| &mut shades[..]);
         match pipeline.source {
             // What is shaded by a table of normals has no table for each channel.
             ShadeSource::Shaded(_) | ShadeSource::NormalTable(_) => {
@@ -118,7 +126,7 @@ impl Pieces {
                         RowShader::of_values(triangle, values(corners, |corner| corner.channels[i]), interpolation)
                     };
                     self.each(faces, bytes, plane, |shader, piece, bytes| {
-                        shader.piece(&piece.row, piece.seed, &mut bytes[..piece.len()], None, kernel);
+                        shader.piece(&piece.row, piece.seed, bytes, None, kernel);
                     });
                 }
                 return;
@@ -133,45 +141,45 @@ impl Pieces {
                 for (i, shades) in shades.iter_mut().enumerate() {
                     let plane = |triangle: &SortedTriangle, corners| CurvePlane::new(triangle, corners, limits, 3);
                     self.each(faces, shades, plane, |plane, piece, shades| {
-                        plane.fill(piece.start(), i, &mut shades[..piece.len()], kernel);
+                        plane.fill(piece.place(), i, shades, kernel);
                     });
                 }
             }
         }
         for (shades, bytes) in shades.iter().zip(bytes) {
-            self.round(shades, &HALVES, bytes);
+            self.round(shades, None, bytes);
         }
     }
 
     /// Shades to bytes, by thresholds.
-    fn round(&self, shades: &[[u16; PIECE]], pattern: &[[u8; 8]; 8], bytes: &mut [Bytes]) {
-        for ((piece, shades), bytes) in self.pieces().iter().zip(shades).zip(bytes) {
-            let n = piece.len();
-            to_bytes(&shades[..n], piece.thresholds(pattern), piece.column(), &mut bytes[..n]);
+    fn round(&self, shades: &[u16], dither: Option<&[[u8; 8]; 8]>, bytes: &mut [u8]) {
+        let Some(pattern) = dither else {
+            let n = self.pixels();
+            return to_bytes(&shades[..n], &HALVES[0], 0, &mut bytes[..n]);
+        };
+        for piece in self.pieces() {
+            let pixels = piece.pixels();
+            to_bytes(&shades[pixels.clone()], piece.thresholds(pattern), piece.column(), &mut bytes[pixels]);
         }
     }
 
     /// Three channels to one index.
-    fn mix(&self, buffers: &mut Buffers, mix: Mix<'_>, pattern: &[[u8; 8]; 8]) {
-        match mix {
-            Mix::Cube => self.each_mixed(buffers, |piece, bytes, [red, green, blue]| {
-                mix_cube(bytes, red, green, blue, piece.thresholds(pattern), piece.column());
-            }),
-            Mix::Nearest { map, spread } => self.each_mixed(buffers, |piece, bytes, [red, green, blue]| {
-                mix_nearest(bytes, red, green, blue, piece.thresholds(pattern), piece.column(), spread, map);
-            }),
-            Mix::Only(channel) => {
-                self.each_mixed(buffers, |_, bytes, channels| bytes.copy_from_slice(channels[channel.min(2)]));
-            }
+    fn mix(&self, buffers: &mut Buffers, mix: Mix<'_>, dither: Option<&[[u8; 8]; 8]>) {
+        let pattern = dither.unwrap_or(&HALVES);
+        let Buffers { bytes, channels, .. } = buffers;
+        if let Mix::Only(channel) = mix {
+            return bytes.copy_from_slice(&channels[channel.min(2)]);
         }
-    }
-
-    fn each_mixed(&self, buffers: &mut Buffers, mix: impl Fn(&Piece, &mut [u8], [&[u8]; 3])) {
-        let Buffers { bytes, channels: [red, green, blue], .. } = buffers;
-        let channels = red.iter().zip(&*green).zip(&*blue);
-        for ((piece, bytes), ((red, green), blue)) in self.pieces().iter().zip(bytes).zip(channels) {
-            let n = piece.len();
-            mix(piece, &mut bytes[..n], [&red[..n], &green[..n], &blue[..n]]);
+        for piece in self.pieces() {
+            let bytes = &mut bytes[piece.pixels()];
+            let [red, green, blue] = channels.each_ref().map(|channel| &channel[piece.pixels()]);
+            let (thresholds, column) = (piece.thresholds(pattern), piece.column());
+            match mix {
+                Mix::Nearest { map, spread } => {
+                    mix_nearest(bytes, red, green, blue, thresholds, column, spread, map);
+                }
+                Mix::Cube | Mix::Only(_) => mix_cube(bytes, red, green, blue, thresholds, column),
+            }
         }
     }
 }

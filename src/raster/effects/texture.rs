@@ -1,68 +1,88 @@
 //! Texels: texture coordinates over a triangle, the level of a mipmap, and the bytes of the image along a row.
+//!
+//! The places of all texels are found first, row by row, then the texels of all places in one loop: how long a row is, is
+//! a guess of the processor that costs as much as several pixels.
 
 use super::level::{self, LevelPlane};
-use super::pieces::{Bytes, Face, PIECE, Piece, Pieces};
+use super::pieces::{Covered, Face, FaceSetup, PIECE, Piece, Pieces};
 use super::pipeline::{Attributes, TextureMapping, TextureStage};
 use crate::fixed::{HAS_F64, nearest_whole};
 use crate::raster::cover::SortedTriangle;
 use crate::raster::quotient::Divisor;
 use crate::raster::weights::WholeWeights;
+use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
-use crate::span::texture::{Levels, Shown, Texels, show_affine, show_estimated, show_perspective_portable};
+use crate::span::texture::{AffineLines, Levels, Shown, Texels, exact_places, perspective_places, show};
 
 /// Pixels between two exact texture coordinates of [`TextureMapping::Every16`], and between two choices of a level.
 const EVERY: usize = EVERY_WHOLE as usize;
 const EVERY_WHOLE: i32 = 16;
 
+/// An image, with its levels where one of them is chosen.
+type Image<'a> = (Texels<'a>, Option<Levels<'a>>);
+
 impl Pieces {
-    /// The texels of every piece, from the levels of the image where there are any, and what is shown of them.
+    /// The texels of every piece, from the levels of the image where there are any, and what is shown of them; and room for
+    /// their places.
     pub(super) fn texels(
         &self,
         shown: impl Shown,
         faces: &[Face],
-        of: (&TextureStage<'_>, Option<Levels<'_>>),
-        out: &mut [Bytes],
+        (stage, levels): (&TextureStage<'_>, Option<Levels<'_>>),
+        (out, places): (&mut [u8], &mut [i32]),
         kernel: Kernel,
     ) {
+        let image = (stage.texels, levels);
         // A function for each, so that none is compiled otherwise where another is left out.
-        match of.0.mapping {
-            TextureMapping::Affine => self.affine_texels(shown, faces, of, out),
-            TextureMapping::Every16 => self.perspective_texels::<true>(shown, faces, of, out, kernel),
-            TextureMapping::Perspective => self.perspective_texels::<false>(shown, faces, of, out, kernel),
+        match (stage.mapping, levels) {
+            (TextureMapping::Affine, None) => find_affine(kernel.simd_level(), self, faces, stage.texels, places),
+            (TextureMapping::Affine, Some(_)) => {
+                return self.affine_levels(shown, faces, image, (out, places));
+            }
+            (TextureMapping::Perspective, None) => {
+                find_perspective(kernel.simd_level(), self, faces, stage.texels, places)
+            }
+            (TextureMapping::Perspective, Some(_)) => {
+                return self.perspective_levels::<false>(shown, faces, image, (out, places), kernel);
+            }
+            (TextureMapping::Every16, _) => {
+                return self.perspective_levels::<true>(shown, faces, image, (out, places), kernel);
+            }
         }
+        show(shown, out, stage.texels, places);
     }
 
+    /// Texels whose coordinates are linear on the screen, of the level of each face.
     #[inline(never)]
-    fn affine_texels(
+    fn affine_levels(
         &self,
         shown: impl Shown,
         faces: &[Face],
-        (stage, levels): (&TextureStage<'_>, Option<Levels<'_>>),
-        out: &mut [Bytes],
+        image: Image<'_>,
+        (out, places): (&mut [u8], &mut [i32]),
     ) {
-        let plane = |triangle: &SortedTriangle, corners| AffineTexture::new(triangle, corners, (stage.texels, levels));
-        self.each(faces, out, plane, |AffineTexture { texels, planes: [u, v] }, piece, pixels| {
-            let (x, y) = piece.start();
-            // The wrap is meant: texels repeat.
-            let steps = [u.step as u32, v.step as u32];
-            show_affine(shown, &mut pixels[..piece.len()], *texels, [u.start(x, y), v.start(x, y)], steps);
+        let plane = |triangle: &SortedTriangle, corners| AffineTexture::new(triangle, corners, image);
+        self.each(faces, out, plane, |texture, piece, pixels| {
+            let lines = AffineLines::new(BASELINE, texture.texels, texture.steps());
+            lines.places(places, pixels.len(), texture.start(piece));
+            show(shown, pixels, texture.texels, places);
         });
     }
 
     #[inline(never)]
-    fn perspective_texels<const EVERY_16: bool>(
+    fn perspective_levels<const EVERY_16: bool>(
         &self,
         shown: impl Shown,
         faces: &[Face],
-        (stage, levels): (&TextureStage<'_>, Option<Levels<'_>>),
-        out: &mut [Bytes],
+        (image, levels): Image<'_>,
+        (out, places): (&mut [u8], &mut [i32]),
         kernel: Kernel,
     ) {
-        let image = stage.texels;
         let plane = |triangle: &SortedTriangle, corners: [&Attributes; 3]| PerspectiveTexture::new(triangle, corners);
         let Some(levels) = levels else {
             return self.each(faces, out, plane, |plane, piece, pixels| {
-                plane.fill_level::<EVERY_16>(shown, (image, 0), piece, piece.seed, &mut pixels[..piece.len()], kernel);
+                plane.places::<EVERY_16>((image, 0), piece, piece.seed, (&mut *places, pixels.len()), kernel);
+                show(shown, pixels, image, places);
             });
         };
         let plane = |triangle: &SortedTriangle, corners: [&Attributes; 3]| {
@@ -71,10 +91,77 @@ impl Pieces {
             (plane(triangle, corners), levels)
         };
         self.each(faces, out, plane, |(plane, of_pixels), piece, pixels| {
-            let pixels = &mut pixels[..piece.len()];
-            plane.fill_by_levels::<EVERY_16>(shown, (of_pixels, levels), image, piece, pixels, kernel);
+            plane.show_levels::<EVERY_16>(shown, (of_pixels, levels), image, piece, (pixels, &mut *places), kernel);
         });
     }
+}
+
+compiled_for_each_level! {
+    #[inline(never)]
+    fn find_affine[][](pieces: &Pieces, faces: &[Face], image: Texels<'_>, places: &mut [i32]) = find_affine_by;
+}
+
+/// Places of texels whose coordinates are linear on the screen.
+#[inline(always)]
+fn find_affine_by<S: Lanes8>(s: S, pieces: &Pieces, faces: &[Face], image: Texels<'_>, places: &mut [i32]) {
+    let mut first = 0;
+    for covered in pieces.triangles() {
+        let range = first..covered.end;
+        first = covered.end;
+        if let Some(FaceSetup { affine: Some(steps), .. }) = covered.setup {
+            let lines = AffineLines::new(s, image, steps);
+            for (piece, start) in pieces.with_starts(range) {
+                lines.places(&mut places[piece.first()..], piece.len(), start.affine);
+            }
+            continue;
+        }
+        let texture = affine_texture(covered, faces, (image, None));
+        let lines = AffineLines::new(s, image, texture.steps());
+        for piece in &pieces.pieces()[range] {
+            lines.places(&mut places[piece.first()..], piece.len(), texture.start(piece));
+        }
+    }
+}
+
+#[inline(never)]
+fn affine_texture<'a>(covered: &Covered, faces: &[Face], image: Image<'a>) -> AffineTexture<'a> {
+    let (triangle, corners) = covered.corners(faces);
+    AffineTexture::new(&triangle, corners, image)
+}
+
+compiled_for_each_level! {
+    #[inline(never)]
+    fn find_perspective[][](pieces: &Pieces, faces: &[Face], image: Texels<'_>, places: &mut [i32]) = find_perspective_by;
+}
+
+/// Places of texels whose coordinates are linear on the face, exact at every pixel.
+#[inline(always)]
+fn find_perspective_by<S: Lanes8>(s: S, pieces: &Pieces, faces: &[Face], image: Texels<'_>, places: &mut [i32]) {
+    let mut first = 0;
+    for covered in pieces.triangles() {
+        let range = first..covered.end;
+        first = covered.end;
+        let Some(FaceSetup { perspective: [du, dv, dd], .. }) = covered.setup else {
+            let plane = perspective_texture(covered, faces);
+            for piece in &pieces.pieces()[range] {
+                plane.exact(s, (image, 0), piece.place(), (&mut places[piece.first()..], piece.len()));
+            }
+            continue;
+        };
+        for (piece, start) in pieces.with_starts(range) {
+            let (places, n, [u, v, d]) = (&mut places[piece.first()..], piece.len(), start.perspective);
+            if !perspective_places(s, places, n, image, [[u, du], [v, dv]], [d, dd]) {
+                let plane = perspective_texture(covered, faces);
+                plane.in_integers((image, 0), plane.weights.at(piece.seed, piece.row.y), &mut places[..n]);
+            }
+        }
+    }
+}
+
+#[inline(never)]
+fn perspective_texture(covered: &Covered, faces: &[Face]) -> PerspectiveTexture {
+    let (triangle, corners) = covered.corners(faces);
+    PerspectiveTexture::new(&triangle, corners)
 }
 
 /// The depth of a corner, at least 1.
@@ -104,6 +191,21 @@ impl<'a> AffineTexture<'a> {
         let change = |direction: usize| [0, 1].map(|i| 256 * i128::from(planes[i].gradient[direction]));
         let level = level::of_face(change(0), change(1), area.get(), levels.last());
         Self { texels: levels.get(level).unwrap_or(image), planes: planes.map(|plane| plane.of_level(level)) }
+    }
+
+    /// Change of the coordinates from a pixel to the next one.
+    #[inline(always)]
+    fn steps(&self) -> [u32; 2] {
+        let [u, v] = &self.planes;
+        // The wrap is meant: texels repeat.
+        [u.step as u32, v.step as u32]
+    }
+
+    /// The coordinates at the first pixel of a piece.
+    #[inline(always)]
+    fn start(&self, piece: &Piece) -> [u32; 2] {
+        let ([u, v], (x, y)) = (&self.planes, piece.place());
+        [u.start(x, y), v.start(x, y)]
     }
 }
 
@@ -260,58 +362,58 @@ impl PerspectiveTexture {
         Self { weights, values, estimated, steps }
     }
 
-    /// Fills `texels` from levels, one of which is chosen for every 16 pixels.
+    /// Shows the texels of a piece, from levels, one of which is chosen for every 16 pixels.
     /// The middle one of these decides, or the row's last inside the frame if that comes before, whatever the clip
     /// rectangle.
     #[inline(never)]
-    fn fill_by_levels<const EVERY_16: bool>(
+    fn show_levels<const EVERY_16: bool>(
         &self,
         shown: impl Shown,
         (plane, levels): (&LevelPlane, Levels<'_>),
         image: Texels<'_>,
         piece: &Piece,
-        texels: &mut [u8],
+        (pixels, places): (&mut [u8], &mut [i32]),
         kernel: Kernel,
     ) {
         let (row, seed) = (&piece.row, piece.seed);
         let mut chosen = [0; PIECE / EVERY];
-        let chosen = &mut chosen[..texels.len().div_ceil(EVERY)];
+        let chosen = &mut chosen[..pixels.len().div_ceil(EVERY)];
         let across = plane.across(row.y);
         for (level, x) in chosen.iter_mut().zip((seed..).step_by(EVERY)) {
             let x = (x + EVERY as i32 / 2).min(row.last).max(x);
             let denominator = exact(self.weights.at(x, row.y), self.values[2]);
             *level = plane.at(across, x, denominator, levels.last());
         }
-        let (mut x, mut rest) = (seed, texels);
+        let (mut x, mut rest) = (seed, pixels);
         for alike in chosen.chunk_by(|a, b| a == b) {
             let part;
             (part, rest) = rest.split_at_mut((alike.len() * EVERY).min(rest.len()));
             let level = alike[0];
             let of_level = levels.get(level).unwrap_or(image);
-            self.fill_level::<EVERY_16>(shown, (of_level, level), piece, x, part, kernel);
+            self.places::<EVERY_16>((of_level, level), piece, x, (places, part.len()), kernel);
+            show(shown, part, of_level, places);
             // At most 64.
             x += part.len() as i32;
         }
     }
 
-    /// The texels of one level, from pixel `x` on. Coordinates are divided by 2^`shift`.
+    /// The places of `n` texels of one level, from pixel `x` on. Coordinates are divided by 2^`shift`.
     #[inline]
-    fn fill_level<const EVERY_16: bool>(
+    fn places<const EVERY_16: bool>(
         &self,
-        shown: impl Shown,
         (texels, shift): (Texels<'_>, u32),
         piece: &Piece,
         mut x: i32,
-        pixels: &mut [u8],
+        (places, n): (&mut [i32], usize),
         kernel: Kernel,
     ) {
         let y = piece.row.y;
         if !EVERY_16 {
-            return self.fill_exact(shown, (texels, shift), (x, y), pixels, kernel);
+            return exact_places_of(kernel.simd_level(), self, (texels, shift), (x, y), (places, n));
         }
         let at = |x: i32| self.at(x, y).map(|coordinate| coordinate >> shift);
         let mut from = at(x);
-        for pixels in pixels.chunks_mut(EVERY) {
+        for first in (0..n).step_by(EVERY) {
             // The row's last pixel inside the frame, whatever the clip rectangle: beyond the
             // triangle there may be no coordinates at all.
             let next = (x + EVERY as i32).min(piece.row.last).max(x);
@@ -328,46 +430,44 @@ impl PerspectiveTexture {
                 }
             };
             // The wrap is meant here, too.
-            show_affine(shown, pixels, texels, [from[0] as u32, from[1] as u32], [step(0), step(1)]);
+            let start = [from[0] as u32, from[1] as u32];
+            let lines = AffineLines::new(BASELINE, texels, [step(0), step(1)]);
+            lines.places(&mut places[first..], EVERY.min(n - first), start);
             (x, from) = (next, to);
         }
     }
 
-    /// The texels of one level, each at its exact place.
-    #[inline(never)]
-    fn fill_exact(
+    /// The places of `n` texels of one level, from a pixel on, each exact.
+    #[inline(always)]
+    fn exact<S: Lanes8>(
         &self,
-        shown: impl Shown,
+        s: S,
         (texels, shift): (Texels<'_>, u32),
         (x, y): (i32, i32),
-        pixels: &mut [u8],
-        kernel: Kernel,
+        (places, n): (&mut [i32], usize),
     ) {
         let weights = self.weights.at(x, y);
         if HAS_F64 {
             let at = in_f64(weights);
-            let sum = |i: usize| [estimate(at, self.estimated[i]), self.steps[i]];
+            let mut sums = [[0.0; 2]; 3];
+            for (sum, (values, step)) in sums.iter_mut().zip(self.estimated.iter().zip(self.steps)) {
+                *sum = [estimate(at, *values), step];
+            }
             let size = f64::from(1_u32 << shift);
-            let [d, dd] = sum(2);
-            if show_estimated(shown, kernel, pixels, texels, [sum(0), sum(1)], [d * size, dd * size]) {
+            let [u, v, [d, dd]] = sums;
+            if perspective_places(s, places, n, texels, [u, v], [d * size, dd * size]) {
                 return;
             }
         }
-        self.fill_exactly(shown, (texels, shift), weights, pixels);
+        self.in_integers((texels, shift), weights, &mut places[..n]);
     }
 
-    /// [`fill_exact`](Self::fill_exact) in whole numbers, for where an estimate cannot decide.
+    /// [`exact`](Self::exact) in whole numbers, for where an estimate cannot decide.
     #[inline(never)]
-    fn fill_exactly(
-        &self,
-        shown: impl Shown,
-        (texels, shift): (Texels<'_>, u32),
-        weights: [i64; 3],
-        pixels: &mut [u8],
-    ) {
+    fn in_integers(&self, (texels, shift): (Texels<'_>, u32), weights: [i64; 3], places: &mut [i32]) {
         let step = self.weights.per_column();
         let [u, v, [d, dd]] = self.values.map(|values| [exact(weights, values), exact(step, values)]);
-        show_perspective_portable(shown, pixels, texels, [u, v], [d << shift, dd << shift]);
+        exact_places(places, texels, [u, v], [d << shift, dd << shift]);
     }
 
     /// The coordinates at a pixel, rounded down; 16.16.
@@ -385,12 +485,38 @@ impl PerspectiveTexture {
     }
 }
 
+compiled_for_each_level! {
+    fn exact_places_of[][](
+        plane: &PerspectiveTexture,
+        texels: (Texels<'_>, u32),
+        place: (i32, i32),
+        places: (&mut [i32], usize),
+    ) = exact_places_by;
+}
+
+#[inline(always)]
+fn exact_places_by<S: Lanes8>(
+    s: S,
+    plane: &PerspectiveTexture,
+    texels: (Texels<'_>, u32),
+    place: (i32, i32),
+    places: (&mut [i32], usize),
+) {
+    plane.exact(s, texels, place, places)
+}
+
 #[cfg(all(test, feature = "std"))]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
     use crate::fixed::{I24F8, U8F8};
+    use crate::raster::Interpolation;
+    use crate::raster::batch::Batch;
+    use crate::raster::batch::found::{Coordinates, Finder, Found, FoundRows, Wanted, index};
+    use crate::raster::batch::texture::TextureCorners;
+    use crate::raster::cover::Row;
+    use crate::raster::depth::DepthPlane;
     use crate::raster::frame::Rect;
     use crate::raster::vertex::Vertex;
 
@@ -441,5 +567,139 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Eight small triangles: (x, y, depth), then u and v.
+    type Given = [([(i32, i32, u32); 3], [[i32; 2]; 3]); 8];
+
+    fn given() -> impl Strategy<Value = Given> {
+        let side = |n: i32| prop::sample::select(&[200, 700, 4_000, 16_384][..]).prop_map(move |side: i32| side.min(n));
+        let triangle = (side(16_384), side(4_096)).prop_flat_map(|(width, height)| {
+            // The box's ends are where sums are greatest.
+            let at = |end: i32| prop_oneof![4 => 0..=end, 1 => Just(0), 1 => Just(end)];
+            let depth = prop_oneof![3 => any::<u32>(), 1 => Just(0), 1 => Just(1), 1 => Just(u32::MAX)];
+            let corner = (at(width), at(height), depth);
+            // Within 2²² of each other, at that bound, one beyond it, or far from it.
+            let apart = prop_oneof![
+                4 => -(1 << 21)..1_i32 << 21,
+                2 => (0_u32..32, any::<i32>()).prop_map(|(bits, n)| n >> bits),
+                1 => prop::sample::select(&[0, 1, (1 << 22) - 1, 1 << 22, i32::MIN, i32::MAX][..]),
+            ];
+            let texture =
+                (any::<[i32; 2]>(), prop::array::uniform3([apart.clone(), apart])).prop_map(|(origin, corners)| {
+                    corners.map(|uv: [i32; 2]| [0, 1].map(|i| uv[i].wrapping_add(origin[i])))
+                });
+            // Whole at every pixel: a numerator that is one less gives another quotient.
+            let whole = prop::option::of(prop::array::uniform2([-100..=100, -100..=100]));
+            (prop::array::uniform3(corner), (0..60_000, 0..40_000), texture, whole)
+        });
+        let triangle = triangle.prop_map(|(corners, (left, top), texture, whole)| {
+            let texture = whole.map_or(texture, |whole: [[i32; 2]; 2]| {
+                corners.map(|(x, y, _)| [0, 1].map(|i| texture[0][i].wrapping_add(whole[i][0] * x + whole[i][1] * y)))
+            });
+            (corners.map(|(x, y, depth)| (left + x, top + y, depth)), texture)
+        });
+        // Boxed: eight trees of values are more than a stack holds.
+        prop::array::uniform8(triangle.boxed())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(3_000))]
+        /// Every level sets eight small triangles up as each alone is: affine coordinates and depths
+        /// to the bit, the sums of perspective ones within the four roundings of their terms.
+        #[test]
+        fn eight_triangles_are_each_its_own(given in given()) {
+            let mut batch = Batch::new();
+            let mut corners = TextureCorners::NONE;
+            let mut triangles = std::vec::Vec::new();
+            for (i, (points, texture)) in given.iter().enumerate() {
+                let vertices = points.map(|(x, y, depth)| {
+                    Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::default(), depth).expect("inside")
+                });
+                batch.push(&vertices, Interpolation::GouraudReseeded);
+                corners.put(i, *texture);
+                let (triangle, order) = SortedTriangle::with_order(&vertices);
+                triangles.push((triangle, order.map(|corner| texture[corner])));
+            }
+            let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
+            for (kernel, which) in
+                Kernel::available().flat_map(|k| [(k, Coordinates::Affine), (k, Coordinates::Perspective)])
+            {
+                let wanted = Wanted { depths: true, texture: Some((which, &corners)) };
+                let mut rows = FoundRows::NONE;
+                let mut finder = Finder::new(kernel.simd_level(), &batch, wanted, clip, &mut rows);
+                while let Some(found) = finder.next() {
+                    let Found::Small(numbers, rows) = found else { continue };
+                    for (lane, &number) in numbers.iter().enumerate() {
+                        let (triangle, texture) = &triangles[index(number)];
+                        let of = |i: usize| texture.map(|corner| corner[i]);
+                        let is_near = |[a, b, c]: [i32; 3]| {
+                            i64::from(a.max(b).max(c)) - i64::from(a.min(b).min(c)) < 1 << 22
+                        };
+                        let step = rows.affine_step(lane);
+                        if which == Coordinates::Affine {
+                            prop_assert_eq!(step.is_some(), is_near(of(0)) && is_near(of(1)));
+                        }
+                        for j in 0..rows.count(lane) {
+                            let (Row { x0, x1, y, .. }, _) = rows.row(lane, j);
+                            if x0 < x1 {
+                                let depths = DepthPlane::new(triangle);
+                                let depth = [rows.depth(lane, j, x0), rows.depth_step(lane)];
+                                let right = [depths.fixed_at(x0, y), depths.step()];
+                                prop_assert_eq!(depth.map(|z| z << 8), right.map(|z| z << 8));
+                                let is_row = x0 + 1 < x1;
+                                match which {
+                                    Coordinates::Affine => affine_is_right(triangle, texture, step, is_row,
+                                        rows.affine_start(lane, j), (x0, y))?,
+                                    Coordinates::Perspective => sums_are_right(triangle, texture,
+                                        rows.perspective_start(lane, j), rows.perspective_step(lane), (x0, y))?,
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn affine_is_right(
+        triangle: &SortedTriangle,
+        texture: &[[i32; 2]; 3],
+        step: Option<[u32; 2]>,
+        is_row: bool,
+        start: [u32; 2],
+        place: (i32, i32),
+    ) -> Result<(), TestCaseError> {
+        let Some(step) = step else { return Ok(()) };
+        for i in 0..2 {
+            let values = texture.map(|corner| corner[i]);
+            prop_assert_eq!(start[i], defined(triangle, values, 0, place));
+            if is_row {
+                let (gx, _) = triangle.gradient(values.map(i64::from));
+                prop_assert_eq!(step[i], (256 * i128::from(gx) / i128::from(triangle.area())) as u32);
+            }
+        }
+        Ok(())
+    }
+
+    fn sums_are_right(
+        triangle: &SortedTriangle,
+        texture: &[[i32; 2]; 3],
+        start: [f64; 3],
+        step: [f64; 3],
+        (x, y): (i32, i32),
+    ) -> Result<(), TestCaseError> {
+        let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
+        let weights = WholeWeights::new(triangle);
+        for i in 0..3 {
+            let values = [0, 1, 2].map(|k| if i < 2 { i64::from(texture[k][i]) * depths[k] } else { depths[k] });
+            for (weights, sum) in [(weights.at(x, y), start[i]), (weights.per_column(), step[i])] {
+                let terms: i128 = weights.iter().zip(values).map(|(w, v)| (i128::from(*w) * i128::from(v)).abs()).sum();
+                let off = sum as i128 - exact(weights, values);
+                // Four parts in 2⁵³ of the terms; less than one for what `as` cuts off.
+                prop_assert!((off.abs() - 1) << 51 <= terms, "{} off of {}", off, terms);
+            }
+        }
+        Ok(())
     }
 }

@@ -1,0 +1,201 @@
+//! Texture coordinates of eight small triangles: planes from their corners, and the starts of their rows.
+//!
+//! Coordinates that are linear on the screen are set up as shades are, by the quotients of [`setup`](super::setup). Where
+//! those of a triangle differ by less than 2²², 64 texels, gradients are below 2³⁹, no sum of terms reaches 2⁵², and f64
+//! holds all multiples of ½ below that. A quotient is below 2²² and off by 2⁻³⁰, its margin at least 2⁻²⁷·¹².
+//!
+//! For coordinates that are linear on the face there are the sums of an exact start: the weights of the corners, which are
+//! whole numbers below 2⁴⁴, times values that are rounded once each. So a sum is off by at most 4 parts in 2⁵³ of what
+//! its terms are without their signs.
+
+use super::rows::RowEnds;
+use super::setup::{Basis, Corners8, Floats, Ints};
+use super::triangles::LANES;
+use crate::fixed::ROUND_MAGIC;
+use crate::simd::Lanes8;
+
+/// Texture coordinates of the corners of many triangles, in texels with 16 fraction bits.
+#[derive(Clone, Debug)]
+pub(in crate::raster) struct TextureCorners<const N: usize> {
+    /// u and v, of each corner, of all triangles.
+    of: [[[i32; N]; 3]; 2],
+}
+
+impl<const N: usize> TextureCorners<N> {
+    pub(in crate::raster) const NONE: Self = Self { of: [[[0; N]; 3]; 2] };
+
+    /// Puts in the coordinates of triangle `at`, if there is room for it.
+    #[inline(always)]
+    pub(in crate::raster) fn put(&mut self, at: usize, corners: [[i32; 2]; 3]) {
+        for (corner, texture) in corners.into_iter().enumerate() {
+            for (all, coordinate) in self.of.iter_mut().zip(texture) {
+                if let Some(of_triangle) = all[corner].get_mut(at) {
+                    *of_triangle = coordinate;
+                }
+            }
+        }
+    }
+
+    /// One coordinate of up to eight triangles. Lanes without a triangle have 0.
+    #[inline(always)]
+    pub(super) fn gather(&self, triangles: &[usize; LANES]) -> [[Ints; 3]; 2] {
+        let mut gathered = [[[0; LANES]; 3]; 2];
+        for (to, from) in gathered.as_flattened_mut().iter_mut().zip(self.of.as_flattened()) {
+            for (to, &triangle) in to.iter_mut().zip(triangles) {
+                *to = from[triangle % N];
+            }
+        }
+        gathered
+    }
+}
+
+/// Planes of coordinates that are linear on the screen, of eight triangles.
+#[derive(Clone, Debug)]
+pub(super) struct AffinePlanes8 {
+    n: [Floats; 2],
+    per_row: [Floats; 2],
+    per_column: [Floats; 2],
+    inverse: Floats,
+    /// The coordinate of the first corner by height.
+    first: [Ints; 2],
+    /// Change from a pixel to the next one, where a row has more than one.
+    pub(super) step: [Ints; 2],
+    /// A bit for each triangle whose corners lie near enough to each other.
+    pub(super) fits: u32,
+}
+
+impl AffinePlanes8 {
+    pub(super) const NONE: Self = Self {
+        n: [[0.0; LANES]; 2],
+        per_row: [[0.0; LANES]; 2],
+        per_column: [[0.0; LANES]; 2],
+        inverse: [0.0; LANES],
+        first: [[0; LANES]; 2],
+        step: [[0; LANES]; 2],
+        fits: 0,
+    };
+
+    /// The difference from which on corners lie too far from each other.
+    const TOO_FAR: i32 = 1 << 22;
+
+    #[inline(always)]
+    pub(super) fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, coordinates: &[[Ints; 3]; 2]) {
+        s.put_f64s(basis.inverse, &mut self.inverse);
+        self.fits = u32::MAX;
+        let [x, y] = basis.first;
+        let (pixel, magic) = (s.all_f64(256.0), s.all_f64(ROUND_MAGIC));
+        for (i, [a, b, c]) in coordinates.iter().enumerate() {
+            let corners = [s.i32s(a), s.i32s(b), s.i32s(c)];
+            let [a, b, c] = corners;
+            // Modulo 2³²: a difference of 2³¹ or more is negative.
+            let range = s.sub_i32(s.max_i32(s.max_i32(a, b), c), s.min_i32(s.min_i32(a, b), c));
+            let is_near = s.but_not(s.is_greater(s.all_i32(Self::TOO_FAR), range), s.is_greater(s.all_i32(0), range));
+            self.fits &= s.mask_bits(is_near);
+            let [first, second, third] = basis.order.sort(s, corners);
+            s.put_i32s(first, &mut self.first[i]);
+            let differences = [s.to_f64(s.sub_i32(second, first)), s.to_f64(s.sub_i32(third, first))];
+            let [gx, gy] = basis.gradient(s, differences);
+            // +0 and no −0: its sign chooses the rounding.
+            let gx = s.add(gx, s.all_f64(0.0));
+            // `AffinePlane::start`: the floor, or the ceiling where coordinates fall.
+            let half = s.flip(s.mul_add(basis.area, s.all_f64(0.5), s.all_f64(-0.5)), gx);
+            let n = s.neg_mul_add(gx, x, s.neg_mul_add(gy, y, s.all_f64(0.0)));
+            s.put_f64s(s.sub(n, half), &mut self.n[i]);
+            s.put_f64s(s.mul(gy, pixel), &mut self.per_row[i]);
+            let per_column = s.mul(gx, pixel);
+            s.put_f64s(per_column, &mut self.per_column[i]);
+            // Toward zero.
+            let step = s.mul_add(s.sub(per_column, half), basis.inverse, magic);
+            s.put_i32s(s.low_bits(step), &mut self.step[i]);
+        }
+    }
+
+    /// The coordinates at the first pixel of a row of each triangle.
+    #[inline(always)]
+    pub(super) fn start<S: Lanes8>(&self, s: S, j: S::F64, ends: &RowEnds<S>) -> [S::I32; 2] {
+        let magic = s.all_f64(ROUND_MAGIC);
+        let columns = s.sub(ends.left, magic);
+        let inverse = s.f64s(&self.inverse);
+        let mut starts = [s.all_i32(0); 2];
+        // Not by a closure, which would not be inlined.
+        for (i, start) in starts.iter_mut().enumerate() {
+            let n = s.mul_add(s.f64s(&self.per_row[i]), j, s.f64s(&self.n[i]));
+            let n = s.mul_add(s.f64s(&self.per_column[i]), columns, n);
+            *start = s.add_i32(s.low_bits(s.mul_add(n, inverse, magic)), s.i32s(&self.first[i]));
+        }
+        starts
+    }
+}
+
+/// Coordinates that are linear on the face, of eight triangles: numerators and divisor are sums over the corners of weights
+/// times values.
+#[derive(Clone, Debug)]
+pub(super) struct PerspectivePlanes8 {
+    /// The weights of the corners, by height: at the box's first pixel, from a row to the next, from a column to the next.
+    weights: [[Floats; 3]; 3],
+    /// u, v and 1 of each corner, times its depth.
+    values: [[Floats; 3]; 3],
+    /// Change of the sums from a pixel to the next one.
+    pub(super) step: [Floats; 3],
+}
+
+impl PerspectivePlanes8 {
+    pub(super) const NONE: Self =
+        Self { weights: [[[0.0; LANES]; 3]; 3], values: [[[0.0; LANES]; 3]; 3], step: [[0.0; LANES]; 3] };
+
+    #[inline(always)]
+    pub(super) fn set_up<S: Lanes8>(
+        &mut self,
+        s: S,
+        basis: &Basis<S>,
+        corners: &Corners8,
+        coordinates: &[[Ints; 3]; 2],
+    ) {
+        let [u, v] = coordinates;
+        let mut sorted = [[s.all_i32(0); 3]; 3];
+        for (sorted, [a, b, c]) in sorted.iter_mut().zip([u, v, &corners.depth]) {
+            *sorted = basis.order.sort(s, [s.i32s(a), s.i32s(b), s.i32s(c)]);
+        }
+        let [u, v, depth] = sorted;
+        let ([x, y], pixel, zero) = (basis.first, s.all_f64(256.0), s.all_f64(0.0));
+        let one = s.all_f64(1.0);
+        let mut sums = [zero; 3];
+        // How the weight of each corner differs at the second and the third from that at the first.
+        let minus_one = s.all_f64(-1.0);
+        let differences = [[minus_one, minus_one], [one, zero], [zero, one]];
+        for corner in 0..3 {
+            let [gx, gy] = basis.gradient(s, differences[corner]);
+            let at_first = if corner == 0 { basis.area } else { zero };
+            let n = s.neg_mul_add(gx, x, s.neg_mul_add(gy, y, at_first));
+            let per_column = s.mul(gx, pixel);
+            s.put_f64s(n, &mut self.weights[corner][0]);
+            s.put_f64s(s.mul(gy, pixel), &mut self.weights[corner][1]);
+            s.put_f64s(per_column, &mut self.weights[corner][2]);
+            // A depth counts as 1 at least.
+            let depth = s.max(s.unsigned_to_f64(depth[corner]), one);
+            let values = [s.mul(s.to_f64(u[corner]), depth), s.mul(s.to_f64(v[corner]), depth), depth];
+            for (i, value) in values.into_iter().enumerate() {
+                s.put_f64s(value, &mut self.values[corner][i]);
+                sums[i] = s.mul_add(per_column, value, sums[i]);
+            }
+        }
+        for (step, sum) in self.step.iter_mut().zip(sums) {
+            s.put_f64s(sum, step);
+        }
+    }
+
+    /// The sums at the first pixel of a row of each triangle.
+    #[inline(always)]
+    pub(super) fn start<S: Lanes8>(&self, s: S, j: S::F64, ends: &RowEnds<S>) -> [S::F64; 3] {
+        let columns = s.sub(ends.left, s.all_f64(ROUND_MAGIC));
+        let mut sums = [s.all_f64(0.0); 3];
+        for (weights, values) in self.weights.iter().zip(&self.values) {
+            let weight = s.mul_add(s.f64s(&weights[1]), j, s.f64s(&weights[0]));
+            let weight = s.mul_add(s.f64s(&weights[2]), columns, weight);
+            for (sum, value) in sums.iter_mut().zip(values) {
+                *sum = s.mul_add(weight, s.f64s(value), *sum);
+            }
+        }
+        sums
+    }
+}
